@@ -1,0 +1,30 @@
+#pragma once
+/// What is wrong with an input, as data; printed elsewhere.
+
+#include <string>
+#include <vector>
+
+namespace flexarm::scene {
+
+/// One finding about an input file.
+struct Diagnostic {
+  enum class Severity { Warning, Error };
+  Severity severity = Severity::Error;
+  std::string file;
+  int line = 0;          ///< 1-based; 0 where no line is known
+  std::string element;   ///< "<circle> of beam 'forearm'"
+  std::string got;       ///< "radius = '-0.01'"; empty where something is missing
+  std::string expected;  ///< "radius must be > 0"
+
+  /// `scene.urdf:41: <circle> of beam 'forearm': radius must be > 0, got '-0.01'`
+  std::string text() const;
+};
+
+using Diagnostics = std::vector<Diagnostic>;
+
+/// True if any finding is an error.
+bool has_errors(const Diagnostics& diagnostics);
+/// One finding per line.
+std::string to_text(const Diagnostics& diagnostics);
+
+}  // namespace flexarm::scene

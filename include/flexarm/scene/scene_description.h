@@ -1,0 +1,199 @@
+#pragma once
+/// What a scene file says: names and SI numbers, immutable, no numerics.
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "flexarm/math/pose.h"
+#include "flexarm/math/time_function.h"
+
+namespace flexarm::scene {
+
+/// Where something stands in the file; kept for errors that only the model builder can find.
+struct SourceLocation {
+  std::string file;
+  int line = 0;
+};
+
+// ---------------------------------------------------------------- beams
+
+/// Solid circular section. [m]
+struct Circle { double radius; };
+/// Circular tube. [m]
+struct Tube { double outer_radius, inner_radius; };
+/// Solid rectangle: width along the section's y axis, height along z. [m]
+struct Rectangle { double width, height; };
+/// Thin-walled rectangular box: outer width along y, outer height along z, wall thickness. [m]
+struct BoxTube { double width, height, thickness; };
+/// Isotropic material: Young's modulus [Pa], Poisson ratio, density [kg/m^3].
+struct Material { double young, poisson, density; };
+
+using SectionShape = std::variant<Circle, Tube, Rectangle, BoxTube>;
+/// A section given by its geometry and its material.
+struct GeometricSection { SectionShape shape; Material material; };
+/// Section stiffnesses and inertias about principal axes; 1 = tangent, 2 = y, 3 = z.
+/// ea, ga2, ga3 [N]; gj, ei2, ei3 [N m^2]; mass [kg/m]; j1, j2, j3 [kg m].
+struct DirectSection { double ea, ga2, ga3, gj, ei2, ei3, mass, j1, j2, j3; };
+/// Full section matrices in the section frame, order {force 1 2 3, moment 1 2 3}; stiffness symmetric positive
+/// definite; inertia [[m 1, -m d^], [m d^, J]] with d the centre of mass in the section.
+struct MatrixSection { Matrix6 stiffness, inertia; };
+
+using Section = std::variant<GeometricSection, DirectSection, MatrixSection>;
+
+/// One piece of the centreline in the link frame; starts where the piece before ended (the first at the link origin).
+struct CentrelinePiece {
+  enum class Kind { Line, Arc };
+  Kind kind = Kind::Line;
+  Vector3 to = Vector3::Zero();      ///< end point [m]
+  Vector3 center = Vector3::Zero();  ///< arc only: its centre [m]; the shorter arc is meant
+  double twist = 0;                  ///< pre-twist of the section over this piece [rad]
+  SourceLocation location;
+};
+
+struct BeamDescription {
+  std::optional<int> elements;  ///< number of elements; empty: "auto"
+  int order = 2;                ///< 1..4, nodes per element minus one
+  std::vector<CentrelinePiece> centreline;
+  std::optional<Vector3> section_y;  ///< the section's y axis at s = 0, in the link frame; empty: chosen reproducibly
+  Section section;
+  double stiffness_proportional_damping = 0;  ///< [s]
+  double mass_proportional_damping = 0;       ///< [1/s]
+  SourceLocation location;
+};
+
+// ---------------------------------------------------------------- links and joints
+
+/// URDF <inertial>: mass [kg], centre of mass in the link frame [m], inertia about it in link axes [kg m^2].
+struct RigidInertia {
+  double mass = 0;
+  Vector3 center_of_mass = Vector3::Zero();
+  Matrix3 inertia = Matrix3::Zero();
+};
+
+struct LinkDescription {
+  std::string name;
+  std::optional<RigidInertia> inertial;  ///< ignored where there is a beam
+  std::optional<BeamDescription> beam;
+  SourceLocation location;
+};
+
+enum class JointKind { Fixed, Revolute, Continuous, Prismatic, Planar, Floating, Spherical, Universal, Cylindrical };
+
+struct JointLimits {
+  double lower, upper;   ///< position [rad or m]
+  double effort = 0;     ///< commanded efforts saturate here [N or N m]; 0: unlimited
+  double velocity = 0;   ///< kept, not enforced
+};
+
+struct Mimic {
+  std::string joint;
+  double multiplier = 1, offset = 0;
+};
+
+struct JointDescription {
+  std::string name;
+  JointKind kind = JointKind::Fixed;
+  std::string parent, child;         ///< link names
+  Pose origin;                       ///< joint frame in the parent link frame
+  Vector3 axis = Vector3::UnitX();   ///< unit vector in the joint frame (planar: the normal)
+  Vector3 axis2 = Vector3::UnitY();  ///< universal: second axis, unit, in the joint frame turned by the first angle
+  std::optional<JointLimits> limits; ///< only where positions are limited (revolute, prismatic)
+  double damping = 0;                ///< per released coordinate [N s/m or N m s/rad]
+  double friction = 0;               ///< Coulomb effort per released coordinate [N or N m]
+  std::optional<Mimic> mimic;
+  SourceLocation location;
+};
+
+// ---------------------------------------------------------------- simulation
+
+/// <integrator>; empty fields keep the defaults of the simulator.
+struct IntegratorDescription {
+  std::string scheme = "auto";
+  double step = 1e-3;          ///< [s]
+  double tolerance = 1e-8;     ///< on the Newton update, relative to the scene's length and to 1 rad
+  int max_iterations = 20;
+  int max_halvings = 5;
+  std::optional<double> rho_infinity;
+};
+
+/// Initial position and velocity of a released coordinate. `coordinate` is a joint's name, or for a joint with several
+/// coordinates its name with a suffix (see coordinate_suffixes).
+struct InitialJoint {
+  std::string coordinate;
+  double position = 0, velocity = 0;
+  SourceLocation location;
+};
+
+/// Initial rigid velocity field of a link, world axes: v(x) = linear + angular x (x - link origin). [m/s, rad/s]
+struct InitialLink {
+  std::string link;
+  Vector3 linear = Vector3::Zero(), angular = Vector3::Zero();
+  SourceLocation location;
+};
+
+enum class LoadFrame { World, Follower };
+
+/// Point load on a link: `at` [m] in the undeformed link frame, force [N], moment [N m], scaled by history(t).
+struct PointLoad {
+  std::string link;
+  Vector3 at = Vector3::Zero(), force = Vector3::Zero(), moment = Vector3::Zero();
+  LoadFrame frame = LoadFrame::World;
+  TimeFunction history;
+  SourceLocation location;
+};
+
+/// Force per length [N/m] along a flexible link's centreline.
+struct DistributedLoad {
+  std::string link;
+  Vector3 force = Vector3::Zero();
+  LoadFrame frame = LoadFrame::World;
+  TimeFunction history;
+  SourceLocation location;
+};
+
+/// Prescribed released coordinate, position(t) [rad or m].
+struct PrescribedMotion {
+  std::string coordinate;
+  TimeFunction position;
+  SourceLocation location;
+};
+
+/// Joint effort before any command arrives, effort(t) [N or N m].
+struct JointEffort {
+  std::string coordinate;
+  TimeFunction history;
+  SourceLocation location;
+};
+
+/// A named point of a link whose pose and velocity are put out.
+struct Probe {
+  std::string name, link;
+  Vector3 at = Vector3::Zero();
+  SourceLocation location;
+};
+
+struct SceneDescription {
+  std::string name;       ///< of the robot
+  std::string file;
+  std::string root_link;  ///< its name is the world frame's
+  std::vector<LinkDescription> links;
+  std::vector<JointDescription> joints;
+  Vector3 gravity = Vector3(0, 0, -9.81);  ///< [m/s^2]
+  IntegratorDescription integrator;
+  std::vector<InitialJoint> initial_joints;
+  std::vector<InitialLink> initial_links;
+  std::vector<PointLoad> loads;
+  std::vector<DistributedLoad> distributed_loads;
+  std::vector<PrescribedMotion> motions;
+  std::vector<JointEffort> efforts;
+  std::vector<Probe> probes;
+};
+
+/// Suffixes of the released coordinates of a joint in their order: {""} for one coordinate, {} for none,
+/// planar /x /y /rz (axis-normal plane), floating /x /y /z /rx /ry /rz, spherical /rx /ry /rz, universal /1 /2 (the two
+/// angles), cylindrical /1 /2 (travel, angle). Rotations /rx /ry /rz are the components of the rotation vector.
+const std::vector<std::string>& coordinate_suffixes(JointKind kind);
+
+}  // namespace flexarm::scene

@@ -1,0 +1,23 @@
+#pragma once
+/// Reads a URDF file with flexarm's extension elements. The only door to urdfdom and tinyxml2.
+
+#include <optional>
+#include <string>
+
+#include "flexarm/scene/diagnostic.h"
+#include "flexarm/scene/scene_description.h"
+
+namespace flexarm::scene {
+
+/// The scene, if the input has no error; all findings in any case.
+struct ReadResult {
+  std::optional<SceneDescription> scene;
+  Diagnostics diagnostics;
+};
+
+/// Reads a file. Never throws for bad input: every error of the file is in the diagnostics.
+ReadResult read_scene_file(const std::string& path);
+/// Reads text (the parameter `robot_description`); `name` stands for the file in diagnostics.
+ReadResult read_scene_text(const std::string& text, const std::string& name);
+
+}  // namespace flexarm::scene

@@ -1,0 +1,135 @@
+#pragma once
+/// The one façade of the core: load a scene, step it, look at it, reset it.
+
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "flexarm/math/pose.h"
+#include "flexarm/scene/scene_description.h"
+
+namespace flexarm {
+
+class Model;
+struct State;
+
+/// A scene that is well-formed as a file and impossible as a mechanism; what() lists every finding.
+class ModelError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Outcome of one step; a value, never an exception.
+struct StepResult {
+  enum class Reason { None, NoConvergence, SingularTangent, NotFinite, RotationTooLarge };
+  bool converged = false;
+  int iterations = 0;      ///< Newton iterations of all sub-steps
+  int halvings = 0;        ///< times that a sub-step had to be halved
+  int factorisations = 0;
+  Reason reason = Reason::None;  ///< why it failed
+};
+const char* to_string(StepResult::Reason reason);
+
+/// Energies of a state [J]; work and dissipation are path integrals since the start.
+struct Energies {
+  double kinetic = 0, strain = 0, potential = 0, work = 0, dissipated = 0;
+  double total() const { return kinetic + strain + potential; }
+};
+
+/// One point of a deformed centreline.
+struct BeamPoint {
+  double arc_length = 0;          ///< of the undeformed line [m]
+  Pose pose;                      ///< of the section, in the world
+  Vector6 strain = Vector6::Zero();     ///< {Gamma, K} in the section frame [-, 1/m]
+  Vector6 resultant = Vector6::Zero();  ///< {N, M} in the section frame [N, N m]
+};
+
+/// Pose and velocity of a named point.
+struct ProbeState {
+  Pose pose;
+  Vector3 velocity = Vector3::Zero();  ///< world axes [m/s]
+};
+
+/// Options that override the scene's <integrator>.
+struct SimulationOptions {
+  std::optional<std::string> scheme;
+  std::optional<double> step;       ///< [s]
+  std::optional<double> tolerance;
+};
+
+class Simulation {
+ public:
+  /// @throws ModelError if the scene cannot be built (unknown scheme, massless free link, ...).
+  explicit Simulation(scene::SceneDescription scene, const SimulationOptions& options = {});
+  ~Simulation();
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
+
+  const scene::SceneDescription& scene() const;
+  const Model& model() const;
+  const State& state() const;
+
+  /// Advances by one step, in smaller sub-steps where Newton asks for it. On failure the state is that of the last good
+  /// sub-step. Allocates nothing after its first call.
+  StepResult step();
+  /// Back to the scene's initial state; commands are forgotten.
+  void reset();
+  /// Replaces the state, e.g. by a copy of state() taken before.
+  void restore(const State& state);
+
+  double time() const;       ///< [s]
+  double step_size() const;  ///< [s]
+  const std::string& scheme() const;  ///< name of the scheme in use
+
+  // ---- released coordinates: one per scalar joint, several for the others ("wrist/rx")
+  const std::vector<std::string>& coordinate_names() const;
+  std::optional<std::size_t> find_coordinate(std::string_view name) const;
+  double position(std::size_t coordinate) const;  ///< [rad or m]
+  double velocity(std::size_t coordinate) const;  ///< [rad/s or m/s]
+  double effort(std::size_t coordinate) const;    ///< effort applied in the last step (motor, or drive of a motion) [N or N m]
+  /// Commands an effort from the next step on, in place of the scene's <effort>; saturates at the joint's effort limit.
+  void command_effort(std::size_t coordinate, double effort);
+  /// Back to the scene's <effort> history (zero where there is none).
+  void release_command(std::size_t coordinate);
+  bool is_commandable(std::size_t coordinate) const;  ///< false for prescribed and mimic coordinates
+
+  // ---- frames: every link, in the scene's order
+  const std::vector<std::string>& link_names() const;
+  Pose link_pose(std::size_t link) const;  ///< in the world (= root link) frame
+  bool is_flexible(std::size_t link) const;
+  Pose tip_pose(std::size_t link) const;   ///< end section of a flexible link, axes as the link's in the undeformed state
+  /// Points at every node and `between` equally spaced points inside each pair of nodes; appended to `points`.
+  void beam_points(std::size_t link, int between, std::vector<BeamPoint>& points) const;
+  /// Largest distance of the section's edge from the centreline, for display [m].
+  double beam_radius(std::size_t link) const;
+
+  // ---- observables
+  Energies energies() const;
+  Vector3 momentum() const;          ///< [kg m/s]
+  Vector3 angular_momentum() const;  ///< about the world origin [kg m^2/s]
+  ProbeState probe(std::size_t index) const;  ///< in the order of scene().probes
+
+  /// Statics: loads and gravity grow from zero in `load_steps` equal steps; prescribed motions are held at t = 0,
+  /// other released coordinates are solved for. On success the state is the equilibrium, at rest.
+  StepResult solve_static(int load_steps);
+
+  /// Natural modes about the current configuration.
+  struct Mode {
+    double frequency = 0;             ///< [Hz]; 0 for a rigid motion
+    std::vector<Vector6> node_motion; ///< {displacement, spin} of every node, largest displacement or spin 1
+  };
+  std::vector<Mode> natural_modes(int count) const;
+
+  /// One line per aspect, for `flexarm check`.
+  std::size_t node_count() const;
+  std::size_t degrees_of_freedom() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace flexarm
