@@ -1,0 +1,190 @@
+#pragma once
+/// Strain-invariant interpolation of section rotations by local rotation vectors, and its exact variation.
+///
+/// The nodal rotations are measured from a reference rotation that moves with the element, so a superposed rigid
+/// rotation changes no strain and the result does not depend on the path. (Muñoz 2004, eq. 5.6-5.15)
+///
+/// What is exploited: the thesis writes the local vectors in the reference frame, Theta_i = log(R^T L_i), then turns
+/// every generalised shape function into space by R (.) R^T. Here the vectors themselves are kept in space, theta_i = R
+/// Theta_i = log(L_i R^T); since R T(Theta) R^T = T(R Theta), no matrix needs turning at any point. The reference node
+/// of an odd element has theta = 0, T^-1 = I and takes what the others leave of sum I_g = I; the two reference nodes of
+/// an even element have opposite vectors, hence transposed T^-1.
+
+#include <array>
+#include <cstddef>
+
+#include <flexarm/math/shape_functions.h>
+#include <flexarm/math/so3.h>
+
+namespace flexarm {
+
+/// The nodes between which the reference rotation lies half-way: the same one twice if there is a middle node.
+struct ReferenceNodes {
+  int first;
+  int second;
+};
+
+template <int Nodes>
+constexpr ReferenceNodes reference_nodes() {
+  return {(Nodes - 1) / 2, Nodes / 2};
+}
+
+/// Interpolated rotation at a point.
+template <typename S = double>
+struct InterpolatedRotation {
+  Matrix3T<S> rotation;   ///< Lambda, section frame to world
+  Vector3T<S> curvature;  ///< Upsilon = vee(Lambda^T Lambda') in the section frame, ' as in the given derivatives
+};
+
+/// Generalised shape functions at a point: dvartheta = sum_i values[i] dvartheta_i for spatial spins, and
+/// d(Upsilon) = Lambda^T sum_i derivatives[i] dvartheta_i. They sum to I and to 0.
+template <int Nodes, typename S = double>
+struct GeneralisedShapeFunctions {
+  std::array<Matrix3T<S>, Nodes> values;
+  std::array<Matrix3T<S>, Nodes> derivatives;
+};
+
+/// What one element needs once to interpolate its rotations. The nodes may differ from the reference by less than pi.
+template <int Nodes, typename S = double>
+class LocalRotations {
+ public:
+  static constexpr ReferenceNodes reference = reference_nodes<Nodes>();
+  static constexpr bool has_middle_node = reference.first == reference.second;
+
+  /// From unit quaternions, section frame to world; signs do not matter.
+  explicit LocalRotations(const std::array<QuaternionT<S>, Nodes>& rotations) {
+    QuaternionT<S> middle = rotations[reference.first];
+    half_tangent_.setZero();
+    if constexpr (!has_middle_node)
+      middle = set_reference_pair(middle, rotations[reference.second]);
+    else
+      local_[reference.first].setZero();
+    for (int i = 0; i < Nodes; ++i) {
+      if (i == reference.first || i == reference.second) continue;
+      local_[i] = so3::log(relative(rotations[i], middle));
+    }
+    reference_rotation_ = middle.toRotationMatrix();
+  }
+
+  /// From rotation matrices, section frame to world.
+  explicit LocalRotations(const std::array<Matrix3T<S>, Nodes>& rotations) : LocalRotations(quaternions(rotations)) {}
+
+  /// R, the frame from which the local rotations are measured.
+  const Matrix3T<S>& reference_rotation() const { return reference_rotation_; }
+  /// theta_i = log(Lambda_i R^T), in space. [rad]
+  const std::array<Vector3T<S>, Nodes>& rotation_vectors() const { return local_; }
+  /// tan(|theta_ab|/4) theta_ab/|theta_ab|, theta_ab = log(Lambda_b Lambda_a^T); zero if there is a middle node.
+  const Vector3T<S>& half_tangent() const { return half_tangent_; }
+
+  /// theta = sum_i weights_i theta_i.
+  Vector3T<S> interpolate(const NodalValues<Nodes>& weights) const {
+    Vector3T<S> sum = S(weights[0]) * local_[0];
+    for (int i = 1; i < Nodes; ++i) sum += S(weights[i]) * local_[i];
+    return sum;
+  }
+
+  /// Rotation and curvature only, given the shape functions and their derivatives (with respect to any coordinate).
+  InterpolatedRotation<S> evaluate(const NodalValues<Nodes>& shape, const NodalValues<Nodes>& shape_derivative) const {
+    return evaluate(so3::ExponentialMap<S>(interpolate(shape)), interpolate(shape_derivative));
+  }
+
+  /// The same from the exponential map of theta and the derivative of theta.
+  InterpolatedRotation<S> evaluate(const so3::ExponentialMap<S>& map, const Vector3T<S>& derivative) const {
+    InterpolatedRotation<S> result;
+    result.rotation.noalias() = map.rotation() * reference_rotation_;
+    result.curvature.noalias() = reference_rotation_.transpose() * map.material_spin(derivative);
+    return result;
+  }
+
+ private:
+  /// to from^-1 with q0 >= 0.
+  static QuaternionT<S> relative(const QuaternionT<S>& to, const QuaternionT<S>& from) {
+    QuaternionT<S> q = to * QuaternionT<S>(from.w(), -from.x(), -from.y(), -from.z());
+    if (std::real(q.w()) < 0) q.coeffs() = -q.coeffs();
+    return q;
+  }
+
+  /// Local vectors of the reference pair; returns the rotation half-way. Half the rotation of a quaternion q is
+  /// q + 1 normalised, and the tangent of a quarter of its angle is q_v / (q_0 + 1): no trigonometry.
+  QuaternionT<S> set_reference_pair(const QuaternionT<S>& first, const QuaternionT<S>& second) {
+    using std::sqrt;
+    QuaternionT<S> q = relative(second, first);
+    local_[reference.second] = S(0.5) * so3::log(q);
+    local_[reference.first] = -local_[reference.second];
+    q.w() += S(1);
+    half_tangent_ = Vector3T<S>(q.x(), q.y(), q.z()) / q.w();
+    q.coeffs() /= sqrt(q.w() * q.w() + q.x() * q.x() + q.y() * q.y() + q.z() * q.z());
+    return q * first;
+  }
+
+  static std::array<QuaternionT<S>, Nodes> quaternions(const std::array<Matrix3T<S>, Nodes>& rotations) {
+    std::array<QuaternionT<S>, Nodes> result;
+    for (std::size_t i = 0; i < Nodes; ++i) result[i] = so3::quaternion_from_matrix(rotations[i]);
+    return result;
+  }
+
+  Matrix3T<S> reference_rotation_;
+  std::array<Vector3T<S>, Nodes> local_;
+  Vector3T<S> half_tangent_;
+};
+
+/// What one element needs once, on top of its local rotations, to vary the interpolation.
+template <int Nodes, typename S = double>
+class LocalRotationVariation {
+ public:
+  explicit LocalRotationVariation(const LocalRotations<Nodes, S>& local) : local_(local) {
+    for (int i = 0; i < Nodes; ++i) {
+      if (i == first) continue;
+      inverse_tangents_[i] = so3::inverse_tangent(local.rotation_vectors()[i]);
+    }
+    if constexpr (first == second)
+      inverse_tangents_[first].setIdentity();
+    else
+      inverse_tangents_[first] = inverse_tangents_[second].transpose();
+  }
+
+  const LocalRotations<Nodes, S>& local_rotations() const { return local_; }
+
+  /// Rotation, curvature and generalised shape functions I_g, I_g', given the shape functions and their derivatives.
+  InterpolatedRotation<S> evaluate(const NodalValues<Nodes>& shape, const NodalValues<Nodes>& shape_derivative,
+                                   GeneralisedShapeFunctions<Nodes, S>& generalised) const {
+    const so3::ExponentialMap<S> map(local_.interpolate(shape));
+    const Vector3T<S> derivative = local_.interpolate(shape_derivative);
+    const Matrix3T<S> tangent = map.tangent();
+    const Matrix3T<S> tangent_derivative = map.tangent_derivative(derivative);
+    // What the nodes' own terms T I^i T_i^-1 leave of sum I_g = I follows the reference frame.
+    Matrix3T<S> rest = Matrix3T<S>::Identity(), rest_derivative = Matrix3T<S>::Zero();
+    for (int i = 0; i < Nodes; ++i) {
+      if (first == second && i == first) continue;
+      const S value(shape[i]), slope(shape_derivative[i]);
+      generalised.values[i].noalias() = (value * tangent) * inverse_tangents_[i];
+      generalised.derivatives[i].noalias() = (value * tangent_derivative + slope * tangent) * inverse_tangents_[i];
+      rest -= generalised.values[i];
+      rest_derivative -= generalised.derivatives[i];
+    }
+    distribute(rest, generalised.values);
+    distribute(rest_derivative, generalised.derivatives);
+    return local_.evaluate(map, derivative);
+  }
+
+ private:
+  static constexpr int first = reference_nodes<Nodes>().first;
+  static constexpr int second = reference_nodes<Nodes>().second;
+
+  /// Adds rest upsilon_i to the reference nodes: upsilon = I, or (I +- hat(half_tangent)) / 2 for a pair.
+  void distribute(const Matrix3T<S>& rest, std::array<Matrix3T<S>, Nodes>& shape) const {
+    if constexpr (first == second) {
+      shape[first] = rest;
+    } else {
+      const Matrix3T<S> share = S(0.5) * rest;
+      const Matrix3T<S> skew = share * so3::hat(local_.half_tangent());
+      shape[first] += share + skew;
+      shape[second] += share - skew;
+    }
+  }
+
+  LocalRotations<Nodes, S> local_;
+  std::array<Matrix3T<S>, Nodes> inverse_tangents_;
+};
+
+}  // namespace flexarm

@@ -1,0 +1,378 @@
+#pragma once
+/// Finite rotations by rotation vectors: exponential, logarithm, tangent operators and their derivatives.
+///
+/// Conventions: spatial spin, d(exp theta) = hat(dvartheta) exp theta with dvartheta = T(theta) dtheta. Angles in rad.
+/// Everything is a template on the scalar, so that tests run it in long double and with complex steps: products are
+/// bilinear (never conjugating) and branches look at real parts only. Nothing allocates or throws; non-finite input
+/// gives non-finite output. (Muñoz 2004, eq. 2.14-2.21)
+
+#include <array>
+#include <cmath>
+#include <complex>
+#include <limits>
+
+#include <Eigen/Geometry>
+
+namespace flexarm {
+
+template <typename S>
+using Vector3T = Eigen::Matrix<S, 3, 1>;
+template <typename S>
+using Matrix3T = Eigen::Matrix<S, 3, 3>;
+template <typename S>
+using QuaternionT = Eigen::Quaternion<S>;
+
+namespace so3 {
+
+template <typename S>
+using RealOf = typename Eigen::NumTraits<S>::Real;
+
+/// a . b without conjugation (Eigen's dot() conjugates, which breaks complex steps).
+template <typename A, typename B>
+inline typename A::Scalar dot(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// a x b without conjugation.
+template <typename A, typename B>
+inline Vector3T<typename A::Scalar> cross(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/// Skew-symmetric matrix of a vector: hat(v) a = v x a.
+template <typename V>
+inline Matrix3T<typename V::Scalar> hat(const Eigen::MatrixBase<V>& v) {
+  using S = typename V::Scalar;
+  Matrix3T<S> result;
+  result << S(0), -v[2], v[1], v[2], S(0), -v[0], -v[1], v[0], S(0);
+  return result;
+}
+
+/// Axial vector of the skew-symmetric part of a matrix: vee(hat(v)) = v.
+template <typename M>
+inline Vector3T<typename M::Scalar> vee(const Eigen::MatrixBase<M>& m) {
+  const RealOf<typename M::Scalar> half(0.5);
+  return {half * (m(2, 1) - m(1, 2)), half * (m(0, 2) - m(2, 0)), half * (m(1, 0) - m(0, 1))};
+}
+
+namespace detail {
+
+/// 1 / n!, n <= 40.
+inline constexpr std::array<long double, 41> reciprocal_factorials = [] {
+  std::array<long double, 41> table{};
+  long double factorial = 1;
+  for (int n = 0; n <= 40; ++n) {
+    factorial *= n > 0 ? n : 1;
+    table[n] = 1 / factorial;
+  }
+  return table;
+}();
+
+template <typename S>
+inline constexpr int extra_terms = std::numeric_limits<RealOf<S>>::digits > 53 ? 2 : 0;
+
+/// a_k by its power series in x = theta^2, in Horner form.
+template <int k, int terms, typename S>
+[[gnu::always_inline]] inline S power_series(const S& x) {
+  using Real = RealOf<S>;
+  S sum(static_cast<Real>(reciprocal_factorials[2 * terms + k - 1]));
+#pragma GCC unroll 16
+  for (int j = terms - 2; j >= 0; --j) sum = static_cast<Real>(reciprocal_factorials[2 * j + k + 1]) - x * sum;
+  return sum;
+}
+
+/// arctan(sqrt(x)) / sqrt(x) for x >= 0; a series (to round-off) where the quotient is 0/0 or slow.
+template <typename S>
+[[gnu::always_inline]] inline S arctangent_ratio(const S& x) {
+  using std::atan;
+  using std::sqrt;
+  using Real = RealOf<S>;
+  if (std::real(x) < Real(0.0625)) {
+    constexpr int terms = 13 + 2 * extra_terms<S>;
+    S sum(Real(1) / Real(2 * terms - 1));
+#pragma GCC unroll 20
+    for (int j = terms - 2; j >= 0; --j) sum = Real(1) / Real(2 * j + 1) - x * sum;
+    return sum;
+  }
+  const S root = sqrt(x);
+  return atan(root) / root;
+}
+
+/// I + c1 hat(v) + c2 hat(v)^2.
+template <typename S>
+[[gnu::always_inline]] inline Matrix3T<S> identity_plus(const S& c1, const S& c2, const Vector3T<S>& v) {
+  const S xx = v[0] * v[0], yy = v[1] * v[1], zz = v[2] * v[2];
+  const S xy = c2 * v[0] * v[1], xz = c2 * v[0] * v[2], yz = c2 * v[1] * v[2];
+  const S x = c1 * v[0], y = c1 * v[1], z = c1 * v[2];
+  const S one(1);
+  Matrix3T<S> result;
+  result << one - c2 * (yy + zz), xy - z, xz + y, xy + z, one - c2 * (xx + zz), yz - x, xz - y, yz + x,
+      one - c2 * (xx + yy);
+  return result;
+}
+
+/// hat(w) + c (hat(d) hat(v) + hat(v) hat(d)) + e hat(v)^2: the form of every derivative of identity_plus.
+template <typename S>
+[[gnu::always_inline]] inline Matrix3T<S> identity_plus_derivative(const Vector3T<S>& w, const S& c, const S& e,
+                                                                   const Vector3T<S>& v, const Vector3T<S>& d) {
+  // hat(a) hat(v) + hat(v) hat(a) = a v^T + v a^T - 2 (a.v) I, and hat(v)^2 is half of it for a = v: one vector u
+  // serves.
+  const Vector3T<S> u = c * d + (S(0.5) * e) * v;
+  Matrix3T<S> result = u * v.transpose();
+  result += Matrix3T<S>(result.transpose());
+  result.diagonal().array() -= S(2) * dot(u, v);
+  result += hat(w);
+  return result;
+}
+
+}  // namespace detail
+
+/// a_0 .. a_kmax with a_k(theta) = sum_j (-1)^j theta^(2j) / (2j+k+1)!: a_0 = sin(theta)/theta,
+/// a_1 = (1-cos(theta))/theta^2, a_2 = (theta-sin(theta))/theta^3, ..., to round-off for 0 <= theta^2 <= (2 pi)^2.
+/// Below theta = 2 the two highest are summed and the others follow downwards, a_{k-2} = 1/(k-1)! - theta^2 a_k, which
+/// damps errors; above, the recurrence is stable upwards. Closed forms in the half angle keep a_1 accurate at 2 pi.
+/// @note 1 / theta d(a_k)/d(theta) = (k+1) a_{k+2} - a_{k+1}.
+template <int kmax, typename S>
+[[gnu::always_inline]] inline std::array<S, kmax + 1> series_coefficients(const S& theta_squared) {
+  static_assert(kmax >= 1 && kmax <= 8, "the recurrences start from two coefficients");
+  using std::cos;
+  using std::sin;
+  using std::sqrt;
+  using Real = RealOf<S>;
+  constexpr int extra = detail::extra_terms<S>;
+  const S& x = theta_squared;
+  std::array<S, kmax + 1> a;
+  if (std::real(x) < Real(4)) {
+    if (std::real(x) < Real(1)) {
+      a[kmax] = detail::power_series<kmax, 9 + extra>(x);
+      a[kmax - 1] = detail::power_series<kmax - 1, 9 + extra>(x);
+    } else {
+      a[kmax] = detail::power_series<kmax, 12 + extra>(x);
+      a[kmax - 1] = detail::power_series<kmax - 1, 12 + extra>(x);
+    }
+#pragma GCC unroll 8
+    for (int k = kmax; k >= 2; --k) a[k - 2] = static_cast<Real>(detail::reciprocal_factorials[k - 1]) - x * a[k];
+  } else {
+    const S theta = sqrt(x);
+    const S sine = sin(Real(0.5) * theta), cosine = cos(Real(0.5) * theta);
+    a[0] = Real(2) * sine * cosine / theta;
+    a[1] = Real(2) * sine * sine / x;
+#pragma GCC unroll 8
+    for (int k = 2; k <= kmax; ++k) a[k] = (static_cast<Real>(detail::reciprocal_factorials[k - 1]) - a[k - 2]) / x;
+  }
+  return a;
+}
+
+/// All operators of one rotation vector theta from a single evaluation of the coefficients.
+/// Keep one of these where several of exp, T, T^-1 and their derivatives are needed at the same theta.
+/// @note T is singular at |theta| = 2 pi; T^-1 and its derivatives need |theta| < 2 pi.
+template <typename S>
+class ExponentialMap {
+ public:
+  using Vector = Vector3T<S>;
+  using Matrix = Matrix3T<S>;
+
+  template <typename V>
+  [[gnu::always_inline]] inline explicit ExponentialMap(const Eigen::MatrixBase<V>& theta)
+      : theta_(theta), a_(series_coefficients<5>(dot(theta_, theta_))) {}
+
+  const Vector& rotation_vector() const { return theta_; }
+
+  /// exp theta = I + a_0 hat(theta) + a_1 hat(theta)^2.
+  Matrix rotation() const { return detail::identity_plus<S>(a_[0], a_[1], theta_); }
+
+  /// T(theta) = I + a_1 hat(theta) + a_2 hat(theta)^2: spatial spin per change of theta; T^T gives the material spin.
+  Matrix tangent() const { return detail::identity_plus<S>(a_[1], a_[2], theta_); }
+
+  /// T(theta)^-1 = I - 1/2 hat(theta) + b hat(theta)^2.
+  Matrix inverse_tangent() const { return detail::identity_plus<S>(S(-0.5), b(), theta_); }
+
+  /// T(theta)^T v without forming T: material spin (or curvature) of a change (or derivative) v of theta.
+  Vector material_spin(const Vector& v) const {
+    const Vector once = cross(theta_, v);
+    return v - a_[1] * once + a_[2] * cross(theta_, once);
+  }
+
+  /// T' = d/ds T(theta(s)) for dtheta = d/ds theta.
+  Matrix tangent_derivative(const Vector& dtheta) const {
+    const S p = dot(theta_, dtheta);
+    return detail::identity_plus_derivative<S>(a_[1] * dtheta + (p * rate<1>()) * theta_, a_[2], p * rate<2>(), theta_,
+                                               dtheta);
+  }
+
+  /// (T^-1)' = d/ds T(theta(s))^-1.
+  Matrix inverse_tangent_derivative(const Vector& dtheta) const {
+    const S p = dot(theta_, dtheta);
+    return detail::identity_plus_derivative<S>(S(-0.5) * dtheta, b(), p * b_rate(), theta_, dtheta);
+  }
+
+  /// Xi with d(T(theta) a) = Xi dtheta for constant a.
+  Matrix xi_tangent(const Vector& a) const { return xi(a, -a_[1], rate<1>(), a_[2], rate<2>()); }
+
+  /// Xi with d(T(theta)^T a) = Xi dtheta for constant a.
+  Matrix xi_tangent_transposed(const Vector& a) const { return xi(a, a_[1], -rate<1>(), a_[2], rate<2>()); }
+
+  /// Xi with d(T(theta)^-1 a) = Xi dtheta for constant a.
+  Matrix xi_inverse_tangent(const Vector& a) const { return xi(a, S(0.5), S(0), b(), b_rate()); }
+
+ private:
+  /// (1/theta) d(a_k)/d(theta).
+  template <int k>
+  S rate() const {
+    return S(k + 1) * a_[k + 2] - a_[k + 1];
+  }
+  S b() const { return (a_[2] - S(2) * a_[3]) / (S(2) * a_[1]); }
+  /// (1/theta) db/d(theta).
+  S b_rate() const {
+    const S value = b();
+    return (rate<2>() - S(2) * rate<3>()) / (S(2) * a_[1]) + S(2) * value * value;
+  }
+  /// c0 hat(a) + c1 (hat(theta) a) theta^T - c2 (hat(hat(theta) a) + hat(theta) hat(a)) + c3 (hat(theta)^2 a) theta^T.
+  Matrix xi(const Vector& a, const S& c0, const S& c1, const S& c2, const S& c3) const {
+    const Vector once = cross(theta_, a);
+    const Vector twice = cross(theta_, once);
+    Matrix result = (c1 * once + c3 * twice) * theta_.transpose();
+    result -= (c2 * a) * theta_.transpose();  // hat(theta) hat(a) = a theta^T - theta.a I
+    result.diagonal().array() += c2 * dot(theta_, a);
+    result += hat(Vector(c0 * a - c2 * once));
+    return result;
+  }
+
+  Vector theta_;
+  std::array<S, 6> a_;
+};
+
+template <typename V>
+ExponentialMap(const Eigen::MatrixBase<V>&) -> ExponentialMap<typename V::Scalar>;
+
+/// Rotation matrix of a rotation vector, any |theta|.
+template <typename V>
+inline Matrix3T<typename V::Scalar> exp(const Eigen::MatrixBase<V>& theta) {
+  return ExponentialMap(theta).rotation();
+}
+
+/// Unit quaternion (cos(theta/2), sin(theta/2) theta/|theta|) of a rotation vector; q0 >= 0 only for |theta| <= pi.
+template <typename V>
+inline QuaternionT<typename V::Scalar> exp_quaternion(const Eigen::MatrixBase<V>& theta) {
+  using S = typename V::Scalar;
+  const Vector3T<S> half = RealOf<S>(0.5) * theta;
+  const S x = dot(half, half);
+  const std::array<S, 2> a = series_coefficients<1>(x);
+  return QuaternionT<S>(S(1) - x * a[1], a[0] * half[0], a[0] * half[1], a[0] * half[2]);
+}
+
+/// Unit quaternion with q0 >= 0 of a rotation matrix, by Spurrier's choice of the largest pivot.
+template <typename M>
+inline QuaternionT<typename M::Scalar> quaternion_from_matrix(const Eigen::MatrixBase<M>& rotation) {
+  using std::sqrt;
+  using S = typename M::Scalar;
+  using Real = RealOf<S>;
+  const Matrix3T<S> r = rotation;
+  const S trace = r(0, 0) + r(1, 1) + r(2, 2);
+  int i = 0;
+  if (std::real(r(1, 1)) > std::real(r(0, 0))) i = 1;
+  if (std::real(r(2, 2)) > std::real(r(i, i))) i = 2;
+  S q0;
+  Vector3T<S> q;
+  if (std::real(trace) >= std::real(r(i, i))) {
+    q0 = Real(0.5) * sqrt(S(1) + trace);
+    q = vee(r) / (S(2) * q0);
+  } else {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    q[i] = sqrt(Real(0.5) * r(i, i) + Real(0.25) * (S(1) - trace));
+    const S scale = Real(0.25) / q[i];
+    q0 = scale * (r(k, j) - r(j, k));
+    q[j] = scale * (r(j, i) + r(i, j));
+    q[k] = scale * (r(k, i) + r(i, k));
+  }
+  const Real sign(std::real(q0) < Real(0) ? -1 : 1);
+  return QuaternionT<S>(sign * q0, sign * q[0], sign * q[1], sign * q[2]);
+}
+
+/// Rotation vector, |theta| <= pi, of a quaternion; accurate from 0 through pi. q and -q give the same result (up to
+/// the sign of theta at exactly pi), and so does any multiple of q: normalisation errors do not matter.
+template <typename Q>
+inline Vector3T<typename Q::Scalar> log(const Eigen::QuaternionBase<Q>& quaternion) {
+  using std::atan;
+  using std::sqrt;
+  using S = typename Q::Scalar;
+  using Real = RealOf<S>;
+  const Real sign(std::real(quaternion.w()) < Real(0) ? -1 : 1);
+  const S q0 = sign * quaternion.w();
+  const Vector3T<S> q(sign * quaternion.x(), sign * quaternion.y(), sign * quaternion.z());
+  const S square = dot(q, q);
+  if (std::real(square) < Real(3) * std::real(q0) * std::real(q0)) {  // |theta| < 2 pi / 3
+    return (Real(2) * detail::arctangent_ratio<S>(square / (q0 * q0)) / q0) * q;
+  }
+  constexpr Real pi(3.141592653589793238462643383279502884L);
+  const S sine = sqrt(square);
+  return ((pi - Real(2) * atan(q0 / sine)) / sine) * q;
+}
+
+/// Rotation vector, |theta| <= pi, of a rotation matrix; accurate from 0 through pi.
+template <typename M>
+inline Vector3T<typename M::Scalar> log(const Eigen::MatrixBase<M>& rotation) {
+  return so3::log(quaternion_from_matrix(rotation));
+}
+
+/// Single operators; see the members of ExponentialMap of the same name.
+template <typename V>
+inline Matrix3T<typename V::Scalar> tangent(const Eigen::MatrixBase<V>& theta) {
+  return ExponentialMap(theta).tangent();
+}
+template <typename V>
+inline Matrix3T<typename V::Scalar> inverse_tangent(const Eigen::MatrixBase<V>& theta) {
+  return ExponentialMap(theta).inverse_tangent();
+}
+template <typename V, typename D>
+inline Matrix3T<typename V::Scalar> tangent_derivative(const Eigen::MatrixBase<V>& theta,
+                                                       const Eigen::MatrixBase<D>& dtheta) {
+  return ExponentialMap(theta).tangent_derivative(dtheta);
+}
+template <typename V, typename D>
+inline Matrix3T<typename V::Scalar> inverse_tangent_derivative(const Eigen::MatrixBase<V>& theta,
+                                                               const Eigen::MatrixBase<D>& dtheta) {
+  return ExponentialMap(theta).inverse_tangent_derivative(dtheta);
+}
+template <typename V, typename A>
+inline Matrix3T<typename V::Scalar> xi_tangent(const Eigen::MatrixBase<V>& theta, const Eigen::MatrixBase<A>& a) {
+  return ExponentialMap(theta).xi_tangent(a);
+}
+template <typename V, typename A>
+inline Matrix3T<typename V::Scalar> xi_tangent_transposed(const Eigen::MatrixBase<V>& theta,
+                                                          const Eigen::MatrixBase<A>& a) {
+  return ExponentialMap(theta).xi_tangent_transposed(a);
+}
+template <typename V, typename A>
+inline Matrix3T<typename V::Scalar> xi_inverse_tangent(const Eigen::MatrixBase<V>& theta,
+                                                       const Eigen::MatrixBase<A>& a) {
+  return ExponentialMap(theta).xi_inverse_tangent(a);
+}
+
+/// Symmetric Hessian with respect to theta of M . (T(theta)^T dtheta), M and dtheta constant.
+template <typename V>
+inline Matrix3T<typename V::Scalar> xi_second_tangent(const Eigen::MatrixBase<V>& theta,
+                                                      const Vector3T<typename V::Scalar>& m,
+                                                      const Vector3T<typename V::Scalar>& dtheta) {
+  using S = typename V::Scalar;
+  using Vector = Vector3T<S>;
+  const Vector t = theta;
+  const S x = dot(t, t);
+  const std::array<S, 7> a = series_coefficients<6>(x);
+  std::array<S, 5> rate;  // a_k^* = (1/theta) d(a_k)/d(theta)
+  for (int k = 0; k < 5; ++k) rate[k] = S(k + 1) * a[k + 2] - a[k + 1];
+  const S rate1_rate = S(2) * rate[3] - rate[2], rate2_rate = S(3) * rate[4] - rate[3];
+  // The function is m.dtheta + a_1 p + a_2 q, p and q being polynomials of theta with gradients w and grad_q.
+  const Vector w = cross(m, dtheta);
+  const S p = dot(t, w);
+  const S md = dot(m, dtheta), td = dot(t, dtheta), tm = dot(t, m);
+  const S q = td * tm - x * md;
+  const Vector grad_q = tm * dtheta + td * m - (S(2) * md) * t;
+  const Vector along = (S(0.5) * (rate1_rate * p + rate2_rate * q)) * t + rate[1] * w + rate[2] * grad_q;
+  Matrix3T<S> half = t * along.transpose() + (a[2] * dtheta) * m.transpose();
+  half.diagonal().array() += S(0.5) * (rate[1] * p + rate[2] * q) - a[2] * md;
+  return half + half.transpose();
+}
+
+}  // namespace so3
+}  // namespace flexarm
