@@ -44,7 +44,8 @@ struct GeneralisedShapeFunctions {
   std::array<Matrix3T<S>, Nodes> derivatives;
 };
 
-/// What one element needs once to interpolate its rotations. The nodes may differ from the reference by less than pi.
+/// What one element needs once to interpolate its rotations. Every node must be less than pi away from the reference,
+/// and the two reference nodes of an even element less than pi apart; elements that turn more must be divided.
 template <int Nodes, typename S = double>
 class LocalRotations {
  public:
@@ -54,7 +55,7 @@ class LocalRotations {
   /// From unit quaternions, section frame to world; signs do not matter.
   explicit LocalRotations(const std::array<QuaternionT<S>, Nodes>& rotations) {
     QuaternionT<S> middle = rotations[reference.first];
-    half_tangent_.setZero();
+    quarter_tangent_.setZero();
     if constexpr (!has_middle_node)
       middle = set_reference_pair(middle, rotations[reference.second]);
     else
@@ -74,7 +75,7 @@ class LocalRotations {
   /// theta_i = log(Lambda_i R^T), in space. [rad]
   const std::array<Vector3T<S>, Nodes>& rotation_vectors() const { return local_; }
   /// tan(|theta_ab|/4) theta_ab/|theta_ab|, theta_ab = log(Lambda_b Lambda_a^T); zero if there is a middle node.
-  const Vector3T<S>& half_tangent() const { return half_tangent_; }
+  const Vector3T<S>& quarter_tangent() const { return quarter_tangent_; }
 
   /// theta = sum_i weights_i theta_i.
   Vector3T<S> interpolate(const NodalValues<Nodes>& weights) const {
@@ -112,7 +113,7 @@ class LocalRotations {
     local_[reference.second] = S(0.5) * so3::log(q);
     local_[reference.first] = -local_[reference.second];
     q.w() += S(1);
-    half_tangent_ = Vector3T<S>(q.x(), q.y(), q.z()) / q.w();
+    quarter_tangent_ = Vector3T<S>(q.x(), q.y(), q.z()) / q.w();
     q.coeffs() /= sqrt(q.w() * q.w() + q.x() * q.x() + q.y() * q.y() + q.z() * q.z());
     return q * first;
   }
@@ -125,7 +126,7 @@ class LocalRotations {
 
   Matrix3T<S> reference_rotation_;
   std::array<Vector3T<S>, Nodes> local_;
-  Vector3T<S> half_tangent_;
+  Vector3T<S> quarter_tangent_;
 };
 
 /// What one element needs once, on top of its local rotations, to vary the interpolation.
@@ -171,13 +172,13 @@ class LocalRotationVariation {
   static constexpr int first = reference_nodes<Nodes>().first;
   static constexpr int second = reference_nodes<Nodes>().second;
 
-  /// Adds rest upsilon_i to the reference nodes: upsilon = I, or (I +- hat(half_tangent)) / 2 for a pair.
+  /// Adds rest upsilon_i to the reference nodes: upsilon = I, or (I +- hat(quarter_tangent)) / 2 for a pair.
   void distribute(const Matrix3T<S>& rest, std::array<Matrix3T<S>, Nodes>& shape) const {
     if constexpr (first == second) {
       shape[first] = rest;
     } else {
       const Matrix3T<S> share = S(0.5) * rest;
-      const Matrix3T<S> skew = share * so3::hat(local_.half_tangent());
+      const Matrix3T<S> skew = share * so3::hat(local_.quarter_tangent());
       shape[first] += share + skew;
       shape[second] += share - skew;
     }

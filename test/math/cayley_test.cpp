@@ -1,0 +1,96 @@
+/// Tangent-scaled rotations: what only they have. The common requirements are in rotation_test.cpp.
+
+#include <flexarm/math/cayley.h>
+
+#include <gtest/gtest.h>
+
+#include "rotation_samples.h"
+
+namespace flexarm::test {
+namespace {
+
+constexpr double roundoff = 16 * epsilon;  // a handful of products and sums of entries of order one
+
+TEST(Cayley, IsTheRationalFunctionOfTheSkewMatrix) {
+  Samples samples;
+  for (const double length : {0.0, 1e-12, 1e-3, 0.5, 2.0, 10.0}) {
+    const Vector w = samples.of_length(length);
+    const LongMatrix half = 0.5L * so3::hat(w.cast<long double>()), identity = LongMatrix::Identity();
+    EXPECT_LT(distance(cayley::rotation(w), LongMatrix((identity - half).inverse() * (identity + half))), roundoff);
+  }
+}
+
+TEST(Cayley, CompoundComposesRotations) {
+  Samples samples;
+  for (int i = 0; i < 50; ++i) {
+    const Vector w1 = samples.vector(), w2 = samples.vector();
+    const double kappa = 1 / (1 - 0.25 * w1.dot(w2));
+    const Vector w21 = cayley::compound(w2, w1);
+    const double tolerance = roundoff * std::max(1.0, std::abs(kappa));
+    EXPECT_LT(distance(cayley::rotation(w21), cayley::rotation(w2) * cayley::rotation(w1)), tolerance);
+    // The two one-sided forms.
+    const double scaled = tolerance * (1 + w1.squaredNorm()) * (1 + w2.squaredNorm());
+    EXPECT_LT(distance(w2 + kappa * cayley::inverse_tangent(w2).transpose() * w1, w21), scaled);
+    EXPECT_LT(distance(w1 + kappa * cayley::inverse_tangent(w1) * w2, w21), scaled);
+  }
+}
+
+TEST(Cayley, IncrementBetweenQuaternionsIsSpatial) {
+  Samples samples;
+  for (int i = 0; i < 20; ++i) {
+    const Vector w = samples.vector();
+    const QuaternionT<double> from = so3::exp_quaternion(samples.vector());
+    QuaternionT<double> to = cayley::quaternion(w) * from;
+    EXPECT_LT(distance(cayley::increment(from, to), w), roundoff * (1 + w.squaredNorm()));
+    to.coeffs() *= -1;
+    EXPECT_LT(distance(cayley::increment(from, to), w), roundoff * (1 + w.squaredNorm()));
+  }
+}
+
+/// Delta(Lambda V) = w x average(Lambda V): what makes the energy-momentum schemes exact.
+TEST(Cayley, MidStepIdentity) {
+  Samples samples;
+  for (int i = 0; i < 20; ++i) {
+    const Vector w = samples.vector();
+    const Matrix before = so3::exp(samples.vector()), after = cayley::rotation(w) * before;
+    const Matrix average = 0.5 * (before + after);
+    EXPECT_LT(distance(after - before, so3::hat(w) * average), roundoff * (1 + w.norm()));
+  }
+}
+
+TEST(Cayley, ConversionsAgreeWithTheirDefinition) {
+  Samples samples;
+  for (const double angle : angles_to_pi()) {
+    if (angle > 3.1) continue;
+    // The scaled vector grows like 1/cos(angle/2); the angle's rounding error is magnified by the derivative.
+    const double conditioning = 1 / std::pow(std::cos(0.5 * angle), 2);
+    for (const Vector& axis : samples.directions()) {
+      const Vector theta = angle * axis, w = 2 * std::tan(0.5 * angle) * axis;
+      EXPECT_LE(distance(cayley::from_rotation_vector(theta), w), roundoff * angle * conditioning);
+      EXPECT_LE(distance(cayley::to_rotation_vector(w), theta), roundoff * angle);
+    }
+  }
+}
+
+TEST(Cayley, ScalingDerivative) {
+  Samples samples;
+  for (const double angle : angles_to_pi()) {
+    if (angle > 3.1) continue;
+    const double conditioning = 1 / std::pow(std::cos(0.5 * angle), 2);
+    for (const Vector& axis : samples.directions()) {
+      SCOPED_TRACE(::testing::Message() << "angle " << angle << ", axis " << axis.transpose());
+      const Vector theta = angle * axis, w = cayley::from_rotation_vector(theta), d = samples.of_length(1.0);
+      const Matrix u = cayley::scaling_derivative(w);
+      const Vector rate = derivative(cayley::from_rotation_vector(perturbed(theta, d)));
+      EXPECT_LT(distance(u * d, rate), roundoff * size(u) * conditioning);
+      if (angle == 0) continue;
+      const double half = 0.5 * w.norm();
+      const Matrix along = axis * axis.transpose();
+      const Matrix closed_form = (1 + half * half) * along + half / std::atan(half) * (Matrix::Identity() - along);
+      EXPECT_LT(distance(u, closed_form), roundoff * size(u));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace flexarm::test

@@ -1,0 +1,91 @@
+#pragma once
+/// Samples, oracles and measures shared by the tests of rotations.
+
+#include <complex>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include <flexarm/math/so3.h>
+
+namespace flexarm::test {
+
+using Complex = std::complex<double>;
+using Vector = Vector3T<double>;
+using Matrix = Matrix3T<double>;
+using LongMatrix = Matrix3T<long double>;
+using ComplexVector = Vector3T<Complex>;
+using ComplexMatrix = Matrix3T<Complex>;
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double pi = 3.14159265358979323846;
+
+/// Step of a complex step: small enough that its square vanishes against anything.
+constexpr double complex_step = 1e-40;
+
+/// Angles from nothing through pi, dense about the switches of method (0.49, 1, 2, 2 pi / 3).
+inline std::vector<double> angles_to_pi() {
+  return {0.0, 1e-12, 1e-9,  1e-6, 1e-4,   1e-3,   0.01, 0.1, 0.3, 0.48, 0.489, 0.49,      0.5,
+          0.7, 0.999, 1.001, 1.5,  1.9999, 2.0001, 2.09, 2.1, 2.5, 3.0,  3.1,   pi - 1e-3, pi - 1e-7};
+}
+
+inline std::vector<double> angles_to_two_pi() {
+  std::vector<double> angles = angles_to_pi();
+  for (const double angle : {pi, 3.2, 4.0, 4.5, 5.0, 5.5, 6.0}) angles.push_back(angle);
+  return angles;
+}
+
+/// Reproducible random vectors.
+class Samples {
+ public:
+  Vector vector() { return {normal_(engine_), normal_(engine_), normal_(engine_)}; }
+  Vector of_length(double length) { return length * vector().normalized(); }
+  /// Directions in which pivots are chosen differently: axes, a coordinate plane, general ones.
+  std::vector<Vector> directions() {
+    return {Vector::UnitX(), -Vector::UnitY(), Vector::UnitZ(), Vector(1, -1, 0).normalized(),
+            of_length(1.0),  of_length(1.0),   of_length(1.0)};
+  }
+
+ private:
+  std::mt19937 engine_{20040601};
+  std::normal_distribution<double> normal_;
+};
+
+/// sum_n hat(theta)^n / (n + shift)! in long double: exp for shift 0, T for shift 1. No coefficient of so3.h is used.
+inline LongMatrix power_series(const Vector& theta, int shift) {
+  const LongMatrix skew = so3::hat(theta.cast<long double>());
+  LongMatrix term = LongMatrix::Identity(), sum = term;
+  for (int n = 1; n < 70; ++n) {
+    term = LongMatrix(term * skew) / static_cast<long double>(n + shift);
+    sum += term;
+  }
+  return sum;
+}
+
+inline ComplexVector perturbed(const Vector& x, const Vector& direction) {
+  return x.cast<Complex>() + Complex(0, complex_step) * direction.cast<Complex>();
+}
+
+/// Rotation matrix perturbed by a spatial spin.
+inline ComplexMatrix spun(const Matrix& rotation, const Vector& spin) {
+  return rotation.cast<Complex>() + Complex(0, complex_step) * Matrix(so3::hat(spin) * rotation).cast<Complex>();
+}
+
+/// Derivative held in the imaginary part.
+template <int Rows, int Columns>
+Eigen::Matrix<double, Rows, Columns> derivative(const Eigen::Matrix<Complex, Rows, Columns>& value) {
+  return value.imag() / complex_step;
+}
+
+/// Largest absolute difference of two matrices of any real scalars.
+template <typename A, typename B>
+double distance(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
+  return static_cast<double>((a.template cast<long double>() - b.template cast<long double>()).cwiseAbs().maxCoeff());
+}
+
+template <typename A>
+double size(const Eigen::MatrixBase<A>& a) {
+  return static_cast<double>(a.cwiseAbs().maxCoeff());
+}
+
+}  // namespace flexarm::test

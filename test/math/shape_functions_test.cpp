@@ -1,0 +1,69 @@
+/// Lagrange shape functions: the defining properties, for every node count.
+
+#include <flexarm/math/shape_functions.h>
+
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+#include <gtest/gtest.h>
+
+namespace flexarm {
+namespace {
+
+// Sums of at most five products of at most four factors, each below 11 in magnitude.
+constexpr double roundoff = 200 * std::numeric_limits<double>::epsilon();
+
+template <typename Count>
+class ShapeFunctionsTest : public ::testing::Test {};
+
+using Counts = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>,
+                                std::integral_constant<int, 4>, std::integral_constant<int, 5>>;
+TYPED_TEST_SUITE(ShapeFunctionsTest, Counts);
+
+TYPED_TEST(ShapeFunctionsTest, NodesAreEquallySpacedFromEndToEnd) {
+  constexpr int nodes = TypeParam::value;
+  EXPECT_EQ(node_coordinate<nodes>(0), -1.0);
+  EXPECT_EQ(node_coordinate<nodes>(nodes - 1), 1.0);
+  for (int i = 1; i < nodes; ++i) {
+    EXPECT_NEAR(node_coordinate<nodes>(i) - node_coordinate<nodes>(i - 1), 2.0 / (nodes - 1), roundoff);
+  }
+}
+
+TYPED_TEST(ShapeFunctionsTest, EachIsOneAtItsNodeAndZeroAtTheOthers) {
+  constexpr int nodes = TypeParam::value;
+  for (int k = 0; k < nodes; ++k) {
+    const ShapeFunctions<nodes> at_node = lagrange<nodes>(node_coordinate<nodes>(k));
+    for (int i = 0; i < nodes; ++i) EXPECT_NEAR(at_node.values[i], i == k ? 1.0 : 0.0, roundoff);
+  }
+}
+
+TYPED_TEST(ShapeFunctionsTest, ReproducePolynomialsUpToTheirOrder) {
+  constexpr int nodes = TypeParam::value;
+  for (const double xi : {-1.0, -0.7, 0.0, 0.31, 1.0, 1.2}) {
+    const ShapeFunctions<nodes> shape = lagrange<nodes>(xi);
+    for (int degree = 0; degree < nodes; ++degree) {
+      double value = 0, derivative = 0;
+      for (int i = 0; i < nodes; ++i) {
+        const double nodal = std::pow(node_coordinate<nodes>(i), degree);
+        value += shape.values[i] * nodal;
+        derivative += shape.derivatives[i] * nodal;
+      }
+      EXPECT_NEAR(value, std::pow(xi, degree), roundoff) << "degree " << degree << " at " << xi;
+      const double expected = degree == 0 ? 0.0 : degree * std::pow(xi, degree - 1);
+      EXPECT_NEAR(derivative, expected, roundoff) << "degree " << degree << " at " << xi;
+    }
+  }
+}
+
+TYPED_TEST(ShapeFunctionsTest, AreMirrorImages) {
+  constexpr int nodes = TypeParam::value;
+  const ShapeFunctions<nodes> right = lagrange<nodes>(0.37), left = lagrange<nodes>(-0.37);
+  for (int i = 0; i < nodes; ++i) {
+    EXPECT_NEAR(right.values[i], left.values[nodes - 1 - i], roundoff);
+    EXPECT_NEAR(right.derivatives[i], -left.derivatives[nodes - 1 - i], roundoff);
+  }
+}
+
+}  // namespace
+}  // namespace flexarm
