@@ -1,0 +1,45 @@
+#include "beam_state_publisher.h"
+
+#include "conversions.h"
+
+namespace flexarm::node {
+
+BeamStatePublisher::BeamStatePublisher(ros::NodeHandle& node, const Simulation& simulation, double rate)
+    : simulation_(simulation), schedule_(rate) {
+  publisher_ =
+      node.advertise<BeamStateArray>("beam_states", 10, [this](const ros::SingleSubscriberPublisher& subscriber) {
+        if (!stamp_.isZero()) subscriber.publish(make_message(stamp_));
+      });
+}
+
+void BeamStatePublisher::publish(const ros::Time& stamp, bool force) {
+  if (!schedule_.due(stamp, force)) return;
+  stamp_ = stamp;
+  if (publisher_.getNumSubscribers() > 0) publisher_.publish(make_message(stamp));
+}
+
+BeamStateArray BeamStatePublisher::make_message(const ros::Time& stamp) {
+  BeamStateArray message;
+  message.header.stamp = stamp;
+  message.header.frame_id = simulation_.scene().root_link;
+  for (std::size_t link = 0; link < simulation_.link_names().size(); ++link) {
+    if (!simulation_.is_flexible(link)) continue;
+    points_.clear();
+    simulation_.beam_points(link, 0, points_);
+    BeamState& beam = message.beams.emplace_back();
+    beam.link = simulation_.link_names()[link];
+    for (const BeamPoint& point : points_) {
+      geometry_msgs::Wrench resultant;
+      resultant.force = to_vector3(point.resultant.head<3>());
+      resultant.torque = to_vector3(point.resultant.tail<3>());
+      beam.arc_length.push_back(point.arc_length);
+      beam.pose.push_back(to_pose(point.pose));
+      beam.strain.push_back(to_vector3(point.strain.head<3>()));
+      beam.curvature.push_back(to_vector3(point.strain.tail<3>()));
+      beam.resultant.push_back(resultant);
+    }
+  }
+  return message;
+}
+
+}  // namespace flexarm::node

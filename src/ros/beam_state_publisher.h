@@ -1,0 +1,32 @@
+#pragma once
+/// beam_states: poses, strains and stress resultants along every flexible link.
+
+#include <flexarm/BeamStateArray.h>
+#include <ros/node_handle.h>
+#include <ros/publisher.h>
+
+#include <vector>
+
+#include "flexarm/simulation/simulation.h"
+#include "publication_schedule.h"
+
+namespace flexarm::node {
+
+/// Computes and publishes only while somebody subscribes; a new subscriber gets the current state at once.
+class BeamStatePublisher {
+ public:
+  BeamStatePublisher(ros::NodeHandle& node, const Simulation& simulation, double rate);
+
+  void publish(const ros::Time& stamp, bool force);
+
+ private:
+  BeamStateArray make_message(const ros::Time& stamp);
+
+  const Simulation& simulation_;
+  PublicationSchedule schedule_;
+  ros::Time stamp_;                ///< of the current state
+  std::vector<BeamPoint> points_;  ///< scratch
+  ros::Publisher publisher_;
+};
+
+}  // namespace flexarm::node

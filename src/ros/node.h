@@ -1,0 +1,70 @@
+#pragma once
+/// The loop: steps the simulation at the pace of the wall clock and lets everybody know.
+
+#include <ros/node_handle.h>
+#include <ros/steady_timer.h>
+
+#include <chrono>
+#include <cstdint>
+
+#include "beam_state_publisher.h"
+#include "clock_publisher.h"
+#include "command_interface.h"
+#include "diagnostics.h"
+#include "flexarm/simulation/simulation.h"
+#include "marker_publisher.h"
+#include "pacer.h"
+#include "parameters.h"
+#include "run_state.h"
+#include "services.h"
+#include "state_publisher.h"
+#include "status_publisher.h"
+
+namespace flexarm::node {
+
+/// A simulation on the ROS graph. Everything happens in the one thread that spins: no state is shared.
+class Node {
+ public:
+  /// Reads parameters and scene, and starts.
+  /// @throws ParameterError, ModelError if they cannot be used.
+  Node();
+  Node(const Node&) = delete;
+  Node& operator=(const Node&) = delete;
+
+  void pause();
+  /// @returns false, and stays paused, after a failed step: only a reset recovers from that
+  bool resume();
+  /// Back to the scene's initial state; time of the stamps goes on, and paused stays paused.
+  void reset();
+  /// Makes steps whatever the wall clock says. @returns false if one failed, or there was a failure before
+  bool step(std::uint32_t steps);
+
+  const RunState& run() const { return run_; }
+  const Simulation& simulation() const { return simulation_; }
+
+ private:
+  /// The timer's callback: makes the steps that are due. [real-time loop]
+  void tick();
+  /// One step and what has to happen around it. @returns false, and pauses, if it failed [real-time loop]
+  bool advance();
+  void publish(bool force);
+  void fail(const StepResult& result);
+
+  ros::NodeHandle node_, private_node_{"~"};
+  Parameters parameters_;
+  Simulation simulation_;
+  RunState run_;
+  Pacer pacer_;
+  std::chrono::steady_clock::time_point last_tick_;
+  ClockPublisher clock_publisher_;
+  StatePublisher state_publisher_;
+  BeamStatePublisher beam_state_publisher_;
+  MarkerPublisher marker_publisher_;
+  StatusPublisher status_publisher_;
+  Diagnostics diagnostics_;
+  CommandInterface command_interface_;
+  Services services_;
+  ros::SteadyTimer timer_;
+};
+
+}  // namespace flexarm::node

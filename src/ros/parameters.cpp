@@ -1,0 +1,121 @@
+#include "parameters.h"
+
+#include <ros/console.h>
+
+#include <cmath>
+#include <string>
+
+#include "flexarm/scene/urdf_reader.h"
+
+namespace flexarm::node {
+namespace {
+
+/// Reads parameters one by one and collects what is wrong with them.
+class ParameterReader {
+ public:
+  explicit ParameterReader(const ros::NodeHandle& node) : node_(node) {}
+
+  void read(const std::string& name, bool& value) { read_as(name, value, "true or false"); }
+  void read(const std::string& name, std::string& value) { read_as(name, value, "text"); }
+
+  void read(const std::string& name, double& value, bool zero_allowed = false) {
+    double read_value = value;
+    if (!read_as(name, read_value, "a number")) return;
+    if (!std::isfinite(read_value) || read_value < 0 || (read_value == 0 && !zero_allowed)) {
+      complain(name, zero_allowed ? "must be finite and >= 0" : "must be finite and > 0", std::to_string(read_value));
+    } else {
+      value = read_value;
+    }
+  }
+
+  void read(const std::string& name, int& value, int minimum) {
+    int read_value = value;
+    if (!read_as(name, read_value, "a whole number")) return;
+    if (read_value < minimum) {
+      complain(name, "must be >= " + std::to_string(minimum), std::to_string(read_value));
+    } else {
+      value = read_value;
+    }
+  }
+
+  void complain(const std::string& name, const std::string& expected, const std::string& got) {
+    errors_ += (errors_.empty() ? "" : "\n") + node_.resolveName(name) + ": " + expected + ", got " + got;
+  }
+
+  void throw_if_any() const {
+    if (!errors_.empty()) throw ParameterError("parameters that cannot be used:\n" + errors_);
+  }
+
+ private:
+  template <typename Value>
+  bool read_as(const std::string& name, Value& value, const std::string& expected) {
+    if (!node_.hasParam(name)) return false;
+    if (node_.getParam(name, value)) return true;
+    XmlRpc::XmlRpcValue any;
+    node_.getParam(name, any);
+    complain(name, "must be " + expected, any.toXml());
+    return false;
+  }
+
+  const ros::NodeHandle& node_;
+  std::string errors_;
+};
+
+void override_integrator(const ros::NodeHandle& private_node, scene::IntegratorDescription& integrator) {
+  ParameterReader reader(private_node);
+  reader.read("scheme", integrator.scheme);
+  reader.read("step", integrator.step);
+  reader.read("tolerance", integrator.tolerance);
+  reader.read("max_iterations", integrator.max_iterations, 1);
+  reader.read("max_halvings", integrator.max_halvings, 0);
+  if (private_node.hasParam("rho_infinity")) {
+    double rho_infinity = 1;
+    reader.read("rho_infinity", rho_infinity, true);
+    if (rho_infinity > 1) reader.complain("rho_infinity", "must lie in [0, 1]", std::to_string(rho_infinity));
+    integrator.rho_infinity = rho_infinity;
+  }
+  reader.throw_if_any();
+}
+
+scene::ReadResult read_file_or_text(const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
+  std::string path;
+  ParameterReader reader(private_node);
+  reader.read("scene", path);
+  reader.throw_if_any();
+  if (!path.empty()) return scene::read_scene_file(path);
+
+  std::string key, text;
+  if (!node.searchParam("robot_description", key) || !node.getParam(key, text)) {
+    throw ParameterError("no scene: set the parameter 'robot_description' to the text of a URDF, or '" +
+                         private_node.resolveName("scene") + "' to the path of one");
+  }
+  return scene::read_scene_text(text, key);
+}
+
+}  // namespace
+
+Parameters read_parameters(const ros::NodeHandle& private_node) {
+  Parameters parameters;
+  ParameterReader reader(private_node);
+  reader.read("real_time_factor", parameters.real_time_factor, true);
+  reader.read("max_catch_up", parameters.max_catch_up);
+  reader.read("paused", parameters.paused);
+  reader.read("publish_rate", parameters.publish_rate);
+  reader.read("marker_rate", parameters.marker_rate);
+  reader.read("status_rate", parameters.status_rate);
+  reader.read("publish_clock", parameters.publish_clock);
+  reader.read("clock_rate", parameters.clock_rate);
+  reader.read("command_timeout", parameters.command_timeout, true);
+  reader.throw_if_any();
+  return parameters;
+}
+
+scene::SceneDescription read_scene(const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
+  scene::ReadResult result = read_file_or_text(node, private_node);
+  if (!result.scene) throw ParameterError("the scene cannot be used:\n" + scene::to_text(result.diagnostics));
+  for (const scene::Diagnostic& warning : result.diagnostics) ROS_WARN_STREAM(warning.text());
+  override_integrator(private_node, result.scene->integrator);
+  return *std::move(result.scene);
+}
+
+}  // namespace flexarm::node

@@ -1,0 +1,40 @@
+#pragma once
+/// What the node reads from the parameter server.
+
+#include <ros/node_handle.h>
+
+#include <stdexcept>
+
+#include "flexarm/scene/scene_description.h"
+
+namespace flexarm::node {
+
+/// Parameters or a scene that cannot be used; what() lists every finding.
+class ParameterError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct Parameters {
+  double real_time_factor = 1;  ///< simulated per wall time; 0: as fast as possible
+  double max_catch_up = 0.1;    ///< backlog that is made up before steps are dropped, wall time [s]
+  bool paused = false;          ///< at the start
+  double publish_rate = 100;    ///< joint_states, /tf, beam_states [Hz]
+  double marker_rate = 25;      ///< beam_markers [Hz]
+  double status_rate = 10;      ///< ~status [Hz]
+  bool publish_clock = false;
+  double clock_rate = 100;     ///< [Hz]
+  double command_timeout = 0;  ///< efforts return to zero this long after the last command [s]; 0: never
+};
+
+/// Reads the private parameters.
+/// @throws ParameterError naming every parameter of the wrong type or out of range.
+Parameters read_parameters(const ros::NodeHandle& private_node);
+
+/// Reads the scene from the file `~scene`, or else from the text in `robot_description` (searched upwards from `node`),
+/// logs its warnings, and lets the private parameters scheme, step, tolerance, max_iterations, max_halvings and
+/// rho_infinity override its <integrator>.
+/// @throws ParameterError with every error of the scene or of the parameters.
+scene::SceneDescription read_scene(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
+
+}  // namespace flexarm::node

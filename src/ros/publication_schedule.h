@@ -1,0 +1,29 @@
+#pragma once
+/// When a topic is due.
+
+#include <ros/time.h>
+
+namespace flexarm::node {
+
+/// Thins publications out to a rate, measured in the time of the stamps, and never lets a stamp pass twice.
+class PublicationSchedule {
+ public:
+  explicit PublicationSchedule(double rate) : period_(1 / rate) {}
+
+  /// True if a message with this stamp is to be sent. `force`: whatever the rate, if only the stamp is new.
+  bool due(const ros::Time& stamp, bool force = false) {
+    if (stamp <= last_ || (stamp < next_ && !force)) return false;
+    last_ = stamp;
+    next_ += period_;
+    // After a gap, or a forced message in between, the rate counts from here.
+    if (next_ <= stamp || force) next_ = stamp + period_;
+    return true;
+  }
+  const ros::Time& last() const { return last_; }
+
+ private:
+  ros::Duration period_;
+  ros::Time last_, next_;
+};
+
+}  // namespace flexarm::node

@@ -1,0 +1,54 @@
+#include "status_publisher.h"
+
+#include <algorithm>
+
+#include "conversions.h"
+
+namespace flexarm::node {
+
+StatusPublisher::StatusPublisher(ros::NodeHandle& private_node, const Simulation& simulation, const RunState& run,
+                                 double rate)
+    : simulation_(simulation), run_(run), schedule_(rate) {
+  publisher_ = private_node.advertise<SimulatorStatus>("status", 10, true);
+}
+
+void StatusPublisher::publish(ros::Time stamp, bool force) {
+  if (force) stamp = std::max(stamp, schedule_.last() + ros::Duration(0, 1));
+  if (!schedule_.due(stamp, force)) return;
+
+  const Energies energies = simulation_.energies();
+  SimulatorStatus message;
+  message.header.stamp = stamp;
+  message.header.frame_id = simulation_.scene().root_link;
+  message.time = simulation_.time();
+  message.step = simulation_.step_size();
+  message.steps = run_.steps;
+  message.paused = run_.paused;
+  message.failed = run_.failed();
+  message.message = run_.failure;
+  message.real_time_factor = measure_real_time_factor();
+  message.overruns = run_.overruns;
+  message.scheme = simulation_.scheme();
+  message.iterations = run_.last_step.iterations;
+  message.halvings = run_.halvings;
+  message.kinetic_energy = energies.kinetic;
+  message.strain_energy = energies.strain;
+  message.potential_energy = energies.potential;
+  message.total_energy = energies.total();
+  message.work = energies.work;
+  message.dissipated = energies.dissipated;
+  message.momentum = to_vector3(simulation_.momentum());
+  message.angular_momentum = to_vector3(simulation_.angular_momentum());
+  publisher_.publish(message);
+}
+
+double StatusPublisher::measure_real_time_factor() {
+  const auto wall_time = std::chrono::steady_clock::now();
+  const double elapsed = std::chrono::duration<double>(wall_time - last_wall_time_).count();
+  const double simulated = run_.simulated_time - last_simulated_time_;
+  last_wall_time_ = wall_time;
+  last_simulated_time_ = run_.simulated_time;
+  return elapsed > 0 ? simulated / elapsed : 0;
+}
+
+}  // namespace flexarm::node
