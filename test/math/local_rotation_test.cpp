@@ -1,0 +1,264 @@
+/// Strain-invariant interpolation of rotations and its generalised shape functions.
+
+#include <flexarm/math/local_rotation.h>
+
+#include <type_traits>
+
+#include <gtest/gtest.h>
+
+#include "rotation_samples.h"
+
+namespace flexarm::test {
+namespace {
+
+/// An interpolated quantity passes through a logarithm, two products and an exponential, each of about 16 roundings.
+constexpr double roundoff = 64 * epsilon;
+
+template <int Nodes>
+using NodalMatrices = std::array<Matrix, Nodes>;
+template <int Nodes>
+using NodalVectors = std::array<Vector, Nodes>;
+
+/// Nodal rotations at most `spread` [rad] away from an arbitrary common one.
+template <int Nodes>
+NodalMatrices<Nodes> nodal_rotations(Samples& samples, double spread) {
+  const Matrix common = so3::exp(samples.vector());
+  NodalMatrices<Nodes> result;
+  for (Matrix& rotation : result) rotation = so3::exp(spread * samples.of_length(1.0)) * common;
+  return result;
+}
+
+/// The formulas as the theory writes them, with local vectors in the reference frame and in long double.
+template <int Nodes>
+struct Reference {
+  using V = Vector3T<long double>;
+  using M = Matrix3T<long double>;
+  M rotation;
+  V curvature;
+  GeneralisedShapeFunctions<Nodes, long double> generalised;
+
+  Reference(const NodalMatrices<Nodes>& rotations, const ShapeFunctions<Nodes>& shape) {
+    constexpr int a = reference_nodes<Nodes>().first, b = reference_nodes<Nodes>().second;
+    std::array<M, Nodes> nodal;
+    for (int i = 0; i < Nodes; ++i) nodal[i] = rotations[i].template cast<long double>();
+    const V relative = so3::log(nodal[a].transpose() * nodal[b]);
+    const M frame = nodal[a] * so3::exp(0.5L * relative);
+    V theta = V::Zero(), rate = V::Zero();
+    std::array<M, Nodes> inverse, share;
+    M mean = M::Zero(), mean_rate = M::Zero();
+    for (int i = 0; i < Nodes; ++i) {
+      const V local = so3::log(frame.transpose() * nodal[i]);
+      const long double value = shape.values[i], slope = shape.derivatives[i];
+      inverse[i] = so3::tangent(local).inverse();
+      theta += value * local;
+      rate += slope * local;
+      mean += value * inverse[i];
+      mean_rate += slope * inverse[i];
+      share[i].setZero();
+    }
+    const long double angle = relative.norm();
+    const M skew = (angle > 0 ? std::tan(angle / 4) / angle : 0.25L) * so3::hat(relative);
+    share[a] += 0.5L * (M::Identity() + skew);
+    share[b] += 0.5L * (M::Identity() - skew);
+    const M tangent = so3::tangent(theta), tangent_rate = so3::tangent_derivative(theta, rate);
+    for (int i = 0; i < Nodes; ++i) {
+      const long double value = shape.values[i], slope = shape.derivatives[i];
+      const M local = value * tangent * inverse[i] + (M::Identity() - tangent * mean) * share[i];
+      const M local_rate = (value * tangent_rate + slope * tangent) * inverse[i] -
+                           (tangent_rate * mean + tangent * mean_rate) * share[i];
+      generalised.values[i] = frame * local * frame.transpose();
+      generalised.derivatives[i] = frame * local_rate * frame.transpose();
+    }
+    rotation = frame * so3::exp(theta);
+    curvature = tangent.transpose() * rate;
+  }
+};
+
+template <typename Count>
+class LocalRotationTest : public ::testing::Test {
+ protected:
+  static constexpr int nodes = Count::value;
+
+  /// Calls check(nodal rotations, shape functions at a point) for spreads from nothing to large.
+  template <typename Check>
+  void for_each_element(const Check& check) {
+    for (const double spread : {0.0, 1e-12, 1e-6, 1e-3, 0.1, 0.5, 1.2}) {
+      const NodalMatrices<nodes> rotations = nodal_rotations<nodes>(samples_, spread);
+      for (const double xi : {-1.0, -0.77, 0.0, 0.34, 1.0}) {
+        SCOPED_TRACE(::testing::Message() << nodes << " nodes, spread " << spread << ", xi " << xi);
+        check(rotations, lagrange<nodes>(xi));
+      }
+    }
+  }
+  Samples samples_;
+};
+
+using Counts = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>,
+                                std::integral_constant<int, 4>, std::integral_constant<int, 5>>;
+TYPED_TEST_SUITE(LocalRotationTest, Counts);
+
+/// Largest sum of |I^i'| over the points used, about 12 for five nodes: what round-off in a nodal rotation becomes.
+template <int Nodes>
+double slope_sum(const ShapeFunctions<Nodes>& shape) {
+  return 1 + shape.derivatives.cwiseAbs().sum() + shape.values.cwiseAbs().sum();
+}
+
+TYPED_TEST(LocalRotationTest, AgreesWithTheTheorysFormulas) {
+  constexpr int nodes = TypeParam::value;
+  this->for_each_element([](const NodalMatrices<nodes>& rotations, const ShapeFunctions<nodes>& shape) {
+    const Reference<nodes> expected(rotations, shape);
+    const double tolerance = roundoff * slope_sum(shape);
+    GeneralisedShapeFunctions<nodes> generalised;
+    const LocalRotations<nodes> local(rotations);
+    const InterpolatedRotation<> section =
+        LocalRotationVariation<nodes>(local).evaluate(shape.values, shape.derivatives, generalised);
+    EXPECT_LT(distance(section.rotation, expected.rotation), tolerance);
+    EXPECT_LT(distance(section.curvature, expected.curvature), tolerance);
+    for (int i = 0; i < nodes; ++i) {
+      EXPECT_LT(distance(generalised.values[i], expected.generalised.values[i]), tolerance);
+      EXPECT_LT(distance(generalised.derivatives[i], expected.generalised.derivatives[i]), tolerance);
+    }
+    const InterpolatedRotation<> strains_only = local.evaluate(shape.values, shape.derivatives);
+    EXPECT_EQ(strains_only.rotation, section.rotation);
+    EXPECT_EQ(strains_only.curvature, section.curvature);
+  });
+}
+
+TYPED_TEST(LocalRotationTest, PassesThroughTheNodes) {
+  constexpr int nodes = TypeParam::value;
+  const NodalMatrices<nodes> rotations = nodal_rotations<nodes>(this->samples_, 1.0);
+  const LocalRotations<nodes> local(rotations);
+  for (int i = 0; i < nodes; ++i) {
+    const ShapeFunctions<nodes> shape = lagrange<nodes>(node_coordinate<nodes>(i));
+    const double tolerance = roundoff * slope_sum(shape);
+    GeneralisedShapeFunctions<nodes> generalised;
+    LocalRotationVariation<nodes>(local).evaluate(shape.values, shape.derivatives, generalised);
+    EXPECT_LT(distance(local.evaluate(shape.values, shape.derivatives).rotation, rotations[i]), tolerance);
+    for (int j = 0; j < nodes; ++j) {
+      const Matrix expected = (i == j ? 1.0 : 0.0) * Matrix::Identity();
+      EXPECT_LT(distance(generalised.values[j], expected), tolerance);
+    }
+  }
+}
+
+TYPED_TEST(LocalRotationTest, CurvatureIsTheRotationsDerivative) {
+  constexpr int nodes = TypeParam::value;
+  this->for_each_element([](const NodalMatrices<nodes>& rotations, const ShapeFunctions<nodes>& shape) {
+    const LocalRotations<nodes> local(rotations);
+    const InterpolatedRotation<> section = local.evaluate(shape.values, shape.derivatives);
+    // Along the line only the interpolated local vector changes.
+    const Vector theta = local.interpolate(shape.values), slope = local.interpolate(shape.derivatives);
+    const Matrix rate = derivative(so3::exp(perturbed(theta, slope))) * local.reference_rotation();
+    const Matrix skew = section.rotation.transpose() * rate;
+    EXPECT_LT(distance(section.curvature, so3::vee(skew)), roundoff * slope_sum(shape));
+  });
+}
+
+TYPED_TEST(LocalRotationTest, GeneralisedShapeFunctionsArePartitionOfUnity) {
+  constexpr int nodes = TypeParam::value;
+  this->for_each_element([](const NodalMatrices<nodes>& rotations, const ShapeFunctions<nodes>& shape) {
+    const LocalRotationVariation<nodes> variation{LocalRotations<nodes>(rotations)};
+    GeneralisedShapeFunctions<nodes> generalised;
+    variation.evaluate(shape.values, shape.derivatives, generalised);
+    Matrix sum = Matrix::Zero(), derivative_sum = Matrix::Zero();
+    for (int i = 0; i < nodes; ++i) {
+      sum += generalised.values[i];
+      derivative_sum += generalised.derivatives[i];
+    }
+    EXPECT_LT(distance(sum, Matrix::Identity()), roundoff);
+    EXPECT_LT(distance(derivative_sum, Matrix::Zero()), roundoff * slope_sum(shape));
+  });
+}
+
+TYPED_TEST(LocalRotationTest, GeneralisedShapeFunctionsAreTheVariation) {
+  constexpr int nodes = TypeParam::value;
+  this->for_each_element([this](const NodalMatrices<nodes>& rotations, const ShapeFunctions<nodes>& shape) {
+    const LocalRotationVariation<nodes> variation{LocalRotations<nodes>(rotations)};
+    GeneralisedShapeFunctions<nodes> generalised;
+    const InterpolatedRotation<> section = variation.evaluate(shape.values, shape.derivatives, generalised);
+    std::array<ComplexMatrix, nodes> moved;
+    Vector spin = Vector::Zero(), spin_slope = Vector::Zero();
+    for (int i = 0; i < nodes; ++i) {
+      const Vector nodal_spin = this->samples_.of_length(1.0);
+      moved[i] = spun(rotations[i], nodal_spin);
+      spin += generalised.values[i] * nodal_spin;
+      spin_slope += generalised.derivatives[i] * nodal_spin;
+    }
+    const InterpolatedRotation<Complex> changed =
+        LocalRotations<nodes, Complex>(moved).evaluate(shape.values, shape.derivatives);
+    const double tolerance = 2 * roundoff * slope_sum(shape);
+    EXPECT_LT(distance(derivative(changed.rotation), so3::hat(spin) * section.rotation), tolerance);
+    EXPECT_LT(distance(derivative(changed.curvature), section.rotation.transpose() * spin_slope), tolerance);
+  });
+}
+
+TYPED_TEST(LocalRotationTest, SuperposedRotationChangesNoStrain) {
+  constexpr int nodes = TypeParam::value;
+  this->for_each_element([this](const NodalMatrices<nodes>& rotations, const ShapeFunctions<nodes>& shape) {
+    const Matrix superposed = so3::exp(this->samples_.vector());
+    NodalMatrices<nodes> turned;
+    for (int i = 0; i < nodes; ++i) turned[i] = superposed * rotations[i];
+    GeneralisedShapeFunctions<nodes> before, after;
+    const InterpolatedRotation<> section = LocalRotationVariation<nodes>(LocalRotations<nodes>(rotations))
+                                               .evaluate(shape.values, shape.derivatives, before);
+    const InterpolatedRotation<> moved =
+        LocalRotationVariation<nodes>(LocalRotations<nodes>(turned)).evaluate(shape.values, shape.derivatives, after);
+    const double tolerance = roundoff * slope_sum(shape);
+    EXPECT_LT(distance(moved.curvature, section.curvature), tolerance);
+    EXPECT_LT(distance(moved.rotation, superposed * section.rotation), tolerance);
+    for (int i = 0; i < nodes; ++i) {
+      EXPECT_LT(distance(after.values[i], superposed * before.values[i] * superposed.transpose()), tolerance);
+      EXPECT_LT(distance(after.derivatives[i], superposed * before.derivatives[i] * superposed.transpose()), tolerance);
+    }
+  });
+}
+
+TYPED_TEST(LocalRotationTest, QuaternionsOfEitherSignGiveTheSame) {
+  constexpr int nodes = TypeParam::value;
+  const NodalMatrices<nodes> rotations = nodal_rotations<nodes>(this->samples_, 1.0);
+  const LocalRotations<nodes> expected(rotations);
+  for (int flipped = 0; flipped < nodes; ++flipped) {
+    std::array<QuaternionT<double>, nodes> quaternions;
+    for (int i = 0; i < nodes; ++i) quaternions[i] = so3::quaternion_from_matrix(rotations[i]);
+    quaternions[flipped].coeffs() *= -1;
+    const LocalRotations<nodes> local(quaternions);
+    EXPECT_LT(distance(local.reference_rotation(), expected.reference_rotation()), roundoff);
+    EXPECT_LT(distance(local.quarter_tangent(), expected.quarter_tangent()), roundoff);
+    for (int i = 0; i < nodes; ++i) {
+      EXPECT_LT(distance(local.rotation_vectors()[i], expected.rotation_vectors()[i]), roundoff);
+    }
+  }
+}
+
+/// A helix, or a roll-up: rotations about one axis fixed in space and in the section. The strains are exact, whatever
+/// the angle between the nodes, up to where the reference nodes are half a turn apart.
+TYPED_TEST(LocalRotationTest, UniformCurvatureIsExact) {
+  constexpr int nodes = TypeParam::value;
+  const Matrix start = so3::exp(this->samples_.vector());
+  for (const double total : {1e-9, 0.1, 1.0, 3.0}) {
+    const Vector curvature = 0.5 * this->samples_.of_length(total);
+    NodalMatrices<nodes> rotations;
+    for (int i = 0; i < nodes; ++i) rotations[i] = start * so3::exp(node_coordinate<nodes>(i) * curvature);
+    const LocalRotations<nodes> local(rotations);
+    for (const double xi : {-0.9, -0.2, 0.6}) {
+      const ShapeFunctions<nodes> shape = lagrange<nodes>(xi);
+      const InterpolatedRotation<> section = local.evaluate(shape.values, shape.derivatives);
+      EXPECT_LT(distance(section.curvature, curvature), roundoff * slope_sum(shape));
+      EXPECT_LT(distance(section.rotation, start * so3::exp(xi * curvature)), roundoff * slope_sum(shape));
+    }
+  }
+}
+
+TEST(ReferenceNodes, AreTheMiddleOnes) {
+  EXPECT_EQ(reference_nodes<2>().first, 0);
+  EXPECT_EQ(reference_nodes<2>().second, 1);
+  EXPECT_EQ(reference_nodes<3>().first, 1);
+  EXPECT_EQ(reference_nodes<3>().second, 1);
+  EXPECT_EQ(reference_nodes<4>().first, 1);
+  EXPECT_EQ(reference_nodes<4>().second, 2);
+  EXPECT_EQ(reference_nodes<5>().first, 2);
+  EXPECT_EQ(reference_nodes<5>().second, 2);
+}
+
+}  // namespace
+}  // namespace flexarm::test
