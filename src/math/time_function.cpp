@@ -1,0 +1,170 @@
+#include "flexarm/math/time_function.h"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <variant>
+#include <vector>
+
+#include <muParser.h>
+
+#include "math/parse_number.h"
+
+namespace flexarm {
+namespace {
+
+constexpr std::size_t kLongestExpression = 2000;  // characters; far above what anyone writes by hand
+constexpr std::size_t kLongestTable = 1 << 20;
+constexpr std::size_t kLongestReason = 200;
+
+/// "'text'", shortened for messages.
+std::string quoted(std::string_view text) {
+  constexpr std::size_t kShown = 60;
+  if (text.size() <= kShown) return "'" + std::string(text) + "'";
+  return "'" + std::string(text.substr(0, kShown)) + "...'";
+}
+
+/// Piecewise linear, constant outside.
+struct Table {
+  std::vector<double> times, values;
+
+  double operator()(double t) const {
+    const auto after = std::upper_bound(times.begin(), times.end(), t);
+    if (after == times.begin()) return values.front();
+    if (after == times.end()) return values.back();
+    const std::size_t i = after - times.begin();
+    const double fraction = (t - times[i - 1]) / (times[i] - times[i - 1]);
+    return (1 - fraction) * values[i - 1] + fraction * values[i];
+  }
+};
+
+/// A compiled expression of t. Neither copied nor moved, since the parser points to `t`.
+struct Expression {
+  mutable double t = 0;
+  mu::Parser parser;
+
+  double operator()(double time) const {
+    t = time;
+    return parser.Eval();
+  }
+};
+
+Table parse_table(std::string_view text) {
+  if (text.size() > kLongestTable)
+    throw std::invalid_argument("table of " + std::to_string(text.size()) + " characters, expected at most " +
+                                std::to_string(kLongestTable));
+  Table table;
+  std::string_view rest = text;
+  for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
+    const std::size_t colon = word.find(':');
+    std::optional<double> time, value;
+    if (colon != std::string_view::npos) {
+      time = parse_number(word.substr(0, colon));
+      value = parse_number(word.substr(colon + 1));
+    }
+    if (!time || !value)
+      throw std::invalid_argument("entry " + quoted(word) + " of a table, expected TIME:VALUE with two numbers");
+    if (!table.times.empty() && *time <= table.times.back())
+      throw std::invalid_argument("entry " + quoted(word) + " of a table, expected strictly increasing times");
+    table.times.push_back(*time);
+    table.values.push_back(*value);
+  }
+  return table;
+}
+
+/// Position of an '=' that assigns: muParser would let an expression change t.
+std::size_t find_assignment(std::string_view text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '=') continue;
+    if (i + 1 < text.size() && text[i + 1] == '=') {
+      ++i;
+    } else if (i == 0 || std::string_view("<>!").find(text[i - 1]) == std::string_view::npos) {
+      return i;
+    }
+  }
+  return std::string_view::npos;
+}
+
+std::invalid_argument expression_error(std::string_view text, std::size_t position, const std::string& reason) {
+  return std::invalid_argument("expression " + quoted(text) + ", at character " + std::to_string(position + 1) + ": " +
+                               reason + "; expected an expression of t, or a table TIME:VALUE TIME:VALUE ...");
+}
+
+std::unique_ptr<const Expression> parse_expression(std::string_view text) {
+  if (text.size() > kLongestExpression)
+    throw std::invalid_argument("expression of " + std::to_string(text.size()) + " characters, expected at most " +
+                                std::to_string(kLongestExpression));
+  const std::size_t assignment = find_assignment(text);
+  if (assignment != std::string_view::npos) throw expression_error(text, assignment, "assignment (== compares)");
+  auto expression = std::make_unique<Expression>();
+  try {
+    expression->parser.DefineVar("t", &expression->t);
+    expression->parser.SetExpr(std::string(text));
+    (*expression)(0);  // compiles, so that unknown names are found here and nothing allocates later
+  } catch (const mu::Parser::exception_type& error) {
+    const std::size_t position = error.GetPos() < 0 ? 0 : static_cast<std::size_t>(error.GetPos());
+    throw expression_error(text, std::min(position, text.size()), error.GetMsg().substr(0, kLongestReason));
+  }
+  if (expression->parser.GetNumResults() != 1)
+    throw expression_error(text, text.find(','), "several values separated by commas");
+  return expression;
+}
+
+}  // namespace
+
+class TimeFunction::Implementation {
+ public:
+  std::string text;
+  std::variant<double, Table, std::unique_ptr<const Expression>> function;
+
+  double operator()(double t) const {
+    if (const double* constant = std::get_if<double>(&function)) return *constant;
+    if (const Table* table = std::get_if<Table>(&function)) return (*table)(t);
+    return (*std::get<std::unique_ptr<const Expression>>(function))(t);
+  }
+};
+
+TimeFunction::TimeFunction() : TimeFunction(1.0) {}
+
+TimeFunction::TimeFunction(double constant) {
+  char text[32];
+  const std::to_chars_result result = std::to_chars(text, text + sizeof text, constant);
+  implementation_ =
+      std::make_shared<const Implementation>(Implementation{std::string(text, result.ptr), constant});
+}
+
+TimeFunction::TimeFunction(std::shared_ptr<const Implementation> implementation)
+    : implementation_(std::move(implementation)) {}
+
+TimeFunction TimeFunction::parse(std::string_view text) {
+  std::string_view rest = text;
+  const std::string_view first = next_word(rest);
+  if (first.empty()) throw std::invalid_argument("nothing, expected an expression of t or a table TIME:VALUE ...");
+  if (text.find('\0') != std::string_view::npos)
+    throw std::invalid_argument("a zero byte, expected an expression of t or a table TIME:VALUE ...");
+
+  Implementation implementation{std::string(), 0.0};
+  const std::optional<double> constant = next_word(rest).empty() ? parse_number(first) : std::nullopt;
+  if (constant) {
+    implementation.function = *constant;
+  } else if (text.find(':') != std::string_view::npos && text.find('?') == std::string_view::npos) {
+    implementation.function = parse_table(text);
+  } else {
+    implementation.function = parse_expression(text);
+  }
+  implementation.text = text;
+  return TimeFunction(std::make_shared<const Implementation>(std::move(implementation)));
+}
+
+double TimeFunction::operator()(double t) const { return (*implementation_)(t); }
+
+double TimeFunction::derivative(double t) const {
+  const double step = std::cbrt(std::numeric_limits<double>::epsilon()) * std::max(1.0, std::abs(t));
+  // Around the start the function may not exist for negative times: second-order forward difference.
+  if (t >= 0 && t < step) return (-3 * (*this)(t) + 4 * (*this)(t + step) - (*this)(t + 2 * step)) / (2 * step);
+  return ((*this)(t + step) - (*this)(t - step)) / (2 * step);
+}
+
+const std::string& TimeFunction::text() const { return implementation_->text; }
+
+}  // namespace flexarm

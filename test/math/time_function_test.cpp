@@ -1,0 +1,131 @@
+#include "flexarm/math/time_function.h"
+
+#include <gtest/gtest.h>
+
+#include <clocale>
+#include <cmath>
+#include <limits>
+#include <locale>
+#include <stdexcept>
+
+using flexarm::TimeFunction;
+
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+/// The message of the error that parsing `text` throws; empty if it throws none.
+std::string parse_error(const std::string& text) {
+  try {
+    TimeFunction::parse(text);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+void expect_error(const std::string& text, const std::string& fragment) {
+  const std::string message = parse_error(text);
+  EXPECT_NE(message.find(fragment), std::string::npos) << "'" << text << "' gave: " << message;
+}
+
+/// A decimal comma, as many European locales have it.
+struct DecimalComma : std::numpunct<char> {
+  char do_decimal_point() const override { return ','; }
+};
+
+}  // namespace
+
+TEST(TimeFunction, IsOneByDefaultAndTheGivenConstant) {
+  EXPECT_EQ(TimeFunction()(17), 1);
+  EXPECT_EQ(TimeFunction(-2.5)(0.1), -2.5);
+  EXPECT_EQ(TimeFunction(-2.5).text(), "-2.5");
+  EXPECT_EQ(TimeFunction(-2.5).derivative(3), 0);
+}
+
+TEST(TimeFunction, ReadsConstants) {
+  EXPECT_EQ(TimeFunction::parse("50")(3), 50);
+  EXPECT_EQ(TimeFunction::parse("  +1e-3 ")(3), 1e-3);
+  EXPECT_EQ(TimeFunction::parse("0.1")(0), 0.1);
+}
+
+TEST(TimeFunction, ReadsExpressions) {
+  EXPECT_EQ(TimeFunction::parse("t < 1 ? t : 0")(0.25), 0.25);
+  EXPECT_EQ(TimeFunction::parse("t < 1 ? t : 0")(1.5), 0);
+  EXPECT_NEAR(TimeFunction::parse("sin(2*_pi*t)")(0.25), 1, 4 * kEpsilon);
+  EXPECT_EQ(TimeFunction::parse("t >= 1 && t <= 2")(1.5), 1);
+  EXPECT_EQ(TimeFunction::parse("3*t^2").text(), "3*t^2");
+}
+
+TEST(TimeFunction, ReadsTables) {
+  const TimeFunction table = TimeFunction::parse("0:0 1:50\n 2:-2e1");
+  EXPECT_EQ(table(-1), 0);
+  EXPECT_EQ(table(0.5), 25);
+  EXPECT_EQ(table(1), 50);
+  EXPECT_EQ(table(1.5), 15);
+  EXPECT_EQ(table(9), -20);
+  EXPECT_EQ(TimeFunction::parse("1:7")(-3), 7);
+}
+
+TEST(TimeFunction, CopiesShareTheFunction) {
+  const TimeFunction original = TimeFunction::parse("t*t");
+  const TimeFunction copy = original;
+  EXPECT_EQ(copy(3), 9);
+  EXPECT_EQ(original(2), 4);
+  EXPECT_EQ(copy.text(), original.text());
+}
+
+TEST(TimeFunction, DerivativeIsAccurateToItsOrder) {
+  // Truncation h^2/6 |f'''| plus round-off eps/h, h = cbrt(eps): both of order eps^(2/3).
+  const double tolerance = 4 * std::pow(kEpsilon, 2.0 / 3.0);
+  const TimeFunction sine = TimeFunction::parse("sin(t)");
+  for (const double t : {-2.0, -0.3, 0.0, 1e-7, 0.4, 0.9}) EXPECT_NEAR(sine.derivative(t), std::cos(t), tolerance) << t;
+}
+
+TEST(TimeFunction, DerivativeAtTheStartUsesNoNegativeTimes) {
+  EXPECT_TRUE(std::isfinite(TimeFunction::parse("sqrt(t)*t").derivative(0)));
+  EXPECT_NEAR(TimeFunction::parse("t < 0 ? 1/0 : 3*t").derivative(0), 3, 1e-9);
+}
+
+TEST(TimeFunction, MayBeNotFinite) { EXPECT_FALSE(std::isfinite(TimeFunction::parse("1/t")(0))); }
+
+TEST(TimeFunction, DoesNotDependOnTheLocale) {
+  const std::locale before = std::locale::global(std::locale(std::locale::classic(), new DecimalComma));
+  EXPECT_EQ(TimeFunction::parse("0.5*t")(1), 0.5);
+  EXPECT_EQ(TimeFunction::parse("0.5")(1), 0.5);
+  EXPECT_EQ(TimeFunction::parse("0:0.5")(1), 0.5);
+  EXPECT_EQ(TimeFunction(0.5).text(), "0.5");
+  std::locale::global(before);
+}
+
+TEST(TimeFunction, RefusesWhatIsNoFunction) {
+  expect_error("", "expected an expression of t");
+  expect_error("  \n", "expected an expression of t");
+  expect_error("2*x", "expected an expression of t");
+  expect_error("2*x", "at character 3");
+  expect_error("sin(", "'sin('");
+  expect_error("t t", "at character 3");
+  expect_error("nan", "'nan'");
+  expect_error("inf", "'inf'");
+  expect_error("1.5abc", "'1.5abc'");
+  expect_error("1, 2", "several values");
+  expect_error("t = 3", "== compares");
+  expect_error("\"text\"", "expected an expression");
+  expect_error(std::string("t\0+1", 4), "zero byte");
+}
+
+TEST(TimeFunction, RefusesBadTables) {
+  expect_error("0:0 1:5x", "'1:5x'");
+  expect_error("0:0 1", "'1'");
+  expect_error("0:0 1:nan", "'1:nan'");
+  expect_error("0:0 0:1", "strictly increasing");
+  expect_error("1:0 0:1", "strictly increasing");
+  expect_error(":", "':'");
+  expect_error("0:1:2", "'0:1:2'");
+}
+
+TEST(TimeFunction, RefusesAbsurdLength) {
+  expect_error(std::string(100000, '('), "expected at most");
+  expect_error(std::string(3000000, ':'), "expected at most");
+  EXPECT_LT(parse_error(std::string(1900, 'x')).size(), 1000u);
+}
