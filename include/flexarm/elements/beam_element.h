@@ -1,0 +1,74 @@
+#pragma once
+/// Constant data of geometrically exact beam elements, and what is known at their quadrature points at an instant.
+
+#include <array>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "flexarm/math/pose.h"
+
+namespace flexarm {
+
+/// One Lagrange element with `Nodes` nodes (order Nodes - 1). Stiffness: Nodes - 1 Gauss points (reduced: no shear or
+/// membrane locking), inertia: Nodes Gauss points. Derivatives and weights are with respect to the arc length of the
+/// undeformed reference line. (Muñoz 2004, sec. 3 and 5; beam.md 2.3)
+template <int Nodes>
+struct BeamElement {
+  static constexpr int kNodes = Nodes;
+  static constexpr int kStiffnessPoints = Nodes - 1;
+  static constexpr int kMassPoints = Nodes;
+  using NodeWeights = Eigen::Matrix<double, Nodes, 1>;
+
+  struct StiffnessPoint {
+    NodeWeights shape, derivative;  ///< I^i, dI^i/ds [-, 1/m]
+    double weight;                  ///< of the integral over s [m]
+    Vector6 reference_strain;       ///< {Lambda_0^T r_0', Upsilon_0}: the undeformed line is free of stress
+  };
+  struct MassPoint {
+    NodeWeights shape, derivative;
+    double weight;
+  };
+
+  std::array<int, Nodes> nodes;
+  int first_stiffness_point = 0, first_mass_point = 0;  ///< into the per-point arrays of Workspace and State
+  std::array<StiffnessPoint, kStiffnessPoints> stiffness_points;
+  std::array<MassPoint, kMassPoints> mass_points;
+  Matrix6 stiffness;                            ///< of the section, about the mass centroid
+  Matrix3 inertia;                              ///< rotary inertia per length [kg m]
+  Eigen::Matrix<double, Nodes, Nodes> mass;     ///< int I^i I^j mass ds [kg]
+  double stiffness_damping = 0;                 ///< eta of F += eta C d(strain)/dt [s]
+  double mass_damping = 0;                      ///< [1/s]
+  int first_block = 0;                          ///< into SparseAssembler::element_blocks, then [i * Nodes + j]
+};
+
+/// Kinematics of a stiffness point at one instant.
+struct PointKinematics {
+  Matrix3 rotation;   ///< Lambda
+  Vector3 tangent;    ///< r' = dr/ds
+  Vector6 strain;     ///< {Gamma, K}
+};
+
+/// Elements of equal order, contiguous.
+template <int Nodes>
+struct BeamGroup {
+  std::vector<BeamElement<Nodes>> elements;
+};
+
+using BeamGroups = std::tuple<BeamGroup<2>, BeamGroup<3>, BeamGroup<4>, BeamGroup<5>>;
+
+/// Calls visit(group) for each order: the one dispatch on the number of nodes.
+template <class Groups, class Visitor>
+void for_each_group(Groups& groups, Visitor&& visit) {
+  std::apply([&](auto&... group) { (visit(group), ...); }, groups);
+}
+
+/// Calls visit(element) for all elements.
+template <class Groups, class Visitor>
+void for_each_element(Groups& groups, Visitor&& visit) {
+  for_each_group(groups, [&](auto& group) {
+    for (auto& element : group.elements) visit(element);
+  });
+}
+
+}  // namespace flexarm

@@ -1,0 +1,120 @@
+#pragma once
+/// What all beam kernels share: the nodes of an element over a step, strains at a point, and the scatter of a point's
+/// linearised stress resultants into the element's residual and tangent.
+
+#include <array>
+
+#include "flexarm/elements/beam_element.h"
+#include "flexarm/math/local_rotation.h"
+
+namespace flexarm {
+
+/// Nodal motion of an element over a step [t_n, t_{n+1}].
+template <int Nodes>
+struct ElementNodes {
+  std::array<Vector3, Nodes> begin, end;             ///< positions [m]
+  std::array<Quaternion, Nodes> orientation;         ///< at the end
+  std::array<Vector3, Nodes> increment;              ///< tangent-scaled rotation increments, Lambda_{n+1} = cay(w) Lambda_n
+  std::array<Matrix3, Nodes> increment_inverse_tangent;  ///< S(w)^{-1}: dw = S^{-1} spin
+  std::array<Vector3, Nodes> velocity, acceleration;     ///< at the begin [m/s, m/s^2]
+};
+
+/// Residual {f_i, phi_i} and its derivative with respect to {dr_j, spin_j}, node by node.
+template <int Nodes>
+struct ElementSystem {
+  Eigen::Matrix<double, 6 * Nodes, 1> residual;
+  Eigen::Matrix<double, 6 * Nodes, 6 * Nodes> tangent;
+  double dissipated = 0;  ///< over the step [J]
+
+  void set_zero() {
+    residual.setZero();
+    tangent.setZero();
+    dissipated = 0;
+  }
+};
+
+template <int Nodes>
+Vector3 interpolate(const NodalValues<Nodes>& weights, const std::array<Vector3, Nodes>& values) {
+  Vector3 sum = weights[0] * values[0];
+  for (int i = 1; i < Nodes; ++i) sum += weights[i] * values[i];
+  return sum;
+}
+
+/// Strains of a configuration (Muñoz 2004, eq. 2.1): Gamma = Lambda^T r' - reference, K = Upsilon - reference.
+inline PointKinematics point_kinematics(const InterpolatedRotation<double>& interpolated, const Vector3& tangent,
+                                        const Vector6& reference_strain) {
+  PointKinematics point;
+  point.rotation = interpolated.rotation;
+  point.tangent = tangent;
+  point.strain.head<3>() = interpolated.rotation.transpose() * tangent;
+  point.strain.tail<3>() = interpolated.curvature;
+  point.strain -= reference_strain;
+  return point;
+}
+
+/// Adds w {I^i' n, I^i' m - I^i arm x n} to the residual.
+template <int Nodes>
+void add_point_residual(double weight, const NodalValues<Nodes>& shape, const NodalValues<Nodes>& derivative,
+                        const Vector3& n, const Vector3& m, const Vector3& arm,
+                        Eigen::Matrix<double, 6 * Nodes, 1>& residual) {
+  const Vector3 wn = weight * n, wm = weight * m, wc = arm.cross(wn);
+  for (int i = 0; i < Nodes; ++i) {
+    residual.template segment<3>(6 * i) += derivative[i] * wn;
+    residual.template segment<3>(6 * i + 3) += derivative[i] * wm - shape[i] * wc;
+  }
+}
+
+/// Columns of a point's linearisation: {dr', spin, spin'} and, for increments, {dw, dw'} of the interpolated
+/// tangent-scaled increment.
+constexpr int kInstantColumns = 9, kIncrementColumns = 15;
+
+/// The same linearisation with respect to one node's {dr_j, spin_j}.
+template <int Rows, int Columns>
+Eigen::Matrix<double, Rows, 6> node_columns(const Eigen::Matrix<double, Rows, Columns>& point, double shape,
+                                            double derivative, const Matrix3& generalised,
+                                            const Matrix3& generalised_derivative, const Matrix3& inverse_tangent) {
+  Eigen::Matrix<double, Rows, 6> columns;
+  columns.template leftCols<3>() = derivative * point.template leftCols<3>();
+  columns.template rightCols<3>().noalias() = point.template middleCols<3>(3).lazyProduct(generalised);
+  columns.template rightCols<3>().noalias() += point.template middleCols<3>(6).lazyProduct(generalised_derivative);
+  if constexpr (Columns == kIncrementColumns) {
+    const Eigen::Matrix<double, Rows, 3> increment =
+        shape * point.template middleCols<3>(9) + derivative * point.template middleCols<3>(12);
+    columns.template rightCols<3>().noalias() += increment.lazyProduct(inverse_tangent);
+  }
+  return columns;
+}
+
+/// Adds the tangent of add_point_residual. `resultants` is d{n, m} (6 x Columns), `couple` d(arm x n) (3 x Columns).
+template <int Nodes, int Columns>
+void add_point_tangent(double weight, const NodalValues<Nodes>& shape, const NodalValues<Nodes>& derivative,
+                       const GeneralisedShapeFunctions<Nodes>& generalised,
+                       const std::array<Matrix3, Nodes>& inverse_tangents,
+                       const Eigen::Matrix<double, 6, Columns>& resultants,
+                       const Eigen::Matrix<double, 3, Columns>& couple,
+                       Eigen::Matrix<double, 6 * Nodes, 6 * Nodes>& tangent) {
+  Eigen::Matrix<double, 9, Columns> all;
+  all << weight * resultants, weight * couple;
+  for (int j = 0; j < Nodes; ++j) {
+    const Eigen::Matrix<double, 9, 6> d = node_columns<9, Columns>(
+        all, shape[j], derivative[j], generalised.values[j], generalised.derivatives[j], inverse_tangents[j]);
+    for (int i = 0; i < Nodes; ++i) {
+      tangent.template block<6, 6>(6 * i, 6 * j) += derivative[i] * d.template topRows<6>();
+      tangent.template block<3, 6>(6 * i + 3, 6 * j) -= shape[i] * d.template bottomRows<3>();
+    }
+  }
+}
+
+/// Adds coefficient * mass_ij * vectors_j to the force rows, and slope * mass_ij to the translational tangent.
+template <int Nodes>
+void add_translational(const Eigen::Matrix<double, Nodes, Nodes>& mass, const std::array<Vector3, Nodes>& vectors,
+                       double slope, bool with_tangent, ElementSystem<Nodes>& system) {
+  for (int i = 0; i < Nodes; ++i) {
+    for (int j = 0; j < Nodes; ++j) {
+      system.residual.template segment<3>(6 * i) += mass(i, j) * vectors[j];
+      if (with_tangent) system.tangent.template block<3, 3>(6 * i, 6 * j).diagonal().array() += slope * mass(i, j);
+    }
+  }
+}
+
+}  // namespace flexarm

@@ -1,0 +1,37 @@
+#pragma once
+/// Inertia residuals of rigid bodies (and of beams' rotary inertia where a scheme lumps it) at their nodes.
+
+#include "flexarm/elements/endpoint_beam.h"
+#include "flexarm/integrators/scheme.h"
+#include "flexarm/joints/joint_map.h"
+#include "flexarm/model/model.h"
+#include "flexarm/model/state.h"
+
+namespace flexarm {
+
+/// A node over a step.
+struct NodeStep {
+  const NodePose& begin;
+  const NodePose& end;
+  const NodeState& state;            ///< at the begin
+  const Vector3& increment;          ///< tangent-scaled
+  const Matrix3& inverse_tangent;    ///< S(increment)^{-1}
+  double step;                       ///< [s]
+};
+
+/// Residual {f, phi} and its translational (scalar) and rotational tangent.
+struct NodalInertiaAction {
+  Vector6 residual = Vector6::Zero();
+  double translational = 0;
+  Matrix3 rotational = Matrix3::Zero();
+  double dissipated = 0;
+};
+
+/// (1/h) m (v_1 - v_0), (1/h) (Lambda J W)_1 - (Lambda J W)_0 for conserving schemes; m a, Lambda (W x J W + J A) for Newmark.
+/// (beam.md 3.4, beyond.md 1.1)
+NodalInertiaAction nodal_inertia_action(const NodalInertia& inertia, const Scheme& scheme, const NodeStep& node);
+
+/// The node's motion at the end of the step.
+NodeState advanced(const Scheme& scheme, const NodeStep& node);
+
+}  // namespace flexarm

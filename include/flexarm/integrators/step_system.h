@@ -1,0 +1,106 @@
+#pragma once
+/// Residual and tangent of one step (or of a static configuration) as a function of the trial end configuration.
+
+#include <vector>
+
+#include "flexarm/elements/beam_point.h"
+#include "flexarm/elements/endpoint_beam.h"
+#include "flexarm/integrators/scheme.h"
+#include "flexarm/joints/joint_map.h"
+#include "flexarm/model/degrees_of_freedom.h"
+#include "flexarm/model/model.h"
+#include "flexarm/model/state.h"
+#include "flexarm/solver/sparse_assembler.h"
+
+namespace flexarm {
+
+/// Scratch and trial configuration of a step. Nothing allocates after construction.
+///
+/// Life of a step: begin(state, h), guess, then evaluate / update until converged, then accept(state).
+class StepSystem {
+ public:
+  StepSystem(const Model& model, const Scheme& scheme);
+
+  enum class Guess {
+    Extrapolated,  ///< the last step's increments again; rigid continuation of the velocities in the first step
+    Unchanged      ///< the configuration at the begin
+  };
+
+  // ---- dynamics
+  /// Starts a step of length `step` [s] from `state`, which must outlive it. Prescribed coordinates take their end values.
+  void begin(const State& state, double step, Guess guess);
+  // ---- statics
+  /// Starts from `state` with gravity and loads scaled by `load_factor`; histories and motions at time 0.
+  void begin_static(const State& state, double load_factor);
+
+  /// Assembles residual (and tangent) of the trial configuration. False if something is not finite.
+  bool evaluate(bool with_tangent);
+  /// Applies a Newton update (one entry per unknown) on the group; slaves follow their joints.
+  void update(const Eigen::VectorXd& increment);
+  /// Writes the trial configuration, evaluated last without an update since, as the new state.
+  void accept(State& state);
+  /// The same for statics: at rest.
+  void accept_static(State& state);
+  /// The state was changed by somebody else: quantities kept from the last step do not hold.
+  void invalidate() { points_valid_ = false; }
+
+  const Eigen::VectorXd& residual() const { return residual_; }
+  const SparseAssembler& assembler() const { return assembler_; }
+  const DegreesOfFreedom& degrees_of_freedom() const { return dof_; }
+  /// Largest entry of an increment, displacements divided by the model's length scale [-, rad].
+  double scaled_norm(const Eigen::VectorXd& increment) const;
+  /// Largest rotation among them [rad].
+  double largest_rotation(const Eigen::VectorXd& increment) const;
+  /// Largest tangent-scaled rotation increment of a node over the step.
+  double largest_node_rotation() const;
+
+ private:
+  template <class Stress>
+  void add_conserving_beams(bool with_tangent);
+  void add_endpoint_beams(bool with_tangent);
+  template <int Nodes>
+  void gather_nodes(const BeamElement<Nodes>& element, ElementNodes<Nodes>& nodes) const;
+  template <int Nodes>
+  void scatter(const BeamElement<Nodes>& element, const ElementSystem<Nodes>& system, bool with_tangent);
+  template <int Nodes>
+  void add_rotary(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, bool with_tangent,
+                  ElementSystem<Nodes>& system);
+  void add_nodal_inertia(bool with_tangent);
+  void add_loads(bool with_tangent);
+  void fold_joints(bool with_tangent);
+  void add_joint_efforts(int joint, bool with_tangent);
+  void load_begin_configuration(const State& state);
+  void compute_begin_points();
+  void set_prescribed(double time);
+  void extrapolate();
+  void set_slaves();
+  void update_increments();
+  double work() const;
+  double effort_at(const Coordinate& coordinate, std::size_t index) const;
+
+  const Model& model_;
+  Scheme scheme_;
+  DegreesOfFreedom dof_;
+  SparseAssembler assembler_;
+
+  const State* state_ = nullptr;
+  double step_ = 0, load_factor_ = 1;
+  bool static_ = false;
+  std::vector<NodePose> begin_, end_;
+  std::vector<Released> released_;
+  std::vector<Vector3> increments_;            // per node, tangent-scaled
+  std::vector<Matrix3> inverse_tangents_;
+  std::vector<PointKinematics> begin_points_, end_points_;
+  std::vector<Matrix3> begin_mass_rotations_, end_mass_rotations_;
+  std::vector<MassPointState> end_mass_points_;
+  std::vector<Vector6> end_strain_rates_;
+  std::vector<double> history_values_;         // at the scheme's point
+  std::vector<double> begin_history_values_;   // at the begin; work of the Newmark family
+  std::vector<double> applied_;                // per coordinate: effort in this step
+  std::vector<ReleasedVector> begin_rates_;    // per joint; Newmark family
+  bool points_valid_ = false;
+  double dissipated_ = 0;
+  Eigen::VectorXd residual_;
+};
+
+}  // namespace flexarm

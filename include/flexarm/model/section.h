@@ -1,0 +1,27 @@
+#pragma once
+/// Cross-section stiffness and inertia from what a scene says.
+
+#include "flexarm/math/pose.h"
+#include "flexarm/scene/scene_description.h"
+
+namespace flexarm {
+
+/// Properties per unit length of the reference line, in the section frame (1 = tangent, 2 = y, 3 = z).
+struct SectionProperties {
+  Matrix6 stiffness;                     ///< F = {N, M} = stiffness * {Gamma, K}; [N], [N m], [N m^2]
+  double mass = 0;                       ///< [kg/m]
+  Vector3 center_of_mass = Vector3::Zero();  ///< in the section, from the reference line [m]
+  Matrix3 inertia;                       ///< rotary inertia about the centre of mass [kg m]
+  double radius = 0;                     ///< largest distance of the edge from the reference line, for display [m]
+};
+
+/// Converts geometry and material, direct properties or full matrices.
+/// Shear correction factors: Cowper (1966); torsion constants: Saint-Venant (Bredt for the thin box). beam.md 2.1.
+SectionProperties section_properties(const scene::Section& section);
+
+/// The same section referred to its mass centroid: the strain energy is unchanged because
+/// Gamma_reference = Gamma_centroid + d^ K for the centroid at d in the section.
+/// In the result center_of_mass is zero.
+SectionProperties referred_to_center_of_mass(const SectionProperties& section);
+
+}  // namespace flexarm

@@ -1,0 +1,82 @@
+#pragma once
+/// From nodal residuals and tangents to the reduced system of the unknowns: slaves are folded into their masters and
+/// released coordinates, block by block, along a program that is fixed when the model is built.
+
+#include <vector>
+
+#include "flexarm/joints/joint_map.h"
+#include "flexarm/model/degrees_of_freedom.h"
+
+namespace flexarm {
+
+/// Block-sparse nodal tangent and its reduction to compressed columns.
+///
+/// Every pair of coupled variables has a dense column-major block. Folding slave s with released variable u and master m:
+/// first the columns, (i,u) += (i,s) right and (i,m) += (i,s) L_right, then the rows, (u,j) += left^T (s,j) and
+/// (m,j) += L_left^T (s,j), then the geometric blocks. (joints.md 2)
+class SparseAssembler {
+ public:
+  SparseAssembler(const Model& model, const DegreesOfFreedom& dof);
+
+  // ---- accumulation
+  void set_zero();
+  double* residual(int variable) { return residual_.data() + dof_.first[variable]; }
+  const double* residual(int variable) const { return residual_.data() + dof_.first[variable]; }
+  /// Column-major block on the diagonal of a variable, size x size.
+  double* diagonal_block(int variable) { return values_.data() + blocks_[diagonal_[variable]].offset; }
+  /// Block (node i, node j) of an element, 6 x 6; `index` = element.first_block + i * Nodes + j.
+  double* element_block(int index) { return values_.data() + blocks_[element_blocks_[index]].offset; }
+
+  // ---- reduction
+  /// Total residual of a slave node, complete once its own slaves have been folded.
+  Eigen::Map<const Vector6> slave_residual(int node) const { return Eigen::Map<const Vector6>(residual(node)); }
+  /// Folds the slave of `joint`; to be called leaf to root, with the maps for the slave's total residual.
+  void fold(int joint, const FoldMaps& maps, bool with_tangent);
+  /// Folds mimicking coordinates; after all joints.
+  void fold_mimics(bool with_tangent);
+  /// Writes the reduced residual and, if asked, the compressed-column values.
+  void gather(Eigen::VectorXd& residual) const;
+  void gather_tangent();
+
+  // ---- reduced matrix, compressed columns
+  int unknowns() const { return dof_.unknowns; }
+  const std::vector<int>& column_starts() const { return column_starts_; }
+  const std::vector<int>& row_indices() const { return row_indices_; }
+  const std::vector<double>& values() const { return reduced_values_; }
+
+ private:
+  struct Block {
+    int row, column;      // variables
+    std::size_t offset;   // into values_
+  };
+  struct ColumnFold { int source, to_released, to_master, rows; };     // block indices; -1: none
+  struct RowFold { int source, to_released, to_master, columns; };
+  struct Geometric { int released_released, released_master, master_released, master_master; };
+  struct JointFold {
+    int first_column_fold, last_column_fold, first_row_fold, last_row_fold;
+    Geometric geometric;
+  };
+  struct ScaledAddition { int source, target, count; double factor; };
+  struct Copy { std::size_t from; int to, count; };
+
+  class PatternBuilder;
+  void fold_columns(const JointFold& fold, const FoldMaps& maps);
+  void fold_rows(const JointFold& fold, const FoldMaps& maps);
+  void add_geometric(const Geometric& geometric, const FoldMaps& maps);
+  void build_compressed_columns();
+
+  const Model& model_;
+  const DegreesOfFreedom& dof_;
+  std::vector<Block> blocks_;
+  std::vector<int> element_blocks_, diagonal_;
+  std::vector<ColumnFold> column_folds_;
+  std::vector<RowFold> row_folds_;
+  std::vector<JointFold> joint_folds_;
+  std::vector<ScaledAddition> mimic_folds_;
+  std::vector<bool> dead_;  // per block: consumed by a fold
+  std::vector<double> values_, residual_, reduced_values_;
+  std::vector<Copy> copies_;
+  std::vector<int> column_starts_, row_indices_;
+};
+
+}  // namespace flexarm

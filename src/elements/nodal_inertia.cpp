@@ -1,0 +1,100 @@
+#include "flexarm/elements/nodal_inertia.h"
+
+#include "flexarm/elements/rotary_inertia.h"
+
+namespace flexarm {
+namespace {
+
+/// The increment that the scheme's rotation rule uses and its inverse tangent.
+struct RotationIncrement {
+  Vector3 value;
+  Matrix3 inverse_tangent;
+};
+RotationIncrement rotation_increment(const Scheme& scheme, const NodeStep& node) {
+  if (scheme.rotation == RotationRule::TangentScaled) return {node.increment, node.inverse_tangent};
+  const Vector3 unscaled = cayley::to_rotation_vector(node.increment);
+  return {unscaled, so3::inverse_tangent(unscaled)};
+}
+
+NewmarkRule newmark_rule(const Scheme& scheme, double step) { return {scheme.beta, scheme.gamma, step}; }
+
+}  // namespace
+
+NodalInertiaAction nodal_inertia_action(const NodalInertia& inertia, const Scheme& scheme, const NodeStep& node) {
+  NodalInertiaAction action;
+  const double h = node.step;
+  const Matrix3& begin = node.begin.rotation;
+  const Matrix3& end = node.end.rotation;
+  const Vector3 displacement = node.end.position - node.begin.position;
+  Matrix3 J = inertia.rotary;
+  if (scheme.nodal_rotary_inertia) J += inertia.beam_rotary;
+  const MassPointState spin{node.state.angular_velocity, node.state.angular_acceleration};
+
+  if (scheme.is_incremental()) {
+    action.residual.head<3>() = inertia.mass * (2 / h) * (displacement / h - node.state.velocity);
+    action.translational = inertia.mass * 2 / (h * h);
+    const RotationIncrement increment = rotation_increment(scheme, node);
+    if (!J.isZero(0)) {
+      const RotaryRate rate =
+          average_rotary_rate(J, begin, end, increment.value, increment.inverse_tangent, spin, h);
+      action.residual.tail<3>() = rate.moment;
+      action.rotational = rate.derivative;
+    }
+    if (!inertia.rotary_damping.isZero(0)) {
+      // Mean rotation of D Omega: its work on the increment is Omega.D Omega >= 0 because Lambda_0 Omega = Lambda_1 Omega.
+      const Vector3 Omega = begin.transpose() * node.increment, D = inertia.rotary_damping * Omega / h;
+      const Matrix3 mean = 0.5 * (begin + end);
+      action.residual.tail<3>() += mean * D;
+      action.rotational += mean * inertia.rotary_damping * begin.transpose() * node.inverse_tangent / h -
+                           0.5 * so3::hat(Vector3(end * D));
+      action.dissipated = Omega.dot(D);
+    }
+    return action;
+  }
+
+  const NewmarkRule rule = newmark_rule(scheme, h);
+  action.residual.head<3>() =
+      inertia.mass * rule.acceleration(displacement, node.state.velocity, node.state.acceleration);
+  action.translational = inertia.mass * rule.acceleration_slope();
+  if (!J.isZero(0)) {
+    const RotaryRate rate = newmark_rotary_rate(J, begin, end, spin, rule);
+    action.residual.tail<3>() = rate.moment;
+    action.rotational = rate.derivative;
+  }
+  if (!inertia.rotary_damping.isZero(0)) {
+    const Vector3 increment = so3::log(Matrix3(end * begin.transpose()));
+    const Vector3 A = rule.acceleration(begin.transpose() * increment, spin.angular_velocity, spin.angular_acceleration);
+    const Vector3 W = rule.velocity(spin.angular_velocity, spin.angular_acceleration, A);
+    const Vector3 moment = end * (inertia.rotary_damping * W);
+    action.residual.tail<3>() += moment;
+    action.rotational += end * inertia.rotary_damping * begin.transpose() * so3::inverse_tangent(increment) *
+                             rule.velocity_slope() - so3::hat(moment);
+    action.dissipated = moment.dot(increment);
+  }
+  return action;
+}
+
+NodeState advanced(const Scheme& scheme, const NodeStep& node) {
+  NodeState out;
+  out.position = node.end.position;
+  out.orientation = node.end.orientation;
+  const Vector3 displacement = node.end.position - node.begin.position;
+  const Matrix3 to_material = node.begin.rotation.transpose();
+  if (scheme.is_incremental()) {
+    out.velocity = (2 / node.step) * displacement - node.state.velocity;
+    out.angular_velocity =
+        (2 / node.step) * (to_material * rotation_increment(scheme, node).value) - node.state.angular_velocity;
+  } else {
+    const NewmarkRule rule = newmark_rule(scheme, node.step);
+    const Vector3 increment = to_material * cayley::to_rotation_vector(node.increment);
+    out.acceleration = rule.acceleration(displacement, node.state.velocity, node.state.acceleration);
+    out.velocity = rule.velocity(node.state.velocity, node.state.acceleration, out.acceleration);
+    out.angular_acceleration =
+        rule.acceleration(increment, node.state.angular_velocity, node.state.angular_acceleration);
+    out.angular_velocity =
+        rule.velocity(node.state.angular_velocity, node.state.angular_acceleration, out.angular_acceleration);
+  }
+  return out;
+}
+
+}  // namespace flexarm

@@ -1,0 +1,137 @@
+// The end of a step: norms of increments, work of loads, and the new state.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "flexarm/elements/load.h"
+#include "flexarm/elements/nodal_inertia.h"
+#include "flexarm/integrators/step_system.h"
+#include "flexarm/math/cayley.h"
+
+namespace flexarm {
+namespace {
+
+/// Calls visit(first equation, scale): scale 1/length for displacements, 1 for rotations, for every unknown scalar.
+template <class Visit>
+void for_each_unknown(const Model& model, const DegreesOfFreedom& dof, const Visit& visit) {
+  for (int i = 0; i < dof.node_count; ++i) {
+    const int equation = dof.equation[dof.first[i]];
+    for (int k = 0; k < 6 && equation >= 0; ++k) visit(equation + k, k >= 3);
+  }
+  for (std::size_t index = 0; index < model.coordinates.size(); ++index) {
+    const Coordinate& coordinate = model.coordinates[index];
+    const int equation =
+        dof.equation[dof.first[dof.variable_of_joint(coordinate.joint)] + coordinate.component];
+    if (equation >= 0)
+      visit(equation, coordinate.is_angle || !model.joints[coordinate.joint].rotation.isZero(0));
+  }
+}
+
+}  // namespace
+
+double StepSystem::scaled_norm(const Eigen::VectorXd& increment) const {
+  double norm = 0;
+  for_each_unknown(model_, dof_, [&](int equation, bool is_rotation) {
+    const double value = std::abs(increment[equation]) / (is_rotation ? 1.0 : model_.length_scale);
+    norm = std::max(norm, std::isfinite(value) ? value : std::numeric_limits<double>::infinity());
+  });
+  return norm;
+}
+
+double StepSystem::largest_rotation(const Eigen::VectorXd& increment) const {
+  double largest = 0;
+  for_each_unknown(model_, dof_, [&](int equation, bool is_rotation) {
+    if (is_rotation) largest = std::max(largest, std::abs(increment[equation]));
+  });
+  return largest;
+}
+
+double StepSystem::largest_node_rotation() const {
+  double largest = 0;
+  for (const Vector3& w : increments_) largest = std::max(largest, w.norm());
+  return largest;
+}
+
+double StepSystem::work() const {
+  double work = 0;
+  const bool incremental = scheme_.is_incremental();
+  for (const NodalLoad& load : model_.loads) {
+    const Matrix3& begin = begin_[load.node].rotation;
+    const Matrix3& end = end_[load.node].rotation;
+    const double value = history_values_[load.history];
+    Vector6 wrench, increment;
+    increment << end_[load.node].position - begin_[load.node].position, increments_[load.node];
+    if (incremental) {
+      wrench = load_action(load, value, begin, end, LoadPoint::Mean).wrench;
+    } else {  // trapezoidal rule
+      increment.tail<3>() = cayley::to_rotation_vector(increments_[load.node]);
+      wrench = 0.5 * (load_action(load, value, begin, end, LoadPoint::End).wrench +
+                      load_action(load, begin_history_values_[load.history], end, begin, LoadPoint::End).wrench);
+    }
+    work += wrench.dot(increment);
+  }
+  for (std::size_t j = 0; j < model_.joints.size(); ++j) {
+    const ReleasedVector change = released_increment(model_.joints[j], state_->released[j], released_[j]);
+    for (int k = 0; k < change.size(); ++k) {
+      const std::size_t index = model_.first_coordinate[j] + k;
+      const double effort = incremental ? applied_[index] : 0.5 * (applied_[index] + state_->efforts[index]);
+      work += effort * change[k];
+    }
+  }
+  return work;
+}
+
+void StepSystem::accept(State& state) {
+  // A prescribed coordinate's row is the effort that drives it.
+  for (std::size_t index = 0; index < model_.coordinates.size(); ++index) {
+    const Coordinate& coordinate = model_.coordinates[index];
+    if (coordinate.motion >= 0)
+      applied_[index] += assembler_.residual(dof_.variable_of_joint(coordinate.joint))[coordinate.component];
+  }
+  state.work += work();
+  state.dissipated += dissipated_;
+
+  state.last_increment.resize(dof_.unknowns);
+  state.last_step = step_;
+  for (int i = 0; i < dof_.node_count; ++i) {
+    const int equation = dof_.equation[dof_.first[i]];
+    for (int k = 0; k < 3 && equation >= 0; ++k) {
+      state.last_increment[equation + k] = end_[i].position[k] - begin_[i].position[k];
+      state.last_increment[equation + 3 + k] = increments_[i][k];
+    }
+  }
+  for (std::size_t j = 0; j < model_.joints.size(); ++j) {
+    const ReleasedVector change = released_increment(model_.joints[j], state.released[j], released_[j]);
+    const int first = dof_.first[dof_.variable_of_joint(static_cast<int>(j))];
+    for (int k = 0; k < change.size(); ++k)
+      if (dof_.equation[first + k] >= 0) state.last_increment[dof_.equation[first + k]] = change[k];
+  }
+
+  for (std::size_t i = 0; i < end_.size(); ++i)
+    state.nodes[i] = advanced(scheme_, {begin_[i], end_[i], state.nodes[i], increments_[i], inverse_tangents_[i], step_});
+  std::copy(released_.begin(), released_.end(), state.released.begin());
+  std::copy(applied_.begin(), applied_.end(), state.efforts.begin());
+  if (!scheme_.nodal_rotary_inertia)
+    std::copy(end_mass_points_.begin(), end_mass_points_.end(), state.mass_points.begin());
+  if (!scheme_.is_incremental())
+    std::copy(end_strain_rates_.begin(), end_strain_rates_.end(), state.strain_rates.begin());
+  state.time += step_;
+  std::swap(begin_points_, end_points_);
+  std::swap(begin_mass_rotations_, end_mass_rotations_);
+}
+
+void StepSystem::accept_static(State& state) {
+  for (std::size_t i = 0; i < end_.size(); ++i) {
+    state.nodes[i] = NodeState();
+    state.nodes[i].position = end_[i].position;
+    state.nodes[i].orientation = end_[i].orientation;
+  }
+  std::copy(released_.begin(), released_.end(), state.released.begin());
+  std::copy(applied_.begin(), applied_.end(), state.efforts.begin());
+  std::fill(state.mass_points.begin(), state.mass_points.end(), MassPointState());
+  std::fill(state.strain_rates.begin(), state.strain_rates.end(), Vector6::Zero());
+  state.last_step = 0;
+  points_valid_ = false;
+}
+
+}  // namespace flexarm

@@ -1,0 +1,71 @@
+#include "flexarm/joints/joint_forces.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flexarm {
+namespace {
+
+/// One-sided stop with gap phi >= 0 free; effort along increasing gap.
+PassiveEffort stop_effort(const LimitStop& stop, double gap_begin, double gap_end, double step) {
+  const double k = stop.stiffness;
+  const double p0 = std::min(gap_begin, 0.0), p1 = std::min(gap_end, 0.0);
+  if (p0 == 0 && p1 == 0) return {};
+  PassiveEffort out;
+  if (step == 0) return {-k * p1, p1 < 0 ? -k : 0.0, 0};
+  // Discrete gradient of k p^2/2: exactly energy conserving through the contact.
+  const double change = gap_end - gap_begin;
+  if (std::abs(change) < 1e-12 * (1 + std::abs(gap_begin))) {
+    out.effort = -0.5 * k * (p0 + p1);
+    out.slope = p1 < 0 ? -0.5 * k : 0.0;
+  } else {
+    const double secant = (p1 - p0) / change, secant_slope = ((p1 < 0 ? 1.0 : 0.0) - secant) / change;
+    out.effort = -0.5 * k * (p1 + p0) * secant;
+    out.slope = -0.5 * k * ((p1 < 0 ? 1.0 : 0.0) * secant + (p1 + p0) * secant_slope);
+  }
+  // Contact damping while penetrating on average; never pulling.
+  if (p0 + p1 < 0) {
+    const double damping = -stop.damping * change / step;
+    if (out.effort + damping >= 0) {
+      out.effort += damping;
+      out.slope -= stop.damping / step;
+      out.dissipated = -damping * change;
+    } else {
+      out.dissipated = out.effort * change;
+      out.effort = out.slope = 0;
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+PassiveEffort passive_effort(const Coordinate& coordinate, const CoordinateStep& change) {
+  PassiveEffort out;
+  if (change.step > 0 && (coordinate.damping > 0 || coordinate.friction > 0)) {
+    const double rate =
+        (change.increment / change.step - (1 - change.gamma) * change.begin_rate) / change.gamma;
+    const double rate_slope = 1 / (change.gamma * change.step);
+    const double t = std::tanh(rate / kFrictionSpeed);
+    out.effort = -coordinate.damping * rate - coordinate.friction * t;
+    out.slope = -(coordinate.damping + coordinate.friction * (1 - t * t) / kFrictionSpeed) * rate_slope;
+    out.dissipated = -out.effort * change.increment;
+  }
+  if (coordinate.limit) {
+    const LimitStop& stop = *coordinate.limit;
+    const PassiveEffort low = stop_effort(stop, change.begin - stop.lower, change.end - stop.lower, change.step);
+    const PassiveEffort high = stop_effort(stop, stop.upper - change.begin, stop.upper - change.end, change.step);
+    out.effort += low.effort - high.effort;
+    out.slope += low.slope + high.slope;
+    out.dissipated += low.dissipated + high.dissipated;
+  }
+  return out;
+}
+
+double stop_energy(const Coordinate& coordinate, double position) {
+  if (!coordinate.limit) return 0;
+  const double p = std::min({position - coordinate.limit->lower, coordinate.limit->upper - position, 0.0});
+  return 0.5 * coordinate.limit->stiffness * p * p;
+}
+
+}  // namespace flexarm

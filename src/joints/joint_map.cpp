@@ -1,0 +1,210 @@
+#include "flexarm/joints/joint_map.h"
+
+#include <cmath>
+
+#include "flexarm/math/cayley.h"
+#include "flexarm/math/so3.h"
+
+namespace flexarm {
+namespace {
+
+using so3::hat;
+
+/// Orientation of the joint frame and the slave's lever arm from the master node, world axes.
+struct JointFrame {
+  Matrix3 rotation;  // B
+  Vector3 lever;     // Lambda_m b + B (displacement)
+};
+
+Vector3 displacement(const JointMap& joint, const Released& released) {
+  return joint.kind == JointMapKind::Scalar ? Vector3(released.displacement[0] * joint.translation)
+                                            : released.displacement;
+}
+
+JointFrame joint_frame(const JointMap& joint, const NodePose& master, const Released& released) {
+  JointFrame frame;
+  frame.rotation = master.rotation * joint.origin.orientation.toRotationMatrix();
+  frame.lever = master.rotation * joint.origin.position + frame.rotation * displacement(joint, released);
+  return frame;
+}
+
+void set_sizes(int count, FoldMaps& maps) {
+  maps.left.setZero(6, count);
+  maps.right.setZero(6, count);
+  maps.released_released.setZero(count, count);
+  maps.released_master.setZero(count, 6);
+  maps.master_released.setZero(6, count);
+  maps.master_master.setZero();
+}
+
+/// Tangent-scaled rotation per unit scalar increment, h = 2 tan(x/2)/x for a rotation x, and dh/dx.
+struct ScaledRate {
+  double value, derivative;
+};
+ScaledRate scaled_rate(double x) {
+  if (std::abs(x) < 0.05) {  // 2 tan(x/2)/x = 1 + x^2/12 + x^4/120 + 17 x^6/20160 + 31 x^8/362880 + ...
+    const double y = x * x;
+    return {1 + y * (1.0 / 12 + y * (1.0 / 120 + y * (17.0 / 20160 + y * 31.0 / 362880))),
+            x * (1.0 / 6 + y * (1.0 / 30 + y * (17.0 / 3360 + y * 31.0 / 45360)))};
+  }
+  const double t = std::tan(0.5 * x);
+  return {2 * t / x, ((1 + t * t) - 2 * t / x) / x};
+}
+
+}  // namespace
+
+NodePose slave_pose(const JointMap& joint, const NodePose& master, const Released& released) {
+  const Quaternion frame = master.orientation * joint.origin.orientation;
+  Quaternion turned = frame;
+  if (joint.kind == JointMapKind::Scalar)
+    turned = frame * so3::exp_quaternion(released.displacement[0] * joint.rotation);
+  else if (joint.kind != JointMapKind::Rigid)
+    turned = frame * released.rotation;
+  NodePose slave;
+  slave.orientation = (turned * joint.slave_orientation).normalized();
+  slave.rotation = slave.orientation.toRotationMatrix();
+  slave.position = master.position + joint_frame(joint, master, released).lever;
+  return slave;
+}
+
+Released updated(const JointMap& joint, const Released& released, const Eigen::Ref<const ReleasedVector>& increment) {
+  Released out = released;
+  if (joint.kind == JointMapKind::Scalar) {
+    out.displacement[0] += increment[0];
+  } else if (joint.kind != JointMapKind::Rigid) {
+    if (joint.kind == JointMapKind::Free) out.displacement += increment.head<3>();
+    const Vector3 spin = increment.tail<3>();
+    out.rotation = (so3::exp_quaternion(spin) * released.rotation).normalized();
+  }
+  return out;
+}
+
+ReleasedVector released_increment(const JointMap& joint, const Released& from, const Released& to) {
+  ReleasedVector out(released_count(joint.kind));
+  if (joint.kind == JointMapKind::Scalar) {
+    out[0] = to.displacement[0] - from.displacement[0];
+  } else if (joint.kind != JointMapKind::Rigid) {
+    if (joint.kind == JointMapKind::Free) out.head<3>() = to.displacement - from.displacement;
+    out.tail<3>() = cayley::increment(from.rotation, to.rotation);
+  }
+  return out;
+}
+
+void variational_maps(const JointMap& joint, const NodePose& master, const Released& released, const Vector6& g,
+                      FoldMaps& maps) {
+  const int count = released_count(joint.kind);
+  const JointFrame frame = joint_frame(joint, master, released);
+  const Vector3 force = g.head<3>(), moment = g.tail<3>();
+  set_sizes(count, maps);
+  maps.lever_left = maps.lever_right = frame.lever;
+  maps.master_master.bottomRightCorner<3, 3>() = hat(force) * hat(frame.lever);
+
+  switch (joint.kind) {
+    case JointMapKind::Rigid:
+      break;
+    case JointMapKind::Scalar: {
+      const Vector3 travel = frame.rotation * joint.translation, turn = frame.rotation * joint.rotation;
+      maps.right.col(0) << travel, turn;
+      maps.released_master.row(0).tail<3>() = -(force.cross(travel) + moment.cross(turn)).transpose();
+      maps.master_released.col(0).tail<3>() = -force.cross(travel);
+      break;
+    }
+    case JointMapKind::Free:
+      maps.right.topLeftCorner<3, 3>() = frame.rotation;
+      maps.released_master.topRightCorner<3, 3>() = frame.rotation.transpose() * hat(force);
+      maps.master_released.bottomLeftCorner<3, 3>() = -hat(force) * frame.rotation;
+      [[fallthrough]];
+    case JointMapKind::Spherical:
+      maps.right.bottomRightCorner<3, 3>() = frame.rotation;
+      maps.released_master.bottomRightCorner<3, 3>() = frame.rotation.transpose() * hat(moment);
+      break;
+  }
+  maps.left = maps.right;
+}
+
+void incremental_maps(const JointMap& joint, const NodePose& master_begin, const NodePose& master_end,
+                      const Released& begin, const Released& end, const Vector6& g, FoldMaps& maps) {
+  const int count = released_count(joint.kind);
+  const JointFrame frame_begin = joint_frame(joint, master_begin, begin), frame = joint_frame(joint, master_end, end);
+  const Matrix3& B0 = frame_begin.rotation;
+  const Vector3 force = g.head<3>(), moment = g.tail<3>();
+  const Vector3 w = cayley::increment(master_begin.orientation, master_end.orientation);
+  const Matrix3 S_inverse = cayley::inverse_tangent(w);
+  set_sizes(count, maps);
+  maps.lever_left = 0.5 * (frame_begin.lever + frame.lever);
+  maps.lever_right = frame.lever;
+  maps.master_master.bottomRightCorner<3, 3>() = 0.5 * hat(force) * hat(frame.lever);
+  if (joint.kind == JointMapKind::Rigid) return;
+
+  // Rows conjugate to the relative translation and to the tangent-scaled relative rotation, joint frame.
+  const Matrix3 N11 = (Matrix3::Identity() + 0.5 * hat(w)) * B0;
+  const Matrix3 row_r_master = 0.5 * B0.transpose() * hat(force) * S_inverse;
+  const ReleasedVector step = released_increment(joint, begin, end);
+  const ScaledRate rate = joint.kind == JointMapKind::Scalar ? scaled_rate(step[0] * joint.rotation.norm()) : ScaledRate{1, 0};
+  const Vector3 turn = joint.kind == JointMapKind::Scalar ? Vector3(rate.value * step[0] * joint.rotation)
+                                                          : Vector3(step.tail<3>());
+  const double c = 1 / (1 - 0.25 * w.dot(B0 * turn));
+  const Matrix3 N22 = c * S_inverse.transpose() * B0;
+  const Vector3 row_phi = N22.transpose() * moment;
+  const Matrix3 row_phi_master =
+      (c * B0.transpose() * cayley::xi_inverse_tangent(w, moment) + 0.25 * c * row_phi * (B0 * turn).transpose()) *
+      S_inverse;
+  const Vector3 w_joint = B0.transpose() * w;
+
+  switch (joint.kind) {
+    case JointMapKind::Rigid:
+      break;
+    case JointMapKind::Scalar: {
+      const Vector3 travel = frame.rotation * joint.translation;
+      maps.right.col(0) << travel, frame.rotation * joint.rotation;
+      maps.left.col(0) << N11 * joint.translation, rate.value * (N22 * joint.rotation);
+      const double axis_moment = joint.rotation.dot(row_phi);
+      // d(rate)/du at constant row_phi, and row_phi through c: d(turn)/du = (1 + |turn|^2/4) rotation.
+      maps.released_released(0, 0) =
+          rate.derivative * joint.rotation.norm() * axis_moment +
+          rate.value * axis_moment * 0.25 * c * w_joint.dot(joint.rotation) * (1 + 0.25 * turn.squaredNorm());
+      maps.released_master.row(0).tail<3>() =
+          joint.translation.transpose() * row_r_master + rate.value * joint.rotation.transpose() * row_phi_master;
+      maps.master_released.col(0).tail<3>() = -0.5 * force.cross(travel);
+      break;
+    }
+    case JointMapKind::Free:
+      maps.right.topLeftCorner<3, 3>() = frame.rotation;
+      maps.left.topLeftCorner<3, 3>() = N11;
+      maps.released_master.topRightCorner<3, 3>() = row_r_master;
+      maps.master_released.bottomLeftCorner<3, 3>() = -0.5 * hat(force) * frame.rotation;
+      [[fallthrough]];
+    case JointMapKind::Spherical:
+      maps.right.bottomRightCorner<3, 3>() = frame.rotation;
+      maps.left.bottomRightCorner<3, 3>() = N22;
+      maps.released_released.bottomRightCorner<3, 3>() =
+          0.25 * c * row_phi * w_joint.transpose() * cayley::inverse_tangent(turn);
+      maps.released_master.bottomRightCorner<3, 3>() = row_phi_master;
+      break;
+  }
+}
+
+Vector6 slave_velocity(const JointMap& joint, const NodePose& master, const Released& released,
+                       const Vector6& master_velocity, const Eigen::Ref<const ReleasedVector>& rates) {
+  FoldMaps maps;
+  variational_maps(joint, master, released, Vector6::Zero(), maps);
+  Vector6 velocity = master_velocity;
+  velocity.head<3>() += master_velocity.tail<3>().cross(maps.lever_right);
+  velocity.noalias() += maps.right * rates;
+  return velocity;
+}
+
+ReleasedVector released_rates(const JointMap& joint, const NodePose& master, const Released& released,
+                              const Vector6& master_velocity, const Vector6& slave_velocity, Vector6* remainder) {
+  FoldMaps maps;
+  variational_maps(joint, master, released, Vector6::Zero(), maps);
+  Vector6 relative = slave_velocity - master_velocity;
+  relative.head<3>() -= master_velocity.tail<3>().cross(maps.lever_right);
+  // The columns of `right` are orthogonal in every kind.
+  ReleasedVector rates = maps.right.transpose() * relative;
+  for (int i = 0; i < rates.size(); ++i) rates[i] /= maps.right.col(i).squaredNorm();
+  if (remainder) *remainder = relative - maps.right * rates;
+  return rates;
+}
+
+}  // namespace flexarm

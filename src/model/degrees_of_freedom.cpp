@@ -1,0 +1,33 @@
+#include "flexarm/model/degrees_of_freedom.h"
+
+namespace flexarm {
+
+DegreesOfFreedom::DegreesOfFreedom(const Model& model)
+    : node_count(static_cast<int>(model.nodes.size())), slave_joint(model.nodes.size(), -1) {
+  for (std::size_t j = 0; j < model.joints.size(); ++j) slave_joint[model.joints[j].slave] = static_cast<int>(j);
+
+  for (int i = 0; i < node_count; ++i) size.push_back(6);
+  for (const JointMap& joint : model.joints) size.push_back(released_count(joint.kind));
+  for (const int n : size) {
+    first.push_back(scalar_count);
+    scalar_count += n;
+  }
+
+  std::vector<bool> dependent(scalar_count, false);
+  for (int i = 0; i < node_count; ++i)
+    if (slave_joint[i] >= 0)
+      for (int k = 0; k < 6; ++k) dependent[first[i] + k] = true;
+  for (const Coordinate& coordinate : model.coordinates) {
+    const int variable = variable_of_joint(coordinate.joint);
+    if (coordinate.motion >= 0 || coordinate.mimicked >= 0) dependent[first[variable] + coordinate.component] = true;
+    if (coordinate.mimicked >= 0)
+      mimics.push_back({variable, variable_of_joint(model.coordinates[coordinate.mimicked].joint),
+                        coordinate.mimic_multiplier});
+  }
+
+  equation.assign(scalar_count, -1);
+  for (int scalar = 0; scalar < scalar_count; ++scalar)
+    if (!dependent[scalar]) equation[scalar] = unknowns++;
+}
+
+}  // namespace flexarm

@@ -1,0 +1,75 @@
+#include "flexarm/solver/linear_solver.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flexarm {
+namespace {
+/// A backward error above this means that the reused pivots do not fit the values any more.
+constexpr double kAcceptableBackwardError = 1e-10;
+}  // namespace
+
+LinearSolver::LinearSolver(int unknowns, const std::vector<int>& column_starts, const std::vector<int>& row_indices)
+    : unknowns_(unknowns), column_starts_(column_starts), row_indices_(row_indices), right_hand_side_(unknowns), residual_(unknowns) {
+  klu_defaults(&common_);
+  common_.scale = 2;
+  if (unknowns_ > 0)
+    symbolic_ = klu_analyze(unknowns_, const_cast<int*>(column_starts_.data()), const_cast<int*>(row_indices_.data()),
+                            &common_);
+}
+
+LinearSolver::~LinearSolver() {
+  if (numeric_) klu_free_numeric(&numeric_, &common_);
+  if (symbolic_) klu_free_symbolic(&symbolic_, &common_);
+}
+
+bool LinearSolver::factorise_anew() {
+  if (numeric_) klu_free_numeric(&numeric_, &common_);
+  numeric_ = klu_factor(const_cast<int*>(column_starts_.data()), const_cast<int*>(row_indices_.data()),
+                        const_cast<double*>(values_->data()), symbolic_, &common_);
+  reused_pivots_ = false;
+  ++factorisations_;
+  return numeric_ && common_.status == KLU_OK;
+}
+
+bool LinearSolver::factorise(const std::vector<double>& values) {
+  values_ = &values;
+  if (unknowns_ == 0) return true;
+  if (!symbolic_) return false;
+  if (!numeric_) return factorise_anew();
+  ++factorisations_;
+  reused_pivots_ = true;
+  const bool done =
+      klu_refactor(const_cast<int*>(column_starts_.data()), const_cast<int*>(row_indices_.data()),
+                   const_cast<double*>(values.data()), symbolic_, numeric_, &common_) &&
+      common_.status == KLU_OK;
+  return done || factorise_anew();
+}
+
+bool LinearSolver::solve_once(Eigen::VectorXd& b) {
+  return klu_solve(symbolic_, numeric_, unknowns_, 1, b.data(), &common_) && b.allFinite();
+}
+
+double LinearSolver::backward_error(const Eigen::VectorXd& x) {
+  // |A x - b| relative to the largest of |b| and of the terms of A x.
+  double largest = right_hand_side_.lpNorm<Eigen::Infinity>();
+  residual_ = right_hand_side_;
+  for (int j = 0; j < unknowns_; ++j)
+    for (int p = column_starts_[j]; p < column_starts_[j + 1]; ++p) {
+      const double term = (*values_)[p] * x[j];
+      residual_[row_indices_[p]] -= term;
+      largest = std::max(largest, std::abs(term));
+    }
+  return largest > 0 ? residual_.lpNorm<Eigen::Infinity>() / largest : 0.0;
+}
+
+bool LinearSolver::solve(Eigen::VectorXd& b) {
+  if (unknowns_ == 0) return true;
+  right_hand_side_ = b;
+  const bool finite = solve_once(b);
+  if (!reused_pivots_ || (finite && backward_error(b) < kAcceptableBackwardError)) return finite;
+  b = right_hand_side_;
+  return factorise_anew() && solve_once(b);
+}
+
+}  // namespace flexarm

@@ -1,0 +1,239 @@
+#include "flexarm/solver/sparse_assembler.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <unordered_map>
+
+namespace flexarm {
+namespace {
+
+template <int Rows>
+using Columns6 = Eigen::Map<Eigen::Matrix<double, Rows, 6>>;
+
+/// (i,u) += (i,s) right, (i,m) += (i,s) L_right for a block row of `Rows` scalars.
+template <int Rows>
+void fold_block_columns(const double* source, int rows, const FoldMaps& maps, double* to_released, double* to_master) {
+  using Block = Eigen::Matrix<double, Rows, 6, Eigen::ColMajor, Rows == Eigen::Dynamic ? 6 : Rows, 6>;
+  using BlockMap = Eigen::Map<const Block>;
+  const BlockMap from(source, rows, 6);
+  if (to_released) {
+    using Released = Eigen::Matrix<double, Rows, Eigen::Dynamic, Eigen::ColMajor, Rows == Eigen::Dynamic ? 6 : Rows, 6>;
+    Eigen::Map<Released>(to_released, rows, maps.right.cols()) += from.lazyProduct(maps.right);
+  }
+  if (to_master) {
+    Eigen::Map<Block> to(to_master, rows, 6);
+    to += from;
+    // dr_s = dr_m + spin x lever: the spin columns get -(i,s)_r lever^.
+    const Vector3& l = maps.lever_right;
+    to.col(3) += from.col(2) * l.y() - from.col(1) * l.z();
+    to.col(4) += from.col(0) * l.z() - from.col(2) * l.x();
+    to.col(5) += from.col(1) * l.x() - from.col(0) * l.y();
+  }
+}
+
+}  // namespace
+
+/// Collects blocks and folds symbolically.
+class SparseAssembler::PatternBuilder {
+ public:
+  PatternBuilder(SparseAssembler& assembler)
+      : a_(assembler), rows_of_(a_.dof_.size.size()), columns_of_(a_.dof_.size.size()), folded_(a_.dof_.size.size()) {}
+
+  int block(int row, int column) {
+    const std::uint64_t key = (static_cast<std::uint64_t>(row) << 32) | static_cast<std::uint32_t>(column);
+    const auto [entry, is_new] = index_.try_emplace(key, static_cast<int>(a_.blocks_.size()));
+    if (is_new) {
+      a_.blocks_.push_back({row, column, offset_});
+      offset_ += static_cast<std::size_t>(a_.dof_.size[row]) * a_.dof_.size[column];
+      rows_of_[column].push_back(row);
+      columns_of_[row].push_back(column);
+    }
+    return entry->second;
+  }
+
+  void fold_joint(int j) {
+    const JointMap& joint = a_.model_.joints[j];
+    const int s = a_.dof_.variable_of_node(joint.slave), m = joint.master;
+    const int u = released_count(joint.kind) > 0 ? a_.dof_.variable_of_joint(j) : -1;
+    JointFold fold;
+    fold.first_column_fold = static_cast<int>(a_.column_folds_.size());
+    const std::vector<int> rows = rows_of_[s];
+    for (const int i : rows)
+      if (!folded_[i])
+        a_.column_folds_.push_back({block(i, s), u < 0 ? -1 : block(i, u), m < 0 ? -1 : block(i, m), a_.dof_.size[i]});
+    fold.last_column_fold = static_cast<int>(a_.column_folds_.size());
+    fold.first_row_fold = fold.last_row_fold = static_cast<int>(a_.row_folds_.size());
+    const std::vector<int> columns = columns_of_[s];
+    for (const int k : columns)
+      if (!folded_[k] && k != s)
+        a_.row_folds_.push_back({block(s, k), u < 0 ? -1 : block(u, k), m < 0 ? -1 : block(m, k), a_.dof_.size[k]});
+    fold.last_row_fold = static_cast<int>(a_.row_folds_.size());
+    fold.geometric = {u < 0 ? -1 : block(u, u), u < 0 || m < 0 ? -1 : block(u, m), u < 0 || m < 0 ? -1 : block(m, u),
+                      m < 0 ? -1 : block(m, m)};
+    folded_[s] = true;
+    a_.joint_folds_[j] = fold;
+  }
+
+  void fold_mimic(const DegreesOfFreedom::Mimic& mimic) {
+    const int s = mimic.slave_variable, m = mimic.master_variable;
+    const std::vector<int> rows = rows_of_[s];
+    for (const int i : rows)
+      if (!folded_[i]) a_.mimic_folds_.push_back({block(i, s), block(i, m), a_.dof_.size[i], mimic.factor});
+    const std::vector<int> columns = columns_of_[s];
+    for (const int k : columns)
+      if (!folded_[k] && k != s) a_.mimic_folds_.push_back({block(s, k), block(m, k), a_.dof_.size[k], mimic.factor});
+    folded_[s] = true;
+  }
+
+  std::size_t value_count() const { return offset_; }
+  bool folded(int variable) const { return folded_[variable]; }
+
+ private:
+  SparseAssembler& a_;
+  std::size_t offset_ = 0;
+  std::unordered_map<std::uint64_t, int> index_;
+  std::vector<std::vector<int>> rows_of_, columns_of_;
+  std::vector<bool> folded_;
+};
+
+SparseAssembler::SparseAssembler(const Model& model, const DegreesOfFreedom& dof)
+    : model_(model), dof_(dof), joint_folds_(model.joints.size()) {
+  PatternBuilder pattern(*this);
+  for (std::size_t v = 0; v < dof.size.size(); ++v)
+    diagonal_.push_back(pattern.block(static_cast<int>(v), static_cast<int>(v)));
+  for_each_element(model.beams, [&](const auto& element) {
+    element_blocks_.resize(std::max<std::size_t>(element_blocks_.size(), element.first_block));
+    for (const int i : element.nodes)
+      for (const int j : element.nodes) element_blocks_.push_back(pattern.block(i, j));
+  });
+  for (int j = static_cast<int>(model.joints.size()) - 1; j >= 0; --j) pattern.fold_joint(j);
+  for (const DegreesOfFreedom::Mimic& mimic : dof.mimics) pattern.fold_mimic(mimic);
+  for (const Block& block : blocks_) dead_.push_back(pattern.folded(block.row) || pattern.folded(block.column));
+  values_.assign(pattern.value_count(), 0.0);
+  residual_.assign(dof.scalar_count, 0.0);
+  build_compressed_columns();
+}
+
+void SparseAssembler::build_compressed_columns() {
+  std::vector<std::vector<int>> blocks_of_column(dof_.size.size());
+  for (std::size_t b = 0; b < blocks_.size(); ++b)
+    if (!dead_[b]) blocks_of_column[blocks_[b].column].push_back(static_cast<int>(b));
+  column_starts_.assign(1, 0);
+  for (std::size_t column = 0; column < dof_.size.size(); ++column) {
+    std::vector<int>& list = blocks_of_column[column];
+    std::sort(list.begin(), list.end(), [&](int a, int b) { return blocks_[a].row < blocks_[b].row; });
+    for (int c = 0; c < dof_.size[column]; ++c) {
+      if (dof_.equation[dof_.first[column] + c] < 0) continue;
+      for (const int b : list) {
+        const Block& block = blocks_[b];
+        const int rows = dof_.size[block.row];
+        for (int r = 0; r < rows; ++r) {
+          const int equation = dof_.equation[dof_.first[block.row] + r];
+          if (equation < 0) continue;
+          const std::size_t from = block.offset + static_cast<std::size_t>(c) * rows + r;
+          const int to = static_cast<int>(row_indices_.size());
+          if (!copies_.empty() && copies_.back().from + copies_.back().count == from &&
+              copies_.back().to + copies_.back().count == to)
+            ++copies_.back().count;
+          else
+            copies_.push_back({from, to, 1});
+          row_indices_.push_back(equation);
+        }
+      }
+      column_starts_.push_back(static_cast<int>(row_indices_.size()));
+    }
+  }
+  reduced_values_.assign(row_indices_.size(), 0.0);
+}
+
+void SparseAssembler::set_zero() {
+  std::fill(values_.begin(), values_.end(), 0.0);
+  std::fill(residual_.begin(), residual_.end(), 0.0);
+}
+
+void SparseAssembler::fold(int j, const FoldMaps& maps, bool with_tangent) {
+  const JointMap& joint = model_.joints[j];
+  const Vector6 g = slave_residual(joint.slave);
+  const int count = released_count(joint.kind);
+  double* released = residual(dof_.variable_of_joint(j));
+  for (int k = 0; k < count; ++k) released[k] += maps.left.col(k).dot(g);
+  if (joint.master >= 0) {
+    Eigen::Map<Vector6> master(residual(joint.master));
+    master += g;
+    master.tail<3>() += maps.lever_left.cross(g.head<3>());
+  }
+  if (!with_tangent) return;
+  const JointFold& fold = joint_folds_[j];
+  fold_columns(fold, maps);
+  fold_rows(fold, maps);
+  add_geometric(fold.geometric, maps);
+}
+
+void SparseAssembler::fold_columns(const JointFold& fold, const FoldMaps& maps) {
+  for (int f = fold.first_column_fold; f < fold.last_column_fold; ++f) {
+    const ColumnFold& op = column_folds_[f];
+    const double* source = values_.data() + blocks_[op.source].offset;
+    double* to_released = op.to_released < 0 ? nullptr : values_.data() + blocks_[op.to_released].offset;
+    double* to_master = op.to_master < 0 ? nullptr : values_.data() + blocks_[op.to_master].offset;
+    if (op.rows == 6)
+      fold_block_columns<6>(source, 6, maps, to_released, to_master);
+    else
+      fold_block_columns<Eigen::Dynamic>(source, op.rows, maps, to_released, to_master);
+  }
+}
+
+void SparseAssembler::fold_rows(const JointFold& fold, const FoldMaps& maps) {
+  using Rows = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
+  for (int f = fold.first_row_fold; f < fold.last_row_fold; ++f) {
+    const RowFold& op = row_folds_[f];
+    const Eigen::Map<const Rows> from(values_.data() + blocks_[op.source].offset, 6, op.columns);
+    if (op.to_released >= 0) {
+      Eigen::Map<ReleasedSquare> to(values_.data() + blocks_[op.to_released].offset, maps.left.cols(), op.columns);
+      to += maps.left.transpose().lazyProduct(from);
+    }
+    if (op.to_master >= 0) {
+      Eigen::Map<Rows> to(values_.data() + blocks_[op.to_master].offset, 6, op.columns);
+      to += from;
+      const Vector3& l = maps.lever_left;  // moment row: lever x f
+      to.row(3) += l.y() * from.row(2) - l.z() * from.row(1);
+      to.row(4) += l.z() * from.row(0) - l.x() * from.row(2);
+      to.row(5) += l.x() * from.row(1) - l.y() * from.row(0);
+    }
+  }
+}
+
+void SparseAssembler::add_geometric(const Geometric& geometric, const FoldMaps& maps) {
+  const int count = static_cast<int>(maps.left.cols());
+  const auto add = [&](int block, const auto& values) {
+    if (block < 0) return;
+    using Values = std::decay_t<decltype(values)>;
+    Eigen::Map<Values>(values_.data() + blocks_[block].offset, values.rows(), values.cols()) += values;
+  };
+  if (count > 0) {
+    add(geometric.released_released, maps.released_released);
+    add(geometric.released_master, maps.released_master);
+    add(geometric.master_released, maps.master_released);
+  }
+  add(geometric.master_master, maps.master_master);
+}
+
+void SparseAssembler::fold_mimics(bool with_tangent) {
+  for (const DegreesOfFreedom::Mimic& mimic : dof_.mimics)
+    *residual(mimic.master_variable) += mimic.factor * *residual(mimic.slave_variable);
+  if (!with_tangent) return;
+  for (const ScaledAddition& op : mimic_folds_)
+    for (int k = 0; k < op.count; ++k)
+      values_[blocks_[op.target].offset + k] += op.factor * values_[blocks_[op.source].offset + k];
+}
+
+void SparseAssembler::gather(Eigen::VectorXd& residual) const {
+  for (int scalar = 0; scalar < dof_.scalar_count; ++scalar)
+    if (dof_.equation[scalar] >= 0) residual[dof_.equation[scalar]] = residual_[scalar];
+}
+
+void SparseAssembler::gather_tangent() {
+  for (const Copy& copy : copies_)
+    std::copy_n(values_.data() + copy.from, copy.count, reduced_values_.data() + copy.to);
+}
+
+}  // namespace flexarm
