@@ -1,5 +1,7 @@
 #include "beam_state_publisher.h"
 
+#include <ros/single_subscriber_publisher.h>
+
 #include "conversions.h"
 
 namespace flexarm::node {

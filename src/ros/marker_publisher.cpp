@@ -1,5 +1,7 @@
 #include "marker_publisher.h"
 
+#include <ros/single_subscriber_publisher.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,0 +1,67 @@
+#!/usr/bin/env python3
+"""Scenes and parameters that cannot be used end the node with status 1 and a message, not with a crash or silence."""
+
+import os
+import subprocess
+import tempfile
+import unittest
+
+import rospy
+import rostest
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+GOOD_SCENE = os.path.join(HERE, "two_arms.urdf")
+
+
+def run_node(*arguments):
+    return subprocess.run(
+        ["rosrun", "flexarm", "flexarm_node", *arguments],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        universal_newlines=True,
+        timeout=20,
+        check=False,
+    )
+
+
+class BadScenes(unittest.TestCase):
+    def assert_refused(self, arguments, *words):
+        result = run_node(*arguments)
+        self.assertEqual(result.returncode, 1, result.stdout)
+        for word in words:
+            self.assertIn(word, result.stdout)
+
+    def test_no_scene(self):
+        self.assert_refused([], "robot_description")
+
+    def test_missing_file(self):
+        self.assert_refused(["_scene:=/nowhere/scene.urdf"], "/nowhere/scene.urdf")
+
+    def test_every_error_of_a_file_is_reported(self):
+        with open(GOOD_SCENE, encoding="utf-8") as file:
+            text = file.read()
+        text = text.replace('outer_radius="0.02"', 'outer_radius="-0.02"').replace('young="70e9"', 'young="stiff"')
+        with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
+            file.write(text)
+            file.flush()
+            self.assert_refused(["_scene:=" + file.name], file.name, "outer_radius", "stiff")
+
+    def test_text_that_is_no_scene(self):
+        rospy.set_param("/robot_description", "hello")
+        try:
+            self.assert_refused([], "robot_description")
+        finally:
+            rospy.delete_param("/robot_description")
+
+    def test_unknown_scheme(self):
+        self.assert_refused(["_scene:=" + GOOD_SCENE, "_scheme:=bogus"], "bogus")
+
+    def test_every_bad_parameter_is_reported(self):
+        bad = ["_publish_rate:=0", "_real_time_factor:=-1", "_max_catch_up:=often"]
+        self.assert_refused(["_scene:=" + GOOD_SCENE, *bad], "publish_rate", "real_time_factor", "max_catch_up")
+        self.assert_refused(["_scene:=" + GOOD_SCENE, "_step:=0", "_tolerance:=x"], "step", "tolerance")
+
+
+if __name__ == "__main__":
+    rospy.init_node("bad_scenes_test")
+    rostest.rosrun("flexarm", "bad_scenes", __name__)

@@ -1,0 +1,199 @@
+#!/usr/bin/env python3
+"""Joint efforts reach the joints they name, and only those; bad commands are refused whole."""
+
+import math
+import time
+import unittest
+
+import rospy
+import rostest
+from flexarm.msg import JointForceCommand
+from rosgraph_msgs.msg import Log
+from sensor_msgs.msg import JointState
+from simulated_arm import PATIENCE, CommandTopic, SimulatedArm, force_command, wait_until
+from std_msgs.msg import Bool, Float64
+
+ROUND_OFF = 1e-12  # rad and m: the joints compared are not coupled at all
+
+
+class Commands(unittest.TestCase):
+    """The simulation is paused: steps are made by hand, so that nothing depends on timing."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.arm = SimulatedArm()
+        cls.force = CommandTopic("joint_force_command", JointForceCommand)
+
+    def setUp(self):
+        self.arm.reset()
+
+    def tearDown(self):
+        self.assertFalse(self.arm.status().failed)
+
+    def wait_for_effort(self, name, effort):
+        def arrived():
+            self.assertTrue(self.arm.step(1).success)
+            return self.arm.joint(name).effort == effort
+
+        wait_until(arrived, "effort %g at %s" % (effort, name))
+
+    def assert_at_rest(self, *names):
+        states = self.arm.joint_states()
+        for name, position, effort in zip(states.name, states.position, states.effort):
+            if name in names:
+                self.assertLessEqual(abs(position), ROUND_OFF, name)
+                self.assertEqual(effort, 0, name)
+
+    # ---- good commands
+
+    def test_moves_the_joint_it_names_and_only_it(self):
+        self.force.send(force_command(["left_shoulder"], [1.0]))
+        self.wait_for_effort("left_shoulder", 1.0)
+        self.assertTrue(self.arm.step(100).success)
+        self.assertGreater(self.arm.joint("left_shoulder").position, 1e-3)
+        self.assert_at_rest("right_shoulder", "wrist/rx", "wrist/ry", "wrist/rz")
+
+    def test_several_joints_at_once(self):
+        self.force.send(force_command(["left_shoulder", "wrist/rz"], [1.0, -0.5]))
+        self.wait_for_effort("left_shoulder", 1.0)
+        self.assertEqual(self.arm.joint("wrist/rz").effort, -0.5)
+        self.assertTrue(self.arm.step(50).success)
+        self.assertLess(self.arm.joint("wrist/rz").position, 0)
+
+    def test_joint_state_message(self):
+        topic = CommandTopic("joint_command", JointState)
+        topic.send(JointState(name=["right_shoulder"], effort=[0.7]))
+        self.wait_for_effort("right_shoulder", 0.7)
+        self.assert_at_rest("left_shoulder")
+
+    def test_topic_of_one_joint(self):
+        CommandTopic("right_shoulder/command", Float64).send(0.4)
+        self.wait_for_effort("right_shoulder", 0.4)
+        CommandTopic("wrist/ry/command", Float64).send(0.3)
+        self.wait_for_effort("wrist/ry", 0.3)
+        self.assertEqual(self.arm.joint("right_shoulder").effort, 0.4)
+        self.assert_at_rest("left_shoulder")
+
+    def test_mimicking_joint_follows(self):
+        self.force.send(force_command(["right_shoulder"], [1.0]))
+        self.wait_for_effort("right_shoulder", 1.0)
+        self.assertTrue(self.arm.step(100).success)
+        angle = self.arm.joint("right_shoulder").position
+        self.assertGreater(angle, 1e-3)
+        self.assertAlmostEqual(self.arm.joint("mirror").position, -angle, delta=ROUND_OFF)
+
+    def test_effort_ends_after_its_duration(self):
+        step = self.arm.status().step
+        self.force.send(force_command(["left_shoulder"], [1.0], 20 * step))
+        self.wait_for_effort("left_shoulder", 1.0)
+        # The first of the twenty steps has been made.
+        self.assertTrue(self.arm.step(18).success)
+        self.assertEqual(self.arm.joint("left_shoulder").effort, 1.0)
+        self.assertTrue(self.arm.step(2).success)
+        self.assertEqual(self.arm.joint("left_shoulder").effort, 0.0)
+
+    def test_reset_forgets_commands(self):
+        self.force.send(force_command(["left_shoulder"], [1.0]))
+        self.wait_for_effort("left_shoulder", 1.0)
+        self.arm.reset()
+        self.assertTrue(self.arm.step(1).success)
+        self.assert_at_rest("left_shoulder")
+
+    def test_emergency_stop_zeroes_and_refuses_until_released(self):
+        stop = CommandTopic("/flexarm/emergency_stop", Bool)
+        self.force.send(force_command(["left_shoulder", "right_shoulder"], [1.0, 1.0]))
+        self.wait_for_effort("left_shoulder", 1.0)
+        stop.send(True)
+        self.wait_for_effort("left_shoulder", 0.0)
+        self.assertEqual(self.arm.joint("right_shoulder").effort, 0.0)
+        self.force.send(force_command(["left_shoulder"], [2.0]))
+        time.sleep(0.2)
+        self.arm.step(1)
+        self.assertEqual(self.arm.joint("left_shoulder").effort, 0.0)
+        stop.send(False)
+        time.sleep(0.2)
+        self.force.send(force_command(["left_shoulder"], [3.0]))
+        self.wait_for_effort("left_shoulder", 3.0)
+
+    # ---- bad commands
+
+    def assert_refused(self, bad):
+        """Messages of one topic arrive in order: once the good command is there, the bad one has been dealt with."""
+        self.force.send(bad)
+        self.force.send(force_command(["right_shoulder"], [0.25]))
+        self.wait_for_effort("right_shoulder", 0.25)
+        self.assert_at_rest("left_shoulder", "wrist/rx")
+        self.assertEqual(self.arm.joint("mirror").effort, 0)
+
+    def test_refuses_an_unknown_joint_and_all_that_comes_with_it(self):
+        self.assert_refused(force_command(["left_shoulder", "nose"], [1.0, 1.0]))
+
+    def test_refuses_a_joint_without_coordinates_of_its_own(self):
+        self.assert_refused(force_command(["left_shoulder", "wrist"], [1.0, 1.0]))
+
+    def test_refuses_sizes_that_differ(self):
+        self.assert_refused(force_command(["left_shoulder", "wrist/rx"], [1.0]))
+        self.assert_refused(force_command(["left_shoulder"], [1.0, 1.0]))
+        self.assert_refused(force_command([], [1.0]))
+
+    def test_refuses_numbers_that_are_not_finite(self):
+        for bad in (math.nan, math.inf, -math.inf):
+            self.assert_refused(force_command(["left_shoulder", "wrist/rx"], [1.0, bad]))
+
+    def test_refuses_prescribed_and_mimicking_joints(self):
+        self.assert_refused(force_command(["left_shoulder", "shuttle"], [1.0, 1.0]))
+        self.assert_refused(force_command(["left_shoulder", "mirror"], [1.0, 1.0]))
+
+    def test_refuses_a_joint_named_twice(self):
+        self.assert_refused(force_command(["left_shoulder", "left_shoulder"], [1.0, 2.0]))
+
+    def test_refuses_a_negative_duration(self):
+        self.assert_refused(force_command(["left_shoulder"], [1.0], -1.0))
+
+    def test_warns_without_flooding(self):
+        warnings = []
+        rospy.Subscriber("/rosout", Log, lambda log: warnings.append(log.msg) if "refused" in log.msg else None)
+        time.sleep(1.2)  # the warnings of other tests are past
+        del warnings[:]
+        for _ in range(50):
+            self.force.send(force_command(["nose"], [1.0]))
+        wait_until(lambda: warnings, "a warning")
+        time.sleep(0.3)
+        self.assertEqual(len(warnings), 1)
+        self.assertIn("nose", warnings[0])
+
+
+class Failure(unittest.TestCase):
+    def test_failed_step_keeps_the_state_until_a_reset(self):
+        arm = SimulatedArm()
+        force = CommandTopic("joint_force_command", JointForceCommand)
+        arm.reset()
+        self.assertTrue(arm.step(5).success)
+        before = arm.joint_states()
+        force.send(force_command(["left_shoulder"], [1e250]))
+
+        answers = []
+
+        def failed():
+            answers.append(arm.step(1))
+            return not answers[-1].success
+
+        wait_until(failed, "a step to fail")
+        self.assertIn("failed", answers[-1].message)
+        status = arm.status()
+        self.assertTrue(status.failed and status.paused)
+        for position in arm.joint_states().position:
+            self.assertTrue(math.isfinite(position))
+        self.assertEqual(len(before.position), len(arm.joint_states().position))
+        with self.assertRaises(rospy.ServiceException):
+            arm.resume()
+        self.assertFalse(arm.step(1).success)
+
+        arm.reset()
+        self.assertFalse(arm.status().failed)
+        self.assertTrue(arm.step(5).success)
+
+
+if __name__ == "__main__":
+    rospy.init_node("commands_test")
+    rostest.rosrun("flexarm", "commands", __name__)

@@ -1,0 +1,132 @@
+#!/usr/bin/env python3
+"""Pause, step, resume and reset of a simulation that is the clock of everybody; time never runs backwards."""
+
+import time
+import unittest
+
+import rospy
+import rostest
+from flexarm.msg import SimulatorStatus
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import JointState
+from simulated_arm import SimulatedArm, wait_until
+from tf2_msgs.msg import TFMessage
+
+
+class StampLog:
+    """Every stamp of every topic since the test began."""
+
+    def __init__(self):
+        self.stamps = {"/clock": [], "/joint_states": [], "/tf": [], "/flexarm/status": []}
+        read = {
+            "/clock": (Clock, lambda message: message.clock),
+            "/joint_states": (JointState, lambda message: message.header.stamp),
+            "/tf": (TFMessage, lambda message: message.transforms[0].header.stamp),
+            "/flexarm/status": (SimulatorStatus, lambda message: message.header.stamp),
+        }
+        for topic, (message_type, stamp_of) in read.items():
+            rospy.Subscriber(topic, message_type, self.make_callback(topic, stamp_of), queue_size=1000)
+
+    def make_callback(self, topic, stamp_of):
+        return lambda message: self.stamps[topic].append(stamp_of(message).to_nsec())
+
+    def count(self):
+        return sum(len(stamps) for stamps in self.stamps.values())
+
+
+class Services(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.arm = SimulatedArm()
+        cls.log = StampLog()
+        cls.step_size = cls.arm.status().step
+        wait_until(lambda: all(cls.log.stamps.values()), "every topic")
+
+    def setUp(self):
+        self.arm.resume()
+
+    def tearDown(self):
+        for topic, stamps in self.log.stamps.items():
+            self.assertGreater(stamps[0], 0, topic)
+            for earlier, later in zip(stamps, stamps[1:]):
+                self.assertLess(earlier, later, topic)
+
+    def pause_and_wait(self):
+        self.arm.pause()
+        time.sleep(0.2)  # what was sent before arrives
+
+    def test_runs_at_the_pace_of_the_wall_clock(self):
+        first, first_wall = self.arm.status(), time.monotonic()
+        time.sleep(1.0)
+        self.arm.pause()
+        last, wall_time = self.arm.status(), time.monotonic() - first_wall
+        made = (last.steps + last.overruns - first.steps - first.overruns) * self.step_size
+        # The first status is up to a period (0.1 s) old, and the catch-up may hold another 0.1 s back.
+        self.assertLess(abs(made - wall_time), 0.5)
+
+    def test_pause_stops_time_and_messages(self):
+        self.pause_and_wait()
+        status, count = self.arm.status(), self.log.count()
+        self.assertTrue(status.paused)
+        time.sleep(0.5)
+        self.assertEqual(self.log.count(), count)
+        self.assertEqual(self.arm.status().time, status.time)
+
+    def test_resume_goes_on_where_it_paused(self):
+        self.pause_and_wait()
+        paused_at = self.arm.status().time
+        time.sleep(0.5)
+        self.arm.resume()
+        wait_until(lambda: self.arm.status().time > paused_at, "the simulation to go on")
+        self.assertFalse(self.arm.status().paused)
+
+    def test_step_makes_as_many_steps_as_asked_for(self):
+        self.pause_and_wait()
+        before = self.arm.status()
+        answer = self.arm.step(37)
+        self.assertTrue(answer.success, answer.message)
+        after = self.arm.status()
+        self.assertEqual(after.steps, before.steps + 37)
+        self.assertAlmostEqual(after.time - before.time, 37 * self.step_size, delta=1e-9)
+        self.assertTrue(after.paused)
+        self.assertTrue(self.arm.step(0).success)
+        self.assertEqual(self.arm.status().steps, before.steps + 37)
+
+    def test_step_is_refused_while_running_and_beyond_reason(self):
+        answer = self.arm.step(1)
+        self.assertFalse(answer.success)
+        self.assertIn("pause", answer.message)
+        self.pause_and_wait()
+        self.assertFalse(self.arm.step(2**32 - 1).success)
+
+    def test_reset_sets_the_state_back_and_the_clock_goes_on(self):
+        wait_until(lambda: self.arm.status().time > 0.2, "some time to pass")
+        self.pause_and_wait()
+        before = self.arm.status()
+        self.arm.reset()
+        after = self.arm.status()
+        self.assertEqual(after.time, 0)
+        self.assertTrue(after.paused)
+        self.assertGreater(after.header.stamp, before.header.stamp)
+        self.assertGreater(self.arm.joint_states().header.stamp, before.header.stamp)
+
+    def test_reset_while_running(self):
+        wait_until(lambda: self.arm.status().time > 0.5, "some time to pass")
+        self.arm.reset()
+        self.assertLess(self.arm.status().time, 0.4)
+        self.assertFalse(self.arm.status().paused)
+
+    def test_repeated_requests_do_no_harm(self):
+        for _ in range(3):
+            self.arm.pause()
+        self.assertTrue(self.arm.status().paused)
+        for _ in range(3):
+            self.arm.resume()
+        self.assertFalse(self.arm.status().paused)
+        for _ in range(3):
+            self.arm.reset()
+
+
+if __name__ == "__main__":
+    rospy.init_node("services_test")
+    rostest.rosrun("flexarm", "services", __name__)

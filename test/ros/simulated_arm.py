@@ -1,0 +1,65 @@
+"""What the tests of the node share: the node's services and topics as one object."""
+
+import time
+
+import rospy
+from flexarm.msg import JointForceCommand, SimulatorStatus
+from flexarm.srv import Step
+from sensor_msgs.msg import JointState
+from std_srvs.srv import Empty
+
+PATIENCE = 10.0  # s, wall time
+
+
+def wait_until(condition, what, patience=PATIENCE):
+    """Waits for a condition in wall time; ROS time may stand still."""
+    end = time.monotonic() + patience
+    while not condition():
+        if time.monotonic() > end:
+            raise AssertionError("waited in vain for " + what)
+        time.sleep(0.01)
+
+
+class Joint:
+    def __init__(self, states, name):
+        index = states.name.index(name)
+        self.position = states.position[index]
+        self.velocity = states.velocity[index]
+        self.effort = states.effort[index]
+
+
+class SimulatedArm:
+    def __init__(self):
+        for service in ("pause", "resume", "reset", "step"):
+            rospy.wait_for_service("/flexarm/" + service, PATIENCE)
+        self.pause = rospy.ServiceProxy("/flexarm/pause", Empty)
+        self.resume = rospy.ServiceProxy("/flexarm/resume", Empty)
+        self.reset = rospy.ServiceProxy("/flexarm/reset", Empty)
+        self.step = rospy.ServiceProxy("/flexarm/step", Step)
+
+    # Both topics are latched: a new subscriber gets what was sent before the last service answered.
+    @staticmethod
+    def status():
+        return rospy.wait_for_message("/flexarm/status", SimulatorStatus, PATIENCE)
+
+    @staticmethod
+    def joint_states():
+        return rospy.wait_for_message("/joint_states", JointState, PATIENCE)
+
+    def joint(self, name):
+        return Joint(self.joint_states(), name)
+
+
+class CommandTopic:
+    """A publisher that is connected before it is used."""
+
+    def __init__(self, name, message_type):
+        self.publisher = rospy.Publisher(name, message_type, queue_size=100)
+        wait_until(lambda: self.publisher.get_num_connections() > 0, "a subscriber to " + name)
+
+    def send(self, *args, **fields):
+        self.publisher.publish(*args, **fields)
+
+
+def force_command(names, efforts, seconds=0.0):
+    return JointForceCommand(names=names, efforts=efforts, duration=rospy.Duration.from_sec(seconds))

@@ -1,0 +1,189 @@
+/// What the node publishes of a bent arm against the same simulation without ROS, which is deterministic.
+
+#include <flexarm/BeamStateArray.h>
+#include <flexarm/SimulatorStatus.h>
+#include <flexarm/Step.h>
+#include <gtest/gtest.h>
+#include <ros/ros.h>
+#include <sensor_msgs/JointState.h>
+#include <std_srvs/Empty.h>
+#include <tf2_ros/transform_listener.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include <set>
+#include <string>
+
+#include "flexarm/scene/urdf_reader.h"
+#include "flexarm/simulation/simulation.h"
+
+namespace flexarm {
+namespace {
+
+constexpr int kSteps = 200;
+/// A chain of six frames, each a product of unit quaternions and of lengths of about a metre.
+constexpr double kRoundOff = 100 * std::numeric_limits<double>::epsilon();
+const ros::Duration kPatience(10);
+
+Pose to_pose(const geometry_msgs::Transform& transform) {
+  return {Vector3(transform.translation.x, transform.translation.y, transform.translation.z),
+          Quaternion(transform.rotation.w, transform.rotation.x, transform.rotation.y, transform.rotation.z)};
+}
+
+void expect_equal(const Pose& actual, const Pose& expected, const std::string& frame) {
+  EXPECT_LE((actual.position - expected.position).norm(), kRoundOff) << frame;
+  EXPECT_LE(actual.orientation.angularDistance(expected.orientation), 10 * kRoundOff) << frame;
+}
+
+Simulation make_simulation() {
+  std::string path;
+  ros::NodeHandle().getParam("/flexarm/scene", path);
+  scene::ReadResult result = scene::read_scene_file(path);
+  if (!result.scene) throw std::runtime_error(scene::to_text(result.diagnostics));
+  return Simulation(*std::move(result.scene));
+}
+
+/// The node, which is launched paused, and a twin of its simulation, both `kSteps` steps after the start.
+class BentArm : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    ASSERT_TRUE(ros::service::waitForService("/flexarm/step", kPatience));
+    std_srvs::Empty reset;
+    ASSERT_TRUE(ros::service::call("/flexarm/reset", reset));
+    listener_ = new tf2_ros::TransformListener(buffer_);
+    twin_ = new Simulation(make_simulation());
+    flexarm::Step step;
+    step.request.steps = kSteps;
+    ASSERT_TRUE(ros::service::call("/flexarm/step", step));
+    ASSERT_TRUE(step.response.success) << step.response.message;
+    for (int i = 0; i < kSteps; ++i) ASSERT_TRUE(twin_->step().converged);
+    ASSERT_NEAR(step.response.time, twin_->time(), kRoundOff);
+  }
+  static void TearDownTestSuite() {
+    delete listener_;
+    delete twin_;
+  }
+
+  /// Stamp of the state under test: that of the latched joint states.
+  static sensor_msgs::JointState joint_states() {
+    const auto message = ros::topic::waitForMessage<sensor_msgs::JointState>("/joint_states", kPatience);
+    return message ? *message : sensor_msgs::JointState();
+  }
+
+  static tf2_ros::Buffer buffer_;
+  static tf2_ros::TransformListener* listener_;
+  static Simulation* twin_;
+};
+tf2_ros::Buffer BentArm::buffer_;
+tf2_ros::TransformListener* BentArm::listener_ = nullptr;
+Simulation* BentArm::twin_ = nullptr;
+
+TEST_F(BentArm, IsBent) {
+  const std::size_t boom = 2;
+  ASSERT_EQ(twin_->link_names()[boom], "boom");
+  const Pose tip = twin_->link_pose(boom).inverse() * twin_->tip_pose(boom);
+  EXPECT_GT((tip.position - Vector3(1.5, 0, 0)).norm(), 0.01);
+}
+
+TEST_F(BentArm, TransformsAgreeWithTheSimulation) {
+  const ros::Time stamp = joint_states().header.stamp;
+  const std::string& world = twin_->scene().root_link;
+  for (std::size_t link = 0; link < twin_->link_names().size(); ++link) {
+    const std::string& name = twin_->link_names()[link];
+    ASSERT_TRUE(buffer_.canTransform(world, name, stamp, kPatience)) << name;
+    expect_equal(to_pose(buffer_.lookupTransform(world, name, stamp).transform), twin_->link_pose(link), name);
+    if (!twin_->is_flexible(link)) continue;
+    const std::string tip = name + "/tip";
+    ASSERT_TRUE(buffer_.canTransform(world, tip, stamp, kPatience)) << tip;
+    expect_equal(to_pose(buffer_.lookupTransform(world, tip, stamp).transform), twin_->tip_pose(link), tip);
+  }
+}
+
+TEST_F(BentArm, TransformsAgreeWithTheJointStates) {
+  const sensor_msgs::JointState joints = joint_states();
+  const auto tip_to_forearm = buffer_.lookupTransform("boom/tip", "forearm", joints.header.stamp, kPatience);
+  for (std::size_t i = 0; i < joints.name.size(); ++i) {
+    if (joints.name[i] != "elbow") continue;
+    const Quaternion expected(Eigen::AngleAxisd(joints.position[i], Vector3::UnitY()));
+    expect_equal(to_pose(tip_to_forearm.transform), {Vector3::Zero(), expected}, "forearm on the boom's tip");
+  }
+}
+
+TEST_F(BentArm, JointStatesAreTheSimulations) {
+  const sensor_msgs::JointState joints = joint_states();
+  ASSERT_EQ(joints.name, twin_->coordinate_names());
+  for (std::size_t i = 0; i < joints.name.size(); ++i) {
+    EXPECT_DOUBLE_EQ(joints.position[i], twin_->position(i)) << joints.name[i];
+    EXPECT_DOUBLE_EQ(joints.velocity[i], twin_->velocity(i)) << joints.name[i];
+    EXPECT_DOUBLE_EQ(joints.effort[i], twin_->effort(i)) << joints.name[i];
+  }
+}
+
+TEST_F(BentArm, BeamStatesAreTheSimulations) {
+  const auto message = ros::topic::waitForMessage<flexarm::BeamStateArray>("/beam_states", kPatience);
+  ASSERT_TRUE(message);
+  ASSERT_EQ(message->beams.size(), 1u);
+  const flexarm::BeamState& beam = message->beams.front();
+  EXPECT_EQ(beam.link, "boom");
+  std::vector<BeamPoint> points;
+  twin_->beam_points(2, 0, points);
+  ASSERT_EQ(beam.pose.size(), points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_DOUBLE_EQ(beam.arc_length[i], points[i].arc_length);
+    EXPECT_DOUBLE_EQ(beam.pose[i].position.z, points[i].pose.position.z);
+    EXPECT_DOUBLE_EQ(beam.strain[i].x, points[i].strain[0]);
+    EXPECT_DOUBLE_EQ(beam.curvature[i].y, points[i].strain[4]);
+    EXPECT_DOUBLE_EQ(beam.resultant[i].force.z, points[i].resultant[2]);
+    EXPECT_DOUBLE_EQ(beam.resultant[i].torque.y, points[i].resultant[4]);
+  }
+}
+
+TEST_F(BentArm, MarkersLieAroundTheDeformedCentreline) {
+  const auto message = ros::topic::waitForMessage<visualization_msgs::MarkerArray>("/beam_markers", kPatience);
+  ASSERT_TRUE(message);
+  ASSERT_EQ(message->markers.size(), 1u);
+  const visualization_msgs::Marker& marker = message->markers.front();
+  EXPECT_EQ(marker.header.frame_id, "base");
+  ASSERT_EQ(marker.points.size(), marker.colors.size());
+  ASSERT_GT(marker.points.size(), 0u);
+  ASSERT_EQ(marker.points.size() % 3, 0u);
+  std::vector<BeamPoint> points;
+  twin_->beam_points(2, 3, points);
+  for (const geometry_msgs::Point& corner : marker.points) {
+    double distance = std::numeric_limits<double>::infinity();
+    for (const BeamPoint& point : points) {
+      distance = std::min(distance, (Vector3(corner.x, corner.y, corner.z) - point.pose.position).norm());
+    }
+    EXPECT_LE(distance, twin_->beam_radius(2) + kRoundOff);
+  }
+}
+
+TEST_F(BentArm, StatusIsTheSimulations) {
+  const auto status = ros::topic::waitForMessage<flexarm::SimulatorStatus>("/flexarm/status", kPatience);
+  ASSERT_TRUE(status);
+  EXPECT_TRUE(status->paused);
+  EXPECT_FALSE(status->failed);
+  EXPECT_EQ(status->scheme, twin_->scheme());
+  EXPECT_DOUBLE_EQ(status->time, twin_->time());
+  EXPECT_DOUBLE_EQ(status->kinetic_energy, twin_->energies().kinetic);
+  EXPECT_DOUBLE_EQ(status->strain_energy, twin_->energies().strain);
+  EXPECT_DOUBLE_EQ(status->total_energy, twin_->energies().total());
+  EXPECT_DOUBLE_EQ(status->angular_momentum.z, twin_->angular_momentum().z());
+}
+
+TEST_F(BentArm, OnlyTheRigidWeldIsStatic) {
+  const auto message = ros::topic::waitForMessage<tf2_msgs::TFMessage>("/tf_static", kPatience);
+  ASSERT_TRUE(message);
+  std::set<std::string> children;
+  for (const auto& transform : message->transforms) children.insert(transform.child_frame_id);
+  EXPECT_EQ(children, std::set<std::string>{"tool"});
+}
+
+}  // namespace
+}  // namespace flexarm
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "transforms_test");
+  ros::NodeHandle node;  // keeps ROS up between the tests
+  return RUN_ALL_TESTS();
+}

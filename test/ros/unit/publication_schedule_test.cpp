@@ -1,0 +1,50 @@
+#include "ros/publication_schedule.h"
+
+#include <gtest/gtest.h>
+
+namespace flexarm::node {
+namespace {
+
+TEST(PublicationSchedule, KeepsTheRateWhereStepsDivideThePeriod) {
+  PublicationSchedule schedule(100);
+  int sent = 0;
+  for (int step = 1; step <= 1000; ++step) sent += schedule.due(ros::Time(step * 0.001));
+  EXPECT_EQ(sent, 100);
+}
+
+TEST(PublicationSchedule, KeepsTheMeanRateWhereStepsDoNotDivideThePeriod) {
+  PublicationSchedule schedule(30);
+  int sent = 0;
+  for (int step = 1; step <= 10000; ++step) sent += schedule.due(ros::Time(step * 0.001));
+  EXPECT_NEAR(sent, 300, 1);
+}
+
+TEST(PublicationSchedule, SendsEveryStepThatIsLongerThanThePeriod) {
+  PublicationSchedule schedule(100);
+  for (int step = 1; step <= 10; ++step) EXPECT_TRUE(schedule.due(ros::Time(step * 0.1)));
+}
+
+TEST(PublicationSchedule, NeverLetsAStampPassTwice) {
+  PublicationSchedule schedule(100);
+  EXPECT_TRUE(schedule.due(ros::Time(1)));
+  EXPECT_FALSE(schedule.due(ros::Time(1)));
+  EXPECT_FALSE(schedule.due(ros::Time(1), true));
+  EXPECT_FALSE(schedule.due(ros::Time(0.5), true));
+}
+
+TEST(PublicationSchedule, ForcedMessagesGoOutBetweenTheOthers) {
+  PublicationSchedule schedule(100);
+  EXPECT_TRUE(schedule.due(ros::Time(1)));
+  EXPECT_FALSE(schedule.due(ros::Time(1.001)));
+  EXPECT_TRUE(schedule.due(ros::Time(1.001), true));
+}
+
+TEST(PublicationSchedule, DoesNotMakeUpForAGap) {
+  PublicationSchedule schedule(100);
+  EXPECT_TRUE(schedule.due(ros::Time(1)));
+  EXPECT_TRUE(schedule.due(ros::Time(5)));
+  EXPECT_FALSE(schedule.due(ros::Time(5.001)));
+}
+
+}  // namespace
+}  // namespace flexarm::node
