@@ -13,7 +13,7 @@ struct Diagnostic {
   std::string file;
   int line = 0;          ///< 1-based; 0 where no line is known
   std::string element;   ///< "<circle> of beam 'forearm'"
-  std::string got;       ///< "radius = '-0.01'"; empty where something is missing
+  std::string got;       ///< "'-0.01'", with its quotes; empty where something is missing
   std::string expected;  ///< "radius must be > 0"
 
   /// `scene.urdf:41: <circle> of beam 'forearm': radius must be > 0, got '-0.01'`

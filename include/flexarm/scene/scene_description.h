@@ -83,7 +83,7 @@ enum class JointKind { Fixed, Revolute, Continuous, Prismatic, Planar, Floating,
 
 struct JointLimits {
   double lower, upper;   ///< position [rad or m]
-  double effort = 0;     ///< commanded efforts saturate here [N or N m]; 0: unlimited
+  double effort = 0;     ///< the same as JointDescription::effort_limit
   double velocity = 0;   ///< kept, not enforced
 };
 
@@ -100,6 +100,7 @@ struct JointDescription {
   Vector3 axis = Vector3::UnitX();   ///< unit vector in the joint frame (planar: the normal)
   Vector3 axis2 = Vector3::UnitY();  ///< universal: second axis, unit, in the joint frame turned by the first angle
   std::optional<JointLimits> limits; ///< only where positions are limited (revolute, prismatic)
+  double effort_limit = 0;           ///< commanded efforts saturate here, any kind [N or N m]; 0: unlimited
   double damping = 0;                ///< per released coordinate [N s/m or N m s/rad]
   double friction = 0;               ///< Coulomb effort per released coordinate [N or N m]
   std::optional<Mimic> mimic;

@@ -1,0 +1,152 @@
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "scene/extension_reader.h"
+#include "scene/limits.h"
+#include "scene/section_reader.h"
+
+namespace flexarm::scene {
+namespace {
+
+constexpr double kArcTolerance = 1e-6;       // relative difference of an arc's radii
+constexpr double kParallelTolerance = 1e-6;  // sine of an angle
+
+/// How far the centreline has been read; tangents are unit vectors.
+struct Progress {
+  Vector3 position = Vector3::Zero();
+  std::optional<Vector3> first_tangent, tangent;  // none before the first piece
+  bool is_known = true;                           // after a bad piece, what follows cannot be judged
+};
+
+struct Tangents {
+  Vector3 begin, end;
+};
+
+bool has_length(const XmlElement& piece, const Vector3& from, const Vector3& to) {
+  const double length = (to - from).norm();
+  if (length > 0 && length < kLongestPiece) return true;
+  piece.attribute_error(
+      "to", fmt::format("the {} must have a length between 0 and {} m, now {}", piece.tag(), kLongestPiece, length));
+  return false;
+}
+
+std::optional<Tangents> line_tangents(const XmlElement& line, const Vector3& from, const Vector3& to) {
+  if (!has_length(line, from, to)) return std::nullopt;
+  const Vector3 tangent = (to - from).normalized();
+  return Tangents{tangent, tangent};
+}
+
+std::optional<Tangents> arc_tangents(const XmlElement& arc, const Vector3& from, const Vector3& to, const Vector3& center) {
+  if (!has_length(arc, from, to)) return std::nullopt;
+  const Vector3 first = from - center, last = to - center;
+  const double radius = 0.5 * (first.norm() + last.norm());
+  if (!(radius < kLongestPiece)) {
+    arc.attribute_error("center", fmt::format("the radius must be less than {} m", kLongestPiece));
+  } else if (std::abs(first.norm() - last.norm()) > kArcTolerance * radius) {
+    arc.attribute_error("center", fmt::format("center must be equally far from both ends (now {} and {} m)", first.norm(),
+                                              last.norm()));
+  } else if (first.cross(last).norm() <= kParallelTolerance * radius * radius) {
+    // Both ends and the centre on one line: no length, or a half circle, whose plane is not known.
+    arc.attribute_error("center", "center must not lie on the line through both ends (give a half circle as two arcs)");
+  } else {
+    const Vector3 axis = first.cross(last).normalized();
+    return Tangents{axis.cross(first).normalized(), axis.cross(last).normalized()};
+  }
+  return std::nullopt;
+}
+
+/// Reads <line> or <arc>, moving `progress` on; nothing if there is an error.
+std::optional<CentrelinePiece> read_piece(const XmlElement& element, Progress& progress) {
+  const bool is_arc = element.tag() == "arc";
+  is_arc ? element.expect_only({"to", "center", "twist"}) : element.expect_only({"to", "twist"});
+  CentrelinePiece piece;
+  piece.location = element.location();
+  piece.kind = is_arc ? CentrelinePiece::Kind::Arc : CentrelinePiece::Kind::Line;
+  piece.twist = element.number("twist", kAnyNumber, 0);
+  const std::optional<Vector3> to = element.vector("to");
+  const std::optional<Vector3> center = is_arc ? element.vector("center") : Vector3(Vector3::Zero());
+  if (!to || !center || !progress.is_known) return std::nullopt;
+  piece.to = *to;
+  piece.center = *center;
+  const std::optional<Tangents> tangents = is_arc ? arc_tangents(element, progress.position, *to, *center)
+                                                  : line_tangents(element, progress.position, *to);
+  if (!tangents) return std::nullopt;
+  if (progress.tangent && progress.tangent->dot(tangents->begin) < -1 + kArcTolerance) {
+    element.attribute_error("to", "the centreline must not turn back on itself");
+    return std::nullopt;
+  }
+  if (!progress.tangent) progress.first_tangent = tangents->begin;
+  progress.tangent = tangents->end;
+  progress.position = *to;
+  return piece;
+}
+
+/// `first_tangent` is set if the first piece is good.
+std::vector<CentrelinePiece> read_centreline(const XmlElement& beam, std::optional<Vector3>& first_tangent) {
+  const std::optional<XmlElement> centreline = beam.child("centerline");
+  if (!centreline) {
+    beam.error("<centerline> is missing");
+    return {};
+  }
+  centreline->expect_only({}, {"line", "arc"});
+  const std::vector<XmlElement> elements = centreline->children();
+  if (elements.empty()) centreline->error("at least one <line> or <arc> is expected");
+  if (elements.size() > kMostCentrelinePieces) {
+    centreline->error(fmt::format("a centreline has at most {} pieces", kMostCentrelinePieces),
+                      fmt::format("'{}'", elements.size()));
+    return {};
+  }
+  std::vector<CentrelinePiece> pieces;
+  Progress progress;
+  for (const XmlElement& element : elements) {
+    if (element.tag() != "line" && element.tag() != "arc") continue;
+    const std::optional<CentrelinePiece> piece = read_piece(element, progress);
+    progress.is_known = piece.has_value();
+    if (piece) pieces.push_back(*piece);
+  }
+  first_tangent = progress.first_tangent;
+  return pieces;
+}
+
+void read_orientation(const XmlElement& beam, const std::optional<Vector3>& tangent, BeamDescription& description) {
+  const std::optional<XmlElement> orientation = beam.child("orientation");
+  if (!orientation) return;
+  orientation->expect_only({"y"});
+  description.section_y = orientation->direction("y");
+  if (description.section_y && tangent && description.section_y->cross(*tangent).norm() < kParallelTolerance)
+    orientation->attribute_error("y", "y must not be parallel to the centreline's first tangent");
+}
+
+void read_mesh(const XmlElement& beam, BeamDescription& description) {
+  const char* elements = beam.xml().Attribute("elements");
+  if (elements && std::string_view(elements) != "auto")
+    description.elements = beam.integer("elements", 1, kMostBeamElements, " or 'auto'");
+  if (beam.has("order")) description.order = beam.integer("order", 1, 4).value_or(description.order);
+}
+
+}  // namespace
+
+std::optional<BeamDescription> read_beam(const XmlElement& unowned, const std::string& link) {
+  const XmlElement beam = unowned.with_owner("beam " + quoted(link));
+  const std::size_t errors = beam.findings().error_count();
+  beam.expect_only({"elements", "order"}, {"centerline", "orientation", "circle", "tube", "rectangle", "box_tube",
+                                           "material", "section", "section_matrix", "damping"});
+  beam.expect_at_most_one({"centerline", "orientation", "material", "damping"});
+  BeamDescription description;
+  description.location = beam.location();
+  read_mesh(beam, description);
+  std::optional<Vector3> first_tangent;
+  description.centreline = read_centreline(beam, first_tangent);
+  read_orientation(beam, first_tangent, description);
+  if (const std::optional<Section> section = read_section(beam)) description.section = *section;
+  if (const std::optional<XmlElement> damping = beam.child("damping")) {
+    damping->expect_only({"stiffness_proportional", "mass_proportional"});
+    description.stiffness_proportional_damping = damping->number("stiffness_proportional", kNonNegative, 0);
+    description.mass_proportional_damping = damping->number("mass_proportional", kNonNegative, 0);
+  }
+  if (beam.findings().error_count() > errors) return std::nullopt;
+  return description;
+}
+
+}  // namespace flexarm::scene

@@ -1,0 +1,57 @@
+#include "scene/findings.h"
+
+#include <algorithm>
+
+#include "scene/limits.h"
+
+namespace flexarm::scene {
+namespace {
+
+/// A finding is one line, whatever the input contains.
+std::string without_control_characters(std::string text) {
+  std::replace_if(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, ' ');
+  return text;
+}
+
+}  // namespace
+
+std::string quoted(std::string_view value) {
+  std::size_t shown = std::min(value.size(), kLongestShownValue);
+  // Not in the middle of a UTF-8 sequence.
+  while (shown < value.size() && shown > 0 && (static_cast<unsigned char>(value[shown]) & 0xC0) == 0x80) --shown;
+  return "'" + std::string(value.substr(0, shown)) + (shown < value.size() ? "...'" : "'");
+}
+
+void Findings::error(int line, std::string element, std::string expected, std::string got) {
+  ++error_count_;
+  add({Diagnostic::Severity::Error, file_, line, without_control_characters(std::move(element)),
+       without_control_characters(std::move(got)), without_control_characters(std::move(expected))});
+}
+
+void Findings::warning(int line, std::string element, std::string expected, std::string got) {
+  add({Diagnostic::Severity::Warning, file_, line, without_control_characters(std::move(element)),
+       without_control_characters(std::move(got)), without_control_characters(std::move(expected))});
+}
+
+void Findings::add(Diagnostic finding) {
+  // The first error is always listed, however many warnings came before.
+  const bool first_error = finding.severity == Diagnostic::Severity::Error && error_count_ == 1;
+  if (findings_.size() < kMostFindings || first_error) {
+    findings_.push_back(std::move(finding));
+  } else {
+    ++omitted_;
+  }
+}
+
+Diagnostics Findings::take() {
+  std::stable_sort(findings_.begin(), findings_.end(),
+                   [](const Diagnostic& a, const Diagnostic& b) { return a.line < b.line; });
+  if (omitted_ > 0) {
+    const Diagnostic::Severity severity =
+        error_count_ > 0 ? Diagnostic::Severity::Error : Diagnostic::Severity::Warning;
+    findings_.push_back({severity, file_, 0, "scene", "", std::to_string(omitted_) + " further findings"});
+  }
+  return std::move(findings_);
+}
+
+}  // namespace flexarm::scene

@@ -1,0 +1,22 @@
+#pragma once
+/// Bounds against absurd input; each is far above any sensible scene and small enough to be handled in seconds.
+
+#include <cstddef>
+
+namespace flexarm::scene {
+
+constexpr std::size_t kLargestFile = 16u << 20;  ///< bytes
+constexpr int kDeepestNesting = 32;              ///< elements inside one another
+constexpr std::size_t kMostLinks = 10000;
+constexpr std::size_t kMostJoints = 10000;
+constexpr std::size_t kMostSimulationEntries = 10000;  ///< children of <simulation>
+constexpr std::size_t kMostCentrelinePieces = 10000;   ///< per beam
+constexpr double kLongestPiece = 1e9;                  ///< of a centreline, and radius of an arc [m]
+constexpr int kMostBeamElements = 100000;              ///< per beam
+constexpr int kMostNewtonIterations = 1000;
+constexpr int kMostHalvings = 30;                ///< a step over 2^30
+constexpr std::size_t kLongestName = 256;        ///< bytes, of links, joints and probes
+constexpr std::size_t kLongestShownValue = 80;   ///< bytes of a value repeated in a message
+constexpr std::size_t kMostFindings = 1000;      ///< listed; the rest is counted
+
+}  // namespace flexarm::scene

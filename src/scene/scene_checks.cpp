@@ -1,0 +1,238 @@
+#include "scene/scene_checks.h"
+
+#include <algorithm>
+#include <map>
+
+namespace flexarm::scene {
+namespace {
+
+std::string element_of(const char* tag, const std::string& name) { return "<" + std::string(tag) + "> " + quoted(name); }
+
+std::string line_text(const SourceLocation& location) { return "line " + std::to_string(location.line); }
+
+/// Records names that come twice. Missing names are recorded already.
+template <class Named>
+void check_unique(const std::vector<Named>& things, const char* tag, Findings& findings) {
+  std::map<std::string, int> first_line;
+  for (const Named& thing : things) {
+    const auto [first, is_new] = first_line.emplace(thing.name, thing.location.line);
+    if (!is_new && !thing.name.empty())
+      findings.error(thing.location.line, element_of(tag, thing.name),
+                     "name is taken, by line " + std::to_string(first->second), quoted(thing.name));
+  }
+}
+
+// ---------------------------------------------------------------- tree
+
+/// The joint above each link; records joints to nowhere and links with two joints.
+std::map<std::string, const JointDescription*> find_parents(const SceneDescription& scene, Findings& findings) {
+  std::set<std::string> links;
+  for (const LinkDescription& link : scene.links) links.insert(link.name);
+  std::map<std::string, const JointDescription*> parents;
+  for (const JointDescription& joint : scene.joints) {
+    const std::string element = element_of("joint", joint.name);
+    for (const auto& [tag, name] : {std::pair("parent", joint.parent), std::pair("child", joint.child)}) {
+      if (!name.empty() && links.count(name) == 0)
+        findings.error(joint.location.line, element, std::string(tag) + " must be a link of the scene", quoted(name));
+    }
+    if (!joint.parent.empty() && joint.parent == joint.child)
+      findings.error(joint.location.line, element, "parent and child must be different links", quoted(joint.child));
+    const auto [first, is_new] = parents.emplace(joint.child, &joint);
+    if (!is_new && !joint.child.empty())
+      findings.error(joint.location.line, element,
+                     "a link is the child of one joint only, and this one has " + quoted(first->second->name) + " (" +
+                         line_text(first->second->location) + ")",
+                     quoted(joint.child));
+  }
+  return parents;
+}
+
+/// Records each ring of joints once, at its joint that comes first in the file.
+void check_rings(const SceneDescription& scene, const std::map<std::string, const JointDescription*>& parents,
+                 Findings& findings) {
+  std::map<std::string, int> visit;  // number of the walk that reached a link
+  int walk = 0;
+  for (const LinkDescription& link : scene.links) {
+    ++walk;
+    std::string name = link.name;
+    for (auto above = parents.find(name); above != parents.end() && visit.emplace(name, walk).second;
+         above = parents.find(name))
+      name = above->second->parent;
+    const auto reached = visit.find(name);
+    if (reached == visit.end() || reached->second != walk || parents.count(name) == 0) continue;
+    const JointDescription& joint = *parents.at(name);
+    findings.error(joint.location.line, element_of("joint", joint.name),
+                   "joints must form a tree; following the parents leads round in a ring", quoted(name));
+  }
+}
+
+}  // namespace
+
+void check_tree(SceneDescription& scene, Findings& findings) {
+  const std::size_t errors = findings.error_count();
+  check_unique(scene.links, "link", findings);
+  check_unique(scene.joints, "joint", findings);
+  const std::map<std::string, const JointDescription*> parents = find_parents(scene, findings);
+  check_rings(scene, parents, findings);
+  const bool are_joints_good = findings.error_count() == errors &&
+                               std::all_of(scene.joints.begin(), scene.joints.end(), [](const JointDescription& joint) {
+                                 return !joint.parent.empty() && !joint.child.empty();
+                               });
+  const LinkDescription* root = nullptr;
+  for (const LinkDescription& link : scene.links) {
+    if (parents.count(link.name) > 0) continue;
+    if (!root) {
+      root = &link;
+    } else if (are_joints_good) {
+      findings.error(link.location.line, element_of("link", link.name),
+                     "must be the child of a joint: a scene has one root link, and that is " + quoted(root->name));
+    }
+  }
+  if (root) scene.root_link = root->name;
+}
+
+namespace {
+
+// ---------------------------------------------------------------- names
+
+class ReferenceCheck {
+ public:
+  ReferenceCheck(const SceneDescription& scene, const std::set<std::string>& unreadable, Findings& findings)
+      : scene_(scene), unreadable_(unreadable), findings_(findings) {
+    for (const LinkDescription& link : scene.links) links_.emplace(link.name, &link);
+    for (const JointDescription& joint : scene.joints) {
+      joints_.emplace(joint.name, &joint);
+      for (const std::string& suffix : coordinate_suffixes(joint.kind)) add_coordinate(joint, joint.name + suffix);
+    }
+  }
+
+  void check_mimics() const {
+    for (const JointDescription& joint : scene_.joints)
+      if (joint.mimic) check_mimic(joint);
+  }
+
+  void check_simulation() const {
+    check_coordinates_of_simulation();
+    std::set<std::string> moving;
+    for (const InitialLink& initial : scene_.initial_links) {
+      const char* element = "<initial> of simulation";
+      check_link(initial.link, initial.location, element);
+      if (initial.link == scene_.root_link && !scene_.root_link.empty())
+        findings_.error(initial.location.line, element, "the root link is clamped and cannot move", quoted(initial.link));
+      if (!moving.insert(initial.link).second)
+        findings_.error(initial.location.line, element, "the link has an initial velocity already", quoted(initial.link));
+    }
+    for (const PointLoad& load : scene_.loads) check_link(load.link, load.location, "<load> of simulation");
+    for (const DistributedLoad& load : scene_.distributed_loads) {
+      const char* element = "<distributed_load> of simulation";
+      check_link(load.link, load.location, element);
+      const auto link = links_.find(load.link);
+      // A beam with an error is recorded already, and so is its link; only a rigid link is wrong here.
+      if (link != links_.end() && !link->second->beam && unreadable_.count(load.link) == 0)
+        findings_.error(load.location.line, element, "link must be flexible, that is have a <beam>", quoted(load.link));
+    }
+    for (const Probe& probe : scene_.probes) check_link(probe.link, probe.location, "<probe> of simulation");
+    check_unique(scene_.probes, "probe", findings_);
+  }
+
+ private:
+  void add_coordinate(const JointDescription& joint, const std::string& name) {
+    const auto [first, is_new] = coordinates_.emplace(name, &joint);
+    if (!is_new && first->second->name != joint.name)
+      findings_.error(joint.location.line, element_of("joint", joint.name),
+                      "a coordinate's name must be unique, but joint " + quoted(first->second->name) + " has one of this name",
+                      quoted(name));
+  }
+
+  void check_mimic(const JointDescription& joint) const {
+    const std::string element = element_of("joint", joint.name);
+    const std::string& target = joint.mimic->joint;
+    const auto found = joints_.find(target);
+    if (target.empty()) return;  // recorded already
+    if (found == joints_.end()) {
+      findings_.error(joint.location.line, element, "mimic joint must be a joint of the scene", quoted(target));
+      return;
+    }
+    if (unreadable_.count(target) > 0 || unreadable_.count(joint.name) > 0) return;
+    if (coordinate_suffixes(joint.kind).size() != 1)
+      findings_.error(joint.location.line, element, "only a joint with one coordinate can mimic");
+    if (coordinate_suffixes(found->second->kind).size() != 1)
+      findings_.error(joint.location.line, element, "only a joint with one coordinate can be mimicked", quoted(target));
+    std::set<std::string> chain;
+    for (auto next = joints_.find(joint.name); next != joints_.end() && next->second->mimic;
+         next = joints_.find(next->second->mimic->joint)) {
+      if (chain.insert(next->first).second) continue;
+      if (next->first == joint.name)
+        findings_.error(joint.location.line, element, "a joint must not mimic itself, directly or through others",
+                        quoted(target));
+      return;
+    }
+  }
+
+  void check_coordinates_of_simulation() const {
+    std::set<std::string> moved, placed, driven;
+    for (const PrescribedMotion& motion : scene_.motions)
+      check_coordinate(motion.coordinate, motion.location, "<motion> of simulation", moved);
+    for (const InitialJoint& initial : scene_.initial_joints) {
+      const char* element = "<initial> of simulation";
+      check_coordinate(initial.coordinate, initial.location, element, placed);
+      check_not_prescribed(initial.coordinate, initial.location, element, moved);
+    }
+    for (const JointEffort& effort : scene_.efforts) {
+      const char* element = "<effort> of simulation";
+      check_coordinate(effort.coordinate, effort.location, element, driven);
+      check_not_prescribed(effort.coordinate, effort.location, element, moved);
+    }
+  }
+
+  /// The coordinate exists, follows no other, and is not yet in `used`, to which it is added.
+  void check_coordinate(const std::string& name, const SourceLocation& location, const char* element,
+                        std::set<std::string>& used) const {
+    if (name.empty() || unreadable_.count(name.substr(0, name.rfind('/'))) > 0 || unreadable_.count(name) > 0) return;
+    const auto found = coordinates_.find(name);
+    if (found == coordinates_.end()) {
+      findings_.error(location.line, element, "joint must be " + known_coordinates(name), quoted(name));
+      return;
+    }
+    if (found->second->mimic)
+      findings_.error(location.line, element, "a joint that mimics another one has no coordinate of its own", quoted(name));
+    if (!used.insert(name).second)
+      findings_.error(location.line, element, "the coordinate has an entry of this kind already", quoted(name));
+  }
+
+  void check_not_prescribed(const std::string& name, const SourceLocation& location, const char* element,
+                            const std::set<std::string>& moved) const {
+    if (moved.count(name) > 0)
+      findings_.error(location.line, element, "the coordinate's <motion> prescribes it already", quoted(name));
+  }
+
+  std::string known_coordinates(const std::string& name) const {
+    const auto joint = joints_.find(name);
+    if (joint == joints_.end()) return "the name of a joint's coordinate";
+    std::string known;
+    for (const std::string& suffix : coordinate_suffixes(joint->second->kind))
+      known += (known.empty() ? "one of " : ", ") + quoted(name + suffix);
+    return known.empty() ? "movable" : known;
+  }
+
+  void check_link(const std::string& name, const SourceLocation& location, const char* element) const {
+    if (!name.empty() && links_.count(name) == 0)
+      findings_.error(location.line, element, "link must be a link of the scene", quoted(name));
+  }
+
+  const SceneDescription& scene_;
+  const std::set<std::string>& unreadable_;
+  Findings& findings_;
+  std::map<std::string, const LinkDescription*> links_;
+  std::map<std::string, const JointDescription*> joints_, coordinates_;
+};
+
+}  // namespace
+
+void check_references(const SceneDescription& scene, const std::set<std::string>& unreadable, Findings& findings) {
+  const ReferenceCheck check(scene, unreadable, findings);
+  check.check_mimics();
+  check.check_simulation();
+}
+
+}  // namespace flexarm::scene

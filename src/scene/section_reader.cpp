@@ -1,0 +1,173 @@
+#include "scene/section_reader.h"
+
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <fmt/format.h>
+
+namespace flexarm::scene {
+namespace {
+
+constexpr NumberRange kPoisson{"in (-1, 0.5)", [](double x) { return x > -1 && x < 0.5; }};
+constexpr double kMatrixTolerance = 1e-9;  // relative to the largest number of the matrix or block
+
+std::optional<SectionShape> read_tube(const XmlElement& tube) {
+  tube.expect_only({"outer_radius", "inner_radius"});
+  const std::optional<double> outer = tube.number("outer_radius", kPositive), inner = tube.number("inner_radius", kPositive);
+  if (!outer || !inner) return std::nullopt;
+  if (*inner < *outer) return Tube{*outer, *inner};
+  tube.attribute_error("inner_radius", fmt::format("inner_radius must be < outer_radius = {}", *outer));
+  return std::nullopt;
+}
+
+std::optional<SectionShape> read_box_tube(const XmlElement& box) {
+  box.expect_only({"width", "height", "thickness"});
+  const std::optional<double> width = box.number("width", kPositive), height = box.number("height", kPositive),
+                              thickness = box.number("thickness", kPositive);
+  if (!width || !height || !thickness) return std::nullopt;
+  if (2 * *thickness < std::min(*width, *height)) return BoxTube{*width, *height, *thickness};
+  box.attribute_error("thickness", "thickness must be less than half of width and of height");
+  return std::nullopt;
+}
+
+std::optional<SectionShape> read_shape(const XmlElement& shape) {
+  if (shape.tag() == "tube") return read_tube(shape);
+  if (shape.tag() == "box_tube") return read_box_tube(shape);
+  if (shape.tag() == "circle") {
+    shape.expect_only({"radius"});
+    const std::optional<double> radius = shape.number("radius", kPositive);
+    return radius ? std::optional<SectionShape>(Circle{*radius}) : std::nullopt;
+  }
+  shape.expect_only({"width", "height"});
+  const std::optional<double> width = shape.number("width", kPositive), height = shape.number("height", kPositive);
+  return width && height ? std::optional<SectionShape>(Rectangle{*width, *height}) : std::nullopt;
+}
+
+std::optional<Material> read_material(const XmlElement& material) {
+  material.expect_only({"young", "poisson", "density"});
+  const std::optional<double> young = material.number("young", kPositive), poisson = material.number("poisson", kPoisson),
+                              density = material.number("density", kPositive);
+  if (!young || !poisson || !density) return std::nullopt;
+  return Material{*young, *poisson, *density};
+}
+
+std::optional<Section> read_direct_section(const XmlElement& section) {
+  section.expect_only({"ea", "ga2", "ga3", "gj", "ei2", "ei3", "mass", "j1", "j2", "j3"});
+  const auto read = [&](const char* name, const NumberRange& range) { return section.number(name, range).value_or(0); };
+  const std::size_t errors = section.findings().error_count();
+  DirectSection direct;
+  direct.ea = read("ea", kPositive);
+  direct.ga2 = read("ga2", kPositive);
+  direct.ga3 = read("ga3", kPositive);
+  direct.gj = read("gj", kPositive);
+  direct.ei2 = read("ei2", kPositive);
+  direct.ei3 = read("ei3", kPositive);
+  direct.mass = read("mass", kPositive);
+  direct.j1 = read("j1", kNonNegative);
+  direct.j2 = read("j2", kNonNegative);
+  direct.j3 = read("j3", kNonNegative);
+  if (section.findings().error_count() > errors) return std::nullopt;
+  return direct;
+}
+
+// ---------------------------------------------------------------- full matrices
+
+std::optional<Matrix6> read_matrix(const XmlElement& element, const char* attribute) {
+  const std::optional<std::vector<double>> numbers = element.numbers(attribute, 36, kAnyNumber);
+  if (!numbers) return std::nullopt;
+  return Matrix6(Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(numbers->data()));
+}
+
+/// Relative to the diagonal, since translations and rotations have different units.
+bool is_symmetric(const Matrix6& matrix) {
+  for (int i = 0; i < 6; ++i) {
+    for (int j = 0; j < i; ++j) {
+      const double scale = std::max({std::abs(matrix(i, j)), std::abs(matrix(j, i)),
+                                     std::sqrt(std::abs(matrix(i, i)) * std::abs(matrix(j, j)))});
+      if (!(std::abs(matrix(i, j) - matrix(j, i)) <= kMatrixTolerance * scale)) return false;
+    }
+  }
+  return true;
+}
+
+/// The matrix with a unit diagonal: its definiteness does not depend on units. Needs a positive diagonal.
+Matrix6 scaled_to_unit_diagonal(const Matrix6& matrix) {
+  const Vector6 scale = matrix.diagonal().cwiseSqrt().cwiseInverse();
+  return scale.asDiagonal() * matrix * scale.asDiagonal();
+}
+
+bool is_positive_definite(const Matrix6& matrix) {
+  if (!(matrix.diagonal().array() > 0).all()) return false;
+  const Eigen::LLT<Matrix6> cholesky(scaled_to_unit_diagonal(matrix));
+  return cholesky.info() == Eigen::Success;
+}
+
+/// [[m 1, -m d^], [m d^, J]] with m > 0 and J - m d^T d^ (about the centre of mass) positive semidefinite.
+bool is_inertia(const Matrix6& matrix) {
+  const double mass = matrix(0, 0);
+  const Matrix3 coupling = matrix.bottomLeftCorner<3, 3>(), rotary = matrix.bottomRightCorner<3, 3>();
+  const auto small = [](const Matrix3& difference, double scale) {
+    return difference.cwiseAbs().maxCoeff() <= kMatrixTolerance * scale;
+  };
+  if (!(mass > 0)) return false;
+  if (!small(matrix.topLeftCorner<3, 3>() - mass * Matrix3::Identity(), mass)) return false;
+  const double coupling_scale = coupling.cwiseAbs().maxCoeff(), rotary_scale = rotary.cwiseAbs().maxCoeff();
+  if (!small(coupling + coupling.transpose(), coupling_scale)) return false;
+  if (!small(matrix.topRightCorner<3, 3>() + coupling, coupling_scale)) return false;
+  if (!small(rotary - rotary.transpose(), rotary_scale)) return false;
+  const Matrix3 central = rotary + coupling * coupling / mass;
+  const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(central, Eigen::EigenvaluesOnly);
+  return eigen.eigenvalues()[0] >= -kMatrixTolerance * rotary_scale;
+}
+
+std::optional<Section> read_section_matrix(const XmlElement& section) {
+  section.expect_only({"stiffness", "inertia"});
+  const std::optional<Matrix6> stiffness = read_matrix(section, "stiffness"), inertia = read_matrix(section, "inertia");
+  const std::size_t errors = section.findings().error_count();
+  if (stiffness && !is_symmetric(*stiffness)) {
+    section.attribute_error("stiffness", "stiffness must be symmetric");
+  } else if (stiffness && !is_positive_definite(*stiffness)) {
+    section.attribute_error("stiffness", "stiffness must be positive definite");
+  }
+  if (inertia && !is_inertia(*inertia))
+    section.attribute_error("inertia",
+                            "inertia must be [[m 1, -m d^], [m d^, J]] with mass per length m > 0, centre of mass d, and J "
+                            "symmetric and at least that of m at d");
+  if (!stiffness || !inertia || section.findings().error_count() > errors) return std::nullopt;
+  return MatrixSection{*stiffness, *inertia};
+}
+
+}  // namespace
+
+std::optional<Section> read_section(const XmlElement& beam) {
+  std::vector<XmlElement> found;
+  for (const XmlElement& child : beam.children()) {
+    for (const char* tag : {"circle", "tube", "rectangle", "box_tube", "section", "section_matrix"})
+      if (child.tag() == tag) found.push_back(child);
+  }
+  const std::optional<XmlElement> material = beam.child("material");
+  if (found.empty()) {
+    beam.error("a section is missing: <circle>, <tube>, <rectangle> or <box_tube> with <material>, or <section>, or "
+               "<section_matrix>");
+    if (material) read_material(*material);
+    return std::nullopt;
+  }
+  for (std::size_t i = 1; i < found.size(); ++i) found[i].error("the beam has a section already, <" + found[0].tag() + ">");
+
+  const XmlElement& section = found[0];
+  if (section.tag() == "section" || section.tag() == "section_matrix") {
+    if (material) material->error("<" + section.tag() + "> leaves no place for a material");
+    return section.tag() == "section" ? read_direct_section(section) : read_section_matrix(section);
+  }
+  const std::optional<SectionShape> shape = read_shape(section);
+  if (!material) {
+    beam.error("<material> is missing");
+    return std::nullopt;
+  }
+  const std::optional<Material> read = read_material(*material);
+  if (!shape || !read) return std::nullopt;
+  return GeometricSection{*shape, *read};
+}
+
+}  // namespace flexarm::scene

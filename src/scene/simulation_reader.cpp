@@ -1,0 +1,136 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "scene/extension_reader.h"
+#include "scene/limits.h"
+
+namespace flexarm::scene {
+namespace {
+
+constexpr NumberRange kUnitInterval{"from 0 to 1", [](double x) { return x >= 0 && x <= 1; }};
+
+constexpr const char* kSchemes[] = {"auto", "em", "em0", "m1", "newmark"};
+constexpr const char* kPlannedSchemes[] = {"em_scaled", "m2",   "std",  "beta1", "beta2", "hht1", "hht2", "hht3",
+                                           "sm_em",     "alg1", "alg2", "alg3",  "alg4",  "sme"};
+
+void read_scheme(const XmlElement& integrator, IntegratorDescription& description) {
+  if (!integrator.has("scheme")) return;
+  const std::string name = integrator.text("scheme").value_or("");
+  const auto is_name = [&](const char* known) { return name == known; };
+  if (std::any_of(std::begin(kSchemes), std::end(kSchemes), is_name)) {
+    description.scheme = name;
+  } else if (std::any_of(std::begin(kPlannedSchemes), std::end(kPlannedSchemes), is_name)) {
+    integrator.attribute_error("scheme", fmt::format("this scheme is not yet supported in this version; supported are {}",
+                                                     fmt::join(kSchemes, ", ")));
+  } else {
+    integrator.attribute_error("scheme", fmt::format("scheme must be one of {}", fmt::join(kSchemes, ", ")));
+  }
+}
+
+void read_integrator(const XmlElement& integrator, IntegratorDescription& description) {
+  integrator.expect_only({"scheme", "step", "tolerance", "max_iterations", "max_halvings", "rho_infinity"});
+  read_scheme(integrator, description);
+  description.step = integrator.number("step", kPositive, description.step);
+  description.tolerance = integrator.number("tolerance", kPositive, description.tolerance);
+  if (integrator.has("max_iterations"))
+    description.max_iterations = integrator.integer("max_iterations", 1, kMostNewtonIterations).value_or(1);
+  if (integrator.has("max_halvings"))
+    description.max_halvings = integrator.integer("max_halvings", 0, kMostHalvings).value_or(0);
+  if (integrator.has("rho_infinity")) description.rho_infinity = integrator.number("rho_infinity", kUnitInterval);
+}
+
+void read_gravity(const XmlElement& gravity, SceneDescription& scene) {
+  gravity.expect_only({"xyz"});
+  scene.gravity = gravity.vector("xyz").value_or(scene.gravity);
+}
+
+void read_initial(const XmlElement& initial, SceneDescription& scene) {
+  const bool of_link = initial.has("link");
+  if (of_link == initial.has("joint")) {
+    initial.error("either attribute 'joint' or attribute 'link' is expected");
+    return;
+  }
+  if (of_link) {
+    initial.expect_only({"link", "linear", "angular"});
+    if (!initial.has("linear") && !initial.has("angular")) initial.error("attribute 'linear' or 'angular' is missing");
+    scene.initial_links.push_back({initial.text("link").value_or(""), initial.vector("linear", Vector3::Zero()),
+                                   initial.vector("angular", Vector3::Zero()), initial.location()});
+  } else {
+    initial.expect_only({"joint", "position", "velocity"});
+    if (!initial.has("position") && !initial.has("velocity"))
+      initial.error("attribute 'position' or 'velocity' is missing");
+    scene.initial_joints.push_back({initial.text("joint").value_or(""), initial.number("position", kAnyNumber, 0),
+                                    initial.number("velocity", kAnyNumber, 0), initial.location()});
+  }
+}
+
+LoadFrame read_frame(const XmlElement& load) {
+  if (!load.has("frame")) return LoadFrame::World;
+  const std::string frame = load.text("frame").value_or("");
+  if (frame != "world" && frame != "follower") load.attribute_error("frame", "frame must be 'world' or 'follower'");
+  return frame == "follower" ? LoadFrame::Follower : LoadFrame::World;
+}
+
+TimeFunction read_history(const XmlElement& load) {
+  return load.has("history") ? load.function("history").value_or(TimeFunction()) : TimeFunction();
+}
+
+void read_load(const XmlElement& load, SceneDescription& scene) {
+  load.expect_only({"link", "at", "force", "moment", "frame", "history"});
+  if (!load.has("force") && !load.has("moment")) load.error("attribute 'force' or 'moment' is missing");
+  const Vector3 zero = Vector3::Zero();
+  scene.loads.push_back({load.text("link").value_or(""), load.vector("at", zero), load.vector("force", zero),
+                         load.vector("moment", zero), read_frame(load), read_history(load), load.location()});
+}
+
+void read_distributed_load(const XmlElement& load, SceneDescription& scene) {
+  load.expect_only({"link", "force", "frame", "history"});
+  scene.distributed_loads.push_back({load.text("link").value_or(""), load.vector("force").value_or(Vector3::Zero()),
+                                     read_frame(load), read_history(load), load.location()});
+}
+
+void read_motion(const XmlElement& motion, SceneDescription& scene) {
+  motion.expect_only({"joint", "position"});
+  scene.motions.push_back({motion.text("joint").value_or(""), motion.function("position").value_or(TimeFunction()),
+                           motion.location()});
+}
+
+void read_effort(const XmlElement& effort, SceneDescription& scene) {
+  effort.expect_only({"joint", "history"});
+  scene.efforts.push_back({effort.text("joint").value_or(""), effort.function("history").value_or(TimeFunction()),
+                           effort.location()});
+}
+
+void read_probe(const XmlElement& probe, SceneDescription& scene) {
+  probe.expect_only({"name", "link", "at"});
+  scene.probes.push_back({probe.name("name").value_or(""), probe.text("link").value_or(""),
+                          probe.vector("at", Vector3::Zero()), probe.location()});
+}
+
+}  // namespace
+
+void read_simulation(const XmlElement& unowned, SceneDescription& scene) {
+  const XmlElement simulation = unowned.with_owner("simulation");
+  simulation.expect_only({}, {"gravity", "integrator", "initial", "load", "distributed_load", "motion", "effort", "probe"});
+  simulation.expect_at_most_one({"gravity", "integrator"});
+  const std::vector<XmlElement> entries = simulation.children();
+  if (entries.size() > kMostSimulationEntries) {
+    simulation.error(fmt::format("at most {} entries are allowed", kMostSimulationEntries),
+                     fmt::format("'{}'", entries.size()));
+    return;
+  }
+  for (const XmlElement& entry : entries) {
+    const std::string tag = entry.tag();
+    if (tag == "gravity") read_gravity(entry, scene);
+    if (tag == "integrator") read_integrator(entry, scene.integrator);
+    if (tag == "initial") read_initial(entry, scene);
+    if (tag == "load") read_load(entry, scene);
+    if (tag == "distributed_load") read_distributed_load(entry, scene);
+    if (tag == "motion") read_motion(entry, scene);
+    if (tag == "effort") read_effort(entry, scene);
+    if (tag == "probe") read_probe(entry, scene);
+  }
+}
+
+}  // namespace flexarm::scene

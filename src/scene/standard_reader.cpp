@@ -1,0 +1,257 @@
+#include "scene/standard_reader.h"
+
+#include <Eigen/Eigenvalues>
+#include <fmt/format.h>
+
+#include "scene/urdfdom.h"
+
+namespace flexarm::scene {
+namespace {
+
+/// `count` numbers in an attribute of a child element.
+struct StandardAttribute {
+  const char* child;
+  const char* attribute;
+  std::size_t count;
+  bool required;  // where the child is there
+  NumberRange range;
+};
+
+constexpr StandardAttribute kInertialAttributes[] = {
+    {"origin", "xyz", 3, false, kAnyNumber}, {"origin", "rpy", 3, false, kAnyNumber},
+    {"mass", "value", 1, true, kNonNegative},  {"inertia", "ixx", 1, true, kNonNegative},
+    {"inertia", "ixy", 1, true, kAnyNumber},   {"inertia", "ixz", 1, true, kAnyNumber},
+    {"inertia", "iyy", 1, true, kNonNegative}, {"inertia", "iyz", 1, true, kAnyNumber},
+    {"inertia", "izz", 1, true, kNonNegative},
+};
+
+constexpr StandardAttribute kJointAttributes[] = {
+    {"origin", "xyz", 3, false, kAnyNumber},
+    {"origin", "rpy", 3, false, kAnyNumber},
+    {"axis", "xyz", 3, true, kAnyNumber},
+    {"limit", "lower", 1, false, kAnyNumber},
+    {"limit", "upper", 1, false, kAnyNumber},
+    {"limit", "effort", 1, true, kNonNegative},
+    {"limit", "velocity", 1, true, kNonNegative},
+    {"dynamics", "damping", 1, false, kNonNegative},
+    {"dynamics", "friction", 1, false, kNonNegative},
+    {"mimic", "multiplier", 1, false, kAnyNumber},
+    {"mimic", "offset", 1, false, kAnyNumber},
+    {"safety_controller", "soft_lower_limit", 1, false, kAnyNumber},
+    {"safety_controller", "soft_upper_limit", 1, false, kAnyNumber},
+    {"safety_controller", "k_position", 1, false, kAnyNumber},
+    {"safety_controller", "k_velocity", 1, true, kAnyNumber},
+    {"calibration", "rising", 1, false, kAnyNumber},
+    {"calibration", "falling", 1, false, kAnyNumber},
+};
+
+template <std::size_t Count>
+void check_attributes(const XmlElement& element, const StandardAttribute (&table)[Count]) {
+  for (const StandardAttribute& row : table) {
+    const std::optional<XmlElement> child = element.child(row.child);
+    if (child && (row.required || child->has(row.attribute))) child->numbers(row.attribute, row.count, row.range);
+  }
+}
+
+Vector3 from_urdf(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
+
+Pose from_urdf(const urdf::Pose& pose) {
+  const urdf::Rotation& q = pose.rotation;
+  return {from_urdf(pose.position), Quaternion(q.w, q.x, q.y, q.z).normalized()};
+}
+
+/// Has urdfdom read a document with only these elements of <robot>; its complaints become a finding about `element`.
+urdf::ModelInterfaceSharedPtr read_alone(const XmlElement& element, const std::string& elements) {
+  const UrdfdomResult result = parse_with_urdfdom("<robot name=\"robot\">" + elements + "</robot>");
+  if (!result.errors.empty()) element.error("must be valid URDF", result.text());
+  return result.errors.empty() ? result.model : nullptr;
+}
+
+// ---------------------------------------------------------------- links
+
+/// A real body's inertia: positive semidefinite, and no principal moment larger than the sum of the others.
+void check_inertia(const XmlElement& inertial, const Matrix3& inertia) {
+  const Vector3 moments = Eigen::SelfAdjointEigenSolver<Matrix3>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
+  const double tolerance = 1e-9 * moments.cwiseAbs().maxCoeff();
+  const XmlElement element = inertial.child("inertia").value_or(inertial);
+  if (moments[0] < -tolerance) {
+    element.error("principal moments of inertia must be >= 0", fmt::format("'{}'", moments[0]));
+  } else if (moments[2] > moments[0] + moments[1] + tolerance) {
+    element.warning("no body has a principal moment of inertia larger than the sum of the others");
+  }
+}
+
+std::optional<RigidInertia> read_inertial(const XmlElement& inertial) {
+  const std::size_t errors = inertial.findings().error_count();
+  inertial.expect_at_most_one({"origin", "mass", "inertia"});
+  for (const char* tag : {"mass", "inertia"})
+    if (!inertial.child(tag)) inertial.error("<" + std::string(tag) + "> is missing");
+  check_attributes(inertial, kInertialAttributes);
+  if (inertial.findings().error_count() > errors) return std::nullopt;
+
+  const urdf::ModelInterfaceSharedPtr model =
+      read_alone(inertial, "<link name=\"link\">" + printed(inertial.xml()) + "</link>");
+  if (!model || !model->getRoot() || !model->getRoot()->inertial) return std::nullopt;
+  const urdf::Inertial& read = *model->getRoot()->inertial;
+  Matrix3 inertia;
+  inertia << read.ixx, read.ixy, read.ixz, read.ixy, read.iyy, read.iyz, read.ixz, read.iyz, read.izz;
+  check_inertia(inertial, inertia);
+  const Pose frame = from_urdf(read.origin);
+  const Matrix3 rotation = frame.orientation.toRotationMatrix();
+  return RigidInertia{read.mass, frame.position, rotation * inertia * rotation.transpose()};
+}
+
+// ---------------------------------------------------------------- joints
+
+/// What urdfdom's and our own types of joint have in common.
+struct Kind {
+  const char* type;
+  JointKind kind;
+};
+constexpr Kind kTypes[] = {
+    {"fixed", JointKind::Fixed},         {"revolute", JointKind::Revolute}, {"continuous", JointKind::Continuous},
+    {"prismatic", JointKind::Prismatic}, {"planar", JointKind::Planar},     {"floating", JointKind::Floating}};
+constexpr Kind kReleases[] = {{"spherical", JointKind::Spherical},
+                              {"universal", JointKind::Universal},
+                              {"cylindrical", JointKind::Cylindrical},
+                              {"planar", JointKind::Planar},
+                              {"free", JointKind::Floating}};
+
+template <std::size_t Count>
+std::optional<JointKind> read_kind(const XmlElement& element, const char* attribute, const Kind (&kinds)[Count]) {
+  const std::optional<std::string> value = element.text(attribute);
+  if (!value) return std::nullopt;
+  std::string known;
+  for (const Kind& kind : kinds) {
+    if (*value == kind.type) return kind.kind;
+    known += (known.empty() ? "" : ", ") + std::string(kind.type);
+  }
+  element.attribute_error(attribute, std::string(attribute) + " must be one of " + known);
+  return std::nullopt;
+}
+
+/// The kind, after looking at <release>.
+std::optional<JointKind> read_joint_kind(const XmlElement& joint) {
+  const std::optional<JointKind> type = read_kind(joint, "type", kTypes);
+  const std::optional<XmlElement> release = joint.child("release");
+  if (!release) return type;
+  release->expect_only({"kind"});
+  const std::optional<JointKind> kind = read_kind(*release, "kind", kReleases);
+  if (type && *type != JointKind::Floating) {
+    release->error("the type of the joint must be 'floating'", quoted(joint.text("type").value_or("")));
+    return std::nullopt;
+  }
+  return kind;
+}
+
+bool uses_axis(JointKind kind) {
+  return kind != JointKind::Fixed && kind != JointKind::Floating && kind != JointKind::Spherical;
+}
+
+void read_axes(const XmlElement& joint, JointDescription& description) {
+  const std::optional<XmlElement> axis = joint.child("axis"), axis2 = joint.child("axis2");
+  if (axis && uses_axis(description.kind)) description.axis = axis->direction("xyz").value_or(description.axis);
+  if (description.kind != JointKind::Universal) {
+    if (axis2) axis2->error("only a joint with <release kind=\"universal\"/> has a second axis");
+    return;
+  }
+  if (!axis2) {
+    joint.error("a universal joint needs a second axis, <axis2 xyz=\"...\"/>");
+    return;
+  }
+  axis2->expect_only({"xyz"});
+  const std::optional<Vector3> direction = axis2->direction("xyz");
+  if (!direction) return;
+  description.axis2 = *direction;
+  if (direction->cross(description.axis).norm() < 1e-6)
+    axis2->attribute_error("xyz", "the axes of a universal joint must not be parallel");
+}
+
+void read_limits(const XmlElement& joint, const urdf::Joint& read, JointDescription& description) {
+  if (!read.limits) return;
+  const urdf::JointLimits& limits = *read.limits;
+  description.effort_limit = limits.effort;
+  if (description.kind != JointKind::Revolute && description.kind != JointKind::Prismatic) return;
+  const XmlElement element = joint.child("limit").value_or(joint);
+  if (limits.lower > limits.upper)
+    element.error("lower must be <= upper",
+                  fmt::format("lower '{}', upper '{}'", limits.lower, limits.upper));
+  if (limits.lower == limits.upper) element.warning("lower and upper are equal: the joint cannot move");
+  description.limits = JointLimits{limits.lower, limits.upper, limits.effort, limits.velocity};
+}
+
+void check_joint_structure(const XmlElement& joint) {
+  joint.expect_at_most_one({"origin", "parent", "child", "axis", "axis2", "limit", "dynamics", "mimic", "release",
+                            "safety_controller", "calibration"});
+  check_attributes(joint, kJointAttributes);
+  for (const char* tag : {"slide", "couple"})
+    if (const std::optional<XmlElement> child = joint.child(tag)) child->error("not yet supported in this version");
+  const std::string type = joint.xml().Attribute("type") ? joint.xml().Attribute("type") : "";
+  if ((type == "revolute" || type == "prismatic") && !joint.child("limit"))
+    joint.error("a " + type + " joint needs <limit effort=\"...\" velocity=\"...\" lower=\"...\" upper=\"...\"/>");
+}
+
+/// Name of the link in <parent> or <child>; empty if there is none, which is recorded.
+std::string read_link_name(const XmlElement& joint, const char* tag) {
+  const std::optional<XmlElement> child = joint.child(tag);
+  if (!child) joint.error("<" + std::string(tag) + " link=\"...\"/> is missing");
+  return child ? child->text("link").value_or("") : "";
+}
+
+}  // namespace
+
+void check_with_urdfdom(const XmlElement& element) {
+  read_alone(element, printed(element.xml()) + "<link name=\"link\"/>");
+}
+
+LinkDescription read_link(const XmlElement& unnamed) {
+  LinkDescription description;
+  description.name = unnamed.name("name").value_or("");
+  description.location = unnamed.location();
+  const XmlElement link = unnamed.with_name(description.name);
+  link.expect_at_most_one({"inertial", "beam"});
+  if (const std::optional<XmlElement> inertial = link.child("inertial")) description.inertial = read_inertial(*inertial);
+  // Each alone, since urdfdom leaves a link at its first error.
+  for (const XmlElement& child : link.children())
+    if (child.tag() == "visual" || child.tag() == "collision")
+      read_alone(child, "<link name=\"link\">" + printed(child.xml()) + "</link>");
+  return description;
+}
+
+JointDescription read_joint(const XmlElement& unnamed) {
+  JointDescription description;
+  description.name = unnamed.name("name").value_or("");
+  description.location = unnamed.location();
+  const XmlElement joint = unnamed.with_name(description.name);
+  const std::size_t errors = joint.findings().error_count();
+  description.parent = read_link_name(joint, "parent");
+  description.child = read_link_name(joint, "child");
+  if (const std::optional<XmlElement> mimic = joint.child("mimic"))
+    description.mimic = Mimic{mimic->text("joint").value_or("")};
+  check_joint_structure(joint);
+  if (const std::optional<JointKind> kind = read_joint_kind(joint)) {
+    description.kind = *kind;
+    read_axes(joint, description);
+  }
+  if (joint.findings().error_count() > errors) return description;
+
+  // urdfdom joins by name; stand-ins for the links keep it from complaining about the rest of the file.
+  tinyxml2::XMLDocument links;
+  for (const std::string& name : {description.parent, description.child})
+    links.InsertEndChild(links.NewElement("link"))->ToElement()->SetAttribute("name", name.c_str());
+  if (description.parent == description.child) return description;  // reported with the tree
+  const urdf::ModelInterfaceSharedPtr model = read_alone(
+      joint, printed(*links.FirstChildElement()) + printed(*links.LastChildElement()) + printed(joint.xml()));
+  const urdf::JointConstSharedPtr read = model ? model->getJoint(description.name) : nullptr;
+  if (!read) return description;
+  description.origin = from_urdf(read->parent_to_joint_origin_transform);
+  if (read->dynamics) {
+    description.damping = read->dynamics->damping;
+    description.friction = read->dynamics->friction;
+  }
+  if (read->mimic) description.mimic = Mimic{read->mimic->joint_name, read->mimic->multiplier, read->mimic->offset};
+  read_limits(joint, *read, description);
+  return description;
+}
+
+}  // namespace flexarm::scene

@@ -1,0 +1,148 @@
+#include "flexarm/scene/urdf_reader.h"
+
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "scene/extension_reader.h"
+#include "scene/limits.h"
+#include "scene/scene_checks.h"
+#include "scene/standard_reader.h"
+#include "scene/urdfdom.h"
+#include "scene/xml_document.h"
+
+namespace flexarm::scene {
+namespace {
+
+/// Our elements, and the element whose children they are.
+struct Place {
+  const char* tag;
+  const char* parent;
+};
+constexpr Place kPlaces[] = {{"beam", "link"},   {"release", "joint"},    {"axis2", "joint"},     {"slide", "joint"},
+                             {"couple", "joint"}, {"simulation", "robot"}, {"loop_joint", "robot"}};
+
+/// Records our elements where they would be ignored like a stranger's.
+void check_places(const XmlElement& element) {
+  for (const XmlElement& child : element.children()) {
+    for (const Place& place : kPlaces) {
+      if (child.tag() == place.tag && element.tag() != place.parent)
+        child.error("<" + child.tag() + "> must be a child of <" + place.parent + ">");
+    }
+  }
+}
+
+class SceneReader {
+ public:
+  explicit SceneReader(Findings& findings) : findings_(findings) {}
+
+  SceneDescription read(const XmlElement& unnamed) {
+    scene_.file = findings_.file();
+    scene_.name = unnamed.text("name").value_or("");
+    const XmlElement robot = unnamed.with_name(scene_.name);
+    check_places(robot);
+    robot.expect_at_most_one({"simulation"});
+    for (const XmlElement& child : robot.children()) read_child(child);
+    check_size(robot, "links", scene_.links.size(), kMostLinks);
+    check_size(robot, "joints", scene_.joints.size(), kMostJoints);
+    if (scene_.links.empty()) robot.error("at least one <link> is expected");
+    check_tree(scene_, findings_);
+    check_references(scene_, unreadable_, findings_);
+    return std::move(scene_);
+  }
+
+ private:
+  void read_child(const XmlElement& child) {
+    const std::size_t errors = findings_.error_count();
+    const std::string tag = child.tag();
+    if (tag == "link" && scene_.links.size() <= kMostLinks) {
+      scene_.links.push_back(read_whole_link(child));
+      if (findings_.error_count() > errors) unreadable_.insert(scene_.links.back().name);
+    } else if (tag == "joint" && scene_.joints.size() <= kMostJoints) {
+      check_places(child);
+      scene_.joints.push_back(read_joint(child));
+      if (findings_.error_count() > errors) unreadable_.insert(scene_.joints.back().name);
+    } else if (tag == "material") {
+      check_with_urdfdom(child);
+    } else if (tag == "loop_joint") {
+      child.error("not yet supported in this version");
+    } else if (tag == "simulation") {
+      read_simulation(child, scene_);
+    }
+  }
+
+  LinkDescription read_whole_link(const XmlElement& unnamed) {
+    LinkDescription description = read_link(unnamed);
+    const XmlElement link = unnamed.with_name(description.name);
+    check_places(link);
+    const std::optional<XmlElement> beam = link.child("beam");
+    if (!beam) return description;
+    description.beam = read_beam(*beam, description.name);
+    if (const std::optional<XmlElement> inertial = link.child("inertial"))
+      inertial->warning("is ignored, since the mass of a flexible link comes from its <beam>");
+    return description;
+  }
+
+  void check_size(const XmlElement& robot, const char* what, std::size_t count, std::size_t most) const {
+    if (count > most) robot.error(fmt::format("a scene has at most {} {}", most, what));
+  }
+
+  Findings& findings_;
+  SceneDescription scene_;
+  std::set<std::string> unreadable_;  // links and joints with errors, of which only the name is to be trusted
+};
+
+std::optional<SceneDescription> read_scene(const std::string& text, Findings& findings) {
+  if (text.size() > kLargestFile) {
+    findings.error(0, "file", fmt::format("may have {} bytes", kLargestFile), fmt::format("'{}'", text.size()));
+    return std::nullopt;
+  }
+  tinyxml2::XMLDocument document;
+  if (!parse_xml(text, document, findings)) return std::nullopt;
+  const tinyxml2::XMLElement* root = document.RootElement();
+  if (!root || std::string_view(root->Name()) != "robot") {
+    findings.error(root ? root->GetLineNum() : 0, "file", "the outermost element must be <robot>",
+                   root ? quoted(root->Name()) : "");
+    return std::nullopt;
+  }
+  const XmlElement robot(*root, "<robot>", "robot", findings);
+  SceneDescription scene = SceneReader(findings).read(robot);
+  if (findings.error_count() > 0) return std::nullopt;
+
+  // Each part has been read alone; now the judge of other tools about the whole.
+  const UrdfdomResult whole = parse_with_urdfdom(text);
+  if (!whole.errors.empty()) {
+    robot.error("must be valid URDF", whole.text());
+    return std::nullopt;
+  }
+  return scene;
+}
+
+/// The file's bytes, but not many more than a scene may have; nothing if it cannot be read.
+std::optional<std::string> read_bytes(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string text(kLargestFile + 1, '\0');
+  if (!file || !(file.read(text.data(), text.size()) || file.eof())) return std::nullopt;
+  text.resize(file.gcount());
+  return text;
+}
+
+}  // namespace
+
+ReadResult read_scene_text(const std::string& text, const std::string& name) {
+  Findings findings(name);
+  ReadResult result;
+  result.scene = read_scene(text, findings);
+  result.diagnostics = findings.take();
+  return result;
+}
+
+ReadResult read_scene_file(const std::string& path) {
+  const std::optional<std::string> text = read_bytes(path);
+  if (text) return read_scene_text(*text, path);
+  Findings findings(path);
+  findings.error(0, "file", "cannot be read");
+  return {std::nullopt, findings.take()};
+}
+
+}  // namespace flexarm::scene

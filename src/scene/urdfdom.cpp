@@ -1,0 +1,66 @@
+#include "scene/urdfdom.h"
+
+#include <exception>
+#include <mutex>
+
+#include <console_bridge/console.h>
+#include <urdf_parser/urdf_parser.h>
+
+namespace flexarm::scene {
+namespace {
+
+/// Takes console_bridge's messages as long as it lives.
+class MessageCapture : public console_bridge::OutputHandler {
+ public:
+  MessageCapture() : previous_(console_bridge::getOutputHandler()), level_(console_bridge::getLogLevel()) {
+    console_bridge::useOutputHandler(this);
+    console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_ERROR);
+  }
+  ~MessageCapture() override {
+    console_bridge::setLogLevel(level_);
+    console_bridge::useOutputHandler(previous_);
+  }
+  MessageCapture(const MessageCapture&) = delete;
+  MessageCapture& operator=(const MessageCapture&) = delete;
+
+  void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
+    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR) errors.push_back(text);
+  }
+
+  std::vector<std::string> errors;
+
+ private:
+  console_bridge::OutputHandler* previous_;
+  console_bridge::LogLevel level_;
+};
+
+}  // namespace
+
+std::string UrdfdomResult::text() const {
+  std::string text;
+  for (const std::string& error : errors) text += (text.empty() ? "" : "; ") + error;
+  return text;
+}
+
+UrdfdomResult parse_with_urdfdom(const std::string& document) {
+  static std::mutex mutex;
+  const std::lock_guard<std::mutex> lock(mutex);
+  MessageCapture capture;
+  UrdfdomResult result;
+  try {
+    result.model = urdf::parseURDF(document);
+  } catch (const std::exception& error) {
+    capture.errors.push_back(error.what());
+  }
+  result.errors = std::move(capture.errors);
+  if (!result.model && result.errors.empty()) result.errors.push_back("urdfdom cannot read it");
+  return result;
+}
+
+std::string printed(const tinyxml2::XMLElement& element) {
+  tinyxml2::XMLPrinter printer(nullptr, true);
+  element.Accept(&printer);
+  return printer.CStr();
+}
+
+}  // namespace flexarm::scene

@@ -1,0 +1,202 @@
+#include "scene/xml_element.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+
+#include "math/parse_number.h"
+#include "scene/limits.h"
+
+namespace flexarm::scene {
+namespace {
+
+bool contains(std::initializer_list<const char*> names, std::string_view name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// "a, b, c".
+std::string listed(std::initializer_list<const char*> names) {
+  std::string text;
+  for (const char* name : names) text += (text.empty() ? "" : ", ") + std::string(name);
+  return text.empty() ? "nothing" : text;
+}
+
+}  // namespace
+
+XmlElement::XmlElement(const tinyxml2::XMLElement& xml, std::string description, std::string owner, Findings& findings)
+    : xml_(&xml), description_(std::move(description)), owner_(std::move(owner)), findings_(&findings) {}
+
+XmlElement XmlElement::with_owner(std::string owner) const {
+  return XmlElement(*xml_, description_, std::move(owner), *findings_);
+}
+
+XmlElement XmlElement::with_name(const std::string& name) const {
+  return XmlElement(*xml_, "<" + tag() + "> " + quoted(name), tag() + " " + quoted(name), *findings_);
+}
+
+void XmlElement::error(std::string expected, std::string got) const {
+  findings_->error(line(), description_, std::move(expected), std::move(got));
+}
+
+void XmlElement::warning(std::string expected, std::string got) const {
+  findings_->warning(line(), description_, std::move(expected), std::move(got));
+}
+
+void XmlElement::attribute_error(const char* attribute, std::string expected) const {
+  const tinyxml2::XMLAttribute* found = xml_->FindAttribute(attribute);
+  if (found) {
+    findings_->error(found->GetLineNum(), description_, std::move(expected), quoted(found->Value()));
+  } else {
+    error(std::move(expected));
+  }
+}
+
+std::vector<XmlElement> XmlElement::children() const {
+  std::vector<XmlElement> children;
+  for (const tinyxml2::XMLElement* child = xml_->FirstChildElement(); child; child = child->NextSiblingElement())
+    children.emplace_back(*child, "<" + std::string(child->Name()) + "> of " + owner_, owner_, *findings_);
+  return children;
+}
+
+std::optional<XmlElement> XmlElement::child(const char* tag) const {
+  const tinyxml2::XMLElement* child = xml_->FirstChildElement(tag);
+  if (!child) return std::nullopt;
+  return XmlElement(*child, "<" + std::string(tag) + "> of " + owner_, owner_, *findings_);
+}
+
+void XmlElement::expect_at_most_one(std::initializer_list<const char*> tags) const {
+  std::set<std::string> seen;
+  for (const XmlElement& child : children()) {
+    if (contains(tags, child.tag()) && !seen.insert(child.tag()).second)
+      child.error("at most one <" + child.tag() + "> is allowed here");
+  }
+}
+
+void XmlElement::expect_only(std::initializer_list<const char*> attributes,
+                             std::initializer_list<const char*> tags) const {
+  for (const tinyxml2::XMLAttribute* a = xml_->FirstAttribute(); a; a = a->Next()) {
+    if (!contains(attributes, a->Name()))
+      findings_->error(a->GetLineNum(), description_, "unknown attribute, expected " + listed(attributes),
+                       quoted(a->Name()));
+  }
+  for (const tinyxml2::XMLNode* node = xml_->FirstChild(); node; node = node->NextSibling()) {
+    if (node->ToText())
+      findings_->error(node->GetLineNum(), description_, "no text is expected here", quoted(node->Value()));
+  }
+  for (const XmlElement& child : children()) {
+    if (!contains(tags, child.tag())) child.error("unknown element, expected " + listed(tags));
+  }
+}
+
+std::optional<std::string> XmlElement::text(const char* attribute) const {
+  const char* value = xml_->Attribute(attribute);
+  if (!value) {
+    error("attribute '" + std::string(attribute) + "' is missing");
+    return std::nullopt;
+  }
+  return value;
+}
+
+std::optional<std::string> XmlElement::name(const char* attribute) const {
+  const std::optional<std::string> value = text(attribute);
+  if (!value) return std::nullopt;
+  const bool has_control = std::any_of(value->begin(), value->end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; });
+  if (value->empty() || value->size() > kLongestName || has_control) {
+    attribute_error(attribute, std::string(attribute) + " must be a name of 1 to " + std::to_string(kLongestName) +
+                                   " characters without control characters");
+    return std::nullopt;
+  }
+  return value;
+}
+
+std::optional<std::vector<double>> XmlElement::numbers(const char* attribute, std::size_t count,
+                                                       const NumberRange& range) const {
+  const std::optional<std::string> value = text(attribute);
+  if (!value) return std::nullopt;
+  std::vector<double> numbers;
+  std::string_view rest = *value;
+  std::size_t words = 0;
+  bool in_range = true;
+  for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
+    if (++words > count) break;
+    if (const std::optional<double> number = parse_number(word)) {
+      numbers.push_back(*number);
+      in_range = in_range && range.holds(*number);
+    }
+  }
+  if (words != count || numbers.size() != count) {
+    attribute_error(attribute, std::string(attribute) + " must be " +
+                                   (count == 1 ? "a finite number" : std::to_string(count) + " finite numbers"));
+    return std::nullopt;
+  }
+  if (!in_range) {
+    attribute_error(attribute, std::string(attribute) + " must be " + range.text);
+    return std::nullopt;
+  }
+  return numbers;
+}
+
+std::optional<double> XmlElement::number(const char* attribute, const NumberRange& range) const {
+  const std::optional<std::vector<double>> values = numbers(attribute, 1, range);
+  if (!values) return std::nullopt;
+  return values->front();
+}
+
+double XmlElement::number(const char* attribute, const NumberRange& range, double fallback) const {
+  return has(attribute) ? number(attribute, range).value_or(fallback) : fallback;
+}
+
+std::optional<int> XmlElement::integer(const char* attribute, int least, int most, const char* alternative) const {
+  const std::optional<std::string> value = text(attribute);
+  if (!value) return std::nullopt;
+  std::string_view rest = *value;
+  const std::string_view word = next_word(rest);
+  int result = 0;
+  const std::from_chars_result parsed = std::from_chars(word.data(), word.data() + word.size(), result);
+  if (parsed.ec != std::errc() || parsed.ptr != word.data() + word.size() || !next_word(rest).empty() ||
+      result < least || result > most) {
+    attribute_error(attribute, std::string(attribute) + " must be a whole number from " + std::to_string(least) + " to " +
+                                   std::to_string(most) + alternative);
+    return std::nullopt;
+  }
+  return result;
+}
+
+std::optional<Vector3> XmlElement::vector(const char* attribute) const {
+  const std::optional<std::vector<double>> values = numbers(attribute, 3, kAnyNumber);
+  if (!values) return std::nullopt;
+  return Vector3((*values)[0], (*values)[1], (*values)[2]);
+}
+
+Vector3 XmlElement::vector(const char* attribute, const Vector3& fallback) const {
+  return has(attribute) ? vector(attribute).value_or(fallback) : fallback;
+}
+
+std::optional<Vector3> XmlElement::direction(const char* attribute) const {
+  const std::optional<Vector3> value = vector(attribute);
+  if (!value) return std::nullopt;
+  const Vector3 unit = value->stableNormalized();
+  if (!(std::abs(unit.norm() - 1) < 1e-6)) {  // zero, or so small that its direction is lost
+    attribute_error(attribute, std::string(attribute) + " must not be zero");
+    return std::nullopt;
+  }
+  return unit.normalized();
+}
+
+std::optional<TimeFunction> XmlElement::function(const char* attribute) const {
+  const std::optional<std::string> value = text(attribute);
+  if (!value) return std::nullopt;
+  try {
+    const TimeFunction function = TimeFunction::parse(*value);
+    if (std::isfinite(function(0))) return function;
+    attribute_error(attribute, std::string(attribute) + " must be finite at t = 0");
+  } catch (const std::invalid_argument& problem) {
+    // The message repeats the value and may itself be long.
+    findings_->error(xml_->FindAttribute(attribute)->GetLineNum(), description_,
+                     std::string(attribute) + " is no function of time", problem.what());
+  }
+  return std::nullopt;
+}
+
+}  // namespace flexarm::scene

@@ -1,0 +1,85 @@
+#pragma once
+/// An XML element read with typed attributes; what is wrong is recorded with its line.
+
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tinyxml2.h>
+
+#include "flexarm/scene/scene_description.h"
+#include "scene/findings.h"
+
+namespace flexarm::scene {
+
+/// A condition on numbers, and how messages put it ("radius must be > 0").
+struct NumberRange {
+  const char* text;
+  bool (*holds)(double);
+};
+constexpr NumberRange kAnyNumber{"a finite number", [](double) { return true; }};
+constexpr NumberRange kPositive{"> 0", [](double x) { return x > 0; }};
+constexpr NumberRange kNonNegative{">= 0", [](double x) { return x >= 0; }};
+
+/// A view: element and findings must outlive it.
+///
+/// Readers of attributes return nothing (or the fallback) where an attribute is wrong, after recording why; an attribute read
+/// without fallback must be there.
+class XmlElement {
+ public:
+  /// `owner`: what messages call the thing that the element's children belong to ("joint 'elbow'").
+  XmlElement(const tinyxml2::XMLElement& xml, std::string description, std::string owner, Findings& findings);
+
+  std::string tag() const { return xml_->Name(); }
+  const std::string& description() const { return description_; }
+  int line() const { return xml_->GetLineNum(); }
+  SourceLocation location() const { return {findings_->file(), line()}; }
+  const tinyxml2::XMLElement& xml() const { return *xml_; }
+  Findings& findings() const { return *findings_; }
+
+  /// The same element, whose children belong to `owner`.
+  XmlElement with_owner(std::string owner) const;
+  /// The same element called "<joint> 'elbow'", whose children belong to "joint 'elbow'".
+  XmlElement with_name(const std::string& name) const;
+
+  // ---- findings about this element
+  void error(std::string expected, std::string got = "") const;
+  void warning(std::string expected, std::string got = "") const;
+  /// About an attribute: its line and its value are added.
+  void attribute_error(const char* attribute, std::string expected) const;
+
+  // ---- structure
+  std::vector<XmlElement> children() const;
+  /// First child of this name.
+  std::optional<XmlElement> child(const char* tag) const;
+  /// Records children of these names that come twice.
+  void expect_at_most_one(std::initializer_list<const char*> tags) const;
+  /// Inside an extension element: records every attribute, child and text that is not known here.
+  void expect_only(std::initializer_list<const char*> attributes, std::initializer_list<const char*> tags = {}) const;
+
+  // ---- attributes
+  bool has(const char* attribute) const { return xml_->Attribute(attribute) != nullptr; }
+  std::optional<std::string> text(const char* attribute) const;
+  /// Name of a link, joint or probe: not empty, not absurdly long, no control characters.
+  std::optional<std::string> name(const char* attribute) const;
+  std::optional<double> number(const char* attribute, const NumberRange& range) const;
+  double number(const char* attribute, const NumberRange& range, double fallback) const;
+  /// `count` numbers separated by white space.
+  std::optional<std::vector<double>> numbers(const char* attribute, std::size_t count, const NumberRange& range) const;
+  /// `alternative` ends the message (" or 'auto'").
+  std::optional<int> integer(const char* attribute, int least, int most, const char* alternative = "") const;
+  std::optional<Vector3> vector(const char* attribute) const;
+  Vector3 vector(const char* attribute, const Vector3& fallback) const;
+  /// A vector of unit length from one of any length but zero.
+  std::optional<Vector3> direction(const char* attribute) const;
+  /// A function of time, finite at t = 0.
+  std::optional<TimeFunction> function(const char* attribute) const;
+
+ private:
+  const tinyxml2::XMLElement* xml_;
+  std::string description_, owner_;
+  Findings* findings_;
+};
+
+}  // namespace flexarm::scene
