@@ -8,6 +8,7 @@
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "flexarm");
+  ros::NodeHandle keeps_ros_alive;  // beyond a failed construction: its message is to go out
   try {
     flexarm::node::Node node;
     ros::spin();

@@ -25,6 +25,10 @@ def run_node(*arguments):
 
 
 class BadScenes(unittest.TestCase):
+    def setUp(self):
+        if rospy.has_param("/flexarm"):  # private parameters outlive their node
+            rospy.delete_param("/flexarm")
+
     def assert_refused(self, arguments, *words):
         result = run_node(*arguments)
         self.assertEqual(result.returncode, 1, result.stdout)
