@@ -3,55 +3,18 @@
 
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "flexarm/integrators/stepper.h"
 #include "flexarm/math/pose.h"
+#include "flexarm/model/model_builder.h"
 #include "flexarm/scene/scene_description.h"
+#include "flexarm/simulation/observables.h"
+#include "flexarm/solver/modes.h"
 
 namespace flexarm {
-
-class Model;
-struct State;
-
-/// A scene that is well-formed as a file and impossible as a mechanism; what() lists every finding.
-class ModelError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// Outcome of one step; a value, never an exception.
-struct StepResult {
-  enum class Reason { None, NoConvergence, SingularTangent, NotFinite, RotationTooLarge };
-  bool converged = false;
-  int iterations = 0;      ///< Newton iterations of all sub-steps
-  int halvings = 0;        ///< times that a sub-step had to be halved
-  int factorisations = 0;
-  Reason reason = Reason::None;  ///< why it failed
-};
-const char* to_string(StepResult::Reason reason);
-
-/// Energies of a state [J]; work and dissipation are path integrals since the start.
-struct Energies {
-  double kinetic = 0, strain = 0, potential = 0, work = 0, dissipated = 0;
-  double total() const { return kinetic + strain + potential; }
-};
-
-/// One point of a deformed centreline.
-struct BeamPoint {
-  double arc_length = 0;          ///< of the undeformed line [m]
-  Pose pose;                      ///< of the section, in the world
-  Vector6 strain = Vector6::Zero();     ///< {Gamma, K} in the section frame [-, 1/m]
-  Vector6 resultant = Vector6::Zero();  ///< {N, M} in the section frame [N, N m]
-};
-
-/// Pose and velocity of a named point.
-struct ProbeState {
-  Pose pose;
-  Vector3 velocity = Vector3::Zero();  ///< world axes [m/s]
-};
 
 /// Options that override the scene's <integrator>.
 struct SimulationOptions {
@@ -82,7 +45,7 @@ class Simulation {
 
   double time() const;       ///< [s]
   double step_size() const;  ///< [s]
-  const std::string& scheme() const;  ///< name of the scheme in use
+  std::string scheme() const;  ///< name of the scheme in use
 
   // ---- released coordinates: one per scalar joint, several for the others ("wrist/rx")
   const std::vector<std::string>& coordinate_names() const;
@@ -116,16 +79,13 @@ class Simulation {
   /// other released coordinates are solved for. On success the state is the equilibrium, at rest.
   StepResult solve_static(int load_steps);
 
-  /// Natural modes about the current configuration.
-  struct Mode {
-    double frequency = 0;             ///< [Hz]; 0 for a rigid motion
-    std::vector<Vector6> node_motion; ///< {displacement, spin} of every node, largest displacement or spin 1
-  };
+  /// Natural modes about the current configuration, lowest first.
   std::vector<Mode> natural_modes(int count) const;
 
-  /// One line per aspect, for `flexarm check`.
   std::size_t node_count() const;
-  std::size_t degrees_of_freedom() const;
+  std::size_t degrees_of_freedom() const;  ///< unknowns of the Newton iteration
+  /// Update norms of the last Newton solve, for tests of the rate of convergence.
+  const std::vector<double>& update_norms() const;
 
  private:
   struct Implementation;

@@ -1,0 +1,61 @@
+#pragma once
+/// Newton's method for one step, and the step control around it: halve on failure, recover after success.
+
+#include "flexarm/integrators/step_system.h"
+#include "flexarm/solver/linear_solver.h"
+
+namespace flexarm {
+
+/// Outcome of a step; a value, never an exception.
+struct StepResult {
+  enum class Reason { None, NoConvergence, SingularTangent, NotFinite, RotationTooLarge };
+  bool converged = false;
+  int iterations = 0;      ///< Newton iterations of all sub-steps
+  int halvings = 0;        ///< times that a sub-step had to be halved
+  int factorisations = 0;
+  Reason reason = Reason::None;  ///< why it failed
+};
+const char* to_string(StepResult::Reason reason);
+
+/// Settings of Newton's method and of the step control.
+struct StepSettings {
+  double step = 1e-3;       ///< [s]
+  double tolerance = 1e-8;  ///< on the largest update: displacements over the model's length scale, rotations in rad
+  int max_iterations = 20;
+  int max_halvings = 5;
+};
+
+/// Advances states of one model with one scheme. Allocates nothing after the first step.
+class Stepper {
+ public:
+  Stepper(const Model& model, const Scheme& scheme, const StepSettings& settings);
+
+  /// One step of settings.step, in sub-steps of step / 2^k where Newton needs them. On failure the state is that after
+  /// the last good sub-step.
+  StepResult advance(State& state);
+  /// Equilibrium by `load_steps` equal increments of gravity and loads. On failure the state is untouched.
+  StepResult solve_static(State& state, int load_steps);
+  /// Initial accelerations of a scheme that needs them (Newmark), from a short momentum-conserving step.
+  void initialise_accelerations(State& state);
+  void invalidate() { system_.invalidate(); }
+
+  const StepSettings& settings() const { return settings_; }
+  /// Update norms of the last Newton solve, for tests of the rate of convergence.
+  const std::vector<double>& update_norms() const { return update_norms_; }
+  const DegreesOfFreedom& degrees_of_freedom() const { return system_.degrees_of_freedom(); }
+
+ private:
+  /// Newton from the present trial configuration; leaves the system evaluated at the solution.
+  bool iterate(StepResult& result);
+  bool sub_step(State& state, double step, StepResult& result);
+
+  const Model& model_;
+  Scheme scheme_;
+  StepSettings settings_;
+  StepSystem system_;
+  LinearSolver solver_;
+  Eigen::VectorXd update_;
+  std::vector<double> update_norms_;
+};
+
+}  // namespace flexarm

@@ -1,0 +1,148 @@
+#include "flexarm/integrators/stepper.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flexarm {
+namespace {
+
+/// Larger Newton updates of a rotation are scaled down [rad].
+constexpr double kLargestRotationUpdate = 1.0;
+/// A node must not turn by more than pi/2 in a step: |2 tan(angle/2)| = 2.
+constexpr double kLargestStepRotation = 2.0;
+/// Newton is given up when an update is this much larger than the first one.
+constexpr double kDivergence = 1e4;
+/// Converged sub-steps after which the step is doubled again.
+constexpr int kGoodStepsToDouble = 2;
+
+}  // namespace
+
+const char* to_string(StepResult::Reason reason) {
+  switch (reason) {
+    case StepResult::Reason::None: return "none";
+    case StepResult::Reason::NoConvergence: return "Newton's method did not converge";
+    case StepResult::Reason::SingularTangent: return "the tangent is singular";
+    case StepResult::Reason::NotFinite: return "a quantity is not finite";
+    case StepResult::Reason::RotationTooLarge: return "a node turns by more than 90 degrees in one step";
+  }
+  return "unknown";
+}
+
+Stepper::Stepper(const Model& model, const Scheme& scheme, const StepSettings& settings)
+    : model_(model),
+      scheme_(scheme),
+      settings_(settings),
+      system_(model, scheme),
+      solver_(system_.assembler().unknowns(), system_.assembler().column_starts(), system_.assembler().row_indices()),
+      update_(system_.assembler().unknowns()) {
+  update_norms_.reserve(settings.max_iterations + 1);
+}
+
+bool Stepper::iterate(StepResult& result) {
+  using Reason = StepResult::Reason;
+  update_norms_.clear();
+  const auto fail = [&](Reason reason) {
+    result.reason = reason;
+    return false;
+  };
+  if (system_.assembler().unknowns() == 0)
+    return system_.evaluate(false) || fail(Reason::NotFinite);
+
+  for (int iteration = 0; iteration < settings_.max_iterations; ++iteration) {
+    if (!system_.evaluate(true)) return fail(Reason::NotFinite);
+    ++result.iterations;
+    ++result.factorisations;
+    if (!solver_.factorise(system_.assembler().values())) return fail(Reason::SingularTangent);
+    update_ = -system_.residual();
+    if (!solver_.solve(update_)) return fail(Reason::SingularTangent);
+    const double rotation = system_.largest_rotation(update_);
+    if (rotation > kLargestRotationUpdate) update_ *= kLargestRotationUpdate / rotation;
+    const double norm = system_.scaled_norm(update_);
+    if (!std::isfinite(norm)) return fail(Reason::NotFinite);
+    update_norms_.push_back(norm);
+    if (norm > kDivergence * std::max(update_norms_.front(), 1e-3)) return fail(Reason::NoConvergence);
+    system_.update(update_);
+    if (norm <= settings_.tolerance) return system_.evaluate(false) || fail(Reason::NotFinite);
+  }
+  return fail(Reason::NoConvergence);
+}
+
+bool Stepper::sub_step(State& state, double step, StepResult& result) {
+  for (const auto guess : {StepSystem::Guess::Extrapolated, StepSystem::Guess::Unchanged}) {
+    system_.begin(state, step, guess);
+    if (!iterate(result)) continue;
+    if (system_.largest_node_rotation() > kLargestStepRotation) {
+      result.reason = StepResult::Reason::RotationTooLarge;
+      return false;
+    }
+    system_.accept(state);
+    result.reason = StepResult::Reason::None;
+    return true;
+  }
+  return false;
+}
+
+StepResult Stepper::advance(State& state) {
+  StepResult result;
+  const double begin = state.time;
+  const int finest = settings_.max_halvings;
+  long done = 0;  // in units of step / 2^finest
+  const long whole = 1L << finest;
+  state.halving_level = std::clamp(state.halving_level, 0, finest);
+  while (done < whole) {
+    const int level = state.halving_level;
+    if (sub_step(state, std::ldexp(settings_.step, -level), result)) {
+      done += whole >> level;
+      // Doubling must keep sub-steps on the grid of the longer ones.
+      if (++state.good_steps >= kGoodStepsToDouble && level > 0 && done % (whole >> (level - 1)) == 0) {
+        --state.halving_level;
+        state.good_steps = 0;
+      }
+      continue;
+    }
+    state.good_steps = 0;
+    if (level == finest) {
+      system_.invalidate();
+      return result;
+    }
+    ++state.halving_level;
+    ++result.halvings;
+  }
+  state.time = begin + settings_.step;
+  ++state.steps;
+  result.converged = true;
+  return result;
+}
+
+StepResult Stepper::solve_static(State& state, int load_steps) {
+  StepResult result;
+  State trial = state;
+  for (int k = 1; k <= load_steps; ++k) {
+    system_.begin_static(trial, static_cast<double>(k) / load_steps);
+    if (!iterate(result)) return result;
+    system_.accept_static(trial);
+  }
+  state = trial;
+  system_.invalidate();
+  result.converged = true;
+  return result;
+}
+
+void Stepper::initialise_accelerations(State& state) {
+  // A centred difference over a step h has a truncation error of order h and a round-off of order epsilon / h^2.
+  const double h = 1e-2 * settings_.step;
+  StepSettings settings = settings_;
+  settings.step = h;
+  Stepper momentum(model_, *find_scheme("m1"), settings);
+  State moved = state;
+  if (!momentum.advance(moved).converged) return;
+  for (std::size_t i = 0; i < state.nodes.size(); ++i) {
+    state.nodes[i].acceleration = (moved.nodes[i].velocity - state.nodes[i].velocity) / h;
+    state.nodes[i].angular_acceleration = (moved.nodes[i].angular_velocity - state.nodes[i].angular_velocity) / h;
+  }
+  for (std::size_t i = 0; i < state.mass_points.size(); ++i)
+    state.mass_points[i].angular_acceleration =
+        (moved.mass_points[i].angular_velocity - state.mass_points[i].angular_velocity) / h;
+}
+
+}  // namespace flexarm

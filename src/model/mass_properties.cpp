@@ -1,0 +1,85 @@
+#include "mass_properties.h"
+
+#include <cmath>
+
+#include "flexarm/math/so3.h"
+#include "flexarm/model/model_builder.h"
+
+namespace flexarm {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+/// Half a contact period of a stop lasts this many nominal steps: resolved by the integrator, and short to the eye.
+constexpr double kContactSteps = 10;
+/// Speed after a hit over the speed before.
+constexpr double kRestitution = 0.3;
+
+/// Mass, first moment and inertia about the world origin of everything outboard of a node, initial configuration.
+struct Composite {
+  double mass = 0;
+  Vector3 moment = Vector3::Zero();
+  Matrix3 inertia = Matrix3::Zero();
+
+  void operator+=(const Composite& other) {
+    mass += other.mass;
+    moment += other.moment;
+    inertia += other.inertia;
+  }
+  /// Inertia about the line through `point` along the unit vector `axis`.
+  double about(const Vector3& point, const Vector3& axis) const {
+    const Matrix3 p = so3::hat(point), s = so3::hat(moment);
+    const Matrix3 shifted = inertia + s * p + p * s - mass * p * p;
+    return axis.dot(shifted * axis);
+  }
+};
+
+std::vector<Composite> composites(const std::vector<int>& parents, const Model& model) {
+  std::vector<Composite> out(model.nodes.size());
+  for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+    const NodalInertia& inertia = model.inertias[i];
+    const NodePose& pose = model.nodes[i];
+    const Matrix3 r = so3::hat(pose.position);
+    out[i].mass = inertia.total_mass;
+    out[i].moment = inertia.total_mass * pose.position;
+    out[i].inertia = pose.rotation * (inertia.rotary + inertia.beam_rotary) * pose.rotation.transpose() -
+                     inertia.total_mass * r * r;
+  }
+  for (int i = static_cast<int>(out.size()) - 1; i >= 0; --i)
+    if (parents[i] >= 0) out[parents[i]] += out[i];  // parents come before their children
+  return out;
+}
+
+}  // namespace
+
+void finish_mass_properties(const scene::SceneDescription& scene, const std::vector<int>& parents, Model& model) {
+  const std::vector<Composite> outboard = composites(parents, model);
+  for (Coordinate& coordinate : model.coordinates) {
+    const JointMap& joint = model.joints[coordinate.joint];
+    const NodePose world;
+    const NodePose& master = joint.master < 0 ? world : model.nodes[joint.master];
+    const Matrix3 frame = master.rotation * joint.origin.orientation.toRotationMatrix();
+    Vector3 translation = joint.translation, rotation = joint.rotation;
+    if (joint.kind != JointMapKind::Scalar) {
+      const Vector3 unit = Vector3::Unit(coordinate.component % 3);
+      translation = coordinate.is_angle ? Vector3::Zero() : unit;
+      rotation = coordinate.is_angle ? unit : Vector3::Zero();
+    }
+    const Composite& body = outboard[joint.slave];
+    // Inertia that the coordinate moves: m |t|^2 + J |r|^2 (screw-like couplings have no cross term about their axis).
+    double inertia = body.mass * translation.squaredNorm();
+    if (rotation.norm() > 0)
+      inertia += body.about(model.nodes[joint.slave].position, frame * rotation.normalized()) * rotation.squaredNorm();
+    if (!(inertia > 0) && coordinate.motion < 0)
+      throw ModelError(scene.file + ": joint coordinate '" + coordinate.name +
+                       "' moves nothing that has inertia: give the links outboard of it an <inertial> or a <beam>");
+    if (coordinate.limit) {
+      const double omega = kPi / (kContactSteps * scene.integrator.step);
+      const double log_restitution = std::log(kRestitution);
+      const double damping_ratio = -log_restitution / std::hypot(kPi, log_restitution);
+      coordinate.limit->stiffness = inertia * omega * omega;
+      coordinate.limit->damping = 2 * damping_ratio * inertia * omega;
+    }
+  }
+}
+
+}  // namespace flexarm

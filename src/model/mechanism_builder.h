@@ -1,0 +1,88 @@
+#pragma once
+/// Nodes, elements, joints, coordinates and initial motion from a scene (internal to model/).
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "flexarm/model/beam_mesh.h"
+#include "flexarm/model/centreline.h"
+#include "flexarm/model/model.h"
+#include "flexarm/model/model_builder.h"
+#include "flexarm/scene/scene_description.h"
+
+namespace flexarm {
+
+class MechanismBuilder {
+ public:
+  struct LinkMesh {
+    Centreline centreline;
+    BeamMesh mesh;
+    int first_node;  ///< mesh node i is node first_node + i of the model
+  };
+
+  explicit MechanismBuilder(const scene::SceneDescription& scene);
+  void build();
+
+  int link_index(const std::string& name) const;
+  /// Node and link frame seen from it, for a point of the link (link frame): the nearest cross-section's node.
+  Attachment attachment(const std::string& link, const Vector3& point) const;
+  /// int I^i ds of the nodes of a flexible link [m].
+  std::vector<double> length_weights(int link) const;
+  int add_history(const TimeFunction& function);
+  /// "file:line: element: "
+  static std::string at(const scene::SourceLocation& location, const std::string& element);
+
+  Model model;
+  std::vector<std::optional<LinkMesh>> meshes;  ///< per link
+  std::vector<int> node_parents;                ///< node that a node moves with when the joints outboard move; -1: world
+
+ private:
+  /// A joint of the scene and its elementary maps.
+  struct JointRecord {
+    const scene::JointDescription* joint;
+    int first_map, map_count;
+  };
+  /// Rigid bodies carried by one node, in its frame.
+  struct Body {
+    double mass = 0;
+    Vector3 center = Vector3::Zero();
+    Matrix3 inertia = Matrix3::Zero();  ///< about the centre
+    void add(double mass, const Vector3& center, const Matrix3& inertia_about_center);
+  };
+
+  void order_joints();
+  void add_joint(const scene::JointDescription& joint);
+  void place_link(int link, const Attachment& base);
+  void place_beam(int link, int first_node);
+  template <int Nodes>
+  void add_elements(int link);
+  void place_bodies();
+  int add_node(const Pose& pose, int parent);
+  /// Adds an elementary joint with its slave node; returns the node.
+  int add_map(JointMap map, const Released& released);
+  int add_rigid(int master, const Pose& offset);
+  Pose pose_of(int node) const;
+
+  void add_coordinates(const scene::JointDescription& joint, const std::vector<std::string>& names);
+  Released initial_released(const JointMap& map, const std::vector<std::string>& names) const;
+  double initial_value(const std::string& coordinate, bool velocity) const;
+  int coordinate_index(const std::string& name, const std::string& where) const;
+  void connect_coordinates();
+  void update_initial_poses();
+  void set_initial_velocities();
+  Vector6 field_velocity(const scene::InitialLink& field, int link, const Vector3& point) const;
+  ReleasedVector field_rates(const JointRecord& record, const Vector6& master, const Vector6& target) const;
+  void check_field(const scene::InitialLink& field, int link) const;
+
+  const scene::SceneDescription& scene_;
+  std::map<std::string, int> link_indices_;
+  std::vector<const scene::JointDescription*> ordered_joints_;  // root to leaf
+  std::vector<std::vector<double>> attachments_;                // per link: arc lengths of element borders
+  std::map<std::string, const scene::InitialJoint*> initial_;
+  std::vector<JointRecord> records_;                            // root to leaf
+  std::map<int, Body> bodies_;                                  // by node
+};
+
+}  // namespace flexarm

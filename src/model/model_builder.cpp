@@ -1,0 +1,113 @@
+#include "flexarm/model/model_builder.h"
+
+#include "mass_properties.h"
+#include "mechanism_builder.h"
+
+namespace flexarm {
+namespace {
+
+/// Loads, their histories, and probes.
+class LoadPlacer {
+ public:
+  LoadPlacer(const scene::SceneDescription& scene, MechanismBuilder& mechanism)
+      : scene_(scene), mechanism_(mechanism), model_(mechanism.model) {}
+
+  void place() {
+    for (const scene::PointLoad& load : scene_.loads) point_load(load);
+    for (const scene::DistributedLoad& load : scene_.distributed_loads) distributed_load(load);
+    for (const scene::Probe& probe : scene_.probes) model_.probes.push_back(probe_point(probe));
+  }
+
+ private:
+  void point_load(const scene::PointLoad& load) {
+    const Attachment attachment = mechanism_.attachment(load.link, load.at);
+    if (attachment.node < 0)
+      throw ModelError(mechanism_.at(load.location, "<load>") + "link '" + load.link + "' is fixed to the world");
+    const Pose at = attachment.offset * Pose{load.at, Quaternion::Identity()};
+    NodalLoad out;
+    out.node = attachment.node;
+    out.arm = at.position;
+    out.frame = load.frame;
+    const bool follower = load.frame == scene::LoadFrame::Follower;
+    out.force = follower ? Vector3(attachment.offset.orientation * load.force) : load.force;
+    out.moment = follower ? Vector3(attachment.offset.orientation * load.moment) : load.moment;
+    out.history = mechanism_.add_history(load.history);
+    model_.loads.push_back(out);
+  }
+
+  void distributed_load(const scene::DistributedLoad& load) {
+    const int link = mechanism_.link_index(load.link);
+    const auto& mesh = mechanism_.meshes[link];
+    if (!mesh)
+      throw ModelError(mechanism_.at(load.location, "<distributed_load>") + "link '" + load.link + "' has no <beam>");
+    const int history = mechanism_.add_history(load.history);
+    // Lumped with the weights int I^i ds: exact for a dead load, the nodes' Newton-Cotes rule for a follower load.
+    const std::vector<double> weights = mechanism_.length_weights(link);
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      const Pose& pose = mesh->mesh.nodes[i].pose;
+      NodalLoad out;
+      out.node = mesh->first_node + static_cast<int>(i);
+      out.arm = -mesh->mesh.centroid;
+      out.frame = load.frame;
+      out.force = weights[i] * load.force;
+      if (load.frame == scene::LoadFrame::Follower) out.force = pose.orientation.conjugate() * out.force;
+      out.history = history;
+      model_.loads.push_back(out);
+    }
+  }
+
+  ProbePoint probe_point(const scene::Probe& probe) const {
+    ProbePoint out;
+    out.link = mechanism_.link_index(probe.link);
+    const LinkFrame& link = model_.links[out.link];
+    const Pose at{probe.at, Quaternion::Identity()};
+    if (!link.beam) {
+      out.attachment = {link.frame.node, link.frame.offset * at};
+      return out;
+    }
+    const auto& mesh = *mechanism_.meshes[out.link];
+    const double s = mesh.centreline.nearest(probe.at);
+    double begin = 0;
+    for (std::size_t e = 0; e < link.beam->element_ends.size(); ++e) {
+      const double end = link.beam->element_ends[e];
+      if (s <= end + 1e-12 * link.beam->length) {
+        out.element = static_cast<int>(e);
+        out.xi = 2 * (s - begin) / (end - begin) - 1;
+        break;
+      }
+      begin = end;
+    }
+    Pose section = mesh.centreline.at(s);
+    section.position += section.orientation * mesh.mesh.centroid;
+    out.offset = section.inverse() * at;
+    return out;
+  }
+
+  const scene::SceneDescription& scene_;
+  MechanismBuilder& mechanism_;
+  Model& model_;
+};
+
+/// Extent of the mechanism: the scale of displacements in the convergence test.
+double length_scale(const Model& model) {
+  double extent = 0;
+  for (const LinkFrame& link : model.links)
+    if (link.beam) extent = std::max(extent, link.beam->length);
+  for (const NodePose& a : model.nodes) extent = std::max(extent, (a.position - model.nodes.front().position).norm());
+  return extent > 0 ? extent : 1.0;
+}
+
+}  // namespace
+
+Model build_model(const scene::SceneDescription& scene) {
+  MechanismBuilder mechanism(scene);
+  mechanism.build();
+  LoadPlacer(scene, mechanism).place();
+  Model model = std::move(mechanism.model);
+  model.gravity = scene.gravity;
+  model.length_scale = length_scale(model);
+  finish_mass_properties(scene, mechanism.node_parents, model);
+  return model;
+}
+
+}  // namespace flexarm

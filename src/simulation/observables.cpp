@@ -1,0 +1,217 @@
+#include "flexarm/simulation/observables.h"
+
+#include <limits>
+
+#include "flexarm/elements/beam_point.h"
+#include "flexarm/joints/joint_forces.h"
+#include "flexarm/math/quadrature.h"
+#include "flexarm/math/shape_functions.h"
+
+namespace flexarm {
+namespace {
+
+template <int Nodes>
+struct ElementConfiguration {
+  std::array<Vector3, Nodes> position, velocity;
+  std::array<Quaternion, Nodes> orientation;
+
+  ElementConfiguration(const BeamElement<Nodes>& element, const State& state) {
+    for (int i = 0; i < Nodes; ++i) {
+      const NodeState& node = state.nodes[element.nodes[i]];
+      position[i] = node.position;
+      velocity[i] = node.velocity;
+      orientation[i] = node.orientation;
+    }
+  }
+};
+
+Matrix3 lumped_rotary(const NodalInertia& inertia, const Scheme& scheme) {
+  return scheme.nodal_rotary_inertia ? Matrix3(inertia.rotary + inertia.beam_rotary) : inertia.rotary;
+}
+
+/// Visits an element of a beam by its index in the group of its order.
+template <class Visit>
+void visit_element(const Model& model, const BeamLink& beam, int index, const Visit& visit) {
+  for_each_group(model.beams, [&](const auto& group) {
+    using Element = typename std::decay_t<decltype(group.elements)>::value_type;
+    if (Element::kNodes == beam.order + 1) visit(group.elements[beam.elements[index]]);
+  });
+}
+
+/// Section pose at the parent coordinate xi, nodes on the mass centroid.
+template <int Nodes>
+Pose section_pose(const ElementConfiguration<Nodes>& nodes, double xi) {
+  const ShapeFunctions<Nodes> functions = lagrange<Nodes>(xi);
+  const Matrix3 rotation =
+      LocalRotations<Nodes>(nodes.orientation).evaluate(functions.values, functions.derivatives).rotation;
+  return {interpolate<Nodes>(functions.values, nodes.position), Quaternion(rotation).normalized()};
+}
+
+}  // namespace
+
+Energies energies(const Model& model, const Scheme& scheme, const State& state) {
+  Energies out;
+  out.work = state.work;
+  out.dissipated = state.dissipated;
+  for_each_element(model.beams, [&](const auto& element) {
+    constexpr int N = std::decay_t<decltype(element)>::kNodes;
+    const ElementConfiguration<N> nodes(element, state);
+    const LocalRotations<N> local(nodes.orientation);
+    for (const auto& point : element.stiffness_points) {
+      const Vector6 strain = point_kinematics(local.evaluate(point.shape, point.derivative),
+                                              interpolate<N>(point.derivative, nodes.position), point.reference_strain)
+                                 .strain;
+      out.strain += 0.5 * point.weight * strain.dot(element.stiffness * strain);
+    }
+    for (int i = 0; i < N; ++i)
+      for (int j = 0; j < N; ++j) out.kinetic += 0.5 * element.mass(i, j) * nodes.velocity[i].dot(nodes.velocity[j]);
+    for (int k = 0; k < N && !scheme.nodal_rotary_inertia; ++k) {
+      const Vector3& W = state.mass_points[element.first_mass_point + k].angular_velocity;
+      out.kinetic += 0.5 * element.mass_points[k].weight * W.dot(element.inertia * W);
+    }
+  });
+  for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+    const NodalInertia& inertia = model.inertias[i];
+    const NodeState& node = state.nodes[i];
+    out.kinetic += 0.5 * inertia.mass * node.velocity.squaredNorm() +
+                   0.5 * node.angular_velocity.dot(lumped_rotary(inertia, scheme) * node.angular_velocity);
+    out.potential -= inertia.total_mass * model.gravity.dot(node.position);
+  }
+  for (const Coordinate& coordinate : model.coordinates)
+    out.strain += stop_energy(coordinate, state.released[coordinate.joint].displacement[coordinate.component % 3]);
+  return out;
+}
+
+Momenta momenta(const Model& model, const Scheme& scheme, const State& state) {
+  Momenta out;
+  for_each_element(model.beams, [&](const auto& element) {
+    constexpr int N = std::decay_t<decltype(element)>::kNodes;
+    const ElementConfiguration<N> nodes(element, state);
+    for (int i = 0; i < N; ++i)
+      for (int j = 0; j < N; ++j) {
+        out.linear += element.mass(i, j) * nodes.velocity[j];
+        out.angular += element.mass(i, j) * nodes.position[i].cross(nodes.velocity[j]);
+      }
+    if (scheme.nodal_rotary_inertia) return;
+    const LocalRotations<N> local(nodes.orientation);
+    for (int k = 0; k < N; ++k) {
+      const auto& point = element.mass_points[k];
+      const Vector3& W = state.mass_points[element.first_mass_point + k].angular_velocity;
+      out.angular += point.weight * (local.evaluate(point.shape, point.derivative).rotation * (element.inertia * W));
+    }
+  });
+  for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+    const NodalInertia& inertia = model.inertias[i];
+    const NodeState& node = state.nodes[i];
+    out.linear += inertia.mass * node.velocity;
+    out.angular += inertia.mass * node.position.cross(node.velocity) +
+                   node.orientation * (lumped_rotary(inertia, scheme) * node.angular_velocity);
+  }
+  return out;
+}
+
+void beam_points(const Model& model, const State& state, const BeamLink& beam, int between,
+                 std::vector<BeamPoint>& points) {
+  double begin = 0;
+  for (std::size_t e = 0; e < beam.elements.size(); ++e) {
+    const double end = beam.element_ends[e];
+    visit_element(model, beam, static_cast<int>(e), [&](const auto& element) {
+      constexpr int N = std::decay_t<decltype(element)>::kNodes;
+      const ElementConfiguration<N> nodes(element, state);
+      const LocalRotations<N> local(nodes.orientation);
+      const int steps = (N - 1) * (between + 1);
+      for (int k = e == 0 ? 0 : 1; k <= steps; ++k) {
+        const double xi = 2.0 * k / steps - 1;
+        const ShapeFunctions<N> functions = lagrange<N>(xi);
+        BeamPoint point;
+        point.arc_length = begin + (end - begin) * k / steps;
+        const Matrix3 rotation = local.evaluate(functions.values, functions.derivatives).rotation;
+        point.pose.orientation = Quaternion(rotation).normalized();
+        point.pose.position = interpolate<N>(functions.values, nodes.position) - rotation * beam.centroid;
+        // Stress is most accurate at the stiffness points: the polynomial through them, extended to the whole element.
+        for (int a = 0; a < N - 1; ++a) {
+          double weight = 1;
+          const auto& abscissa = GaussLegendre<N - 1>::points;
+          for (int b = 0; b < N - 1; ++b)
+            if (b != a) weight *= (xi - abscissa[b]) / (abscissa[a] - abscissa[b]);
+          const auto& q = element.stiffness_points[a];
+          point.strain += weight * point_kinematics(local.evaluate(q.shape, q.derivative),
+                                                    interpolate<N>(q.derivative, nodes.position), q.reference_strain)
+                                       .strain;
+        }
+        point.resultant = element.stiffness * point.strain;
+        points.push_back(point);
+      }
+    });
+    begin = end;
+  }
+}
+
+Pose attached_pose(const State& state, const Attachment& attachment) {
+  if (attachment.node < 0) return attachment.offset;
+  const NodeState& node = state.nodes[attachment.node];
+  return Pose{node.position, node.orientation} * attachment.offset;
+}
+
+ProbeState probe_state(const Model& model, const State& state, const ProbePoint& probe) {
+  ProbeState out;
+  if (probe.element < 0) {
+    out.pose = attached_pose(state, probe.attachment);
+    if (probe.attachment.node < 0) return out;
+    const NodeState& node = state.nodes[probe.attachment.node];
+    const Vector3 spin = node.orientation * node.angular_velocity;
+    out.velocity = node.velocity + spin.cross(out.pose.position - node.position);
+    return out;
+  }
+  visit_element(model, *model.links[probe.link].beam, probe.element, [&](const auto& element) {
+    constexpr int N = std::decay_t<decltype(element)>::kNodes;
+    const ElementConfiguration<N> nodes(element, state);
+    const Pose section = section_pose<N>(nodes, probe.xi);
+    out.pose = section * probe.offset;
+    const ShapeFunctions<N> functions = lagrange<N>(probe.xi);
+    GeneralisedShapeFunctions<N> generalised;
+    LocalRotationVariation<N>(LocalRotations<N>(nodes.orientation))
+        .evaluate(functions.values, functions.derivatives, generalised);
+    Vector3 spin = Vector3::Zero();
+    for (int i = 0; i < N; ++i) {
+      const NodeState& node = state.nodes[element.nodes[i]];
+      spin += generalised.values[i] * (node.orientation * node.angular_velocity);
+    }
+    out.velocity =
+        interpolate<N>(functions.values, nodes.velocity) + spin.cross(out.pose.position - section.position);
+  });
+  return out;
+}
+
+State initial_state(const Model& model) {
+  State state;
+  state.nodes.resize(model.nodes.size());
+  for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+    NodeState& node = state.nodes[i];
+    node.position = model.nodes[i].position;
+    node.orientation = model.nodes[i].orientation;
+    node.velocity = model.initial_velocity[i].head<3>();
+    node.angular_velocity = node.orientation.conjugate() * Vector3(model.initial_velocity[i].tail<3>());
+  }
+  state.released = model.initial_released;
+  state.mass_points.resize(model.mass_point_count);
+  state.strain_rates.assign(model.stiffness_point_count, Vector6::Zero());
+  state.commands.assign(model.coordinates.size(), std::numeric_limits<double>::quiet_NaN());
+  state.efforts.assign(model.coordinates.size(), 0.0);
+  for_each_element(model.beams, [&](const auto& element) {
+    constexpr int N = std::decay_t<decltype(element)>::kNodes;
+    const ElementConfiguration<N> nodes(element, state);
+    const LocalRotationVariation<N> local{LocalRotations<N>(nodes.orientation)};
+    for (int k = 0; k < N; ++k) {
+      const auto& point = element.mass_points[k];
+      GeneralisedShapeFunctions<N> generalised;
+      const Matrix3 rotation = local.evaluate(point.shape, point.derivative, generalised).rotation;
+      Vector3 spin = Vector3::Zero();
+      for (int i = 0; i < N; ++i) spin += generalised.values[i] * model.initial_velocity[element.nodes[i]].template tail<3>();
+      state.mass_points[element.first_mass_point + k].angular_velocity = rotation.transpose() * spin;
+    }
+  });
+  return state;
+}
+
+}  // namespace flexarm

@@ -1,0 +1,204 @@
+#include "flexarm/solver/modes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <stdexcept>
+
+#include <Eigen/Eigenvalues>
+#include <Spectra/GenEigsSolver.h>
+
+#include "flexarm/elements/beam_point.h"
+#include "flexarm/integrators/step_system.h"
+#include "flexarm/math/so3.h"
+#include "flexarm/solver/linear_solver.h"
+
+namespace flexarm {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+/// Below this number of unknowns all eigenvalues are computed by a dense solver.
+constexpr int kDenseLimit = 200;
+
+/// Maps of all joints at a configuration, for zero residual.
+std::vector<FoldMaps> joint_maps(const Model& model, const State& state) {
+  std::vector<FoldMaps> maps(model.joints.size());
+  for (std::size_t j = 0; j < model.joints.size(); ++j) {
+    const JointMap& joint = model.joints[j];
+    NodePose master;
+    if (joint.master >= 0) {
+      master.position = state.nodes[joint.master].position;
+      master.orientation = state.nodes[joint.master].orientation;
+      master.rotation = master.orientation.toRotationMatrix();
+    }
+    variational_maps(joint, master, state.released[j], Vector6::Zero(), maps[j]);
+  }
+  return maps;
+}
+
+void assemble_mass(const Model& model, const State& state, const std::vector<FoldMaps>& maps, SparseAssembler& assembler) {
+  assembler.set_zero();
+  for_each_element(model.beams, [&](const auto& element) {
+    constexpr int N = std::decay_t<decltype(element)>::kNodes;
+    std::array<Quaternion, N> orientation;
+    for (int i = 0; i < N; ++i) orientation[i] = state.nodes[element.nodes[i]].orientation;
+    const LocalRotationVariation<N> local{LocalRotations<N>(orientation)};
+    const auto block = [&](int i, int j) { return Eigen::Map<Matrix6>(assembler.element_block(element.first_block + i * N + j)); };
+    for (int i = 0; i < N; ++i)
+      for (int j = 0; j < N; ++j) block(i, j).template topLeftCorner<3, 3>().diagonal().array() += element.mass(i, j);
+    for (const auto& point : element.mass_points) {
+      GeneralisedShapeFunctions<N> generalised;
+      const Matrix3 rotation = local.evaluate(point.shape, point.derivative, generalised).rotation;
+      const Matrix3 inertia = point.weight * rotation * element.inertia * rotation.transpose();
+      for (int i = 0; i < N; ++i)
+        for (int j = 0; j < N; ++j)
+          block(i, j).template bottomRightCorner<3, 3>() += point.shape[i] * inertia * generalised.values[j];
+    }
+  });
+  for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+    const NodalInertia& inertia = model.inertias[i];
+    const Matrix3 rotation = state.nodes[i].orientation.toRotationMatrix();
+    Eigen::Map<Matrix6> block(assembler.diagonal_block(static_cast<int>(i)));
+    block.topLeftCorner<3, 3>().diagonal().array() += inertia.mass;
+    block.bottomRightCorner<3, 3>() += rotation * inertia.rotary * rotation.transpose();
+  }
+  for (int j = static_cast<int>(model.joints.size()) - 1; j >= 0; --j) assembler.fold(j, maps[j], true);
+  assembler.fold_mimics(true);
+  assembler.gather_tangent();
+}
+
+/// x -> (K + shift M)^{-1} M x, for Spectra and for the dense path.
+class ShiftInvert {
+ public:
+  using Scalar = double;
+  ShiftInvert(const SparseAssembler& stiffness, const SparseAssembler& mass, double shift)
+      : mass_(mass), solver_(mass.unknowns(), mass.column_starts(), mass.row_indices()), values_(mass.values()) {
+    for (std::size_t p = 0; p < values_.size(); ++p) values_[p] = stiffness.values()[p] + shift * mass.values()[p];
+    if (!solver_.factorise(values_)) throw std::runtime_error("the shifted stiffness is singular");
+  }
+  Eigen::Index rows() const { return mass_.unknowns(); }
+  Eigen::Index cols() const { return mass_.unknowns(); }
+  void perform_op(const double* x, double* y) const {
+    Eigen::VectorXd product = Eigen::VectorXd::Zero(rows());
+    for (int j = 0; j < mass_.unknowns(); ++j)
+      for (int p = mass_.column_starts()[j]; p < mass_.column_starts()[j + 1]; ++p)
+        product[mass_.row_indices()[p]] += mass_.values()[p] * x[j];
+    if (!solver_.solve(product)) throw std::runtime_error("the eigenvalue problem is singular");
+    Eigen::VectorXd::Map(y, rows()) = product;
+  }
+
+ private:
+  const SparseAssembler& mass_;
+  mutable LinearSolver solver_;
+  std::vector<double> values_;
+};
+
+struct Eigenpairs {
+  std::vector<double> squared;            // omega^2, ascending
+  std::vector<Eigen::VectorXd> vectors;
+};
+
+Eigenpairs lowest(const SparseAssembler& stiffness, const SparseAssembler& mass, double shift, int count) {
+  const ShiftInvert operation(stiffness, mass, shift);
+  const int n = mass.unknowns();
+  Eigen::VectorXcd values;
+  Eigen::MatrixXcd vectors;
+  if (n <= kDenseLimit || 2 * count + 2 >= n) {
+    Eigen::MatrixXd dense(n, n);
+    for (int j = 0; j < n; ++j) {
+      const Eigen::VectorXd unit = Eigen::VectorXd::Unit(n, j);
+      operation.perform_op(unit.data(), dense.col(j).data());
+    }
+    const Eigen::EigenSolver<Eigen::MatrixXd> solver(dense);
+    values = solver.eigenvalues();
+    vectors = solver.eigenvectors();
+  } else {
+    ShiftInvert mutable_operation(stiffness, mass, shift);
+    Spectra::GenEigsSolver<ShiftInvert> solver(mutable_operation, count, std::min(n, std::max(2 * count + 20, 40)));
+    solver.init();
+    solver.compute(Spectra::SortRule::LargestMagn, 2000, 1e-13);
+    if (solver.info() != Spectra::CompInfo::Successful) throw std::runtime_error("the eigenvalue iteration did not converge");
+    values = solver.eigenvalues();
+    vectors = solver.eigenvectors();
+  }
+  std::vector<int> order(values.size());
+  for (int i = 0; i < values.size(); ++i) order[i] = i;
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return std::abs(values[a]) > std::abs(values[b]); });
+  Eigenpairs out;
+  for (int k = 0; k < std::min<int>(count, static_cast<int>(order.size())); ++k) {
+    out.squared.push_back((1.0 / values[order[k]]).real() - shift);
+    out.vectors.push_back(vectors.col(order[k]).real());
+  }
+  return out;
+}
+
+double trace(const SparseAssembler& matrix) {
+  double sum = 0;
+  for (int j = 0; j < matrix.unknowns(); ++j)
+    for (int p = matrix.column_starts()[j]; p < matrix.column_starts()[j + 1]; ++p)
+      if (matrix.row_indices()[p] == j) sum += std::abs(matrix.values()[p]);
+  return sum;
+}
+
+std::vector<Vector6> expand(const Model& model, const DegreesOfFreedom& dof, const std::vector<FoldMaps>& maps,
+                            const Eigen::VectorXd& vector) {
+  std::vector<Vector6> motion(model.nodes.size(), Vector6::Zero());
+  std::vector<double> scalars(dof.scalar_count, 0.0);
+  for (int s = 0; s < dof.scalar_count; ++s)
+    if (dof.equation[s] >= 0) scalars[s] = vector[dof.equation[s]];
+  for (const DegreesOfFreedom::Mimic& mimic : dof.mimics)
+    scalars[dof.first[mimic.slave_variable]] = mimic.factor * scalars[dof.first[mimic.master_variable]];
+  for (std::size_t i = 0; i < motion.size(); ++i)
+    for (int k = 0; k < 6; ++k) motion[i][k] = scalars[dof.first[i] + k];
+  for (std::size_t j = 0; j < model.joints.size(); ++j) {
+    const JointMap& joint = model.joints[j];
+    Vector6& slave = motion[joint.slave];
+    slave.setZero();
+    if (joint.master >= 0) {
+      slave = motion[joint.master];
+      slave.head<3>() += motion[joint.master].tail<3>().cross(maps[j].lever_right);
+    }
+    for (int k = 0; k < maps[j].right.cols(); ++k)
+      slave += maps[j].right.col(k) * scalars[dof.first[dof.variable_of_joint(static_cast<int>(j))] + k];
+  }
+  double largest = 0;
+  for (const Vector6& m : motion) largest = std::max(largest, m.cwiseAbs().maxCoeff());
+  for (Vector6& m : motion) m /= largest > 0 ? largest : 1;
+  return motion;
+}
+
+}  // namespace
+
+std::vector<Mode> natural_modes(const Model& model, const State& state, int count) {
+  StepSystem system(model, *find_scheme("newmark"));
+  if (system.assembler().unknowns() == 0) return {};
+  system.begin_static(state, 1.0);
+  if (!system.evaluate(true)) throw std::runtime_error("the stiffness is not finite");
+  const DegreesOfFreedom& dof = system.degrees_of_freedom();
+  const std::vector<FoldMaps> maps = joint_maps(model, state);
+  SparseAssembler mass(model, dof);
+  assemble_mass(model, state, maps, mass);
+
+  // The shift makes free mechanisms solvable. A first pass finds the scale of the wanted eigenvalues, a second one with a
+  // shift far below them loses no digits.
+  const double stiffness_trace = trace(system.assembler());
+  double shift = std::max(1e-8 * stiffness_trace / trace(mass), 1e-12);
+  Eigenpairs pairs = lowest(system.assembler(), mass, shift, count);
+  const double scale = *std::max_element(pairs.squared.begin(), pairs.squared.end());
+  if (scale > 0) {
+    shift = 1e-3 * scale;
+    pairs = lowest(system.assembler(), mass, shift, count);
+  }
+  std::vector<Mode> modes;
+  for (std::size_t k = 0; k < pairs.squared.size(); ++k) {
+    const double squared = pairs.squared[k];
+    Mode mode;
+    if (std::abs(squared) > 1e-8 * shift) mode.frequency = std::copysign(std::sqrt(std::abs(squared)), squared) / (2 * kPi);
+    mode.node_motion = expand(model, dof, maps, pairs.vectors[k]);
+    modes.push_back(mode);
+  }
+  std::sort(modes.begin(), modes.end(), [](const Mode& a, const Mode& b) { return a.frequency < b.frequency; });
+  return modes;
+}
+
+}  // namespace flexarm
