@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """scripts/dependencies.txt and package.xml name the same dependencies."""
 
 import os

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Scenes and parameters that cannot be used end the node with status 1 and a message, not with a crash or silence."""
 
 import os
@@ -63,6 +63,8 @@ class BadScenes(unittest.TestCase):
     def test_every_bad_parameter_is_reported(self):
         bad = ["_publish_rate:=0", "_real_time_factor:=-1", "_max_catch_up:=often"]
         self.assert_refused(["_scene:=" + GOOD_SCENE, *bad], "publish_rate", "real_time_factor", "max_catch_up")
+
+    def test_every_bad_parameter_of_the_integrator_is_reported(self):
         self.assert_refused(["_scene:=" + GOOD_SCENE, "_step:=0", "_tolerance:=x"], "step", "tolerance")
 
 

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Joint efforts reach the joints they name, and only those; bad commands are refused whole."""
 
 import math

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Pause, step, resume and reset of a simulation that is the clock of everybody; time never runs backwards."""
 
 import time
