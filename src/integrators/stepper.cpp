@@ -6,7 +6,7 @@
 namespace flexarm {
 namespace {
 
-/// Larger Newton updates of a rotation are scaled down [rad].
+/// Larger Newton updates of a rotation are scaled down where limits are asked for [rad].
 constexpr double kLargestRotationUpdate = 1.0;
 /// A node must not turn by more than pi/2 in a step: |2 tan(angle/2)| = 2.
 constexpr double kLargestStepRotation = 2.0;
@@ -38,7 +38,7 @@ Stepper::Stepper(const Model& model, const Scheme& scheme, const StepSettings& s
   update_norms_.reserve(settings.max_iterations + 1);
 }
 
-bool Stepper::iterate(StepResult& result) {
+bool Stepper::iterate(Updates updates, StepResult& result) {
   using Reason = StepResult::Reason;
   update_norms_.clear();
   const auto fail = [&](Reason reason) {
@@ -56,7 +56,7 @@ bool Stepper::iterate(StepResult& result) {
     update_ = -system_.residual();
     if (!solver_.solve(update_)) return fail(Reason::SingularTangent);
     const double rotation = system_.largest_rotation(update_);
-    if (rotation > kLargestRotationUpdate) update_ *= kLargestRotationUpdate / rotation;
+    if (updates == Updates::Limited && rotation > kLargestRotationUpdate) update_ *= kLargestRotationUpdate / rotation;
     const double norm = system_.scaled_norm(update_);
     if (!std::isfinite(norm)) return fail(Reason::NotFinite);
     update_norms_.push_back(norm);
@@ -70,7 +70,7 @@ bool Stepper::iterate(StepResult& result) {
 bool Stepper::sub_step(State& state, double step, StepResult& result) {
   for (const auto guess : {StepSystem::Guess::Extrapolated, StepSystem::Guess::Unchanged}) {
     system_.begin(state, step, guess);
-    if (!iterate(result)) continue;
+    if (!iterate(Updates::Limited, result)) continue;
     if (system_.largest_node_rotation() > kLargestStepRotation) {
       result.reason = StepResult::Reason::RotationTooLarge;
       return false;
@@ -117,13 +117,30 @@ StepResult Stepper::advance(State& state) {
 StepResult Stepper::solve_static(State& state, int load_steps) {
   StepResult result;
   State trial = state;
-  for (int k = 1; k <= load_steps; ++k) {
-    system_.begin_static(trial, static_cast<double>(k) / load_steps);
-    if (!iterate(result)) return result;
-    system_.accept_static(trial);
+  // Full updates first: a beam that rolls up by several turns needs large rotations at once, and takes them well.
+  const auto solve = [&](double factor) {
+    for (const Updates updates : {Updates::Full, Updates::Limited}) {
+      system_.begin_static(trial, factor);
+      if (iterate(updates, result)) return true;
+    }
+    return false;
+  };
+  double factor = 0, increment = 1.0 / load_steps;
+  const double smallest = std::ldexp(increment, -settings_.max_halvings);
+  while (factor < 1) {
+    const double next = factor + increment > 1 - 1e-12 ? 1.0 : factor + increment;
+    if (solve(next)) {
+      system_.accept_static(trial);
+      factor = next;
+    } else {
+      increment *= 0.5;
+      if (increment < smallest) return result;
+      ++result.halvings;
+    }
   }
   state = trial;
   system_.invalidate();
+  result.reason = StepResult::Reason::None;
   result.converged = true;
   return result;
 }

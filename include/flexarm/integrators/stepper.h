@@ -33,7 +33,8 @@ class Stepper {
   /// One step of settings.step, in sub-steps of step / 2^k where Newton needs them. On failure the state is that after
   /// the last good sub-step.
   StepResult advance(State& state);
-  /// Equilibrium by `load_steps` equal increments of gravity and loads. On failure the state is untouched.
+  /// Equilibrium by `load_steps` equal increments of gravity and loads, halved where Newton asks for it. On failure the
+  /// state is untouched.
   StepResult solve_static(State& state, int load_steps);
   /// Initial accelerations of a scheme that needs them (Newmark), from a short momentum-conserving step.
   void initialise_accelerations(State& state);
@@ -45,8 +46,9 @@ class Stepper {
   const DegreesOfFreedom& degrees_of_freedom() const { return system_.degrees_of_freedom(); }
 
  private:
+  enum class Updates { Full, Limited };
   /// Newton from the present trial configuration; leaves the system evaluated at the solution.
-  bool iterate(StepResult& result);
+  bool iterate(Updates updates, StepResult& result);
   bool sub_step(State& state, double step, StepResult& result);
 
   const Model& model_;

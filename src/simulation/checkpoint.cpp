@@ -1,0 +1,121 @@
+#include "flexarm/simulation/checkpoint.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace flexarm {
+namespace {
+
+constexpr const char* kHeader = "flexarm-checkpoint 1";
+
+/// Applies `visit` to every number of a state in a fixed order; the one place that knows its layout.
+template <class AnyState, class Visit>
+void for_each_number(AnyState& state, const Visit& visit) {
+  const auto vector = [&](auto& v) {
+    for (int k = 0; k < v.size(); ++k) visit(v[k]);
+  };
+  const auto quaternion = [&](auto& q) { vector(q.coeffs()); };
+  visit(state.time);
+  for (auto& node : state.nodes) {
+    vector(node.position);
+    quaternion(node.orientation);
+    vector(node.velocity);
+    vector(node.angular_velocity);
+    vector(node.acceleration);
+    vector(node.angular_acceleration);
+  }
+  for (auto& released : state.released) {
+    vector(released.displacement);
+    quaternion(released.rotation);
+  }
+  for (auto& point : state.mass_points) {
+    vector(point.angular_velocity);
+    vector(point.angular_acceleration);
+  }
+  for (auto& rate : state.strain_rates) vector(rate);
+  for (auto& command : state.commands) visit(command);
+  for (auto& effort : state.efforts) visit(effort);
+  for (auto& increment : state.last_increment) visit(increment);
+  visit(state.last_step);
+  visit(state.work);
+  visit(state.dissipated);
+}
+
+/// What must agree for a state to fit a simulation.
+std::string signature(const Simulation& simulation) {
+  const State& state = simulation.state();
+  return fmt::format("{} nodes {} joints {} mass_points {} coordinates {}", simulation.scheme(), state.nodes.size(),
+                     state.released.size(), state.mass_points.size(), state.commands.size());
+}
+
+[[noreturn]] void fail(const std::string& path, const std::string& what) {
+  throw std::runtime_error("checkpoint '" + path + "': " + what);
+}
+
+double parse(const std::string& token, const std::string& path) {
+  if (token == "nan") return std::nan("");
+  const bool negative = token[0] == '-';
+  const char* begin = token.data() + (negative ? 1 : 0);
+  const char* end = token.data() + token.size();
+  double value = 0;
+  const auto result = std::from_chars(begin, end, value, std::chars_format::hex);
+  if (result.ec != std::errc() || result.ptr != end || !std::isfinite(value))
+    fail(path, "'" + token + "' is not a finite hexadecimal number");
+  return negative ? -value : value;
+}
+
+/// std::to_chars in hexadecimal has no "0x", as std::from_chars expects.
+std::string hexadecimal(double value) {
+  if (std::isnan(value)) return "nan";
+  char buffer[64];
+  const auto result = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::hex);
+  return {buffer, result.ptr};
+}
+
+}  // namespace
+
+void write_checkpoint(const Simulation& simulation, const std::string& path) {
+  const State& state = simulation.state();
+  std::string text = fmt::format("{}\n{}\nsteps {} level {} good {} increments {}\n", kHeader, signature(simulation),
+                                 state.steps, state.halving_level, state.good_steps, state.last_increment.size());
+  for_each_number(state, [&](double value) { text += hexadecimal(value) + "\n"; });
+  text += "end\n";
+  const std::string temporary = path + ".partial";
+  std::ofstream out(temporary, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) fail(path, "cannot be written");
+  if (std::rename(temporary.c_str(), path.c_str()) != 0) fail(path, "cannot be renamed from '" + temporary + "'");
+}
+
+void read_checkpoint(Simulation& simulation, const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) fail(path, "cannot be opened");
+  std::string header, model;
+  std::getline(in, header);
+  std::getline(in, model);
+  if (header != kHeader) fail(path, "expected the first line '" + std::string(kHeader) + "', got '" + header.substr(0, 60) + "'");
+  if (model != signature(simulation))
+    fail(path, "belongs to another model or scheme: expected '" + signature(simulation) + "', got '" + model.substr(0, 120) + "'");
+  State state = simulation.state();
+  std::string word;
+  std::size_t increments = 0;
+  in >> word >> state.steps >> word >> state.halving_level >> word >> state.good_steps >> word >> increments;
+  if (!in || state.steps < 0 || state.halving_level < 0 || increments > 6 * state.nodes.size() + 6 * state.released.size())
+    fail(path, "is damaged in line 3");
+  state.last_increment.assign(increments, 0.0);
+  for_each_number(state, [&](double& value) {
+    if (!(in >> word)) fail(path, "ends too early");
+    value = parse(word, path);
+  });
+  if (!(in >> word) || word != "end") fail(path, "is damaged at its end");
+  simulation.restore(state);
+}
+
+}  // namespace flexarm
