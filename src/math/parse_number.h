@@ -8,7 +8,8 @@
 
 namespace flexarm {
 
-/// The finite number that makes up the whole of `text`, as "1.5", "+2" or "1e-3"; nothing for "1.5abc", "nan" or "1e999".
+/// The finite number that makes up the whole of `text`, as "1.5", "+2" or "1e-3"; nothing for "1.5abc", "nan" or
+/// "1e999".
 inline std::optional<double> parse_number(std::string_view text) {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);  // which from_chars does not know
   double value = 0;

@@ -129,8 +129,7 @@ TimeFunction::TimeFunction() : TimeFunction(1.0) {}
 TimeFunction::TimeFunction(double constant) {
   char text[32];
   const std::to_chars_result result = std::to_chars(text, text + sizeof text, constant);
-  implementation_ =
-      std::make_shared<const Implementation>(Implementation{std::string(text, result.ptr), constant});
+  implementation_ = std::make_shared<const Implementation>(Implementation{std::string(text, result.ptr), constant});
 }
 
 TimeFunction::TimeFunction(std::shared_ptr<const Implementation> implementation)
@@ -156,7 +155,9 @@ TimeFunction TimeFunction::parse(std::string_view text) {
   return TimeFunction(std::make_shared<const Implementation>(std::move(implementation)));
 }
 
-double TimeFunction::operator()(double t) const { return (*implementation_)(t); }
+double TimeFunction::operator()(double t) const {
+  return (*implementation_)(t);
+}
 
 double TimeFunction::derivative(double t) const {
   const double step = std::cbrt(std::numeric_limits<double>::epsilon()) * std::max(1.0, std::abs(t));
@@ -165,6 +166,8 @@ double TimeFunction::derivative(double t) const {
   return ((*this)(t + step) - (*this)(t - step)) / (2 * step);
 }
 
-const std::string& TimeFunction::text() const { return implementation_->text; }
+const std::string& TimeFunction::text() const {
+  return implementation_->text;
+}
 
 }  // namespace flexarm

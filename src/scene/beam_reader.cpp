@@ -37,15 +37,16 @@ std::optional<Tangents> line_tangents(const XmlElement& line, const Vector3& fro
   return Tangents{tangent, tangent};
 }
 
-std::optional<Tangents> arc_tangents(const XmlElement& arc, const Vector3& from, const Vector3& to, const Vector3& center) {
+std::optional<Tangents> arc_tangents(const XmlElement& arc, const Vector3& from, const Vector3& to,
+                                     const Vector3& center) {
   if (!has_length(arc, from, to)) return std::nullopt;
   const Vector3 first = from - center, last = to - center;
   const double radius = 0.5 * (first.norm() + last.norm());
   if (!(radius < kLongestPiece)) {
     arc.attribute_error("center", fmt::format("the radius must be less than {} m", kLongestPiece));
   } else if (std::abs(first.norm() - last.norm()) > kArcTolerance * radius) {
-    arc.attribute_error("center", fmt::format("center must be equally far from both ends (now {} and {} m)", first.norm(),
-                                              last.norm()));
+    arc.attribute_error("center", fmt::format("center must be equally far from both ends (now {} and {} m)",
+                                              first.norm(), last.norm()));
   } else if (first.cross(last).norm() <= kParallelTolerance * radius * radius) {
     // Both ends and the centre on one line: no length, or a half circle, whose plane is not known.
     arc.attribute_error("center", "center must not lie on the line through both ends (give a half circle as two arcs)");
@@ -69,8 +70,8 @@ std::optional<CentrelinePiece> read_piece(const XmlElement& element, Progress& p
   if (!to || !center || !progress.is_known) return std::nullopt;
   piece.to = *to;
   piece.center = *center;
-  const std::optional<Tangents> tangents = is_arc ? arc_tangents(element, progress.position, *to, *center)
-                                                  : line_tangents(element, progress.position, *to);
+  const std::optional<Tangents> tangents =
+      is_arc ? arc_tangents(element, progress.position, *to, *center) : line_tangents(element, progress.position, *to);
   if (!tangents) return std::nullopt;
   if (progress.tangent && progress.tangent->dot(tangents->begin) < -1 + kArcTolerance) {
     element.attribute_error("to", "the centreline must not turn back on itself");

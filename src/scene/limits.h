@@ -14,9 +14,9 @@ constexpr std::size_t kMostCentrelinePieces = 10000;   ///< per beam
 constexpr double kLongestPiece = 1e9;                  ///< of a centreline, and radius of an arc [m]
 constexpr int kMostBeamElements = 100000;              ///< per beam
 constexpr int kMostNewtonIterations = 1000;
-constexpr int kMostHalvings = 30;                ///< a step over 2^30
-constexpr std::size_t kLongestName = 256;        ///< bytes, of links, joints and probes
-constexpr std::size_t kLongestShownValue = 80;   ///< bytes of a value repeated in a message
-constexpr std::size_t kMostFindings = 1000;      ///< listed; the rest is counted
+constexpr int kMostHalvings = 30;               ///< a step over 2^30
+constexpr std::size_t kLongestName = 256;       ///< bytes, of links, joints and probes
+constexpr std::size_t kLongestShownValue = 80;  ///< bytes of a value repeated in a message
+constexpr std::size_t kMostFindings = 1000;     ///< listed; the rest is counted
 
 }  // namespace flexarm::scene

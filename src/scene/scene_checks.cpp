@@ -6,9 +6,13 @@
 namespace flexarm::scene {
 namespace {
 
-std::string element_of(const char* tag, const std::string& name) { return "<" + std::string(tag) + "> " + quoted(name); }
+std::string element_of(const char* tag, const std::string& name) {
+  return "<" + std::string(tag) + "> " + quoted(name);
+}
 
-std::string line_text(const SourceLocation& location) { return "line " + std::to_string(location.line); }
+std::string line_text(const SourceLocation& location) {
+  return "line " + std::to_string(location.line);
+}
 
 /// Records names that come twice. Missing names are recorded already.
 template <class Named>
@@ -80,7 +84,7 @@ void check_tree(SceneDescription& scene, Findings& findings) {
                                });
   const LinkDescription* root = nullptr;
   for (const LinkDescription& link : scene.links) {
-    if (parents.count(link.name) > 0) continue;
+    if (link.name.empty() || parents.count(link.name) > 0) continue;
     if (!root) {
       root = &link;
     } else if (are_joints_good) {
@@ -118,9 +122,11 @@ class ReferenceCheck {
       const char* element = "<initial> of simulation";
       check_link(initial.link, initial.location, element);
       if (initial.link == scene_.root_link && !scene_.root_link.empty())
-        findings_.error(initial.location.line, element, "the root link is clamped and cannot move", quoted(initial.link));
+        findings_.error(initial.location.line, element, "the root link is clamped and cannot move",
+                        quoted(initial.link));
       if (!moving.insert(initial.link).second)
-        findings_.error(initial.location.line, element, "the link has an initial velocity already", quoted(initial.link));
+        findings_.error(initial.location.line, element, "the link has an initial velocity already",
+                        quoted(initial.link));
     }
     for (const PointLoad& load : scene_.loads) check_link(load.link, load.location, "<load> of simulation");
     for (const DistributedLoad& load : scene_.distributed_loads) {
@@ -139,9 +145,10 @@ class ReferenceCheck {
   void add_coordinate(const JointDescription& joint, const std::string& name) {
     const auto [first, is_new] = coordinates_.emplace(name, &joint);
     if (!is_new && first->second->name != joint.name)
-      findings_.error(joint.location.line, element_of("joint", joint.name),
-                      "a coordinate's name must be unique, but joint " + quoted(first->second->name) + " has one of this name",
-                      quoted(name));
+      findings_.error(
+          joint.location.line, element_of("joint", joint.name),
+          "a coordinate's name must be unique, but joint " + quoted(first->second->name) + " has one of this name",
+          quoted(name));
   }
 
   void check_mimic(const JointDescription& joint) const {
@@ -195,7 +202,8 @@ class ReferenceCheck {
       return;
     }
     if (found->second->mimic)
-      findings_.error(location.line, element, "a joint that mimics another one has no coordinate of its own", quoted(name));
+      findings_.error(location.line, element, "a joint that mimics another one has no coordinate of its own",
+                      quoted(name));
     if (!used.insert(name).second)
       findings_.error(location.line, element, "the coordinate has an entry of this kind already", quoted(name));
   }

@@ -7,15 +7,21 @@ const std::vector<std::string>& coordinate_suffixes(JointKind kind) {
                                               free = {"/x", "/y", "/z", "/rx", "/ry", "/rz"},
                                               spherical = {"/rx", "/ry", "/rz"}, two = {"/1", "/2"};
   switch (kind) {
-    case JointKind::Fixed: return none;
+    case JointKind::Fixed:
+      return none;
     case JointKind::Revolute:
     case JointKind::Continuous:
-    case JointKind::Prismatic: return one;
-    case JointKind::Planar: return planar;
-    case JointKind::Floating: return free;
-    case JointKind::Spherical: return spherical;
+    case JointKind::Prismatic:
+      return one;
+    case JointKind::Planar:
+      return planar;
+    case JointKind::Floating:
+      return free;
+    case JointKind::Spherical:
+      return spherical;
     case JointKind::Universal:
-    case JointKind::Cylindrical: return two;
+    case JointKind::Cylindrical:
+      return two;
   }
   return none;
 }

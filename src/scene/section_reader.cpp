@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include <fmt/format.h>
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <fmt/format.h>
 
 namespace flexarm::scene {
 namespace {
@@ -14,7 +14,8 @@ constexpr double kMatrixTolerance = 1e-9;  // relative to the largest number of 
 
 std::optional<SectionShape> read_tube(const XmlElement& tube) {
   tube.expect_only({"outer_radius", "inner_radius"});
-  const std::optional<double> outer = tube.number("outer_radius", kPositive), inner = tube.number("inner_radius", kPositive);
+  const std::optional<double> outer = tube.number("outer_radius", kPositive),
+                              inner = tube.number("inner_radius", kPositive);
   if (!outer || !inner) return std::nullopt;
   if (*inner < *outer) return Tube{*outer, *inner};
   tube.attribute_error("inner_radius", fmt::format("inner_radius must be < outer_radius = {}", *outer));
@@ -46,7 +47,8 @@ std::optional<SectionShape> read_shape(const XmlElement& shape) {
 
 std::optional<Material> read_material(const XmlElement& material) {
   material.expect_only({"young", "poisson", "density"});
-  const std::optional<double> young = material.number("young", kPositive), poisson = material.number("poisson", kPoisson),
+  const std::optional<double> young = material.number("young", kPositive),
+                              poisson = material.number("poisson", kPoisson),
                               density = material.number("density", kPositive);
   if (!young || !poisson || !density) return std::nullopt;
   return Material{*young, *poisson, *density};
@@ -83,8 +85,8 @@ std::optional<Matrix6> read_matrix(const XmlElement& element, const char* attrib
 bool is_symmetric(const Matrix6& matrix) {
   for (int i = 0; i < 6; ++i) {
     for (int j = 0; j < i; ++j) {
-      const double scale = std::max({std::abs(matrix(i, j)), std::abs(matrix(j, i)),
-                                     std::sqrt(std::abs(matrix(i, i)) * std::abs(matrix(j, j)))});
+      const double scale = std::max(
+          {std::abs(matrix(i, j)), std::abs(matrix(j, i)), std::sqrt(std::abs(matrix(i, i)) * std::abs(matrix(j, j)))});
       if (!(std::abs(matrix(i, j) - matrix(j, i)) <= kMatrixTolerance * scale)) return false;
     }
   }
@@ -131,9 +133,10 @@ std::optional<Section> read_section_matrix(const XmlElement& section) {
     section.attribute_error("stiffness", "stiffness must be positive definite");
   }
   if (inertia && !is_inertia(*inertia))
-    section.attribute_error("inertia",
-                            "inertia must be [[m 1, -m d^], [m d^, J]] with mass per length m > 0, centre of mass d, and J "
-                            "symmetric and at least that of m at d");
+    section.attribute_error(
+        "inertia",
+        "inertia must be [[m 1, -m d^], [m d^, J]] with mass per length m > 0, centre of mass d, and J "
+        "symmetric and at least that of m at d");
   if (!stiffness || !inertia || section.findings().error_count() > errors) return std::nullopt;
   return MatrixSection{*stiffness, *inertia};
 }
@@ -148,12 +151,14 @@ std::optional<Section> read_section(const XmlElement& beam) {
   }
   const std::optional<XmlElement> material = beam.child("material");
   if (found.empty()) {
-    beam.error("a section is missing: <circle>, <tube>, <rectangle> or <box_tube> with <material>, or <section>, or "
-               "<section_matrix>");
+    beam.error(
+        "a section is missing: <circle>, <tube>, <rectangle> or <box_tube> with <material>, or <section>, or "
+        "<section_matrix>");
     if (material) read_material(*material);
     return std::nullopt;
   }
-  for (std::size_t i = 1; i < found.size(); ++i) found[i].error("the beam has a section already, <" + found[0].tag() + ">");
+  for (std::size_t i = 1; i < found.size(); ++i)
+    found[i].error("the beam has a section already, <" + found[0].tag() + ">");
 
   const XmlElement& section = found[0];
   if (section.tag() == "section" || section.tag() == "section_matrix") {

@@ -5,7 +5,6 @@
 
 namespace flexarm::scene {
 
-
 /// Reads the section of a <beam>; nothing if there is an error, which is recorded.
 std::optional<Section> read_section(const XmlElement& beam);
 

@@ -11,8 +11,8 @@ namespace {
 constexpr NumberRange kUnitInterval{"from 0 to 1", [](double x) { return x >= 0 && x <= 1; }};
 
 constexpr const char* kSchemes[] = {"auto", "em", "em0", "m1", "newmark"};
-constexpr const char* kPlannedSchemes[] = {"em_scaled", "m2",   "std",  "beta1", "beta2", "hht1", "hht2", "hht3",
-                                           "sm_em",     "alg1", "alg2", "alg3",  "alg4",  "sme"};
+constexpr const char* kPlannedSchemes[] = {"em_scaled", "m2",    "std",  "beta1", "beta2", "hht1", "hht2",
+                                           "hht3",      "sm_em", "alg1", "alg2",  "alg3",  "alg4", "sme"};
 
 void read_scheme(const XmlElement& integrator, IntegratorDescription& description) {
   if (!integrator.has("scheme")) return;
@@ -21,8 +21,9 @@ void read_scheme(const XmlElement& integrator, IntegratorDescription& descriptio
   if (std::any_of(std::begin(kSchemes), std::end(kSchemes), is_name)) {
     description.scheme = name;
   } else if (std::any_of(std::begin(kPlannedSchemes), std::end(kPlannedSchemes), is_name)) {
-    integrator.attribute_error("scheme", fmt::format("this scheme is not yet supported in this version; supported are {}",
-                                                     fmt::join(kSchemes, ", ")));
+    integrator.attribute_error(
+        "scheme",
+        fmt::format("this scheme is not yet supported in this version; supported are {}", fmt::join(kSchemes, ", ")));
   } else {
     integrator.attribute_error("scheme", fmt::format("scheme must be one of {}", fmt::join(kSchemes, ", ")));
   }
@@ -92,14 +93,14 @@ void read_distributed_load(const XmlElement& load, SceneDescription& scene) {
 
 void read_motion(const XmlElement& motion, SceneDescription& scene) {
   motion.expect_only({"joint", "position"});
-  scene.motions.push_back({motion.text("joint").value_or(""), motion.function("position").value_or(TimeFunction()),
-                           motion.location()});
+  scene.motions.push_back(
+      {motion.text("joint").value_or(""), motion.function("position").value_or(TimeFunction()), motion.location()});
 }
 
 void read_effort(const XmlElement& effort, SceneDescription& scene) {
   effort.expect_only({"joint", "history"});
-  scene.efforts.push_back({effort.text("joint").value_or(""), effort.function("history").value_or(TimeFunction()),
-                           effort.location()});
+  scene.efforts.push_back(
+      {effort.text("joint").value_or(""), effort.function("history").value_or(TimeFunction()), effort.location()});
 }
 
 void read_probe(const XmlElement& probe, SceneDescription& scene) {
@@ -112,7 +113,8 @@ void read_probe(const XmlElement& probe, SceneDescription& scene) {
 
 void read_simulation(const XmlElement& unowned, SceneDescription& scene) {
   const XmlElement simulation = unowned.with_owner("simulation");
-  simulation.expect_only({}, {"gravity", "integrator", "initial", "load", "distributed_load", "motion", "effort", "probe"});
+  simulation.expect_only({},
+                         {"gravity", "integrator", "initial", "load", "distributed_load", "motion", "effort", "probe"});
   simulation.expect_at_most_one({"gravity", "integrator"});
   const std::vector<XmlElement> entries = simulation.children();
   if (entries.size() > kMostSimulationEntries) {

@@ -1,7 +1,7 @@
 #include "scene/standard_reader.h"
 
-#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
+#include <Eigen/Eigenvalues>
 
 #include "scene/urdfdom.h"
 
@@ -18,7 +18,7 @@ struct StandardAttribute {
 };
 
 constexpr StandardAttribute kInertialAttributes[] = {
-    {"origin", "xyz", 3, false, kAnyNumber}, {"origin", "rpy", 3, false, kAnyNumber},
+    {"origin", "xyz", 3, false, kAnyNumber},   {"origin", "rpy", 3, false, kAnyNumber},
     {"mass", "value", 1, true, kNonNegative},  {"inertia", "ixx", 1, true, kNonNegative},
     {"inertia", "ixy", 1, true, kAnyNumber},   {"inertia", "ixz", 1, true, kAnyNumber},
     {"inertia", "iyy", 1, true, kNonNegative}, {"inertia", "iyz", 1, true, kAnyNumber},
@@ -28,7 +28,6 @@ constexpr StandardAttribute kInertialAttributes[] = {
 constexpr StandardAttribute kJointAttributes[] = {
     {"origin", "xyz", 3, false, kAnyNumber},
     {"origin", "rpy", 3, false, kAnyNumber},
-    {"axis", "xyz", 3, true, kAnyNumber},
     {"limit", "lower", 1, false, kAnyNumber},
     {"limit", "upper", 1, false, kAnyNumber},
     {"limit", "effort", 1, true, kNonNegative},
@@ -53,7 +52,9 @@ void check_attributes(const XmlElement& element, const StandardAttribute (&table
   }
 }
 
-Vector3 from_urdf(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
+Vector3 from_urdf(const urdf::Vector3& v) {
+  return {v.x, v.y, v.z};
+}
 
 Pose from_urdf(const urdf::Pose& pose) {
   const urdf::Rotation& q = pose.rotation;
@@ -63,7 +64,7 @@ Pose from_urdf(const urdf::Pose& pose) {
 /// Has urdfdom read a document with only these elements of <robot>; its complaints become a finding about `element`.
 urdf::ModelInterfaceSharedPtr read_alone(const XmlElement& element, const std::string& elements) {
   const UrdfdomResult result = parse_with_urdfdom("<robot name=\"robot\">" + elements + "</robot>");
-  if (!result.errors.empty()) element.error("must be valid URDF", result.text());
+  if (!result.errors.empty()) element.error("must be valid URDF", quoted(result.errors.front()));
   return result.errors.empty() ? result.model : nullptr;
 }
 
@@ -108,9 +109,9 @@ struct Kind {
   const char* type;
   JointKind kind;
 };
-constexpr Kind kTypes[] = {
-    {"fixed", JointKind::Fixed},         {"revolute", JointKind::Revolute}, {"continuous", JointKind::Continuous},
-    {"prismatic", JointKind::Prismatic}, {"planar", JointKind::Planar},     {"floating", JointKind::Floating}};
+constexpr Kind kTypes[] = {{"fixed", JointKind::Fixed},           {"revolute", JointKind::Revolute},
+                           {"continuous", JointKind::Continuous}, {"prismatic", JointKind::Prismatic},
+                           {"planar", JointKind::Planar},         {"floating", JointKind::Floating}};
 constexpr Kind kReleases[] = {{"spherical", JointKind::Spherical},
                               {"universal", JointKind::Universal},
                               {"cylindrical", JointKind::Cylindrical},
@@ -150,7 +151,11 @@ bool uses_axis(JointKind kind) {
 
 void read_axes(const XmlElement& joint, JointDescription& description) {
   const std::optional<XmlElement> axis = joint.child("axis"), axis2 = joint.child("axis2");
-  if (axis && uses_axis(description.kind)) description.axis = axis->direction("xyz").value_or(description.axis);
+  if (axis && uses_axis(description.kind)) {
+    description.axis = axis->direction("xyz").value_or(description.axis);
+  } else if (axis) {
+    axis->vector("xyz");  // exporters give fixed joints the axis 0 0 0
+  }
   if (description.kind != JointKind::Universal) {
     if (axis2) axis2->error("only a joint with <release kind=\"universal\"/> has a second axis");
     return;
@@ -174,8 +179,7 @@ void read_limits(const XmlElement& joint, const urdf::Joint& read, JointDescript
   if (description.kind != JointKind::Revolute && description.kind != JointKind::Prismatic) return;
   const XmlElement element = joint.child("limit").value_or(joint);
   if (limits.lower > limits.upper)
-    element.error("lower must be <= upper",
-                  fmt::format("lower '{}', upper '{}'", limits.lower, limits.upper));
+    element.error("lower must be <= upper", fmt::format("lower '{}', upper '{}'", limits.lower, limits.upper));
   if (limits.lower == limits.upper) element.warning("lower and upper are equal: the joint cannot move");
   description.limits = JointLimits{limits.lower, limits.upper, limits.effort, limits.velocity};
 }
@@ -210,7 +214,8 @@ LinkDescription read_link(const XmlElement& unnamed) {
   description.location = unnamed.location();
   const XmlElement link = unnamed.with_name(description.name);
   link.expect_at_most_one({"inertial", "beam"});
-  if (const std::optional<XmlElement> inertial = link.child("inertial")) description.inertial = read_inertial(*inertial);
+  if (const std::optional<XmlElement> inertial = link.child("inertial"))
+    description.inertial = read_inertial(*inertial);
   // Each alone, since urdfdom leaves a link at its first error.
   for (const XmlElement& child : link.children())
     if (child.tag() == "visual" || child.tag() == "collision")

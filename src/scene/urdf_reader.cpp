@@ -19,7 +19,7 @@ struct Place {
   const char* tag;
   const char* parent;
 };
-constexpr Place kPlaces[] = {{"beam", "link"},   {"release", "joint"},    {"axis2", "joint"},     {"slide", "joint"},
+constexpr Place kPlaces[] = {{"beam", "link"},    {"release", "joint"},    {"axis2", "joint"},     {"slide", "joint"},
                              {"couple", "joint"}, {"simulation", "robot"}, {"loop_joint", "robot"}};
 
 /// Records our elements where they would be ignored like a stranger's.
@@ -112,7 +112,7 @@ std::optional<SceneDescription> read_scene(const std::string& text, Findings& fi
   // Each part has been read alone; now the judge of other tools about the whole.
   const UrdfdomResult whole = parse_with_urdfdom(text);
   if (!whole.errors.empty()) {
-    robot.error("must be valid URDF", whole.text());
+    robot.error("must be valid URDF", quoted(whole.errors.front()));
     return std::nullopt;
   }
   return scene;

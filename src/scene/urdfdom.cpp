@@ -36,12 +36,6 @@ class MessageCapture : public console_bridge::OutputHandler {
 
 }  // namespace
 
-std::string UrdfdomResult::text() const {
-  std::string text;
-  for (const std::string& error : errors) text += (text.empty() ? "" : "; ") + error;
-  return text;
-}
-
 UrdfdomResult parse_with_urdfdom(const std::string& document) {
   static std::mutex mutex;
   const std::lock_guard<std::mutex> lock(mutex);

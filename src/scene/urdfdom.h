@@ -12,9 +12,7 @@ namespace flexarm::scene {
 
 struct UrdfdomResult {
   urdf::ModelInterfaceSharedPtr model;  ///< may be null, and incomplete wherever there are errors
-  std::vector<std::string> errors;      ///< what urdfdom logged as errors
-  /// The errors as one line.
-  std::string text() const;
+  std::vector<std::string> errors;      ///< what urdfdom logged as errors, the cause before its consequences
 };
 
 /// Parses a URDF document of moderate nesting in UTF-8. Serialised: urdfdom logs through a global handler.

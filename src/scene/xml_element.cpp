@@ -81,8 +81,9 @@ void XmlElement::expect_only(std::initializer_list<const char*> attributes,
                        quoted(a->Name()));
   }
   for (const tinyxml2::XMLNode* node = xml_->FirstChild(); node; node = node->NextSibling()) {
-    if (node->ToText())
-      findings_->error(node->GetLineNum(), description_, "no text is expected here", quoted(node->Value()));
+    if (!node->ToText()) continue;
+    std::string_view text = node->Value();
+    findings_->error(node->GetLineNum(), description_, "no text is expected here", quoted(next_word(text)));
   }
   for (const XmlElement& child : children()) {
     if (!contains(tags, child.tag())) child.error("unknown element, expected " + listed(tags));
@@ -101,7 +102,8 @@ std::optional<std::string> XmlElement::text(const char* attribute) const {
 std::optional<std::string> XmlElement::name(const char* attribute) const {
   const std::optional<std::string> value = text(attribute);
   if (!value) return std::nullopt;
-  const bool has_control = std::any_of(value->begin(), value->end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; });
+  const bool has_control =
+      std::any_of(value->begin(), value->end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; });
   if (value->empty() || value->size() > kLongestName || has_control) {
     attribute_error(attribute, std::string(attribute) + " must be a name of 1 to " + std::to_string(kLongestName) +
                                    " characters without control characters");
@@ -156,8 +158,8 @@ std::optional<int> XmlElement::integer(const char* attribute, int least, int mos
   const std::from_chars_result parsed = std::from_chars(word.data(), word.data() + word.size(), result);
   if (parsed.ec != std::errc() || parsed.ptr != word.data() + word.size() || !next_word(rest).empty() ||
       result < least || result > most) {
-    attribute_error(attribute, std::string(attribute) + " must be a whole number from " + std::to_string(least) + " to " +
-                                   std::to_string(most) + alternative);
+    attribute_error(attribute, std::string(attribute) + " must be a whole number from " + std::to_string(least) +
+                                   " to " + std::to_string(most) + alternative);
     return std::nullopt;
   }
   return result;

@@ -24,8 +24,8 @@ constexpr NumberRange kNonNegative{">= 0", [](double x) { return x >= 0; }};
 
 /// A view: element and findings must outlive it.
 ///
-/// Readers of attributes return nothing (or the fallback) where an attribute is wrong, after recording why; an attribute read
-/// without fallback must be there.
+/// Readers of attributes return nothing (or the fallback) where an attribute is wrong, after recording why; an
+/// attribute read without fallback must be there.
 class XmlElement {
  public:
   /// `owner`: what messages call the thing that the element's children belong to ("joint 'elbow'").

@@ -87,7 +87,9 @@ TEST(TimeFunction, DerivativeAtTheStartUsesNoNegativeTimes) {
   EXPECT_NEAR(TimeFunction::parse("t < 0 ? 1/0 : 3*t").derivative(0), 3, 1e-9);
 }
 
-TEST(TimeFunction, MayBeNotFinite) { EXPECT_FALSE(std::isfinite(TimeFunction::parse("1/t")(0))); }
+TEST(TimeFunction, MayBeNotFinite) {
+  EXPECT_FALSE(std::isfinite(TimeFunction::parse("1/t")(0)));
+}
 
 TEST(TimeFunction, DoesNotDependOnTheLocale) {
   const std::locale before = std::locale::global(std::locale(std::locale::classic(), new DecimalComma));

@@ -1,0 +1,34 @@
+#include <cstdlib>
+#include <filesystem>
+
+#include "scene/scene_text.h"
+
+namespace flexarm::scene {
+namespace {
+
+std::vector<std::string> example_scenes() {
+  std::vector<std::string> paths;
+  for (const auto& entry : std::filesystem::directory_iterator(FLEXARM_SOURCE_DIR "/config/examples"))
+    if (entry.path().extension() == ".urdf") paths.push_back(entry.path());
+  return paths;
+}
+
+}  // namespace
+
+TEST(ExampleScenes, AreReadWithoutAnyFinding) {
+  const std::vector<std::string> paths = example_scenes();
+  EXPECT_GE(paths.size(), 5u);
+  for (const std::string& path : paths) {
+    const ReadResult result = read_scene_file(path);
+    EXPECT_TRUE(result.scene) << path;
+    EXPECT_TRUE(result.diagnostics.empty()) << to_text(result.diagnostics);
+  }
+}
+
+TEST(ExampleScenes, AreValidUrdfForOtherTools) {
+  if (std::system("command -v check_urdf > /dev/null") != 0) GTEST_SKIP() << "check_urdf (liburdfdom-tools) is missing";
+  for (const std::string& path : example_scenes())
+    EXPECT_EQ(std::system(("check_urdf '" + path + "' > /dev/null").c_str()), 0) << path;
+}
+
+}  // namespace flexarm::scene

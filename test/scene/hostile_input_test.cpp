@@ -1,0 +1,179 @@
+/// Whatever the bytes: diagnostics, never a crash or a hang.
+
+#include <console_bridge/console.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <sstream>
+
+#include "scene/scene_text.h"
+
+namespace flexarm::scene {
+namespace {
+
+std::string repeated(const std::string& text, int count) {
+  std::string all;
+  for (int i = 0; i < count; ++i) all += text;
+  return all;
+}
+
+/// A scene is given exactly if there is no error; a finding fills one line.
+void expect_consistent(const ReadResult& result) {
+  EXPECT_EQ(result.scene.has_value(), !has_errors(result.diagnostics));
+  for (const Diagnostic& finding : result.diagnostics)
+    EXPECT_EQ(finding.text().find('\n'), std::string::npos) << finding.text();
+}
+
+}  // namespace
+
+TEST(HostileInput, NotXml) {
+  expect_one_error("", 0, "must be well-formed XML");
+  expect_one_error("<robot name=\"r\">\n<link name=\"a\">\n</robot>", 2,
+                   "must be well-formed XML, got XML_ERROR_MISMATCHED_ELEMENT");
+  expect_one_error("<robot name=\"r\">\n<link name='a' name='b'/></robot>", 2, "must be well-formed XML");
+  expect_one_error("<sdf/>", 1, "the outermost element must be <robot>, got 'sdf'");
+  expect_one_error("<robot name=\"r\">\n\xff</robot>", 2,
+                   "must be text in UTF-8 without control characters, got byte 255");
+  expect_one_error(std::string("<robot name=\"r\"/>\0", 18), 1, "got byte 0");
+  expect_one_error("<robot name=\"r\"/>", 1, "at least one <link> is expected");
+  expect_one_error("<robot><link name=\"a\"/></robot>", 1, "attribute 'name' is missing");
+}
+
+TEST(HostileInput, Entities) {
+  expect_one_error("<!DOCTYPE robot [<!ENTITY a \"b\">]>\n<robot name=\"r\"/>", 1,
+                   "document type and entity declarations are not allowed, got '<!DOCTYPE robot [<!E'");
+  expect_one_error("<robot name=\"r\">\n<!ENTITY a \"b\"></robot>", 2, "document type and entity declarations");
+  EXPECT_TRUE(read("<robot name=\"r\"><!-- <!DOCTYPE --><link name=\"a\"><![CDATA[<!ENTITY]]></link></robot>").scene);
+}
+
+TEST(HostileInput, Size) {
+  const std::string head = "<robot name=\"r\"><link name=\"a\"/>";
+  expect_one_error(head + std::string(20u << 20, ' ') + "</robot>", 0, "may have 16777216 bytes");
+  expect_one_error(head + repeated("<a>", 40) + repeated("</a>", 40) + "</robot>", 1, "nested 32 deep");
+  expect_one_error(head + repeated("<a>", 100000) + "</robot>", 1, "nested 32 deep");
+  EXPECT_TRUE(has_errors(read(repeated("<robot>", 1000000)).diagnostics));
+
+  std::string links = head;
+  for (int i = 0; i < 20000; ++i) links += "<link name=\"l" + std::to_string(i) + "\"/>";
+  EXPECT_NE(to_text(read(links + "</robot>").diagnostics).find("a scene has at most 10000 links"), std::string::npos);
+
+  const std::string loads = head + "<simulation>" + repeated("<load link=\"a\" force=\"1 0 0\"/>\n", 20000);
+  expect_one_error(loads + "</simulation></robot>", 1, "at most 10000 entries are allowed");
+}
+
+TEST(HostileInput, ManyErrorsAreListedInPart) {
+  const ReadResult result = read("<robot name=\"r\"><link name=\"a\"/><simulation>\n" + repeated("<motion/>\n", 9000) +
+                                 "</simulation></robot>");
+  EXPECT_FALSE(result.scene);
+  EXPECT_EQ(result.diagnostics.size(), 1001u);
+  EXPECT_NE(result.diagnostics.back().text().find("further findings"), std::string::npos);
+}
+
+TEST(HostileInput, LongValuesAreShortened) {
+  const ReadResult result = read(good_scene_with(R"(lower="-1")", "lower=\"" + std::string(1 << 20, 'x') + "\""));
+  ASSERT_EQ(result.diagnostics.size(), 1u);
+  EXPECT_LT(result.diagnostics[0].text().size(), 300u);
+}
+
+TEST(HostileInput, FilesThatCannotBeRead) {
+  EXPECT_EQ(read_scene_file("/no/such/file.urdf").diagnostics.at(0).text(), "/no/such/file.urdf: file: cannot be read");
+  EXPECT_FALSE(read_scene_file(testing::TempDir()).scene);
+  EXPECT_FALSE(read_scene_file("/dev/null").scene);
+  EXPECT_FALSE(read_scene_file("/dev/zero").scene);
+}
+
+TEST(HostileInput, AllErrorsAreReportedAtOnce) {
+  std::string text = good_scene_with(R"(<mass value="2"/>)", R"(<mass value="-2"/>)");
+  const auto also = [&](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  also(R"(<box size="1 1 1"/>)", "<bocks/>");
+  also(R"(lower="-1")", R"(lower="x")");
+  also(R"(<tube outer_radius="0.02")", R"(<tube outer_radius="-0.02")");
+  also(R"(kind="universal")", R"(kind="x")");
+  also(R"(<probe name="end" link="tip")", R"(<probe name="end" link="toe")");
+  const ReadResult result = read(text);
+  std::vector<int> lines;
+  for (const Diagnostic& finding : result.diagnostics) lines.push_back(finding.line);
+  EXPECT_EQ(lines, (std::vector<int>{10, 16, 19, 34, 44, 67})) << to_text(result.diagnostics);
+}
+
+TEST(HostileInput, HandlerOfTheLogIsRestored) {
+  struct Silent : console_bridge::OutputHandler {
+    void log(const std::string&, console_bridge::LogLevel, const char*, int) override { ++messages; }
+    int messages = 0;
+  } handler;
+  console_bridge::useOutputHandler(&handler);
+  console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_NONE);
+  EXPECT_FALSE(read(good_scene_with(R"(<box size="1 1 1"/>)", "<bocks/>")).scene);
+  EXPECT_EQ(console_bridge::getOutputHandler(), &handler);
+  EXPECT_EQ(console_bridge::getLogLevel(), console_bridge::CONSOLE_BRIDGE_LOG_NONE);
+  EXPECT_EQ(handler.messages, 0);
+  console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_WARN);
+  console_bridge::restorePreviousOutputHandler();
+}
+
+TEST(HostileInput, MutatedScenes) {
+  std::vector<std::string> scenes = {kGoodScene};
+  for (const auto& entry : std::filesystem::directory_iterator(FLEXARM_SOURCE_DIR "/config/examples")) {
+    std::stringstream text;
+    text << std::ifstream(entry.path()).rdbuf();
+    scenes.push_back(text.str());
+  }
+  std::sort(scenes.begin(), scenes.end());  // directory order differs between machines
+  const std::vector<std::string> fragments = {"<",
+                                              ">",
+                                              "\"",
+                                              "/>",
+                                              "<!--",
+                                              "-->",
+                                              "<![CDATA[",
+                                              "&",
+                                              "&#0;",
+                                              "&#xffff;",
+                                              "\xef\xbf\xbe",
+                                              "0",
+                                              "-1",
+                                              "1e308",
+                                              "nan",
+                                              "1e-320",
+                                              ":",
+                                              "?",
+                                              "<beam>",
+                                              "</link>",
+                                              "<link name=\"a\"/>",
+                                              " ",
+                                              "\n",
+                                              "=",
+                                              "\xc3\xa9",
+                                              "(",
+                                              "99999999999"};
+  std::mt19937 random(1);  // the same mutations on every machine
+  const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random()) % n; };
+  for (int i = 0; i < 4000; ++i) {
+    std::string text = scenes[below(scenes.size())];
+    for (std::size_t change = 1 + below(4); change > 0; --change) {
+      const std::size_t at = below(text.size()), length = std::min(below(40), text.size() - at);
+      switch (below(4)) {
+        case 0:
+          text[at] = static_cast<char>(below(256));
+          break;
+        case 1:
+          text.erase(at, length);
+          break;
+        case 2:
+          text.insert(at, fragments[below(fragments.size())]);
+          break;
+        case 3:
+          text.insert(below(text.size()), text.substr(at, length));
+          break;
+      }
+    }
+    expect_consistent(read(text));
+    if (HasFailure()) FAIL() << text;
+  }
+}
+
+}  // namespace flexarm::scene

@@ -1,0 +1,147 @@
+#include "scene/scene_text.h"
+
+namespace flexarm::scene {
+namespace {
+
+/// The good scene with one replacement has one error, at this line.
+void expect_error(const std::string& from, const std::string& to, int line, const std::string& fragment) {
+  SCOPED_TRACE(from + " -> " + to);
+  expect_one_error(good_scene_with(from, to), line, fragment);
+}
+
+/// Links a, b, c under the root link w, with these joints; each on a line of its own from line 2.
+std::string tree(const std::string& joints) {
+  return R"(<robot name="r"><link name="w"/><link name="a"/><link name="b"/><link name="c"/>)"
+         "\n" +
+         joints + "</robot>";
+}
+
+std::string joint(const std::string& name, const std::string& parent, const std::string& child,
+                  const std::string& type = "fixed", const std::string& more = "") {
+  return "<joint name=\"" + name + "\" type=\"" + type + "\"><parent link=\"" + parent + "\"/><child link=\"" + child +
+         "\"/>" + more + "</joint>\n";
+}
+
+std::string mimic(const std::string& name) {
+  return "<mimic joint=\"" + name + "\"/>";
+}
+
+}  // namespace
+
+TEST(JointErrors, Numbers) {
+  expect_error(R"(<axis xyz="0 0 2"/>)", R"(<axis xyz="0 0 0"/>)", 9,
+               "<axis> of joint 'shoulder': xyz must not be zero");
+  expect_error(R"(<axis xyz="0 0 2"/>)", R"(<axis xyz="0 0"/>)", 9, "xyz must be 3 finite numbers, got '0 0'");
+  expect_error(R"(<axis xyz="0 0 2"/>)", R"(<axis/>)", 9, "attribute 'xyz' is missing");
+  expect_error(R"(xyz="0 0 0.5")", R"(xyz="0 0 0.5m")", 6,
+               "<origin> of joint 'shoulder': xyz must be 3 finite numbers");
+  expect_error(R"(lower="-1")", R"(lower="low")", 10,
+               "<limit> of joint 'shoulder': lower must be a finite number, got 'low'");
+  expect_error(R"(lower="-1")", R"(lower="2.5")", 10, "lower must be <= upper, got lower '2.5', upper '2'");
+  expect_error(R"(effort="30")", "", 10, "attribute 'effort' is missing");
+  expect_error(R"(effort="30")", R"(effort="-30")", 10, "effort must be >= 0, got '-30'");
+  expect_error(R"(damping="0.1" f)", R"(damping="-0.1" f)", 11, "damping must be >= 0");
+  expect_error(R"(friction="0.2")", R"(friction="1,5")", 11, "friction must be a finite number, got '1,5'");
+  expect_error(R"(<dynamics damping="0.1" friction="0.2"/>)", "<dynamics/>", 5,
+               "<joint> 'shoulder': must be valid URDF");
+  expect_error(R"(multiplier="-2")", R"(multiplier="-2x")", 50, "<mimic> of joint 'finger': multiplier must be");
+  expect_error(R"(<limit lower="-1" upper="2" effort="30" velocity="4"/>)", "", 5,
+               "<joint> 'shoulder': a revolute joint needs <limit");
+  expect_error(R"(<dynamics)", R"(<safety_controller k_position="1"/><dynamics)", 11,
+               "<safety_controller> of joint 'shoulder': attribute 'k_velocity' is missing");
+}
+
+TEST(JointErrors, Structure) {
+  expect_error(
+      R"(name="elbow" type="continuous")", R"(name="elbow" type="hinge")", 22,
+      "<joint> 'elbow': type must be one of fixed, revolute, continuous, prismatic, planar, floating, got 'hinge'");
+  expect_error(R"(name="elbow" type="continuous")", R"(name="elbow")", 22, "attribute 'type' is missing");
+  expect_error(R"(<child link="upper"/>)", R"(<child link="upper"/><child link="upper"/>)", 8, "at most one <child>");
+  expect_error(R"(<axis xyz="0 0 2"/>)", R"(<axis xyz="0 0 2"/><axis xyz="0 0 1"/>)", 9, "at most one <axis>");
+  expect_error(R"(<child link="forearm"/>)", "", 22, "<child link=\"...\"/> is missing");
+  expect_error(R"(<child link="forearm"/>)", "<child/>", 24, "attribute 'link' is missing");
+}
+
+TEST(JointErrors, EqualLimitsAreAWarning) {
+  const ReadResult result = read(good_scene_with(R"(lower="-1" upper="2")", ""));
+  EXPECT_TRUE(result.scene);
+  ASSERT_EQ(result.diagnostics.size(), 1u);
+  EXPECT_EQ(result.diagnostics[0].line, 10);
+  EXPECT_NE(result.diagnostics[0].text().find("warning: <limit> of joint 'shoulder'"), std::string::npos);
+}
+
+TEST(JointErrors, Release) {
+  const std::string release = R"(<release kind="universal"/>)", axis2 = R"(<axis2 xyz="0 0 3"/>)";
+  expect_error(
+      release, R"(<release kind="ball"/>)", 44,
+      "<release> of joint 'wrist': kind must be one of spherical, universal, cylindrical, planar, free, got 'ball'");
+  expect_error(release, R"(<release/>)", 44, "attribute 'kind' is missing");
+  expect_error(release, R"(<release kind="universal" axis="1 0 0"/>)", 44,
+               "unknown attribute, expected kind, got 'axis'");
+  expect_error(axis2, "", 39, "<joint> 'wrist': a universal joint needs a second axis");
+  expect_error(axis2, R"(<axis2 xyz="0 -1 0"/>)", 43, "the axes of a universal joint must not be parallel");
+  expect_error(axis2, R"(<axis2 xyz="0 0 0"/>)", 43, "xyz must not be zero");
+  expect_error(R"(<limit effort="7" velocity="1"/>)",
+               axis2.substr(0, axis2.size() - 2) + R"( /><limit effort="7" velocity="1"/>)", 25,
+               "only a joint with <release kind=\"universal\"/> has a second axis");
+  expect_error(R"(<limit effort="7")", R"(<release kind="free"/><limit effort="7")", 25,
+               "the type of the joint must be 'floating', got 'continuous'");
+}
+
+TEST(JointErrors, NotYetSupported) {
+  expect_error(R"(<release kind="universal"/>)", R"(<release kind="universal"/><slide start="0.8"/>)", 44,
+               "<slide> of joint 'wrist': not yet supported in this version");
+  expect_error(R"(<release kind="universal"/>)", R"(<release kind="universal"/><couple kind="screw" pitch="1"/>)", 44,
+               "<couple> of joint 'wrist': not yet supported in this version");
+  expect_error(R"(<link name="world"/>)", R"(<link name="world"/><loop_joint name="l" type="fixed"/>)", 4,
+               "<loop_joint> of robot 'arm': not yet supported in this version");
+}
+
+TEST(TreeErrors, Names) {
+  expect_one_error(tree(joint("i", "w", "a") + joint("i", "a", "b") + joint("k", "b", "c")), 3,
+                   "<joint> 'i': name is taken, by line 2");
+  expect_one_error(tree(joint("i", "x", "a") + joint("j", "a", "b") + joint("k", "b", "c")), 2,
+                   "<joint> 'i': parent must be a link of the scene, got 'x'");
+  expect_one_error(tree(joint("i", "w", "a") + joint("j", "a", "b") + joint("k", "b", "x")), 4,
+                   "<joint> 'k': child must be a link of the scene, got 'x'");
+  expect_one_error(tree(joint("i", "w", "a", "floating") + joint("i/x", "a", "b", "continuous") + joint("k", "b", "c")),
+                   3, "a coordinate's name must be unique, but joint 'i' has one of this name, got 'i/x'");
+}
+
+TEST(TreeErrors, Shape) {
+  expect_one_error(tree(joint("i", "w", "a") + joint("j", "a", "b") + joint("k", "a", "c") + joint("l", "w", "b")), 5,
+                   "<joint> 'l': a link is the child of one joint only, and this one has 'j' (line 3), got 'b'");
+  expect_one_error(tree(joint("i", "w", "a") + joint("j", "a", "b")), 1,
+                   "<link> 'c': must be the child of a joint: a scene has one root link, and that is 'w'");
+  expect_one_error(tree(joint("i", "w", "a") + joint("j", "b", "c") + joint("k", "c", "b")), 4,
+                   "joints must form a tree; following the parents leads round in a ring");
+  EXPECT_FALSE(read(tree(joint("i", "w", "a") + joint("j", "b", "b") + joint("k", "w", "c"))).scene);
+  expect_one_error(tree(joint("h", "c", "w") + joint("i", "w", "a") + joint("j", "a", "b") + joint("k", "b", "c")), 2,
+                   "leads round in a ring");
+}
+
+TEST(TreeErrors, Mimic) {
+  const std::string end = joint("k", "b", "c");
+  expect_one_error(tree(joint("i", "w", "a", "continuous", mimic("x")) + joint("j", "a", "b") + end), 2,
+                   "<joint> 'i': mimic joint must be a joint of the scene, got 'x'");
+  expect_one_error(tree(joint("i", "w", "a", "continuous", mimic("i")) + joint("j", "a", "b") + end), 2,
+                   "a joint must not mimic itself");
+  expect_one_error(tree(joint("i", "w", "a", "floating", mimic("j")) + joint("j", "a", "b", "continuous") + end), 2,
+                   "only a joint with one coordinate can mimic");
+  expect_one_error(tree(joint("i", "w", "a", "continuous", mimic("j")) + joint("j", "a", "b", "fixed") + end), 2,
+                   "only a joint with one coordinate can be mimicked, got 'j'");
+  expect_one_error(tree(joint("i", "w", "a", "continuous", "<mimic/>") + joint("j", "a", "b", "fixed") + end), 2,
+                   "<mimic> of joint 'i': attribute 'joint' is missing");
+
+  const ReadResult ring =
+      read(tree(joint("i", "w", "a", "continuous", mimic("j")) + joint("j", "a", "b", "continuous", mimic("i")) + end));
+  EXPECT_EQ(ring.diagnostics.size(), 2u) << to_text(ring.diagnostics);
+  EXPECT_FALSE(ring.scene);
+
+  const ReadResult chain =
+      read(tree(joint("i", "w", "a", "continuous", mimic("j")) + joint("j", "a", "b", "continuous", mimic("k")) +
+                joint("k", "b", "c", "continuous")));
+  EXPECT_TRUE(chain.scene) << to_text(chain.diagnostics);
+}
+
+}  // namespace flexarm::scene
