@@ -20,7 +20,8 @@ NewmarkRule newmark_rule(const Scheme& scheme, double step) { return {scheme.bet
 
 }  // namespace
 
-NodalInertiaAction nodal_inertia_action(const NodalInertia& inertia, const Scheme& scheme, const NodeStep& node) {
+NodalInertiaAction nodal_inertia_action(const NodalInertia& inertia, const Scheme& scheme, const NodeStep& node,
+                                        bool with_tangent) {
   NodalInertiaAction action;
   const double h = node.step;
   const Matrix3& begin = node.begin.rotation;
@@ -36,9 +37,9 @@ NodalInertiaAction nodal_inertia_action(const NodalInertia& inertia, const Schem
     const RotationIncrement increment = rotation_increment(scheme, node);
     if (!J.isZero(0)) {
       const RotaryRate rate =
-          average_rotary_rate(J, begin, end, increment.value, increment.inverse_tangent, spin, h);
+          average_rotary_rate(J, begin, end, increment.value, increment.inverse_tangent, spin, h, with_tangent);
       action.residual.tail<3>() = rate.moment;
-      action.rotational = rate.derivative;
+      if (with_tangent) action.rotational = rate.derivative;
     }
     if (!inertia.rotary_damping.isZero(0)) {
       // Mean rotation of D Omega: its work on the increment is Omega.D Omega >= 0 because Lambda_0 Omega = Lambda_1 Omega.

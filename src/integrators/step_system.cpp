@@ -171,7 +171,6 @@ void StepSystem::set_slaves() {
 void StepSystem::update_increments() {
   for (std::size_t i = 0; i < end_.size(); ++i) {
     increments_[i] = cayley::increment(begin_[i].orientation, end_[i].orientation);
-    inverse_tangents_[i] = cayley::inverse_tangent(increments_[i]);
   }
 }
 
@@ -285,7 +284,8 @@ void StepSystem::add_nodal_inertia(bool with_tangent) {
     residual.head<3>() -= load_factor_ * inertia.total_mass * model_.gravity;
     if (static_ || inertia.empty()) continue;
     const NodalInertiaAction action = nodal_inertia_action(
-        inertia, scheme_, {begin_[i], end_[i], state_->nodes[i], increments_[i], inverse_tangents_[i], step_});
+        inertia, scheme_, {begin_[i], end_[i], state_->nodes[i], increments_[i], inverse_tangents_[i], step_},
+        with_tangent);
     residual += action.residual;
     dissipated_ += action.dissipated;
     if (!with_tangent) continue;
@@ -358,7 +358,7 @@ void StepSystem::fold_joints(bool with_tangent) {
     const NodePose& end = joint.master < 0 ? world : end_[joint.master];
     if (!static_ && scheme_.is_incremental())
       incremental_maps(joint, joint.master < 0 ? world : begin_[joint.master], end, state_->released[j], released_[j], g,
-                       maps);
+                       maps, with_tangent);
     else
       variational_maps(joint, end, released_[j], g, maps);
     assembler_.fold(j, maps, with_tangent);
@@ -368,8 +368,11 @@ void StepSystem::fold_joints(bool with_tangent) {
 }
 
 bool StepSystem::evaluate(bool with_tangent) {
-  assembler_.set_zero();
+  assembler_.set_zero(with_tangent);
   dissipated_ = 0;
+  if (with_tangent && !static_)
+    for (std::size_t i = 0; i < increments_.size(); ++i)
+      inverse_tangents_[i] = cayley::inverse_tangent(increments_[i]);
   if (static_)
     add_endpoint_beams(with_tangent);
   else

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace flexarm {
 namespace {
@@ -12,6 +13,10 @@ constexpr double kLargestRotationUpdate = 1.0;
 constexpr double kLargestStepRotation = 2.0;
 /// Newton is given up when an update is this much larger than the first one.
 constexpr double kDivergence = 1e4;
+/// Contraction of the updates above which kept factors are renewed.
+constexpr double kSlowContraction = 0.03;
+/// Scaled updates cannot be expected to become smaller than this.
+constexpr double kRoundOff = 1e-15;
 /// Converged sub-steps after which the step is doubled again.
 constexpr int kGoodStepsToDouble = 2;
 
@@ -38,39 +43,63 @@ Stepper::Stepper(const Model& model, const Scheme& scheme, const StepSettings& s
   update_norms_.reserve(settings.max_iterations + 1);
 }
 
-bool Stepper::iterate(Updates updates, StepResult& result) {
+void Stepper::invalidate() {
+  system_.invalidate();
+  factorised_step_ = 0;
+}
+
+bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
   using Reason = StepResult::Reason;
   update_norms_.clear();
   const auto fail = [&](Reason reason) {
     result.reason = reason;
+    factorised_step_ = 0;
     return false;
   };
   if (system_.assembler().unknowns() == 0)
     return system_.evaluate(false) || fail(Reason::NotFinite);
 
+  bool factorise = !reuse || factorised_step_ != system_.step();
   for (int iteration = 0; iteration < settings_.max_iterations; ++iteration) {
-    if (!system_.evaluate(true)) return fail(Reason::NotFinite);
+    if (!system_.evaluate(factorise)) return fail(Reason::NotFinite);
     ++result.iterations;
-    ++result.factorisations;
-    if (!solver_.factorise(system_.assembler().values())) return fail(Reason::SingularTangent);
+    if (factorise) {
+      ++result.factorisations;
+      if (!solver_.factorise(system_.assembler().values())) return fail(Reason::SingularTangent);
+      factorised_step_ = system_.step();
+    }
     update_ = -system_.residual();
     if (!solver_.solve(update_)) return fail(Reason::SingularTangent);
     const double rotation = system_.largest_rotation(update_);
     if (updates == Updates::Limited && rotation > kLargestRotationUpdate) update_ *= kLargestRotationUpdate / rotation;
     const double norm = system_.scaled_norm(update_);
     if (!std::isfinite(norm)) return fail(Reason::NotFinite);
+    const double contraction =
+        update_norms_.empty() ? 1.0 : norm / std::max(update_norms_.back(), std::numeric_limits<double>::min());
     update_norms_.push_back(norm);
     if (norm > kDivergence * std::max(update_norms_.front(), 1e-3)) return fail(Reason::NoConvergence);
     system_.update(update_);
-    if (norm <= settings_.tolerance) return system_.evaluate(false) || fail(Reason::NotFinite);
+    // Kept factors converge linearly: what remains after this update is estimated from the last contraction, and asked to
+    // be as small as what quadratic convergence leaves.
+    const double remainder = std::max(settings_.tolerance * settings_.tolerance, kRoundOff);
+    const bool converged = reuse ? norm * std::min(contraction, 1.0) <= remainder
+                                 : norm <= settings_.tolerance;
+    if (converged) return system_.evaluate(false) || fail(Reason::NotFinite);
+    factorise = !reuse || (iteration > 0 && contraction > kSlowContraction);
   }
   return fail(Reason::NoConvergence);
 }
 
 bool Stepper::sub_step(State& state, double step, StepResult& result) {
-  for (const auto guess : {StepSystem::Guess::Extrapolated, StepSystem::Guess::Unchanged}) {
-    system_.begin(state, step, guess);
-    if (!iterate(Updates::Limited, result)) continue;
+  struct Attempt {
+    StepSystem::Guess guess;
+    bool reuse;
+  };
+  const Attempt attempts[] = {{StepSystem::Guess::Extrapolated, settings_.reuse_factorisation},
+                              {StepSystem::Guess::Unchanged, false}};
+  for (const Attempt& attempt : attempts) {
+    system_.begin(state, step, attempt.guess);
+    if (!iterate(Updates::Limited, attempt.reuse, result)) continue;
     if (system_.largest_node_rotation() > kLargestStepRotation) {
       result.reason = StepResult::Reason::RotationTooLarge;
       return false;
@@ -102,7 +131,7 @@ StepResult Stepper::advance(State& state) {
     }
     state.good_steps = 0;
     if (level == finest) {
-      system_.invalidate();
+      invalidate();
       return result;
     }
     ++state.halving_level;
@@ -121,7 +150,7 @@ StepResult Stepper::solve_static(State& state, int load_steps) {
   const auto solve = [&](double factor) {
     for (const Updates updates : {Updates::Full, Updates::Limited}) {
       system_.begin_static(trial, factor);
-      if (iterate(updates, result)) return true;
+      if (iterate(updates, false, result)) return true;
     }
     return false;
   };
@@ -139,7 +168,7 @@ StepResult Stepper::solve_static(State& state, int load_steps) {
     }
   }
   state = trial;
-  system_.invalidate();
+  invalidate();
   result.reason = StepResult::Reason::None;
   result.converged = true;
   return result;

@@ -123,65 +123,67 @@ void variational_maps(const JointMap& joint, const NodePose& master, const Relea
 }
 
 void incremental_maps(const JointMap& joint, const NodePose& master_begin, const NodePose& master_end,
-                      const Released& begin, const Released& end, const Vector6& g, FoldMaps& maps) {
+                      const Released& begin, const Released& end, const Vector6& g, FoldMaps& maps, bool with_tangent) {
   const int count = released_count(joint.kind);
   const JointFrame frame_begin = joint_frame(joint, master_begin, begin), frame = joint_frame(joint, master_end, end);
-  const Matrix3& B0 = frame_begin.rotation;
-  const Vector3 force = g.head<3>(), moment = g.tail<3>();
-  const Vector3 w = cayley::increment(master_begin.orientation, master_end.orientation);
-  const Matrix3 S_inverse = cayley::inverse_tangent(w);
-  set_sizes(count, maps);
   maps.lever_left = 0.5 * (frame_begin.lever + frame.lever);
   maps.lever_right = frame.lever;
-  maps.master_master.bottomRightCorner<3, 3>() = 0.5 * hat(force) * hat(frame.lever);
+  if (with_tangent)
+    set_sizes(count, maps);
+  else
+    maps.left.setZero(6, count);
+  const Vector3 force = g.head<3>(), moment = g.tail<3>();
+  if (with_tangent) maps.master_master.bottomRightCorner<3, 3>() = 0.5 * hat(force) * hat(frame.lever);
   if (joint.kind == JointMapKind::Rigid) return;
 
   // Rows conjugate to the relative translation and to the tangent-scaled relative rotation, joint frame.
-  const Matrix3 N11 = (Matrix3::Identity() + 0.5 * hat(w)) * B0;
-  const Matrix3 row_r_master = 0.5 * B0.transpose() * hat(force) * S_inverse;
+  const bool scalar = joint.kind == JointMapKind::Scalar;
+  const Matrix3& B0 = frame_begin.rotation;
+  const Vector3 w = cayley::increment(master_begin.orientation, master_end.orientation);
+  const Matrix3 S_inverse = cayley::inverse_tangent(w);
+  const Matrix3 N11 = B0 + 0.5 * hat(w) * B0;
   const ReleasedVector step = released_increment(joint, begin, end);
-  const ScaledRate rate = joint.kind == JointMapKind::Scalar ? scaled_rate(step[0] * joint.rotation.norm()) : ScaledRate{1, 0};
-  const Vector3 turn = joint.kind == JointMapKind::Scalar ? Vector3(rate.value * step[0] * joint.rotation)
-                                                          : Vector3(step.tail<3>());
-  const double c = 1 / (1 - 0.25 * w.dot(B0 * turn));
+  const ScaledRate rate = scalar ? scaled_rate(step[0] * joint.rotation.norm()) : ScaledRate{1, 0};
+  const Vector3 turn = scalar ? Vector3(rate.value * step[0] * joint.rotation) : Vector3(step.tail<3>());
+  const Vector3 turn_world = B0 * turn;
+  const double c = 1 / (1 - 0.25 * w.dot(turn_world));
   const Matrix3 N22 = c * S_inverse.transpose() * B0;
+  if (scalar) {
+    maps.left.col(0) << N11 * joint.translation, rate.value * (N22 * joint.rotation);
+  } else {
+    if (joint.kind == JointMapKind::Free) maps.left.topLeftCorner<3, 3>() = N11;
+    maps.left.bottomRightCorner<3, 3>() = N22;
+  }
+  if (!with_tangent) return;
+
+  const Matrix3 row_r_master = 0.5 * B0.transpose() * hat(force) * S_inverse;
   const Vector3 row_phi = N22.transpose() * moment;
   const Matrix3 row_phi_master =
-      (c * B0.transpose() * cayley::xi_inverse_tangent(w, moment) + 0.25 * c * row_phi * (B0 * turn).transpose()) *
+      (c * B0.transpose() * cayley::xi_inverse_tangent(w, moment) + 0.25 * c * row_phi * turn_world.transpose()) *
       S_inverse;
   const Vector3 w_joint = B0.transpose() * w;
-
-  switch (joint.kind) {
-    case JointMapKind::Rigid:
-      break;
-    case JointMapKind::Scalar: {
-      const Vector3 travel = frame.rotation * joint.translation;
-      maps.right.col(0) << travel, frame.rotation * joint.rotation;
-      maps.left.col(0) << N11 * joint.translation, rate.value * (N22 * joint.rotation);
-      const double axis_moment = joint.rotation.dot(row_phi);
-      // d(rate)/du at constant row_phi, and row_phi through c: d(turn)/du = (1 + |turn|^2/4) rotation.
-      maps.released_released(0, 0) =
-          rate.derivative * joint.rotation.norm() * axis_moment +
-          rate.value * axis_moment * 0.25 * c * w_joint.dot(joint.rotation) * (1 + 0.25 * turn.squaredNorm());
-      maps.released_master.row(0).tail<3>() =
-          joint.translation.transpose() * row_r_master + rate.value * joint.rotation.transpose() * row_phi_master;
-      maps.master_released.col(0).tail<3>() = -0.5 * force.cross(travel);
-      break;
-    }
-    case JointMapKind::Free:
-      maps.right.topLeftCorner<3, 3>() = frame.rotation;
-      maps.left.topLeftCorner<3, 3>() = N11;
-      maps.released_master.topRightCorner<3, 3>() = row_r_master;
-      maps.master_released.bottomLeftCorner<3, 3>() = -0.5 * hat(force) * frame.rotation;
-      [[fallthrough]];
-    case JointMapKind::Spherical:
-      maps.right.bottomRightCorner<3, 3>() = frame.rotation;
-      maps.left.bottomRightCorner<3, 3>() = N22;
-      maps.released_released.bottomRightCorner<3, 3>() =
-          0.25 * c * row_phi * w_joint.transpose() * cayley::inverse_tangent(turn);
-      maps.released_master.bottomRightCorner<3, 3>() = row_phi_master;
-      break;
+  if (scalar) {
+    const Vector3 travel = frame.rotation * joint.translation;
+    maps.right.col(0) << travel, frame.rotation * joint.rotation;
+    const double axis_moment = joint.rotation.dot(row_phi);
+    // d(rate)/du at constant row_phi, and row_phi through c: d(turn)/du = (1 + |turn|^2/4) rotation.
+    maps.released_released(0, 0) =
+        rate.derivative * joint.rotation.norm() * axis_moment +
+        rate.value * axis_moment * 0.25 * c * w_joint.dot(joint.rotation) * (1 + 0.25 * turn.squaredNorm());
+    maps.released_master.row(0).tail<3>() =
+        joint.translation.transpose() * row_r_master + rate.value * joint.rotation.transpose() * row_phi_master;
+    maps.master_released.col(0).tail<3>() = -0.5 * force.cross(travel);
+    return;
   }
+  if (joint.kind == JointMapKind::Free) {
+    maps.right.topLeftCorner<3, 3>() = frame.rotation;
+    maps.released_master.topRightCorner<3, 3>() = row_r_master;
+    maps.master_released.bottomLeftCorner<3, 3>() = -0.5 * hat(force) * frame.rotation;
+  }
+  maps.right.bottomRightCorner<3, 3>() = frame.rotation;
+  maps.released_released.bottomRightCorner<3, 3>() =
+      0.25 * c * row_phi * w_joint.transpose() * cayley::inverse_tangent(turn);
+  maps.released_master.bottomRightCorner<3, 3>() = row_phi_master;
 }
 
 Vector6 slave_velocity(const JointMap& joint, const NodePose& master, const Released& released,

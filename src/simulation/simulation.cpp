@@ -22,6 +22,7 @@ StepSettings settings_of(const scene::SceneDescription& scene, const SimulationO
   settings.tolerance = options.tolerance.value_or(scene.integrator.tolerance);
   settings.max_iterations = scene.integrator.max_iterations;
   settings.max_halvings = scene.integrator.max_halvings;
+  settings.reuse_factorisation = options.reuse_factorisation;
   const auto require = [](bool ok, const std::string& what) {
     if (!ok) throw ModelError("<integrator>: " + what);
   };

@@ -27,7 +27,7 @@ bool LinearSolver::factorise_anew() {
   if (numeric_) klu_free_numeric(&numeric_, &common_);
   numeric_ = klu_factor(const_cast<int*>(column_starts_.data()), const_cast<int*>(row_indices_.data()),
                         const_cast<double*>(values_->data()), symbolic_, &common_);
-  reused_pivots_ = false;
+  unchecked_pivots_ = false;
   ++factorisations_;
   return numeric_ && common_.status == KLU_OK;
 }
@@ -38,7 +38,7 @@ bool LinearSolver::factorise(const std::vector<double>& values) {
   if (!symbolic_) return false;
   if (!numeric_) return factorise_anew();
   ++factorisations_;
-  reused_pivots_ = true;
+  unchecked_pivots_ = true;
   const bool done =
       klu_refactor(const_cast<int*>(column_starts_.data()), const_cast<int*>(row_indices_.data()),
                    const_cast<double*>(values.data()), symbolic_, numeric_, &common_) &&
@@ -67,7 +67,9 @@ bool LinearSolver::solve(Eigen::VectorXd& b) {
   if (unknowns_ == 0) return true;
   right_hand_side_ = b;
   const bool finite = solve_once(b);
-  if (!reused_pivots_ || (finite && backward_error(b) < kAcceptableBackwardError)) return finite;
+  if (!unchecked_pivots_) return finite;
+  unchecked_pivots_ = false;
+  if (finite && backward_error(b) < kAcceptableBackwardError) return true;
   b = right_hand_side_;
   return factorise_anew() && solve_once(b);
 }

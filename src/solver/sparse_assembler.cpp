@@ -146,8 +146,8 @@ void SparseAssembler::build_compressed_columns() {
   reduced_values_.assign(row_indices_.size(), 0.0);
 }
 
-void SparseAssembler::set_zero() {
-  std::fill(values_.begin(), values_.end(), 0.0);
+void SparseAssembler::set_zero(bool with_tangent) {
+  if (with_tangent) std::fill(values_.begin(), values_.end(), 0.0);
   std::fill(residual_.begin(), residual_.end(), 0.0);
 }
 

@@ -3,6 +3,7 @@
 /// linearised stress resultants into the element's residual and tangent.
 
 #include <array>
+#include <optional>
 
 #include "flexarm/elements/beam_element.h"
 #include "flexarm/math/local_rotation.h"
@@ -31,6 +32,23 @@ struct ElementSystem {
     tangent.setZero();
     dissipated = 0;
   }
+};
+
+/// Interpolated rotations of an element, with their variation only where a tangent is wanted.
+template <int Nodes>
+class ElementRotations {
+ public:
+  ElementRotations(const std::array<Quaternion, Nodes>& orientation, bool with_variation) : local_(orientation) {
+    if (with_variation) variation_.emplace(local_);
+  }
+  InterpolatedRotation<double> evaluate(const NodalValues<Nodes>& shape, const NodalValues<Nodes>& derivative,
+                                        GeneralisedShapeFunctions<Nodes>& generalised) const {
+    return variation_ ? variation_->evaluate(shape, derivative, generalised) : local_.evaluate(shape, derivative);
+  }
+
+ private:
+  LocalRotations<Nodes> local_;
+  std::optional<LocalRotationVariation<Nodes>> variation_;
 };
 
 template <int Nodes>

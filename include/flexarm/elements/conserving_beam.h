@@ -152,13 +152,13 @@ void conserving_beam(const BeamElement<Nodes>& element, const ElementNodes<Nodes
   constexpr int kColumns = Stress::kConjugateStrain ? kIncrementColumns : kInstantColumns;
   system.set_zero();
 
-  const LocalRotationVariation<Nodes> local{LocalRotations<Nodes>(nodes.orientation)};
+  const ElementRotations<Nodes> rotations(nodes.orientation, with_tangent);
   std::array<conserving::Point<Nodes>, Element::kStiffnessPoints> points;
   conserving::Multiplier<Nodes> multiplier;
   for (int k = 0; k < Element::kStiffnessPoints; ++k) {
     const auto& constants = element.stiffness_points[k];
     conserving::Point<Nodes>& p = points[k];
-    const auto rotation = local.evaluate(constants.shape, constants.derivative, p.generalised);
+    const auto rotation = rotations.evaluate(constants.shape, constants.derivative, p.generalised);
     p.end = point_kinematics(rotation, interpolate<Nodes>(constants.derivative, nodes.end), constants.reference_strain);
     p.average_rotation = 0.5 * (begin[k].rotation + p.end.rotation);
     p.arm = 0.5 * (begin[k].tangent + p.end.tangent);

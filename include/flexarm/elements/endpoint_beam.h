@@ -59,12 +59,12 @@ void endpoint_internal(const BeamElement<Nodes>& element, const ElementNodes<Nod
                        const PointKinematics* begin, const Vector6* strain_rates, bool with_tangent,
                        PointKinematics* end, Vector6* new_strain_rates, ElementSystem<Nodes>& system) {
   using Element = BeamElement<Nodes>;
-  const LocalRotationVariation<Nodes> local{LocalRotations<Nodes>(nodes.orientation)};
+  const ElementRotations<Nodes> rotations(nodes.orientation, with_tangent);
   const bool damped = rule && element.stiffness_damping > 0;
   for (int k = 0; k < Element::kStiffnessPoints; ++k) {
     const auto& constants = element.stiffness_points[k];
     GeneralisedShapeFunctions<Nodes> generalised;
-    const auto rotation = local.evaluate(constants.shape, constants.derivative, generalised);
+    const auto rotation = rotations.evaluate(constants.shape, constants.derivative, generalised);
     end[k] = point_kinematics(rotation, interpolate<Nodes>(constants.derivative, nodes.end), constants.reference_strain);
     Vector6 stress = element.stiffness * end[k].strain;
     double slope = 1;

@@ -29,7 +29,8 @@ struct NodalInertiaAction {
 
 /// (1/h) m (v_1 - v_0), (1/h) (Lambda J W)_1 - (Lambda J W)_0 for conserving schemes; m a, Lambda (W x J W + J A) for Newmark.
 /// (beam.md 3.4, beyond.md 1.1)
-NodalInertiaAction nodal_inertia_action(const NodalInertia& inertia, const Scheme& scheme, const NodeStep& node);
+NodalInertiaAction nodal_inertia_action(const NodalInertia& inertia, const Scheme& scheme, const NodeStep& node,
+                                        bool with_tangent = true);
 
 /// The node's motion at the end of the step.
 NodeState advanced(const Scheme& scheme, const NodeStep& node);

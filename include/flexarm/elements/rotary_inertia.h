@@ -18,16 +18,18 @@ struct RotaryRate {
 };
 
 /// Average rule: (Lambda_1 J W_1 - Lambda_0 J W_0) / h with (W_0 + W_1) / 2 = Omega / h. `increment` is the spatial rotation
-/// increment (unscaled or tangent-scaled), `inverse_tangent` maps a spin to its variation (T^{-1} or S^{-1}).
+/// increment (unscaled or tangent-scaled), `inverse_tangent` maps a spin to its variation (T^{-1} or S^{-1}), and is used for
+/// the derivative only.
 inline RotaryRate average_rotary_rate(const Matrix3& inertia, const Matrix3& begin, const Matrix3& end,
                                       const Vector3& increment, const Matrix3& inverse_tangent,
-                                      const MassPointState& state, double step) {
+                                      const MassPointState& state, double step, bool with_derivative = true) {
   RotaryRate rate;
   rate.end.angular_velocity = (2 / step) * (begin.transpose() * increment) - state.angular_velocity;
   const Vector3 momentum = end * (inertia * rate.end.angular_velocity);
   rate.moment = (momentum - begin * (inertia * state.angular_velocity)) / step;
-  rate.derivative =
-      (-so3::hat(momentum) + (2 / step) * (end * inertia * begin.transpose() * inverse_tangent)) / step;
+  if (!with_derivative) return rate;
+  const Matrix3 to_material = begin.transpose() * inverse_tangent, to_momentum = inertia * to_material;
+  rate.derivative = (2 / (step * step)) * (end * to_momentum) - so3::hat(Vector3(momentum / step));
   return rate;
 }
 
@@ -55,11 +57,11 @@ inline RotaryRate newmark_rotary_rate(const Matrix3& inertia, const Matrix3& beg
 template <int Nodes, class Rate>
 void add_rotary_inertia(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const Matrix3* begin,
                         const Rate& rate, bool with_tangent, Matrix3* end, ElementSystem<Nodes>& system) {
-  const LocalRotationVariation<Nodes> local{LocalRotations<Nodes>(nodes.orientation)};
+  const ElementRotations<Nodes> rotations(nodes.orientation, with_tangent);
   for (int k = 0; k < BeamElement<Nodes>::kMassPoints; ++k) {
     const auto& constants = element.mass_points[k];
     GeneralisedShapeFunctions<Nodes> generalised;
-    end[k] = local.evaluate(constants.shape, constants.derivative, generalised).rotation;
+    end[k] = rotations.evaluate(constants.shape, constants.derivative, generalised).rotation;
     const RotaryRate r = rate(k, begin[k], end[k]);
     for (int i = 0; i < Nodes; ++i)
       system.residual.template segment<3>(6 * i + 3) += constants.weight * constants.shape[i] * r.moment;

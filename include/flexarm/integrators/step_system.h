@@ -44,6 +44,8 @@ class StepSystem {
   /// The state was changed by somebody else: quantities kept from the last step do not hold.
   void invalidate() { points_valid_ = false; }
 
+  /// Length of the step under way [s]; 0 in statics.
+  double step() const { return step_; }
   const Eigen::VectorXd& residual() const { return residual_; }
   const SparseAssembler& assembler() const { return assembler_; }
   const DegreesOfFreedom& degrees_of_freedom() const { return dof_; }

@@ -23,6 +23,9 @@ struct StepSettings {
   double tolerance = 1e-8;  ///< on the largest update: displacements over the model's length scale, rotations in rad
   int max_iterations = 20;
   int max_halvings = 5;
+  /// Keep the factors of the tangent while the iteration contracts well (modified Newton). The result agrees with that of
+  /// full Newton to far below the tolerance; off: quadratic convergence, and a restored state continues bit for bit.
+  bool reuse_factorisation = true;
 };
 
 /// Advances states of one model with one scheme. Allocates nothing after the first step.
@@ -38,7 +41,8 @@ class Stepper {
   StepResult solve_static(State& state, int load_steps);
   /// Initial accelerations of a scheme that needs them (Newmark), from a short momentum-conserving step.
   void initialise_accelerations(State& state);
-  void invalidate() { system_.invalidate(); }
+  /// The state was changed by somebody else: forget what was kept from the last step.
+  void invalidate();
 
   const StepSettings& settings() const { return settings_; }
   /// Update norms of the last Newton solve, for tests of the rate of convergence.
@@ -47,8 +51,9 @@ class Stepper {
 
  private:
   enum class Updates { Full, Limited };
-  /// Newton from the present trial configuration; leaves the system evaluated at the solution.
-  bool iterate(Updates updates, StepResult& result);
+  /// Newton from the present trial configuration; leaves the system evaluated at the solution. With `reuse` it starts with
+  /// the factors of an earlier solve and makes new ones only where the iteration is slow.
+  bool iterate(Updates updates, bool reuse, StepResult& result);
   bool sub_step(State& state, double step, StepResult& result);
 
   const Model& model_;
@@ -57,6 +62,7 @@ class Stepper {
   StepSystem system_;
   LinearSolver solver_;
   Eigen::VectorXd update_;
+  double factorised_step_ = 0;  ///< step size for which the factors hold; 0: none
   std::vector<double> update_norms_;
 };
 

@@ -82,8 +82,10 @@ void variational_maps(const JointMap& joint, const NodePose& master, const Relea
 
 /// Incremental maps N_Delta over a step from `_begin` to `_end` (joints.md 1.3): the slave's {Delta r, tangent-scaled
 /// rotation increment} equals left du + {..} exactly, so the joint does no work and conserves momenta.
+/// Without `with_tangent` only the left maps are set.
 void incremental_maps(const JointMap& joint, const NodePose& master_begin, const NodePose& master_end,
-                      const Released& begin, const Released& end, const Vector6& g, FoldMaps& maps);
+                      const Released& begin, const Released& end, const Vector6& g, FoldMaps& maps,
+                      bool with_tangent = true);
 
 /// Least-squares released rates {scalar, or translation and angular velocity in the joint frame} from spatial velocities
 /// {v, w} of master and slave; `remainder` gets the part of the slave's velocity that the joint does not allow.

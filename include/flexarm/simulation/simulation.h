@@ -21,6 +21,7 @@ struct SimulationOptions {
   std::optional<std::string> scheme;
   std::optional<double> step;       ///< [s]
   std::optional<double> tolerance;
+  bool reuse_factorisation = true;  ///< see StepSettings
 };
 
 class Simulation {

@@ -21,7 +21,8 @@ class LinearSolver {
 
   /// Factorises the values; false if the matrix is singular or not finite.
   bool factorise(const std::vector<double>& values);
-  /// Replaces b by x, with the factors of the last factorise(). False if the result is not finite.
+  /// Replaces b by x, with the factors of the last factorise(), whose values must still stand at the first solve after it.
+  /// False if the result is not finite.
   bool solve(Eigen::VectorXd& b);
 
   int factorisations() const { return factorisations_; }
@@ -38,7 +39,7 @@ class LinearSolver {
   klu_common common_;
   klu_symbolic* symbolic_ = nullptr;
   klu_numeric* numeric_ = nullptr;
-  bool reused_pivots_ = false;
+  bool unchecked_pivots_ = false;  ///< refactorised with old pivots, and not yet seen to be accurate
   int factorisations_ = 0;
   Eigen::VectorXd right_hand_side_, residual_;
 };

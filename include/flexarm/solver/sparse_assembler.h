@@ -19,7 +19,7 @@ class SparseAssembler {
   SparseAssembler(const Model& model, const DegreesOfFreedom& dof);
 
   // ---- accumulation
-  void set_zero();
+  void set_zero(bool with_tangent = true);
   double* residual(int variable) { return residual_.data() + dof_.first[variable]; }
   const double* residual(int variable) const { return residual_.data() + dof_.first[variable]; }
   /// Column-major block on the diagonal of a variable, size x size.

@@ -1,0 +1,123 @@
+#include "flexarm/simulation/csv_writer.h"
+
+#include <cerrno>
+#include <cstring>
+#include <initializer_list>
+#include <iterator>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace flexarm {
+namespace {
+
+[[noreturn]] void fail(const std::string& path) {
+  throw std::runtime_error(fmt::format("cannot write '{}': {}", path, std::strerror(errno)));
+}
+
+// ---------------------------------------------------------------- header
+
+/// A field that contains separators stands in quotes (RFC 4180).
+void append_name(std::string& line, const std::string& name) {
+  if (!line.empty()) line += ',';
+  if (name.find_first_of(",\"") == std::string::npos) {
+    line += name;
+    return;
+  }
+  line += '"';
+  for (const char c : name) line += c == '"' ? std::string("\"\"") : std::string(1, c);
+  line += '"';
+}
+
+void append_names(std::string& line, const std::string& prefix, std::initializer_list<const char*> names) {
+  for (const char* name : names) append_name(line, prefix + "/" + name);
+}
+
+void append_header(std::string& line, const Simulation& simulation, CsvWriter::Columns columns) {
+  append_name(line, "time");
+  for (const std::string& name : simulation.coordinate_names())
+    append_names(line, "joint/" + name, {"position", "velocity", "effort"});
+  for (const std::string& name : simulation.link_names())
+    append_names(line, "frame/" + name, {"x", "y", "z", "qx", "qy", "qz", "qw"});
+  for (const scene::Probe& probe : simulation.scene().probes)
+    append_names(line, "probe/" + probe.name, {"x", "y", "z", "qx", "qy", "qz", "qw", "vx", "vy", "vz"});
+  append_names(line, "energy", {"kinetic", "strain", "potential", "total", "work", "dissipated"});
+  append_names(line, "momentum", {"x", "y", "z"});
+  append_names(line, "angular_momentum", {"x", "y", "z"});
+  if (columns == CsvWriter::Columns::StateAndSolver) append_names(line, "solver", {"step", "iterations", "halvings"});
+}
+
+// ---------------------------------------------------------------- rows
+
+void append(std::string& line, double value) {
+  if (!line.empty()) line += ',';
+  fmt::format_to(std::back_inserter(line), "{:.17g}", value);
+}
+
+void append(std::string& line, const Vector3& vector) {
+  for (int i = 0; i < 3; ++i) append(line, vector[i]);
+}
+
+void append(std::string& line, const Pose& pose) {
+  append(line, pose.position);
+  for (int i = 0; i < 4; ++i) append(line, pose.orientation.coeffs()[i]);  // x y z w
+}
+
+void append_state(std::string& line, const Simulation& simulation) {
+  append(line, simulation.time());
+  for (std::size_t i = 0; i < simulation.coordinate_names().size(); ++i) {
+    append(line, simulation.position(i));
+    append(line, simulation.velocity(i));
+    append(line, simulation.effort(i));
+  }
+  for (std::size_t i = 0; i < simulation.link_names().size(); ++i) append(line, simulation.link_pose(i));
+  for (std::size_t i = 0; i < simulation.scene().probes.size(); ++i) {
+    const ProbeState probe = simulation.probe(i);
+    append(line, probe.pose);
+    append(line, probe.velocity);
+  }
+  const Energies energies = simulation.energies();
+  for (const double energy :
+       {energies.kinetic, energies.strain, energies.potential, energies.total(), energies.work, energies.dissipated})
+    append(line, energy);
+  append(line, simulation.momentum());
+  append(line, simulation.angular_momentum());
+}
+
+}  // namespace
+
+CsvWriter::CsvWriter(const std::string& path, const Simulation& simulation, Columns columns)
+    : path_(path), file_(std::fopen(path.c_str(), "w")), columns_(columns) {
+  if (!file_) fail(path_);
+  append_header(line_, simulation, columns_);
+  write_line(line_);
+}
+
+void CsvWriter::write_row(const Simulation& simulation) {
+  append_state(line_, simulation);
+  if (columns_ == Columns::StateAndSolver) {
+    append(line_, simulation.step_size());
+    append(line_, iterations_);
+    append(line_, halvings_);
+    iterations_ = halvings_ = 0;
+  }
+  write_line(line_);
+}
+
+void CsvWriter::count(const StepResult& result) {
+  iterations_ += result.iterations;
+  halvings_ += result.halvings;
+}
+
+void CsvWriter::close() {
+  if (file_ && std::fclose(file_.release()) != 0) fail(path_);
+}
+
+void CsvWriter::write_line(std::string& line) {
+  line += '\n';
+  const bool is_written = std::fwrite(line.data(), 1, line.size(), file_.get()) == line.size();
+  line.clear();  // keeps its memory for the next row
+  if (!is_written) fail(path_);
+}
+
+}  // namespace flexarm
