@@ -1,0 +1,113 @@
+#include <fmt/format.h>
+
+#include "cli/commands.h"
+#include "cli/scene_input.h"
+#include "flexarm/model/section.h"
+
+namespace flexarm::cli {
+namespace {
+
+constexpr int kModes = 6;
+
+const char* name_of(scene::JointKind kind) {
+  switch (kind) {
+    case scene::JointKind::Fixed:
+      return "fixed";
+    case scene::JointKind::Revolute:
+      return "revolute";
+    case scene::JointKind::Continuous:
+      return "continuous";
+    case scene::JointKind::Prismatic:
+      return "prismatic";
+    case scene::JointKind::Planar:
+      return "planar";
+    case scene::JointKind::Floating:
+      return "floating";
+    case scene::JointKind::Spherical:
+      return "spherical";
+    case scene::JointKind::Universal:
+      return "universal";
+    case scene::JointKind::Cylindrical:
+      return "cylindrical";
+  }
+  return "";
+}
+
+void print_size(const Simulation& simulation) {
+  const scene::SceneDescription& scene = simulation.scene();
+  fmt::print("scene '{}': {} links, {} joints, {} nodes, {} degrees of freedom\n", scene.name, scene.links.size(),
+             scene.joints.size(), simulation.node_count(), simulation.degrees_of_freedom());
+  fmt::print("scheme {}, step {} s, gravity {} {} {} m/s^2\n", simulation.scheme(), simulation.step_size(),
+             scene.gravity.x(), scene.gravity.y(), scene.gravity.z());
+}
+
+void print_links(const Simulation& simulation) {
+  fmt::print("\n{:<24} {:<10} {:>12}\n", "link", "kind", "mass [kg]");
+  const scene::SceneDescription& scene = simulation.scene();
+  for (std::size_t i = 0; i < scene.links.size(); ++i) {
+    const scene::LinkDescription& link = scene.links[i];
+    const std::optional<BeamLink>& beam = simulation.model().links[i].beam;
+    const bool is_root = link.name == scene.root_link;
+    const double mass = beam ? beam->mass : link.inertial ? link.inertial->mass : 0.0;
+    fmt::print("{:<24} {:<10} {:>12.6g}\n", link.name, beam ? "flexible" : is_root ? "clamped" : "rigid", mass);
+  }
+}
+
+void print_joints(const Simulation& simulation) {
+  const std::vector<scene::JointDescription>& joints = simulation.scene().joints;
+  if (joints.empty()) return;
+  fmt::print("\n{:<24} {:<12} {:<20} {:<20} {}\n", "joint", "kind", "parent", "child", "coordinates");
+  for (const scene::JointDescription& joint : joints)
+    fmt::print("{:<24} {:<12} {:<20} {:<20} {}\n", joint.name, name_of(joint.kind), joint.parent, joint.child,
+               scene::coordinate_suffixes(joint.kind).size());
+}
+
+/// Lengths in m, stiffnesses in N and N m^2, mass in kg.
+void print_beams(const Simulation& simulation) {
+  bool is_first = true;
+  const std::vector<scene::LinkDescription>& links = simulation.scene().links;
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    if (!links[i].beam) continue;
+    if (is_first)
+      fmt::print("\n{:<24} {:>9} {:>11} {:>11} {:>11} {:>11} {:>11} {:>11} {:>10} {:>9}\n", "beam", "length", "EA",
+                 "GA y", "GA z", "GJ", "EI y", "EI z", "mass", "elements");
+    is_first = false;
+    const BeamLink& beam = *simulation.model().links[i].beam;
+    const Vector6 stiffness = section_properties(links[i].beam->section).stiffness.diagonal();
+    fmt::print("{:<24} {:>9.5g}", links[i].name, beam.length);
+    for (int k = 0; k < 6; ++k) fmt::print(" {:>11.5g}", stiffness[k]);
+    fmt::print(" {:>10.5g} {:>9}\n", beam.mass, fmt::format("{} x {}", beam.elements.size(), beam.order));
+  }
+  if (!is_first) fmt::print("(m, N, N m^2, kg; number of elements x order)\n");
+}
+
+void print_frequencies(Simulation& simulation) {
+  if (simulation.degrees_of_freedom() == 0) return;
+  seek_equilibrium(simulation);
+  try {
+    fmt::print("\nfirst natural frequencies [Hz]:");
+    for (const Mode& mode : simulation.natural_modes(kModes)) fmt::print(" {:.6g}", mode.frequency);
+    fmt::print("\n");
+  } catch (const std::runtime_error& error) {
+    fmt::print(" none ({})\n", error.what());
+  }
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, int& status) {
+  const auto scene = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand("check", "Reads a scene, builds its model and describes it");
+  command->add_option("scene", *scene, "scene file")->required();
+  command->callback([scene, &status] {
+    Simulation simulation = load_simulation(*scene);
+    print_size(simulation);
+    print_links(simulation);
+    print_joints(simulation);
+    print_beams(simulation);
+    print_frequencies(simulation);
+    status = kDone;
+  });
+}
+
+}  // namespace flexarm::cli

@@ -1,0 +1,24 @@
+#pragma once
+/// The subcommands of `flexarm`, one file each.
+
+#include <stdexcept>
+
+#include <CLI/CLI.hpp>
+
+namespace flexarm::cli {
+
+enum ExitStatus { kDone = 0, kFailed = 1, kBadInput = 2 };
+
+/// What the user gave cannot be used; what() is printed and the exit status is kBadInput.
+class InputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Each adds its subcommand to `app`; when that is run, it leaves its exit status in `status`.
+void add_check(CLI::App& app, int& status);
+void add_simulate(CLI::App& app, int& status);
+void add_static(CLI::App& app, int& status);
+void add_modes(CLI::App& app, int& status);
+
+}  // namespace flexarm::cli

@@ -1,0 +1,48 @@
+#include <cstdio>
+#include <new>
+
+#include <fmt/format.h>
+
+#include "cli/commands.h"
+#include "flexarm/model/model_builder.h"
+
+namespace {
+
+/// Runs the command line; the exit status.
+int run(int argc, char** argv) {
+  using namespace flexarm::cli;
+  CLI::App app("Simulates flexible manipulators.", "flexarm");
+  app.require_subcommand(1);
+  int status = kDone;
+  add_check(app, status);
+  add_simulate(app, status);
+  add_static(app, status);
+  add_modes(app, status);
+  try {
+    app.parse(argc, argv);
+    return status;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kDone : kBadInput;  // 0: --help
+  } catch (const InputError& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return kBadInput;
+  } catch (const flexarm::ModelError& error) {
+    fmt::print(stderr, "flexarm: {}\n", error.what());
+    return kBadInput;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "flexarm: not enough memory for this scene\n");
+    return kFailed;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "flexarm: {}\n", error.what());
+    return kFailed;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int status = run(argc, argv);
+  if (std::fflush(stdout) == 0) return status;
+  std::perror("flexarm: cannot write the output");
+  return flexarm::cli::kFailed;
+}

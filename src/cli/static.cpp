@@ -1,0 +1,61 @@
+#include <fmt/format.h>
+
+#include "cli/commands.h"
+#include "cli/scene_input.h"
+#include "flexarm/simulation/csv_writer.h"
+
+namespace flexarm::cli {
+namespace {
+
+struct Arguments {
+  std::string scene, output;
+  int load_steps = 10;
+};
+
+void print_point(const std::string& name, const Vector3& position) {
+  fmt::print("  {:<24} {:>14.7g} {:>14.7g} {:>14.7g}\n", name, position.x(), position.y(), position.z());
+}
+
+void print_equilibrium(const Simulation& simulation) {
+  const std::vector<std::string>& names = simulation.coordinate_names();
+  if (!names.empty()) fmt::print("joint coordinates [m, rad]\n");
+  for (std::size_t i = 0; i < names.size(); ++i) fmt::print("  {:<24} {:>14.7g}\n", names[i], simulation.position(i));
+  fmt::print("positions [m]\n");
+  for (std::size_t i = 0; i < simulation.link_names().size(); ++i) {
+    print_point(simulation.link_names()[i], simulation.link_pose(i).position);
+    if (simulation.is_flexible(i)) print_point(simulation.link_names()[i] + "/tip", simulation.tip_pose(i).position);
+  }
+  const std::vector<scene::Probe>& probes = simulation.scene().probes;
+  for (std::size_t i = 0; i < probes.size(); ++i) print_point(probes[i].name, simulation.probe(i).pose.position);
+  fmt::print("strain energy {:.7g} J\n", simulation.energies().strain);
+}
+
+int solve(const Arguments& arguments) {
+  Simulation simulation = load_simulation(arguments.scene);
+  const StepResult result = simulation.solve_static(arguments.load_steps);
+  if (!result.converged) {
+    fmt::print(stderr, "flexarm: no equilibrium found: {}\n", to_string(result.reason));
+    return kFailed;
+  }
+  print_equilibrium(simulation);
+  if (arguments.output.empty()) return kDone;
+  CsvWriter output(arguments.output, simulation, CsvWriter::Columns::State);
+  output.write_row(simulation);
+  output.close();
+  return kDone;
+}
+
+}  // namespace
+
+void add_static(CLI::App& app, int& status) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("static", "Finds the equilibrium under gravity and the loads at t = 0");
+  command->add_option("scene", arguments->scene, "scene file")->required();
+  command->add_option("--load-steps", arguments->load_steps, "steps in which gravity and loads grow")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000000));
+  command->add_option("--output", arguments->output, "CSV file for the equilibrium");
+  command->callback([arguments, &status] { status = solve(*arguments); });
+}
+
+}  // namespace flexarm::cli
