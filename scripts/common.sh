@@ -3,6 +3,7 @@
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=$root/build
+devel=$root/devel # not inside build/, where rosrun does not look
 
 say() { printf '== %s\n' "$*" >&2; }
 die() {
@@ -54,7 +55,8 @@ build() {
     if [[ -f $build/CMakeCache.txt ]] && ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$build/CMakeCache.txt"; then
       rm -rf "$build/CMakeCache.txt" "$build/CMakeFiles"
     fi
-    cmake -S "$root" -B "$build" -DPYTHON_EXECUTABLE=/usr/bin/python3 &&
+    cmake -S "$root" -B "$build" \
+      -DPYTHON_EXECUTABLE=/usr/bin/python3 -DCATKIN_DEVEL_PREFIX="$devel" &&
       cmake --build "$build" --parallel "$(nproc)" --target "$@"
   } >"$log" 2>&1 </dev/null || {
     grep -E -B2 -A8 'error|Error' "$log" | tail -n 60 >&2 || tail -n 60 "$log" >&2
@@ -66,7 +68,7 @@ build() {
 enter_workspace() {
   set +eu # the generated script heeds neither
   # shellcheck source=/dev/null
-  source "$build/devel/setup.sh"
+  source "$devel/setup.sh"
   set -eu
 }
 

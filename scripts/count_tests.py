@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """Adds up the results of all test runners: `count_tests.py CTEST-REPORT DIRECTORY`.
 
-ctest knows every program that ran; a gtest or rostest left its single tests in DIRECTORY as JUnit XML. A program without
-such a file, or that failed although each of its tests passed, counts as one test. The last line is `N passed, N failed`;
+ctest knows every program that ran; a gtest or rostest left its single tests in DIRECTORY as JUnit XML (the test-name of
+test/ros/NAME.test is NAME, so that its file can be found). A program without such a file, or that failed although each of its tests passed, counts as one test. The last line is `N passed, N failed`;
 the exit status is 1 if a test failed, or if none ran.
 """
 
@@ -23,8 +23,14 @@ def single_tests(path):
 
 def result_file(directory, program):
     """Where catkin's runner put the results of a ctest test, or None if it is not one of catkin's."""
-    match = re.fullmatch(r"_ctest_flexarm_(gtest|rostest)_(.*?)(\.test)?", program)
-    return match and os.path.join(directory, "%s-%s.xml" % match.group(1, 2))
+    for pattern, file_name in (
+        (r"_ctest_flexarm_gtest_(.*)", "gtest-%s.xml"),
+        (r"_ctest_flexarm_rostest_test_ros_(.*)\.test", "rosunit-%s.xml"),
+    ):
+        match = re.fullmatch(pattern, program)
+        if match:
+            return os.path.join(directory, file_name % match.group(1))
+    return None
 
 
 def results_of(program, passed, directory):

@@ -1,17 +1,14 @@
 #include "beam_state_publisher.h"
 
-#include <ros/single_subscriber_publisher.h>
-
+#include "advertise.h"
 #include "conversions.h"
 
 namespace flexarm::node {
 
-BeamStatePublisher::BeamStatePublisher(ros::NodeHandle& node, const Simulation& simulation, double rate)
+BeamStatePublisher::BeamStatePublisher(ros::NodeHandle& node, const Simulation& simulation, const RunState& run,
+                                       double rate)
     : simulation_(simulation), schedule_(rate) {
-  publisher_ =
-      node.advertise<BeamStateArray>("beam_states", 10, [this](const ros::SingleSubscriberPublisher& subscriber) {
-        if (!stamp_.isZero()) subscriber.publish(make_message(stamp_));
-      });
+  publisher_ = advertise<BeamStateArray>(node, "beam_states", 10, run, [this] { return make_message(stamp_); });
 }
 
 void BeamStatePublisher::publish(const ros::Time& stamp, bool force) {

@@ -9,13 +9,16 @@
 
 #include "flexarm/simulation/simulation.h"
 #include "publication_schedule.h"
+#include "run_state.h"
 
 namespace flexarm::node {
 
-/// Computes and publishes only while somebody subscribes; a new subscriber gets the current state at once.
+/// Computes and publishes only while somebody subscribes.
 class BeamStatePublisher {
  public:
-  BeamStatePublisher(ros::NodeHandle& node, const Simulation& simulation, double rate);
+  BeamStatePublisher(ros::NodeHandle& node, const Simulation& simulation, const RunState& run, double rate);
+  BeamStatePublisher(const BeamStatePublisher&) = delete;
+  BeamStatePublisher& operator=(const BeamStatePublisher&) = delete;
 
   void publish(const ros::Time& stamp, bool force);
 

@@ -1,14 +1,15 @@
 #include "clock_publisher.h"
 
 #include <ros/console.h>
-#include <rosgraph_msgs/Clock.h>
+
+#include "advertise.h"
 
 namespace flexarm::node {
 
-ClockPublisher::ClockPublisher(ros::NodeHandle& node, bool publish, double rate, double step)
+ClockPublisher::ClockPublisher(ros::NodeHandle& node, const RunState& run, bool publish, double rate, double step)
     : is_clock_(publish), step_(step), schedule_(rate) {
   if (!is_clock_) return;
-  publisher_ = node.advertise<rosgraph_msgs::Clock>("/clock", 10, true);
+  publisher_ = advertise<rosgraph_msgs::Clock>(node, "/clock", 10, run, [this] { return make_message(); });
   if (!ros::Time::isSimTime())
     ROS_WARN("publishing /clock, but /use_sim_time is not set: other nodes will not follow it");
 }
@@ -24,9 +25,13 @@ void ClockPublisher::publish_now() {
 
 void ClockPublisher::publish(bool force) {
   if (!is_clock_ || !schedule_.due(simulated_time(), force)) return;
+  publisher_.publish(make_message());
+}
+
+rosgraph_msgs::Clock ClockPublisher::make_message() const {
   rosgraph_msgs::Clock message;
   message.clock = simulated_time();
-  publisher_.publish(message);
+  return message;
 }
 
 std::optional<ros::Time> ClockPublisher::stamp() const {

@@ -3,11 +3,13 @@
 
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
+#include <rosgraph_msgs/Clock.h>
 
 #include <cstdint>
 #include <optional>
 
 #include "publication_schedule.h"
+#include "run_state.h"
 
 namespace flexarm::node {
 
@@ -18,7 +20,9 @@ class ClockPublisher {
   /// @param publish  whether this node is the clock
   /// @param rate     of /clock, in simulated time [Hz]
   /// @param step     [s]
-  ClockPublisher(ros::NodeHandle& node, bool publish, double rate, double step);
+  ClockPublisher(ros::NodeHandle& node, const RunState& run, bool publish, double rate, double step);
+  ClockPublisher(const ClockPublisher&) = delete;
+  ClockPublisher& operator=(const ClockPublisher&) = delete;
 
   /// One step was made; publishes /clock where it is due.
   void advance();
@@ -29,6 +33,7 @@ class ClockPublisher {
 
  private:
   void publish(bool force);
+  rosgraph_msgs::Clock make_message() const;
   ros::Time simulated_time() const { return ros::Time(static_cast<double>(ticks_) * step_); }
 
   bool is_clock_;

@@ -1,11 +1,10 @@
 #include "marker_publisher.h"
 
-#include <ros/single_subscriber_publisher.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "advertise.h"
 #include "conversions.h"
 
 namespace flexarm::node {
@@ -68,12 +67,10 @@ void add_cap(visualization_msgs::Marker& marker, const Ring& ring, const Vertex&
 
 }  // namespace
 
-MarkerPublisher::MarkerPublisher(ros::NodeHandle& node, const Simulation& simulation, double rate)
+MarkerPublisher::MarkerPublisher(ros::NodeHandle& node, const Simulation& simulation, const RunState& run, double rate)
     : simulation_(simulation), schedule_(rate), largest_load_(simulation.link_names().size(), 0) {
-  publisher_ = node.advertise<visualization_msgs::MarkerArray>(
-      "beam_markers", 2, [this](const ros::SingleSubscriberPublisher& subscriber) {
-        if (!stamp_.isZero()) subscriber.publish(make_message(stamp_));
-      });
+  publisher_ =
+      advertise<visualization_msgs::MarkerArray>(node, "beam_markers", 2, run, [this] { return make_message(stamp_); });
 }
 
 void MarkerPublisher::publish(const ros::Time& stamp, bool force) {

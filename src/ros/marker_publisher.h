@@ -10,15 +10,18 @@
 
 #include "flexarm/simulation/simulation.h"
 #include "publication_schedule.h"
+#include "run_state.h"
 
 namespace flexarm::node {
 
 /// One tube per flexible link, in the world frame, coloured from blue (unloaded) over green to red by the stress
 /// resultant; red is the largest value of that link since the start. The measure is sqrt(|N|^2 + (|M| / radius)^2) [N].
-/// Computes and publishes only while somebody subscribes; a new subscriber gets the current state at once.
+/// Computes and publishes only while somebody subscribes.
 class MarkerPublisher {
  public:
-  MarkerPublisher(ros::NodeHandle& node, const Simulation& simulation, double rate);
+  MarkerPublisher(ros::NodeHandle& node, const Simulation& simulation, const RunState& run, double rate);
+  MarkerPublisher(const MarkerPublisher&) = delete;
+  MarkerPublisher& operator=(const MarkerPublisher&) = delete;
 
   void publish(const ros::Time& stamp, bool force);
 

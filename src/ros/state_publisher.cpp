@@ -2,6 +2,7 @@
 
 #include <unordered_map>
 
+#include "advertise.h"
 #include "conversions.h"
 
 namespace flexarm::node {
@@ -17,15 +18,16 @@ geometry_msgs::TransformStamped make_transform(const std::string& parent, const 
 
 }  // namespace
 
-StatePublisher::StatePublisher(ros::NodeHandle& node, const Simulation& simulation, double rate)
+StatePublisher::StatePublisher(ros::NodeHandle& node, const Simulation& simulation, const RunState& run, double rate)
     : simulation_(simulation), schedule_(rate) {
   joint_states_.name = simulation.coordinate_names();
   joint_states_.position.resize(joint_states_.name.size());
   joint_states_.velocity.resize(joint_states_.name.size());
   joint_states_.effort.resize(joint_states_.name.size());
 
-  joint_state_publisher_ = node.advertise<sensor_msgs::JointState>("joint_states", 10, true);
-  transform_publisher_ = node.advertise<tf2_msgs::TFMessage>("/tf", 100, true);
+  joint_state_publisher_ =
+      advertise<sensor_msgs::JointState>(node, "joint_states", 10, run, [this] { return joint_states_; });
+  transform_publisher_ = advertise<tf2_msgs::TFMessage>(node, "/tf", 100, run, [this] { return transforms_; });
   static_transform_publisher_ = node.advertise<tf2_msgs::TFMessage>("/tf_static", 100, true);
   collect_frames(simulation.scene());
 }

@@ -13,15 +13,18 @@
 
 #include "flexarm/simulation/simulation.h"
 #include "publication_schedule.h"
+#include "run_state.h"
 
 namespace flexarm::node {
 
 /// Publishes every released coordinate, and every link frame of the deformed configuration as a child of its parent
 /// link; the end of a flexible link is `LINK/tip`. Fixed joints between rigid links go to /tf_static, once.
-/// Topics are latched: who comes while the simulation is paused still sees where the arm stands.
+/// Who comes while the simulation is paused is told where the arm stands (see advertise.h).
 class StatePublisher {
  public:
-  StatePublisher(ros::NodeHandle& node, const Simulation& simulation, double rate);
+  StatePublisher(ros::NodeHandle& node, const Simulation& simulation, const RunState& run, double rate);
+  StatePublisher(const StatePublisher&) = delete;
+  StatePublisher& operator=(const StatePublisher&) = delete;
 
   /// Sends the state if it is due (see PublicationSchedule).
   void publish(const ros::Time& stamp, bool force);

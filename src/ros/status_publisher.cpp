@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "advertise.h"
 #include "conversions.h"
 
 namespace flexarm::node {
@@ -9,13 +10,17 @@ namespace flexarm::node {
 StatusPublisher::StatusPublisher(ros::NodeHandle& private_node, const Simulation& simulation, const RunState& run,
                                  double rate)
     : simulation_(simulation), run_(run), schedule_(rate) {
-  publisher_ = private_node.advertise<SimulatorStatus>("status", 10, true);
+  publisher_ = advertise<SimulatorStatus>(private_node, "status", 10, run, [this] { return last_message_; });
 }
 
 void StatusPublisher::publish(ros::Time stamp, bool force) {
   if (force) stamp = std::max(stamp, schedule_.last() + ros::Duration(0, 1));
   if (!schedule_.due(stamp, force)) return;
+  last_message_ = make_message(stamp);
+  publisher_.publish(last_message_);
+}
 
+SimulatorStatus StatusPublisher::make_message(const ros::Time& stamp) {
   const Energies energies = simulation_.energies();
   SimulatorStatus message;
   message.header.stamp = stamp;
@@ -39,7 +44,7 @@ void StatusPublisher::publish(ros::Time stamp, bool force) {
   message.dissipated = energies.dissipated;
   message.momentum = to_vector3(simulation_.momentum());
   message.angular_momentum = to_vector3(simulation_.angular_momentum());
-  publisher_.publish(message);
+  return message;
 }
 
 double StatusPublisher::measure_real_time_factor() {

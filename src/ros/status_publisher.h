@@ -16,12 +16,15 @@ namespace flexarm::node {
 class StatusPublisher {
  public:
   StatusPublisher(ros::NodeHandle& private_node, const Simulation& simulation, const RunState& run, double rate);
+  StatusPublisher(const StatusPublisher&) = delete;
+  StatusPublisher& operator=(const StatusPublisher&) = delete;
 
   /// Sends the status if it is due. `force` sends it in any case: where the stamp is not new, which happens when the
   /// simulation pauses right after a status, it is moved on by a nanosecond.
   void publish(ros::Time stamp, bool force);
 
  private:
+  SimulatorStatus make_message(const ros::Time& stamp);
   double measure_real_time_factor();
 
   const Simulation& simulation_;
@@ -29,6 +32,7 @@ class StatusPublisher {
   PublicationSchedule schedule_;
   std::chrono::steady_clock::time_point last_wall_time_ = std::chrono::steady_clock::now();
   double last_simulated_time_ = 0;
+  SimulatorStatus last_message_;
   ros::Publisher publisher_;
 };
 

@@ -37,7 +37,7 @@ class SimulatedArm:
         self.reset = rospy.ServiceProxy("/flexarm/reset", Empty)
         self.step = rospy.ServiceProxy("/flexarm/step", Step)
 
-    # Both topics are latched: a new subscriber gets what was sent before the last service answered.
+    # While the simulation is paused, a new subscriber gets what was sent before the last service answered.
     @staticmethod
     def status():
         return rospy.wait_for_message("/flexarm/status", SimulatorStatus, PATIENCE)

@@ -69,7 +69,7 @@ class BentArm : public ::testing::Test {
     delete twin_;
   }
 
-  /// Stamp of the state under test: that of the latched joint states.
+  /// The state under test: a paused simulation sends it to every new subscriber.
   static sensor_msgs::JointState joint_states() {
     const auto message = ros::topic::waitForMessage<sensor_msgs::JointState>("/joint_states", kPatience);
     return message ? *message : sensor_msgs::JointState();
