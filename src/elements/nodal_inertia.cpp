@@ -10,17 +10,17 @@ struct RotationIncrement {
   Vector3 value;
   Matrix3 inverse_tangent;
 };
-RotationIncrement rotation_increment(const Scheme& scheme, const NodeStep& node) {
-  if (scheme.rotation == RotationRule::TangentScaled) return {node.increment, node.inverse_tangent};
+RotationIncrement rotation_increment(const TimeRule& rule, const NodeStep& node) {
+  if (rule.rotation == RotationRule::TangentScaled) return {node.increment, node.inverse_tangent};
   const Vector3 unscaled = cayley::to_rotation_vector(node.increment);
   return {unscaled, so3::inverse_tangent(unscaled)};
 }
 
-NewmarkRule newmark_rule(const Scheme& scheme, double step) { return {scheme.beta, scheme.gamma, step}; }
+NewmarkRule newmark_rule(const TimeRule& rule, double step) { return {rule.beta, rule.gamma, step}; }
 
 }  // namespace
 
-NodalInertiaAction nodal_inertia_action(const NodalInertia& inertia, const Scheme& scheme, const NodeStep& node,
+NodalInertiaAction nodal_inertia_action(const NodalInertia& inertia, const TimeRule& rule, const NodeStep& node,
                                         bool with_tangent) {
   NodalInertiaAction action;
   const double h = node.step;
@@ -28,13 +28,13 @@ NodalInertiaAction nodal_inertia_action(const NodalInertia& inertia, const Schem
   const Matrix3& end = node.end.rotation;
   const Vector3 displacement = node.end.position - node.begin.position;
   Matrix3 J = inertia.rotary;
-  if (scheme.nodal_rotary_inertia) J += inertia.beam_rotary;
+  if (rule.nodal_rotary_inertia) J += inertia.beam_rotary;
   const MassPointState spin{node.state.angular_velocity, node.state.angular_acceleration};
 
-  if (scheme.is_incremental()) {
+  if (rule.is_incremental()) {
     action.residual.head<3>() = inertia.mass * (2 / h) * (displacement / h - node.state.velocity);
     action.translational = inertia.mass * 2 / (h * h);
-    const RotationIncrement increment = rotation_increment(scheme, node);
+    const RotationIncrement increment = rotation_increment(rule, node);
     if (!J.isZero(0)) {
       const RotaryRate rate =
           average_rotary_rate(J, begin, end, increment.value, increment.inverse_tangent, spin, h, with_tangent);
@@ -53,47 +53,47 @@ NodalInertiaAction nodal_inertia_action(const NodalInertia& inertia, const Schem
     return action;
   }
 
-  const NewmarkRule rule = newmark_rule(scheme, h);
+  const NewmarkRule newmark = newmark_rule(rule, h);
   action.residual.head<3>() =
-      inertia.mass * rule.acceleration(displacement, node.state.velocity, node.state.acceleration);
-  action.translational = inertia.mass * rule.acceleration_slope();
+      inertia.mass * newmark.acceleration(displacement, node.state.velocity, node.state.acceleration);
+  action.translational = inertia.mass * newmark.acceleration_slope();
   if (!J.isZero(0)) {
-    const RotaryRate rate = newmark_rotary_rate(J, begin, end, spin, rule);
+    const RotaryRate rate = newmark_rotary_rate(J, begin, end, spin, newmark);
     action.residual.tail<3>() = rate.moment;
     action.rotational = rate.derivative;
   }
   if (!inertia.rotary_damping.isZero(0)) {
     const Vector3 increment = so3::log(Matrix3(end * begin.transpose()));
-    const Vector3 A = rule.acceleration(begin.transpose() * increment, spin.angular_velocity, spin.angular_acceleration);
-    const Vector3 W = rule.velocity(spin.angular_velocity, spin.angular_acceleration, A);
+    const Vector3 A = newmark.acceleration(begin.transpose() * increment, spin.angular_velocity, spin.angular_acceleration);
+    const Vector3 W = newmark.velocity(spin.angular_velocity, spin.angular_acceleration, A);
     const Vector3 moment = end * (inertia.rotary_damping * W);
     action.residual.tail<3>() += moment;
     action.rotational += end * inertia.rotary_damping * begin.transpose() * so3::inverse_tangent(increment) *
-                             rule.velocity_slope() - so3::hat(moment);
+                             newmark.velocity_slope() - so3::hat(moment);
     action.dissipated = moment.dot(increment);
   }
   return action;
 }
 
-NodeState advanced(const Scheme& scheme, const NodeStep& node) {
+NodeState advanced(const TimeRule& rule, const NodeStep& node) {
   NodeState out;
   out.position = node.end.position;
   out.orientation = node.end.orientation;
   const Vector3 displacement = node.end.position - node.begin.position;
   const Matrix3 to_material = node.begin.rotation.transpose();
-  if (scheme.is_incremental()) {
+  if (rule.is_incremental()) {
     out.velocity = (2 / node.step) * displacement - node.state.velocity;
     out.angular_velocity =
-        (2 / node.step) * (to_material * rotation_increment(scheme, node).value) - node.state.angular_velocity;
+        (2 / node.step) * (to_material * rotation_increment(rule, node).value) - node.state.angular_velocity;
   } else {
-    const NewmarkRule rule = newmark_rule(scheme, node.step);
+    const NewmarkRule newmark = newmark_rule(rule, node.step);
     const Vector3 increment = to_material * cayley::to_rotation_vector(node.increment);
-    out.acceleration = rule.acceleration(displacement, node.state.velocity, node.state.acceleration);
-    out.velocity = rule.velocity(node.state.velocity, node.state.acceleration, out.acceleration);
+    out.acceleration = newmark.acceleration(displacement, node.state.velocity, node.state.acceleration);
+    out.velocity = newmark.velocity(node.state.velocity, node.state.acceleration, out.acceleration);
     out.angular_acceleration =
-        rule.acceleration(increment, node.state.angular_velocity, node.state.angular_acceleration);
+        newmark.acceleration(increment, node.state.angular_velocity, node.state.angular_acceleration);
     out.angular_velocity =
-        rule.velocity(node.state.angular_velocity, node.state.angular_acceleration, out.angular_acceleration);
+        newmark.velocity(node.state.angular_velocity, node.state.angular_acceleration, out.angular_acceleration);
   }
   return out;
 }

@@ -4,13 +4,13 @@ namespace flexarm {
 
 const std::vector<Scheme>& schemes() {
   static const std::vector<Scheme> table = {
-      {"em", StressRule::DiscreteGradient, RotationRule::TangentScaled, true, 0.25, 0.5, true, true,
+      {{StressRule::DiscreteGradient, RotationRule::TangentScaled, true, 0.25, 0.5}, "em", true, true,
        "invariant energy-momentum scheme, one multiplier per element"},
-      {"em0", StressRule::Average, RotationRule::TangentScaled, true, 0.25, 0.5, false, true,
+      {{StressRule::Average, RotationRule::TangentScaled, true, 0.25, 0.5}, "em0", false, true,
        "its base: momenta exact, energy to third order per step"},
-      {"m1", StressRule::Exponential, RotationRule::Unscaled, false, 0.25, 0.5, false, true,
+      {{StressRule::Exponential, RotationRule::Unscaled, false, 0.25, 0.5}, "m1", false, true,
        "momentum-conserving scheme M1 (Muñoz 2004, sec. 6.3)"},
-      {"newmark", StressRule::EndPoint, RotationRule::Unscaled, false, 0.25, 0.5, false, false,
+      {{StressRule::EndPoint, RotationRule::Unscaled, false, 0.25, 0.5}, "newmark", false, false,
        "trapezoidal rule (Muñoz 2004, ch. 4)"},
   };
   return table;

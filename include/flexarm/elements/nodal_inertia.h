@@ -1,8 +1,7 @@
 #pragma once
 /// Inertia residuals of rigid bodies (and of beams' rotary inertia where a scheme lumps it) at their nodes.
 
-#include "flexarm/elements/endpoint_beam.h"
-#include "flexarm/integrators/scheme.h"
+#include "flexarm/elements/time_rule.h"
 #include "flexarm/joints/joint_map.h"
 #include "flexarm/model/model.h"
 #include "flexarm/model/state.h"
@@ -29,10 +28,10 @@ struct NodalInertiaAction {
 
 /// (1/h) m (v_1 - v_0), (1/h) (Lambda J W)_1 - (Lambda J W)_0 for conserving schemes; m a, Lambda (W x J W + J A) for Newmark.
 /// (beam.md 3.4, beyond.md 1.1)
-NodalInertiaAction nodal_inertia_action(const NodalInertia& inertia, const Scheme& scheme, const NodeStep& node,
+NodalInertiaAction nodal_inertia_action(const NodalInertia& inertia, const TimeRule& rule, const NodeStep& node,
                                         bool with_tangent = true);
 
 /// The node's motion at the end of the step.
-NodeState advanced(const Scheme& scheme, const NodeStep& node);
+NodeState advanced(const TimeRule& rule, const NodeStep& node);
 
 }  // namespace flexarm
