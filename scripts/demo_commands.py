@@ -1,47 +1,107 @@
 #!/usr/bin/python3
 """Plays a schedule of joint efforts against a running simulation, again and again.
 
-Parameters: ~commands, a list of {time: s, names: [joint, ...], efforts: [N m or N, ...], duration: s}, and ~period, the
-simulated time after which the schedule starts again [s]. It follows the simulated time of flexarm/status, so that it
-pauses, slows down and starts again together with the simulation.
+Parameters: ~period, the simulated time after which the simulation is reset and the schedule starts again [s], and
+~commands, a list of
+
+    {time: s, names: [joint, ...], efforts: [N m or N, ...], duration: s, repeat: times, every: s}
+
+where `repeat` (1) and `every` say how often a command comes again. The schedule follows the simulated time of
+flexarm/status, so that it pauses, slows down and starts again together with the simulation.
 """
+
+import threading
+import time
 
 import rospy
 from flexarm.msg import JointForceCommand, SimulatorStatus
+from std_srvs.srv import Empty
 
 
-class Schedule:
+def expand(commands):
+    """Every command with its repetitions, in order: a list of (time, command)."""
+    return sorted(
+        (
+            (command["time"] + k * command.get("every", 0.0), command)
+            for command in commands
+            for k in range(command.get("repeat", 1))
+        ),
+        key=lambda event: event[0],
+    )
+
+
+class Player:
     def __init__(self, commands, period):
-        self.commands = sorted(commands, key=lambda command: command["time"])
+        self.events = expand(commands)
         self.period = period
-        self.last_time = -1.0  # s, simulated
+        self.next = 0  # the event that is due next
+        self.status = None
+        self.heard_at = 0.0  # wall time of the last status [s]
+        self.changed = threading.Condition()
         self.publisher = rospy.Publisher("joint_force_command", JointForceCommand, queue_size=100)
+        self.reset = rospy.ServiceProxy("flexarm/reset", Empty)
 
     def receive(self, status):
-        if self.publisher.get_num_connections() == 0:
-            return
-        if status.time < self.last_time:  # the simulation was reset
-            self.last_time = -1.0
-        for command in self.commands:
-            # The latest repetition of this command up to now.
-            repetition = (status.time - command["time"]) // self.period
-            if repetition >= 0 and command["time"] + repetition * self.period > self.last_time:
-                self.send(command)
-        self.last_time = status.time
+        with self.changed:
+            if self.status is None or status.time < self.status.time:  # the start, or a reset
+                self.next = sum(due < status.time for due, _ in self.events)
+            self.status = status
+            self.heard_at = time.monotonic()
+            self.changed.notify()
 
-    def send(self, command):
-        self.publisher.publish(
-            names=command["names"],
-            efforts=command["efforts"],
-            duration=rospy.Duration.from_sec(command["duration"]),
-        )
+    def delay(self, due):
+        """Wall time until the simulation reaches `due` [s]; None while it is unknown or stands still.
+
+        A status comes ten times a second, pulses are shorter: between them the simulated time is extrapolated.
+        """
+        status = self.status
+        if status is None or status.paused or status.failed or status.real_time_factor <= 0:
+            return None
+        return (due - status.time) / status.real_time_factor - (time.monotonic() - self.heard_at)
+
+    def play_next(self):
+        """Waits for the next event; returns after it, or after news that may change it."""
+        with self.changed:
+            at_end = self.next == len(self.events)
+            due, command = (self.period, None) if at_end else self.events[self.next]
+            delay = self.delay(due)
+            if delay is None or delay > 0:
+                self.changed.wait(0.1 if delay is None else min(delay, 0.1))
+                return
+            if at_end:
+                self.status = None  # until the first status after the reset
+            else:
+                self.next += 1
+        if at_end:
+            self.reset()
+        else:
+            self.publisher.publish(
+                names=command["names"],
+                efforts=command["efforts"],
+                duration=rospy.Duration.from_sec(command["duration"]),
+            )
+
+    def start(self):
+        """Resets the simulation, which has been running since before anyone could hear the first command."""
+        self.reset.wait_for_service()
+        while self.publisher.get_num_connections() == 0 and not rospy.is_shutdown():
+            time.sleep(0.01)
+        self.reset()
+
+    def run(self):
+        self.start()
+        while not rospy.is_shutdown():
+            try:
+                self.play_next()
+            except rospy.ServiceException as error:
+                rospy.logwarn("the simulation could not be reset: %s", error)
 
 
 def main():
     rospy.init_node("demo_commands")
-    schedule = Schedule(rospy.get_param("~commands"), rospy.get_param("~period"))
-    rospy.Subscriber("flexarm/status", SimulatorStatus, schedule.receive, queue_size=10)
-    rospy.spin()
+    player = Player(rospy.get_param("~commands"), rospy.get_param("~period"))
+    rospy.Subscriber("flexarm/status", SimulatorStatus, player.receive, queue_size=10)
+    player.run()
 
 
 if __name__ == "__main__":
