@@ -15,6 +15,12 @@ namespace {
 constexpr int kFrequencyElements[] = {0, 14, 4, 3, 2};
 constexpr double kTurningPerElement[] = {0, 0.2, 0.8, 1.2, 1.6};
 
+/// Arc length of node i of an element; exactly `to` for the last one.
+double at_node(double from, double to, int order, int i) {
+  const double xi = node_coordinate(order + 1, i);
+  return 0.5 * (1 - xi) * from + 0.5 * (1 + xi) * to;
+}
+
 /// Element borders: piece borders, attachments and both ends, merged where they coincide.
 std::vector<double> borders(const Centreline& centreline, std::vector<double> attachments) {
   std::vector<double> all = centreline.piece_ends();
@@ -93,7 +99,7 @@ BeamMesh mesh_beam(const scene::BeamDescription& beam, const Centreline& centrel
       MeshElement element;
       element.nodes.push_back(last);
       for (int i = 1; i <= beam.order; ++i)
-        element.nodes.push_back(last = add_node(from + (to - from) * i / beam.order, true, -1));
+        element.nodes.push_back(last = add_node(at_node(from, to, beam.order, i), true, -1));
       element.end = to;
       mesh.elements.push_back(element);
     }

@@ -1,5 +1,6 @@
 #include "flexarm/simulation/observables.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "flexarm/elements/beam_point.h"
@@ -121,10 +122,12 @@ void beam_points(const Model& model, const State& state, const BeamLink& beam, i
       const LocalRotations<N> local(nodes.orientation);
       const int steps = (N - 1) * (between + 1);
       for (int k = e == 0 ? 0 : 1; k <= steps; ++k) {
-        const double xi = 2.0 * k / steps - 1;
+        const int pair = std::min(k / (between + 1), N - 2);
+        const double left = node_coordinate<N>(pair), right = node_coordinate<N>(pair + 1);
+        const double xi = left + (right - left) * (k - pair * (between + 1)) / (between + 1);
         const ShapeFunctions<N> functions = lagrange<N>(xi);
         BeamPoint point;
-        point.arc_length = begin + (end - begin) * k / steps;
+        point.arc_length = begin + 0.5 * (1 + xi) * (end - begin);
         const Matrix3 rotation = local.evaluate(functions.values, functions.derivatives).rotation;
         point.pose.orientation = Quaternion(rotation).normalized();
         point.pose.position = interpolate<N>(functions.values, nodes.position) - rotation * beam.centroid;

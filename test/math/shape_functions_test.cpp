@@ -1,5 +1,6 @@
 /// Lagrange shape functions: the defining properties, for every node count.
 
+#include <flexarm/math/quadrature.h>
 #include <flexarm/math/shape_functions.h>
 
 #include <cmath>
@@ -21,12 +22,21 @@ using Counts = ::testing::Types<std::integral_constant<int, 2>, std::integral_co
                                 std::integral_constant<int, 4>, std::integral_constant<int, 5>>;
 TYPED_TEST_SUITE(ShapeFunctionsTest, Counts);
 
-TYPED_TEST(ShapeFunctionsTest, NodesAreEquallySpacedFromEndToEnd) {
+// The nodal polynomial is orthogonal to all polynomials of degree nodes - 3, which defines the Gauss-Lobatto points.
+TYPED_TEST(ShapeFunctionsTest, NodesAreTheGaussLobattoPoints) {
   constexpr int nodes = TypeParam::value;
   EXPECT_EQ(node_coordinate<nodes>(0), -1.0);
   EXPECT_EQ(node_coordinate<nodes>(nodes - 1), 1.0);
-  for (int i = 1; i < nodes; ++i) {
-    EXPECT_NEAR(node_coordinate<nodes>(i) - node_coordinate<nodes>(i - 1), 2.0 / (nodes - 1), roundoff);
+  for (int i = 1; i < nodes; ++i) EXPECT_LT(node_coordinate<nodes>(i - 1), node_coordinate<nodes>(i));
+  for (int degree = 0; degree <= nodes - 3; ++degree) {
+    double integral = 0;
+    for (std::size_t k = 0; k < GaussLegendre<5>::points.size(); ++k) {
+      const double xi = GaussLegendre<5>::points[k];
+      double polynomial = std::pow(xi, degree);
+      for (int i = 0; i < nodes; ++i) polynomial *= xi - node_coordinate<nodes>(i);
+      integral += GaussLegendre<5>::weights[k] * polynomial;
+    }
+    EXPECT_NEAR(integral, 0.0, roundoff);
   }
 }
 
