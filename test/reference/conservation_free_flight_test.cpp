@@ -37,10 +37,18 @@ void expect_conserved(const SceneBuilder& builder, const std::string& scheme, do
               drift.momentum(), drift.angular_momentum());
 }
 
-TEST(FreeFlight, TumblingBeamWithEm) { expect_conserved(tumbling_beam(), "em", 0.05, true); }
-TEST(FreeFlight, TumblingBeamMomentaWithEm0) { expect_conserved(tumbling_beam(), "em0", 0.05, false); }
-TEST(FreeFlight, TumblingBeamMomentaWithM1) { expect_conserved(tumbling_beam(), "m1", 0.05, false); }
-TEST(FreeFlight, TreeOfBeamsWithEm) { expect_conserved(free_beam_tree(), "em", 0.02, true); }
+TEST(FreeFlight, TumblingBeamWithEm) {
+  expect_conserved(tumbling_beam(), "em", 0.05, true);
+}
+TEST(FreeFlight, TumblingBeamMomentaWithEm0) {
+  expect_conserved(tumbling_beam(), "em0", 0.05, false);
+}
+TEST(FreeFlight, TumblingBeamMomentaWithM1) {
+  expect_conserved(tumbling_beam(), "m1", 0.05, false);
+}
+TEST(FreeFlight, TreeOfBeamsWithEm) {
+  expect_conserved(free_beam_tree(), "em", 0.02, true);
+}
 
 class FreeTree : public ::testing::TestWithParam<scene::JointKind> {};
 

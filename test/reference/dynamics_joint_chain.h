@@ -6,7 +6,9 @@
 namespace flexarm::test {
 
 /// A slender flexible section: bends visibly at spins of about 1 rad/s.
-inline scene::DirectSection soft_section() { return {2e3, 1e3, 1e3, 80, 100, 120, 1, 0.2, 0.1, 0.1}; }
+inline scene::DirectSection soft_section() {
+  return {2e3, 1e3, 1e3, 80, 100, 120, 1, 0.2, 0.1, 0.1};
+}
 
 inline Matrix3 body_inertia() {
   Matrix3 inertia;
@@ -14,8 +16,8 @@ inline Matrix3 body_inertia() {
   return inertia;
 }
 
-/// A floating beam "trunk" with a "branch" on a joint of the given kind at its tip: a beam that carries a rigid body with
-/// offset centre of mass, and a rigid body on the same kind of joint at mid-span.
+/// A floating beam "trunk" with a "branch" on a joint of the given kind at its tip: a beam that carries a rigid body
+/// with offset centre of mass, and a rigid body on the same kind of joint at mid-span.
 inline SceneBuilder free_tree(scene::JointKind kind) {
   SceneBuilder b;
   b.beam("trunk", {{2, 0, 0}, {3, 1, 0.5}}, soft_section(), 1, 2);

@@ -41,8 +41,8 @@ inline double total_mass(const Simulation& simulation) {
   return mass;
 }
 
-/// Largest change of energy and momenta since construction, relative to their largest values; that of the linear momentum
-/// relative to sqrt(2 m T), because the total may vanish while its parts do not.
+/// Largest change of energy and momenta since construction, relative to their largest values; that of the linear
+/// momentum relative to sqrt(2 m T), because the total may vanish while its parts do not.
 class InvariantDrift {
  public:
   explicit InvariantDrift(const Simulation& simulation)
@@ -78,13 +78,13 @@ class InvariantDrift {
   double energy_scale_ = 0, linear_scale_ = 0, angular_scale_ = 0;
 };
 
-inline void initial_field(SceneBuilder& builder, const std::string& link, const Vector3& linear, const Vector3& angular) {
+inline void initial_field(SceneBuilder& builder, const std::string& link, const Vector3& linear,
+                          const Vector3& angular) {
   builder.scene.initial_links.push_back({link, linear, angular, {}});
 }
 inline void initial_joint(SceneBuilder& builder, const std::string& coordinate, double position, double velocity) {
   builder.scene.initial_joints.push_back({coordinate, position, velocity, {}});
 }
-
 
 /// Shifts the velocity of the first initial field so that the centre of mass moves with `drift`: a body that stays near
 /// the origin keeps its angular momentum free of the round-off of large distances.

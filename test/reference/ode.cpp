@@ -23,7 +23,8 @@ Eigen::VectorXd modified_midpoint(const OdeFunction& f, double t, const Eigen::V
 
 }  // namespace
 
-Eigen::VectorXd solve_ode(const OdeFunction& f, double from, double to, const Eigen::VectorXd& start, double tolerance) {
+Eigen::VectorXd solve_ode(const OdeFunction& f, double from, double to, const Eigen::VectorXd& start,
+                          double tolerance) {
   Eigen::VectorXd y = start;
   const double length = to - from, smallest = 1e-10 * std::abs(length);
   double t = from, step = length / 16;

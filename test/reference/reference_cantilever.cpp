@@ -36,6 +36,8 @@ Pose static_tip(const Cantilever& cantilever, int elements, int order, int load_
   return simulation.probe(0).pose;
 }
 
-double observed_order(double coarse_error, double fine_error) { return std::log2(coarse_error / fine_error); }
+double observed_order(double coarse_error, double fine_error) {
+  return std::log2(coarse_error / fine_error);
+}
 
 }  // namespace flexarm::test

@@ -92,8 +92,7 @@ Pose shooting_tip(const Cantilever& cantilever, const Matrix6& stiffness, int st
   for (int increment = 1; increment <= kIncrements; ++increment) {
     const double factor = double(increment) / kIncrements;
     const Shooting shooting(line, stiffness, factor * cantilever.force, steps);
-    const double scale =
-        factor * (cantilever.moment.norm() + line.length * cantilever.force.norm());
+    const double scale = factor * (cantilever.moment.norm() + line.length * cantilever.force.norm());
     bool converged = false;
     for (int iteration = 0; iteration < 20 && !converged; ++iteration) {
       tip = shooting.integrate(root_moment);

@@ -1,5 +1,6 @@
 #pragma once
-/// An independent, mesh-free solution of the static Reissner-Simo beam: shooting on its ordinary differential equations.
+/// An independent, mesh-free solution of the static Reissner-Simo beam: shooting on its ordinary differential
+/// equations.
 
 #include "reference_cantilever.h"
 
@@ -8,8 +9,8 @@ namespace flexarm::test {
 /// Tip section of a cantilever of one piece (line or arc, possibly twisted) with a section matrix about the centreline.
 ///
 /// r' = Lambda (e_1 + Gamma), Lambda' = Lambda (Upsilon_0 + K)^, m' = -r' x n, n = force, {Gamma, K} = C^{-1} {N, M};
-/// Newton's method on the root moment so that m(L) = moment; classical Runge-Kutta with `steps` steps (error of order 4).
-/// The load is applied in ten increments.
+/// Newton's method on the root moment so that m(L) = moment; classical Runge-Kutta with `steps` steps (error of order
+/// 4). The load is applied in ten increments.
 /// @throws std::runtime_error if Newton's method fails.
 Pose shooting_tip(const Cantilever& cantilever, const Matrix6& stiffness, int steps = 3000);
 

@@ -22,7 +22,9 @@ Cantilever roll_up(double turns) {
 }
 
 /// Elements so that no node of an element turns by more than pi from the reference rotation.
-int elements(int turns) { return turns < 5 ? 6 : 12; }
+int elements(int turns) {
+  return turns < 5 ? 6 : 12;
+}
 
 class FullTurns : public testing::TestWithParam<std::tuple<int, int, int>> {};
 

@@ -1,0 +1,83 @@
+// Newton's method converges quadratically on a large-rotation step: its tangent is the residual's derivative.
+#include <cstdio>
+
+#include "reference/dynamics_joint_chain.h"
+
+namespace flexarm::test {
+namespace {
+
+using scene::JointKind;
+
+/// Rates of convergence log(e_{k+1}) / log(e_k) of the updates below the radius of convergence and above round-off.
+/// 2 in the limit; the constant of the quadratic estimate shifts it by log(C) / log(e_k).
+std::vector<double> observed_orders(const std::vector<double>& norms) {
+  std::vector<double> orders;
+  for (std::size_t k = 1; k + 1 < norms.size(); ++k)
+    if (norms[k - 1] > 4 * norms[k] && norms[k + 1] > 1e-13)
+      orders.push_back(std::log(norms[k + 1] / norms[k]) / std::log(norms[k] / norms[k - 1]));
+  return orders;
+}
+
+void expect_quadratic(const std::vector<double>& norms, const std::string& what) {
+  std::printf("%-28s", what.c_str());
+  for (const double norm : norms) std::printf(" %.1e", norm);
+  std::printf("\n");
+  ASSERT_GE(norms.size(), 4u) << "the step must be large enough to show the rate";
+  // e_{k+1} <= C e_k^2 with one constant for the whole solve once inside the radius of convergence.
+  for (std::size_t k = 0; k + 1 < norms.size(); ++k) {
+    if (norms[k] > 0.05) continue;
+    EXPECT_LT(norms[k + 1], std::max(100 * norms[k] * norms[k], 1e-13)) << what << ", iteration " << k;
+  }
+  const std::vector<double> orders = observed_orders(norms);
+  if (!orders.empty()) {
+    EXPECT_GT(orders.back(), 1.7) << what;
+  }
+}
+
+SimulationOptions full_newton(const std::string& scheme, double step) {
+  SimulationOptions out = options(scheme, step, 1e-12);
+  out.reuse_factorisation = false;
+  return out;
+}
+
+class Newton : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(Newton, QuadraticOnALargeStepOfAFlexibleBeam) {
+  SceneBuilder b;
+  b.beam("arm", {{1, 0, 0}, {1.5, 0.5, 0.3}}, soft_section(), 2, 2);
+  b.joint("clamp", JointKind::Fixed, "world", "arm");
+  b.load("arm", {1.5, 0.5, 0.3}, {20, 10, 60}, {5, 10, 5});
+  b.load("arm", {1.5, 0.5, 0.3}, {0, 0, 10}, Vector3::Zero(), "1", scene::LoadFrame::Follower);
+  Simulation simulation(b.scene, full_newton(GetParam(), 0.15));
+  ASSERT_EQ(simulation.step().halvings, 0);
+  expect_quadratic(simulation.update_norms(), GetParam() + " beam");
+}
+
+TEST_P(Newton, QuadraticWithEveryKindOfJoint) {
+  const std::vector<std::pair<std::string, JointKind>> kinds = {{"fixed", JointKind::Fixed},
+                                                                {"revolute", JointKind::Revolute},
+                                                                {"continuous", JointKind::Continuous},
+                                                                {"prismatic", JointKind::Prismatic},
+                                                                {"planar", JointKind::Planar},
+                                                                {"floating", JointKind::Floating},
+                                                                {"spherical", JointKind::Spherical},
+                                                                {"universal", JointKind::Universal},
+                                                                {"cylindrical", JointKind::Cylindrical}};
+  for (const auto& [name, kind] : kinds) {
+    SceneBuilder b = free_tree(kind);
+    b.scene.initial_links[0].angular *= 3;
+    b.load("hand", {0.2, 0.1, 0}, {10, 20, 5}, {1, 2, 1});
+    for (scene::JointDescription& joint : b.scene.joints) joint.damping = 0.3;
+    Simulation simulation(b.scene, full_newton(GetParam(), 0.2));
+    const StepResult result = simulation.step();
+    ASSERT_TRUE(result.converged);
+    ASSERT_EQ(result.halvings, 0) << name;
+    expect_quadratic(simulation.update_norms(), GetParam() + " " + name);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Schemes, Newton, ::testing::Values("em", "em0", "m1", "newmark"),
+                         [](const auto& info) { return info.param; });
+
+}  // namespace
+}  // namespace flexarm::test
