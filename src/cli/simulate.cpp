@@ -34,7 +34,7 @@ std::optional<CsvWriter> open_output(const Arguments& arguments, const Simulatio
   try {
     return CsvWriter(arguments.output, simulation, CsvWriter::Columns::StateAndSolver);
   } catch (const std::runtime_error& error) {
-    throw InputError(error.what());
+    throw InputError("flexarm: " + std::string(error.what()));
   }
 }
 
@@ -87,7 +87,7 @@ int simulate(const Arguments& arguments) {
     try {
       read_checkpoint(simulation, arguments.resume);
     } catch (const std::runtime_error& error) {
-      throw InputError(error.what());
+      throw InputError("flexarm: " + std::string(error.what()));
     }
   }
   const double begin = simulation.time();

@@ -1,0 +1,199 @@
+#include <cmath>
+#include <filesystem>
+
+#include "cli/program.h"
+
+namespace flexarm::cli {
+namespace {
+
+void expect_contains(const std::string& text, const std::string& fragment) {
+  EXPECT_NE(text.find(fragment), std::string::npos) << "expected '" << fragment << "' in:\n" << text;
+}
+
+/// Writes a scene and returns its path.
+std::string scene_file(const std::string& text) {
+  const std::string path = temporary("scene.urdf");
+  std::ofstream(path) << text;
+  return path;
+}
+
+/// A rod on a hinge whose Newton iteration is not given enough iterations.
+const char* const kFailingScene = R"(<robot name="r">
+  <link name="world"/>
+  <joint name="hinge" type="continuous"> <parent link="world"/> <child link="rod"/> <axis xyz="0 1 0"/> </joint>
+  <link name="rod">
+    <inertial> <origin xyz="1 0 0"/> <mass value="1"/>
+      <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/> </inertial>
+  </link>
+  <simulation> <integrator step="0.5" max_iterations="1" max_halvings="0"/> </simulation>
+</robot>)";
+
+}  // namespace
+
+TEST(CommandLine, UsageErrors) {
+  for (const char* arguments : {"", "fly", "check", "simulate", "check a b", "simulate --step"}) {
+    const Outcome outcome = shell("flexarm " + std::string(arguments));
+    EXPECT_EQ(outcome.status, 2) << arguments;
+    EXPECT_NE(outcome.errors, "") << arguments;
+    EXPECT_EQ(outcome.output, "") << arguments;
+  }
+  const std::string scene = example("cantilever");
+  for (const char* option :
+       {"--step 0", "--step nan", "--step 1x", "--until -1", "--tolerance 0", "--every 0", "--scheme rk4"})
+    EXPECT_EQ(shell("flexarm simulate " + scene + " " + option).status, 2) << option;
+  EXPECT_EQ(shell("flexarm static " + scene + " --load-steps 0").status, 2);
+  EXPECT_EQ(shell("flexarm modes " + scene + " --count 0").status, 2);
+}
+
+TEST(CommandLine, Help) {
+  const Outcome outcome = shell("flexarm --help && flexarm simulate --help");
+  EXPECT_EQ(outcome.status, 0);
+  for (const char* word : {"check", "static", "modes", "--until", "--every", "--resume", "--checkpoint", "--quiet"})
+    expect_contains(outcome.output, word);
+}
+
+TEST(CommandLine, SceneErrorsGoToTheErrorOutput) {
+  const std::string path = scene_file("<robot name=\"r\">\n<link name=\"a\"/>\n<link name=\"b\"/></robot>");
+  for (const char* command : {"check", "simulate", "static", "modes"}) {
+    const Outcome outcome = shell("flexarm " + std::string(command) + " " + path);
+    EXPECT_EQ(outcome.status, 2) << command;
+    EXPECT_EQ(outcome.output, "") << command;
+    expect_contains(outcome.errors, path + ":3: <link> 'b': must be the child of a joint");
+  }
+  EXPECT_EQ(shell("flexarm check /no/such/scene.urdf").status, 2);
+}
+
+TEST(Check, DescribesTheModel) {
+  const Outcome outcome = shell("flexarm check " + example("cantilever"));
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  expect_contains(outcome.output, "scene 'cantilever': 2 links, 1 joints");
+  for (const char* word : {"nodes", "degrees of freedom", "EA", "GJ", "EI y", "2.1991e+07", "549.78", "flexible",
+                           "fixed", "first natural frequencies [Hz]: 14.2"})
+    expect_contains(outcome.output, word);
+}
+
+TEST(Check, TakesEveryExample) {
+  for (const auto& entry : std::filesystem::directory_iterator(FLEXARM_SOURCE_DIR "/config/examples"))
+    EXPECT_EQ(shell("flexarm check " + entry.path().string()).status, 0) << entry.path();
+}
+
+TEST(Simulate, WritesRowsAndASummary) {
+  const std::string csv = temporary("out.csv");
+  const Outcome outcome = shell("flexarm simulate " + example("rigid_double_pendulum") +
+                                " --until 0.1 --step 0.01 --every 4 --output " + csv);
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  expect_contains(outcome.output, "10 steps");
+  EXPECT_EQ(outcome.errors, "") << "no progress bar in a pipe";
+  Columns columns = read_csv(csv);
+  const std::vector<double> times = columns["time"];
+  ASSERT_EQ(times.size(), 4u);  // the start, steps 4 and 8, and the end
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(times[i], (std::vector<double>{0, 0.04, 0.08, 0.1}[i]), 1e-12);
+  for (const char* name : {"joint/shoulder/position", "joint/elbow/velocity", "joint/elbow/effort", "frame/world/qw",
+                           "frame/forearm/x", "probe/tip/x", "probe/tip/qw", "probe/tip/vz", "energy/kinetic",
+                           "energy/strain", "energy/potential", "energy/total", "energy/work", "energy/dissipated",
+                           "momentum/z", "angular_momentum/y", "solver/step", "solver/iterations", "solver/halvings"})
+    EXPECT_EQ(columns[name].size(), 4u) << name;
+  EXPECT_EQ(columns["solver/step"][1], 0.01);
+  EXPECT_EQ(columns["solver/iterations"][0], 0);
+  EXPECT_GE(columns["solver/iterations"][1], 4) << "counts all steps since the row before";
+}
+
+TEST(Simulate, NumbersAreReadBackBitForBit) {
+  const std::string csv = temporary("out.csv");
+  ASSERT_EQ(
+      shell("flexarm simulate " + example("rigid_double_pendulum") + " --until 0.02 --quiet --output " + csv).status,
+      0);
+  std::ifstream file(csv);
+  std::string line;
+  while (std::getline(file, line)) {
+  }
+  for (const std::string& field : split(line)) {
+    char again[40];
+    std::snprintf(again, sizeof again, "%.17g", std::stod(field));
+    EXPECT_EQ(field, again);
+  }
+}
+
+TEST(Simulate, QuietSaysNothing) {
+  const Outcome outcome = shell("flexarm simulate " + example("cantilever") + " --until 0.01 --quiet");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.output + outcome.errors, "");
+}
+
+TEST(Simulate, ResumedRunEqualsAnUninterruptedOne) {
+  const std::string scene = example("flexible_two_link_arm"), state = temporary("state"), end = temporary("end");
+  const std::string whole = temporary("whole.csv"), half = temporary("half.csv");
+  const Outcome outcome =
+      shell("set -e; flexarm simulate " + scene + " --until 0.2 --checkpoint " + end + " --output " + whole +
+            "; flexarm simulate " + scene + " --until 0.1 --checkpoint " + state + "; flexarm simulate " + scene +
+            " --until 0.2 --resume " + state + " --output " + half);
+  ASSERT_EQ(outcome.status, 0) << outcome.errors;
+  const Columns a = read_csv(whole), b = read_csv(half);
+  EXPECT_NEAR(b.at("time").front(), 0.1, 1e-12);
+  for (const auto& [name, values] : a) EXPECT_EQ(values.back(), b.at(name).back()) << name;
+}
+
+TEST(Simulate, BadStateFileIsAnInputError) {
+  const std::string state = temporary("state");
+  std::ofstream(state) << "nonsense";
+  EXPECT_EQ(shell("flexarm simulate " + example("cantilever") + " --resume " + state).status, 2);
+  EXPECT_EQ(shell("flexarm simulate " + example("cantilever") + " --resume /no/such/state").status, 2);
+}
+
+TEST(Simulate, FailureKeepsAndNamesTheLastGoodState) {
+  const std::string state = temporary("state"), csv = temporary("out.csv");
+  const Outcome outcome =
+      shell("flexarm simulate " + scene_file(kFailingScene) + " --checkpoint " + state + " --output " + csv);
+  EXPECT_EQ(outcome.status, 1);
+  expect_contains(outcome.errors, "simulation failed after t = 0 s: ");
+  expect_contains(outcome.errors, "the last good state is kept in '" + state + "'");
+  EXPECT_TRUE(std::filesystem::exists(state));
+  EXPECT_EQ(read_csv(csv)["time"].size(), 1u);
+}
+
+TEST(Simulate, InterruptionLeavesACompleteTable) {
+  const std::string csv = temporary("out.csv");
+  const Outcome outcome = shell("'" FLEXARM_PROGRAM "' simulate " + example("rigid_double_pendulum") +
+                                " --until 1e9 --every 1000 --output " + csv + " & sleep 1; kill -INT $!; wait $!");
+  EXPECT_EQ(outcome.status, 0);
+  expect_contains(outcome.errors, "interrupted at t = ");
+  Columns columns = read_csv(csv);  // checks the number of fields of every row
+  EXPECT_GT(columns["time"].back(), 0);
+  EXPECT_EQ(read_file(csv).back(), '\n');
+}
+
+TEST(Simulate, WriteErrorsAreReported) {
+  const std::string scene = "flexarm simulate " + example("cantilever") + " --until 0.01 --output ";
+  const Outcome full = shell(scene + "/dev/full");
+  EXPECT_EQ(full.status, 1);
+  expect_contains(full.errors, "cannot write '/dev/full': No space left on device");
+  const Outcome missing = shell(scene + "/no/such/folder/out.csv");
+  EXPECT_EQ(missing.status, 2);
+  expect_contains(missing.errors, "cannot write '/no/such/folder/out.csv': No such file or directory");
+}
+
+TEST(Static, FindsTheEquilibrium) {
+  const std::string csv = temporary("out.csv");
+  const Outcome outcome = shell("flexarm static " + example("cantilever") + " --output " + csv);
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  expect_contains(outcome.output, "arm/tip");
+  Columns columns = read_csv(csv);
+  EXPECT_EQ(columns["time"].size(), 1u);
+  EXPECT_EQ(columns.count("solver/step"), 0u);
+  // The strain energy of a clamped beam under its weight q per length: q^2 L^5 / (40 EI), here to within the shear (a
+  // share of 20/3 EI / (GA L^2) < 1e-3) and the change of geometry (deflection squared < 1e-3).
+  const double q = 2700 * M_PI * 1e-4 * 9.81, ei = 70e9 * M_PI * 1e-8 / 4;
+  EXPECT_NEAR(columns["energy/strain"][0], q * q / (40 * ei), 2e-3 * q * q / (40 * ei));
+}
+
+TEST(Modes, FrequenciesAndShapes) {
+  const Outcome outcome = shell("flexarm modes " + example("cantilever") + " --count 3");
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  // Euler-Bernoulli: 1.87510^2 / (2 pi L^2) sqrt(EI / mass) = 14.247 Hz; rotary inertia and shear lower it slightly.
+  expect_contains(outcome.output, "mode 1: 14.24");
+  expect_contains(outcome.output, "mode 3: 89.");
+  expect_contains(outcome.output, "arm/tip");
+  EXPECT_EQ(outcome.output.find("mode 4"), std::string::npos);
+}
+
+}  // namespace flexarm::cli
