@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 namespace flexarm::scene {
 namespace {
@@ -51,22 +52,37 @@ std::map<std::string, const JointDescription*> find_parents(const SceneDescripti
   return parents;
 }
 
-/// Records each ring of joints once, at its joint that comes first in the file.
+/// Follows `next` (a name, or nothing at an end) from all names; one name of each ring that it leads into.
+template <class Named, class Next>
+std::vector<std::string> find_rings(const std::vector<Named>& things, const Next& next) {
+  std::vector<std::string> rings;
+  std::map<std::string, int> visits;  // the walk that first came to a name: every name is left only once
+  int walk = 0;
+  for (const Named& thing : things) {
+    ++walk;
+    std::string name = thing.name;
+    std::optional<std::string> following = next(name);
+    while (following && visits.emplace(name, walk).second) {
+      name = *following;
+      following = next(name);
+    }
+    if (following && visits.at(name) == walk) rings.push_back(name);
+  }
+  return rings;
+}
+
 void check_rings(const SceneDescription& scene, const std::map<std::string, const JointDescription*>& parents,
                  Findings& findings) {
-  std::map<std::string, int> visit;  // number of the walk that reached a link
-  int walk = 0;
-  for (const LinkDescription& link : scene.links) {
-    ++walk;
-    std::string name = link.name;
-    for (auto above = parents.find(name); above != parents.end() && visit.emplace(name, walk).second;
-         above = parents.find(name))
-      name = above->second->parent;
-    const auto reached = visit.find(name);
-    if (reached == visit.end() || reached->second != walk || parents.count(name) == 0) continue;
-    const JointDescription& joint = *parents.at(name);
+  const auto above = [&](const std::string& link) -> std::optional<std::string> {
+    const auto joint = parents.find(link);
+    // A joint from a link to itself is recorded already.
+    if (joint == parents.end() || joint->second->parent == link) return std::nullopt;
+    return joint->second->parent;
+  };
+  for (const std::string& link : find_rings(scene.links, above)) {
+    const JointDescription& joint = *parents.at(link);
     findings.error(joint.location.line, element_of("joint", joint.name),
-                   "joints must form a tree; following the parents leads round in a ring", quoted(name));
+                   "joints must form a tree; following the parents leads round in a ring", quoted(link));
   }
 }
 
@@ -113,6 +129,15 @@ class ReferenceCheck {
   void check_mimics() const {
     for (const JointDescription& joint : scene_.joints)
       if (joint.mimic) check_mimic(joint);
+    const auto mimicked = [&](const std::string& name) -> std::optional<std::string> {
+      const auto joint = joints_.find(name);
+      return joint != joints_.end() && joint->second->mimic ? std::optional(joint->second->mimic->joint) : std::nullopt;
+    };
+    for (const std::string& name : find_rings(scene_.joints, mimicked)) {
+      const JointDescription& joint = *joints_.at(name);
+      findings_.error(joint.location.line, element_of("joint", name),
+                      "a joint must not mimic itself, directly or through others", quoted(joint.mimic->joint));
+    }
   }
 
   void check_simulation() const {
@@ -165,15 +190,6 @@ class ReferenceCheck {
       findings_.error(joint.location.line, element, "only a joint with one coordinate can mimic");
     if (coordinate_suffixes(found->second->kind).size() != 1)
       findings_.error(joint.location.line, element, "only a joint with one coordinate can be mimicked", quoted(target));
-    std::set<std::string> chain;
-    for (auto next = joints_.find(joint.name); next != joints_.end() && next->second->mimic;
-         next = joints_.find(next->second->mimic->joint)) {
-      if (chain.insert(next->first).second) continue;
-      if (next->first == joint.name)
-        findings_.error(joint.location.line, element, "a joint must not mimic itself, directly or through others",
-                        quoted(target));
-      return;
-    }
   }
 
   void check_coordinates_of_simulation() const {

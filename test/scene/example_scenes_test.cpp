@@ -1,5 +1,7 @@
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 
 #include "scene/scene_text.h"
 
@@ -29,6 +31,15 @@ TEST(ExampleScenes, AreValidUrdfForOtherTools) {
   if (std::system("command -v check_urdf > /dev/null") != 0) GTEST_SKIP() << "check_urdf (liburdfdom-tools) is missing";
   for (const std::string& path : example_scenes())
     EXPECT_EQ(std::system(("check_urdf '" + path + "' > /dev/null").c_str()), 0) << path;
+}
+
+TEST(ExampleScenes, TheGuideShowsTheCantilever) {
+  const auto text = [](const std::string& path) {
+    std::stringstream stream;
+    stream << std::ifstream(std::string(FLEXARM_SOURCE_DIR) + path).rdbuf();
+    return stream.str();
+  };
+  EXPECT_NE(text("/docs/scene_format.md").find(text("/config/examples/cantilever.urdf")), std::string::npos);
 }
 
 }  // namespace flexarm::scene

@@ -63,6 +63,17 @@ TEST(HostileInput, Size) {
   expect_one_error(loads + "</simulation></robot>", 1, "at most 10000 entries are allowed");
 }
 
+TEST(HostileInput, LongChainsTakeSeconds) {
+  std::string chain = "<robot name=\"r\"><link name=\"l0\"/>";
+  for (int i = 1; i < 9000; ++i) {
+    const std::string n = std::to_string(i), above = std::to_string(i - 1);
+    chain += "<link name=\"l" + n + "\"/><joint name=\"j" + n + "\" type=\"continuous\"><parent link=\"l" + above +
+             "\"/><child link=\"l" + n + "\"/>" + (i > 1 ? "<mimic joint=\"j" + above + "\"/>" : "") + "</joint>\n";
+  }
+  const ReadResult result = read(chain + "</robot>");
+  EXPECT_TRUE(result.scene) << to_text(result.diagnostics);
+}
+
 TEST(HostileInput, ManyErrorsAreListedInPart) {
   const ReadResult result = read("<robot name=\"r\"><link name=\"a\"/><simulation>\n" + repeated("<motion/>\n", 9000) +
                                  "</simulation></robot>");

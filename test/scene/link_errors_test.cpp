@@ -42,6 +42,10 @@ TEST(LinkErrors, WhatUrdfdomDropsSilently) {
                "<material> of robot 'arm': must be valid URDF");
 }
 
+TEST(LinkErrors, WhatOnlyTheWholeFileShows) {
+  expect_error(R"(<robot name="arm">)", R"(<robot name="arm" version="3.0">)", 1, "<robot>: must be valid URDF");
+}
+
 TEST(LinkErrors, Names) {
   expect_error(R"(<link name="world"/>)", R"(<link name="world"/><link/>)", 4,
                "<link> of robot 'arm': attribute 'name' is missing");
