@@ -23,17 +23,15 @@ PassiveEffort stop_effort(const LimitStop& stop, double gap_begin, double gap_en
     out.effort = -0.5 * k * (p1 + p0) * secant;
     out.slope = -0.5 * k * ((p1 < 0 ? 1.0 : 0.0) * secant + (p1 + p0) * secant_slope);
   }
-  // Contact damping while penetrating on average; never pulling.
-  if (p0 + p1 < 0) {
-    const double damping = -stop.damping * change / step;
-    if (out.effort + damping >= 0) {
-      out.effort += damping;
-      out.slope -= stop.damping / step;
-      out.dissipated = -damping * change;
-    } else {
-      out.dissipated = out.effort * change;
-      out.effort = out.slope = 0;
-    }
+  // The damper acts on the rate of the penetration, which is continuous at touch and release; it never pulls.
+  const double damping = -stop.damping * (p1 - p0) / step;
+  if (out.effort + damping >= 0) {
+    out.effort += damping;
+    out.slope -= p1 < 0 ? stop.damping / step : 0.0;
+    out.dissipated = -damping * change;
+  } else {
+    out.dissipated = out.effort * change;
+    out.effort = out.slope = 0;
   }
   return out;
 }
