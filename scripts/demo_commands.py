@@ -101,7 +101,10 @@ def main():
     rospy.init_node("demo_commands")
     player = Player(rospy.get_param("~commands"), rospy.get_param("~period"))
     rospy.Subscriber("flexarm/status", SimulatorStatus, player.receive, queue_size=10)
-    player.run()
+    try:
+        player.run()
+    except rospy.ROSInterruptException:
+        pass
 
 
 if __name__ == "__main__":
