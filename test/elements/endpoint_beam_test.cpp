@@ -1,0 +1,160 @@
+// Beams at one configuration: statics and the Newmark family.
+#include "flexarm/elements/endpoint_beam.h"
+
+#include "elements/kernel_checks.h"
+
+namespace flexarm {
+namespace {
+
+using namespace test;
+
+constexpr NewmarkRule kRule{0.3025, 0.6, 0.3};
+constexpr double kRoundOff = 1e-12;
+
+template <class Count>
+class EndpointBeam : public ::testing::Test {};
+TYPED_TEST_SUITE(EndpointBeam, NodeCounts);
+
+template <int Nodes>
+ElementSystem<Nodes> internal(const RandomStep<Nodes>& step, const ElementNodes<Nodes>& nodes, const NewmarkRule* rule,
+                              bool with_tangent, std::array<PointKinematics, Nodes - 1>* points = nullptr) {
+  std::array<PointKinematics, Nodes - 1> end;
+  std::array<Vector6, Nodes - 1> rates, new_rates;
+  for (int k = 0; k < Nodes - 1; ++k) rates[k] = 0.1 * (k + 1) * Vector6::Ones();
+  ElementSystem<Nodes> system;
+  system.set_zero();
+  endpoint_internal<Nodes>(step.element, nodes, rule, step.begin_points.data(), rates.data(), with_tangent, end.data(),
+                           new_rates.data(), system);
+  if (points) *points = end;
+  return system;
+}
+
+TYPED_TEST(EndpointBeam, TangentOfStatics) {
+  constexpr int N = TypeParam::value;
+  RandomSource random(1);
+  const RandomStep<N> step(random, 0.5);
+  expect_consistent_tangent<N>(
+      step, [&](const ElementNodes<N>& nodes, bool with) { return internal<N>(step, nodes, nullptr, with); });
+}
+
+TYPED_TEST(EndpointBeam, TangentWithDamping) {
+  constexpr int N = TypeParam::value;
+  RandomSource random(2);
+  RandomStep<N> step(random, 0.5);
+  step.element.stiffness_damping = 0.2;
+  expect_consistent_tangent<N>(
+      step, [&](const ElementNodes<N>& nodes, bool with) { return internal<N>(step, nodes, &kRule, with); });
+}
+
+TYPED_TEST(EndpointBeam, TangentOfNewmarkTranslation) {
+  constexpr int N = TypeParam::value;
+  RandomSource random(3);
+  for (const double damping : {0.0, 0.4}) {
+    RandomStep<N> step(random, 0.5);
+    step.element.mass_damping = damping;
+    expect_consistent_tangent<N>(step, [&](const ElementNodes<N>& nodes, bool with) {
+      ElementSystem<N> system;
+      system.set_zero();
+      newmark_translation<N>(step.element, nodes, kRule, with, system);
+      return system;
+    });
+  }
+}
+
+TYPED_TEST(EndpointBeam, StressFreeWhereverTheUndeformedShapeIsPlaced) {
+  constexpr int N = TypeParam::value;
+  RandomSource random(4);
+  RandomStep<N> step(random, 0.5);
+  for (int k = 0; k < 5; ++k) {
+    const Pose pose = random.pose(3, 3);
+    for (int i = 0; i < N; ++i) {
+      step.nodes.end[i] = pose * step.undeformed_position[i];
+      step.set_orientation(i, pose.orientation * step.undeformed_orientation[i]);
+    }
+    EXPECT_LE(largest(internal<N>(step, step.nodes, nullptr, false).residual), kRoundOff);
+  }
+}
+
+TYPED_TEST(EndpointBeam, StrainsUnchangedByRigidMotion) {
+  constexpr int N = TypeParam::value;
+  RandomSource random(5);
+  RandomStep<N> step(random, 0.5);
+  std::array<PointKinematics, N - 1> before, after;
+  internal<N>(step, step.nodes, nullptr, false, &before);
+  const Pose pose = random.pose(3, 3);
+  for (int i = 0; i < N; ++i) {
+    step.nodes.end[i] = pose * step.nodes.end[i];
+    step.set_orientation(i, pose.orientation * step.nodes.orientation[i]);
+  }
+  internal<N>(step, step.nodes, nullptr, false, &after);
+  for (int k = 0; k < N - 1; ++k) EXPECT_LE(largest(after[k].strain - before[k].strain), kRoundOff);
+}
+
+// Internal forces are in equilibrium: no resultant, no moment about the origin.
+TYPED_TEST(EndpointBeam, InternalForcesBalance) {
+  constexpr int N = TypeParam::value;
+  RandomSource random(6);
+  const RandomStep<N> step(random, 0.5);
+  const ElementSystem<N> system = internal<N>(step, step.nodes, nullptr, false);
+  Vector3 force = Vector3::Zero(), moment = force;
+  for (int i = 0; i < N; ++i) {
+    const Vector3 f = system.residual.template segment<3>(6 * i);
+    force += f;
+    moment += step.nodes.end[i].cross(f) + system.residual.template segment<3>(6 * i + 3);
+  }
+  EXPECT_LE(force.norm(), kRoundOff * largest(system.residual));
+  EXPECT_LE(moment.norm(), kRoundOff * largest(system.residual));
+}
+
+// The static residual tested with the generalised variation is the gradient of the strain energy where the trial and
+// test functions agree: for a uniform spin and for translations. Translations: g_f = dV/dr.
+TYPED_TEST(EndpointBeam, ForcesAreTheGradientOfTheStrainEnergy) {
+  constexpr int N = TypeParam::value;
+  RandomSource random(7);
+  const RandomStep<N> step(random, 0.5);
+  const ElementSystem<N> system = internal<N>(step, step.nodes, nullptr, false);
+  for (int i = 0; i < N; ++i)
+    for (int k = 0; k < 3; ++k) {
+      const double slope = scalar_difference([&](double h) {
+        std::array<PointKinematics, N - 1> points;
+        internal<N>(step, step.perturbed(6 * i + k, h), nullptr, false, &points);
+        return step.strain_energy(points);
+      });
+      EXPECT_NEAR(system.residual[6 * i + k], slope, difference_tolerance * largest(system.residual));
+    }
+}
+
+// A constant strain rate over the step is found from rates that were already there.
+TEST(NewmarkRule, AgreesWithItsDefinition) {
+  RandomSource random(8);
+  const Vector3 v0 = random.vector(), a0 = random.vector(), a1 = random.vector();
+  const double h = kRule.step;
+  const Vector3 increment = h * v0 + h * h * ((0.5 - kRule.beta) * a0 + kRule.beta * a1);
+  EXPECT_LE((kRule.acceleration(increment, v0, a0) - a1).norm(), 1e-13);
+  EXPECT_LE((kRule.velocity(v0, a0, a1) - v0 - h * ((1 - kRule.gamma) * a0 + kRule.gamma * a1)).norm(), 1e-15);
+  const double slope =
+      scalar_difference([&](double d) { return kRule.acceleration(increment + d * Vector3::UnitX(), v0, a0).x(); });
+  EXPECT_NEAR(slope, kRule.acceleration_slope(), 1e-9);
+  EXPECT_NEAR(kRule.velocity_slope(), kRule.gamma * h * kRule.acceleration_slope(), 1e-12);
+}
+
+TYPED_TEST(EndpointBeam, StrainRateFollowsTheRule) {
+  constexpr int N = TypeParam::value;
+  RandomSource random(9);
+  RandomStep<N> step(random, 0.3);
+  step.element.stiffness_damping = 0.2;
+  std::array<PointKinematics, N - 1> end;
+  std::array<Vector6, N - 1> rates, new_rates;
+  for (Vector6& rate : rates) rate = random.vector6();
+  ElementSystem<N> system;
+  system.set_zero();
+  endpoint_internal<N>(step.element, step.nodes, &kRule, step.begin_points.data(), rates.data(), false, end.data(),
+                       new_rates.data(), system);
+  for (int k = 0; k < N - 1; ++k) {
+    const Vector6 increment = kRule.step * ((1 - kRule.gamma) * rates[k] + kRule.gamma * new_rates[k]);
+    EXPECT_LE(largest(end[k].strain - step.begin_points[k].strain - increment), kRoundOff);
+  }
+}
+
+}  // namespace
+}  // namespace flexarm

@@ -1,0 +1,70 @@
+// Nodal loads.
+#include "flexarm/elements/load.h"
+
+#include <gtest/gtest.h>
+
+#include "elements/differences.h"
+#include "elements/random_element.h"
+
+namespace flexarm {
+namespace {
+
+using namespace test;
+using scene::LoadFrame;
+
+NodalLoad random_load(RandomSource& random, LoadFrame frame) {
+  NodalLoad load;
+  load.arm = random.vector();
+  load.force = random.vector();
+  load.moment = random.vector();
+  load.frame = frame;
+  return load;
+}
+
+TEST(LoadAction, DerivativeForEveryFrameAndPoint) {
+  RandomSource random(1);
+  for (const LoadFrame frame : {LoadFrame::World, LoadFrame::Follower})
+    for (const LoadPoint point : {LoadPoint::Mean, LoadPoint::End}) {
+      const NodalLoad load = random_load(random, frame);
+      const Matrix3 begin = random.rotation(3).toRotationMatrix();
+      const Quaternion end = random.rotation(3);
+      const LoadAction action = load_action(load, 1.4, begin, end.toRotationMatrix(), point);
+      for (int k = 0; k < 3; ++k) {
+        const Vector6 expected = difference([&](double h) {
+          const Quaternion turned = so3::exp_quaternion(Vector3(h * Vector3::Unit(k))) * end;
+          return load_action(load, 1.4, begin, turned.toRotationMatrix(), point).wrench;
+        });
+        EXPECT_LE(largest(action.derivative.col(k) - expected), difference_tolerance * largest(expected) + 1e-12);
+      }
+    }
+}
+
+TEST(LoadAction, ForceAtAnArm) {
+  RandomSource random(2);
+  NodalLoad load = random_load(random, LoadFrame::World);
+  const Matrix3 rotation = random.rotation(3).toRotationMatrix();
+  const Vector6 world = load_action(load, 2.0, rotation, rotation, LoadPoint::End).wrench;
+  EXPECT_LE((world.head<3>() - 2 * load.force).norm(), 1e-14);
+  EXPECT_LE((world.tail<3>() - 2 * load.moment - (rotation * load.arm).cross(2 * load.force)).norm(), 1e-14);
+  load.frame = LoadFrame::Follower;
+  const Vector6 follower = load_action(load, 2.0, rotation, rotation, LoadPoint::End).wrench;
+  EXPECT_LE((follower.head<3>() - 2 * rotation * load.force).norm(), 1e-14);
+  EXPECT_LE((follower.tail<3>() - 2 * rotation * (load.moment + load.arm.cross(load.force))).norm(), 1e-14);
+}
+
+// A dead force does the work F . Delta x of its point over the step, whatever the rotation.
+TEST(LoadAction, WorkOfADeadForceIsExact) {
+  RandomSource random(3);
+  NodalLoad load = random_load(random, LoadFrame::World);
+  load.moment.setZero();
+  const Pose begin = random.pose(1, 2), end{random.vector(), random.rotation(1.4) * begin.orientation};
+  const Vector6 wrench =
+      load_action(load, 1.0, begin.orientation.toRotationMatrix(), end.orientation.toRotationMatrix(), LoadPoint::Mean)
+          .wrench;
+  const double work = wrench.head<3>().dot(end.position - begin.position) +
+                      wrench.tail<3>().dot(cayley::increment(begin.orientation, end.orientation));
+  EXPECT_NEAR(work, load.force.dot(end * load.arm - begin * load.arm), 1e-13);
+}
+
+}  // namespace
+}  // namespace flexarm

@@ -1,0 +1,132 @@
+#pragma once
+/// Random elements and steps of theirs, for tests of kernels.
+
+#include <random>
+
+#include "flexarm/elements/beam_point.h"
+#include "flexarm/math/cayley.h"
+#include "flexarm/math/so3.h"
+#include "flexarm/model/beam_mesh.h"
+
+namespace flexarm::test {
+
+/// Reproducible random numbers, vectors, rotations and symmetric positive definite matrices of order one.
+class RandomSource {
+ public:
+  explicit RandomSource(unsigned seed = 1) : engine_(seed) {}
+  double number() { return uniform_(engine_); }  ///< in (-1, 1)
+  Vector3 vector() { return {number(), number(), number()}; }
+  Vector6 vector6() {
+    Vector6 v;
+    v << vector(), vector();
+    return v;
+  }
+  Vector3 unit() { return vector().normalized(); }
+  /// By an angle up to `angle`.
+  Quaternion rotation(double angle) { return so3::exp_quaternion(Vector3(angle * number() * unit())); }
+  Pose pose(double length, double angle) { return {length * vector(), rotation(angle)}; }
+  template <int Size>
+  Eigen::Matrix<double, Size, Size> positive_definite() {
+    Eigen::Matrix<double, Size, Size> root;
+    for (int i = 0; i < root.size(); ++i) root.data()[i] = number();
+    return root * root.transpose() + Eigen::Matrix<double, Size, Size>::Identity();
+  }
+
+ private:
+  std::mt19937 engine_;
+  std::uniform_real_distribution<double> uniform_{-1, 1};
+};
+
+/// An element with a curved, twisted undeformed line and full section matrices, over a random step.
+template <int Nodes>
+struct RandomStep {
+  using Element = BeamElement<Nodes>;
+
+  /// `size`: of the rotation and displacement increments.
+  RandomStep(RandomSource& random, double size) {
+    BeamMesh mesh;
+    mesh.order = Nodes - 1;
+    mesh.section.stiffness = random.positive_definite<6>();
+    mesh.section.inertia = random.positive_definite<3>();
+    mesh.section.mass = 1.3;
+    MeshElement in_mesh;
+    for (int i = 0; i < Nodes; ++i) {
+      in_mesh.nodes.push_back(i);
+      const double x = 1.5 * i / (Nodes - 1);
+      const Pose pose{Vector3(x, 0.3 * x * x, -0.2 * x) + 0.05 * random.vector(),
+                      Quaternion(random.rotation(0.1) * so3::exp_quaternion(Vector3(0.4 * x, 0, 0.5 * x)))};
+      mesh.nodes.push_back({x, pose, -1});
+      undeformed_position[i] = pose.position;
+      undeformed_orientation[i] = pose.orientation;
+    }
+    element = beam_element<Nodes>(mesh, in_mesh, scene::BeamDescription());
+
+    const Quaternion moved = random.rotation(3.0);
+    for (int i = 0; i < Nodes; ++i) {
+      nodes.begin[i] = moved * undeformed_position[i] + 0.1 * random.vector();
+      begin_orientation[i] = (moved * undeformed_orientation[i] * random.rotation(0.3)).normalized();
+      nodes.velocity[i] = random.vector();
+      nodes.acceleration[i] = random.vector();
+    }
+    const Vector3 turn = random.vector();
+    for (int i = 0; i < Nodes; ++i) {
+      nodes.end[i] = nodes.begin[i] + size * random.vector();
+      set_orientation(i, so3::exp_quaternion(Vector3(size * (turn + 0.5 * random.vector()))) * begin_orientation[i]);
+    }
+    set_begin_points();
+  }
+
+  void set_begin_points() {
+    const LocalRotations<Nodes> local(begin_orientation);
+    for (int k = 0; k < Element::kStiffnessPoints; ++k) {
+      const auto& point = element.stiffness_points[k];
+      begin_points[k] = point_kinematics(local.evaluate(point.shape, point.derivative),
+                                         interpolate<Nodes>(point.derivative, nodes.begin), point.reference_strain);
+    }
+    for (int k = 0; k < Element::kMassPoints; ++k) {
+      const auto& point = element.mass_points[k];
+      begin_mass_rotations[k] = local.evaluate(point.shape, point.derivative).rotation;
+    }
+  }
+
+  void set_orientation(int i, const Quaternion& orientation) { set_orientation(i, orientation, nodes); }
+  void set_orientation(int i, const Quaternion& orientation, ElementNodes<Nodes>& of) const {
+    of.orientation[i] = orientation.normalized();
+    of.increment[i] = cayley::increment(begin_orientation[i], of.orientation[i]);
+    of.increment_inverse_tangent[i] = cayley::inverse_tangent(of.increment[i]);
+  }
+  /// Nodes at the end displaced by h along coordinate `column` of {dr_0, spin_0, dr_1, ...}.
+  ElementNodes<Nodes> perturbed(int column, double h) const {
+    ElementNodes<Nodes> out = nodes;
+    const int i = column / 6, k = column % 6;
+    if (k < 3)
+      out.end[i][k] += h;
+    else
+      set_orientation(i, so3::exp_quaternion(Vector3(h * Vector3::Unit(k - 3))) * nodes.orientation[i], out);
+    return out;
+  }
+  /// Work of nodal forces and moments on the displacement and tangent-scaled rotation increments.
+  double work(const Eigen::Matrix<double, 6 * Nodes, 1>& forces) const {
+    double sum = 0;
+    for (int i = 0; i < Nodes; ++i)
+      sum += forces.template segment<3>(6 * i).dot(nodes.end[i] - nodes.begin[i]) +
+             forces.template segment<3>(6 * i + 3).dot(nodes.increment[i]);
+    return sum;
+  }
+  /// Strain energy of given stiffness points.
+  double strain_energy(const std::array<PointKinematics, Element::kStiffnessPoints>& points) const {
+    double energy = 0;
+    for (int k = 0; k < Element::kStiffnessPoints; ++k)
+      energy += 0.5 * element.stiffness_points[k].weight * points[k].strain.dot(element.stiffness * points[k].strain);
+    return energy;
+  }
+
+  Element element;
+  std::array<Vector3, Nodes> undeformed_position;
+  std::array<Quaternion, Nodes> undeformed_orientation, begin_orientation;
+  ElementNodes<Nodes> nodes;
+  std::array<PointKinematics, Element::kStiffnessPoints> begin_points;
+  std::array<Matrix3, Element::kMassPoints> begin_mass_rotations;
+};
+
+}  // namespace flexarm::test
