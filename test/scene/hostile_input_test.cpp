@@ -126,7 +126,52 @@ TEST(HostileInput, HandlerOfTheLogIsRestored) {
   console_bridge::restorePreviousOutputHandler();
 }
 
-TEST(HostileInput, MutatedScenes) {
+namespace {
+
+const char* const kFragments[] = {
+    "<",  ">",   "\"", "/>", "<!--",   "-->",     "<![CDATA[",          "&", "&#0;", "&#xffff;", "\xef\xbf\xbe", "0",
+    "-1", "nan", ":",  "?",  "<beam>", "</link>", "<link name=\"a\"/>", " ", "\n",   "=",        "\xc3\xa9",     "("};
+const char* const kValues[] = {"",      "0",       "-1",       "-0",    "1e308", "1e-320", "99999999999", "0 0 0",
+                               "1 0 0", "1e8 0 0", "1 1 1e9",  "t/0",   "0:1",   "em",     "auto",        "tip",
+                               "arm",   "world",   "follower", "elbow", "ball",  "wheel",  "floating",    "fixed"};
+
+/// Random numbers that are the same on every machine.
+class Random {
+ public:
+  std::size_t below(std::size_t n) { return static_cast<std::size_t>(engine_()) % n; }
+  template <class List>
+  const auto& choice(const List& list) {
+    return list[below(std::size(list))];
+  }
+
+ private:
+  std::mt19937 engine_{1};
+};
+
+void mutate(std::string& text, Random& random) {
+  const std::size_t at = random.below(text.size()), length = std::min(random.below(40), text.size() - at);
+  switch (random.below(6)) {
+    case 0:
+      text[at] = static_cast<char>(random.below(256));
+      break;
+    case 1:
+      text.erase(at, length);
+      break;
+    case 2:
+      text.insert(at, random.choice(kFragments));
+      break;
+    case 3:
+      text.insert(random.below(text.size()), text.substr(at, length));
+      break;
+    default: {  // another value for an attribute: stays well-formed
+      const std::size_t begin = text.find("=\"", at);
+      const std::size_t end = begin == std::string::npos ? begin : text.find('"', begin + 2);
+      if (end != std::string::npos) text.replace(begin + 2, end - begin - 2, random.choice(kValues));
+    }
+  }
+}
+
+std::vector<std::string> good_scenes() {
   std::vector<std::string> scenes = {kGoodScene};
   for (const auto& entry : std::filesystem::directory_iterator(FLEXARM_SOURCE_DIR "/config/examples")) {
     std::stringstream text;
@@ -134,54 +179,17 @@ TEST(HostileInput, MutatedScenes) {
     scenes.push_back(text.str());
   }
   std::sort(scenes.begin(), scenes.end());  // directory order differs between machines
-  const std::vector<std::string> fragments = {"<",
-                                              ">",
-                                              "\"",
-                                              "/>",
-                                              "<!--",
-                                              "-->",
-                                              "<![CDATA[",
-                                              "&",
-                                              "&#0;",
-                                              "&#xffff;",
-                                              "\xef\xbf\xbe",
-                                              "0",
-                                              "-1",
-                                              "1e308",
-                                              "nan",
-                                              "1e-320",
-                                              ":",
-                                              "?",
-                                              "<beam>",
-                                              "</link>",
-                                              "<link name=\"a\"/>",
-                                              " ",
-                                              "\n",
-                                              "=",
-                                              "\xc3\xa9",
-                                              "(",
-                                              "99999999999"};
-  std::mt19937 random(1);  // the same mutations on every machine
-  const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random()) % n; };
+  return scenes;
+}
+
+}  // namespace
+
+TEST(HostileInput, MutatedScenes) {
+  const std::vector<std::string> scenes = good_scenes();
+  Random random;
   for (int i = 0; i < 4000; ++i) {
-    std::string text = scenes[below(scenes.size())];
-    for (std::size_t change = 1 + below(4); change > 0; --change) {
-      const std::size_t at = below(text.size()), length = std::min(below(40), text.size() - at);
-      switch (below(4)) {
-        case 0:
-          text[at] = static_cast<char>(below(256));
-          break;
-        case 1:
-          text.erase(at, length);
-          break;
-        case 2:
-          text.insert(at, fragments[below(fragments.size())]);
-          break;
-        case 3:
-          text.insert(below(text.size()), text.substr(at, length));
-          break;
-      }
-    }
+    std::string text = random.choice(scenes);
+    for (std::size_t changes = 1 + random.below(4); changes > 0 && !text.empty(); --changes) mutate(text, random);
     expect_consistent(read(text));
     if (HasFailure()) FAIL() << text;
   }

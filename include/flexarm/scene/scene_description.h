@@ -20,25 +20,42 @@ struct SourceLocation {
 // ---------------------------------------------------------------- beams
 
 /// Solid circular section. [m]
-struct Circle { double radius; };
+struct Circle {
+  double radius;
+};
 /// Circular tube. [m]
-struct Tube { double outer_radius, inner_radius; };
+struct Tube {
+  double outer_radius, inner_radius;
+};
 /// Solid rectangle: width along the section's y axis, height along z. [m]
-struct Rectangle { double width, height; };
+struct Rectangle {
+  double width, height;
+};
 /// Thin-walled rectangular box: outer width along y, outer height along z, wall thickness. [m]
-struct BoxTube { double width, height, thickness; };
+struct BoxTube {
+  double width, height, thickness;
+};
 /// Isotropic material: Young's modulus [Pa], Poisson ratio, density [kg/m^3].
-struct Material { double young, poisson, density; };
+struct Material {
+  double young, poisson, density;
+};
 
 using SectionShape = std::variant<Circle, Tube, Rectangle, BoxTube>;
 /// A section given by its geometry and its material.
-struct GeometricSection { SectionShape shape; Material material; };
+struct GeometricSection {
+  SectionShape shape;
+  Material material;
+};
 /// Section stiffnesses and inertias about principal axes; 1 = tangent, 2 = y, 3 = z.
 /// ea, ga2, ga3 [N]; gj, ei2, ei3 [N m^2]; mass [kg/m]; j1, j2, j3 [kg m].
-struct DirectSection { double ea, ga2, ga3, gj, ei2, ei3, mass, j1, j2, j3; };
+struct DirectSection {
+  double ea, ga2, ga3, gj, ei2, ei3, mass, j1, j2, j3;
+};
 /// Full section matrices in the section frame, order {force 1 2 3, moment 1 2 3}; stiffness symmetric positive
 /// definite; inertia [[m 1, -m d^], [m d^, J]] with d the centre of mass in the section.
-struct MatrixSection { Matrix6 stiffness, inertia; };
+struct MatrixSection {
+  Matrix6 stiffness, inertia;
+};
 
 using Section = std::variant<GeometricSection, DirectSection, MatrixSection>;
 
@@ -82,9 +99,9 @@ struct LinkDescription {
 enum class JointKind { Fixed, Revolute, Continuous, Prismatic, Planar, Floating, Spherical, Universal, Cylindrical };
 
 struct JointLimits {
-  double lower, upper;   ///< position [rad or m]
-  double effort = 0;     ///< the same as JointDescription::effort_limit
-  double velocity = 0;   ///< kept, not enforced
+  double lower, upper;  ///< position [rad or m]
+  double effort = 0;    ///< the same as JointDescription::effort_limit
+  double velocity = 0;  ///< kept, not enforced
 };
 
 struct Mimic {
@@ -95,14 +112,14 @@ struct Mimic {
 struct JointDescription {
   std::string name;
   JointKind kind = JointKind::Fixed;
-  std::string parent, child;         ///< link names
-  Pose origin;                       ///< joint frame in the parent link frame
-  Vector3 axis = Vector3::UnitX();   ///< unit vector in the joint frame (planar: the normal)
-  Vector3 axis2 = Vector3::UnitY();  ///< universal: second axis, unit, in the joint frame turned by the first angle
-  std::optional<JointLimits> limits; ///< only where positions are limited (revolute, prismatic)
-  double effort_limit = 0;           ///< commanded efforts saturate here, any kind [N or N m]; 0: unlimited
-  double damping = 0;                ///< per released coordinate [N s/m or N m s/rad]
-  double friction = 0;               ///< Coulomb effort per released coordinate [N or N m]
+  std::string parent, child;          ///< link names
+  Pose origin;                        ///< joint frame in the parent link frame
+  Vector3 axis = Vector3::UnitX();    ///< unit vector in the joint frame (planar: the normal)
+  Vector3 axis2 = Vector3::UnitY();   ///< universal: second axis, unit, in the joint frame turned by the first angle
+  std::optional<JointLimits> limits;  ///< only where positions are limited (revolute, prismatic)
+  double effort_limit = 0;            ///< commanded efforts saturate here, any kind [N or N m]; 0: unlimited
+  double damping = 0;                 ///< per released coordinate [N s/m or N m s/rad]
+  double friction = 0;                ///< Coulomb effort per released coordinate [N or N m]
   std::optional<Mimic> mimic;
   SourceLocation location;
 };
@@ -112,8 +129,8 @@ struct JointDescription {
 /// <integrator>; empty fields keep the defaults of the simulator.
 struct IntegratorDescription {
   std::string scheme = "auto";
-  double step = 1e-3;          ///< [s]
-  double tolerance = 1e-8;     ///< on the Newton update, relative to the scene's length and to 1 rad
+  double step = 1e-3;       ///< [s]
+  double tolerance = 1e-8;  ///< on the Newton update, relative to the scene's length and to 1 rad
   int max_iterations = 20;
   int max_halvings = 5;
   std::optional<double> rho_infinity;
@@ -176,7 +193,7 @@ struct Probe {
 };
 
 struct SceneDescription {
-  std::string name;       ///< of the robot
+  std::string name;  ///< of the robot
   std::string file;
   std::string root_link;  ///< its name is the world frame's
   std::vector<LinkDescription> links;
