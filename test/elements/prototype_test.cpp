@@ -1,0 +1,184 @@
+// Residuals of every scheme against an independent numpy implementation (scripts/prototype_steps.py).
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "elements/differences.h"
+#include "flexarm/elements/conserving_beam.h"
+#include "flexarm/elements/endpoint_beam.h"
+#include "flexarm/elements/nodal_inertia.h"
+#include "flexarm/elements/rotary_inertia.h"
+#include "flexarm/model/beam_mesh.h"
+
+namespace flexarm {
+namespace {
+
+using namespace test;
+
+/// One random step as the prototype wrote it.
+class PrototypeStep {
+ public:
+  explicit PrototypeStep(int nodes) {
+    std::ifstream file(FLEXARM_SOURCE_DIR "/test/elements/prototype_steps.csv");
+    for (std::string line; std::getline(file, line);) {
+      if (line.empty() || line.front() == '#') continue;
+      std::istringstream cells(line);
+      std::string cell, key;
+      std::getline(cells, cell, ',');
+      if (std::stoi(cell) != nodes) continue;
+      std::getline(cells, key, ',');
+      while (std::getline(cells, cell, ',')) values_[key].push_back(std::stod(cell));
+    }
+  }
+  double number(const std::string& key) const { return values_.at(key).at(0); }
+  Vector3 vector(const std::string& key, int i) const { return Vector3::Map(values_.at(key).data() + 3 * i); }
+  Quaternion quaternion(const std::string& key, int i) const {
+    const double* q = values_.at(key).data() + 4 * i;
+    return Quaternion(q[0], q[1], q[2], q[3]).normalized();
+  }
+  template <int Size>  // symmetric: row by row is column by column
+  Eigen::Matrix<double, Size, Size> matrix(const std::string& key) const {
+    return Eigen::Matrix<double, Size, Size>::Map(values_.at(key).data());
+  }
+  Eigen::VectorXd all(const std::string& key) const {
+    return Eigen::VectorXd::Map(values_.at(key).data(), values_.at(key).size());
+  }
+
+ private:
+  std::map<std::string, std::vector<double>> values_;
+};
+
+template <int Nodes>
+class Comparison {
+ public:
+  Comparison() : data_(Nodes), step_(data_.number("step")) {
+    BeamMesh mesh;
+    mesh.order = Nodes - 1;
+    mesh.section.stiffness = data_.matrix<6>("stiffness");
+    mesh.section.inertia = data_.matrix<3>("inertia");
+    mesh.section.mass = data_.number("section_mass");
+    MeshElement in_mesh;
+    for (int i = 0; i < Nodes; ++i) {
+      in_mesh.nodes.push_back(i);
+      mesh.nodes.push_back(
+          {0, {data_.vector("undeformed_position", i), data_.quaternion("undeformed_orientation", i)}});
+      nodes_.begin[i] = data_.vector("begin_position", i);
+      nodes_.end[i] = data_.vector("end_position", i);
+      begin_orientation_[i] = data_.quaternion("begin_orientation", i);
+      nodes_.orientation[i] = data_.quaternion("end_orientation", i);
+      nodes_.increment[i] = cayley::increment(begin_orientation_[i], nodes_.orientation[i]);
+      nodes_.increment_inverse_tangent[i] = cayley::inverse_tangent(nodes_.increment[i]);
+      nodes_.velocity[i] = data_.vector("velocity", i);
+      nodes_.acceleration[i] = data_.vector("acceleration", i);
+    }
+    element_ = beam_element<Nodes>(mesh, in_mesh, scene::BeamDescription());
+    const LocalRotations<Nodes> local(begin_orientation_);
+    for (int k = 0; k < Nodes - 1; ++k) {
+      const auto& point = element_.stiffness_points[k];
+      begin_points_[k] = point_kinematics(local.evaluate(point.shape, point.derivative),
+                                          interpolate<Nodes>(point.derivative, nodes_.begin), point.reference_strain);
+    }
+    for (int k = 0; k < Nodes; ++k) {
+      const auto& point = element_.mass_points[k];
+      begin_mass_rotations_[k] = local.evaluate(point.shape, point.derivative).rotation;
+    }
+  }
+
+  void check_all() {
+    check("static", endpoint(nullptr));
+    const NewmarkRule rule{0.25, 0.5, step_};
+    ElementSystem<Nodes> newmark = endpoint(&rule);
+    newmark_translation<Nodes>(element_, nodes_, rule, false, newmark);
+    add_rotary(newmark, [&](int k, const Matrix3& begin, const Matrix3& end) {
+      return newmark_rotary_rate(element_.inertia, begin, end, point_state(k), rule);
+    });
+    check("newmark", newmark);
+
+    ElementSystem<Nodes> m1 = conserving<ExponentialMoment>();
+    add_rotary(m1, [&](int k, const Matrix3& begin, const Matrix3& end) {
+      const Vector3 increment = so3::log(Matrix3(end * begin.transpose()));
+      return average_rotary_rate(element_.inertia, begin, end, increment, so3::inverse_tangent(increment),
+                                 point_state(k), step_);
+    });
+    check("m1", m1);
+    check("em0", with_nodal_inertia("em0", conserving<AverageStress>()));
+    check("em", with_nodal_inertia("em", conserving<DiscreteGradientStress>()));
+    element_.stiffness_damping = data_.number("damping");
+    check("em0_damped", with_nodal_inertia("em0", conserving<AverageStress>()));
+    check("em_damped", with_nodal_inertia("em", conserving<DiscreteGradientStress>()));
+  }
+
+ private:
+  MassPointState point_state(int k) const {
+    return {data_.vector("point_angular_velocity", k), data_.vector("point_angular_acceleration", k)};
+  }
+  ElementSystem<Nodes> endpoint(const NewmarkRule* rule) {
+    std::array<PointKinematics, Nodes - 1> end;
+    ElementSystem<Nodes> system;
+    system.set_zero();
+    endpoint_internal<Nodes>(element_, nodes_, rule, begin_points_.data(), nullptr, false, end.data(), nullptr, system);
+    return system;
+  }
+  template <class Stress>
+  ElementSystem<Nodes> conserving() {
+    std::array<PointKinematics, Nodes - 1> end;
+    ElementSystem<Nodes> system;
+    conserving_beam<Stress, Nodes>(element_, nodes_, begin_points_.data(), step_, false, end.data(), system);
+    return system;
+  }
+  template <class Rate>
+  void add_rotary(ElementSystem<Nodes>& system, const Rate& rate) {
+    std::array<Matrix3, Nodes> end;
+    add_rotary_inertia<Nodes>(element_, nodes_, begin_mass_rotations_.data(), rate, false, end.data(), system);
+  }
+  /// Adds the rotary inertia of the element's nodes, as the model lumps it.
+  ElementSystem<Nodes> with_nodal_inertia(const char* scheme, ElementSystem<Nodes> system) {
+    for (int i = 0; i < Nodes; ++i) {
+      double length = 0;
+      for (const auto& point : element_.mass_points) length += point.weight * point.shape[i];
+      NodalInertia inertia;
+      inertia.beam_rotary = length * element_.inertia;
+      const NodePose begin{nodes_.begin[i], begin_orientation_[i], begin_orientation_[i].toRotationMatrix()};
+      const NodePose end{nodes_.end[i], nodes_.orientation[i], nodes_.orientation[i].toRotationMatrix()};
+      NodeState state;
+      state.velocity = nodes_.velocity[i];
+      state.angular_velocity = data_.vector("node_angular_velocity", i);
+      const NodeStep step{begin, end, state, nodes_.increment[i], nodes_.increment_inverse_tangent[i], step_};
+      system.residual.template segment<6>(6 * i) += nodal_inertia_action(inertia, *find_scheme(scheme), step).residual;
+    }
+    return system;
+  }
+  void check(const std::string& key, const ElementSystem<Nodes>& system) {
+    const Eigen::VectorXd expected = data_.all(key);
+    ASSERT_EQ(expected.size(), 6 * Nodes);
+    // Round-off of two implementations; the multiplier's numerator cancels three digits of the stresses.
+    EXPECT_LE(largest(system.residual - expected), 1e-12 * largest(expected)) << key << ", " << Nodes << " nodes";
+  }
+
+  PrototypeStep data_;
+  double step_;
+  BeamElement<Nodes> element_;
+  std::array<Quaternion, Nodes> begin_orientation_;
+  ElementNodes<Nodes> nodes_;
+  std::array<PointKinematics, Nodes - 1> begin_points_;
+  std::array<Matrix3, Nodes> begin_mass_rotations_;
+};
+
+TEST(Prototype, TwoNodes) {
+  Comparison<2>().check_all();
+}
+TEST(Prototype, ThreeNodes) {
+  Comparison<3>().check_all();
+}
+TEST(Prototype, FourNodes) {
+  Comparison<4>().check_all();
+}
+TEST(Prototype, FiveNodes) {
+  Comparison<5>().check_all();
+}
+
+}  // namespace
+}  // namespace flexarm

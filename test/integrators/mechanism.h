@@ -1,0 +1,149 @@
+#pragma once
+/// One mechanism with everything in it, and random states of any model.
+
+#include "elements/random_element.h"
+#include "flexarm/model/model_builder.h"
+#include "flexarm/simulation/observables.h"
+#include "support/scene_builder.h"
+
+namespace flexarm::test {
+
+/// Full stiffness and inertia matrices with the centre of mass off the reference line.
+inline scene::MatrixSection random_section(RandomSource& random) {
+  scene::MatrixSection section;
+  section.stiffness = 10 * random.positive_definite<6>();
+  const double mass = 1.5;
+  const Matrix3 offset = so3::hat(Vector3(0, 0.05, -0.08));
+  section.inertia.topLeftCorner<3, 3>() = mass * Matrix3::Identity();
+  section.inertia.topRightCorner<3, 3>() = -mass * offset;
+  section.inertia.bottomLeftCorner<3, 3>() = mass * offset;
+  section.inertia.bottomRightCorner<3, 3>() = 0.1 * random.positive_definite<3>() - mass * offset * offset;
+  return section;
+}
+
+/// Chains, trees, every kind of joint on rigid and flexible masters with offsets, mimicking and prescribed coordinates,
+/// stops, friction, loads of every kind, gravity, damping, elements of every order. `floating`: nothing is fixed to the
+/// world, loaded, driven or damped.
+inline scene::SceneDescription every_joint_scene(bool floating) {
+  using scene::JointKind;
+  RandomSource random(11);
+  SceneBuilder builder;
+  const auto body = [&](const std::string& name) {
+    builder.body(name, 0.8, 0.1 * random.vector(), 0.05 * random.positive_definite<3>());
+  };
+  const auto beam = [&](const std::string& name, const std::vector<Vector3>& points, int elements, int order,
+                        bool offset) {
+    scene::Section section = test::section(40, 20, 6, 8, 1.4, 0.2, 0.1);
+    if (offset) section = random_section(random);
+    scene::BeamDescription& description = builder.beam(name, points, section, elements, order);
+    if (!floating) {
+      description.stiffness_proportional_damping = 0.02;
+      description.mass_proportional_damping = 0.1;
+    }
+  };
+  const auto joint = [&](const std::string& name, JointKind kind, const std::string& parent, const std::string& child,
+                         const Vector3& origin) -> scene::JointDescription& {
+    scene::JointDescription& out = builder.joint(name, kind, parent, child, origin, random.unit());
+    out.origin.orientation = random.rotation(3);
+    if (!floating) out.damping = 0.3, out.friction = 0.2;
+    return out;
+  };
+
+  body("base");
+  beam("upper", {Vector3(1, 0, 0), Vector3(1, 0.8, 0)}, 2, 2, false);
+  body("hand");
+  beam("finger", {Vector3(0.6, 0.1, 0)}, 2, 1, true);
+  body("nail");
+  body("car");
+  body("roller");
+  beam("flag", {Vector3(0, 0.7, 0)}, 1, 3, true);
+  body("plate");
+  beam("follower", {Vector3(0.5, 0, 0.2)}, 1, 4, false);
+  body("wheel");
+  body("echo_body");
+  body("second_car");
+  body("rock");
+
+  joint("base", floating ? JointKind::Floating : JointKind::Fixed, "world", "base", Vector3(0.1, 0.2, 0.3));
+  joint("shoulder", JointKind::Revolute, "base", "upper", Vector3(0.3, 0, 0));
+  joint("wrist", JointKind::Universal, "upper", "hand", Vector3(1.05, 0, 0.1)).axis2 = random.unit();
+  joint("ball", JointKind::Spherical, "hand", "finger", Vector3(0, 0.2, 0));
+  joint("glue", JointKind::Fixed, "finger", "nail", Vector3(0.6, 0.1, 0.05));
+  joint("slider", JointKind::Prismatic, "upper", "car", Vector3(0.5, 0, 0.1));
+  joint("roll", JointKind::Cylindrical, "car", "roller", Vector3(0.1, 0, 0));
+  joint("flight", JointKind::Floating, "nail", "flag", Vector3(0, 0, 0.4));
+  joint("plane", JointKind::Planar, "flag", "plate", Vector3(0, 0.7, 0));
+  joint("follow", JointKind::Revolute, "flag", "follower", Vector3(0, 0, 0)).mimic = scene::Mimic{"shoulder", 0.7, 0.1};
+  joint("drive", JointKind::Revolute, "upper", "wheel", Vector3(1, 0.8, 0));
+  joint("echo", JointKind::Continuous, "hand", "echo_body", Vector3(0, 0, 0.1)).mimic =
+      scene::Mimic{"follow", -0.5, 0.2};  // a mimic of a mimic
+  joint("second_slider", JointKind::Prismatic, "rock", "second_car", Vector3(0, 0.3, 0)).mimic =
+      scene::Mimic{"slider", 1.3, 0};
+  joint("throw", JointKind::Floating, "world", "rock", Vector3(0, 2, 0));
+  if (floating) return builder.scene;
+
+  builder.scene.gravity = Vector3(0.3, -0.2, -2);
+  for (scene::JointDescription& j : builder.scene.joints)
+    if (j.name == "slider") j.limits = scene::JointLimits{-3, 3, 0, 0};
+  builder.scene.motions.push_back({"drive", TimeFunction::parse("0.4*sin(t)"), {}});
+  builder.scene.efforts.push_back({"shoulder", TimeFunction::parse("1+t"), {}});
+  builder.scene.efforts.push_back({"ball/ry", TimeFunction(0.4), {}});
+  for (const scene::LoadFrame frame : {scene::LoadFrame::World, scene::LoadFrame::Follower}) {
+    builder.load("finger", Vector3(0.6, 0.1, 0.1), random.vector(), random.vector(), "1+t", frame);
+    builder.load("plate", Vector3(0, 0.1, 0.1), random.vector(), random.vector(), "cos(t)", frame);
+    builder.scene.distributed_loads.push_back({"upper", random.vector(), frame, TimeFunction(1.0), {}});
+  }
+  return builder.scene;
+}
+
+/// A random state near the model's initial one that its joints allow, with random velocities of everything.
+inline State random_state(const Model& model, RandomSource& random, double size) {
+  State state = initial_state(model);
+  std::vector<bool> slave(model.nodes.size(), false);
+  for (const JointMap& joint : model.joints) slave[joint.slave] = true;
+  for (std::size_t j = 0; j < model.joints.size(); ++j) {
+    ReleasedVector change(released_count(model.joints[j].kind));
+    for (int k = 0; k < change.size(); ++k) change[k] = size * random.number();
+    state.released[j] = updated(model.joints[j], state.released[j], change);
+  }
+  for (const Coordinate& coordinate : model.coordinates) {
+    double& value = state.released[coordinate.joint].displacement[coordinate.component % 3];
+    if (coordinate.motion >= 0) value = model.histories[coordinate.motion](0.0);
+  }
+  for (const Coordinate& coordinate : model.coordinates)
+    if (coordinate.mimicked >= 0) {
+      const Coordinate& master = model.coordinates[coordinate.mimicked];
+      state.released[coordinate.joint].displacement[coordinate.component] =
+          coordinate.mimic_multiplier * state.released[master.joint].displacement[master.component] +
+          coordinate.mimic_offset;
+    }
+  // Slaves and free nodes in their order: masters come first.
+  std::vector<int> joint_of(model.nodes.size(), -1);
+  for (std::size_t j = 0; j < model.joints.size(); ++j) joint_of[model.joints[j].slave] = static_cast<int>(j);
+  for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+    NodeState& node = state.nodes[i];
+    if (joint_of[i] >= 0) {
+      const JointMap& joint = model.joints[joint_of[i]];
+      NodePose master;
+      if (joint.master >= 0) {
+        const NodeState& m = state.nodes[joint.master];
+        master = {m.position, m.orientation, m.orientation.toRotationMatrix()};
+      }
+      const NodePose pose = slave_pose(joint, master, state.released[joint_of[i]]);
+      node.position = pose.position;
+      node.orientation = pose.orientation;
+    } else {
+      node.position += size * random.vector();
+      node.orientation = (random.rotation(size) * node.orientation).normalized();
+    }
+    node.velocity = random.vector();
+    node.angular_velocity = random.vector();
+    node.acceleration = random.vector();
+    node.angular_acceleration = random.vector();
+  }
+  for (MassPointState& point : state.mass_points) point = {random.vector(), random.vector()};
+  for (Vector6& rate : state.strain_rates) rate = random.vector6();
+  return state;
+}
+
+}  // namespace flexarm::test

@@ -1,0 +1,336 @@
+// The residual and the reduced tangent of a whole step, for a mechanism with everything in it.
+#include "flexarm/integrators/step_system.h"
+
+#include <gtest/gtest.h>
+
+#include "elements/differences.h"
+#include "flexarm/integrators/stepper.h"
+#include "flexarm/joints/joint_forces.h"
+#include "integrators/mechanism.h"
+
+namespace flexarm {
+namespace {
+
+using namespace test;
+
+Eigen::MatrixXd dense(const SparseAssembler& assembler) {
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(assembler.unknowns(), assembler.unknowns());
+  for (int column = 0; column < assembler.unknowns(); ++column)
+    for (int p = assembler.column_starts()[column]; p < assembler.column_starts()[column + 1]; ++p)
+      matrix(assembler.row_indices()[p], column) += assembler.values()[p];
+  return matrix;
+}
+
+/// Every column of the tangent against differences; `size`: over what update the residual changes its shape.
+void expect_consistent_tangent(StepSystem& system, double size) {
+  ASSERT_TRUE(system.evaluate(true));
+  const Eigen::MatrixXd tangent = dense(system.assembler());
+  const double scale = std::max(largest(tangent), largest(system.residual()));
+  for (int column = 0; column < tangent.cols(); ++column) {
+    const Eigen::VectorXd unit = Eigen::VectorXd::Unit(tangent.cols(), column);
+    const Eigen::VectorXd expected = difference(
+        [&](double h) {
+          system.update(h * unit);
+          system.evaluate(false);
+          const Eigen::VectorXd residual = system.residual();
+          system.update(-h * unit);
+          return residual;
+        },
+        difference_step * size);
+    ASSERT_LE(largest(tangent.col(column) - expected), difference_tolerance / size * scale) << "unknown " << column;
+  }
+}
+
+Eigen::VectorXd random_update(int size, RandomSource& random, double scale) {
+  Eigen::VectorXd update(size);
+  for (int i = 0; i < size; ++i) update[i] = scale * random.number();
+  return update;
+}
+
+class StepSystemOf : public ::testing::TestWithParam<Scheme> {};
+
+/// The mechanism without friction, which turns over increments too small for the differences.
+Model smooth_model() {
+  Model model = build_model(every_joint_scene(false));
+  for (Coordinate& coordinate : model.coordinates) coordinate.friction = 0;
+  return model;
+}
+
+TEST_P(StepSystemOf, TangentOfAStep) {
+  const Model model = smooth_model();
+  RandomSource random(1);
+  State state = random_state(model, random, 0.15);
+  state.time = 0.3;
+  StepSystem system(model, GetParam());
+  system.begin(state, 0.2, StepSystem::Guess::Extrapolated);
+  system.update(random_update(system.assembler().unknowns(), random, 0.1));
+  expect_consistent_tangent(system, 0.25);
+}
+
+// Slow enough that smooth friction is not saturated: its slope counts. The increment over which it changes is
+// step * speed = 0.03.
+TEST_P(StepSystemOf, TangentOfAStepWithStickingFriction) {
+  Model model = build_model(every_joint_scene(false));
+  RandomSource random(2);
+  State state = random_state(model, random, 0.05);
+  for (NodeState& node : state.nodes) {
+    node.velocity *= 1e-3;
+    node.angular_velocity *= 1e-3;
+    node.acceleration.setZero();
+    node.angular_acceleration.setZero();
+  }
+  StepSystem system(model, GetParam());
+  system.begin(state, 30.0, StepSystem::Guess::Unchanged);
+  system.update(random_update(system.assembler().unknowns(), random, 0.01));
+  expect_consistent_tangent(system, 0.03);
+}
+
+TEST_P(StepSystemOf, TangentInsideAStop) {
+  Model model = smooth_model();
+  for (Coordinate& coordinate : model.coordinates)
+    if (coordinate.limit) coordinate.limit = LimitStop{0.6, 3.0, 20.0, 0.5};  // the slider's travel is about zero
+  RandomSource random(3);
+  const State state = random_state(model, random, 0.1);
+  StepSystem system(model, GetParam());
+  system.begin(state, 0.2, StepSystem::Guess::Unchanged);
+  system.update(random_update(system.assembler().unknowns(), random, 0.1));
+  expect_consistent_tangent(system, 0.25);
+}
+
+// A Newton update moves slaves with their joints, prescribed coordinates along their motion and mimics with their
+// master.
+TEST_P(StepSystemOf, KinematicsHoldAfterAStep) {
+  const Model model = build_model(every_joint_scene(false));
+  RandomSource random(4);
+  State state = random_state(model, random, 0.1);
+  StepSystem system(model, GetParam());
+  system.begin(state, 0.2, StepSystem::Guess::Unchanged);
+  system.update(random_update(system.assembler().unknowns(), random, 0.1));
+  ASSERT_TRUE(system.evaluate(false));
+  system.accept(state);
+  EXPECT_NEAR(state.time, 0.2, 1e-15);
+  for (std::size_t j = 0; j < model.joints.size(); ++j) {
+    const JointMap& joint = model.joints[j];
+    NodePose master;
+    if (joint.master >= 0) {
+      const NodeState& m = state.nodes[joint.master];
+      master = {m.position, m.orientation, m.orientation.toRotationMatrix()};
+    }
+    const NodePose slave = slave_pose(joint, master, state.released[j]);
+    EXPECT_LE((slave.position - state.nodes[joint.slave].position).norm(), 1e-14);
+    EXPECT_LE(slave.orientation.angularDistance(state.nodes[joint.slave].orientation), 1e-7);
+  }
+  for (const Coordinate& coordinate : model.coordinates) {
+    const double value = state.released[coordinate.joint].displacement[coordinate.component % 3];
+    if (coordinate.motion >= 0) {
+      EXPECT_EQ(value, model.histories[coordinate.motion](0.2));
+    }
+    if (coordinate.mimicked >= 0) {
+      const Coordinate& master = model.coordinates[coordinate.mimicked];
+      EXPECT_NEAR(value,
+                  coordinate.mimic_multiplier * state.released[master.joint].displacement[master.component] +
+                      coordinate.mimic_offset,
+                  1e-15);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(AllSchemes, StepSystemOf, ::testing::ValuesIn(schemes()),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+TEST(StepSystem, TangentOfStatics) {
+  Model model = build_model(every_joint_scene(false));
+  for (Coordinate& coordinate : model.coordinates)
+    if (coordinate.limit) coordinate.limit = LimitStop{0.6, 3.0, 20.0, 0.5};
+  RandomSource random(5);
+  const State state = random_state(model, random, 0.1);
+  StepSystem system(model, schemes().front());
+  system.begin_static(state, 0.7);
+  system.update(random_update(system.assembler().unknowns(), random, 0.1));
+  expect_consistent_tangent(system, 1);
+}
+
+// ---------------------------------------------------------------- pattern and numbering
+
+TEST(SparseAssembler, PatternHasEveryEntryOnce) {
+  const Model model = build_model(every_joint_scene(false));
+  const StepSystem system(model, schemes().front());
+  const SparseAssembler& assembler = system.assembler();
+  const std::vector<int>&starts = assembler.column_starts(), &rows = assembler.row_indices();
+  ASSERT_EQ(starts.size(), static_cast<std::size_t>(assembler.unknowns()) + 1);
+  EXPECT_EQ(starts.front(), 0);
+  EXPECT_EQ(starts.back(), static_cast<int>(rows.size()));
+  EXPECT_EQ(assembler.values().size(), rows.size());
+  for (int column = 0; column < assembler.unknowns(); ++column) {
+    bool diagonal = false;
+    for (int p = starts[column]; p < starts[column + 1]; ++p) {
+      EXPECT_TRUE(rows[p] >= 0 && rows[p] < assembler.unknowns());
+      EXPECT_TRUE(p == starts[column] || rows[p - 1] < rows[p]) << "column " << column;
+      diagonal = diagonal || rows[p] == column;
+    }
+    EXPECT_TRUE(diagonal) << "column " << column;
+  }
+}
+
+TEST(SparseAssembler, PatternIsSymmetric) {
+  const Model model = build_model(every_joint_scene(false));
+  const StepSystem system(model, schemes().front());
+  const SparseAssembler& assembler = system.assembler();
+  Eigen::MatrixXi entry = Eigen::MatrixXi::Zero(assembler.unknowns(), assembler.unknowns());
+  for (int column = 0; column < assembler.unknowns(); ++column)
+    for (int p = assembler.column_starts()[column]; p < assembler.column_starts()[column + 1]; ++p)
+      entry(assembler.row_indices()[p], column) = 1;
+  EXPECT_EQ(entry, Eigen::MatrixXi(entry.transpose()));
+}
+
+TEST(DegreesOfFreedom, DependentScalarsHaveNoEquation) {
+  const Model model = build_model(every_joint_scene(false));
+  const DegreesOfFreedom dof(model);
+  int unknowns = 0;
+  std::vector<bool> used(dof.unknowns, false);
+  for (int scalar = 0; scalar < dof.scalar_count; ++scalar) {
+    const int equation = dof.equation[scalar];
+    if (equation < 0) continue;
+    ++unknowns;
+    ASSERT_LT(equation, dof.unknowns);
+    EXPECT_FALSE(used[equation]);
+    used[equation] = true;
+  }
+  EXPECT_EQ(unknowns, dof.unknowns);
+  for (const JointMap& joint : model.joints)
+    for (int k = 0; k < 6; ++k) EXPECT_EQ(dof.equation[dof.first[joint.slave] + k], -1);
+  int mimics = 0;
+  for (const Coordinate& coordinate : model.coordinates) {
+    const int scalar = dof.first[dof.variable_of_joint(coordinate.joint)] + coordinate.component;
+    EXPECT_EQ(dof.equation[scalar] < 0, coordinate.motion >= 0 || coordinate.mimicked >= 0) << coordinate.name;
+    mimics += coordinate.mimicked >= 0;
+  }
+  EXPECT_EQ(mimics, 3);
+  EXPECT_EQ(dof.mimics.size(), 3u);
+}
+
+scene::SceneDescription rigid_arm() {
+  using scene::JointKind;
+  SceneBuilder builder;
+  const Matrix3 inertia = Matrix3::Identity();
+  std::string parent = "world";
+  for (const JointKind kind : {JointKind::Revolute, JointKind::Universal, JointKind::Spherical, JointKind::Fixed,
+                               JointKind::Prismatic, JointKind::Cylindrical, JointKind::Planar}) {
+    const std::string name = "link" + std::to_string(builder.scene.links.size());
+    builder.body(name, 1, Vector3(0.1, 0.2, 0.3), inertia);
+    builder.joint("joint" + name, kind, parent, name, Vector3(1, 0, 0));
+    parent = name;
+  }
+  return builder.scene;
+}
+
+TEST(DegreesOfFreedom, RigidArmHasItsJointCoordinatesOnly) {
+  EXPECT_EQ(DegreesOfFreedom(build_model(rigid_arm())).unknowns, 1 + 2 + 3 + 0 + 1 + 2 + 3);
+}
+
+TEST(DegreesOfFreedom, ClampedBeamHasItsFreeNodesOnly) {
+  SceneBuilder builder;
+  builder.beam("beam", {Vector3(1, 0, 0)}, section(1, 1, 1, 1, 1, 1, 1), 3, 2);
+  builder.joint("clamp", scene::JointKind::Fixed, "world", "beam");
+  EXPECT_EQ(DegreesOfFreedom(build_model(builder.scene)).unknowns, 6 * 6);
+}
+
+// ---------------------------------------------------------------- step control
+
+TEST(Stepper, FailedStaticsLeavesTheStateUntouched) {
+  SceneBuilder builder;
+  builder.beam("beam", {Vector3(1, 0, 0)}, section(10, 10, 1, 1, 1, 1, 1), 2, 2);
+  builder.joint("hinge", scene::JointKind::Continuous, "world", "beam");  // a mechanism: no equilibrium
+  builder.load("beam", Vector3(1, 0, 0), Vector3::Zero(), Vector3(0, 0, 1));
+  const Model model = build_model(builder.scene);
+  Stepper stepper(model, schemes().front(), {1e-2, 1e-9, 20, 2});
+  State state = initial_state(model);
+  const State before = state;
+  const StepResult result = stepper.solve_static(state, 2);
+  EXPECT_FALSE(result.converged);
+  EXPECT_NE(result.reason, StepResult::Reason::None);
+  for (std::size_t i = 0; i < state.nodes.size(); ++i) EXPECT_EQ(state.nodes[i].position, before.nodes[i].position);
+}
+
+TEST(Stepper, HalvesAndReportsWhatItCannotDo) {
+  const Model model = build_model(rigid_arm());
+  Stepper stepper(model, schemes().front(), {0.1, 1e-9, 20, 2});
+  State state = initial_state(model);
+  state.nodes.back().velocity.setConstant(std::numeric_limits<double>::quiet_NaN());
+  const StepResult result = stepper.advance(state);
+  EXPECT_FALSE(result.converged);
+  EXPECT_EQ(result.halvings, 2);
+  EXPECT_EQ(state.time, 0);
+  EXPECT_STRNE(to_string(result.reason), "none");
+}
+
+TEST(Stepper, TurnsOfMoreThanNinetyDegreesAreSplit) {
+  SceneBuilder builder;
+  builder.body("rotor", 1, Vector3::Zero(), Matrix3::Identity());
+  builder.joint("axle", scene::JointKind::Continuous, "world", "rotor");
+  builder.scene.initial_joints.push_back({"axle", 0, 25.0, {}});
+  const Model model = build_model(builder.scene);
+  Stepper stepper(model, schemes().front(), {0.1, 1e-10, 20, 4});  // 2.5 rad per step
+  State state = initial_state(model);
+  const StepResult result = stepper.advance(state);
+  ASSERT_TRUE(result.converged);
+  EXPECT_GT(result.halvings, 0);
+  EXPECT_NEAR(state.time, 0.1, 1e-16);
+  EXPECT_EQ(state.steps, 1);
+  // The tangent-scaled rule turns by 2 atan(h W / 2) per sub-step h = 0.05.
+  EXPECT_NEAR(state.released[0].displacement[0], 2 * 2 * std::atan(0.625), 1e-8);
+}
+
+// ---------------------------------------------------------------- conservation by the whole system
+
+class ConservingSchemes : public ::testing::TestWithParam<Scheme> {};
+
+TEST_P(ConservingSchemes, FreeMechanismKeepsMomentaAndEnergy) {
+  const Scheme& scheme = GetParam();
+  if (!scheme.conserves_momenta) return;
+  scene::SceneDescription scene = every_joint_scene(true);
+  // Velocities that every joint allows come from released rates; the mimics' are left at rest.
+  scene.initial_joints = {{"base/rx", 0, 0.5, {}},   {"base/rz", 0, -0.7, {}},   {"base/y", 0, 0.4, {}},
+                          {"wrist/1", 0.2, 0.8, {}}, {"ball/rx", 0.1, -0.6, {}}, {"roll/1", 0, 0.3, {}},
+                          {"roll/2", 0, 0.9, {}},    {"flight/z", 0, 0.2, {}},   {"flight/ry", 0, 0.6, {}},
+                          {"plane/x", 0, 0.3, {}},   {"plane/rz", 0, 0.9, {}},   {"throw/rx", 0, 0.5, {}}};
+  const Model model = build_model(scene);
+  Stepper stepper(model, scheme, {1e-2, 1e-10, 20, 0});
+  State state = initial_state(model);
+  const Momenta before = momenta(model, scheme, state);
+  const double energy = energies(model, scheme, state).total();
+  ASSERT_GT(energy, 0.1);
+  for (int step = 0; step < 20; ++step) {
+    ASSERT_TRUE(stepper.advance(state).converged);
+    const Momenta now = momenta(model, scheme, state);
+    // What Newton leaves: its tolerance times forces of order 100 times the step, per step.
+    EXPECT_LE((now.linear - before.linear).norm(), 1e-9);
+    EXPECT_LE((now.angular - before.angular).norm(), 1e-9);
+    if (scheme.conserves_energy) {
+      EXPECT_NEAR(energies(model, scheme, state).total(), energy, 1e-9);
+    }
+  }
+}
+
+TEST_P(ConservingSchemes, EnergyBudgetCloses) {
+  const Scheme& scheme = GetParam();
+  if (!scheme.conserves_energy) return;
+  const Model model = build_model(every_joint_scene(false));
+  Stepper stepper(model, scheme, {5e-3, 1e-10, 30, 3});
+  State state = initial_state(model);
+  const double start = energies(model, scheme, state).total();
+  for (int step = 0; step < 40; ++step) {
+    ASSERT_TRUE(stepper.advance(state).converged) << step;
+    const Energies now = energies(model, scheme, state);
+    EXPECT_NEAR(now.total() - start, now.work - now.dissipated, 1e-8);
+  }
+  const Energies now = energies(model, scheme, state);
+  EXPECT_GT(now.dissipated, 1e-3);
+  EXPECT_GT(std::abs(now.work), 1e-2);
+}
+
+INSTANTIATE_TEST_SUITE_P(AllSchemes, ConservingSchemes, ::testing::ValuesIn(schemes()),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+}  // namespace
+}  // namespace flexarm
