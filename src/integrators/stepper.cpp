@@ -46,6 +46,7 @@ Stepper::Stepper(const Model& model, const Scheme& scheme, const StepSettings& s
 void Stepper::invalidate() {
   system_.invalidate();
   factorised_step_ = 0;
+  kept_factors_contract_ = true;
 }
 
 bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
@@ -59,7 +60,7 @@ bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
   if (system_.assembler().unknowns() == 0)
     return system_.evaluate(false) || fail(Reason::NotFinite);
 
-  bool factorise = !reuse || factorised_step_ != system_.step();
+  bool factorise = !reuse || !kept_factors_contract_ || factorised_step_ != system_.step();
   for (int iteration = 0; iteration < settings_.max_iterations; ++iteration) {
     if (!system_.evaluate(factorise)) return fail(Reason::NotFinite);
     ++result.iterations;
@@ -79,13 +80,14 @@ bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
     update_norms_.push_back(norm);
     if (norm > kDivergence * std::max(update_norms_.front(), 1e-3)) return fail(Reason::NoConvergence);
     system_.update(update_);
-    // Kept factors converge linearly: what remains after this update is estimated from the last contraction, and asked to
-    // be as small as what quadratic convergence leaves.
+    // A new tangent leaves the square of its update. Kept factors converge linearly: what remains is estimated from the
+    // last contraction, and asked to be as small as that square.
     const double remainder = std::max(settings_.tolerance * settings_.tolerance, kRoundOff);
-    const bool converged = reuse ? norm * std::min(contraction, 1.0) <= remainder
-                                 : norm <= settings_.tolerance;
+    const bool converged = factorise ? norm <= settings_.tolerance : norm * std::min(contraction, 1.0) <= remainder;
     if (converged) return system_.evaluate(false) || fail(Reason::NotFinite);
-    factorise = !reuse || (iteration > 0 && contraction > kSlowContraction);
+    const bool is_slow = iteration > 0 && contraction > kSlowContraction;
+    if (iteration == 1) kept_factors_contract_ = !is_slow;
+    factorise = !reuse || is_slow;
   }
   return fail(Reason::NoConvergence);
 }

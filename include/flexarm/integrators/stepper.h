@@ -63,6 +63,7 @@ class Stepper {
   LinearSolver solver_;
   Eigen::VectorXd update_;
   double factorised_step_ = 0;  ///< step size for which the factors hold; 0: none
+  bool kept_factors_contract_ = true;  ///< in the second iteration of the last solve
   std::vector<double> update_norms_;
 };
 
