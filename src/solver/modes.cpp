@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <stdexcept>
 
-#include <Eigen/Eigenvalues>
 #include <Spectra/GenEigsSolver.h>
+#include <Eigen/Eigenvalues>
 
 #include "flexarm/elements/beam_point.h"
 #include "flexarm/integrators/step_system.h"
@@ -19,6 +20,8 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 /// Below this number of unknowns all eigenvalues are computed by a dense solver.
 constexpr int kDenseLimit = 200;
+/// Round-off of a motion's strain energy relative to the sum of the magnitudes of its terms.
+constexpr double kEnergyRoundOff = 8 * std::numeric_limits<double>::epsilon();
 
 /// Maps of all joints at a configuration, for zero residual.
 std::vector<FoldMaps> joint_maps(const Model& model, const State& state) {
@@ -36,14 +39,17 @@ std::vector<FoldMaps> joint_maps(const Model& model, const State& state) {
   return maps;
 }
 
-void assemble_mass(const Model& model, const State& state, const std::vector<FoldMaps>& maps, SparseAssembler& assembler) {
+void assemble_mass(const Model& model, const State& state, const std::vector<FoldMaps>& maps,
+                   SparseAssembler& assembler) {
   assembler.set_zero();
   for_each_element(model.beams, [&](const auto& element) {
     constexpr int N = std::decay_t<decltype(element)>::kNodes;
     std::array<Quaternion, N> orientation;
     for (int i = 0; i < N; ++i) orientation[i] = state.nodes[element.nodes[i]].orientation;
     const LocalRotationVariation<N> local{LocalRotations<N>(orientation)};
-    const auto block = [&](int i, int j) { return Eigen::Map<Matrix6>(assembler.element_block(element.first_block + i * N + j)); };
+    const auto block = [&](int i, int j) {
+      return Eigen::Map<Matrix6>(assembler.element_block(element.first_block + i * N + j));
+    };
     for (int i = 0; i < N; ++i)
       for (int j = 0; j < N; ++j) block(i, j).template topLeftCorner<3, 3>().diagonal().array() += element.mass(i, j);
     for (const auto& point : element.mass_points) {
@@ -94,7 +100,7 @@ class ShiftInvert {
 };
 
 struct Eigenpairs {
-  std::vector<double> squared;            // omega^2, ascending
+  std::vector<double> squared;  // omega^2, ascending
   std::vector<Eigen::VectorXd> vectors;
 };
 
@@ -117,7 +123,8 @@ Eigenpairs lowest(const SparseAssembler& stiffness, const SparseAssembler& mass,
     Spectra::GenEigsSolver<ShiftInvert> solver(mutable_operation, count, std::min(n, std::max(2 * count + 20, 40)));
     solver.init();
     solver.compute(Spectra::SortRule::LargestMagn, 2000, 1e-13);
-    if (solver.info() != Spectra::CompInfo::Successful) throw std::runtime_error("the eigenvalue iteration did not converge");
+    if (solver.info() != Spectra::CompInfo::Successful)
+      throw std::runtime_error("the eigenvalue iteration did not converge");
     values = solver.eigenvalues();
     vectors = solver.eigenvectors();
   }
@@ -138,6 +145,18 @@ double trace(const SparseAssembler& matrix) {
     for (int p = matrix.column_starts()[j]; p < matrix.column_starts()[j + 1]; ++p)
       if (matrix.row_indices()[p] == j) sum += std::abs(matrix.values()[p]);
   return sum;
+}
+
+/// True for a motion whose energy is no more than the round-off of its own terms.
+bool is_rigid(const SparseAssembler& stiffness, const Eigen::VectorXd& motion) {
+  double energy = 0, magnitude = 0;
+  for (int j = 0; j < stiffness.unknowns(); ++j)
+    for (int p = stiffness.column_starts()[j]; p < stiffness.column_starts()[j + 1]; ++p) {
+      const double term = motion[stiffness.row_indices()[p]] * stiffness.values()[p] * motion[j];
+      energy += term;
+      magnitude += std::abs(term);
+    }
+  return std::abs(energy) <= kEnergyRoundOff * magnitude;
 }
 
 std::vector<Vector6> expand(const Model& model, const DegreesOfFreedom& dof, const std::vector<FoldMaps>& maps,
@@ -171,7 +190,7 @@ std::vector<Vector6> expand(const Model& model, const DegreesOfFreedom& dof, con
 
 std::vector<Mode> natural_modes(const Model& model, const State& state, int count) {
   StepSystem system(model, *find_scheme("newmark"));
-  if (system.assembler().unknowns() == 0) return {};
+  if (count <= 0 || system.assembler().unknowns() == 0) return {};
   system.begin_static(state, 1.0);
   if (!system.evaluate(true)) throw std::runtime_error("the stiffness is not finite");
   const DegreesOfFreedom& dof = system.degrees_of_freedom();
@@ -179,8 +198,8 @@ std::vector<Mode> natural_modes(const Model& model, const State& state, int coun
   SparseAssembler mass(model, dof);
   assemble_mass(model, state, maps, mass);
 
-  // The shift makes free mechanisms solvable. A first pass finds the scale of the wanted eigenvalues, a second one with a
-  // shift far below them loses no digits.
+  // The shift makes free mechanisms solvable. A first pass finds the scale of the wanted eigenvalues, a second one with
+  // a shift far below them loses no digits.
   const double stiffness_trace = trace(system.assembler());
   double shift = std::max(1e-8 * stiffness_trace / trace(mass), 1e-12);
   Eigenpairs pairs = lowest(system.assembler(), mass, shift, count);
@@ -193,7 +212,8 @@ std::vector<Mode> natural_modes(const Model& model, const State& state, int coun
   for (std::size_t k = 0; k < pairs.squared.size(); ++k) {
     const double squared = pairs.squared[k];
     Mode mode;
-    if (std::abs(squared) > 1e-8 * shift) mode.frequency = std::copysign(std::sqrt(std::abs(squared)), squared) / (2 * kPi);
+    if (!is_rigid(system.assembler(), pairs.vectors[k]))
+      mode.frequency = std::copysign(std::sqrt(std::abs(squared)), squared) / (2 * kPi);
     mode.node_motion = expand(model, dof, maps, pairs.vectors[k]);
     modes.push_back(mode);
   }
