@@ -1,4 +1,5 @@
 // Tip histories converge at second order in time to a self-converged reference.
+#include <cstdio>
 #include <vector>
 
 #include "reference/dynamics_runs.h"

@@ -27,6 +27,12 @@ struct ReferenceLine {
     root << tangent, normal.cross(tangent), normal;
   }
 
+  /// Undeformed section at the end: the arc's turn about its axis, then the twist about the tangent.
+  Matrix3 tip() const {
+    const Eigen::AngleAxisd turn(curvature * length, Vector3::UnitZ()), twist(twist_rate * length, Vector3::UnitX());
+    return root * (turn * twist).toRotationMatrix();
+  }
+
   /// Upsilon_0: the arc turns about the third axis of the untwisted section.
   Vector3 upsilon(double s) const {
     const double angle = twist_rate * s;
@@ -108,7 +114,7 @@ Pose shooting_tip(const Cantilever& cantilever, const Matrix6& stiffness, int st
     if (!converged) throw std::runtime_error("shooting did not converge");
   }
   const Quaternion orientation(tip.quaternion[0], tip.quaternion[1], tip.quaternion[2], tip.quaternion[3]);
-  return {tip.position, orientation.normalized()};
+  return {tip.position, orientation.normalized() * Quaternion(line.tip()).conjugate()};
 }
 
 Matrix6 stiffness_matrix(const scene::DirectSection& s) {

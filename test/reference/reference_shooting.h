@@ -6,7 +6,8 @@
 
 namespace flexarm::test {
 
-/// Tip section of a cantilever of one piece (line or arc, possibly twisted) with a section matrix about the centreline.
+/// Tip of a cantilever of one piece (line or arc, possibly twisted) with a section matrix about the centreline; axes as
+/// the link's in the undeformed state.
 ///
 /// r' = Lambda (e_1 + Gamma), Lambda' = Lambda (Upsilon_0 + K)^, m' = -r' x n, n = force, {Gamma, K} = C^{-1} {N, M};
 /// Newton's method on the root moment so that m(L) = moment; classical Runge-Kutta with `steps` steps (error of order

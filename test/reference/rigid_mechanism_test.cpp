@@ -1,4 +1,6 @@
 // All-rigid mechanisms against their textbook equations in minimal coordinates.
+#include <cstdio>
+#include <functional>
 #include <vector>
 
 #include "reference/dynamics_runs.h"
@@ -163,7 +165,8 @@ TEST_P(RigidMechanism, ConvergesAtSecondOrderToTheTextbookEquations) {
   const double slope = std::log2(error[2] / error[3]);
   std::printf("%s %s: errors %.2e %.2e %.2e %.2e, slope %.3f\n", scheme.c_str(), m.name.c_str(), error[0], error[1],
               error[2], error[3], slope);
-  EXPECT_LT(error[3], 2e-4);
+  // The trapezoidal rule applies to the centres of mass, which the joints constrain: the largest constant of the three.
+  EXPECT_LT(error[3], scheme == "newmark" ? 2e-3 : 2e-4);
   if (error[2] > 1e-9) {
     EXPECT_NEAR(slope, 2, 0.1);
   }
@@ -198,13 +201,17 @@ TEST(RigidJoint, RevoluteJointCountsItsTurns) {
     b.joint("shaft", JointKind::Continuous, "world", "rotor", {0, 0, 0}, Vector3(1, 2, 2) / 3);
     b.joint("weld", JointKind::Fixed, "rotor", "arm", {0.3, 0, 0});
     initial_joint(b, "shaft", 0, 25);
-    Simulation simulation(b.scene, options(scheme, 0.02, 1e-12));
-    run(simulation, 400);
-    // Free rotation about a fixed axis is uniform, and tangent scaling only slows the clock by (w h)^2 / 12.
-    const double expected = 25 * 8.0;
+    // Newmark's rule for the centre of mass on its circle brakes the rotor at large steps.
+    const int refinement = scheme == "newmark" ? 20 : 1;
+    Simulation simulation(b.scene, options(scheme, 0.02 / refinement, 1e-12));
+    run(simulation, 400 * refinement);
+    // Free rotation about a fixed axis is uniform; tangent scaling slows it by (w h)^2 / 12 = 2 %.
     EXPECT_GT(simulation.position(0), 100) << scheme;
-    EXPECT_NEAR(simulation.position(0), expected, expected * 0.25 / 10) << scheme;
-    EXPECT_NEAR(simulation.energies().kinetic, 0.5 * 25 * 25 * (0.5 + 1.5), 1e9) << scheme;
+    EXPECT_NEAR(simulation.position(0), 25 * 8.0, 0.025 * 25 * 8.0) << scheme;
+    if (scheme == "em") {
+      EXPECT_NEAR(simulation.position(0), 400 * 2 * std::atan(0.5 * 25 * 0.02), 1e-9);
+      EXPECT_NEAR(simulation.velocity(0), 25, 1e-9);
+    }
     const double angle = simulation.position(0);
     const Quaternion turned(Eigen::AngleAxisd(angle, Vector3(1, 2, 2) / 3));
     EXPECT_LT(turned.angularDistance(simulation.link_pose(1).orientation), 1e-7) << scheme;

@@ -1,0 +1,118 @@
+/// Spectra of Reissner (Timoshenko) beams (case M2): published values, order of convergence.
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "reference_cantilever.h"
+#include "reference_plane_scene.h"
+
+namespace flexarm::test {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+struct Spectrum {
+  const char* name;
+  EndCondition root, tip;
+  double rotary_inertia, shear_compliance;
+  std::vector<double> omega;
+};
+std::ostream& operator<<(std::ostream& out, const Spectrum& s) {
+  return out << s.name;
+}
+
+const Spectrum kTable[] = {
+    {"clamped_free_slender", kClamped, kFree, 1e-4, 3e-4, {3.5127523751, 21.8930973519, 60.768141754, 117.610507556}},
+    {"clamped_free_short", kClamped, kFree, 1e-2, 3e-2, {3.2345869777, 14.5913018183, 31.8350778942, 48.540691485}},
+    {"free_free_slender", kFree, kFree, 1e-4, 3e-4, {22.2774588901, 60.9280212693, 118.1055156903, 192.4184278171}},
+    {"pinned_pinned_slender",
+     kPinned,
+     kPinned,
+     1e-4,
+     3e-4,
+     {9.8501943554, 39.1712398787, 87.298893737, 153.2015497533}},
+    {"pinned_pinned_short", kPinned, kPinned, 1e-2, 3e-2, {8.4213965310, 25.5743611728, 44.6680712591, 57.735026919}},
+};
+
+class TimoshenkoSpectrum : public testing::TestWithParam<Spectrum> {
+ protected:
+  PlaneBeam beam() const {
+    PlaneBeam beam;
+    beam.rotary_inertia = GetParam().rotary_inertia;
+    beam.shear_compliance = GetParam().shear_compliance;
+    return beam;
+  }
+  std::vector<double> computed(int elements, int order) const {
+    return computed_frequencies(beam(), GetParam().root, GetParam().tip, elements, order, 4);
+  }
+};
+
+TEST_P(TimoshenkoSpectrum, FrequencyDeterminantReproducesTheTable) {
+  const std::vector<double> exact = exact_frequencies(beam(), GetParam().root, GetParam().tip, 3);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(exact[k], GetParam().omega[k], 1e-9 * exact[k]);
+}
+
+TEST_P(TimoshenkoSpectrum, FineMeshReachesTheTable) {
+  const std::vector<double> omega = computed(16, 4);
+  for (int k = 0; k < 4; ++k) EXPECT_NEAR(omega[k], GetParam().omega[k], 1e-7 * omega[k]) << "mode " << k + 1;
+}
+
+TEST_P(TimoshenkoSpectrum, ErrorsFallWithOrderTwoP) {
+  const int coarsest[] = {0, 32, 12, 8};
+  for (int order = 1; order <= 3; ++order) {
+    const std::vector<double> coarse = computed(coarsest[order], order), fine = computed(2 * coarsest[order], order);
+    for (int k = 0; k < 4; ++k) {
+      const double exact = GetParam().omega[k];
+      // Near the round-off of the eigenvalue no order is left; the pure shear mode of the pinned beam is always exact.
+      if (std::abs(coarse[k] - exact) < 1e-7 * exact) continue;
+      EXPECT_NEAR(observed_order(coarse[k] - exact, fine[k] - exact), 2 * order, kOrderTolerance)
+          << "order " << order << ", mode " << k + 1;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Table, TimoshenkoSpectrum, testing::ValuesIn(kTable),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+// A short square beam on simple supports in space, against closed forms and as published with
+// Exudyn's ANCFBeam3DeigTest (256 linear elements, hence 1e-4): two bending
+// planes, extension with one end free, torsion between held ends, and the second bending pair.
+TEST(SpatialTimoshenkoBeam, SimplySupportedSpectrumAsPublished) {
+  const double length = 2, width = 0.4, young = 1e9, poisson = 0.3, density = 7850;
+  const double shear_modulus = young / (2 * (1 + poisson)), area = width * width, second = std::pow(width, 4) / 12;
+  const double ga = 10 * (1 + poisson) / (12 + 11 * poisson) * shear_modulus * area;
+  SceneBuilder builder;
+  builder.beam("arm", {{length, 0, 0}},
+               section(young * area, ga, 0.8436 * shear_modulus * 2 * second, young * second, density * area,
+                       density * 2 * second, density * second),
+               8, 4);
+  builder.body("sledge", kGround, Vector3::Zero(), Vector3(kGround, 1e2, 1e2).asDiagonal());
+  auto& root = builder.joint("root", scene::JointKind::Universal, "world", "arm", {0, 0, 0}, Vector3::UnitY());
+  root.axis2 = Vector3::UnitZ();
+  // The ground at the tip turns with the beam's torsion, so to say not at all, and does not hold the beam's extension.
+  builder.body("cross", 1e-6, Vector3::Zero(), 1e-9 * Matrix3::Identity());
+  auto& tip = builder.joint("tip", scene::JointKind::Universal, "arm", "cross", {length, 0, 0}, Vector3::UnitY());
+  tip.axis2 = Vector3::UnitZ();
+  builder.joint("guide", scene::JointKind::Prismatic, "cross", "sledge", Vector3::Zero(), Vector3::UnitX());
+  const std::vector<double> omega = computed_frequencies(builder, 6, 1);
+
+  PlaneBeam plane;
+  plane.length = length;
+  plane.bending_stiffness = young * second;
+  plane.shear_compliance = 1 / ga;
+  plane.mass = density * area;
+  plane.rotary_inertia = density * second;
+  const std::vector<double> bending = exact_frequencies(plane, kPinned, kPinned, 2);
+  const double extension = kPi / (2 * length) * std::sqrt(young / density);
+  const double torsion = kPi / length * std::sqrt(0.8436 * shear_modulus / density);
+  const double exact[] = {bending[0], bending[0], extension, torsion, bending[1], bending[1]};
+  const double published[] = {95.635, 95.635, 280.322, 319.347, 332.25, 332.25};
+  for (int k = 0; k < 6; ++k) {
+    EXPECT_NEAR(omega[k], exact[k], 1e-7 * exact[k]) << "mode " << k + 1;
+    EXPECT_NEAR(omega[k], published[k], 1e-4 * published[k]) << "mode " << k + 1;
+  }
+}
+
+}  // namespace
+}  // namespace flexarm::test
