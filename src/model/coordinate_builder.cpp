@@ -42,11 +42,8 @@ void MechanismBuilder::add_coordinates(const scene::JointDescription& joint, con
     coordinate.is_angle = kind == JointMapKind::Spherical || (kind == JointMapKind::Free && c >= 3);
     coordinate.damping = joint.damping;
     coordinate.friction = joint.friction;
-    if (joint.limits) {
-      coordinate.effort_limit = joint.limits->effort;
-      if (joint.kind == scene::JointKind::Revolute || joint.kind == scene::JointKind::Prismatic)
-        coordinate.limit = LimitStop{joint.limits->lower, joint.limits->upper, 0, 0};
-    }
+    coordinate.effort_limit = joint.effort_limit;
+    if (joint.limits) coordinate.limit = LimitStop{joint.limits->lower, joint.limits->upper, 0, 0};
     model.coordinates.push_back(coordinate);
   }
 }
