@@ -12,8 +12,8 @@ namespace flexarm {
 namespace {
 
 /// Element counts for the frequency rule and largest turning per element [rad], by order.
-constexpr int kFrequencyElements[] = {0, 14, 4, 3, 2};
-constexpr double kTurningPerElement[] = {0, 0.2, 0.8, 1.2, 1.6};
+constexpr int kFrequencyElements[] = {0, 45, 9, 5, 3};
+constexpr double kTurningPerElement[] = {0, 0.139, 1.05, 1.58, 3.15};
 
 /// Arc length of node i of an element; exactly `to` for the last one.
 double at_node(double from, double to, int order, int i) {
@@ -21,18 +21,18 @@ double at_node(double from, double to, int order, int i) {
   return 0.5 * (1 - xi) * from + 0.5 * (1 + xi) * to;
 }
 
-/// Element borders: piece borders, attachments and both ends, merged where they coincide.
-std::vector<double> borders(const Centreline& centreline, std::vector<double> attachments) {
+/// Element borders: both ends, piece borders exactly where they are (a kink is looked for there), and attachments that
+/// do not coincide with one of them.
+std::vector<double> borders(const Centreline& centreline, const std::vector<double>& attachments) {
   std::vector<double> all = centreline.piece_ends();
   all.push_back(0);
-  all.insert(all.end(), attachments.begin(), attachments.end());
-  std::sort(all.begin(), all.end());
   const double tolerance = 1e-9 * centreline.length();
-  std::vector<double> merged{0};
-  for (const double s : all)
-    if (s > merged.back() + tolerance) merged.push_back(s);
-  merged.back() = centreline.length();
-  return merged;
+  for (const double s : attachments) {
+    const auto coincides = [&](double border) { return std::abs(s - border) <= tolerance; };
+    if (std::none_of(all.begin(), all.end(), coincides)) all.push_back(s);
+  }
+  std::sort(all.begin(), all.end());
+  return all;
 }
 
 /// Distributes `count` elements over intervals in proportion to `demand`, at least one each (largest remainder).
@@ -63,14 +63,15 @@ int BeamMesh::node_at(double arc_length) const {
   return best;
 }
 
-BeamMesh mesh_beam(const scene::BeamDescription& beam, const Centreline& centreline, std::vector<double> attachments) {
+BeamMesh mesh_beam(const scene::BeamDescription& beam, const Centreline& centreline,
+                   const std::vector<double>& attachments) {
   BeamMesh mesh;
   const SectionProperties section = section_properties(beam.section);
   mesh.section = referred_to_center_of_mass(section);
   mesh.centroid = section.center_of_mass;
   mesh.order = beam.order;
 
-  const std::vector<double> border = borders(centreline, std::move(attachments));
+  const std::vector<double> border = borders(centreline, attachments);
   std::vector<double> length;
   std::vector<int> counts;
   for (std::size_t k = 0; k + 1 < border.size(); ++k) length.push_back(border[k + 1] - border[k]);
@@ -95,7 +96,9 @@ BeamMesh mesh_beam(const scene::BeamDescription& beam, const Centreline& centrel
   for (std::size_t k = 0; k < counts.size(); ++k) {
     if (k > 0 && centreline.is_kink(border[k])) last = add_node(border[k], false, last);
     for (int e = 0; e < counts[k]; ++e) {
-      const double from = border[k] + length[k] * e / counts[k], to = border[k] + length[k] * (e + 1) / counts[k];
+      // The interval's end exactly: a bit beyond a kink the section has another frame.
+      const double from = border[k] + length[k] * e / counts[k];
+      const double to = e + 1 < counts[k] ? border[k] + length[k] * (e + 1) / counts[k] : border[k + 1];
       MeshElement element;
       element.nodes.push_back(last);
       for (int i = 1; i <= beam.order; ++i)

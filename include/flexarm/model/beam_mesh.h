@@ -36,14 +36,16 @@ struct BeamMesh {
 
 /// Number of elements of the given order for `elements="auto"`.
 ///
-/// Rule: the first four clamped-free and pinned-pinned (bending) frequencies of a uniform straight beam within 1 % of the
-/// exact ones, and at most a turning angle per element for which the static tip error of a circular arc stays below the
-/// same 1 %. Both numbers were measured with the modes and statics tests (test/reference); an element border is also
-/// placed where pieces of the centreline meet and where loads and joints attach.
+/// Rule: the fewest elements for which the first four clamped-free and the first four pinned-pinned bending frequencies of
+/// a slender uniform straight beam are within 1 % of the exact ones, and the static tip displacement of a circular arc of a
+/// quarter to half a turn, under a tip force in any direction, within 1 %. The latter sets the largest turning of tangent
+/// and section per element; the limit was measured at the worst arc. Both are held by tests (test/reference, automatic
+/// mesh). An element border is also placed where pieces of the centreline meet and where loads and joints attach.
 int automatic_element_count(int order, double turning);
 
 /// Meshes a link with element borders at `attachments` (arc lengths), piece borders and kinks.
-BeamMesh mesh_beam(const scene::BeamDescription& beam, const Centreline& centreline, std::vector<double> attachments);
+BeamMesh mesh_beam(const scene::BeamDescription& beam, const Centreline& centreline,
+                   const std::vector<double>& attachments);
 
 /// Constant data of an element from its nodes' undeformed poses; node indices, points' and blocks' offsets are left to
 /// the caller.
