@@ -1,5 +1,6 @@
 /// Spectra of Reissner (Timoshenko) beams (case M2): published values, order of convergence.
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -111,6 +112,34 @@ TEST(SpatialTimoshenkoBeam, SimplySupportedSpectrumAsPublished) {
   for (int k = 0; k < 6; ++k) {
     EXPECT_NEAR(omega[k], exact[k], 1e-7 * exact[k]) << "mode " << k + 1;
     EXPECT_NEAR(omega[k], published[k], 1e-4 * published[k]) << "mode " << k + 1;
+  }
+}
+
+// The pinned beam's deflections are sines with shear and rotary inertia, too; their ratio to the rotation is that of
+// the frequency: Q' = -omega^2 m w with Q = GA (w' - theta).
+TEST(PinnedTimoshenkoBeam, ModesAreSines) {
+  PlaneBeam beam;
+  beam.rotary_inertia = 1e-3;
+  beam.shear_compliance = 3e-3;
+  const std::vector<double> exact = exact_frequencies(beam, kPinned, kPinned, 3);
+  const Simulation simulation(plane_scene(beam, kPinned, kPinned, 16, 4).scene);
+  const std::vector<Mode> modes = simulation.natural_modes(10);
+  for (int n = 1; n <= 3; ++n) {
+    const auto mode = std::find_if(modes.begin(), modes.end(), [&](const Mode& candidate) {
+      return std::abs(2 * kPi * candidate.frequency - exact[n - 1]) < 1e-6 * exact[n - 1];
+    });
+    ASSERT_NE(mode, modes.end());
+    // Amplitudes {w, theta} of {sin k x, cos k x} from k GA (k w - theta) = omega^2 m w, k = n pi.
+    const double k = n * kPi, w = 1, theta = k - exact[n - 1] * exact[n - 1] * beam.shear_compliance / k;
+    double scale = 0;  // from the root's rotation
+    std::vector<NodeState> nodes = simulation.state().nodes;
+    nodes.resize(4 * 16 + 1);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const double x = nodes[i].position.x();
+      if (i == 0) scale = mode->node_motion[0][5] / theta;
+      EXPECT_NEAR(mode->node_motion[i][1], scale * w * std::sin(k * x), 1e-6) << "mode " << n << " at " << x;
+      EXPECT_NEAR(mode->node_motion[i][5], scale * theta * std::cos(k * x), 1e-6) << "mode " << n << " at " << x;
+    }
   }
 }
 

@@ -93,7 +93,7 @@ TEST(FortyFiveDegreeBend, ErrorDoesNotGrowWithSlenderness) {
   }
   for (int order = 1; order <= 4; ++order)
     for (int k = 1; k < 4; ++k)
-      EXPECT_NEAR(errors[k][order] / errors[0][order], 1, 2 / slenderness[0])
+      EXPECT_NEAR(errors[k][order] / errors[0][order], 1, 5 / (slenderness[0] * slenderness[0]))
           << "order " << order << " at " << slenderness[k];
 }
 
