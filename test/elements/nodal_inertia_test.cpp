@@ -5,6 +5,7 @@
 
 #include "elements/differences.h"
 #include "elements/random_element.h"
+#include "flexarm/integrators/scheme.h"
 
 namespace flexarm {
 namespace {

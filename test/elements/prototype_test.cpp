@@ -11,6 +11,7 @@
 #include "flexarm/elements/endpoint_beam.h"
 #include "flexarm/elements/nodal_inertia.h"
 #include "flexarm/elements/rotary_inertia.h"
+#include "flexarm/integrators/scheme.h"
 #include "flexarm/model/beam_mesh.h"
 
 namespace flexarm {

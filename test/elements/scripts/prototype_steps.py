@@ -12,11 +12,31 @@ import sys
 import numpy as np
 
 sys.path.insert(0, sys.argv[1])
+import beam as prototype  # noqa: E402
 from beam import Beam  # noqa: E402
 from rotations import exp  # noqa: E402
 
 STEP = 0.3
 DAMPING = 0.05
+
+
+# Parent coordinates of the nodes: Gauss-Lobatto points (the prototype has equally spaced nodes of its own).
+NODES = {2: [-1, 1], 3: [-1, 0, 1], 4: [-1, -np.sqrt(0.2), np.sqrt(0.2), 1],
+         5: [-1, -np.sqrt(3 / 7), 0, np.sqrt(3 / 7), 1]}
+
+
+def lagrange(nodes, x):
+    """Values and derivatives of the Lagrange functions, from polynomials in monomial form."""
+    values, derivatives = [], []
+    for i, own in enumerate(NODES[nodes]):
+        others = [c for k, c in enumerate(NODES[nodes]) if k != i]
+        polynomial = np.poly1d(others, r=True) / np.prod([own - c for c in others])
+        values.append(polynomial(x))
+        derivatives.append(polynomial.deriv()(x))
+    return np.array(values), np.array(derivatives)
+
+
+prototype.lagrange = lagrange
 
 
 def quaternion(rotation):
@@ -42,7 +62,7 @@ def residual(beam, scheme, begin, end, options):
 def case(nodes):
     rng = np.random.default_rng(nodes)
     vectors = lambda size: [size * rng.uniform(-1, 1, 3) for _ in range(nodes)]
-    x = np.linspace(0, 1.5, nodes)
+    x = 0.75 * (1 + np.array(NODES[nodes]))
     r_undeformed = [np.array([s, 0.3 * s * s, -0.2 * s]) for s in x]
     R_undeformed = [exp(np.array([0.4 * s, 0.1, 0.5 * s])) for s in x]
     stiffness, inertia, mass = spd(rng, 6), spd(rng, 3), 1.3
