@@ -191,6 +191,7 @@ void MechanismBuilder::set_initial_velocities() {
       }
     }
   };
+  std::map<int, double> field_rate;  // by coordinate: what a field gave, for the joints further out that mimic it
   const int root = link_index(scene_.root_link);
   if (meshes[root]) set_beam(root);
   for (const JointRecord& record : records_) {
@@ -210,14 +211,20 @@ void MechanismBuilder::set_initial_velocities() {
         if (coordinate.motion >= 0) rate = model.histories[coordinate.motion].derivative(0.0), given = true;
         if (coordinate.mimicked >= 0) {
           const Coordinate& base = model.coordinates[coordinate.mimicked];
-          rate = coordinate.mimic_multiplier *
-                 (base.motion >= 0 ? model.histories[base.motion].derivative(0.0) : initial_value(base.name, true));
+          const auto from_field = field_rate.find(coordinate.mimicked);
+          if (base.motion >= 0)
+            rate = model.histories[base.motion].derivative(0.0);
+          else
+            rate = from_field != field_rate.end() ? from_field->second : initial_value(base.name, true);
+          rate *= coordinate.mimic_multiplier;
           given = true;
         }
       }
-      if (fields.count(child) && !given)
+      if (fields.count(child) && !given) {
         rates = field_rates(record, velocity_of(first.master),
                             field_velocity(*fields[child], child, model.nodes[last.slave].position));
+        for (int c = 0; c < rates.size(); ++c) field_rate[model.first_coordinate[record.first_map] + c] = rates[c];
+      }
       for (int k = 0, used = 0; k < record.map_count; ++k) {
         const int count = released_count(model.joints[record.first_map + k].kind);
         follow(record.first_map + k, ReleasedVector(rates.segment(used, count)));
