@@ -11,8 +11,9 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 /// Half a contact period of a stop lasts this many nominal steps: resolved by the integrator, and short to the eye.
 constexpr double kContactSteps = 10;
-/// Speed after a hit over the speed before.
-constexpr double kRestitution = 0.3;
+/// Ratio of a stop's damping to the critical one. A contact that never pulls ends where its force vanishes, after which the
+/// speed is e = exp(-2 z acos(z) / sqrt(1 - z^2)) of that before: 0.3.
+constexpr double kStopDampingRatio = 0.497239;
 
 /// Mass, first moment and inertia about the world origin of everything outboard of a node, initial configuration.
 struct Composite {
@@ -67,17 +68,18 @@ void finish_mass_properties(const scene::SceneDescription& scene, const std::vec
     const Composite& body = outboard[joint.slave];
     // Inertia that the coordinate moves: m |t|^2 + J |r|^2 (screw-like couplings have no cross term about their axis).
     double inertia = body.mass * translation.squaredNorm();
-    if (rotation.norm() > 0)
-      inertia += body.about(model.nodes[joint.slave].position, frame * rotation.normalized()) * rotation.squaredNorm();
-    if (!(inertia > 0) && coordinate.motion < 0)
+    const Vector3& point = model.nodes[joint.slave].position;
+    if (rotation.norm() > 0) inertia += body.about(point, frame * rotation.normalized()) * rotation.squaredNorm();
+    // A driven or mimicking coordinate needs none. Nothing is what the shift to the axis leaves by round-off.
+    const double terms = body.mass * (translation.squaredNorm() + point.squaredNorm() * rotation.squaredNorm()) +
+                         body.inertia.trace() * rotation.squaredNorm();
+    if (!(inertia > 1e-13 * terms) && coordinate.motion < 0 && coordinate.mimicked < 0)
       throw ModelError(scene.file + ": joint coordinate '" + coordinate.name +
                        "' moves nothing that has inertia: give the links outboard of it an <inertial> or a <beam>");
     if (coordinate.limit) {
       const double omega = kPi / (kContactSteps * scene.integrator.step);
-      const double log_restitution = std::log(kRestitution);
-      const double damping_ratio = -log_restitution / std::hypot(kPi, log_restitution);
       coordinate.limit->stiffness = inertia * omega * omega;
-      coordinate.limit->damping = 2 * damping_ratio * inertia * omega;
+      coordinate.limit->damping = 2 * kStopDampingRatio * inertia * omega;
     }
   }
 }
