@@ -91,6 +91,7 @@ SceneBuilder frame(double force) {
   return builder;
 }
 
+/// Critical loads: loss of uniqueness of the out-of-plane equations on the exact plane path, mesh-free.
 TEST(RightAngleFrame, CriticalLoads) {
   const double away = critical_load([](double load) { return frame(load); }, 1.0, 1.2);
   const double towards = critical_load([](double load) { return frame(-load); }, 0.6, 0.75);

@@ -1,6 +1,7 @@
 /// Plane statics: the elastica (case S2), Geradin's cantilever (S6), and beams in the linear range (S13).
 
 #include <cmath>
+#include <cstdio>
 
 #include <gtest/gtest.h>
 
@@ -13,6 +14,7 @@ namespace {
 
 // ---------------------------------------------------------------- large displacements
 
+/// Inextensible, without shear, load P L^2 / EI: mesh-free shooting, relative tolerance 1e-12 (the elliptic integrals).
 struct ElasticaRow {
   double load, transverse, shortening, slope;
 };
@@ -60,6 +62,8 @@ TEST(Elastica, ErrorFallsWithOrderTwoP) {
   }
 }
 
+/// Published tip (Simpson and Palacios 2013): drop 2.159, shortening 0.596, rotation 0.6720. Reference values below:
+/// mesh-free shooting, relative tolerance 1e-12.
 Cantilever geradin() {
   Cantilever cantilever;
   cantilever.pieces = {line({5, 0, 0})};

@@ -2,6 +2,7 @@
 /// and curved centrelines and with full section matrices.
 
 #include <cmath>
+#include <cstdio>
 
 #include <gtest/gtest.h>
 #include <Eigen/LU>
