@@ -15,6 +15,9 @@ constexpr double kLargestStepRotation = 2.0;
 constexpr double kDivergence = 1e4;
 /// Contraction of the updates above which kept factors are renewed.
 constexpr double kSlowContraction = 0.03;
+/// Updates that after so many iterations still do not shrink below this contraction are halved.
+constexpr int kPatience = 5;
+constexpr double kStalled = 0.5;
 /// Scaled updates cannot be expected to become smaller than this.
 constexpr double kRoundOff = 1e-15;
 /// Converged sub-steps after which the step is doubled again.
@@ -79,6 +82,8 @@ bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
         update_norms_.empty() ? 1.0 : norm / std::max(update_norms_.back(), std::numeric_limits<double>::min());
     update_norms_.push_back(norm);
     if (norm > kDivergence * std::max(update_norms_.front(), 1e-3)) return fail(Reason::NoConvergence);
+    // A steep law (friction near sticking, the touch of a stop) can make full updates jump to and fro.
+    if (iteration >= kPatience && contraction > kStalled) update_ *= 0.5;
     system_.update(update_);
     // A new tangent leaves the square of its update. Kept factors converge linearly: what remains is estimated from the
     // last contraction, and asked to be as small as that square.

@@ -14,14 +14,14 @@ namespace {
 
 constexpr const char* kHeader = "flexarm-checkpoint 1";
 
-/// Applies `visit` to every number of a state in a fixed order; the one place that knows its layout.
+/// Applies `visit(number, may_be_nan)` to every number of a state in a fixed order; the one place that knows its layout.
 template <class AnyState, class Visit>
 void for_each_number(AnyState& state, const Visit& visit) {
   const auto vector = [&](auto& v) {
-    for (int k = 0; k < v.size(); ++k) visit(v[k]);
+    for (int k = 0; k < v.size(); ++k) visit(v[k], false);
   };
   const auto quaternion = [&](auto& q) { vector(q.coeffs()); };
-  visit(state.time);
+  visit(state.time, false);
   for (auto& node : state.nodes) {
     vector(node.position);
     quaternion(node.orientation);
@@ -39,12 +39,12 @@ void for_each_number(AnyState& state, const Visit& visit) {
     vector(point.angular_acceleration);
   }
   for (auto& rate : state.strain_rates) vector(rate);
-  for (auto& command : state.commands) visit(command);
-  for (auto& effort : state.efforts) visit(effort);
-  for (auto& increment : state.last_increment) visit(increment);
-  visit(state.last_step);
-  visit(state.work);
-  visit(state.dissipated);
+  for (auto& command : state.commands) visit(command, true);  // nan: none holds
+  for (auto& effort : state.efforts) visit(effort, false);
+  for (auto& increment : state.last_increment) visit(increment, false);
+  visit(state.last_step, false);
+  visit(state.work, false);
+  visit(state.dissipated, false);
 }
 
 /// What must agree for a state to fit a simulation.
@@ -59,7 +59,6 @@ std::string signature(const Simulation& simulation) {
 }
 
 double parse(const std::string& token, const std::string& path) {
-  if (token == "nan") return std::nan("");
   const bool negative = token[0] == '-';
   const char* begin = token.data() + (negative ? 1 : 0);
   const char* end = token.data() + token.size();
@@ -84,7 +83,7 @@ void write_checkpoint(const Simulation& simulation, const std::string& path) {
   const State& state = simulation.state();
   std::string text = fmt::format("{}\n{}\nsteps {} level {} good {} increments {}\n", kHeader, signature(simulation),
                                  state.steps, state.halving_level, state.good_steps, state.last_increment.size());
-  for_each_number(state, [&](double value) { text += hexadecimal(value) + "\n"; });
+  for_each_number(state, [&](double value, bool) { text += hexadecimal(value) + "\n"; });
   text += "end\n";
   const std::string temporary = path + ".partial";
   std::ofstream out(temporary, std::ios::binary);
@@ -110,9 +109,9 @@ void read_checkpoint(Simulation& simulation, const std::string& path) {
   if (!in || state.steps < 0 || state.halving_level < 0 || increments > 6 * state.nodes.size() + 6 * state.released.size())
     fail(path, "is damaged in line 3");
   state.last_increment.assign(increments, 0.0);
-  for_each_number(state, [&](double& value) {
+  for_each_number(state, [&](double& value, bool may_be_nan) {
     if (!(in >> word)) fail(path, "ends too early");
-    value = parse(word, path);
+    value = may_be_nan && word == "nan" ? std::nan("") : parse(word, path);
   });
   if (!(in >> word) || word != "end") fail(path, "is damaged at its end");
   simulation.restore(state);

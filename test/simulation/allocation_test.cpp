@@ -1,0 +1,152 @@
+// A step allocates nothing after the first one.
+#include <atomic>
+#include <cstdlib>
+
+#include <gtest/gtest.h>
+
+#include "simulation/everything_scene.h"
+
+// Interposes the allocator of the whole program, libraries included; it only counts, glibc does the work.
+namespace {
+std::atomic<bool> g_counting{false};
+std::atomic<long> g_allocations{0};
+void count() {
+  if (g_counting.load(std::memory_order_relaxed)) g_allocations.fetch_add(1, std::memory_order_relaxed);
+}
+}  // namespace
+
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define FLEXARM_COUNTS_ALLOCATIONS 1
+extern "C" {
+void* __libc_malloc(std::size_t);
+void* __libc_calloc(std::size_t, std::size_t);
+void* __libc_realloc(void*, std::size_t);
+void* __libc_memalign(std::size_t, std::size_t);
+
+void* malloc(std::size_t size) {
+  count();
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t number, std::size_t size) {
+  count();
+  return __libc_calloc(number, size);
+}
+void* realloc(void* memory, std::size_t size) {
+  count();
+  return __libc_realloc(memory, size);
+}
+void* memalign(std::size_t alignment, std::size_t size) {
+  count();
+  return __libc_memalign(alignment, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  return memalign(alignment, size);
+}
+int posix_memalign(void** memory, std::size_t alignment, std::size_t size) {
+  *memory = memalign(alignment, size);
+  return *memory || size == 0 ? 0 : 12;  // ENOMEM
+}
+}
+#else
+#define FLEXARM_COUNTS_ALLOCATIONS 0
+#endif
+
+namespace flexarm::test {
+namespace {
+
+template <class Function>
+long allocations_in(const Function& function) {
+  g_allocations = 0;
+  g_counting = true;
+  function();
+  g_counting = false;
+  return g_allocations;
+}
+
+class Allocation : public ::testing::TestWithParam<std::tuple<std::string, bool>> {
+ protected:
+  void SetUp() override {
+    if (!FLEXARM_COUNTS_ALLOCATIONS) GTEST_SKIP() << "this C library's allocator cannot be counted";
+  }
+};
+
+TEST_F(Allocation, IsCounted) {
+  // Called by name, because the compiler may remove new-expressions and pairs of malloc and free.
+  void* (*volatile allocate)(std::size_t) = &std::malloc;
+  EXPECT_EQ(allocations_in([&] {
+              std::free(allocate(10));
+              ::operator delete(::operator new(10));
+            }),
+            2);
+}
+
+TEST_P(Allocation, NoneInAThousandSteps) {
+  const auto [scheme, reuse] = GetParam();
+  SimulationOptions options;
+  options.scheme = scheme;
+  options.reuse_factorisation = reuse;
+  Simulation simulation(everything_scene().scene, options);
+  simulation.command_effort(*simulation.find_coordinate("elbow"), 0.1);
+  ASSERT_TRUE(simulation.step().converged);
+  int converged = 0;
+  EXPECT_EQ(allocations_in([&] {
+              for (int n = 0; n < 1000; ++n) {
+                converged += simulation.step().converged;
+                if (n == 500) simulation.release_command(*simulation.find_coordinate("elbow"));
+                if (n % 100 == 0) simulation.command_effort(*simulation.find_coordinate("prismatic"), n * 1e-3);
+              }
+            }),
+            0);
+  EXPECT_EQ(converged, 1000);
+  EXPECT_GT(std::abs(simulation.position(*simulation.find_coordinate("hinge"))), 0.015) << "the stop must be reached";
+}
+INSTANTIATE_TEST_SUITE_P(Schemes, Allocation,
+                         ::testing::Combine(::testing::Values("em", "em0", "m1", "newmark"), ::testing::Bool()),
+                         [](const auto& info) {
+                           return std::get<0>(info.param) + (std::get<1>(info.param) ? "_reuse" : "_full");
+                         });
+
+// Halving takes a path of its own.
+TEST_F(Allocation, NoneInHalvedOrFailedSteps) {
+  SceneBuilder b;
+  b.body("rotor", 1, {0.1, 0, 0}, Matrix3::Identity());
+  b.joint("shaft", scene::JointKind::Continuous, "world", "rotor", {0, 0, 0}, {0, 0, 1});
+  b.scene.initial_joints.push_back({"shaft", 0, 10, {}});
+  b.scene.integrator.step = 0.1;
+  Simulation simulation(b.scene);
+  ASSERT_TRUE(simulation.step().converged);
+  simulation.command_effort(0, 2000);
+  int halvings = 0;
+  bool failed = false;
+  EXPECT_EQ(allocations_in([&] {
+              for (int n = 0; n < 30; ++n) {
+                const StepResult result = simulation.step();
+                halvings += result.halvings;
+                failed = failed || !result.converged;
+              }
+            }),
+            0);
+  EXPECT_GT(halvings, 0);
+  EXPECT_TRUE(failed);
+}
+
+// What the node reads in every cycle.
+TEST_F(Allocation, NoneInObservables) {
+  Simulation simulation(everything_scene().scene);
+  ASSERT_TRUE(simulation.step().converged);
+  double sum = 0;
+  EXPECT_EQ(allocations_in([&] {
+              for (std::size_t i = 0; i < simulation.coordinate_names().size(); ++i)
+                sum += simulation.position(i) + simulation.velocity(i) + simulation.effort(i);
+              for (std::size_t i = 0; i < simulation.link_names().size(); ++i)
+                sum += simulation.link_pose(i).position.norm() + simulation.tip_pose(i).position.norm();
+              sum +=
+                  simulation.energies().total() + simulation.momentum().norm() + simulation.angular_momentum().norm();
+              sum += simulation.probe(0).velocity.norm();
+            }),
+            0);
+  EXPECT_TRUE(std::isfinite(sum));
+}
+
+}  // namespace
+}  // namespace flexarm::test

@@ -1,0 +1,58 @@
+#pragma once
+/// One scene with all that a scene can have.
+
+#include "support/scene_builder.h"
+
+namespace flexarm::test {
+
+/// Beams of all orders, every kind of joint, dead and follower loads with expressions and tables, friction, damping,
+/// limits, mimic, prescribed motion, efforts and material damping, under gravity.
+inline SceneBuilder everything_scene() {
+  using scene::JointKind;
+  SceneBuilder b;
+  b.scene.gravity = {0, 0, -9.81};
+  b.scene.integrator.step = 0.002;
+  const scene::DirectSection s{2e4, 1e4, 1e4, 200, 250, 300, 0.5, 0.02, 0.01, 0.01};
+  const Matrix3 inertia = Vector3(0.1, 0.12, 0.15).asDiagonal();
+  for (int order = 1; order <= 4; ++order) {
+    scene::BeamDescription& beam = b.beam("beam" + std::to_string(order), {{0.5, 0, 0}, {0.8, 0.2, 0}}, s, 1, order);
+    beam.stiffness_proportional_damping = 1e-4;
+    beam.mass_proportional_damping = 0.1;
+  }
+  const Vector3 tip(0.8, 0.2, 0);
+  const std::pair<std::string, JointKind> bodies[] = {
+      {"continuous", JointKind::Continuous},   {"prismatic", JointKind::Prismatic},
+      {"planar", JointKind::Planar},           {"universal", JointKind::Universal},
+      {"cylindrical", JointKind::Cylindrical}, {"spherical", JointKind::Spherical},
+      {"floating", JointKind::Floating},       {"fixed", JointKind::Fixed},
+      {"driven", JointKind::Prismatic},        {"mimicking", JointKind::Revolute}};
+  for (const auto& [name, kind] : bodies) b.body(name + "_body", 0.2, {0.05, 0.02, 0.01}, 0.1 * inertia);
+  b.joint("clamp", JointKind::Fixed, "world", "beam1");
+  b.joint("hinge", JointKind::Revolute, "beam1", "beam2", tip, {0, 1, 0}).limits =
+      scene::JointLimits{-0.02, 0.02, 5, 0};
+  b.joint("weld", JointKind::Fixed, "beam2", "beam3", tip);
+  b.joint("elbow", JointKind::Revolute, "beam3", "beam4", tip, {0, 0, 1}).friction = 0.2;
+  int place = 0;
+  for (const auto& [name, kind] : bodies) {
+    const std::string parent = "beam" + std::to_string(1 + place++ % 4);
+    scene::JointDescription& joint = b.joint(name, kind, parent, name + "_body", {0.5, 0, 0.1}, {0, 0.6, 0.8});
+    joint.axis2 = Vector3::UnitX();
+    joint.damping = 0.5;
+    joint.friction = 0.05;
+  }
+  b.scene.joints.back().mimic = scene::Mimic{"elbow", 0.5, 0.1};
+  b.scene.motions.push_back({"driven", TimeFunction::parse("0.05*sin(5*t)"), {}});
+  b.scene.efforts.push_back({"elbow", TimeFunction::parse("t < 1 ? sin(10*t) : 0.5"), {}});
+  b.scene.efforts.push_back({"continuous", TimeFunction::parse("0:0 1:0.2 2:0"), {}});
+  b.load("beam4", tip, {1, 2, 0}, {0.1, 0, 0}, "cos(3*t)*exp(-t)");
+  b.load("beam2", tip, {0, 1, 0}, {0, 0.1, 0}, "0:0 0.5:1", scene::LoadFrame::Follower);
+  b.scene.distributed_loads.push_back(
+      {"beam3", {0, 0, 1}, scene::LoadFrame::Follower, TimeFunction::parse("sin(t)"), {}});
+  b.scene.initial_joints.push_back({"continuous", 0, 2, {}});
+  b.probe("tip", "beam4", tip);
+  b.probe("span", "beam3", {0.25, 0, 0});
+  b.probe("body", "spherical_body", {0.1, 0, 0});
+  return b;
+}
+
+}  // namespace flexarm::test

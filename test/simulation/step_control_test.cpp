@@ -1,0 +1,103 @@
+// Halving, recovery, failure: a step either succeeds or leaves the last good state.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "support/scene_builder.h"
+
+namespace flexarm::test {
+namespace {
+
+using scene::JointKind;
+
+/// A rotor that turns by more than a quarter turn in a step until its damper has slowed it down.
+SceneBuilder fast_rotor(double speed, double damping) {
+  SceneBuilder b;
+  b.body("rotor", 1, {0.1, 0, 0}, Vector3(1, 1, 1).asDiagonal());
+  b.joint("shaft", JointKind::Continuous, "world", "rotor", {0, 0, 0}, {0, 0, 1}).damping = damping;
+  b.scene.initial_joints.push_back({"shaft", 0, speed, {}});
+  b.scene.integrator.step = 0.1;
+  return b;
+}
+
+bool is_finite(const State& state) {
+  for (const NodeState& node : state.nodes)
+    if (!node.position.allFinite() || !node.orientation.coeffs().allFinite() || !node.velocity.allFinite() ||
+        !node.angular_velocity.allFinite())
+      return false;
+  for (const Released& released : state.released)
+    if (!released.displacement.allFinite() || !released.rotation.coeffs().allFinite()) return false;
+  return std::isfinite(state.time) && std::isfinite(state.work) && std::isfinite(state.dissipated);
+}
+
+TEST(StepControl, HalvesAndRecoversToTheFullStep) {
+  Simulation simulation(fast_rotor(45, 0.3).scene);
+  StepResult result = simulation.step();
+  ASSERT_TRUE(result.converged);
+  EXPECT_GE(result.halvings, 2) << "4.5 rad in a step";
+  EXPECT_NEAR(simulation.time(), 0.1, 1e-15);
+  int late_halvings = 0;
+  for (int n = 1; n < 100; ++n) {
+    result = simulation.step();
+    ASSERT_TRUE(result.converged);
+    EXPECT_NEAR(simulation.time(), 0.1 * (n + 1), 1e-12) << "whole steps stay on their grid";
+    if (n > 90) late_halvings += result.halvings;
+  }
+  EXPECT_EQ(late_halvings, 0);
+  EXPECT_EQ(simulation.state().halving_level, 0);
+  EXPECT_EQ(simulation.state().steps, 100);
+}
+
+TEST(StepControl, FailureLeavesTheLastGoodState) {
+  SceneBuilder b = fast_rotor(1000, 0);
+  b.scene.integrator.max_halvings = 2;
+  Simulation simulation(b.scene);
+  const StepResult result = simulation.step();
+  EXPECT_FALSE(result.converged);
+  EXPECT_NE(result.reason, StepResult::Reason::None);
+  EXPECT_EQ(result.halvings, 2);
+  EXPECT_DOUBLE_EQ(simulation.time(), 0);
+  EXPECT_TRUE(is_finite(simulation.state()));
+  EXPECT_DOUBLE_EQ(simulation.velocity(0), 1000);
+  // It fails again in the same way, and a reset does not cure it; neither does any harm.
+  EXPECT_FALSE(simulation.step().converged);
+  simulation.reset();
+  EXPECT_FALSE(simulation.step().converged);
+  EXPECT_TRUE(is_finite(simulation.state()));
+}
+
+TEST(StepControl, NonFiniteLoadFailsWithoutSpoilingTheState) {
+  for (const std::string scheme : {"em", "em0", "m1", "newmark"}) {
+    SceneBuilder b;
+    b.beam("arm", {{1, 0, 0}}, section(1e4, 5e3, 20, 20, 1, 0.02, 0.01), 2, 2);
+    b.joint("clamp", JointKind::Fixed, "world", "arm");
+    b.load("arm", {1, 0, 0}, {0, 0, 1}, Vector3::Zero(), "t < 0.55 ? 1 : sqrt(-1)");
+    b.scene.integrator.step = 0.1;
+    b.scene.integrator.scheme = scheme;
+    Simulation simulation(b.scene);
+    for (int n = 0; n < 5; ++n) ASSERT_TRUE(simulation.step().converged) << scheme;
+    const StepResult result = simulation.step();
+    EXPECT_FALSE(result.converged) << scheme;
+    EXPECT_EQ(result.reason, StepResult::Reason::NotFinite) << to_string(result.reason);
+    EXPECT_TRUE(is_finite(simulation.state())) << scheme;
+    EXPECT_GE(simulation.time(), 0.5 - 1e-12);
+    EXPECT_LE(simulation.time(), 0.55);
+    EXPECT_TRUE(std::isfinite(simulation.energies().total()));
+  }
+}
+
+TEST(StepControl, StaticFailureLeavesTheStateUntouched) {
+  SceneBuilder b;
+  b.beam("arm", {{1, 0, 0}}, section(1e4, 5e3, 20, 20, 1, 0.02, 0.01), 2, 2);
+  b.joint("free", JointKind::Floating, "world", "arm");
+  b.load("arm", {1, 0, 0}, {0, 0, 1});
+  b.probe("tip", "arm", {1, 0, 0});
+  Simulation simulation(b.scene);
+  const Vector3 before = simulation.probe(0).pose.position;
+  EXPECT_FALSE(simulation.solve_static(1).converged) << "a free beam has no equilibrium under a force";
+  EXPECT_EQ(simulation.probe(0).pose.position, before);
+  EXPECT_TRUE(is_finite(simulation.state()));
+}
+
+}  // namespace
+}  // namespace flexarm::test
