@@ -1,10 +1,11 @@
 #!/usr/bin/python3
-"""Prints the numbers of docs/demo.md: docs/demo_numbers.py [FLEXARM], FLEXARM being the command line program.
+"""Prints the numbers of docs/demo.md.
 
 It makes variants of config/demo_arm.urdf (braked joints; the torques of config/demo_commands.yaml as <effort>), hands them
-to the program, and evaluates what comes out.
+to the command line program, and evaluates what comes out.
 """
 
+import argparse
 import csv
 import math
 import os
@@ -17,7 +18,6 @@ import xml.etree.ElementTree as ElementTree
 import yaml
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-FLEXARM = sys.argv[1] if len(sys.argv) > 1 else os.path.join(ROOT, "devel/lib/flexarm/flexarm")
 SCENE = os.path.join(ROOT, "config/demo_arm.urdf")
 BOOMS = {"upper_arm": "upper_arm_tip", "lower_arm": "lower_arm_tip"}  # link: probe at its end
 
@@ -62,14 +62,14 @@ def commanded(commands):
     return tree
 
 
-def run(tree, command, *options):
+def run(program, tree, command, *options):
     with tempfile.NamedTemporaryFile(suffix=".urdf") as scene:
         tree.write(scene.name)
-        return subprocess.run([FLEXARM, command, scene.name, *options], check=True, stdout=subprocess.PIPE, text=True).stdout
+        return subprocess.run([program, command, scene.name, *options], check=True, stdout=subprocess.PIPE, text=True).stdout
 
 
-def frequencies(tree, count):
-    return [float(f) for f in re.findall(r"^mode \d+: (\S+) Hz", run(tree, "modes", "--count", str(count)), re.M)]
+def frequencies(program, tree, count):
+    return [float(f) for f in re.findall(r"^mode \d+: (\S+) Hz", run(program, tree, "modes", "--count", str(count)), re.M)]
 
 
 def cross(a, b):
@@ -91,11 +91,12 @@ def deflection(row, link, probe):
     return math.hypot(y, z)
 
 
-def simulate(commands, until):
+def simulate(program, commands, until):
     """Rows of the output, and the processor time that it took [s]."""
     with tempfile.NamedTemporaryFile(suffix=".csv") as output:
         begin = os.times().children_user
-        run(commanded(commands), "simulate", "--until", str(until), "--every", "10", "--output", output.name, "--quiet")
+        options = "--until", str(until), "--every", "10", "--output", output.name, "--quiet"
+        run(program, commanded(commands), "simulate", *options)
         duration = os.times().children_user - begin
         with open(output.name) as file:
             return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)], duration
@@ -107,10 +108,8 @@ def show_largest_deflections(rows):
         print("  %s: %.0f mm at %.2f s" % (link, 1e3 * deflection(largest, link, probe), largest["time"]))
 
 
-def show_manoeuvre():
-    with open(os.path.join(ROOT, "config/demo_commands.yaml")) as file:
-        schedule = yaml.safe_load(file)
-    rows, duration = simulate(schedule["commands"], schedule["period"])
+def show_manoeuvre(program, schedule):
+    rows, duration = simulate(program, schedule["commands"], schedule["period"])
     print("largest deflection of each boom's end from its root's axis, demo:")
     show_largest_deflections(rows)
     print("%8s %13s %13s %12s %12s %12s %14s" % ("time [s]", "upper [mm]", "lower [mm]", "kinetic [J]", "strain [J]", "work [J]",
@@ -127,13 +126,25 @@ def show_manoeuvre():
 
 
 def main():
-    print("natural frequencies, straight, braked, no payload [Hz]:", *("%.4f" % f for f in frequencies(braked(False), 4)))
-    print("natural frequencies, straight, braked, payload [Hz]:   ", *("%.4f" % f for f in frequencies(braked(True), 4)))
-    print("natural frequencies, free joints, payload [Hz]:        ", *("%.4f" % f for f in frequencies(read_scene(), 9)[6:]))
-    show_manoeuvre()
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--scene", action="store_true", help="print the demo with its torques as a scene, and nothing else")
+    parser.add_argument("program", nargs="?", default=os.path.join(ROOT, "devel/lib/flexarm/flexarm"))
+    arguments = parser.parse_args()
+    program = arguments.program
+    with open(os.path.join(ROOT, "config/demo_commands.yaml")) as file:
+        schedule = yaml.safe_load(file)
+    if arguments.scene:
+        commanded(schedule["commands"]).write(sys.stdout.buffer)
+        return
+
+    print("natural frequencies [Hz]")
+    print("  straight, locked joints, no payload:  ", *("%.4f" % f for f in frequencies(program, braked(False), 4)))
+    print("  straight, locked joints, with payload:", *("%.4f" % f for f in frequencies(program, braked(True), 4)))
+    print("  demo, free joints, with payload:      ", *("%.4f" % f for f in frequencies(program, read_scene(), 9)[6:]))
+    show_manoeuvre(program, schedule)
     print("largest deflection, constant 1000 N m at the shoulder yaw joint for 4 s:")
     push = {"time": 0, "names": ["shoulder_yaw"], "efforts": [1000], "duration": 4}
-    show_largest_deflections(simulate([push], 4)[0])
+    show_largest_deflections(simulate(program, [push], 4)[0])
 
 
 if __name__ == "__main__":
