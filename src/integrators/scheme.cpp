@@ -7,7 +7,7 @@ const std::vector<Scheme>& schemes() {
       {{StressRule::DiscreteGradient, RotationRule::TangentScaled, true, 0.25, 0.5}, "em", true, true,
        "invariant energy-momentum scheme, one multiplier per element"},
       {{StressRule::Average, RotationRule::TangentScaled, true, 0.25, 0.5}, "em0", false, true,
-       "its base: momenta exact, energy to third order per step"},
+       "its base, without the multiplier: momenta exact, energy approximate"},
       {{StressRule::Exponential, RotationRule::Unscaled, false, 0.25, 0.5}, "m1", false, true,
        "momentum-conserving scheme M1 (Muñoz 2004, sec. 6.3)"},
       {{StressRule::EndPoint, RotationRule::Unscaled, false, 0.25, 0.5}, "newmark", false, false,

@@ -4,6 +4,7 @@
 
 #include "flexarm/math/shape_functions.h"
 #include "flexarm/math/so3.h"
+#include "initial_velocity.h"
 
 namespace flexarm {
 namespace {
@@ -61,7 +62,6 @@ MechanismBuilder::MechanismBuilder(const scene::SceneDescription& scene)
   for (std::size_t i = 0; i < scene.links.size(); ++i)
     if (!link_indices_.emplace(scene.links[i].name, static_cast<int>(i)).second)
       throw ModelError(scene.file + ": two links are named '" + scene.links[i].name + "'");
-  for (const scene::InitialJoint& initial : scene.initial_joints) initial_[initial.coordinate] = &initial;
 }
 
 int MechanismBuilder::link_index(const std::string& name) const {
@@ -139,7 +139,7 @@ void MechanismBuilder::build() {
   model.stiffness_point_count = stiffness_point;
   model.mass_point_count = mass_point;
   connect_coordinates();
-  set_initial_velocities();
+  InitialVelocity(scene_, *this).set();
 }
 
 // ---------------------------------------------------------------- nodes and maps

@@ -22,6 +22,12 @@ class MechanismBuilder {
     int first_node;  ///< mesh node i is node first_node + i of the model
   };
 
+  /// A joint of the scene and its elementary maps.
+  struct JointRecord {
+    const scene::JointDescription* joint;
+    int first_map, map_count;
+  };
+
   explicit MechanismBuilder(const scene::SceneDescription& scene);
   void build();
 
@@ -31,6 +37,8 @@ class MechanismBuilder {
   /// int I^i ds of the nodes of a flexible link [m].
   std::vector<double> length_weights(int link) const;
   int add_history(const TimeFunction& function);
+  Pose pose_of(int node) const;
+  const std::vector<JointRecord>& records() const { return records_; }  ///< root to leaf
   /// "file:line: element: "
   static std::string at(const scene::SourceLocation& location, const std::string& element);
 
@@ -39,11 +47,6 @@ class MechanismBuilder {
   std::vector<int> node_parents;                ///< node that a node moves with when the joints outboard move; -1: world
 
  private:
-  /// A joint of the scene and its elementary maps.
-  struct JointRecord {
-    const scene::JointDescription* joint;
-    int first_map, map_count;
-  };
   /// Rigid bodies carried by one node, in its frame.
   struct Body {
     double mass = 0;
@@ -63,24 +66,18 @@ class MechanismBuilder {
   /// Adds an elementary joint with its slave node; returns the node.
   int add_map(JointMap map, const Released& released);
   int add_rigid(int master, const Pose& offset);
-  Pose pose_of(int node) const;
 
   void add_coordinates(const scene::JointDescription& joint, const std::vector<std::string>& names);
   Released initial_released(const JointMap& map, const std::vector<std::string>& names) const;
-  double initial_value(const std::string& coordinate, bool velocity) const;
+  double initial_position(const std::string& coordinate) const;
   int coordinate_index(const std::string& name, const std::string& where) const;
   void connect_coordinates();
   void update_initial_poses();
-  void set_initial_velocities();
-  Vector6 field_velocity(const scene::InitialLink& field, int link, const Vector3& point) const;
-  ReleasedVector field_rates(const JointRecord& record, const Vector6& master, const Vector6& target) const;
-  void check_field(const scene::InitialLink& field, int link) const;
 
   const scene::SceneDescription& scene_;
   std::map<std::string, int> link_indices_;
   std::vector<const scene::JointDescription*> ordered_joints_;  // root to leaf
   std::vector<std::vector<double>> attachments_;                // per link: arc lengths of element borders
-  std::map<std::string, const scene::InitialJoint*> initial_;
   std::vector<JointRecord> records_;                            // root to leaf
   std::map<int, Body> bodies_;                                  // by node
 };

@@ -6,7 +6,7 @@
 
 namespace flexarm {
 
-/// Where in a step a load acts: rotation = mean_weight-average of begin and end.
+/// With which rotation a load acts in a step.
 enum class LoadPoint {
   Mean,  ///< average rotation (conserving schemes): the work over the step is exact
   End    ///< rotation at the end (statics, Newmark)

@@ -1,0 +1,147 @@
+#include "initial_velocity.h"
+
+namespace flexarm {
+
+InitialVelocity::InitialVelocity(const scene::SceneDescription& scene, MechanismBuilder& mechanism)
+    : scene_(scene), mechanism_(mechanism), model_(mechanism.model), joint_of_(model_.nodes.size(), -1) {
+  for (const scene::InitialLink& field : scene.initial_links) fields_[mechanism.link_index(field.link)] = &field;
+  for (const scene::InitialJoint& initial : scene.initial_joints) initial_rates_[initial.coordinate] = initial.velocity;
+  for (std::size_t j = 0; j < model_.joints.size(); ++j) joint_of_[model_.joints[j].slave] = static_cast<int>(j);
+  model_.initial_velocity.assign(model_.nodes.size(), Vector6::Zero());
+}
+
+void InitialVelocity::set() {
+  const int root = mechanism_.link_index(scene_.root_link);
+  if (mechanism_.meshes[root]) set_beam(root);
+  for (const JointRecord& record : mechanism_.records()) {
+    const int child = mechanism_.link_index(record.joint->child);
+    set_joint(record);
+    if (mechanism_.meshes[child])
+      set_beam(child);
+    else if (fields_.count(child) && model_.links[child].frame.node >= 0)
+      check_field(*fields_[child], child);
+  }
+  for (const int j : joint_of_)  // centres of mass
+    if (j >= 0 && model_.joints[j].kind == JointMapKind::Rigid) follow(j, ReleasedVector(0));
+}
+
+Vector6 InitialVelocity::velocity_of(int node) const {
+  return node < 0 ? Vector6(Vector6::Zero()) : model_.initial_velocity[node];
+}
+
+void InitialVelocity::follow(int j, const ReleasedVector& rates) {
+  const JointMap& map = model_.joints[j];
+  const NodePose world;
+  model_.initial_velocity[map.slave] = slave_velocity(map, map.master < 0 ? world : model_.nodes[map.master],
+                                                      model_.initial_released[j], velocity_of(map.master), rates);
+}
+
+void InitialVelocity::set_joint(const JointRecord& record) {
+  if (record.map_count == 0) return;
+  const int child = mechanism_.link_index(record.joint->child);
+  const JointMap& first = model_.joints[record.first_map];
+  const JointMap& last = model_.joints[record.first_map + record.map_count - 1];
+  ReleasedVector rates;
+  if (!given_rates(record, rates) && fields_.count(child)) {
+    rates = field_rates(record, velocity_of(first.master),
+                        field_velocity(*fields_[child], child, model_.nodes[last.slave].position));
+    for (int c = 0; c < rates.size(); ++c) field_rates_[model_.first_coordinate[record.first_map] + c] = rates[c];
+  }
+  for (int k = 0, used = 0; k < record.map_count; ++k) {
+    const int count = released_count(model_.joints[record.first_map + k].kind);
+    follow(record.first_map + k, ReleasedVector(rates.segment(used, count)));
+    used += count;
+  }
+}
+
+void InitialVelocity::set_beam(int link) {
+  const MechanismBuilder::LinkMesh& mesh = *mechanism_.meshes[link];
+  const int base = mesh.first_node;
+  if (joint_of_[base] >= 0 && model_.joints[joint_of_[base]].kind == JointMapKind::Rigid)
+    follow(joint_of_[base], ReleasedVector(0));
+  for (std::size_t i = 1; i < mesh.mesh.nodes.size(); ++i) {
+    const int node = base + static_cast<int>(i);
+    const Vector3& position = model_.nodes[node].position;
+    Vector6& velocity = model_.initial_velocity[node];
+    if (joint_of_[node] >= 0) {
+      follow(joint_of_[node], ReleasedVector(0));
+    } else if (fields_.count(link)) {
+      velocity = field_velocity(*fields_[link], link, position);
+    } else {
+      const Vector6& root = model_.initial_velocity[base];
+      const Vector3 spin = root.tail<3>();
+      velocity << root.head<3>() + spin.cross(position - model_.nodes[base].position), spin;
+    }
+  }
+}
+
+double InitialVelocity::given_rate(const Coordinate& coordinate, bool& is_given) const {
+  if (coordinate.mimicked >= 0) {
+    const auto from_field = field_rates_.find(coordinate.mimicked);
+    bool ignored = false;
+    is_given = true;
+    return coordinate.mimic_multiplier * (from_field != field_rates_.end()
+                                              ? from_field->second
+                                              : given_rate(model_.coordinates[coordinate.mimicked], ignored));
+  }
+  if (coordinate.motion >= 0) {
+    is_given = true;
+    return model_.histories[coordinate.motion].derivative(0.0);
+  }
+  const auto found = initial_rates_.find(coordinate.name);
+  if (found == initial_rates_.end()) return 0;
+  is_given = is_given || found->second != 0;  // an initial position alone does not speak of velocity
+  return found->second;
+}
+
+bool InitialVelocity::given_rates(const JointRecord& record, ReleasedVector& rates) const {
+  bool is_given = false;
+  std::size_t index = model_.first_coordinate[record.first_map];
+  rates.resize(static_cast<Eigen::Index>(scene::coordinate_suffixes(record.joint->kind).size()));
+  for (double& rate : rates) rate = given_rate(model_.coordinates[index++], is_given);
+  return is_given;
+}
+
+ReleasedVector InitialVelocity::field_rates(const JointRecord& record, const Vector6& master,
+                                            const Vector6& target) const {
+  const JointMap& last = model_.joints[record.first_map + record.map_count - 1];
+  const Vector3 point = model_.nodes[last.slave].position;
+  ReleasedColumns columns(6, 0);
+  const NodePose world;
+  for (int k = 0; k < record.map_count; ++k) {
+    const JointMap& map = model_.joints[record.first_map + k];
+    FoldMaps maps;
+    variational_maps(map, map.master < 0 ? world : model_.nodes[map.master],
+                     model_.initial_released[record.first_map + k], Vector6::Zero(), maps);
+    for (int c = 0; c < maps.right.cols(); ++c) {
+      Vector6 column = maps.right.col(c);
+      column.head<3>() += Vector3(column.tail<3>()).cross(point - model_.nodes[map.slave].position);
+      columns.conservativeResize(6, columns.cols() + 1);
+      columns.col(columns.cols() - 1) = column;
+    }
+  }
+  const JointMap& first = model_.joints[record.first_map];
+  const Vector3 master_point = first.master < 0 ? Vector3(Vector3::Zero()) : model_.nodes[first.master].position;
+  Vector6 relative = target - master;
+  relative.head<3>() -= Vector3(master.tail<3>()).cross(point - master_point);
+  return Eigen::MatrixXd(columns).colPivHouseholderQr().solve(relative);
+}
+
+Vector6 InitialVelocity::field_velocity(const scene::InitialLink& field, int link, const Vector3& point) const {
+  const Attachment& frame = model_.links[link].frame;
+  const Vector3 origin = (mechanism_.pose_of(frame.node) * frame.offset).position;
+  Vector6 velocity;
+  velocity << field.linear + field.angular.cross(point - origin), field.angular;
+  return velocity;
+}
+
+void InitialVelocity::check_field(const scene::InitialLink& field, int link) const {
+  const int node = model_.links[link].frame.node;
+  const Vector6 asked = field_velocity(field, link, model_.nodes[node].position);
+  const double error = (asked - model_.initial_velocity[node]).norm();
+  if (error > 1e-9 * (1 + asked.norm()))
+    throw ModelError(MechanismBuilder::at(field.location, "<initial>") + "the joints of link '" + field.link +
+                     "' do not allow this velocity");
+}
+
+}  // namespace flexarm
