@@ -82,8 +82,8 @@ bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
         update_norms_.empty() ? 1.0 : norm / std::max(update_norms_.back(), std::numeric_limits<double>::min());
     update_norms_.push_back(norm);
     if (norm > kDivergence * std::max(update_norms_.front(), 1e-3)) return fail(Reason::NoConvergence);
-    // A steep law (friction near sticking, the touch of a stop) can make full updates jump to and fro.
-    if (iteration >= kPatience && contraction > kStalled) update_ *= 0.5;
+    // A steep law (friction near sticking, the touch of a stop) makes full updates jump to and fro; statics has none.
+    if (system_.step() > 0 && iteration >= kPatience && contraction > kStalled) update_ *= 0.5;
     system_.update(update_);
     // A new tangent leaves the square of its update. Kept factors converge linearly: what remains is estimated from the
     // last contraction, and asked to be as small as that square.

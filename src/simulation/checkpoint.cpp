@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kHeader = "flexarm-checkpoint 1";
 
-/// Applies `visit(number, may_be_nan)` to every number of a state in a fixed order; the one place that knows its layout.
+/// Calls `visit(number, may_be_nan)` for every number of a state in a fixed order; the one place that knows its layout.
 template <class AnyState, class Visit>
 void for_each_number(AnyState& state, const Visit& visit) {
   const auto vector = [&](auto& v) {
