@@ -21,7 +21,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
 
 struct Drive {
   std::optional<std::size_t> coordinate;
@@ -61,9 +63,10 @@ void report(const char* what, std::vector<double> times, double step) {
   const double sum = std::accumulate(times.begin(), times.end(), 0.0);
   std::sort(times.begin(), times.end());
   const auto overruns = std::count_if(times.begin(), times.end(), [&](double t) { return t > step; });
-  std::printf("%-13s %zu steps of %g s: median %.1f us, 99 %% %.1f us, largest %.1f us, overruns %ld, real-time factor %.1f\n",
-              what, times.size(), step, 1e6 * times[times.size() / 2], 1e6 * times[times.size() * 99 / 100],
-              1e6 * times.back(), static_cast<long>(overruns), step * static_cast<double>(times.size()) / sum);
+  std::printf(
+      "%-13s %zu steps of %g s: median %.1f us, 99 %% %.1f us, largest %.1f us, overruns %ld, real-time factor %.1f\n",
+      what, times.size(), step, 1e6 * times[times.size() / 2], 1e6 * times[times.size() * 99 / 100], 1e6 * times.back(),
+      static_cast<long>(overruns), step * static_cast<double>(times.size()) / sum);
 }
 
 }  // namespace

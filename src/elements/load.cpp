@@ -22,8 +22,8 @@ LoadAction load_action(const NodalLoad& load, double scale, const Matrix3& begin
   LoadAction action;
   action.wrench << force, moment + arm.cross(force);
   action.derivative.topRows<3>() = force_derivative;
-  action.derivative.bottomRows<3>() = moment_derivative + hat(arm) * force_derivative +
-                                      weight * hat(force) * hat(Vector3(end * load.arm));
+  action.derivative.bottomRows<3>() =
+      moment_derivative + hat(arm) * force_derivative + weight * hat(force) * hat(Vector3(end * load.arm));
   return action;
 }
 

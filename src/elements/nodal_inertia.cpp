@@ -16,7 +16,9 @@ RotationIncrement rotation_increment(const TimeRule& rule, const NodeStep& node)
   return {unscaled, so3::inverse_tangent(unscaled)};
 }
 
-NewmarkRule newmark_rule(const TimeRule& rule, double step) { return {rule.beta, rule.gamma, step}; }
+NewmarkRule newmark_rule(const TimeRule& rule, double step) {
+  return {rule.beta, rule.gamma, step};
+}
 
 }  // namespace
 
@@ -42,7 +44,8 @@ NodalInertiaAction nodal_inertia_action(const NodalInertia& inertia, const TimeR
       if (with_tangent) action.rotational = rate.derivative;
     }
     if (!inertia.rotary_damping.isZero(0)) {
-      // Mean rotation of D Omega: its work on the increment is Omega.D Omega >= 0 because Lambda_0 Omega = Lambda_1 Omega.
+      // Mean rotation of D Omega: its work on the increment is Omega.D Omega >= 0 because Lambda_0 Omega = Lambda_1
+      // Omega.
       const Vector3 Omega = begin.transpose() * node.increment, D = inertia.rotary_damping * Omega / h;
       const Matrix3 mean = 0.5 * (begin + end);
       action.residual.tail<3>() += mean * D;
@@ -64,12 +67,14 @@ NodalInertiaAction nodal_inertia_action(const NodalInertia& inertia, const TimeR
   }
   if (!inertia.rotary_damping.isZero(0)) {
     const Vector3 increment = so3::log(Matrix3(end * begin.transpose()));
-    const Vector3 A = newmark.acceleration(begin.transpose() * increment, spin.angular_velocity, spin.angular_acceleration);
+    const Vector3 A =
+        newmark.acceleration(begin.transpose() * increment, spin.angular_velocity, spin.angular_acceleration);
     const Vector3 W = newmark.velocity(spin.angular_velocity, spin.angular_acceleration, A);
     const Vector3 moment = end * (inertia.rotary_damping * W);
     action.residual.tail<3>() += moment;
-    action.rotational += end * inertia.rotary_damping * begin.transpose() * so3::inverse_tangent(increment) *
-                             newmark.velocity_slope() - so3::hat(moment);
+    action.rotational +=
+        end * inertia.rotary_damping * begin.transpose() * so3::inverse_tangent(increment) * newmark.velocity_slope() -
+        so3::hat(moment);
     action.dissipated = moment.dot(increment);
   }
   return action;

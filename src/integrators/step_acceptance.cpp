@@ -20,10 +20,8 @@ void for_each_unknown(const Model& model, const DegreesOfFreedom& dof, const Vis
   }
   for (std::size_t index = 0; index < model.coordinates.size(); ++index) {
     const Coordinate& coordinate = model.coordinates[index];
-    const int equation =
-        dof.equation[dof.first[dof.variable_of_joint(coordinate.joint)] + coordinate.component];
-    if (equation >= 0)
-      visit(equation, coordinate.is_angle || !model.joints[coordinate.joint].rotation.isZero(0));
+    const int equation = dof.equation[dof.first[dof.variable_of_joint(coordinate.joint)] + coordinate.component];
+    if (equation >= 0) visit(equation, coordinate.is_angle || !model.joints[coordinate.joint].rotation.isZero(0));
   }
 }
 
@@ -108,7 +106,8 @@ void StepSystem::accept(State& state) {
   }
 
   for (std::size_t i = 0; i < end_.size(); ++i)
-    state.nodes[i] = advanced(scheme_, {begin_[i], end_[i], state.nodes[i], increments_[i], inverse_tangents_[i], step_});
+    state.nodes[i] =
+        advanced(scheme_, {begin_[i], end_[i], state.nodes[i], increments_[i], inverse_tangents_[i], step_});
   std::copy(released_.begin(), released_.end(), state.released.begin());
   std::copy(applied_.begin(), applied_.end(), state.efforts.begin());
   if (!scheme_.nodal_rotary_inertia)

@@ -159,7 +159,8 @@ void StepSystem::set_slaves() {
     if (coordinate.mimicked >= 0) {
       const Coordinate& master = model_.coordinates[coordinate.mimicked];
       released_[coordinate.joint].displacement[coordinate.component] =
-          coordinate.mimic_multiplier * released_[master.joint].displacement[master.component] + coordinate.mimic_offset;
+          coordinate.mimic_multiplier * released_[master.joint].displacement[master.component] +
+          coordinate.mimic_offset;
     }
   const NodePose world;
   for (std::size_t j = 0; j < model_.joints.size(); ++j) {
@@ -301,8 +302,7 @@ void StepSystem::add_loads(bool with_tangent) {
     const LoadAction action = load_action(load, load_factor_ * history_values_[load.history],
                                           begin_[load.node].rotation, end_[load.node].rotation, point);
     Eigen::Map<Vector6>(assembler_.residual(load.node)) -= action.wrench;
-    if (with_tangent)
-      Eigen::Map<Matrix6>(assembler_.diagonal_block(load.node)).rightCols<3>() -= action.derivative;
+    if (with_tangent) Eigen::Map<Matrix6>(assembler_.diagonal_block(load.node)).rightCols<3>() -= action.derivative;
   }
 }
 
@@ -357,8 +357,8 @@ void StepSystem::fold_joints(bool with_tangent) {
     const Vector6 g = assembler_.slave_residual(joint.slave);
     const NodePose& end = joint.master < 0 ? world : end_[joint.master];
     if (!static_ && scheme_.is_incremental())
-      incremental_maps(joint, joint.master < 0 ? world : begin_[joint.master], end, state_->released[j], released_[j], g,
-                       maps, with_tangent);
+      incremental_maps(joint, joint.master < 0 ? world : begin_[joint.master], end, state_->released[j], released_[j],
+                       g, maps, with_tangent);
     else
       variational_maps(joint, end, released_[j], g, maps);
     assembler_.fold(j, maps, with_tangent);
@@ -371,16 +371,23 @@ bool StepSystem::evaluate(bool with_tangent) {
   assembler_.set_zero(with_tangent);
   dissipated_ = 0;
   if (with_tangent && !static_)
-    for (std::size_t i = 0; i < increments_.size(); ++i)
-      inverse_tangents_[i] = cayley::inverse_tangent(increments_[i]);
+    for (std::size_t i = 0; i < increments_.size(); ++i) inverse_tangents_[i] = cayley::inverse_tangent(increments_[i]);
   if (static_)
     add_endpoint_beams(with_tangent);
   else
     switch (scheme_.stress) {
-      case StressRule::EndPoint: add_endpoint_beams(with_tangent); break;
-      case StressRule::Average: add_conserving_beams<AverageStress>(with_tangent); break;
-      case StressRule::DiscreteGradient: add_conserving_beams<DiscreteGradientStress>(with_tangent); break;
-      case StressRule::Exponential: add_conserving_beams<ExponentialMoment>(with_tangent); break;
+      case StressRule::EndPoint:
+        add_endpoint_beams(with_tangent);
+        break;
+      case StressRule::Average:
+        add_conserving_beams<AverageStress>(with_tangent);
+        break;
+      case StressRule::DiscreteGradient:
+        add_conserving_beams<DiscreteGradientStress>(with_tangent);
+        break;
+      case StressRule::Exponential:
+        add_conserving_beams<ExponentialMoment>(with_tangent);
+        break;
     }
   add_nodal_inertia(with_tangent);
   add_loads(with_tangent);

@@ -27,11 +27,16 @@ constexpr int kGoodStepsToDouble = 2;
 
 const char* to_string(StepResult::Reason reason) {
   switch (reason) {
-    case StepResult::Reason::None: return "none";
-    case StepResult::Reason::NoConvergence: return "Newton's method did not converge";
-    case StepResult::Reason::SingularTangent: return "the tangent is singular";
-    case StepResult::Reason::NotFinite: return "a quantity is not finite";
-    case StepResult::Reason::RotationTooLarge: return "a node turns by more than 90 degrees in one step";
+    case StepResult::Reason::None:
+      return "none";
+    case StepResult::Reason::NoConvergence:
+      return "Newton's method did not converge";
+    case StepResult::Reason::SingularTangent:
+      return "the tangent is singular";
+    case StepResult::Reason::NotFinite:
+      return "a quantity is not finite";
+    case StepResult::Reason::RotationTooLarge:
+      return "a node turns by more than 90 degrees in one step";
   }
   return "unknown";
 }
@@ -60,8 +65,7 @@ bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
     factorised_step_ = 0;
     return false;
   };
-  if (system_.assembler().unknowns() == 0)
-    return system_.evaluate(false) || fail(Reason::NotFinite);
+  if (system_.assembler().unknowns() == 0) return system_.evaluate(false) || fail(Reason::NotFinite);
 
   bool factorise = !reuse || !kept_factors_contract_ || factorised_step_ != system_.step();
   for (int iteration = 0; iteration < settings_.max_iterations; ++iteration) {

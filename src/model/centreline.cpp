@@ -13,7 +13,8 @@ Quaternion first_frame(const Vector3& tangent, const std::optional<Vector3>& sec
   Vector3 y;
   if (section_y) {
     y = *section_y - section_y->dot(tangent) * tangent;
-    if (y.norm() < 1e-9 * section_y->norm()) throw std::invalid_argument("section y axis is parallel to the centreline");
+    if (y.norm() < 1e-9 * section_y->norm())
+      throw std::invalid_argument("section y axis is parallel to the centreline");
   } else {
     // The link's y axis unless the line runs along it, then z: gives the link frame itself for a beam along x.
     const Vector3 guess = std::abs(tangent.y()) < 0.9 ? Vector3::UnitY() : Vector3::UnitZ();
@@ -69,7 +70,8 @@ Centreline::Centreline(const std::vector<scene::CentrelinePiece>& pieces, const 
     } else {
       const Pose before = pieces_.back().pose(pieces_.back().end);
       const Vector3 tangent_before = before.orientation * Vector3::UnitX();
-      if (tangent_before.dot(piece.tangent) < -1 + 1e-9) throw std::invalid_argument("centreline reverses its direction");
+      if (tangent_before.dot(piece.tangent) < -1 + 1e-9)
+        throw std::invalid_argument("centreline reverses its direction");
       piece.frame = Quaternion::FromTwoVectors(tangent_before, piece.tangent) * before.orientation;
       piece.begin = pieces_.back().end;
     }
@@ -86,7 +88,9 @@ const Centreline::Piece& Centreline::piece_at(double s, bool before) const {
   return pieces_.back();
 }
 
-Pose Centreline::at(double s, bool before) const { return piece_at(s, before).pose(s); }
+Pose Centreline::at(double s, bool before) const {
+  return piece_at(s, before).pose(s);
+}
 
 std::vector<double> Centreline::piece_ends() const {
   std::vector<double> ends;
@@ -95,7 +99,8 @@ std::vector<double> Centreline::piece_ends() const {
 }
 
 bool Centreline::is_kink(double s) const {
-  const Vector3 before = at(s, true).orientation * Vector3::UnitX(), after = at(s, false).orientation * Vector3::UnitX();
+  const Vector3 before = at(s, true).orientation * Vector3::UnitX(),
+                after = at(s, false).orientation * Vector3::UnitX();
   return before.cross(after).norm() > kKinkAngle;
 }
 

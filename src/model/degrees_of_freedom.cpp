@@ -21,8 +21,8 @@ DegreesOfFreedom::DegreesOfFreedom(const Model& model)
     const int variable = variable_of_joint(coordinate.joint);
     if (coordinate.motion >= 0 || coordinate.mimicked >= 0) dependent[first[variable] + coordinate.component] = true;
     if (coordinate.mimicked >= 0)
-      mimics.push_back({variable, variable_of_joint(model.coordinates[coordinate.mimicked].joint),
-                        coordinate.mimic_multiplier});
+      mimics.push_back(
+          {variable, variable_of_joint(model.coordinates[coordinate.mimicked].joint), coordinate.mimic_multiplier});
   }
 
   equation.assign(scalar_count, -1);

@@ -35,10 +35,10 @@ class InitialVelocity {
   const scene::SceneDescription& scene_;
   MechanismBuilder& mechanism_;
   Model& model_;
-  std::map<int, const scene::InitialLink*> fields_;          // by link
-  std::map<std::string, double> initial_rates_;              // by coordinate, as the scene gives them
-  std::map<int, double> field_rates_;                        // by coordinate: what a field gave, for mimics further out
-  std::vector<int> joint_of_;                                // by node: the joint of which it is the slave, or -1
+  std::map<int, const scene::InitialLink*> fields_;  // by link
+  std::map<std::string, double> initial_rates_;      // by coordinate, as the scene gives them
+  std::map<int, double> field_rates_;                // by coordinate: what a field gave, for mimics further out
+  std::vector<int> joint_of_;                        // by node: the joint of which it is the slave, or -1
 };
 
 }  // namespace flexarm

@@ -11,8 +11,8 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 /// Half a contact period of a stop lasts this many nominal steps: resolved by the integrator, and short to the eye.
 constexpr double kContactSteps = 10;
-/// Ratio of a stop's damping to the critical one. A contact that never pulls ends where its force vanishes, after which the
-/// speed is e = exp(-2 z acos(z) / sqrt(1 - z^2)) of that before: 0.3.
+/// Ratio of a stop's damping to the critical one. A contact that never pulls ends where its force vanishes, after which
+/// the speed is e = exp(-2 z acos(z) / sqrt(1 - z^2)) of that before: 0.3.
 constexpr double kStopDampingRatio = 0.497239;
 
 /// Mass, first moment and inertia about the world origin of everything outboard of a node, initial configuration.
@@ -42,8 +42,8 @@ std::vector<Composite> composites(const std::vector<int>& parents, const Model& 
     const Matrix3 r = so3::hat(pose.position);
     out[i].mass = inertia.total_mass;
     out[i].moment = inertia.total_mass * pose.position;
-    out[i].inertia = pose.rotation * (inertia.rotary + inertia.beam_rotary) * pose.rotation.transpose() -
-                     inertia.total_mass * r * r;
+    out[i].inertia =
+        pose.rotation * (inertia.rotary + inertia.beam_rotary) * pose.rotation.transpose() - inertia.total_mass * r * r;
   }
   for (int i = static_cast<int>(out.size()) - 1; i >= 0; --i)
     if (parents[i] >= 0) out[parents[i]] += out[i];  // parents come before their children

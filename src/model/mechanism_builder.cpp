@@ -35,18 +35,25 @@ std::vector<JointMap> elementary_joints(const scene::JointDescription& joint) {
   using scene::JointKind;
   const Vector3 zero = Vector3::Zero(), a = joint.axis.normalized(), a2 = joint.axis2.normalized();
   switch (joint.kind) {
-    case JointKind::Fixed: return {map_of_kind(JointMapKind::Rigid)};
+    case JointKind::Fixed:
+      return {map_of_kind(JointMapKind::Rigid)};
     case JointKind::Revolute:
-    case JointKind::Continuous: return {scalar_map(zero, a)};
-    case JointKind::Prismatic: return {scalar_map(a, zero)};
+    case JointKind::Continuous:
+      return {scalar_map(zero, a)};
+    case JointKind::Prismatic:
+      return {scalar_map(a, zero)};
     case JointKind::Planar: {
       const auto [x, y] = plane_axes(a);
       return {scalar_map(x, zero), scalar_map(y, zero), scalar_map(zero, a)};
     }
-    case JointKind::Universal: return {scalar_map(zero, a), scalar_map(zero, a2)};
-    case JointKind::Cylindrical: return {scalar_map(a, zero), scalar_map(zero, a)};
-    case JointKind::Spherical: return {map_of_kind(JointMapKind::Spherical)};
-    case JointKind::Floating: return {map_of_kind(JointMapKind::Free)};
+    case JointKind::Universal:
+      return {scalar_map(zero, a), scalar_map(zero, a2)};
+    case JointKind::Cylindrical:
+      return {scalar_map(a, zero), scalar_map(zero, a)};
+    case JointKind::Spherical:
+      return {map_of_kind(JointMapKind::Spherical)};
+    case JointKind::Floating:
+      return {map_of_kind(JointMapKind::Free)};
   }
   return {};
 }
@@ -80,7 +87,8 @@ void MechanismBuilder::order_joints() {
   std::vector<bool> has_parent(scene_.links.size(), false);
   for (const scene::JointDescription& joint : scene_.joints) {
     const int child = link_index(joint.child);
-    if (has_parent[child]) throw ModelError(at(joint.location, "<joint>") + "link '" + joint.child + "' has two parents");
+    if (has_parent[child])
+      throw ModelError(at(joint.location, "<joint>") + "link '" + joint.child + "' has two parents");
     has_parent[child] = true;
     children[link_index(joint.parent)].push_back(&joint);
   }
@@ -260,11 +268,20 @@ void MechanismBuilder::place_beam(int link, int first_node) {
   model.links[link].beam = beam;
   model.links[link].frame = {first_node, mesh.mesh.nodes[0].pose.inverse()};
   switch (description.order) {
-    case 1: add_elements<2>(link); break;
-    case 2: add_elements<3>(link); break;
-    case 3: add_elements<4>(link); break;
-    case 4: add_elements<5>(link); break;
-    default: throw ModelError(at(description.location, "<beam>") + "order must be 1 to 4");
+    case 1:
+      add_elements<2>(link);
+      break;
+    case 2:
+      add_elements<3>(link);
+      break;
+    case 3:
+      add_elements<4>(link);
+      break;
+    case 4:
+      add_elements<5>(link);
+      break;
+    default:
+      throw ModelError(at(description.location, "<beam>") + "order must be 1 to 4");
   }
 }
 

@@ -44,7 +44,7 @@ class MechanismBuilder {
 
   Model model;
   std::vector<std::optional<LinkMesh>> meshes;  ///< per link
-  std::vector<int> node_parents;                ///< node that a node moves with when the joints outboard move; -1: world
+  std::vector<int> node_parents;  ///< node that a node moves with when the joints outboard move; -1: world
 
  private:
   /// Rigid bodies carried by one node, in its frame.

@@ -73,7 +73,8 @@ SectionProperties convert(const scene::GeometricSection& section) {
       shear_modulus * g.torsion, material.young * g.i2, material.young * g.i3;
   out.stiffness = stiffness.asDiagonal();
   out.mass = material.density * g.area;
-  out.inertia = Vector3(material.density * (g.i2 + g.i3), material.density * g.i2, material.density * g.i3).asDiagonal();
+  out.inertia =
+      Vector3(material.density * (g.i2 + g.i3), material.density * g.i2, material.density * g.i3).asDiagonal();
   out.radius = g.radius;
   return out;
 }
@@ -100,8 +101,8 @@ SectionProperties convert(const scene::MatrixSection& s) {
   out.stiffness = 0.5 * (s.stiffness + s.stiffness.transpose());
   out.mass = s.inertia.topLeftCorner<3, 3>().trace() / 3;
   const Matrix3 coupling = s.inertia.bottomLeftCorner<3, 3>() / out.mass;  // = d^
-  out.center_of_mass = 0.5 * Vector3(coupling(2, 1) - coupling(1, 2), coupling(0, 2) - coupling(2, 0),
-                                     coupling(1, 0) - coupling(0, 1));
+  out.center_of_mass =
+      0.5 * Vector3(coupling(2, 1) - coupling(1, 2), coupling(0, 2) - coupling(2, 0), coupling(1, 0) - coupling(0, 1));
   const Matrix3 d = skew(out.center_of_mass);
   const Matrix3 about_reference = s.inertia.bottomRightCorner<3, 3>();
   out.inertia = 0.5 * (about_reference + about_reference.transpose()) + out.mass * d * d;

@@ -99,14 +99,17 @@ void read_checkpoint(Simulation& simulation, const std::string& path) {
   std::string header, model;
   std::getline(in, header);
   std::getline(in, model);
-  if (header != kHeader) fail(path, "expected the first line '" + std::string(kHeader) + "', got '" + header.substr(0, 60) + "'");
+  if (header != kHeader)
+    fail(path, "expected the first line '" + std::string(kHeader) + "', got '" + header.substr(0, 60) + "'");
   if (model != signature(simulation))
-    fail(path, "belongs to another model or scheme: expected '" + signature(simulation) + "', got '" + model.substr(0, 120) + "'");
+    fail(path, "belongs to another model or scheme: expected '" + signature(simulation) + "', got '" +
+                   model.substr(0, 120) + "'");
   State state = simulation.state();
   std::string word;
   std::size_t increments = 0;
   in >> word >> state.steps >> word >> state.halving_level >> word >> state.good_steps >> word >> increments;
-  if (!in || state.steps < 0 || state.halving_level < 0 || increments > 6 * state.nodes.size() + 6 * state.released.size())
+  if (!in || state.steps < 0 || state.halving_level < 0 ||
+      increments > 6 * state.nodes.size() + 6 * state.released.size())
     fail(path, "is damaged in line 3");
   state.last_increment.assign(increments, 0.0);
   for_each_number(state, [&](double& value, bool may_be_nan) {

@@ -180,8 +180,7 @@ ProbeState probe_state(const Model& model, const State& state, const ProbePoint&
       const NodeState& node = state.nodes[element.nodes[i]];
       spin += generalised.values[i] * (node.orientation * node.angular_velocity);
     }
-    out.velocity =
-        interpolate<N>(functions.values, nodes.velocity) + spin.cross(out.pose.position - section.position);
+    out.velocity = interpolate<N>(functions.values, nodes.velocity) + spin.cross(out.pose.position - section.position);
   });
   return out;
 }
@@ -210,7 +209,8 @@ State initial_state(const Model& model) {
       GeneralisedShapeFunctions<N> generalised;
       const Matrix3 rotation = local.evaluate(point.shape, point.derivative, generalised).rotation;
       Vector3 spin = Vector3::Zero();
-      for (int i = 0; i < N; ++i) spin += generalised.values[i] * model.initial_velocity[element.nodes[i]].template tail<3>();
+      for (int i = 0; i < N; ++i)
+        spin += generalised.values[i] * model.initial_velocity[element.nodes[i]].template tail<3>();
       state.mass_points[element.first_mass_point + k].angular_velocity = rotation.transpose() * spin;
     }
   });

@@ -77,11 +77,19 @@ Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
-const scene::SceneDescription& Simulation::scene() const { return implementation_->scene; }
-const Model& Simulation::model() const { return implementation_->model; }
-const State& Simulation::state() const { return implementation_->state; }
+const scene::SceneDescription& Simulation::scene() const {
+  return implementation_->scene;
+}
+const Model& Simulation::model() const {
+  return implementation_->model;
+}
+const State& Simulation::state() const {
+  return implementation_->state;
+}
 
-StepResult Simulation::step() { return implementation_->stepper.advance(implementation_->state); }
+StepResult Simulation::step() {
+  return implementation_->stepper.advance(implementation_->state);
+}
 
 void Simulation::reset() {
   implementation_->state = implementation_->initial;
@@ -97,13 +105,21 @@ void Simulation::restore(const State& state) {
   implementation_->stepper.invalidate();
 }
 
-double Simulation::time() const { return implementation_->state.time; }
-double Simulation::step_size() const { return implementation_->settings.step; }
-std::string Simulation::scheme() const { return std::string(implementation_->scheme.name); }
+double Simulation::time() const {
+  return implementation_->state.time;
+}
+double Simulation::step_size() const {
+  return implementation_->settings.step;
+}
+std::string Simulation::scheme() const {
+  return std::string(implementation_->scheme.name);
+}
 
 // ---------------------------------------------------------------- coordinates
 
-const std::vector<std::string>& Simulation::coordinate_names() const { return implementation_->coordinate_names; }
+const std::vector<std::string>& Simulation::coordinate_names() const {
+  return implementation_->coordinate_names;
+}
 
 std::optional<std::size_t> Simulation::find_coordinate(std::string_view name) const {
   const std::vector<std::string>& names = implementation_->coordinate_names;
@@ -134,7 +150,9 @@ double Simulation::velocity(std::size_t index) const {
                         implementation_->node_velocity(joint.slave))[coordinate.component];
 }
 
-double Simulation::effort(std::size_t index) const { return implementation_->state.efforts.at(index); }
+double Simulation::effort(std::size_t index) const {
+  return implementation_->state.efforts.at(index);
+}
 
 void Simulation::command_effort(std::size_t index, double effort) {
   if (!std::isfinite(effort)) throw std::invalid_argument("a commanded effort must be finite");
@@ -154,7 +172,9 @@ bool Simulation::is_commandable(std::size_t index) const {
 
 // ---------------------------------------------------------------- frames
 
-const std::vector<std::string>& Simulation::link_names() const { return implementation_->link_names; }
+const std::vector<std::string>& Simulation::link_names() const {
+  return implementation_->link_names;
+}
 
 Pose Simulation::link_pose(std::size_t link) const {
   return attached_pose(implementation_->state, implementation_->model.links.at(link).frame);
@@ -204,8 +224,14 @@ std::vector<Mode> Simulation::natural_modes(int count) const {
   return flexarm::natural_modes(implementation_->model, implementation_->state, count);
 }
 
-std::size_t Simulation::node_count() const { return implementation_->model.nodes.size(); }
-std::size_t Simulation::degrees_of_freedom() const { return implementation_->stepper.degrees_of_freedom().unknowns; }
-const std::vector<double>& Simulation::update_norms() const { return implementation_->stepper.update_norms(); }
+std::size_t Simulation::node_count() const {
+  return implementation_->model.nodes.size();
+}
+std::size_t Simulation::degrees_of_freedom() const {
+  return implementation_->stepper.degrees_of_freedom().unknowns;
+}
+const std::vector<double>& Simulation::update_norms() const {
+  return implementation_->stepper.update_norms();
+}
 
 }  // namespace flexarm

@@ -10,7 +10,11 @@ constexpr double kAcceptableBackwardError = 1e-10;
 }  // namespace
 
 LinearSolver::LinearSolver(int unknowns, const std::vector<int>& column_starts, const std::vector<int>& row_indices)
-    : unknowns_(unknowns), column_starts_(column_starts), row_indices_(row_indices), right_hand_side_(unknowns), residual_(unknowns) {
+    : unknowns_(unknowns),
+      column_starts_(column_starts),
+      row_indices_(row_indices),
+      right_hand_side_(unknowns),
+      residual_(unknowns) {
   klu_defaults(&common_);
   common_.scale = 2;
   if (unknowns_ > 0)
@@ -39,10 +43,9 @@ bool LinearSolver::factorise(const std::vector<double>& values) {
   if (!numeric_) return factorise_anew();
   ++factorisations_;
   unchecked_pivots_ = true;
-  const bool done =
-      klu_refactor(const_cast<int*>(column_starts_.data()), const_cast<int*>(row_indices_.data()),
-                   const_cast<double*>(values.data()), symbolic_, numeric_, &common_) &&
-      common_.status == KLU_OK;
+  const bool done = klu_refactor(const_cast<int*>(column_starts_.data()), const_cast<int*>(row_indices_.data()),
+                                 const_cast<double*>(values.data()), symbolic_, numeric_, &common_) &&
+                    common_.status == KLU_OK;
   return done || factorise_anew();
 }
 

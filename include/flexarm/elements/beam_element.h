@@ -34,19 +34,19 @@ struct BeamElement {
   int first_stiffness_point = 0, first_mass_point = 0;  ///< into the per-point arrays of Workspace and State
   std::array<StiffnessPoint, kStiffnessPoints> stiffness_points;
   std::array<MassPoint, kMassPoints> mass_points;
-  Matrix6 stiffness;                            ///< of the section, about the mass centroid
-  Matrix3 inertia;                              ///< rotary inertia per length [kg m]
-  Eigen::Matrix<double, Nodes, Nodes> mass;     ///< int I^i I^j mass ds [kg]
-  double stiffness_damping = 0;                 ///< eta of F += eta C d(strain)/dt [s]
-  double mass_damping = 0;                      ///< [1/s]
-  int first_block = 0;                          ///< into SparseAssembler::element_blocks, then [i * Nodes + j]
+  Matrix6 stiffness;                         ///< of the section, about the mass centroid
+  Matrix3 inertia;                           ///< rotary inertia per length [kg m]
+  Eigen::Matrix<double, Nodes, Nodes> mass;  ///< int I^i I^j mass ds [kg]
+  double stiffness_damping = 0;              ///< eta of F += eta C d(strain)/dt [s]
+  double mass_damping = 0;                   ///< [1/s]
+  int first_block = 0;                       ///< into SparseAssembler::element_blocks, then [i * Nodes + j]
 };
 
 /// Kinematics of a stiffness point at one instant.
 struct PointKinematics {
-  Matrix3 rotation;   ///< Lambda
-  Vector3 tangent;    ///< r' = dr/ds
-  Vector6 strain;     ///< {Gamma, K}
+  Matrix3 rotation;  ///< Lambda
+  Vector3 tangent;   ///< r' = dr/ds
+  Vector6 strain;    ///< {Gamma, K}
 };
 
 /// Elements of equal order, contiguous.

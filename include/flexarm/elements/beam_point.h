@@ -13,9 +13,9 @@ namespace flexarm {
 /// Nodal motion of an element over a step [t_n, t_{n+1}].
 template <int Nodes>
 struct ElementNodes {
-  std::array<Vector3, Nodes> begin, end;             ///< positions [m]
-  std::array<Quaternion, Nodes> orientation;         ///< at the end
-  std::array<Vector3, Nodes> increment;              ///< tangent-scaled rotation increments, Lambda_{n+1} = cay(w) Lambda_n
+  std::array<Vector3, Nodes> begin, end;      ///< positions [m]
+  std::array<Quaternion, Nodes> orientation;  ///< at the end
+  std::array<Vector3, Nodes> increment;       ///< tangent-scaled rotation increments, Lambda_{n+1} = cay(w) Lambda_n
   std::array<Matrix3, Nodes> increment_inverse_tangent;  ///< S(w)^{-1}: dw = S^{-1} spin
   std::array<Vector3, Nodes> velocity, acceleration;     ///< at the begin [m/s, m/s^2]
 };
@@ -114,8 +114,8 @@ void add_point_tangent(double weight, const NodalValues<Nodes>& shape, const Nod
   Eigen::Matrix<double, 9, Columns> all;
   all << weight * resultants, weight * couple;
   for (int j = 0; j < Nodes; ++j) {
-    const Eigen::Matrix<double, 9, 6> d = node_columns<9, Columns>(
-        all, shape[j], derivative[j], generalised.values[j], generalised.derivatives[j], inverse_tangents[j]);
+    const Eigen::Matrix<double, 9, 6> d = node_columns<9, Columns>(all, shape[j], derivative[j], generalised.values[j],
+                                                                   generalised.derivatives[j], inverse_tangents[j]);
     for (int i = 0; i < Nodes; ++i) {
       tangent.template block<6, 6>(6 * i, 6 * j) += derivative[i] * d.template topRows<6>();
       tangent.template block<3, 6>(6 * i + 3, 6 * j) -= shape[i] * d.template bottomRows<3>();

@@ -13,7 +13,7 @@ namespace flexarm {
 
 /// EM0: A = Lambda_bar, stress the average of both ends (beyond.md 1.1).
 struct AverageStress {
-  static constexpr bool kConjugateStrain = true;     ///< uses the strain increment s conjugate to the nodal increments
+  static constexpr bool kConjugateStrain = true;  ///< uses the strain increment s conjugate to the nodal increments
   static constexpr bool kEnergyMultiplier = false;
 };
 /// EM: EM0 plus lambda C s, one multiplier per element that closes the energy balance (beyond.md 1.3).
@@ -34,12 +34,12 @@ template <int Nodes>
 struct Point {
   PointKinematics end;
   GeneralisedShapeFunctions<Nodes> generalised;
-  Matrix3 average_rotation;             // (Lambda_n + Lambda_{n+1}) / 2
-  Vector3 arm;                          // (r'_n + r'_{n+1}) / 2
-  Vector6 stress;                       // average of both ends
+  Matrix3 average_rotation;  // (Lambda_n + Lambda_{n+1}) / 2
+  Vector3 arm;               // (r'_n + r'_{n+1}) / 2
+  Vector6 stress;            // average of both ends
   // Only with a conjugate strain:
-  Vector3 increment, increment_derivative;  // interpolated w and w'
-  Vector3 stretch;                          // x = Delta r' + arm x w
+  Vector3 increment, increment_derivative;     // interpolated w and w'
+  Vector3 stretch;                             // x = Delta r' + arm x w
   Vector6 conjugate_strain, conjugate_stress;  // s and C s
 };
 
@@ -89,9 +89,9 @@ struct Multiplier {
     // Delta Gamma - s_Gamma = Lambda_bar^T (arm x (w_point - w)), free of cancellation.
     const Quaternion relative = so3::quaternion_from_matrix(p.end.rotation * begin.rotation.transpose());
     Vector6 defect;  // Delta Sigma - s
-    defect.head<3>() =
-        p.average_rotation.transpose() * p.arm.cross(Vector3(cayley::increment(relative) - p.increment));
-    defect.tail<3>() = p.end.strain.template tail<3>() - begin.strain.template tail<3>() - p.conjugate_strain.template tail<3>();
+    defect.head<3>() = p.average_rotation.transpose() * p.arm.cross(Vector3(cayley::increment(relative) - p.increment));
+    defect.tail<3>() =
+        p.end.strain.template tail<3>() - begin.strain.template tail<3>() - p.conjugate_strain.template tail<3>();
     const double w = constants.weight;
     numerator += w * p.stress.dot(defect);
     denominator += w * p.conjugate_strain.dot(p.conjugate_stress);
@@ -143,8 +143,9 @@ struct ExponentialMap {
 
 }  // namespace conserving
 
-/// Internal forces, stiffness-proportional damping and translational inertia of one element over a step of length `step`.
-/// `begin` holds the element's stiffness points at t_n, `end` receives those at t_{n+1}. Rotary inertia is added elsewhere.
+/// Internal forces, stiffness-proportional damping and translational inertia of one element over a step of length
+/// `step`. `begin` holds the element's stiffness points at t_n, `end` receives those at t_{n+1}. Rotary inertia is
+/// added elsewhere.
 template <class Stress, int Nodes>
 void conserving_beam(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const PointKinematics* begin,
                      double step, bool with_tangent, PointKinematics* end, ElementSystem<Nodes>& system) {

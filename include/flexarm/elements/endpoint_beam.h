@@ -1,13 +1,14 @@
 #pragma once
-/// Beam residual and tangent at one configuration: statics, natural modes and the Newmark family (beam.md 2.2, 2.5, 3.1).
+/// Beam residual and tangent at one configuration: statics, natural modes and the Newmark family
+/// (beam.md 2.2, 2.5, 3.1).
 
 #include "flexarm/elements/beam_point.h"
 #include "flexarm/math/so3.h"
 
 namespace flexarm {
 
-/// Newmark's rule a_1 = (Delta x - h v_0 - (1/2 - beta) h^2 a_0) / (beta h^2), v_1 = v_0 + h ((1 - gamma) a_0 + gamma a_1),
-/// for translations and, with Delta x the material rotation increment, for rotations (Muñoz 2004, eq. 4.1-4.4).
+/// Newmark's rule a_1 = (Delta x - h v_0 - (1/2 - beta) h^2 a_0) / (beta h^2), v_1 = v_0 + h ((1 - gamma) a_0 + gamma
+/// a_1), for translations and, with Delta x the material rotation increment, for rotations (Muñoz 2004, eq. 4.1-4.4).
 struct NewmarkRule {
   double beta = 0.25, gamma = 0.5, step = 0;
 
@@ -65,7 +66,8 @@ void endpoint_internal(const BeamElement<Nodes>& element, const ElementNodes<Nod
     const auto& constants = element.stiffness_points[k];
     GeneralisedShapeFunctions<Nodes> generalised;
     const auto rotation = rotations.evaluate(constants.shape, constants.derivative, generalised);
-    end[k] = point_kinematics(rotation, interpolate<Nodes>(constants.derivative, nodes.end), constants.reference_strain);
+    end[k] =
+        point_kinematics(rotation, interpolate<Nodes>(constants.derivative, nodes.end), constants.reference_strain);
     Vector6 stress = element.stiffness * end[k].strain;
     double slope = 1;
     if (damped) {
@@ -100,8 +102,9 @@ void newmark_translation(const BeamElement<Nodes>& element, const ElementNodes<N
     for (int j = 0; j < Nodes && element.mass_damping > 0; ++j)
       system.dissipated += element.mass_damping * element.mass(i, j) * v.dot(nodes.end[j] - nodes.begin[j]);
   }
-  add_translational<Nodes>(element.mass, force, rule.acceleration_slope() + element.mass_damping * rule.velocity_slope(),
-                           with_tangent, system);
+  add_translational<Nodes>(element.mass, force,
+                           rule.acceleration_slope() + element.mass_damping * rule.velocity_slope(), with_tangent,
+                           system);
 }
 
 }  // namespace flexarm

@@ -12,10 +12,10 @@ namespace flexarm {
 struct NodeStep {
   const NodePose& begin;
   const NodePose& end;
-  const NodeState& state;            ///< at the begin
-  const Vector3& increment;          ///< tangent-scaled
-  const Matrix3& inverse_tangent;    ///< S(increment)^{-1}
-  double step;                       ///< [s]
+  const NodeState& state;          ///< at the begin
+  const Vector3& increment;        ///< tangent-scaled
+  const Matrix3& inverse_tangent;  ///< S(increment)^{-1}
+  double step;                     ///< [s]
 };
 
 /// Residual {f, phi} and its translational (scalar) and rotational tangent.
@@ -26,8 +26,8 @@ struct NodalInertiaAction {
   double dissipated = 0;
 };
 
-/// (1/h) m (v_1 - v_0), (1/h) (Lambda J W)_1 - (Lambda J W)_0 for conserving schemes; m a, Lambda (W x J W + J A) for Newmark.
-/// (beam.md 3.4, beyond.md 1.1)
+/// (1/h) m (v_1 - v_0), (1/h) (Lambda J W)_1 - (Lambda J W)_0 for conserving schemes; m a, Lambda (W x J W + J A) for
+/// Newmark. (beam.md 3.4, beyond.md 1.1)
 NodalInertiaAction nodal_inertia_action(const NodalInertia& inertia, const TimeRule& rule, const NodeStep& node,
                                         bool with_tangent = true);
 

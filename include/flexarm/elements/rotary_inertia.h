@@ -1,6 +1,6 @@
 #pragma once
-/// Rotary inertia of beams integrated at the mass points with local interpolation (Newmark family, M1), and the rules by
-/// which a material angular velocity follows a rotation increment. The EM schemes lump it at the nodes instead.
+/// Rotary inertia of beams integrated at the mass points with local interpolation (Newmark family, M1), and the rules
+/// by which a material angular velocity follows a rotation increment. The EM schemes lump it at the nodes instead.
 
 #include "flexarm/elements/beam_point.h"
 #include "flexarm/elements/endpoint_beam.h"
@@ -17,9 +17,9 @@ struct RotaryRate {
   MassPointState end;  ///< angular velocity and acceleration at the end
 };
 
-/// Average rule: (Lambda_1 J W_1 - Lambda_0 J W_0) / h with (W_0 + W_1) / 2 = Omega / h. `increment` is the spatial rotation
-/// increment (unscaled or tangent-scaled), `inverse_tangent` maps a spin to its variation (T^{-1} or S^{-1}), and is used for
-/// the derivative only.
+/// Average rule: (Lambda_1 J W_1 - Lambda_0 J W_0) / h with (W_0 + W_1) / 2 = Omega / h. `increment` is the spatial
+/// rotation increment (unscaled or tangent-scaled), `inverse_tangent` maps a spin to its variation (T^{-1} or S^{-1}),
+/// and is used for the derivative only.
 inline RotaryRate average_rotary_rate(const Matrix3& inertia, const Matrix3& begin, const Matrix3& end,
                                       const Vector3& increment, const Matrix3& inverse_tangent,
                                       const MassPointState& state, double step, bool with_derivative = true) {
@@ -47,13 +47,12 @@ inline RotaryRate newmark_rotary_rate(const Matrix3& inertia, const Matrix3& beg
   rate.moment = end * (W.cross(JW) + inertia * rate.end.angular_acceleration);
   const Matrix3 slope =
       rule.velocity_slope() * (so3::hat(W) * inertia - so3::hat(JW)) + rule.acceleration_slope() * inertia;
-  rate.derivative =
-      -so3::hat(rate.moment) + end * slope * begin.transpose() * so3::inverse_tangent(increment);
+  rate.derivative = -so3::hat(rate.moment) + end * slope * begin.transpose() * so3::inverse_tangent(increment);
   return rate;
 }
 
-/// Adds int I^i (moment rate) ds of one element. `rate(point index, begin rotation, end rotation)` returns a RotaryRate;
-/// `begin`, `end`: section rotations at the mass points.
+/// Adds int I^i (moment rate) ds of one element. `rate(point index, begin rotation, end rotation)` returns a
+/// RotaryRate; `begin`, `end`: section rotations at the mass points.
 template <int Nodes, class Rate>
 void add_rotary_inertia(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const Matrix3* begin,
                         const Rate& rate, bool with_tangent, Matrix3* end, ElementSystem<Nodes>& system) {

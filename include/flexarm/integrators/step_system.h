@@ -27,7 +27,8 @@ class StepSystem {
   };
 
   // ---- dynamics
-  /// Starts a step of length `step` [s] from `state`, which must outlive it. Prescribed coordinates take their end values.
+  /// Starts a step of length `step` [s] from `state`, which must outlive it. Prescribed coordinates take their end
+  /// values.
   void begin(const State& state, double step, Guess guess);
   // ---- statics
   /// Starts from `state` with gravity and loads scaled by `load_factor`; histories and motions at time 0.
@@ -90,16 +91,16 @@ class StepSystem {
   bool static_ = false;
   std::vector<NodePose> begin_, end_;
   std::vector<Released> released_;
-  std::vector<Vector3> increments_;            // per node, tangent-scaled
+  std::vector<Vector3> increments_;  // per node, tangent-scaled
   std::vector<Matrix3> inverse_tangents_;
   std::vector<PointKinematics> begin_points_, end_points_;
   std::vector<Matrix3> begin_mass_rotations_, end_mass_rotations_;
   std::vector<MassPointState> end_mass_points_;
   std::vector<Vector6> end_strain_rates_;
-  std::vector<double> history_values_;         // at the scheme's point
-  std::vector<double> begin_history_values_;   // at the begin; work of the Newmark family
-  std::vector<double> applied_;                // per coordinate: effort in this step
-  std::vector<ReleasedVector> begin_rates_;    // per joint; Newmark family
+  std::vector<double> history_values_;        // at the scheme's point
+  std::vector<double> begin_history_values_;  // at the begin; work of the Newmark family
+  std::vector<double> applied_;               // per coordinate: effort in this step
+  std::vector<ReleasedVector> begin_rates_;   // per joint; Newmark family
   bool points_valid_ = false;
   double dissipated_ = 0;
   Eigen::VectorXd residual_;

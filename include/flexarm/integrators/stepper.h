@@ -10,8 +10,8 @@ namespace flexarm {
 struct StepResult {
   enum class Reason { None, NoConvergence, SingularTangent, NotFinite, RotationTooLarge };
   bool converged = false;
-  int iterations = 0;      ///< Newton iterations of all sub-steps
-  int halvings = 0;        ///< times that a sub-step had to be halved
+  int iterations = 0;  ///< Newton iterations of all sub-steps
+  int halvings = 0;    ///< times that a sub-step had to be halved
   int factorisations = 0;
   Reason reason = Reason::None;  ///< why it failed
 };
@@ -23,8 +23,8 @@ struct StepSettings {
   double tolerance = 1e-8;  ///< on the largest update: displacements over the model's length scale, rotations in rad
   int max_iterations = 20;
   int max_halvings = 5;
-  /// Keep the factors of the tangent while the iteration contracts well (modified Newton). The result agrees with that of
-  /// full Newton to far below the tolerance; off: quadratic convergence, and a restored state continues bit for bit.
+  /// Keep the factors of the tangent while the iteration contracts well (modified Newton). The result agrees with that
+  /// of full Newton to far below the tolerance; off: quadratic convergence, and a restored state continues bit for bit.
   bool reuse_factorisation = true;
 };
 
@@ -51,8 +51,8 @@ class Stepper {
 
  private:
   enum class Updates { Full, Limited };
-  /// Newton from the present trial configuration; leaves the system evaluated at the solution. With `reuse` it starts with
-  /// the factors of an earlier solve and makes new ones only where the iteration is slow.
+  /// Newton from the present trial configuration; leaves the system evaluated at the solution. With `reuse` it starts
+  /// with the factors of an earlier solve and makes new ones only where the iteration is slow.
   bool iterate(Updates updates, bool reuse, StepResult& result);
   bool sub_step(State& state, double step, StepResult& result);
 
@@ -62,7 +62,7 @@ class Stepper {
   StepSystem system_;
   LinearSolver solver_;
   Eigen::VectorXd update_;
-  double factorised_step_ = 0;  ///< step size for which the factors hold; 0: none
+  double factorised_step_ = 0;         ///< step size for which the factors hold; 0: none
   bool kept_factors_contract_ = true;  ///< in the second iteration of the last solve
   std::vector<double> update_norms_;
 };

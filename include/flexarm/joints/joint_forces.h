@@ -11,13 +11,14 @@ constexpr double kFrictionSpeed = 1e-3;
 /// Change of a coordinate over a step, and how its rate is formed:
 /// rate = (increment / step - (1 - gamma) begin_rate) / gamma; gamma = 1 gives the mean rate of conserving schemes.
 struct CoordinateStep {
-  double begin = 0, end = 0;   ///< positions
-  double increment = 0;        ///< end - begin, or a component of a tangent-scaled rotation increment
-  double step = 0;             ///< [s]; 0: statics (no damping, no friction)
+  double begin = 0, end = 0;  ///< positions
+  double increment = 0;       ///< end - begin, or a component of a tangent-scaled rotation increment
+  double step = 0;            ///< [s]; 0: statics (no damping, no friction)
   double gamma = 1, begin_rate = 0;
 };
 
-/// Effort on the coordinate, its derivative with respect to the increment, and the energy that it dissipates over the step.
+/// Effort on the coordinate, its derivative with respect to the increment, and the energy that it dissipates over the
+/// step.
 struct PassiveEffort {
   double effort = 0, slope = 0, dissipated = 0;
 };

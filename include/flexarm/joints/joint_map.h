@@ -1,6 +1,6 @@
 #pragma once
-/// Elementary node-to-node joints: the slave's pose as a function of its master's pose and the released coordinates, and
-/// the maps that fold the slave's residual and tangent into them. (Muñoz 2004, ch. 7; joints.md 1)
+/// Elementary node-to-node joints: the slave's pose as a function of its master's pose and the released coordinates,
+/// and the maps that fold the slave's residual and tangent into them. (Muñoz 2004, ch. 7; joints.md 1)
 ///
 /// Notation: B = Lambda_m A the joint frame, A its orientation in the master node's frame, b its origin there:
 ///   r = r_m + Lambda_m b + B (displacement),   Lambda = B Lambda_J Lambda_0.
@@ -25,18 +25,18 @@ constexpr int released_count(JointMapKind kind) {
 /// Constant data of an elementary joint.
 struct JointMap {
   JointMapKind kind = JointMapKind::Rigid;
-  int master = -1;  ///< node; -1: the world
-  int slave = -1;   ///< node
-  Pose origin;      ///< joint frame in the master node's frame (b, A)
+  int master = -1;                                        ///< node; -1: the world
+  int slave = -1;                                         ///< node
+  Pose origin;                                            ///< joint frame in the master node's frame (b, A)
   Quaternion slave_orientation = Quaternion::Identity();  ///< Lambda_0: slave node's frame in the moved joint frame
-  Vector3 translation = Vector3::Zero();  ///< Scalar: travel per unit coordinate, joint frame
-  Vector3 rotation = Vector3::Zero();     ///< Scalar: rotation vector per unit coordinate, joint frame
+  Vector3 translation = Vector3::Zero();                  ///< Scalar: travel per unit coordinate, joint frame
+  Vector3 rotation = Vector3::Zero();                     ///< Scalar: rotation vector per unit coordinate, joint frame
 };
 
 /// Values of the released coordinates.
 struct Released {
-  Vector3 displacement = Vector3::Zero();           ///< Scalar: u in [0]; Free: translation in the joint frame [m]
-  Quaternion rotation = Quaternion::Identity();     ///< Spherical, Free: Lambda_J
+  Vector3 displacement = Vector3::Zero();        ///< Scalar: u in [0]; Free: translation in the joint frame [m]
+  Quaternion rotation = Quaternion::Identity();  ///< Spherical, Free: Lambda_J
 };
 
 /// A node's pose with its rotation matrix at hand.
@@ -72,8 +72,8 @@ NodePose slave_pose(const JointMap& joint, const NodePose& master, const Release
 /// Free: {translation, spin}).
 Released updated(const JointMap& joint, const Released& released, const Eigen::Ref<const ReleasedVector>& increment);
 
-/// Released increment over a step, in the order of the unknowns: Scalar: Delta u; rotations: tangent-scaled increment in the
-/// joint frame.
+/// Released increment over a step, in the order of the unknowns: Scalar: Delta u; rotations: tangent-scaled increment
+/// in the joint frame.
 ReleasedVector released_increment(const JointMap& joint, const Released& from, const Released& to);
 
 /// Variational maps N_delta at the configuration (master, released), for residual `g` on the slave (joints.md 1.2).
@@ -87,10 +87,12 @@ void incremental_maps(const JointMap& joint, const NodePose& master_begin, const
                       const Released& begin, const Released& end, const Vector6& g, FoldMaps& maps,
                       bool with_tangent = true);
 
-/// Least-squares released rates {scalar, or translation and angular velocity in the joint frame} from spatial velocities
-/// {v, w} of master and slave; `remainder` gets the part of the slave's velocity that the joint does not allow.
+/// Least-squares released rates {scalar, or translation and angular velocity in the joint frame} from spatial
+/// velocities {v, w} of master and slave; `remainder` gets the part of the slave's velocity that the joint does not
+/// allow.
 ReleasedVector released_rates(const JointMap& joint, const NodePose& master, const Released& released,
-                              const Vector6& master_velocity, const Vector6& slave_velocity, Vector6* remainder = nullptr);
+                              const Vector6& master_velocity, const Vector6& slave_velocity,
+                              Vector6* remainder = nullptr);
 
 /// Spatial velocity {v, w} of the slave from the master's and the released rates.
 Vector6 slave_velocity(const JointMap& joint, const NodePose& master, const Released& released,

@@ -10,9 +10,9 @@
 
 namespace flexarm {
 
-/// Piecewise line/arc curve in the link frame, s in [0, length()]. The section frame has x along the tangent; along an arc it
-/// turns with the tangent, `twist` turns it about the tangent, at a kink it takes the smallest rotation that maps one
-/// tangent onto the next.
+/// Piecewise line/arc curve in the link frame, s in [0, length()]. The section frame has x along the tangent; along an
+/// arc it turns with the tangent, `twist` turns it about the tangent, at a kink it takes the smallest rotation that
+/// maps one tangent onto the next.
 class Centreline {
  public:
   /// @throws std::invalid_argument for degenerate pieces (no length, centre not equidistant, reversal at a kink).
@@ -32,12 +32,12 @@ class Centreline {
 
  private:
   struct Piece {
-    double begin = 0, end = 0;         // arc length
-    Vector3 start, tangent;            // at begin
-    Vector3 axis = Vector3::UnitZ();   // of the arc
-    double curvature = 0;              // 0: line
-    double twist_rate = 0;             // [rad/m]
-    Quaternion frame;                  // section frame at begin
+    double begin = 0, end = 0;        // arc length
+    Vector3 start, tangent;           // at begin
+    Vector3 axis = Vector3::UnitZ();  // of the arc
+    double curvature = 0;             // 0: line
+    double twist_rate = 0;            // [rad/m]
+    Quaternion frame;                 // section frame at begin
     Vector3 point(double s) const;
     Pose pose(double s) const;
   };

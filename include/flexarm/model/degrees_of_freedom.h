@@ -16,12 +16,12 @@ struct DegreesOfFreedom {
   int variable_of_joint(int joint) const { return node_count + joint; }
 
   int node_count = 0;
-  std::vector<int> size;        ///< per variable: scalars
-  std::vector<int> first;       ///< per variable: index of its first scalar
-  std::vector<int> equation;    ///< per scalar: equation, or -1
+  std::vector<int> size;      ///< per variable: scalars
+  std::vector<int> first;     ///< per variable: index of its first scalar
+  std::vector<int> equation;  ///< per scalar: equation, or -1
   int scalar_count = 0;
-  int unknowns = 0;             ///< equations
-  std::vector<int> slave_joint; ///< per node: joint of which it is the slave, or -1
+  int unknowns = 0;              ///< equations
+  std::vector<int> slave_joint;  ///< per node: joint of which it is the slave, or -1
 
   /// A scalar that follows another one: d(slave) = factor d(master).
   struct Mimic {

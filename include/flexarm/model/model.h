@@ -14,11 +14,11 @@ namespace flexarm {
 
 /// Mass and rotary inertia lumped at a node whose origin is their centre of mass, in the node's frame.
 struct NodalInertia {
-  double mass = 0;                      ///< [kg]
-  Matrix3 rotary = Matrix3::Zero();     ///< of rigid bodies [kg m^2]
-  Matrix3 beam_rotary = Matrix3::Zero();  ///< of the beams, int I^i ds J; used where a scheme lumps it [kg m^2]
+  double mass = 0;                           ///< [kg]
+  Matrix3 rotary = Matrix3::Zero();          ///< of rigid bodies [kg m^2]
+  Matrix3 beam_rotary = Matrix3::Zero();     ///< of the beams, int I^i ds J; used where a scheme lumps it [kg m^2]
   Matrix3 rotary_damping = Matrix3::Zero();  ///< mass-proportional damping of the beams' rotation [kg m^2/s]
-  double total_mass = 0;                ///< with the beams' share int I^i mass ds: weight and momentum [kg]
+  double total_mass = 0;                     ///< with the beams' share int I^i mass ds: weight and momentum [kg]
   bool empty() const { return mass == 0 && rotary.isZero(0) && beam_rotary.isZero(0) && rotary_damping.isZero(0); }
 };
 
@@ -38,15 +38,15 @@ struct LimitStop {
 /// One released scalar as users see it.
 struct Coordinate {
   std::string name;
-  int joint = -1;      ///< index into Model::joints
-  int component = 0;   ///< row among the joint's released coordinates
+  int joint = -1;         ///< index into Model::joints
+  int component = 0;      ///< row among the joint's released coordinates
   bool is_angle = false;  ///< component of a rotation vector of a Spherical or Free joint
   double damping = 0, friction = 0;
-  double effort_limit = 0;          ///< 0: none
+  double effort_limit = 0;  ///< 0: none
   std::optional<LimitStop> limit;
-  int motion = -1;                  ///< history index of a prescribed position; -1: free
-  int effort = -1;                  ///< history index of the scene's effort; -1: none
-  int mimicked = -1;                ///< coordinate that this one follows; -1: none
+  int motion = -1;    ///< history index of a prescribed position; -1: free
+  int effort = -1;    ///< history index of the scene's effort; -1: none
+  int mimicked = -1;  ///< coordinate that this one follows; -1: none
   double mimic_multiplier = 1, mimic_offset = 0;
 };
 
@@ -58,48 +58,49 @@ struct Attachment {
 
 /// Placement of a flexible link's mesh, for output: elements in order along the line.
 struct BeamLink {
-  int order = 2;                       ///< elements are in the group of order + 1 nodes
-  std::vector<int> elements;           ///< indices into that group
-  std::vector<double> element_ends;    ///< arc length at the end of each [m]
+  int order = 2;                     ///< elements are in the group of order + 1 nodes
+  std::vector<int> elements;         ///< indices into that group
+  std::vector<double> element_ends;  ///< arc length at the end of each [m]
   Attachment tip;
-  Vector3 centroid = Vector3::Zero();  ///< mass centroid in the section: nodes lie there, the reference line at -centroid
-  Quaternion section_in_link;          ///< undeformed section frame at the tip, in the link frame
+  Vector3 centroid =
+      Vector3::Zero();         ///< mass centroid in the section: nodes lie there, the reference line at -centroid
+  Quaternion section_in_link;  ///< undeformed section frame at the tip, in the link frame
   double length = 0, mass = 0, radius = 0;
 };
 
 struct LinkFrame {
   std::string name;
-  Attachment frame;            ///< of the link origin
+  Attachment frame;  ///< of the link origin
   std::optional<BeamLink> beam;
 };
 
 /// A point of a link for output: on a node, or inside an element of the link's beam at shape parameter xi in [-1, 1].
 struct ProbePoint {
   int link = -1;
-  Attachment attachment;          ///< node < 0: inside an element
+  Attachment attachment;  ///< node < 0: inside an element
   int element = -1;
   double xi = 0;
-  Pose offset;                    ///< in the interpolated section frame
+  Pose offset;  ///< in the interpolated section frame
 };
 
 struct Model {
   // ---- mechanics
-  std::vector<NodePose> nodes;          ///< initial poses (released coordinates at their initial values)
-  std::vector<NodalInertia> inertias;   ///< per node
+  std::vector<NodePose> nodes;         ///< initial poses (released coordinates at their initial values)
+  std::vector<NodalInertia> inertias;  ///< per node
   BeamGroups beams;
   int stiffness_point_count = 0, mass_point_count = 0;
-  std::vector<JointMap> joints;         ///< root to leaf
+  std::vector<JointMap> joints;            ///< root to leaf
   std::vector<Released> initial_released;  ///< per joint
   std::vector<Vector6> initial_velocity;   ///< per node {v, w}, spatial
   std::vector<Coordinate> coordinates;
-  std::vector<int> first_coordinate;    ///< per joint; its coordinates are consecutive
+  std::vector<int> first_coordinate;  ///< per joint; its coordinates are consecutive
   std::vector<NodalLoad> loads;
   std::vector<TimeFunction> histories;
   Vector3 gravity = Vector3::Zero();
-  double length_scale = 1;              ///< extent of the mechanism [m]: scales displacements in the convergence test
+  double length_scale = 1;  ///< extent of the mechanism [m]: scales displacements in the convergence test
 
   // ---- output
-  std::vector<LinkFrame> links;         ///< in the scene's order
+  std::vector<LinkFrame> links;  ///< in the scene's order
   std::vector<ProbePoint> probes;
 };
 

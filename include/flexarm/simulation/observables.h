@@ -20,15 +20,15 @@ struct Momenta {
   Vector3 linear = Vector3::Zero(), angular = Vector3::Zero();
 };
 
-/// By the scheme's own quadrature (lumped or integrated rotary inertia), so that its balance is exact. `strain` contains
-/// the elastic energy of joint stops, `potential` is that of gravity.
+/// By the scheme's own quadrature (lumped or integrated rotary inertia), so that its balance is exact. `strain`
+/// contains the elastic energy of joint stops, `potential` is that of gravity.
 Energies energies(const Model& model, const Scheme& scheme, const State& state);
 Momenta momenta(const Model& model, const Scheme& scheme, const State& state);
 
 /// One point of a deformed centreline.
 struct BeamPoint {
-  double arc_length = 0;          ///< of the undeformed line [m]
-  Pose pose;                      ///< of the section, in the world
+  double arc_length = 0;                ///< of the undeformed line [m]
+  Pose pose;                            ///< of the section, in the world
   Vector6 strain = Vector6::Zero();     ///< {Gamma, K} in the section frame [-, 1/m]
   Vector6 resultant = Vector6::Zero();  ///< {N, M} in the section frame [N, N m]
 };

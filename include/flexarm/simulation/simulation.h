@@ -19,7 +19,7 @@ namespace flexarm {
 /// Options that override the scene's <integrator>.
 struct SimulationOptions {
   std::optional<std::string> scheme;
-  std::optional<double> step;       ///< [s]
+  std::optional<double> step;  ///< [s]
   std::optional<double> tolerance;
   bool reuse_factorisation = true;  ///< see StepSettings
 };
@@ -44,8 +44,8 @@ class Simulation {
   /// Replaces the state, e.g. by a copy of state() taken before.
   void restore(const State& state);
 
-  double time() const;       ///< [s]
-  double step_size() const;  ///< [s]
+  double time() const;         ///< [s]
+  double step_size() const;    ///< [s]
   std::string scheme() const;  ///< name of the scheme in use
 
   // ---- released coordinates: one per scalar joint, several for the others ("wrist/rx")
@@ -53,7 +53,8 @@ class Simulation {
   std::optional<std::size_t> find_coordinate(std::string_view name) const;
   double position(std::size_t coordinate) const;  ///< [rad or m]
   double velocity(std::size_t coordinate) const;  ///< [rad/s or m/s]
-  double effort(std::size_t coordinate) const;    ///< effort applied in the last step (motor, or drive of a motion) [N or N m]
+  double effort(
+      std::size_t coordinate) const;  ///< effort applied in the last step (motor, or drive of a motion) [N or N m]
   /// Commands an effort from the next step on, in place of the scene's <effort>; saturates at the joint's effort limit.
   void command_effort(std::size_t coordinate, double effort);
   /// Back to the scene's <effort> history (zero where there is none).
@@ -64,7 +65,8 @@ class Simulation {
   const std::vector<std::string>& link_names() const;
   Pose link_pose(std::size_t link) const;  ///< in the world (= root link) frame
   bool is_flexible(std::size_t link) const;
-  Pose tip_pose(std::size_t link) const;   ///< end section of a flexible link, axes as the link's in the undeformed state
+  Pose tip_pose(
+      std::size_t link) const;  ///< end section of a flexible link, axes as the link's in the undeformed state
   /// Points at every node and `between` equally spaced points inside each pair of nodes; appended to `points`.
   void beam_points(std::size_t link, int between, std::vector<BeamPoint>& points) const;
   /// Largest distance of the section's edge from the centreline, for display [m].
@@ -72,8 +74,8 @@ class Simulation {
 
   // ---- observables
   Energies energies() const;
-  Vector3 momentum() const;          ///< [kg m/s]
-  Vector3 angular_momentum() const;  ///< about the world origin [kg m^2/s]
+  Vector3 momentum() const;                   ///< [kg m/s]
+  Vector3 angular_momentum() const;           ///< about the world origin [kg m^2/s]
   ProbeState probe(std::size_t index) const;  ///< in the order of scene().probes
 
   /// Statics: loads and gravity grow from zero in `load_steps` equal steps; prescribed motions are held at t = 0,

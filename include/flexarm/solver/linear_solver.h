@@ -9,8 +9,8 @@
 
 namespace flexarm {
 
-/// Solves A x = b for a fixed sparsity pattern. After the first factorisation nothing allocates, unless the reused pivot order
-/// turns out to be inaccurate and a new one is chosen.
+/// Solves A x = b for a fixed sparsity pattern. After the first factorisation nothing allocates, unless the reused
+/// pivot order turns out to be inaccurate and a new one is chosen.
 class LinearSolver {
  public:
   /// Pattern in compressed columns; both vectors must outlive the solver.
@@ -21,8 +21,8 @@ class LinearSolver {
 
   /// Factorises the values; false if the matrix is singular or not finite.
   bool factorise(const std::vector<double>& values);
-  /// Replaces b by x, with the factors of the last factorise(), whose values must still stand at the first solve after it.
-  /// False if the result is not finite.
+  /// Replaces b by x, with the factors of the last factorise(), whose values must still stand at the first solve after
+  /// it. False if the result is not finite.
   bool solve(Eigen::VectorXd& b);
 
   int factorisations() const { return factorisations_; }

@@ -11,8 +11,8 @@ namespace flexarm {
 
 /// Block-sparse nodal tangent and its reduction to compressed columns.
 ///
-/// Every pair of coupled variables has a dense column-major block. Folding slave s with released variable u and master m:
-/// first the columns, (i,u) += (i,s) right and (i,m) += (i,s) L_right, then the rows, (u,j) += left^T (s,j) and
+/// Every pair of coupled variables has a dense column-major block. Folding slave s with released variable u and master
+/// m: first the columns, (i,u) += (i,s) right and (i,m) += (i,s) L_right, then the rows, (u,j) += left^T (s,j) and
 /// (m,j) += L_left^T (s,j), then the geometric blocks. (joints.md 2)
 class SparseAssembler {
  public:
@@ -46,18 +46,30 @@ class SparseAssembler {
 
  private:
   struct Block {
-    int row, column;      // variables
-    std::size_t offset;   // into values_
+    int row, column;     // variables
+    std::size_t offset;  // into values_
   };
-  struct ColumnFold { int source, to_released, to_master, rows; };     // block indices; -1: none
-  struct RowFold { int source, to_released, to_master, columns; };
-  struct Geometric { int released_released, released_master, master_released, master_master; };
+  struct ColumnFold {
+    int source, to_released, to_master, rows;
+  };  // block indices; -1: none
+  struct RowFold {
+    int source, to_released, to_master, columns;
+  };
+  struct Geometric {
+    int released_released, released_master, master_released, master_master;
+  };
   struct JointFold {
     int first_column_fold, last_column_fold, first_row_fold, last_row_fold;
     Geometric geometric;
   };
-  struct ScaledAddition { int source, target, count; double factor; };
-  struct Copy { std::size_t from; int to, count; };
+  struct ScaledAddition {
+    int source, target, count;
+    double factor;
+  };
+  struct Copy {
+    std::size_t from;
+    int to, count;
+  };
 
   class PatternBuilder;
   void fold_columns(const JointFold& fold, const FoldMaps& maps);
