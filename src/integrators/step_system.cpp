@@ -33,7 +33,12 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme)
       begin_history_values_(model.histories.size()),
       applied_(model.coordinates.size(), 0.0),
       begin_rates_(model.joints.size()),
-      residual_(Eigen::VectorXd::Zero(dof_.unknowns)) {}
+      residual_(Eigen::VectorXd::Zero(dof_.unknowns)) {
+  for_each_group(model.beams, [&](const auto& group) {
+    constexpr int N = std::decay_t<decltype(group.elements)>::value_type::kNodes;
+    std::get<GroupFunctions<N>>(mid_functions_).resize(group.elements.size());
+  });
+}
 
 // ---------------------------------------------------------------- configuration
 
@@ -73,12 +78,30 @@ void StepSystem::compute_begin_points() {
   points_valid_ = true;
 }
 
+void StepSystem::compute_mid_functions() {
+  // The middle as the velocities at the begin foresee it, to second order: explicit, so that the tangent stays simple.
+  for_each_group(model_.beams, [&](const auto& group) {
+    constexpr int N = std::decay_t<decltype(group.elements)>::value_type::kNodes;
+    GroupFunctions<N>& functions = std::get<GroupFunctions<N>>(mid_functions_);
+    for (std::size_t e = 0; e < group.elements.size(); ++e) {
+      std::array<Quaternion, N> orientation;
+      for (int i = 0; i < N; ++i) {
+        const int node = group.elements[e].nodes[i];
+        const Vector3 turn = 0.5 * step_ * state_->nodes[node].angular_velocity;
+        orientation[i] = begin_[node].orientation * so3::exp_quaternion(turn);
+      }
+      element_functions<N>(group.elements[e], orientation, functions[e]);
+    }
+  });
+}
+
 void StepSystem::begin(const State& state, double step, Guess guess) {
   static_ = false;
   step_ = step;
   load_factor_ = 1;
   load_begin_configuration(state);
   if (!points_valid_) compute_begin_points();
+  if (scheme_.stress == StressRule::Average || scheme_.stress == StressRule::DiscreteGradient) compute_mid_functions();
   const double time = scheme_.is_incremental() ? state.time + 0.5 * step : state.time + step;
   for (std::size_t i = 0; i < model_.histories.size(); ++i) {
     history_values_[i] = model_.histories[i](time);
@@ -246,15 +269,19 @@ void StepSystem::add_rotary(const BeamElement<Nodes>& element, const ElementNode
 
 template <class Stress>
 void StepSystem::add_conserving_beams(bool with_tangent) {
-  for_each_element(model_.beams, [&](const auto& element) {
-    constexpr int N = std::decay_t<decltype(element)>::kNodes;
+  for_each_group(model_.beams, [&](const auto& group) {
+    constexpr int N = std::decay_t<decltype(group.elements)>::value_type::kNodes;
+    const GroupFunctions<N>& functions = std::get<GroupFunctions<N>>(mid_functions_);
     ElementNodes<N> nodes;
     ElementSystem<N> system;
-    gather_nodes(element, nodes);
-    conserving_beam<Stress, N>(element, nodes, &begin_points_[element.first_stiffness_point], step_, with_tangent,
-                               &end_points_[element.first_stiffness_point], system);
-    if (!scheme_.nodal_rotary_inertia) add_rotary(element, nodes, with_tangent, system);
-    scatter(element, system, with_tangent);
+    for (std::size_t e = 0; e < group.elements.size(); ++e) {
+      const BeamElement<N>& element = group.elements[e];
+      gather_nodes(element, nodes);
+      conserving_beam<Stress, N>(element, nodes, functions[e], &begin_points_[element.first_stiffness_point], step_,
+                                 with_tangent, &end_points_[element.first_stiffness_point], system);
+      if (!scheme_.nodal_rotary_inertia) add_rotary(element, nodes, with_tangent, system);
+      scatter(element, system, with_tangent);
+    }
   });
 }
 

@@ -127,7 +127,14 @@ class Comparison {
   ElementSystem<Nodes> conserving() {
     std::array<PointKinematics, Nodes - 1> end;
     ElementSystem<Nodes> system;
-    conserving_beam<Stress, Nodes>(element_, nodes_, begin_points_.data(), step_, false, end.data(), system);
+    // The prototype tests and interpolates with the Lagrange functions themselves (beyond.md 1.1).
+    ElementFunctions<Nodes> lagrange;
+    for (int k = 0; k < Nodes - 1; ++k)
+      for (int i = 0; i < Nodes; ++i) {
+        lagrange[k].values[i] = element_.stiffness_points[k].shape[i] * Matrix3::Identity();
+        lagrange[k].derivatives[i] = element_.stiffness_points[k].derivative[i] * Matrix3::Identity();
+      }
+    conserving_beam<Stress, Nodes>(element_, nodes_, lagrange, begin_points_.data(), step_, false, end.data(), system);
     return system;
   }
   template <class Rate>

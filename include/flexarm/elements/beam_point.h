@@ -70,15 +70,43 @@ inline PointKinematics point_kinematics(const InterpolatedRotation<double>& inte
   return point;
 }
 
-/// Adds w {I^i' n, I^i' m - I^i arm x n} to the residual.
+/// Test functions of the moment rows at a point: the Lagrange functions themselves ...
 template <int Nodes>
-void add_point_residual(double weight, const NodalValues<Nodes>& shape, const NodalValues<Nodes>& derivative,
-                        const Vector3& n, const Vector3& m, const Vector3& arm,
-                        Eigen::Matrix<double, 6 * Nodes, 1>& residual) {
+struct LagrangeTests {
+  const NodalValues<Nodes>& shape;
+  const NodalValues<Nodes>& slope;
+  template <class Rows>
+  auto value(int i, const Rows& rows) const {
+    return shape[i] * rows;
+  }
+  template <class Rows>
+  auto derivative(int i, const Rows& rows) const {
+    return slope[i] * rows;
+  }
+};
+/// ... or generalised shape functions, transposed.
+template <int Nodes>
+struct GeneralisedTests {
+  const GeneralisedShapeFunctions<Nodes>& functions;
+  template <class Rows>
+  auto value(int i, const Rows& rows) const {
+    return functions.values[i].transpose().lazyProduct(rows);
+  }
+  template <class Rows>
+  auto derivative(int i, const Rows& rows) const {
+    return functions.derivatives[i].transpose().lazyProduct(rows);
+  }
+};
+
+/// Adds w {I^i' n, I_t^i' m - I_t^i (arm x n)} to the residual; I_t: the moment rows' test functions.
+template <int Nodes, class Tests>
+void add_point_residual(double weight, const NodalValues<Nodes>& derivative, const Tests& tests, const Vector3& n,
+                        const Vector3& m, const Vector3& arm, Eigen::Matrix<double, 6 * Nodes, 1>& residual) {
   const Vector3 wn = weight * n, wm = weight * m, wc = arm.cross(wn);
   for (int i = 0; i < Nodes; ++i) {
     residual.template segment<3>(6 * i) += derivative[i] * wn;
-    residual.template segment<3>(6 * i + 3) += derivative[i] * wm - shape[i] * wc;
+    residual.template segment<3>(6 * i + 3) += tests.derivative(i, wm);
+    residual.template segment<3>(6 * i + 3) -= tests.value(i, wc);
   }
 }
 
@@ -86,39 +114,45 @@ void add_point_residual(double weight, const NodalValues<Nodes>& shape, const No
 /// tangent-scaled increment.
 constexpr int kInstantColumns = 9, kIncrementColumns = 15;
 
-/// The same linearisation with respect to one node's {dr_j, spin_j}.
-template <int Rows, int Columns>
-Eigen::Matrix<double, Rows, 6> node_columns(const Eigen::Matrix<double, Rows, Columns>& point, double shape,
-                                            double derivative, const Matrix3& generalised,
-                                            const Matrix3& generalised_derivative, const Matrix3& inverse_tangent) {
+/// How the columns of a point depend on the nodes' {dr_j, spin_j}: spin = sum spins.values[j] spin_j, and so on.
+template <int Nodes>
+struct PointVariation {
+  const NodalValues<Nodes>& derivative;                ///< dr' = sum derivative[j] dr_j
+  const GeneralisedShapeFunctions<Nodes>& spins;       ///< of spin, spin'
+  const GeneralisedShapeFunctions<Nodes>& increments;  ///< of dw, dw'; used with kIncrementColumns only
+};
+
+/// The linearisation of a point with respect to node j's {dr_j, spin_j}.
+template <int Nodes, int Rows, int Columns>
+Eigen::Matrix<double, Rows, 6> node_columns(const Eigen::Matrix<double, Rows, Columns>& point,
+                                            const PointVariation<Nodes>& variation, int j) {
   Eigen::Matrix<double, Rows, 6> columns;
-  columns.template leftCols<3>() = derivative * point.template leftCols<3>();
-  columns.template rightCols<3>().noalias() = point.template middleCols<3>(3).lazyProduct(generalised);
-  columns.template rightCols<3>().noalias() += point.template middleCols<3>(6).lazyProduct(generalised_derivative);
+  columns.template leftCols<3>() = variation.derivative[j] * point.template leftCols<3>();
+  auto spin = columns.template rightCols<3>();
+  spin.noalias() = point.template middleCols<3>(3).lazyProduct(variation.spins.values[j]);
+  spin.noalias() += point.template middleCols<3>(6).lazyProduct(variation.spins.derivatives[j]);
   if constexpr (Columns == kIncrementColumns) {
-    const Eigen::Matrix<double, Rows, 3> increment =
-        shape * point.template middleCols<3>(9) + derivative * point.template middleCols<3>(12);
-    columns.template rightCols<3>().noalias() += increment.lazyProduct(inverse_tangent);
+    spin.noalias() += point.template middleCols<3>(9).lazyProduct(variation.increments.values[j]);
+    spin.noalias() += point.template middleCols<3>(12).lazyProduct(variation.increments.derivatives[j]);
   }
   return columns;
 }
 
 /// Adds the tangent of add_point_residual. `resultants` is d{n, m} (6 x Columns), `couple` d(arm x n) (3 x Columns).
-template <int Nodes, int Columns>
-void add_point_tangent(double weight, const NodalValues<Nodes>& shape, const NodalValues<Nodes>& derivative,
-                       const GeneralisedShapeFunctions<Nodes>& generalised,
-                       const std::array<Matrix3, Nodes>& inverse_tangents,
+template <int Nodes, int Columns, class Tests>
+void add_point_tangent(double weight, const Tests& tests, const PointVariation<Nodes>& variation,
                        const Eigen::Matrix<double, 6, Columns>& resultants,
                        const Eigen::Matrix<double, 3, Columns>& couple,
                        Eigen::Matrix<double, 6 * Nodes, 6 * Nodes>& tangent) {
   Eigen::Matrix<double, 9, Columns> all;
   all << weight * resultants, weight * couple;
   for (int j = 0; j < Nodes; ++j) {
-    const Eigen::Matrix<double, 9, 6> d = node_columns<9, Columns>(all, shape[j], derivative[j], generalised.values[j],
-                                                                   generalised.derivatives[j], inverse_tangents[j]);
+    const Eigen::Matrix<double, 9, 6> d = node_columns<Nodes, 9, Columns>(all, variation, j);
+    const Eigen::Matrix<double, 3, 6> moment = d.template middleRows<3>(3), cross = d.template bottomRows<3>();
     for (int i = 0; i < Nodes; ++i) {
-      tangent.template block<6, 6>(6 * i, 6 * j) += derivative[i] * d.template topRows<6>();
-      tangent.template block<3, 6>(6 * i + 3, 6 * j) -= shape[i] * d.template bottomRows<3>();
+      tangent.template block<3, 6>(6 * i, 6 * j) += variation.derivative[i] * d.template topRows<3>();
+      tangent.template block<3, 6>(6 * i + 3, 6 * j) += tests.derivative(i, moment);
+      tangent.template block<3, 6>(6 * i + 3, 6 * j) -= tests.value(i, cross);
     }
   }
 }

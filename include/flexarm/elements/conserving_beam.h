@@ -1,7 +1,8 @@
 #pragma once
 /// Beam residual and tangent over a step for the conserving family (beam.md 3.2, beyond.md 1):
-///   g_v^i = int {I^i' n,  I^i' m - I^i rbar' x n} ds,  n = Lambda_bar N_a,  m = A M_a,  rbar' the mid-point arm.
-/// Momenta are conserved for any stress N_a, M_a and any A; the policies below choose them.
+///   g_v^i = int {I^i' n,  I_t^i' m - I_t^i rbar' x n} ds,  n = Lambda_bar N_a,  m = A M_a,  rbar' the mid-point arm.
+/// Momenta are conserved for any stress N_a, M_a, any A and any test functions with sum I_t = 1; the policies below
+/// choose them.
 
 #include <cmath>
 
@@ -34,6 +35,8 @@ template <int Nodes>
 struct Point {
   PointKinematics end;
   GeneralisedShapeFunctions<Nodes> generalised;
+  GeneralisedShapeFunctions<Nodes>
+      increments;            // of the interpolated increment's variation, mid-step functions times S^{-1}
   Matrix3 average_rotation;  // (Lambda_n + Lambda_{n+1}) / 2
   Vector3 arm;               // (r'_n + r'_{n+1}) / 2
   Vector6 stress;            // average of both ends
@@ -66,15 +69,25 @@ Eigen::Matrix<double, 6, 15> conjugate_strain_derivative(const Point<Nodes>& p) 
   return d;
 }
 
+/// `mid`: generalised shape functions at about the middle of the step.
 template <int Nodes>
-void set_conjugate_strain(const typename BeamElement<Nodes>::StiffnessPoint& constants, const Matrix6& stiffness,
-                          const ElementNodes<Nodes>& nodes, const PointKinematics& begin, Point<Nodes>& p) {
-  p.increment = interpolate<Nodes>(constants.shape, nodes.increment);
-  p.increment_derivative = interpolate<Nodes>(constants.derivative, nodes.increment);
+void set_conjugate_strain(const GeneralisedShapeFunctions<Nodes>& mid, const Matrix6& stiffness,
+                          const ElementNodes<Nodes>& nodes, const PointKinematics& begin, bool with_tangent,
+                          Point<Nodes>& p) {
+  p.increment.setZero();
+  p.increment_derivative.setZero();
+  for (int i = 0; i < Nodes; ++i) {
+    p.increment += mid.values[i] * nodes.increment[i];
+    p.increment_derivative += mid.derivatives[i] * nodes.increment[i];
+  }
   p.stretch = p.end.tangent - begin.tangent + p.arm.cross(p.increment);
   p.conjugate_strain.template head<3>() = p.average_rotation.transpose() * p.stretch;
   p.conjugate_strain.template tail<3>() = p.average_rotation.transpose() * p.increment_derivative;
   p.conjugate_stress.noalias() = stiffness.lazyProduct(p.conjugate_strain);
+  for (int i = 0; i < Nodes && with_tangent; ++i) {
+    p.increments.values[i].noalias() = mid.values[i].lazyProduct(nodes.increment_inverse_tangent[i]);
+    p.increments.derivatives[i].noalias() = mid.derivatives[i].lazyProduct(nodes.increment_inverse_tangent[i]);
+  }
 }
 
 /// The element's energy multiplier lambda and its derivative with respect to the nodal {dr, spin}.
@@ -85,7 +98,7 @@ struct Multiplier {
   Eigen::Matrix<double, 1, 6 * Nodes> denominator_derivative = Eigen::Matrix<double, 1, 6 * Nodes>::Zero();
 
   void add(const typename BeamElement<Nodes>::StiffnessPoint& constants, const Matrix6& stiffness,
-           const ElementNodes<Nodes>& nodes, const PointKinematics& begin, const Point<Nodes>& p, bool with_tangent) {
+           const PointKinematics& begin, const Point<Nodes>& p, bool with_tangent) {
     // Delta Gamma - s_Gamma = Lambda_bar^T (arm x (w_point - w)), free of cancellation.
     const Quaternion relative = so3::quaternion_from_matrix(p.end.rotation * begin.rotation.transpose());
     Vector6 defect;  // Delta Sigma - s
@@ -107,8 +120,7 @@ struct Multiplier {
     rows.row(1).noalias() = 2 * w * p.conjugate_stress.transpose().lazyProduct(ds);
     for (int j = 0; j < Nodes; ++j) {
       const Eigen::Matrix<double, 2, 6> d =
-          node_columns<2, 15>(rows, constants.shape[j], constants.derivative[j], p.generalised.values[j],
-                              p.generalised.derivatives[j], nodes.increment_inverse_tangent[j]);
+          node_columns<Nodes, 2, 15>(rows, {constants.derivative, p.generalised, p.increments}, j);
       numerator_derivative.template segment<6>(6 * j) += d.row(0);
       denominator_derivative.template segment<6>(6 * j) += d.row(1);
     }
@@ -141,22 +153,120 @@ struct ExponentialMap {
   }
 };
 
+/// Stress resultants' material values at a point, the map of the moment to space, and their derivatives.
+template <int Columns>
+struct StressState {
+  Vector6 stress;
+  Eigen::Matrix<double, 6, Columns> stress_derivative;
+  Matrix3 moment_map;                           // A
+  Matrix3 moment_derivative = Matrix3::Zero();  // d(A a) / d(spin) at constant material moment a
+  double dissipated = 0;                        // per length, over the step
+};
+
+/// EM0 and EM: stress + (lambda + eta/h) C s, A the average rotation.
+template <int Nodes>
+StressState<kIncrementColumns> conjugate_stress_state(const Matrix6& stiffness, const Point<Nodes>& p, double lambda,
+                                                      double viscosity, bool with_tangent) {
+  StressState<kIncrementColumns> out;
+  out.stress = p.stress + (lambda + viscosity) * p.conjugate_stress;
+  out.dissipated = viscosity * p.conjugate_strain.dot(p.conjugate_stress);
+  out.moment_map = p.average_rotation;
+  if (!with_tangent) return out;
+  Eigen::Matrix<double, 6, 15> d = (lambda + viscosity) * conjugate_strain_derivative(p);
+  d.template leftCols<9>() += 0.5 * strain_derivative(p.end);
+  out.stress_derivative.noalias() = stiffness.lazyProduct(d);
+  out.moment_derivative = -0.5 * so3::hat(Vector3(p.end.rotation * out.stress.template tail<3>()));
+  return out;
+}
+
+/// M1: stress + (eta/h) C Delta(strain), A = T(omega) Lambda_n.
+template <int Nodes>
+StressState<kInstantColumns> exponential_stress_state(const Matrix6& stiffness, const Point<Nodes>& p,
+                                                      const PointKinematics& begin, double viscosity,
+                                                      bool with_tangent) {
+  StressState<kInstantColumns> out;
+  const Vector6 increment = p.end.strain - begin.strain;
+  const Vector6 rate_stress = stiffness * increment;
+  out.stress = p.stress + viscosity * rate_stress;
+  out.dissipated = viscosity * increment.dot(rate_stress);
+  const ExponentialMap exponential(begin.rotation, p.end.rotation);
+  out.moment_map = exponential.map;
+  if (!with_tangent) return out;
+  out.stress_derivative.noalias() = stiffness.lazyProduct((0.5 + viscosity) * strain_derivative(p.end));
+  out.moment_derivative = exponential.derivative(out.stress.template tail<3>());
+  return out;
+}
+
+/// Adds a point's forces and their tangent.
+template <int Nodes, int Columns, class Tests>
+void add_point(const typename BeamElement<Nodes>::StiffnessPoint& constants, const Tests& tests, const Point<Nodes>& p,
+               const StressState<Columns>& state, bool with_tangent, ElementSystem<Nodes>& system) {
+  const Matrix3& average = p.average_rotation;
+  const Vector3 n = average * state.stress.template head<3>(), m = state.moment_map * state.stress.template tail<3>();
+  add_point_residual<Nodes>(constants.weight, constants.derivative, tests, n, m, p.arm, system.residual);
+  system.dissipated += constants.weight * state.dissipated;
+  if (!with_tangent) return;
+  Eigen::Matrix<double, 6, Columns> resultants;
+  resultants.template topRows<3>().noalias() = average.lazyProduct(state.stress_derivative.template topRows<3>());
+  resultants.template bottomRows<3>().noalias() =
+      state.moment_map.lazyProduct(state.stress_derivative.template bottomRows<3>());
+  resultants.template block<3, 3>(0, 3) -= 0.5 * so3::hat(Vector3(p.end.rotation * state.stress.template head<3>()));
+  resultants.template block<3, 3>(3, 3) += state.moment_derivative;
+  Eigen::Matrix<double, 3, Columns> couple = so3::hat(p.arm) * resultants.template topRows<3>();
+  couple.template leftCols<3>() -= 0.5 * so3::hat(n);
+  add_point_tangent<Nodes, Columns>(constants.weight, tests, {constants.derivative, p.generalised, p.increments},
+                                    resultants, couple, system.tangent);
+}
+
+/// Translational inertia (1/h) int I^i I^j mass (v_{n+1} - v_n), v_{n+1} = 2 Delta r / h - v_n, and its damping.
+template <int Nodes>
+void add_translational_inertia(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, double step,
+                               bool with_tangent, ElementSystem<Nodes>& system) {
+  std::array<Vector3, Nodes> mean, force;
+  for (int i = 0; i < Nodes; ++i) {
+    mean[i] = (nodes.end[i] - nodes.begin[i]) / step;
+    force[i] = (2 / step) * (mean[i] - nodes.velocity[i]) + element.mass_damping * mean[i];
+  }
+  add_translational<Nodes>(element.mass, force, (2 / step + element.mass_damping) / step, with_tangent, system);
+  for (int i = 0; i < Nodes && element.mass_damping > 0; ++i)
+    for (int j = 0; j < Nodes; ++j)
+      system.dissipated += element.mass_damping * step * element.mass(i, j) * mean[i].dot(mean[j]);
+}
+
 }  // namespace conserving
+
+/// Generalised shape functions at the stiffness points of an element.
+template <int Nodes>
+using ElementFunctions = std::array<GeneralisedShapeFunctions<Nodes>, BeamElement<Nodes>::kStiffnessPoints>;
+
+/// Those of the configuration with the given nodal rotations.
+template <int Nodes>
+void element_functions(const BeamElement<Nodes>& element, const std::array<Quaternion, Nodes>& orientation,
+                       ElementFunctions<Nodes>& functions) {
+  const LocalRotationVariation<Nodes> local{LocalRotations<Nodes>(orientation)};
+  for (int k = 0; k < BeamElement<Nodes>::kStiffnessPoints; ++k)
+    local.evaluate(element.stiffness_points[k].shape, element.stiffness_points[k].derivative, functions[k]);
+}
 
 /// Internal forces, stiffness-proportional damping and translational inertia of one element over a step of length
 /// `step`. `begin` holds the element's stiffness points at t_n, `end` receives those at t_{n+1}. Rotary inertia is
 /// added elsewhere.
+///
+/// EM0 and EM test the moment rows with, and interpolate the increments by, generalised shape functions `mid` of about
+/// the middle of the step, fixed during the iteration; M1 with the Lagrange functions. Any `mid` conserves momenta
+/// (sum I_g = 1) and, with the multiplier, energy; those of the middle make Delta(strain) - s third order in the step.
+/// With the Lagrange functions (beyond.md 1.1) it is first order wherever an element is deformed, and the multiplier
+/// that makes up for it has no limit where the strain comes to rest.
 template <class Stress, int Nodes>
-void conserving_beam(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const PointKinematics* begin,
-                     double step, bool with_tangent, PointKinematics* end, ElementSystem<Nodes>& system) {
-  using Element = BeamElement<Nodes>;
-  constexpr int kColumns = Stress::kConjugateStrain ? kIncrementColumns : kInstantColumns;
+void conserving_beam(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes,
+                     const ElementFunctions<Nodes>& mid, const PointKinematics* begin, double step, bool with_tangent,
+                     PointKinematics* end, ElementSystem<Nodes>& system) {
+  constexpr int kPoints = BeamElement<Nodes>::kStiffnessPoints;
   system.set_zero();
-
   const ElementRotations<Nodes> rotations(nodes.orientation, with_tangent);
-  std::array<conserving::Point<Nodes>, Element::kStiffnessPoints> points;
+  std::array<conserving::Point<Nodes>, kPoints> points;
   conserving::Multiplier<Nodes> multiplier;
-  for (int k = 0; k < Element::kStiffnessPoints; ++k) {
+  for (int k = 0; k < kPoints; ++k) {
     const auto& constants = element.stiffness_points[k];
     conserving::Point<Nodes>& p = points[k];
     const auto rotation = rotations.evaluate(constants.shape, constants.derivative, p.generalised);
@@ -165,78 +275,37 @@ void conserving_beam(const BeamElement<Nodes>& element, const ElementNodes<Nodes
     p.arm = 0.5 * (begin[k].tangent + p.end.tangent);
     p.stress.noalias() = element.stiffness.lazyProduct(0.5 * (begin[k].strain + p.end.strain));
     if constexpr (Stress::kConjugateStrain)
-      conserving::set_conjugate_strain<Nodes>(constants, element.stiffness, nodes, begin[k], p);
-    if constexpr (Stress::kEnergyMultiplier)
-      multiplier.add(constants, element.stiffness, nodes, begin[k], p, with_tangent);
+      conserving::set_conjugate_strain<Nodes>(mid[k], element.stiffness, nodes, begin[k], with_tangent, p);
+    if constexpr (Stress::kEnergyMultiplier) multiplier.add(constants, element.stiffness, begin[k], p, with_tangent);
     end[k] = p.end;
   }
+
   const double lambda = Stress::kEnergyMultiplier ? multiplier.value() : 0.0;
   const double viscosity = element.stiffness_damping / step;
   Eigen::Matrix<double, 6 * Nodes, 1> conjugate_residual = Eigen::Matrix<double, 6 * Nodes, 1>::Zero();
-
-  for (int k = 0; k < Element::kStiffnessPoints; ++k) {
+  for (int k = 0; k < kPoints; ++k) {
     const auto& constants = element.stiffness_points[k];
     const conserving::Point<Nodes>& p = points[k];
-    const Matrix3& average = p.average_rotation;
-    Vector6 stress = p.stress;
-    Eigen::Matrix<double, 6, kColumns> stress_derivative;
-    Matrix3 moment_map, moment_derivative = Matrix3::Zero();
     if constexpr (Stress::kConjugateStrain) {
-      stress += (lambda + viscosity) * p.conjugate_stress;
-      system.dissipated += constants.weight * viscosity * p.conjugate_strain.dot(p.conjugate_stress);
-      moment_map = average;
-      if (with_tangent) {
-        Eigen::Matrix<double, 6, 15> d = (lambda + viscosity) * conserving::conjugate_strain_derivative(p);
-        d.template leftCols<9>() += 0.5 * conserving::strain_derivative(p.end);
-        stress_derivative.noalias() = element.stiffness.lazyProduct(d);
-        moment_derivative = -0.5 * so3::hat(Vector3(p.end.rotation * stress.tail<3>()));
-      }
+      const GeneralisedTests<Nodes> tests{mid[k]};
+      conserving::add_point<Nodes>(
+          constants, tests, p,
+          conserving::conjugate_stress_state<Nodes>(element.stiffness, p, lambda, viscosity, with_tangent),
+          with_tangent, system);
       if (Stress::kEnergyMultiplier && with_tangent)
-        add_point_residual<Nodes>(constants.weight, constants.shape, constants.derivative,
-                                  average * p.conjugate_stress.template head<3>(),
-                                  average * p.conjugate_stress.template tail<3>(), p.arm, conjugate_residual);
+        add_point_residual<Nodes>(
+            constants.weight, constants.derivative, tests, p.average_rotation * p.conjugate_stress.template head<3>(),
+            p.average_rotation * p.conjugate_stress.template tail<3>(), p.arm, conjugate_residual);
     } else {
-      const Vector6 strain_increment = p.end.strain - begin[k].strain;
-      const Vector6 rate_stress = element.stiffness * strain_increment;
-      stress += viscosity * rate_stress;
-      system.dissipated += constants.weight * viscosity * strain_increment.dot(rate_stress);
-      const conserving::ExponentialMap exponential(begin[k].rotation, p.end.rotation);
-      moment_map = exponential.map;
-      if (with_tangent) {
-        stress_derivative.noalias() =
-            element.stiffness.lazyProduct((0.5 + viscosity) * conserving::strain_derivative(p.end));
-        moment_derivative = exponential.derivative(stress.tail<3>());
-      }
+      conserving::add_point<Nodes>(
+          constants, LagrangeTests<Nodes>{constants.shape, constants.derivative}, p,
+          conserving::exponential_stress_state<Nodes>(element.stiffness, p, begin[k], viscosity, with_tangent),
+          with_tangent, system);
     }
-
-    const Vector3 n = average * stress.head<3>(), m = moment_map * stress.tail<3>();
-    add_point_residual<Nodes>(constants.weight, constants.shape, constants.derivative, n, m, p.arm, system.residual);
-    if (!with_tangent) continue;
-    Eigen::Matrix<double, 6, kColumns> resultants;
-    resultants.template topRows<3>().noalias() = average.lazyProduct(stress_derivative.template topRows<3>());
-    resultants.template bottomRows<3>().noalias() = moment_map.lazyProduct(stress_derivative.template bottomRows<3>());
-    resultants.template block<3, 3>(0, 3) -= 0.5 * so3::hat(Vector3(p.end.rotation * stress.head<3>()));
-    resultants.template block<3, 3>(3, 3) += moment_derivative;
-    Eigen::Matrix<double, 3, kColumns> couple = so3::hat(p.arm) * resultants.template topRows<3>();
-    couple.template leftCols<3>() -= 0.5 * so3::hat(n);
-    add_point_tangent<Nodes, kColumns>(constants.weight, constants.shape, constants.derivative, p.generalised,
-                                       nodes.increment_inverse_tangent, resultants, couple, system.tangent);
   }
   if (Stress::kEnergyMultiplier && with_tangent)
     system.tangent.noalias() += conjugate_residual.lazyProduct(multiplier.derivative());
-
-  // Translational inertia (1/step) int I^i I^j mass (v_{n+1} - v_n), v_{n+1} = 2 Delta r / step - v_n, and its damping.
-  std::array<Vector3, Nodes> force;
-  for (int i = 0; i < Nodes; ++i) {
-    const Vector3 mean = (nodes.end[i] - nodes.begin[i]) / step;
-    force[i] = (2 / step) * (mean - nodes.velocity[i]) + element.mass_damping * mean;
-  }
-  add_translational<Nodes>(element.mass, force, (2 / step + element.mass_damping) / step, with_tangent, system);
-  if (element.mass_damping > 0)
-    for (int i = 0; i < Nodes; ++i)
-      for (int j = 0; j < Nodes; ++j)
-        system.dissipated += element.mass_damping / step * element.mass(i, j) *
-                             (nodes.end[i] - nodes.begin[i]).dot(nodes.end[j] - nodes.begin[j]);
+  conserving::add_translational_inertia<Nodes>(element, nodes, step, with_tangent, system);
 }
 
 }  // namespace flexarm

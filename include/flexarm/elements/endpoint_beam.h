@@ -80,12 +80,12 @@ void endpoint_internal(const BeamElement<Nodes>& element, const ElementNodes<Nod
       new_strain_rates[k] = rate;
     }
     const Vector3 n = end[k].rotation * stress.head<3>(), m = end[k].rotation * stress.tail<3>();
-    add_point_residual<Nodes>(constants.weight, constants.shape, constants.derivative, n, m, end[k].tangent,
-                              system.residual);
+    const LagrangeTests<Nodes> tests{constants.shape, constants.derivative};
+    add_point_residual<Nodes>(constants.weight, constants.derivative, tests, n, m, end[k].tangent, system.residual);
     if (!with_tangent) continue;
     const endpoint::PointTangent d = endpoint::point_tangent(end[k], element.stiffness, slope, n, m);
-    add_point_tangent<Nodes, kInstantColumns>(constants.weight, constants.shape, constants.derivative, generalised,
-                                              nodes.increment_inverse_tangent, d.resultants, d.couple, system.tangent);
+    add_point_tangent<Nodes, kInstantColumns>(constants.weight, tests, {constants.derivative, generalised, generalised},
+                                              d.resultants, d.couple, system.tangent);
   }
 }
 

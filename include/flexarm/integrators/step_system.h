@@ -1,9 +1,10 @@
 #pragma once
 /// Residual and tangent of one step (or of a static configuration) as a function of the trial end configuration.
 
+#include <tuple>
 #include <vector>
 
-#include "flexarm/elements/beam_point.h"
+#include "flexarm/elements/conserving_beam.h"
 #include "flexarm/elements/endpoint_beam.h"
 #include "flexarm/integrators/scheme.h"
 #include "flexarm/joints/joint_map.h"
@@ -73,6 +74,7 @@ class StepSystem {
   void fold_joints(bool with_tangent);
   void add_joint_efforts(int joint, bool with_tangent);
   void load_begin_configuration(const State& state);
+  void compute_mid_functions();
   void compute_begin_points();
   void set_prescribed(double time);
   void extrapolate();
@@ -94,6 +96,9 @@ class StepSystem {
   std::vector<Vector3> increments_;  // per node, tangent-scaled
   std::vector<Matrix3> inverse_tangents_;
   std::vector<PointKinematics> begin_points_, end_points_;
+  template <int Nodes>
+  using GroupFunctions = std::vector<ElementFunctions<Nodes>>;
+  std::tuple<GroupFunctions<2>, GroupFunctions<3>, GroupFunctions<4>, GroupFunctions<5>> mid_functions_;
   std::vector<Matrix3> begin_mass_rotations_, end_mass_rotations_;
   std::vector<MassPointState> end_mass_points_;
   std::vector<Vector6> end_strain_rates_;
