@@ -1,6 +1,7 @@
 // Released coordinates and their initial values.
 #include <cmath>
 
+#include "flexarm/joints/joint_map.h"
 #include "flexarm/math/so3.h"
 #include "mechanism_builder.h"
 

@@ -1,5 +1,6 @@
 #include "initial_velocity.h"
 
+
 namespace flexarm {
 
 InitialVelocity::InitialVelocity(const scene::SceneDescription& scene, MechanismBuilder& mechanism)

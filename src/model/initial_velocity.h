@@ -4,6 +4,7 @@
 #include <map>
 #include <vector>
 
+#include "flexarm/joints/joint_map.h"
 #include "mechanism_builder.h"
 
 namespace flexarm {

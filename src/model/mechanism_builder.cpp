@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "flexarm/joints/joint_map.h"
 #include "flexarm/math/shape_functions.h"
 #include "flexarm/math/so3.h"
 #include "initial_velocity.h"

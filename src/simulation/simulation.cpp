@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "flexarm/joints/joint_map.h"
 #include "flexarm/math/so3.h"
 
 namespace flexarm {

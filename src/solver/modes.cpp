@@ -11,6 +11,7 @@
 
 #include "flexarm/elements/beam_point.h"
 #include "flexarm/integrators/step_system.h"
+#include "flexarm/joints/joint_map.h"
 #include "flexarm/math/so3.h"
 #include "flexarm/solver/linear_solver.h"
 

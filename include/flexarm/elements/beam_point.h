@@ -5,10 +5,17 @@
 #include <array>
 #include <optional>
 
-#include "flexarm/elements/beam_element.h"
 #include "flexarm/math/local_rotation.h"
+#include "flexarm/model/beam_element.h"
 
 namespace flexarm {
+
+/// Kinematics of a stiffness point at one instant.
+struct PointKinematics {
+  Matrix3 rotation;  ///< Lambda
+  Vector3 tangent;   ///< r' = dr/ds
+  Vector6 strain;    ///< {Gamma, K}
+};
 
 /// Nodal motion of an element over a step [t_n, t_{n+1}].
 template <int Nodes>

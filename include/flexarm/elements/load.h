@@ -1,7 +1,7 @@
 #pragma once
 /// Residual and tangent of a nodal load.
 
-#include "flexarm/joints/joint_map.h"
+#include "flexarm/model/joint.h"
 #include "flexarm/model/model.h"
 
 namespace flexarm {

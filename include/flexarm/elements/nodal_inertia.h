@@ -2,7 +2,7 @@
 /// Inertia residuals of rigid bodies (and of beams' rotary inertia where a scheme lumps it) at their nodes.
 
 #include "flexarm/elements/time_rule.h"
-#include "flexarm/joints/joint_map.h"
+#include "flexarm/model/joint.h"
 #include "flexarm/model/model.h"
 #include "flexarm/model/state.h"
 

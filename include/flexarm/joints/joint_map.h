@@ -1,50 +1,12 @@
 #pragma once
 /// Elementary node-to-node joints: the slave's pose as a function of its master's pose and the released coordinates,
 /// and the maps that fold the slave's residual and tangent into them. (Muñoz 2004, ch. 7; joints.md 1)
-///
-/// Notation: B = Lambda_m A the joint frame, A its orientation in the master node's frame, b its origin there:
-///   r = r_m + Lambda_m b + B (displacement),   Lambda = B Lambda_J Lambda_0.
-/// A joint with several scalar coordinates is a chain of elementary ones through massless nodes.
+/// The notation is that of JointMap.
 
 #include "flexarm/math/pose.h"
+#include "flexarm/model/joint.h"
 
 namespace flexarm {
-
-/// Which released coordinates an elementary joint has.
-enum class JointMapKind {
-  Rigid,      ///< none
-  Scalar,     ///< one: translation along `translation` and rotation about `rotation`, both proportional to it
-  Spherical,  ///< three: a free rotation
-  Free        ///< six: translation and rotation
-};
-
-constexpr int released_count(JointMapKind kind) {
-  return kind == JointMapKind::Rigid ? 0 : kind == JointMapKind::Scalar ? 1 : kind == JointMapKind::Spherical ? 3 : 6;
-}
-
-/// Constant data of an elementary joint.
-struct JointMap {
-  JointMapKind kind = JointMapKind::Rigid;
-  int master = -1;                                        ///< node; -1: the world
-  int slave = -1;                                         ///< node
-  Pose origin;                                            ///< joint frame in the master node's frame (b, A)
-  Quaternion slave_orientation = Quaternion::Identity();  ///< Lambda_0: slave node's frame in the moved joint frame
-  Vector3 translation = Vector3::Zero();                  ///< Scalar: travel per unit coordinate, joint frame
-  Vector3 rotation = Vector3::Zero();                     ///< Scalar: rotation vector per unit coordinate, joint frame
-};
-
-/// Values of the released coordinates.
-struct Released {
-  Vector3 displacement = Vector3::Zero();        ///< Scalar: u in [0]; Free: translation in the joint frame [m]
-  Quaternion rotation = Quaternion::Identity();  ///< Spherical, Free: Lambda_J
-};
-
-/// A node's pose with its rotation matrix at hand.
-struct NodePose {
-  Vector3 position = Vector3::Zero();
-  Quaternion orientation = Quaternion::Identity();
-  Matrix3 rotation = Matrix3::Identity();
-};
 
 /// Columns for the released coordinates of a joint, at most six; no heap.
 using ReleasedColumns = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "flexarm/elements/beam_element.h"
+#include "flexarm/model/beam_element.h"
 #include "flexarm/model/centreline.h"
 #include "flexarm/model/section.h"
 #include "flexarm/scene/scene_description.h"

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "flexarm/elements/beam_element.h"
-#include "flexarm/joints/joint_map.h"
 #include "flexarm/math/time_function.h"
+#include "flexarm/model/beam_element.h"
+#include "flexarm/model/joint.h"
 #include "flexarm/scene/scene_description.h"
 
 namespace flexarm {

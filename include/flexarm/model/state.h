@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "flexarm/joints/joint_map.h"
 #include "flexarm/math/pose.h"
+#include "flexarm/model/joint.h"
 
 namespace flexarm {
 

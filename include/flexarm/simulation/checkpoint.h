@@ -8,7 +8,8 @@
 namespace flexarm {
 
 /// Writes the state of a simulation: text, one number per token in hexadecimal floating point, so that a resumed run
-/// continues exactly. The file is written beside its place and renamed, never left half-written.
+/// continues exactly if factors are not reused (SimulationOptions), else to within Newton's tolerance. The file is
+/// written beside its place and renamed, never left half-written.
 /// @throws std::runtime_error naming the file if it cannot be written.
 void write_checkpoint(const Simulation& simulation, const std::string& path);
 

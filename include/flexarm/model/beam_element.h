@@ -1,5 +1,5 @@
 #pragma once
-/// Constant data of geometrically exact beam elements, and what is known at their quadrature points at an instant.
+/// Constant data of geometrically exact beam elements.
 
 #include <array>
 #include <tuple>
@@ -40,13 +40,6 @@ struct BeamElement {
   double stiffness_damping = 0;              ///< eta of F += eta C d(strain)/dt [s]
   double mass_damping = 0;                   ///< [1/s]
   int first_block = 0;                       ///< into SparseAssembler::element_blocks, then [i * Nodes + j]
-};
-
-/// Kinematics of a stiffness point at one instant.
-struct PointKinematics {
-  Matrix3 rotation;  ///< Lambda
-  Vector3 tangent;   ///< r' = dr/ds
-  Vector6 strain;    ///< {Gamma, K}
 };
 
 /// Elements of equal order, contiguous.
