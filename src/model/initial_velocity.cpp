@@ -1,6 +1,5 @@
 #include "initial_velocity.h"
 
-
 namespace flexarm {
 
 InitialVelocity::InitialVelocity(const scene::SceneDescription& scene, MechanismBuilder& mechanism)

@@ -181,7 +181,7 @@ void read_limits(const XmlElement& joint, const urdf::Joint& read, JointDescript
   if (limits.lower > limits.upper)
     element.error("lower must be <= upper", fmt::format("lower '{}', upper '{}'", limits.lower, limits.upper));
   if (limits.lower == limits.upper) element.warning("lower and upper are equal: the joint cannot move");
-  description.limits = JointLimits{limits.lower, limits.upper, limits.effort, limits.velocity};
+  description.limits = JointLimits{limits.lower, limits.upper, limits.velocity};
 }
 
 void check_joint_structure(const XmlElement& joint) {

@@ -84,7 +84,7 @@ inline scene::SceneDescription every_joint_scene(bool floating) {
 
   builder.scene.gravity = Vector3(0.3, -0.2, -2);
   for (scene::JointDescription& j : builder.scene.joints)
-    if (j.name == "slider") j.limits = scene::JointLimits{-3, 3, 0, 0};
+    if (j.name == "slider") j.limits = scene::JointLimits{-3, 3};
   builder.scene.motions.push_back({"drive", TimeFunction::parse("0.4*sin(t)"), {}});
   builder.scene.efforts.push_back({"shoulder", TimeFunction::parse("1+t"), {}});
   builder.scene.efforts.push_back({"ball/ry", TimeFunction(0.4), {}});

@@ -155,7 +155,7 @@ TEST(BuildModel, BeamMassIsThatOfItsLength) {
 TEST(BuildModel, StopsAreResolvedByTheStep) {
   SceneBuilder builder;
   builder.body("block", 2, Vector3::Zero(), Matrix3::Identity());
-  builder.joint("rail", JointKind::Prismatic, "world", "block").limits = scene::JointLimits{-1, 1, 0, 0};
+  builder.joint("rail", JointKind::Prismatic, "world", "block").limits = scene::JointLimits{-1, 1};
   builder.scene.integrator.step = 1e-3;
   const Model model = build_model(builder.scene);
   ASSERT_TRUE(model.coordinates[0].limit);

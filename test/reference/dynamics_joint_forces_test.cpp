@@ -108,7 +108,7 @@ TEST(JointLimit, HoldsAgainstAnEffort) {
 
 TEST(JointMotor, EffortSaturatesAtItsLimit) {
   SceneBuilder b = slider(0);
-  b.scene.joints[0].limits = scene::JointLimits{-100, 100, 3.0, 0};
+  b.scene.joints[0].limits = scene::JointLimits{-100, 100};
   b.scene.joints[0].effort_limit = 3;
   Simulation simulation(b.scene, options("em", 0.01));
   simulation.command_effort(0, 10);

@@ -48,7 +48,6 @@ TEST(GoodScene, StandardJoint) {
   ASSERT_TRUE(shoulder.limits);
   EXPECT_EQ(shoulder.limits->lower, -1);
   EXPECT_EQ(shoulder.limits->upper, 2);
-  EXPECT_EQ(shoulder.limits->effort, 30);
   EXPECT_EQ(shoulder.limits->velocity, 4);
   EXPECT_EQ(shoulder.effort_limit, 30);
   EXPECT_EQ(shoulder.damping, 0.1);

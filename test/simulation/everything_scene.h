@@ -28,8 +28,7 @@ inline SceneBuilder everything_scene() {
       {"driven", JointKind::Prismatic},        {"mimicking", JointKind::Revolute}};
   for (const auto& [name, kind] : bodies) b.body(name + "_body", 0.2, {0.05, 0.02, 0.01}, 0.1 * inertia);
   b.joint("clamp", JointKind::Fixed, "world", "beam1");
-  b.joint("hinge", JointKind::Revolute, "beam1", "beam2", tip, {0, 1, 0}).limits =
-      scene::JointLimits{-0.02, 0.02, 5, 0};
+  b.joint("hinge", JointKind::Revolute, "beam1", "beam2", tip, {0, 1, 0}).limits = scene::JointLimits{-0.02, 0.02};
   b.joint("weld", JointKind::Fixed, "beam2", "beam3", tip);
   b.joint("elbow", JointKind::Revolute, "beam3", "beam4", tip, {0, 0, 1}).friction = 0.2;
   int place = 0;

@@ -100,7 +100,6 @@ enum class JointKind { Fixed, Revolute, Continuous, Prismatic, Planar, Floating,
 
 struct JointLimits {
   double lower, upper;  ///< position [rad or m]
-  double effort = 0;    ///< the same as JointDescription::effort_limit
   double velocity = 0;  ///< kept, not enforced
 };
 
