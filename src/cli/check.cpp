@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "cli/commands.h"
@@ -85,8 +87,13 @@ void print_frequencies(Simulation& simulation) {
   if (simulation.degrees_of_freedom() == 0) return;
   seek_equilibrium(simulation);
   try {
+    // Every coordinate may be a motion that nothing holds; those say nothing about the beams.
+    std::vector<Mode> modes = simulation.natural_modes(kModes + static_cast<int>(simulation.coordinate_names().size()));
+    const auto free = std::stable_partition(modes.begin(), modes.end(), [](const Mode& m) { return m.frequency != 0; });
     fmt::print("\nfirst natural frequencies [Hz]:");
-    for (const Mode& mode : simulation.natural_modes(kModes)) fmt::print(" {:.6g}", mode.frequency);
+    for (auto mode = modes.begin(); mode != free && mode - modes.begin() < kModes; ++mode)
+      fmt::print(" {:.6g}", mode->frequency);
+    if (free != modes.end()) fmt::print(" (and {} motions that nothing holds)", modes.end() - free);
     fmt::print("\n");
   } catch (const std::runtime_error& error) {
     fmt::print(" none ({})\n", error.what());

@@ -21,6 +21,8 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 /// Below this number of unknowns all eigenvalues are computed by a dense solver.
 constexpr int kDenseLimit = 200;
+/// Modes computed beyond those asked for.
+constexpr int kExtraModes = 12;
 /// Round-off of a motion's strain energy relative to the sum of the magnitudes of its terms.
 constexpr double kEnergyRoundOff = 8 * std::numeric_limits<double>::epsilon();
 
@@ -201,13 +203,15 @@ std::vector<Mode> natural_modes(const Model& model, const State& state, int coun
 
   // The shift makes free mechanisms solvable. A first pass finds the scale of the wanted eigenvalues, a second one with
   // a shift far below them loses no digits.
+  // More modes than asked for, so that the scale is that of elastic ones where there are rigid motions.
+  const int computed = std::min(count + kExtraModes, dof.unknowns);
   const double stiffness_trace = trace(system.assembler());
   double shift = std::max(1e-8 * stiffness_trace / trace(mass), 1e-12);
-  Eigenpairs pairs = lowest(system.assembler(), mass, shift, count);
+  Eigenpairs pairs = lowest(system.assembler(), mass, shift, computed);
   const double scale = *std::max_element(pairs.squared.begin(), pairs.squared.end());
   if (scale > 0) {
     shift = 1e-3 * scale;
-    pairs = lowest(system.assembler(), mass, shift, count);
+    pairs = lowest(system.assembler(), mass, shift, computed);
   }
   std::vector<Mode> modes;
   for (std::size_t k = 0; k < pairs.squared.size(); ++k) {
@@ -219,6 +223,7 @@ std::vector<Mode> natural_modes(const Model& model, const State& state, int coun
     modes.push_back(mode);
   }
   std::sort(modes.begin(), modes.end(), [](const Mode& a, const Mode& b) { return a.frequency < b.frequency; });
+  modes.resize(std::min<std::size_t>(modes.size(), count));
   return modes;
 }
 

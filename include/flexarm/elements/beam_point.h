@@ -77,6 +77,16 @@ inline PointKinematics point_kinematics(const InterpolatedRotation<double>& inte
   return point;
 }
 
+/// d{Gamma, K} at an instant, columns {dr', spin, spin'} (beam.md 3.2).
+inline Eigen::Matrix<double, 6, 9> strain_derivative(const PointKinematics& point) {
+  const Matrix3 transposed = point.rotation.transpose();
+  Eigen::Matrix<double, 6, 9> d = Eigen::Matrix<double, 6, 9>::Zero();
+  d.topLeftCorner<3, 3>() = transposed;
+  d.block<3, 3>(0, 3) = transposed * so3::hat(point.tangent);
+  d.bottomRightCorner<3, 3>() = transposed;
+  return d;
+}
+
 /// Test functions of the moment rows at a point: the Lagrange functions themselves ...
 template <int Nodes>
 struct LagrangeTests {

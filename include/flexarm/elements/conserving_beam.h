@@ -46,16 +46,6 @@ struct Point {
   Vector6 conjugate_strain, conjugate_stress;  // s and C s
 };
 
-/// d{Gamma, K} at the end of the step, columns {dr', spin, spin'}.
-inline Eigen::Matrix<double, 6, 9> strain_derivative(const PointKinematics& point) {
-  const Matrix3 transposed = point.rotation.transpose();
-  Eigen::Matrix<double, 6, 9> d = Eigen::Matrix<double, 6, 9>::Zero();
-  d.topLeftCorner<3, 3>() = transposed;
-  d.block<3, 3>(0, 3) = transposed * so3::hat(point.tangent);
-  d.bottomRightCorner<3, 3>() = transposed;
-  return d;
-}
-
 /// ds, columns {dr', spin, spin', dw, dw'} (beyond.md 1.3).
 template <int Nodes>
 Eigen::Matrix<double, 6, 15> conjugate_strain_derivative(const Point<Nodes>& p) {
@@ -140,11 +130,11 @@ struct Multiplier {
 };
 
 /// Moment map A of the exponential form and d(A a) = derivative * spin for constant a.
-struct ExponentialMap {
+struct ExponentialMomentMap {
   Matrix3 map;
   Vector3 increment;
   Matrix3 begin_rotation;
-  ExponentialMap(const Matrix3& begin, const Matrix3& end) : begin_rotation(begin) {
+  ExponentialMomentMap(const Matrix3& begin, const Matrix3& end) : begin_rotation(begin) {
     increment = so3::log(Matrix3(end * begin.transpose()));
     map = so3::tangent(increment) * begin;
   }
@@ -189,7 +179,7 @@ StressState<kInstantColumns> exponential_stress_state(const Matrix6& stiffness, 
   const Vector6 rate_stress = stiffness * increment;
   out.stress = p.stress + viscosity * rate_stress;
   out.dissipated = viscosity * increment.dot(rate_stress);
-  const ExponentialMap exponential(begin.rotation, p.end.rotation);
+  const ExponentialMomentMap exponential(begin.rotation, p.end.rotation);
   out.moment_map = exponential.map;
   if (!with_tangent) return out;
   out.stress_derivative.noalias() = stiffness.lazyProduct((0.5 + viscosity) * strain_derivative(p.end));

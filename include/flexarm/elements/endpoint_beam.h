@@ -34,12 +34,7 @@ struct PointTangent {
 inline PointTangent point_tangent(const PointKinematics& point, const Matrix6& stiffness, double stress_slope,
                                   const Vector3& n, const Vector3& m) {
   const Matrix3& rotation = point.rotation;
-  const Matrix3 transposed = rotation.transpose();
-  Eigen::Matrix<double, 6, 9> strain = Eigen::Matrix<double, 6, 9>::Zero();
-  strain.topLeftCorner<3, 3>() = transposed;
-  strain.block<3, 3>(0, 3) = transposed * so3::hat(point.tangent);
-  strain.bottomRightCorner<3, 3>() = transposed;
-  const Eigen::Matrix<double, 6, 9> stress = stress_slope * stiffness.lazyProduct(strain);
+  const Eigen::Matrix<double, 6, 9> stress = stress_slope * stiffness.lazyProduct(strain_derivative(point));
   PointTangent d;
   d.resultants.topRows<3>().noalias() = rotation.lazyProduct(stress.topRows<3>());
   d.resultants.bottomRows<3>().noalias() = rotation.lazyProduct(stress.bottomRows<3>());
