@@ -8,10 +8,10 @@ namespace flexarm {
 
 /// Properties per unit length of the reference line, in the section frame (1 = tangent, 2 = y, 3 = z).
 struct SectionProperties {
-  Matrix6 stiffness;                         ///< F = {N, M} = stiffness * {Gamma, K}; [N], [N m], [N m^2]
+  Matrix6 stiffness = Matrix6::Zero();       ///< F = {N, M} = stiffness * {Gamma, K}; [N], [N m], [N m^2]
   double mass = 0;                           ///< [kg/m]
   Vector3 center_of_mass = Vector3::Zero();  ///< in the section, from the reference line [m]
-  Matrix3 inertia;                           ///< rotary inertia about the centre of mass [kg m]
+  Matrix3 inertia = Matrix3::Zero();         ///< rotary inertia about the centre of mass [kg m]
   double radius = 0;                         ///< largest distance of the edge from the reference line, for display [m]
 };
 
