@@ -1,0 +1,188 @@
+// The trial configuration of a step: its start, its guess, Newton updates on the group.
+#include <algorithm>
+
+#include "flexarm/integrators/step_system.h"
+#include "flexarm/math/cayley.h"
+#include "flexarm/math/so3.h"
+
+namespace flexarm {
+
+void StepSystem::load_begin_configuration(const State& state) {
+  state_ = &state;
+  for (std::size_t i = 0; i < state.nodes.size(); ++i) {
+    begin_[i].position = state.nodes[i].position;
+    begin_[i].orientation = state.nodes[i].orientation;
+    begin_[i].rotation = state.nodes[i].orientation.toRotationMatrix();
+  }
+  std::copy(begin_.begin(), begin_.end(), end_.begin());
+  std::copy(state.released.begin(), state.released.end(), released_.begin());
+}
+
+void StepSystem::compute_begin_points() {
+  for_each_element(model_.beams, [&](const auto& element) {
+    using Element = std::decay_t<decltype(element)>;
+    constexpr int N = Element::kNodes;
+    std::array<Quaternion, N> orientation;
+    std::array<Vector3, N> position;
+    for (int i = 0; i < N; ++i) {
+      orientation[i] = begin_[element.nodes[i]].orientation;
+      position[i] = begin_[element.nodes[i]].position;
+    }
+    const LocalRotations<N> local(orientation);
+    for (int k = 0; k < Element::kStiffnessPoints; ++k) {
+      const auto& point = element.stiffness_points[k];
+      begin_points_[element.first_stiffness_point + k] =
+          point_kinematics(local.evaluate(point.shape, point.derivative), interpolate<N>(point.derivative, position),
+                           point.reference_strain);
+    }
+    for (int k = 0; k < Element::kMassPoints; ++k) {
+      const auto& point = element.mass_points[k];
+      begin_mass_rotations_[element.first_mass_point + k] = local.evaluate(point.shape, point.derivative).rotation;
+    }
+  });
+  points_valid_ = true;
+}
+
+void StepSystem::compute_mid_functions() {
+  // The middle as the velocities at the begin foresee it, to second order: explicit, so that the tangent stays simple.
+  for_each_group(model_.beams, [&](const auto& group) {
+    constexpr int N = std::decay_t<decltype(group.elements)>::value_type::kNodes;
+    GroupFunctions<N>& functions = std::get<GroupFunctions<N>>(mid_functions_);
+    for (std::size_t e = 0; e < group.elements.size(); ++e) {
+      std::array<Quaternion, N> orientation;
+      for (int i = 0; i < N; ++i) {
+        const int node = group.elements[e].nodes[i];
+        const Vector3 turn = 0.5 * step_ * state_->nodes[node].angular_velocity;
+        orientation[i] = begin_[node].orientation * so3::exp_quaternion(turn);
+      }
+      element_functions<N>(group.elements[e], orientation, functions[e]);
+    }
+  });
+}
+
+void StepSystem::begin(const State& state, double step, Guess guess) {
+  static_ = false;
+  step_ = step;
+  load_factor_ = 1;
+  load_begin_configuration(state);
+  if (!points_valid_) compute_begin_points();
+  if (scheme_.stress == StressRule::Average || scheme_.stress == StressRule::DiscreteGradient) compute_mid_functions();
+  const double time = scheme_.is_incremental() ? state.time + 0.5 * step : state.time + step;
+  for (std::size_t i = 0; i < model_.histories.size(); ++i) {
+    history_values_[i] = model_.histories[i](time);
+    if (!scheme_.is_incremental()) begin_history_values_[i] = model_.histories[i](state.time);
+  }
+  if (!scheme_.is_incremental()) {
+    for (std::size_t j = 0; j < model_.joints.size(); ++j) {
+      const JointMap& joint = model_.joints[j];
+      const auto velocity = [&](int node) {
+        Vector6 v = Vector6::Zero();
+        if (node >= 0) v << state.nodes[node].velocity, begin_[node].rotation * state.nodes[node].angular_velocity;
+        return v;
+      };
+      const NodePose world;
+      begin_rates_[j] = released_rates(joint, joint.master < 0 ? world : begin_[joint.master], released_[j],
+                                       velocity(joint.master), velocity(joint.slave));
+    }
+  }
+  if (guess == Guess::Extrapolated) extrapolate();
+  set_prescribed(state.time + step);
+  set_slaves();
+  update_increments();
+}
+
+void StepSystem::begin_static(const State& state, double load_factor) {
+  static_ = true;
+  step_ = 0;
+  load_factor_ = load_factor;
+  load_begin_configuration(state);
+  for (std::size_t i = 0; i < model_.histories.size(); ++i) history_values_[i] = model_.histories[i](0.0);
+  set_prescribed(0.0);
+  set_slaves();
+}
+
+void StepSystem::set_prescribed(double time) {
+  for (const Coordinate& coordinate : model_.coordinates)
+    if (coordinate.motion >= 0)
+      released_[coordinate.joint].displacement[coordinate.component] = model_.histories[coordinate.motion](time);
+}
+
+void StepSystem::extrapolate() {
+  const State& state = *state_;
+  const bool has_last = state.last_step > 0 && state.last_increment.size() == static_cast<std::size_t>(dof_.unknowns);
+  const double ratio = has_last ? step_ / state.last_step : 0;
+  const auto entry = [&](int variable, int k) {
+    const int equation = dof_.equation[dof_.first[variable] + k];
+    return equation >= 0 ? ratio * state.last_increment[equation] : 0.0;
+  };
+  for (int i = 0; i < dof_.node_count; ++i) {
+    if (dof_.slave_joint[i] >= 0) continue;
+    Vector3 displacement = step_ * state.nodes[i].velocity;
+    Vector3 rotation = step_ * (begin_[i].rotation * state.nodes[i].angular_velocity);
+    if (has_last)
+      for (int k = 0; k < 3; ++k) displacement[k] = entry(i, k), rotation[k] = entry(i, 3 + k);
+    end_[i].position += displacement;
+    end_[i].orientation = (cayley::quaternion(rotation) * begin_[i].orientation).normalized();
+    end_[i].rotation = end_[i].orientation.toRotationMatrix();
+  }
+  if (!has_last) return;  // the released coordinates of the first step start where they are
+  for (std::size_t j = 0; j < model_.joints.size(); ++j) {
+    const JointMap& joint = model_.joints[j];
+    const int variable = dof_.variable_of_joint(static_cast<int>(j)), count = released_count(joint.kind);
+    if (joint.kind == JointMapKind::Scalar) {
+      released_[j].displacement[0] += entry(variable, 0);
+    } else if (count > 0) {
+      Vector3 rotation;
+      for (int k = 0; k < 3; ++k) {
+        if (count == 6) released_[j].displacement[k] += entry(variable, k);
+        rotation[k] = entry(variable, count - 3 + k);
+      }
+      released_[j].rotation = (cayley::quaternion(rotation) * released_[j].rotation).normalized();
+    }
+  }
+}
+
+void StepSystem::set_slaves() {
+  for (const Coordinate& coordinate : model_.coordinates)
+    if (coordinate.mimicked >= 0) {
+      const Coordinate& master = model_.coordinates[coordinate.mimicked];
+      released_[coordinate.joint].displacement[coordinate.component] =
+          coordinate.mimic_multiplier * released_[master.joint].displacement[master.component] +
+          coordinate.mimic_offset;
+    }
+  const NodePose world;
+  for (std::size_t j = 0; j < model_.joints.size(); ++j) {
+    const JointMap& joint = model_.joints[j];
+    end_[joint.slave] = slave_pose(joint, joint.master < 0 ? world : end_[joint.master], released_[j]);
+  }
+}
+
+void StepSystem::update_increments() {
+  for (std::size_t i = 0; i < end_.size(); ++i) {
+    increments_[i] = cayley::increment(begin_[i].orientation, end_[i].orientation);
+  }
+}
+
+void StepSystem::update(const Eigen::VectorXd& increment) {
+  for (int i = 0; i < dof_.node_count; ++i) {
+    if (dof_.slave_joint[i] >= 0) continue;
+    const int equation = dof_.equation[dof_.first[i]];
+    end_[i].position += increment.segment<3>(equation);
+    const Vector3 spin = increment.segment<3>(equation + 3);
+    end_[i].orientation = (so3::exp_quaternion(spin) * end_[i].orientation).normalized();
+    end_[i].rotation = end_[i].orientation.toRotationMatrix();
+  }
+  for (std::size_t j = 0; j < model_.joints.size(); ++j) {
+    const int variable = dof_.variable_of_joint(static_cast<int>(j));
+    ReleasedVector part(dof_.size[variable]);
+    for (int k = 0; k < part.size(); ++k) {
+      const int equation = dof_.equation[dof_.first[variable] + k];
+      part[k] = equation >= 0 ? increment[equation] : 0.0;
+    }
+    released_[j] = updated(model_.joints[j], released_[j], part);
+  }
+  set_slaves();
+  if (!static_) update_increments();
+}
+
+}  // namespace flexarm
