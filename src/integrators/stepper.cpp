@@ -89,10 +89,11 @@ bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
     // A steep law (friction near sticking, the touch of a stop) makes full updates jump to and fro; statics has none.
     if (system_.step() > 0 && iteration >= kPatience && contraction > kStalled) update_ *= 0.5;
     system_.update(update_);
-    // A new tangent leaves the square of its update. Kept factors converge linearly: what remains is estimated from the
-    // last contraction, and asked to be as small as that square.
-    const double remainder = std::max(settings_.tolerance * settings_.tolerance, kRoundOff);
-    const bool converged = factorise ? norm <= settings_.tolerance : norm * std::min(contraction, 1.0) <= remainder;
+    // What remains after this update, by the rate of the last two: new factors square the error, kept ones contract it.
+    const double rate = std::min(contraction, 1.0);
+    const double remains = norm * (factorise ? rate * rate : rate);
+    const bool converged =
+        reuse ? remains <= std::max(settings_.tolerance * settings_.tolerance, kRoundOff) : norm <= settings_.tolerance;
     if (converged) return system_.evaluate(false) || fail(Reason::NotFinite);
     const bool is_slow = iteration > 0 && contraction > kSlowContraction;
     if (iteration == 1) kept_factors_contract_ = !is_slow;
