@@ -13,25 +13,28 @@ namespace flexarm::test {
 using Complex = std::complex<double>;
 using Vector = Vector3T<double>;
 using Matrix = Matrix3T<double>;
+using LongVector = Vector3T<long double>;
 using LongMatrix = Matrix3T<long double>;
 using ComplexVector = Vector3T<Complex>;
 using ComplexMatrix = Matrix3T<Complex>;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double pi = 3.14159265358979323846;
+constexpr long double long_pi = 3.141592653589793238462643383279502884L;
 
 /// Step of a complex step: small enough that its square vanishes against anything.
 constexpr double complex_step = 1e-40;
 
 /// Angles from nothing through pi, dense about the switches of method (0.49, 1, 2, 2 pi / 3).
 inline std::vector<double> angles_to_pi() {
-  return {0.0, 1e-12, 1e-9,  1e-6, 1e-4,   1e-3,   0.01, 0.1, 0.3, 0.48, 0.489, 0.49,      0.5,
-          0.7, 0.999, 1.001, 1.5,  1.9999, 2.0001, 2.09, 2.1, 2.5, 3.0,  3.1,   pi - 1e-3, pi - 1e-7};
+  return {0.0,   1e-12, 1e-9, 1e-6,   1e-4,   1e-3, 0.01, 0.1, 0.3, 0.48, 0.489,     0.49,      0.5,      0.7,
+          0.999, 1.001, 1.5,  1.9999, 2.0001, 2.09, 2.1,  2.5, 3.0, 3.1,  pi - 1e-3, pi - 1e-7, pi - 1e-9};
 }
 
 inline std::vector<double> angles_to_two_pi() {
   std::vector<double> angles = angles_to_pi();
-  for (const double angle : {pi, 3.2, 4.0, 4.5, 5.0, 5.5, 6.0}) angles.push_back(angle);
+  for (const double angle : {pi, pi + 1e-9, 3.2, 4.0, 4.5, 5.0, 5.5, 6.0, 6.2, 2 * pi - 1e-2, 2 * pi - 1e-3})
+    angles.push_back(angle);
   return angles;
 }
 
@@ -40,6 +43,10 @@ class Samples {
  public:
   Vector vector() { return {normal_(engine_), normal_(engine_), normal_(engine_)}; }
   Vector of_length(double length) { return length * vector().normalized(); }
+  template <int Components>
+  Eigen::Matrix<double, Components, 1> direction() {
+    return Eigen::Matrix<double, Components, 1>::NullaryExpr([this] { return normal_(engine_); }).normalized();
+  }
   /// Directions in which pivots are chosen differently: axes, a coordinate plane, general ones.
   std::vector<Vector> directions() {
     return {Vector::UnitX(), -Vector::UnitY(), Vector::UnitZ(), Vector(1, -1, 0).normalized(),
@@ -52,8 +59,9 @@ class Samples {
 };
 
 /// sum_n hat(theta)^n / (n + shift)! in long double: exp for shift 0, T for shift 1. No coefficient of so3.h is used.
-inline LongMatrix power_series(const Vector& theta, int shift) {
-  const LongMatrix skew = so3::hat(theta.cast<long double>());
+template <typename V>
+LongMatrix power_series(const Eigen::MatrixBase<V>& theta, int shift) {
+  const LongMatrix skew = so3::hat(theta.template cast<long double>());
   LongMatrix term = LongMatrix::Identity(), sum = term;
   for (int n = 1; n < 70; ++n) {
     term = LongMatrix(term * skew) / static_cast<long double>(n + shift);
@@ -62,8 +70,10 @@ inline LongMatrix power_series(const Vector& theta, int shift) {
   return sum;
 }
 
-inline ComplexVector perturbed(const Vector& x, const Vector& direction) {
-  return x.cast<Complex>() + Complex(0, complex_step) * direction.cast<Complex>();
+template <int Components>
+Eigen::Matrix<Complex, Components, 1> perturbed(const Eigen::Matrix<double, Components, 1>& x,
+                                                const Eigen::Matrix<double, Components, 1>& direction) {
+  return x.template cast<Complex>() + Complex(0, complex_step) * direction.template cast<Complex>();
 }
 
 /// Rotation matrix perturbed by a spatial spin.

@@ -2,108 +2,61 @@
 
 #include <gtest/gtest.h>
 
-#include <flexarm/math/cayley.h>
-#include <flexarm/math/so3.h>
-
-#include "rotation_samples.h"
+#include "parametrisations.h"
 
 namespace flexarm::test {
 namespace {
 
-struct RotationVector {
-  static constexpr double largest_angle = 6.0;
-  /// T is singular at 2 pi, like sin^2(angle/2): 1/det T multiplies the round-off of what is made of T^-1.
-  static double conditioning(double angle) { return angle < pi ? 1 : 1 / std::pow(std::sin(0.5 * angle), 2); }
-  /// Vector of a rotation about a unit axis.
-  static Vector make(const Vector& axis, double angle) { return angle * axis; }
-  template <typename S>
-  static Vector3T<S> from_quaternion(const QuaternionT<S>& q) {
-    return so3::log(q);
-  }
-  template <typename S>
-  static Matrix3T<S> rotation(const Vector3T<S>& v) {
-    return so3::exp(v);
-  }
-  template <typename S>
-  static QuaternionT<S> quaternion(const Vector3T<S>& v) {
-    return so3::exp_quaternion(v);
-  }
-  template <typename S>
-  static Matrix3T<S> tangent(const Vector3T<S>& v) {
-    return so3::tangent(v);
-  }
-  template <typename S>
-  static Matrix3T<S> inverse_tangent(const Vector3T<S>& v) {
-    return so3::inverse_tangent(v);
-  }
-  static Matrix tangent_derivative(const Vector& v, const Vector& d) { return so3::tangent_derivative(v, d); }
-  static Matrix inverse_tangent_derivative(const Vector& v, const Vector& d) {
-    return so3::inverse_tangent_derivative(v, d);
-  }
-  static Matrix xi_tangent(const Vector& v, const Vector& a) { return so3::xi_tangent(v, a); }
-  static Matrix xi_inverse_tangent(const Vector& v, const Vector& a) { return so3::xi_inverse_tangent(v, a); }
-};
-
-struct TangentScaled {
-  static constexpr double largest_angle = 3.1;
-  /// The vector is 2 q_v/q_0 with q_0 = cos(angle/2), S contains q_0^2: both lose digits towards pi.
-  static double conditioning(double angle) { return 1 / std::pow(std::cos(0.5 * angle), 2); }
-  static Vector make(const Vector& axis, double angle) { return 2 * std::tan(0.5 * angle) * axis; }
-  template <typename S>
-  static Vector3T<S> from_quaternion(const QuaternionT<S>& q) {
-    return cayley::increment(q);
-  }
-  template <typename S>
-  static Matrix3T<S> rotation(const Vector3T<S>& v) {
-    return cayley::rotation(v);
-  }
-  template <typename S>
-  static QuaternionT<S> quaternion(const Vector3T<S>& v) {
-    return cayley::quaternion(v);
-  }
-  template <typename S>
-  static Matrix3T<S> tangent(const Vector3T<S>& v) {
-    return cayley::tangent(v);
-  }
-  template <typename S>
-  static Matrix3T<S> inverse_tangent(const Vector3T<S>& v) {
-    return cayley::inverse_tangent(v);
-  }
-  static Matrix tangent_derivative(const Vector& v, const Vector& d) { return cayley::tangent_derivative(v, d); }
-  static Matrix inverse_tangent_derivative(const Vector& v, const Vector& d) {
-    return cayley::inverse_tangent_derivative(v, d);
-  }
-  static Matrix xi_tangent(const Vector& v, const Vector& a) { return cayley::xi_tangent(v, a); }
-  static Matrix xi_inverse_tangent(const Vector& v, const Vector& a) { return cayley::xi_inverse_tangent(v, a); }
-};
-
 template <typename Parametrisation>
 class RotationTest : public ::testing::Test {
  protected:
-  /// Calls check(v, angle, axis) over angles and axes.
+  static constexpr int components = Parametrisation::components;
+  using Coordinates = Eigen::Matrix<double, components, 1>;
+
+  /// Calls check(v, angle, axis) over angles and axes; v is that of the given angle and axis, rounded.
   template <typename Check>
   void for_each_vector(const Check& check) {
     for (const double angle : angles_to_two_pi()) {
       if (angle > Parametrisation::largest_angle) continue;
       for (const Vector& axis : samples_.directions()) {
         SCOPED_TRACE(::testing::Message() << "angle " << angle << ", axis " << axis.transpose());
-        check(Parametrisation::make(axis, angle), angle, axis);
+        check(make(axis, angle), angle, axis);
       }
     }
   }
+
+  /// Calls check(v2, angle2, v1, angle1) over pairs of rotations about unrelated axes.
+  template <typename Check>
+  void for_each_pair(const Check& check) {
+    const std::vector<double> angles = {0.0, 1e-9, 1e-3, 1.0, 2.5, pi - 1e-3, pi - 1e-9, pi, 4.0, 2 * pi - 1e-3};
+    for (const double angle2 : angles) {
+      for (const double angle1 : angles) {
+        if (std::max(angle2, angle1) > Parametrisation::largest_angle) continue;
+        for (int i = 0; i < 5; ++i) {
+          SCOPED_TRACE(::testing::Message() << "angles " << angle2 << " after " << angle1);
+          check(make(samples_.of_length(1.0), angle2), angle2, make(samples_.of_length(1.0), angle1), angle1);
+        }
+      }
+    }
+  }
+
+  static Coordinates make(const Vector& axis, double angle) {
+    return Parametrisation::template make<long double>(axis.cast<long double>(), angle).template cast<double>();
+  }
+
   Samples samples_;
 };
 
-using Parametrisations = ::testing::Types<RotationVector, TangentScaled>;
+using Parametrisations = ::testing::Types<RotationVector, TangentScaled, Conformal, UnitQuaternion>;
 TYPED_TEST_SUITE(RotationTest, Parametrisations);
 
 /// Entries of the operators are sums of a handful of products: 16 roundings bound them, relative to the largest entry.
 constexpr double roundoff = 16 * epsilon;
 
 TYPED_TEST(RotationTest, RotationAndQuaternionAgreeWithThePowerSeries) {
-  this->for_each_vector([](const Vector& v, double angle, const Vector& axis) {
+  this->for_each_vector([](const auto& v, double angle, const Vector& axis) {
     const LongMatrix expected = power_series(angle * axis, 0);
-    // The angle itself is rounded (once, and once more in tan): its error turns the matrix by as much.
+    // The vector is rounded: its relative error turns the matrix by up to as much of the angle.
     const double tolerance = roundoff * std::max(1.0, angle);
     EXPECT_LT(distance(TypeParam::rotation(v), expected), tolerance);
     const QuaternionT<double> q = TypeParam::quaternion(v);
@@ -112,10 +65,22 @@ TYPED_TEST(RotationTest, RotationAndQuaternionAgreeWithThePowerSeries) {
   });
 }
 
+TYPED_TEST(RotationTest, ConversionsAgreeWithTheDefinition) {
+  this->for_each_vector([](const auto& v, double angle, const Vector& axis) {
+    const Vector theta = angle * axis;
+    const double tolerance = roundoff * std::max(v.norm(), angle) * TypeParam::conversion_condition(angle);
+    EXPECT_LE(distance(TypeParam::from_rotation_vector(theta), v), tolerance);
+    // A quaternion does not tell theta from theta - 2 pi.
+    const bool is_shorter = TypeParam::components == 4 && angle > pi;
+    const Vector expected = is_shorter ? Vector((angle - 2 * pi) * axis) : theta;
+    EXPECT_LE(distance(TypeParam::to_rotation_vector(v), expected), roundoff * angle);
+  });
+}
+
 TYPED_TEST(RotationTest, VectorComesBackFromTheQuaternion) {
-  this->for_each_vector([](const Vector& v, double angle, const Vector&) {
+  this->for_each_vector([](const auto& v, double angle, const Vector&) {
     if (angle >= pi) return;
-    const double tolerance = roundoff * v.norm() * TypeParam::conditioning(angle);
+    const double tolerance = roundoff * v.norm() * TypeParam::conversion_condition(angle);
     QuaternionT<double> q = TypeParam::quaternion(v);
     EXPECT_LE(distance(TypeParam::from_quaternion(q), v), tolerance);
     q.coeffs() *= -1;
@@ -126,54 +91,114 @@ TYPED_TEST(RotationTest, VectorComesBackFromTheQuaternion) {
 }
 
 TYPED_TEST(RotationTest, TangentMapsTheVectorsChangeToTheSpin) {
-  this->for_each_vector([this](const Vector& v, double, const Vector&) {
-    const Vector d = this->samples_.of_length(1.0);
+  this->for_each_vector([this](const auto& v, double, const Vector&) {
+    const auto d = this->samples_.template direction<TypeParam::components>();
     const Matrix change = derivative(TypeParam::rotation(perturbed(v, d)));
     const Matrix spin = change * TypeParam::rotation(v).transpose();
-    EXPECT_LT(distance(TypeParam::tangent(v) * d, so3::vee(spin)), roundoff);
+    EXPECT_LT(distance(TypeParam::tangent(v) * d, so3::vee(spin)), roundoff * size(TypeParam::tangent(v)));
   });
 }
 
 TYPED_TEST(RotationTest, InverseTangentMapsTheSpinToTheVectorsChange) {
-  this->for_each_vector([this](const Vector& v, double angle, const Vector&) {
+  this->for_each_vector([this](const auto& v, double angle, const Vector&) {
     if (angle >= pi) return;
     const Vector spin = this->samples_.of_length(1.0);
     const ComplexMatrix rotation = spun(TypeParam::rotation(v), spin);
-    const ComplexVector changed = TypeParam::from_quaternion(so3::quaternion_from_matrix(rotation));
-    const Matrix inverse = TypeParam::inverse_tangent(v);
-    EXPECT_LT(distance(inverse * spin, derivative(changed)),
-              4 * roundoff * size(inverse) * TypeParam::conditioning(angle));
+    const auto inverse = TypeParam::inverse_tangent(v);
+    EXPECT_LT(distance(inverse * spin, derivative(TypeParam::from_quaternion(so3::quaternion_from_matrix(rotation)))),
+              4 * roundoff * size(inverse) * TypeParam::conversion_condition(angle));
   });
 }
 
 TYPED_TEST(RotationTest, IdentitiesOfTheTangent) {
-  this->for_each_vector([](const Vector& v, double angle, const Vector&) {
-    const Matrix identity = Matrix::Identity();
-    const Matrix rotation = TypeParam::rotation(v), tangent = TypeParam::tangent(v);
-    const Matrix inverse = TypeParam::inverse_tangent(v);
-    // Lambda is rounded in its angle.
-    const double tolerance = roundoff * std::max(1.0, angle);
-    EXPECT_LT(distance(tangent * inverse, identity), tolerance * size(inverse) * TypeParam::conditioning(angle));
-    EXPECT_LT(distance(tangent * inverse.transpose(), rotation),
-              tolerance * size(inverse) * TypeParam::conditioning(angle));
-    EXPECT_LT(distance(rotation * tangent.transpose(), tangent), tolerance);
-    EXPECT_LT(distance(rotation * tangent * rotation.transpose(), tangent), tolerance);
-    EXPECT_LT(distance(identity + tangent * so3::hat(v), rotation), tolerance * std::max(1.0, v.norm()));
+  this->for_each_vector([](const auto& v, double angle, const Vector&) {
+    const Matrix identity = Matrix::Identity(), rotation = TypeParam::rotation(v);
+    const auto tangent = TypeParam::tangent(v);
+    const auto inverse = TypeParam::inverse_tangent(v);
+    const double tolerance = roundoff * size(tangent) * size(inverse) * TypeParam::inverse_condition(angle);
+    EXPECT_LT(distance(tangent * inverse, identity), tolerance);
+    if constexpr (TypeParam::components == 3) {
+      // Lambda is rounded in its angle.
+      const double turn = std::max(1.0, angle);
+      EXPECT_LT(distance(tangent * inverse.transpose(), rotation), tolerance * turn);
+      EXPECT_LT(distance(rotation * tangent.transpose(), tangent), roundoff * size(tangent) * turn);
+      EXPECT_LT(distance(rotation * tangent * rotation.transpose(), tangent), roundoff * size(tangent) * turn);
+      EXPECT_LT(distance(identity + tangent * so3::hat(v), rotation),
+                roundoff * std::max(turn, size(tangent) * v.norm()));
+    }
   });
 }
 
 TYPED_TEST(RotationTest, DerivativesOfTheTangents) {
-  this->for_each_vector([this](const Vector& v, double angle, const Vector&) {
-    const Vector d = this->samples_.of_length(1.0), a = this->samples_.of_length(1.0);
-    const ComplexVector moved = perturbed(v, d);
-    const Matrix tangent_rate = derivative(TypeParam::tangent(moved));
-    const Matrix inverse_rate = derivative(TypeParam::inverse_tangent(moved));
-    const double tolerance = roundoff * std::max(1.0, size(tangent_rate));
-    const double inverse_tolerance = 4 * roundoff * std::max(1.0, size(inverse_rate)) * TypeParam::conditioning(angle);
+  this->for_each_vector([this](const auto& v, double angle, const Vector&) {
+    const auto d = this->samples_.template direction<TypeParam::components>();
+    const auto a = this->samples_.template direction<TypeParam::components>();
+    const Vector b = this->samples_.of_length(1.0);
+    const auto moved = perturbed(v, d);
+    const auto tangent_rate = derivative(TypeParam::tangent(moved));
+    const auto inverse_rate = derivative(TypeParam::inverse_tangent(moved));
+    const auto xi = TypeParam::xi_tangent(v, a);
+    const auto xi_transposed = TypeParam::xi_tangent_transposed(v, b);
+    const auto xi_inverse = TypeParam::xi_inverse_tangent(v, b);
+    const double tolerance = roundoff * std::max({size(xi), size(xi_transposed), size(tangent_rate)});
+    const double inverse_tolerance =
+        4 * roundoff * std::max(size(xi_inverse), size(inverse_rate)) * TypeParam::inverse_condition(angle);
     EXPECT_LT(distance(TypeParam::tangent_derivative(v, d), tangent_rate), tolerance);
-    EXPECT_LT(distance(TypeParam::xi_tangent(v, a) * d, tangent_rate * a), tolerance);
+    EXPECT_LT(distance(xi * d, tangent_rate * a), tolerance);
+    EXPECT_LT(distance(xi_transposed * d, tangent_rate.transpose() * b), tolerance);
     EXPECT_LT(distance(TypeParam::inverse_tangent_derivative(v, d), inverse_rate), inverse_tolerance);
-    EXPECT_LT(distance(TypeParam::xi_inverse_tangent(v, a) * d, inverse_rate * a), inverse_tolerance);
+    EXPECT_LT(distance(xi_inverse * d, inverse_rate * b), inverse_tolerance);
+  });
+}
+
+/// The operator's value in double against that in long double for the same arguments: nothing but round-off.
+TYPED_TEST(RotationTest, OperatorsAgreeWithLongDouble) {
+  this->for_each_vector([this](const auto& v, double angle, const Vector&) {
+    const auto d = this->samples_.template direction<TypeParam::components>();
+    const Vector b = this->samples_.of_length(1.0);
+    const auto long_v = v.template cast<long double>().eval();
+    const auto long_d = d.template cast<long double>().eval();
+    const LongVector long_b = b.cast<long double>();
+    const auto expect_near = [](const auto& value, const auto& exact, double tolerance) {
+      EXPECT_LE(distance(value, exact), tolerance * std::max(size(exact), TypeParam::term_size));
+    };
+    const double inverse_roundoff = 4 * roundoff * TypeParam::inverse_condition(angle);
+    expect_near(TypeParam::rotation(v), TypeParam::rotation(long_v), roundoff);
+    expect_near(TypeParam::quaternion(v).coeffs(), TypeParam::quaternion(long_v).coeffs(), roundoff);
+    expect_near(TypeParam::to_rotation_vector(v), TypeParam::to_rotation_vector(long_v), roundoff);
+    expect_near(TypeParam::tangent(v), TypeParam::tangent(long_v), roundoff);
+    expect_near(TypeParam::inverse_tangent(v), TypeParam::inverse_tangent(long_v), inverse_roundoff);
+    expect_near(TypeParam::tangent_derivative(v, d), TypeParam::tangent_derivative(long_v, long_d), roundoff);
+    expect_near(TypeParam::inverse_tangent_derivative(v, d), TypeParam::inverse_tangent_derivative(long_v, long_d),
+                inverse_roundoff);
+    expect_near(TypeParam::xi_tangent(v, d), TypeParam::xi_tangent(long_v, long_d), roundoff);
+    expect_near(TypeParam::xi_tangent_transposed(v, b), TypeParam::xi_tangent_transposed(long_v, long_b), roundoff);
+    expect_near(TypeParam::xi_inverse_tangent(v, b), TypeParam::xi_inverse_tangent(long_v, long_b), inverse_roundoff);
+  });
+}
+
+TYPED_TEST(RotationTest, CompoundComposesRotations) {
+  this->for_each_pair([](const auto& v2, double angle2, const auto& v1, double angle1) {
+    // However large the compound vector, it is the quotient of quaternion components with errors of some epsilon.
+    EXPECT_LT(
+        distance(TypeParam::rotation(TypeParam::compound(v2, v1)), TypeParam::rotation(v2) * TypeParam::rotation(v1)),
+        roundoff * std::max(1.0, angle2 + angle1));
+  });
+}
+
+TYPED_TEST(RotationTest, CompoundCarriesTheSpin) {
+  this->for_each_pair([this](const auto& v2, double angle2, const auto& v1, double) {
+    // d(Lambda_2 Lambda_1) has the spin of d(Lambda_2) if Lambda_1 rests.
+    const auto d = this->samples_.template direction<TypeParam::components>();
+    const auto rate = derivative(TypeParam::compound(perturbed(v2, d), v1.template cast<Complex>().eval()));
+    const auto v21 = TypeParam::compound(v2, v1);
+    const auto tangent = TypeParam::tangent(v21);
+    const QuaternionT<double> q = TypeParam::quaternion(v21);
+    const double angle21 = 2 * std::atan2(q.vec().norm(), std::abs(q.w()));
+    // Towards the singular angle the rate is the small difference of terms that are larger by the condition.
+    const double condition = TypeParam::conversion_condition(angle21) * TypeParam::conversion_condition(angle2);
+    const double scale = std::max(size(tangent) * size(rate), TypeParam::term_size);
+    EXPECT_LE(distance(tangent * rate, TypeParam::tangent(v2) * d), 4 * roundoff * scale * condition);
   });
 }
 

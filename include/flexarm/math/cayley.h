@@ -103,6 +103,17 @@ inline Matrix3T<typename V::Scalar> xi_tangent(const Eigen::MatrixBase<V>& w, co
   return -so3::hat(Vector3T<S>(half * a)) - (half * image) * t.transpose();
 }
 
+/// Xi with d(S(w)^T a) = Xi dw for constant a.
+template <typename V, typename A>
+inline Matrix3T<typename V::Scalar> xi_tangent_transposed(const Eigen::MatrixBase<V>& w,
+                                                          const Eigen::MatrixBase<A>& a) {
+  using S = typename V::Scalar;
+  const Vector3T<S> t = w;
+  const S half = S(0.5) * detail::squared_cosine(t);
+  const Vector3T<S> image = tangent(t).transpose() * a;
+  return so3::hat(Vector3T<S>(half * a)) - (half * image) * t.transpose();
+}
+
 /// Xi with d(S(w)^-1 a) = Xi dw for constant a.
 template <typename V, typename A>
 inline Matrix3T<typename V::Scalar> xi_inverse_tangent(const Eigen::MatrixBase<V>& w, const Eigen::MatrixBase<A>& a) {
@@ -138,6 +149,12 @@ inline Vector3T<typename V::Scalar> to_rotation_vector(const Eigen::MatrixBase<V
 template <typename V>
 inline Matrix3T<typename V::Scalar> scaling_derivative(const Eigen::MatrixBase<V>& w) {
   return inverse_tangent(w) * so3::tangent(to_rotation_vector(w));
+}
+
+/// U(w)^-1, with dtheta = U^-1 dw: e e^T / (1 + w.w/4) + arctan(|w|/2) / (|w|/2) (I - e e^T), evaluated as T^-1 S.
+template <typename V>
+inline Matrix3T<typename V::Scalar> inverse_scaling_derivative(const Eigen::MatrixBase<V>& w) {
+  return so3::inverse_tangent(to_rotation_vector(w)) * tangent(w);
 }
 
 }  // namespace flexarm::cayley

@@ -315,6 +315,12 @@ inline Vector3T<typename M::Scalar> log(const Eigen::MatrixBase<M>& rotation) {
   return so3::log(quaternion_from_matrix(rotation));
 }
 
+/// Rotation vector theta21, |theta21| <= pi, with exp theta21 = exp theta2 exp theta1.
+template <typename V, typename U>
+inline Vector3T<typename V::Scalar> compound(const Eigen::MatrixBase<V>& theta2, const Eigen::MatrixBase<U>& theta1) {
+  return so3::log(exp_quaternion(theta2) * exp_quaternion(theta1));
+}
+
 /// Single operators; see the members of ExponentialMap of the same name.
 template <typename V>
 inline Matrix3T<typename V::Scalar> tangent(const Eigen::MatrixBase<V>& theta) {
