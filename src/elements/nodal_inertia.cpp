@@ -11,72 +11,81 @@ struct RotationIncrement {
   Matrix3 inverse_tangent;
 };
 RotationIncrement rotation_increment(const TimeRule& rule, const NodeStep& node) {
-  if (rule.rotation == RotationRule::TangentScaled) return {node.increment, node.inverse_tangent};
+  if (rule.body_rotation == RotationRule::TangentScaled) return {node.increment, node.inverse_tangent};
   const Vector3 unscaled = cayley::to_rotation_vector(node.increment);
   return {unscaled, so3::inverse_tangent(unscaled)};
 }
 
-NewmarkRule newmark_rule(const TimeRule& rule, double step) {
-  return {rule.beta, rule.gamma, step};
+MassPointState spin_state(const NodeState& state) {
+  return {state.angular_velocity, state.angular_acceleration};
 }
 
 }  // namespace
 
-NodalInertiaAction nodal_inertia_action(const NodalInertia& inertia, const TimeRule& rule, const NodeStep& node,
-                                        bool with_tangent) {
-  NodalInertiaAction action;
+NewmarkRule newmark_rule(const TimeRule& rule, double step) {
+  return {rule.beta, rule.gamma, step, rule.hht == HhtForm::Kinematics ? rule.alpha : 0.0};
+}
+
+NodalAction nodal_inertia_action(const NodalInertia& inertia, const TimeRule& rule, const NodeStep& node,
+                                 bool with_tangent) {
+  NodalAction action;
   const double h = node.step;
   const Matrix3& begin = node.begin.rotation;
   const Matrix3& end = node.end.rotation;
   const Vector3 displacement = node.end.position - node.begin.position;
   Matrix3 J = inertia.rotary;
   if (rule.nodal_rotary_inertia) J += inertia.beam_rotary;
-  const MassPointState spin{node.state.angular_velocity, node.state.angular_acceleration};
-
+  const MassPointState spin = spin_state(node.state);
+  RotaryRate rate;
   if (rule.is_incremental()) {
-    action.residual.head<3>() = inertia.mass * (2 / h) * (displacement / h - node.state.velocity);
-    action.translational = inertia.mass * 2 / (h * h);
+    const double factor = rule.velocity_factor();
+    action.residual.head<3>() = inertia.mass * (factor / h) * (displacement / h - node.state.velocity);
+    action.translational = inertia.mass * factor / (h * h);
+    if (J.isZero(0)) return action;
     const RotationIncrement increment = rotation_increment(rule, node);
-    if (!J.isZero(0)) {
-      const RotaryRate rate =
-          average_rotary_rate(J, begin, end, increment.value, increment.inverse_tangent, spin, h, with_tangent);
-      action.residual.tail<3>() = rate.moment;
-      if (with_tangent) action.rotational = rate.derivative;
-    }
-    if (!inertia.rotary_damping.isZero(0)) {
-      // Mean rotation of D Omega: its work on the increment is Omega.D Omega >= 0 because Lambda_0 Omega = Lambda_1
-      // Omega.
-      const Vector3 Omega = begin.transpose() * node.increment, D = inertia.rotary_damping * Omega / h;
-      const Matrix3 mean = 0.5 * (begin + end);
-      action.residual.tail<3>() += mean * D;
-      action.rotational += mean * inertia.rotary_damping * begin.transpose() * node.inverse_tangent / h -
-                           0.5 * so3::hat(Vector3(end * D));
-      action.dissipated = Omega.dot(D);
-    }
+    rate = average_rotary_rate(J, begin, end, increment.value, increment.inverse_tangent, spin, h, with_tangent);
+  } else {
+    const NewmarkRule newmark = newmark_rule(rule, h);
+    action.residual.head<3>() =
+        inertia.mass * newmark.acceleration(displacement, node.state.velocity, node.state.acceleration);
+    action.translational = inertia.mass * newmark.acceleration_slope();
+    if (J.isZero(0)) return action;
+    rate = rule.hht == HhtForm::None ? newmark_rotary_rate(J, begin, end, spin, newmark)
+                                     : momentum_rotary_rate(J, begin, end, spin, node.momentum_rate, newmark);
+  }
+  action.residual.tail<3>() = rate.moment;
+  if (with_tangent) action.rotational = rate.derivative;
+  return action;
+}
+
+NodalAction nodal_damping_action(const NodalInertia& inertia, const TimeRule& rule, const NodeStep& node) {
+  NodalAction action;
+  const Matrix3& D = inertia.rotary_damping;
+  if (D.isZero(0)) return action;
+  const Matrix3& begin = node.begin.rotation;
+  const Matrix3& end = node.end.rotation;
+  if (rule.is_incremental()) {
+    // Mean rotation of D Omega: its work on the increment is Omega.D Omega >= 0 because Lambda_0 Omega = Lambda_1
+    // Omega.
+    const Vector3 Omega = begin.transpose() * node.increment, rate = D * Omega / node.step;
+    const Matrix3 mean = 0.5 * (begin + end);
+    action.residual.tail<3>() = mean * rate;
+    action.rotational =
+        mean * D * begin.transpose() * node.inverse_tangent / node.step - 0.5 * so3::hat(Vector3(end * rate));
+    action.dissipated = Omega.dot(rate);
     return action;
   }
-
-  const NewmarkRule newmark = newmark_rule(rule, h);
-  action.residual.head<3>() =
-      inertia.mass * newmark.acceleration(displacement, node.state.velocity, node.state.acceleration);
-  action.translational = inertia.mass * newmark.acceleration_slope();
-  if (!J.isZero(0)) {
-    const RotaryRate rate = newmark_rotary_rate(J, begin, end, spin, newmark);
-    action.residual.tail<3>() = rate.moment;
-    action.rotational = rate.derivative;
-  }
-  if (!inertia.rotary_damping.isZero(0)) {
-    const Vector3 increment = so3::log(Matrix3(end * begin.transpose()));
-    const Vector3 A =
-        newmark.acceleration(begin.transpose() * increment, spin.angular_velocity, spin.angular_acceleration);
-    const Vector3 W = newmark.velocity(spin.angular_velocity, spin.angular_acceleration, A);
-    const Vector3 moment = end * (inertia.rotary_damping * W);
-    action.residual.tail<3>() += moment;
-    action.rotational +=
-        end * inertia.rotary_damping * begin.transpose() * so3::inverse_tangent(increment) * newmark.velocity_slope() -
-        so3::hat(moment);
-    action.dissipated = moment.dot(increment);
-  }
+  const NewmarkRule newmark = newmark_rule(rule, node.step);
+  const MassPointState spin = spin_state(node.state);
+  const Vector3 increment = so3::log(Matrix3(end * begin.transpose()));
+  const Vector3 A =
+      newmark.acceleration(begin.transpose() * increment, spin.angular_velocity, spin.angular_acceleration);
+  const Vector3 moment = end * (D * newmark.velocity(spin.angular_velocity, spin.angular_acceleration, A));
+  action.residual.tail<3>() = (1 + newmark.alpha) * moment - newmark.alpha * (begin * (D * spin.angular_velocity));
+  action.rotational =
+      (1 + newmark.alpha) *
+      (end * D * begin.transpose() * so3::inverse_tangent(increment) * newmark.velocity_slope() - so3::hat(moment));
+  action.dissipated = action.residual.tail<3>().dot(increment);
   return action;
 }
 
@@ -87,7 +96,8 @@ NodeState advanced(const TimeRule& rule, const NodeStep& node) {
   const Vector3 displacement = node.end.position - node.begin.position;
   const Matrix3 to_material = node.begin.rotation.transpose();
   if (rule.is_incremental()) {
-    out.velocity = (2 / node.step) * displacement - node.state.velocity;
+    const double factor = rule.velocity_factor();
+    out.velocity = (factor / node.step) * displacement - (factor - 1) * node.state.velocity;
     out.angular_velocity =
         (2 / node.step) * (to_material * rotation_increment(rule, node).value) - node.state.angular_velocity;
   } else {

@@ -84,7 +84,8 @@ void StepSystem::accept(State& state) {
   for (std::size_t index = 0; index < model_.coordinates.size(); ++index) {
     const Coordinate& coordinate = model_.coordinates[index];
     if (coordinate.motion >= 0)
-      applied_[index] += assembler_.residual(dof_.variable_of_joint(coordinate.joint))[coordinate.component];
+      applied_[index] +=
+          assembler_.residual(dof_.variable_of_joint(coordinate.joint))[coordinate.component] / effort_weight();
   }
   state.work += work();
   state.dissipated += dissipated_;
@@ -107,16 +108,24 @@ void StepSystem::accept(State& state) {
 
   for (std::size_t i = 0; i < end_.size(); ++i)
     state.nodes[i] =
-        advanced(scheme_, {begin_[i], end_[i], state.nodes[i], increments_[i], inverse_tangents_[i], step_});
+        advanced(scheme_, {begin_[i], end_[i], state.nodes[i], increments_[i], inverse_tangents_[i], step_, {}});
   std::copy(released_.begin(), released_.end(), state.released.begin());
   std::copy(applied_.begin(), applied_.end(), state.efforts.begin());
   if (!scheme_.nodal_rotary_inertia)
     std::copy(end_mass_points_.begin(), end_mass_points_.end(), state.mass_points.begin());
   if (!scheme_.is_incremental())
     std::copy(end_strain_rates_.begin(), end_strain_rates_.end(), state.strain_rates.begin());
+  std::copy(end_strain_memory_.begin(), end_strain_memory_.end(), state.strain_memory.begin());
+  reference_.accept(state);
+  if (is_interpolated()) {
+    std::copy(end_forces_.begin(), end_forces_.end(), state.forces.begin());
+    std::copy(end_reactions_.begin(), end_reactions_.end(), state.reactions.begin());
+    std::copy(end_momentum_rates_.begin(), end_momentum_rates_.end(), state.momentum_rates.begin());
+  }
   state.time += step_;
   std::swap(begin_points_, end_points_);
   std::swap(begin_mass_rotations_, end_mass_rotations_);
+  if (scheme_.hht == HhtForm::Kinematics) points_valid_ = false;  // those at hand belong to t_{n+1+alpha}
 }
 
 void StepSystem::accept_static(State& state) {
@@ -129,6 +138,8 @@ void StepSystem::accept_static(State& state) {
   std::copy(applied_.begin(), applied_.end(), state.efforts.begin());
   std::fill(state.mass_points.begin(), state.mass_points.end(), MassPointState());
   std::fill(state.strain_rates.begin(), state.strain_rates.end(), Vector6::Zero());
+  std::fill(state.strain_memory.begin(), state.strain_memory.end(), StrainMemory());
+  reference_.accept(state);
   state.last_step = 0;
   points_valid_ = false;
 }

@@ -9,11 +9,8 @@ namespace flexarm {
 
 void StepSystem::load_begin_configuration(const State& state) {
   state_ = &state;
-  for (std::size_t i = 0; i < state.nodes.size(); ++i) {
-    begin_[i].position = state.nodes[i].position;
-    begin_[i].orientation = state.nodes[i].orientation;
-    begin_[i].rotation = state.nodes[i].orientation.toRotationMatrix();
-  }
+  for (std::size_t i = 0; i < state.nodes.size(); ++i) begin_[i] = node_pose(state.nodes[i]);
+  reference_.begin(state);
   std::copy(begin_.begin(), begin_.end(), end_.begin());
   std::copy(state.released.begin(), state.released.end(), released_.begin());
 }
@@ -31,13 +28,16 @@ void StepSystem::compute_begin_points() {
     const LocalRotations<N> local(orientation);
     for (int k = 0; k < Element::kStiffnessPoints; ++k) {
       const auto& point = element.stiffness_points[k];
-      begin_points_[element.first_stiffness_point + k] =
-          point_kinematics(local.evaluate(point.shape, point.derivative), interpolate<N>(point.derivative, position),
-                           point.reference_strain);
+      const int index = element.first_stiffness_point + k;
+      begin_points_[index] = point_kinematics(
+          reference_.is_used() ? state_->stiffness_rotations[index] : local.evaluate(point.shape, point.derivative),
+          interpolate<N>(point.derivative, position), point.reference_strain);
     }
     for (int k = 0; k < Element::kMassPoints; ++k) {
       const auto& point = element.mass_points[k];
-      begin_mass_rotations_[element.first_mass_point + k] = local.evaluate(point.shape, point.derivative).rotation;
+      const int index = element.first_mass_point + k;
+      begin_mass_rotations_[index] = reference_.is_used() ? state_->mass_rotations[index].rotation
+                                                          : local.evaluate(point.shape, point.derivative).rotation;
     }
   });
   points_valid_ = true;
@@ -45,6 +45,8 @@ void StepSystem::compute_begin_points() {
 
 void StepSystem::compute_mid_functions() {
   // The middle as the velocities at the begin foresee it, to second order: explicit, so that the tangent stays simple.
+  // Where the functions are to be averaged with those of the end: the begin.
+  const double turned = scheme_.mid_functions == MidFunctions::Explicit ? 0.5 * step_ : 0.0;
   for_each_group(model_.beams, [&](const auto& group) {
     constexpr int N = std::decay_t<decltype(group.elements)>::value_type::kNodes;
     GroupFunctions<N>& functions = std::get<GroupFunctions<N>>(mid_functions_);
@@ -52,12 +54,22 @@ void StepSystem::compute_mid_functions() {
       std::array<Quaternion, N> orientation;
       for (int i = 0; i < N; ++i) {
         const int node = group.elements[e].nodes[i];
-        const Vector3 turn = 0.5 * step_ * state_->nodes[node].angular_velocity;
+        const Vector3 turn = turned * state_->nodes[node].angular_velocity;
         orientation[i] = begin_[node].orientation * so3::exp_quaternion(turn);
       }
       element_functions<N>(group.elements[e], orientation, functions[e]);
     }
   });
+}
+
+void StepSystem::compute_begin_rates() {
+  const NodePose world;
+  for (std::size_t j = 0; j < model_.joints.size(); ++j) {
+    const JointMap& joint = model_.joints[j];
+    const Vector6 master = joint.master < 0 ? Vector6(Vector6::Zero()) : spatial_velocity(state_->nodes[joint.master]);
+    begin_rates_[j] = released_rates(joint, joint.master < 0 ? world : begin_[joint.master], released_[j], master,
+                                     spatial_velocity(state_->nodes[joint.slave]));
+  }
 }
 
 void StepSystem::begin(const State& state, double step, Guess guess) {
@@ -66,25 +78,12 @@ void StepSystem::begin(const State& state, double step, Guess guess) {
   load_factor_ = 1;
   load_begin_configuration(state);
   if (!points_valid_) compute_begin_points();
-  if (scheme_.stress == StressRule::Average || scheme_.stress == StressRule::DiscreteGradient) compute_mid_functions();
-  const double time = scheme_.is_incremental() ? state.time + 0.5 * step : state.time + step;
+  if (scheme_.stress == StressRule::Conjugate) compute_mid_functions();
   for (std::size_t i = 0; i < model_.histories.size(); ++i) {
-    history_values_[i] = model_.histories[i](time);
+    history_values_[i] = model_.histories[i](state.time + load_time() * step);
     if (!scheme_.is_incremental()) begin_history_values_[i] = model_.histories[i](state.time);
   }
-  if (!scheme_.is_incremental()) {
-    for (std::size_t j = 0; j < model_.joints.size(); ++j) {
-      const JointMap& joint = model_.joints[j];
-      const auto velocity = [&](int node) {
-        Vector6 v = Vector6::Zero();
-        if (node >= 0) v << state.nodes[node].velocity, begin_[node].rotation * state.nodes[node].angular_velocity;
-        return v;
-      };
-      const NodePose world;
-      begin_rates_[j] = released_rates(joint, joint.master < 0 ? world : begin_[joint.master], released_[j],
-                                       velocity(joint.master), velocity(joint.slave));
-    }
-  }
+  if (!scheme_.is_incremental()) compute_begin_rates();
   if (guess == Guess::Extrapolated) extrapolate();
   set_prescribed(state.time + step);
   set_slaves();
@@ -96,6 +95,7 @@ void StepSystem::begin_static(const State& state, double load_factor) {
   step_ = 0;
   load_factor_ = load_factor;
   load_begin_configuration(state);
+  if (reference_.is_used()) compute_begin_points();
   for (std::size_t i = 0; i < model_.histories.size(); ++i) history_values_[i] = model_.histories[i](0.0);
   set_prescribed(0.0);
   set_slaves();
@@ -109,7 +109,7 @@ void StepSystem::set_prescribed(double time) {
 
 void StepSystem::extrapolate() {
   const State& state = *state_;
-  const bool has_last = state.last_step > 0 && state.last_increment.size() == static_cast<std::size_t>(dof_.unknowns);
+  const bool has_last = state.last_step != 0 && state.last_increment.size() == static_cast<std::size_t>(dof_.unknowns);
   const double ratio = has_last ? step_ / state.last_step : 0;
   const auto entry = [&](int variable, int k) {
     const int equation = dof_.equation[dof_.first[variable] + k];

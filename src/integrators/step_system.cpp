@@ -3,10 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "flexarm/elements/conserving_beam.h"
 #include "flexarm/elements/load.h"
-#include "flexarm/elements/nodal_inertia.h"
-#include "flexarm/elements/rotary_inertia.h"
 #include "flexarm/joints/joint_forces.h"
 #include "flexarm/math/cayley.h"
 #include "flexarm/math/so3.h"
@@ -23,12 +20,19 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme)
       released_(model.initial_released),
       increments_(model.nodes.size(), Vector3::Zero()),
       inverse_tangents_(model.nodes.size(), Matrix3::Identity()),
+      reference_(model, scheme),
       begin_points_(model.stiffness_point_count),
       end_points_(model.stiffness_point_count),
       begin_mass_rotations_(model.mass_point_count),
       end_mass_rotations_(model.mass_point_count),
       end_mass_points_(model.mass_point_count),
       end_strain_rates_(model.stiffness_point_count, Vector6::Zero()),
+      end_strain_memory_(scheme.dissipation.any() ? model.stiffness_point_count : 0),
+      interpolated_(model.nodes),
+      interpolated_spins_(model.nodes.size(), Matrix3::Identity()),
+      end_forces_(model.nodes.size(), Vector6::Zero()),
+      end_reactions_(model.nodes.size(), Vector6::Zero()),
+      end_momentum_rates_(model.mass_point_count + model.nodes.size(), Vector3::Zero()),
       history_values_(model.histories.size()),
       begin_history_values_(model.histories.size()),
       applied_(model.coordinates.size(), 0.0),
@@ -40,114 +44,65 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme)
   });
 }
 
-template <int Nodes>
-void StepSystem::gather_nodes(const BeamElement<Nodes>& element, ElementNodes<Nodes>& nodes) const {
-  for (int i = 0; i < Nodes; ++i) {
-    const int node = element.nodes[i];
-    nodes.begin[i] = begin_[node].position;
-    nodes.end[i] = end_[node].position;
-    nodes.orientation[i] = end_[node].orientation;
-    nodes.increment[i] = increments_[node];
-    nodes.increment_inverse_tangent[i] = inverse_tangents_[node];
-    nodes.velocity[i] = state_->nodes[node].velocity;
-    nodes.acceleration[i] = state_->nodes[node].acceleration;
+NodeStep StepSystem::node_step(std::size_t node) const {
+  NodeStep step{begin_[node], end_[node], state_->nodes[node], increments_[node], inverse_tangents_[node], step_};
+  if (is_interpolated()) step.momentum_rate = state_->momentum_rates[model_.mass_point_count + node];
+  return step;
+}
+
+void StepSystem::add_nodal_force(int node, const Vector6& force, double translational,
+                                 Eigen::Matrix<double, 6, 3> rotational, bool of_configuration, bool with_tangent) {
+  double factor = 1;
+  if (scheme_.hht != HhtForm::None) end_forces_[node] += force;
+  if (is_interpolated()) {
+    if (scheme_.hht != HhtForm::Kinematics) factor = 1 + scheme_.alpha;
+    if (scheme_.hht == HhtForm::Kinematics && of_configuration)
+      rotational = (rotational * interpolated_spins_[node]).eval();
   }
+  Eigen::Map<Vector6>(assembler_.residual(node)) += factor * force;
+  if (!with_tangent) return;
+  Eigen::Map<Matrix6> tangent(assembler_.diagonal_block(node));
+  tangent.topLeftCorner<3, 3>().diagonal().array() += factor * translational;
+  tangent.rightCols<3>() += factor * rotational;
 }
 
-template <int Nodes>
-void StepSystem::scatter(const BeamElement<Nodes>& element, const ElementSystem<Nodes>& system, bool with_tangent) {
-  dissipated_ += system.dissipated;
-  for (int i = 0; i < Nodes; ++i) {
-    Eigen::Map<Vector6>(assembler_.residual(element.nodes[i])) += system.residual.template segment<6>(6 * i);
-    for (int j = 0; j < Nodes && with_tangent; ++j)
-      Eigen::Map<Matrix6>(assembler_.element_block(element.first_block + i * Nodes + j)) +=
-          system.tangent.template block<6, 6>(6 * i, 6 * j);
+void StepSystem::add_nodal_forces(bool with_tangent) {
+  const std::vector<NodePose>& end = is_interpolated() ? interpolated_ : end_;
+  const Eigen::Matrix<double, 6, 3> none = Eigen::Matrix<double, 6, 3>::Zero();
+  for (std::size_t i = 0; i < end_.size(); ++i) {
+    const NodalInertia& inertia = model_.inertias[i];
+    const int node = static_cast<int>(i);
+    if (inertia.total_mass > 0) {
+      Vector6 weight = Vector6::Zero();
+      weight.head<3>() = -load_factor_ * inertia.total_mass * model_.gravity;
+      add_nodal_force(node, weight, 0, none, true, false);
+    }
+    if (static_ || inertia.rotary_damping.isZero(0)) continue;
+    const NodalAction damping = nodal_damping_action(inertia, scheme_, node_step(i));
+    Eigen::Matrix<double, 6, 3> rotational = none;
+    rotational.bottomRows<3>() = damping.rotational;
+    add_nodal_force(node, damping.residual, 0, rotational, false, with_tangent);
+    dissipated_ += damping.dissipated;
   }
-}
-
-template <int Nodes>
-void StepSystem::add_rotary(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, bool with_tangent,
-                            ElementSystem<Nodes>& system) {
-  const int first = element.first_mass_point;
-  const auto rate = [&](int k, const Matrix3& begin, const Matrix3& end) {
-    const MassPointState& state = state_->mass_points[first + k];
-    RotaryRate r;
-    if (scheme_.is_incremental()) {
-      const Vector3 increment = so3::log(Matrix3(end * begin.transpose()));
-      r = average_rotary_rate(element.inertia, begin, end, increment, so3::inverse_tangent(increment), state, step_);
-    } else {
-      r = newmark_rotary_rate(element.inertia, begin, end, state, {scheme_.beta, scheme_.gamma, step_});
-    }
-    end_mass_points_[first + k] = r.end;
-    return r;
-  };
-  add_rotary_inertia<Nodes>(element, nodes, &begin_mass_rotations_[first], rate, with_tangent,
-                            &end_mass_rotations_[first], system);
-}
-
-template <class Stress>
-void StepSystem::add_conserving_beams(bool with_tangent) {
-  for_each_group(model_.beams, [&](const auto& group) {
-    constexpr int N = std::decay_t<decltype(group.elements)>::value_type::kNodes;
-    const GroupFunctions<N>& functions = std::get<GroupFunctions<N>>(mid_functions_);
-    ElementNodes<N> nodes;
-    ElementSystem<N> system;
-    for (std::size_t e = 0; e < group.elements.size(); ++e) {
-      const BeamElement<N>& element = group.elements[e];
-      gather_nodes(element, nodes);
-      conserving_beam<Stress, N>(element, nodes, functions[e], &begin_points_[element.first_stiffness_point], step_,
-                                 with_tangent, &end_points_[element.first_stiffness_point], system);
-      if (!scheme_.nodal_rotary_inertia) add_rotary(element, nodes, with_tangent, system);
-      scatter(element, system, with_tangent);
-    }
-  });
-}
-
-void StepSystem::add_endpoint_beams(bool with_tangent) {
-  const NewmarkRule rule{scheme_.beta, scheme_.gamma, step_};
-  for_each_element(model_.beams, [&](const auto& element) {
-    constexpr int N = std::decay_t<decltype(element)>::kNodes;
-    const int first = element.first_stiffness_point;
-    ElementNodes<N> nodes;
-    ElementSystem<N> system;
-    system.set_zero();
-    gather_nodes(element, nodes);
-    endpoint_internal<N>(element, nodes, static_ ? nullptr : &rule, &begin_points_[first],
-                         state_->strain_rates.data() + first, with_tangent, &end_points_[first],
-                         &end_strain_rates_[first], system);
-    if (!static_) {
-      newmark_translation<N>(element, nodes, rule, with_tangent, system);
-      add_rotary(element, nodes, with_tangent, system);
-    }
-    scatter(element, system, with_tangent);
-  });
+  const LoadPoint point = static_ || !scheme_.is_incremental() ? LoadPoint::End : LoadPoint::Mean;
+  for (const NodalLoad& load : model_.loads) {
+    const LoadAction action = load_action(load, load_factor_ * history_values_[load.history],
+                                          begin_[load.node].rotation, end[load.node].rotation, point);
+    add_nodal_force(load.node, -action.wrench, 0, -action.derivative, true, with_tangent);
+  }
 }
 
 void StepSystem::add_nodal_inertia(bool with_tangent) {
   for (std::size_t i = 0; i < end_.size(); ++i) {
     const NodalInertia& inertia = model_.inertias[i];
-    Eigen::Map<Vector6> residual(assembler_.residual(static_cast<int>(i)));
-    residual.head<3>() -= load_factor_ * inertia.total_mass * model_.gravity;
-    if (static_ || inertia.empty()) continue;
-    const NodalInertiaAction action = nodal_inertia_action(
-        inertia, scheme_, {begin_[i], end_[i], state_->nodes[i], increments_[i], inverse_tangents_[i], step_},
-        with_tangent);
-    residual += action.residual;
-    dissipated_ += action.dissipated;
+    if (inertia.empty()) continue;
+    const NodalAction action = nodal_inertia_action(inertia, scheme_, node_step(i), with_tangent);
+    Eigen::Map<Vector6>(assembler_.residual(static_cast<int>(i))) += action.residual;
+    end_momentum_rates_[model_.mass_point_count + i] = action.residual.tail<3>();
     if (!with_tangent) continue;
     Eigen::Map<Matrix6> tangent(assembler_.diagonal_block(static_cast<int>(i)));
     tangent.topLeftCorner<3, 3>().diagonal().array() += action.translational;
     tangent.bottomRightCorner<3, 3>() += action.rotational;
-  }
-}
-
-void StepSystem::add_loads(bool with_tangent) {
-  const LoadPoint point = static_ || !scheme_.is_incremental() ? LoadPoint::End : LoadPoint::Mean;
-  for (const NodalLoad& load : model_.loads) {
-    const LoadAction action = load_action(load, load_factor_ * history_values_[load.history],
-                                          begin_[load.node].rotation, end_[load.node].rotation, point);
-    Eigen::Map<Vector6>(assembler_.residual(load.node)) -= action.wrench;
-    if (with_tangent) Eigen::Map<Matrix6>(assembler_.diagonal_block(load.node)).rightCols<3>() -= action.derivative;
   }
 }
 
@@ -183,13 +138,15 @@ void StepSystem::add_joint_efforts(int j, bool with_tangent) {
     const PassiveEffort passive = passive_effort(coordinate, step);
     dissipated_ += passive.dissipated;
     applied_[index] = effort_at(coordinate, index);
-    residual[k] -= applied_[index] + passive.effort;
-    if (!with_tangent || passive.slope == 0) continue;
+    const double weight = effort_weight();
+    residual[k] -= weight * (applied_[index] + passive.effort);
+    const double slope = weight * passive.slope;
+    if (!with_tangent || slope == 0) continue;
     if (coordinate.is_angle) {  // the increment varies as S^{-1} spin
       const Vector3 rotation = change.tail<3>();
-      tangent.row(k).tail<3>() -= passive.slope * cayley::inverse_tangent(rotation).row(k - (count - 3));
+      tangent.row(k).tail<3>() -= slope * cayley::inverse_tangent(rotation).row(k - (count - 3));
     } else {
-      tangent(k, k) -= passive.slope;
+      tangent(k, k) -= slope;
     }
   }
 }
@@ -203,7 +160,7 @@ void StepSystem::fold_joints(bool with_tangent) {
     const NodePose& end = joint.master < 0 ? world : end_[joint.master];
     if (!static_ && scheme_.is_incremental())
       incremental_maps(joint, joint.master < 0 ? world : begin_[joint.master], end, state_->released[j], released_[j],
-                       g, maps, with_tangent);
+                       g, maps, with_tangent, scheme_.arm_weight());
     else
       variational_maps(joint, end, released_[j], g, maps);
     assembler_.fold(j, maps, with_tangent);
@@ -212,30 +169,43 @@ void StepSystem::fold_joints(bool with_tangent) {
   assembler_.fold_mimics(with_tangent);
 }
 
+void StepSystem::initialise(State& state) {
+  reference_.initialise(state);
+  if (scheme_.dissipation.any()) initialise_strain_memory(state);
+  if (scheme_.hht == HhtForm::None) return;
+  state.forces.assign(state.nodes.size(), Vector6::Zero());
+  begin_static(state, 1);
+  compute_begin_points();
+  evaluate(false);
+  state.forces = end_forces_;
+  initialise_momentum_rates(state);
+  points_valid_ = false;
+}
+
 bool StepSystem::evaluate(bool with_tangent) {
   assembler_.set_zero(with_tangent);
   dissipated_ = 0;
   if (with_tangent && !static_)
     for (std::size_t i = 0; i < increments_.size(); ++i) inverse_tangents_[i] = cayley::inverse_tangent(increments_[i]);
-  if (static_)
-    add_endpoint_beams(with_tangent);
+  std::fill(end_forces_.begin(), end_forces_.end(), Vector6::Zero());
+  if (is_interpolated()) interpolate_configuration();
+  reference_.set_trial(is_interpolated() ? interpolated_ : end_);
+  if (static_ || scheme_.stress == StressRule::EndPoint)
+    add_endpoint_forces(with_tangent);
+  else if (scheme_.stress != StressRule::Conjugate)
+    add_momentum_beams(with_tangent);
+  else if (scheme_.correction == EnergyCorrection::Multiplier)
+    add_conserving_beams<true>(with_tangent);
   else
-    switch (scheme_.stress) {
-      case StressRule::EndPoint:
-        add_endpoint_beams(with_tangent);
-        break;
-      case StressRule::Average:
-        add_conserving_beams<AverageStress>(with_tangent);
-        break;
-      case StressRule::DiscreteGradient:
-        add_conserving_beams<DiscreteGradientStress>(with_tangent);
-        break;
-      case StressRule::Exponential:
-        add_conserving_beams<ExponentialMoment>(with_tangent);
-        break;
-    }
-  add_nodal_inertia(with_tangent);
-  add_loads(with_tangent);
+    add_conserving_beams<false>(with_tangent);
+  add_nodal_forces(with_tangent);
+  if (is_interpolated()) subtract_begin_forces(with_tangent);
+  if (!static_) add_nodal_inertia(with_tangent);
+  if (!static_ && scheme_.stress == StressRule::EndPoint) {
+    if (scheme_.hht == HhtForm::Kinematics) reference_.set_trial(end_);
+    add_newmark_inertia(with_tangent);
+  }
+  if (is_interpolated()) shift_reactions();
   fold_joints(with_tangent);
   assembler_.gather(residual_);
   if (with_tangent) assembler_.gather_tangent();

@@ -20,6 +20,9 @@ constexpr int kPatience = 5;
 constexpr double kStalled = 0.5;
 /// Scaled updates cannot be expected to become smaller than this.
 constexpr double kRoundOff = 1e-15;
+/// Suzuki's composition of order four: parts of a step, the middle one runs backwards.
+const double kOuterPart = 1 / (4 - std::cbrt(4.0));
+const double kComposition[] = {kOuterPart, kOuterPart, 1 - 4 * kOuterPart, kOuterPart, kOuterPart};
 /// Converged sub-steps after which the step is doubled again.
 constexpr int kGoodStepsToDouble = 2;
 
@@ -37,6 +40,8 @@ const char* to_string(StepResult::Reason reason) {
       return "a quantity is not finite";
     case StepResult::Reason::RotationTooLarge:
       return "a node turns by more than 90 degrees in one step";
+    case StepResult::Reason::EnergyDefect:
+      return "the step's energy defect is too large to be closed by scaling the velocities";
   }
   return "unknown";
 }
@@ -49,6 +54,7 @@ Stepper::Stepper(const Model& model, const Scheme& scheme, const StepSettings& s
       solver_(system_.assembler().unknowns(), system_.assembler().column_starts(), system_.assembler().row_indices()),
       update_(system_.assembler().unknowns()) {
   update_norms_.reserve(settings.max_iterations + 1);
+  if (scheme.scales_velocities) scaling_.emplace(model, scheme);
 }
 
 void Stepper::invalidate() {
@@ -87,7 +93,7 @@ bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
     update_norms_.push_back(norm);
     if (norm > kDivergence * std::max(update_norms_.front(), 1e-3)) return fail(Reason::NoConvergence);
     // A steep law (friction near sticking, the touch of a stop) makes full updates jump to and fro; statics has none.
-    if (system_.step() > 0 && iteration >= kPatience && contraction > kStalled) update_ *= 0.5;
+    if (system_.step() != 0 && iteration >= kPatience && contraction > kStalled) update_ *= 0.5;
     system_.update(update_);
     // What remains after this update, by the rate of the last two: new factors square the error, kept ones contract it.
     const double rate = std::min(contraction, 1.0);
@@ -103,6 +109,28 @@ bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
 }
 
 bool Stepper::sub_step(State& state, double step, StepResult& result) {
+  if (!scheme_.is_composition && !scaling_) return simple_step(state, step, result);
+  before_ = state;
+  const auto fail = [&] {
+    state = before_;
+    invalidate();
+    return false;
+  };
+  if (scheme_.is_composition) {
+    for (const double part : kComposition)
+      if (!simple_step(state, part * step, result)) return fail();
+    state.time = before_.time + step;
+  } else if (!simple_step(state, step, result)) {
+    return false;
+  }
+  if (scaling_ && !scaling_->apply(before_, state)) {
+    result.reason = StepResult::Reason::EnergyDefect;
+    return fail();
+  }
+  return true;
+}
+
+bool Stepper::simple_step(State& state, double step, StepResult& result) {
   struct Attempt {
     StepSystem::Guess guess;
     bool reuse;
@@ -184,6 +212,11 @@ StepResult Stepper::solve_static(State& state, int load_steps) {
   result.reason = StepResult::Reason::None;
   result.converged = true;
   return result;
+}
+
+void Stepper::initialise(State& state) {
+  if (!scheme_.is_incremental()) initialise_accelerations(state);
+  system_.initialise(state);
 }
 
 void Stepper::initialise_accelerations(State& state) {

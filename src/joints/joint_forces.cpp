@@ -40,7 +40,7 @@ PassiveEffort stop_effort(const LimitStop& stop, double gap_begin, double gap_en
 
 PassiveEffort passive_effort(const Coordinate& coordinate, const CoordinateStep& change) {
   PassiveEffort out;
-  if (change.step > 0 && (coordinate.damping > 0 || coordinate.friction > 0)) {
+  if (change.step != 0 && (coordinate.damping > 0 || coordinate.friction > 0)) {
     const double rate = (change.increment / change.step - (1 - change.gamma) * change.begin_rate) / change.gamma;
     const double rate_slope = 1 / (change.gamma * change.step);
     const double t = std::tanh(rate / kFrictionSpeed);

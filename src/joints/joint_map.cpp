@@ -123,17 +123,18 @@ void variational_maps(const JointMap& joint, const NodePose& master, const Relea
 }
 
 void incremental_maps(const JointMap& joint, const NodePose& master_begin, const NodePose& master_end,
-                      const Released& begin, const Released& end, const Vector6& g, FoldMaps& maps, bool with_tangent) {
+                      const Released& begin, const Released& end, const Vector6& g, FoldMaps& maps, bool with_tangent,
+                      double arm_weight) {
   const int count = released_count(joint.kind);
   const JointFrame frame_begin = joint_frame(joint, master_begin, begin), frame = joint_frame(joint, master_end, end);
-  maps.lever_left = 0.5 * (frame_begin.lever + frame.lever);
+  maps.lever_left = (1 - arm_weight) * frame_begin.lever + arm_weight * frame.lever;
   maps.lever_right = frame.lever;
   if (with_tangent)
     set_sizes(count, maps);
   else
     maps.left.setZero(6, count);
   const Vector3 force = g.head<3>(), moment = g.tail<3>();
-  if (with_tangent) maps.master_master.bottomRightCorner<3, 3>() = 0.5 * hat(force) * hat(frame.lever);
+  if (with_tangent) maps.master_master.bottomRightCorner<3, 3>() = arm_weight * hat(force) * hat(frame.lever);
   if (joint.kind == JointMapKind::Rigid) return;
 
   // Rows conjugate to the relative translation and to the tangent-scaled relative rotation, joint frame.
@@ -172,13 +173,13 @@ void incremental_maps(const JointMap& joint, const NodePose& master_begin, const
         rate.value * axis_moment * 0.25 * c * w_joint.dot(joint.rotation) * (1 + 0.25 * turn.squaredNorm());
     maps.released_master.row(0).tail<3>() =
         joint.translation.transpose() * row_r_master + rate.value * joint.rotation.transpose() * row_phi_master;
-    maps.master_released.col(0).tail<3>() = -0.5 * force.cross(travel);
+    maps.master_released.col(0).tail<3>() = -arm_weight * force.cross(travel);
     return;
   }
   if (joint.kind == JointMapKind::Free) {
     maps.right.topLeftCorner<3, 3>() = frame.rotation;
     maps.released_master.topRightCorner<3, 3>() = row_r_master;
-    maps.master_released.bottomLeftCorner<3, 3>() = -0.5 * hat(force) * frame.rotation;
+    maps.master_released.bottomLeftCorner<3, 3>() = -arm_weight * hat(force) * frame.rotation;
   }
   maps.right.bottomRightCorner<3, 3>() = frame.rotation;
   maps.released_released.bottomRightCorner<3, 3>() =

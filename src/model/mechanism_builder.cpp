@@ -260,7 +260,6 @@ void MechanismBuilder::place_beam(int link, int first_node) {
   beam.order = description.order;
   beam.centroid = mesh.mesh.centroid;
   const MeshNode& last = mesh.mesh.nodes.back();
-  beam.section_in_link = last.pose.orientation;
   beam.tip = {first_node + static_cast<int>(mesh.mesh.nodes.size()) - 1,
               Pose{-mesh.mesh.centroid, last.pose.orientation.conjugate()}};
   beam.length = mesh.centreline.length();

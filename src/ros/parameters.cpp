@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "flexarm/scene/integrator_options.h"
 #include "flexarm/scene/urdf_reader.h"
 
 namespace flexarm::node {
@@ -63,7 +64,9 @@ class ParameterReader {
 
 void override_integrator(const ros::NodeHandle& private_node, scene::IntegratorDescription& integrator) {
   ParameterReader reader(private_node);
-  reader.read("scheme", integrator.scheme);
+  std::string scheme = integrator.scheme;
+  reader.read("scheme", scheme);
+  integrator = scene::with_scheme(integrator, scheme);
   reader.read("step", integrator.step);
   reader.read("tolerance", integrator.tolerance);
   reader.read("max_iterations", integrator.max_iterations, 1);

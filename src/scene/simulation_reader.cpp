@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "flexarm/scene/integrator_options.h"
 #include "scene/extension_reader.h"
 #include "scene/limits.h"
 
@@ -10,27 +11,50 @@ namespace {
 
 constexpr NumberRange kUnitInterval{"from 0 to 1", [](double x) { return x >= 0 && x <= 1; }};
 
-constexpr const char* kSchemes[] = {"auto", "em", "em0", "m1", "newmark"};
-constexpr const char* kPlannedSchemes[] = {"em_scaled", "m2",    "std",  "beta1", "beta2", "hht1", "hht2",
-                                           "hht3",      "sm_em", "alg1", "alg2",  "alg3",  "alg4", "sme"};
+/// beta of Newmark's method divides: the explicit beta = 0 is another algorithm.
+constexpr NumberRange kHhtRange{"from -1/3 to 0", [](double x) { return x >= -1.0 / 3 && x <= 0; }};
+
+std::optional<Interpolation> read_interpolation(const XmlElement& integrator) {
+  const std::string name = integrator.text("interpolation").value_or("");
+  if (name == "local") return Interpolation::Local;
+  if (name == "total") return Interpolation::Total;
+  if (name == "incremental") return Interpolation::Incremental;
+  if (name == "iterative") return Interpolation::Iterative;
+  integrator.attribute_error("interpolation", "interpolation must be one of local, total, incremental, iterative");
+  return std::nullopt;
+}
+
+std::optional<WeakForm> read_weak_form(const XmlElement& integrator) {
+  const std::string name = integrator.text("weak_form").value_or("");
+  if (name == "spin") return WeakForm::Spin;
+  if (name == "additive") return WeakForm::Additive;
+  integrator.attribute_error("weak_form", "weak_form must be 'spin' or 'additive'");
+  return std::nullopt;
+}
 
 void read_scheme(const XmlElement& integrator, IntegratorDescription& description) {
-  if (!integrator.has("scheme")) return;
-  const std::string name = integrator.text("scheme").value_or("");
-  const auto is_name = [&](const char* known) { return name == known; };
-  if (std::any_of(std::begin(kSchemes), std::end(kSchemes), is_name)) {
+  if (integrator.has("scheme")) {
+    const std::string name = integrator.text("scheme").value_or("");
+    const std::vector<std::string_view>& known = scheme_names();
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      integrator.attribute_error("scheme", fmt::format("scheme must be one of {}", fmt::join(known, ", ")));
+      return;
+    }
     description.scheme = name;
-  } else if (std::any_of(std::begin(kPlannedSchemes), std::end(kPlannedSchemes), is_name)) {
-    integrator.attribute_error(
-        "scheme",
-        fmt::format("this scheme is not yet supported in this version; supported are {}", fmt::join(kSchemes, ", ")));
-  } else {
-    integrator.attribute_error("scheme", fmt::format("scheme must be one of {}", fmt::join(kSchemes, ", ")));
   }
+  if (integrator.has("interpolation")) description.interpolation = read_interpolation(integrator);
+  if (integrator.has("weak_form")) description.weak_form = read_weak_form(integrator);
+  if (integrator.has("beta")) description.beta = integrator.number("beta", kPositive);
+  if (integrator.has("gamma")) description.gamma = integrator.number("gamma", kPositive);
+  if (integrator.has("alpha")) description.alpha = integrator.number("alpha", kHhtRange);
+  if (integrator.has("rho_infinity")) description.rho_infinity = integrator.number("rho_infinity", kUnitInterval);
+  for (const OptionConflict& conflict : option_conflicts(description))
+    integrator.attribute_error(conflict.attribute.c_str(), conflict.message);
 }
 
 void read_integrator(const XmlElement& integrator, IntegratorDescription& description) {
-  integrator.expect_only({"scheme", "step", "tolerance", "max_iterations", "max_halvings", "rho_infinity"});
+  integrator.expect_only({"scheme", "step", "tolerance", "max_iterations", "max_halvings", "interpolation", "weak_form",
+                          "beta", "gamma", "alpha", "rho_infinity"});
   read_scheme(integrator, description);
   description.step = integrator.number("step", kPositive, description.step);
   description.tolerance = integrator.number("tolerance", kPositive, description.tolerance);
@@ -38,7 +62,6 @@ void read_integrator(const XmlElement& integrator, IntegratorDescription& descri
     description.max_iterations = integrator.integer("max_iterations", 1, kMostNewtonIterations).value_or(1);
   if (integrator.has("max_halvings"))
     description.max_halvings = integrator.integer("max_halvings", 0, kMostHalvings).value_or(0);
-  if (integrator.has("rho_infinity")) description.rho_infinity = integrator.number("rho_infinity", kUnitInterval);
 }
 
 void read_gravity(const XmlElement& gravity, SceneDescription& scene) {

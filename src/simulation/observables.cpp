@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "flexarm/elements/beam_point.h"
-#include "flexarm/joints/joint_forces.h"
 #include "flexarm/math/quadrature.h"
 #include "flexarm/math/shape_functions.h"
 
@@ -26,10 +25,6 @@ struct ElementConfiguration {
   }
 };
 
-Matrix3 lumped_rotary(const NodalInertia& inertia, const Scheme& scheme) {
-  return scheme.nodal_rotary_inertia ? Matrix3(inertia.rotary + inertia.beam_rotary) : inertia.rotary;
-}
-
 /// Visits an element of a beam by its index in the group of its order.
 template <class Visit>
 void visit_element(const Model& model, const BeamLink& beam, int index, const Visit& visit) {
@@ -49,67 +44,6 @@ Pose section_pose(const ElementConfiguration<Nodes>& nodes, double xi) {
 }
 
 }  // namespace
-
-Energies energies(const Model& model, const Scheme& scheme, const State& state) {
-  Energies out;
-  out.work = state.work;
-  out.dissipated = state.dissipated;
-  for_each_element(model.beams, [&](const auto& element) {
-    constexpr int N = std::decay_t<decltype(element)>::kNodes;
-    const ElementConfiguration<N> nodes(element, state);
-    const LocalRotations<N> local(nodes.orientation);
-    for (const auto& point : element.stiffness_points) {
-      const Vector6 strain = point_kinematics(local.evaluate(point.shape, point.derivative),
-                                              interpolate<N>(point.derivative, nodes.position), point.reference_strain)
-                                 .strain;
-      out.strain += 0.5 * point.weight * strain.dot(element.stiffness * strain);
-    }
-    for (int i = 0; i < N; ++i)
-      for (int j = 0; j < N; ++j) out.kinetic += 0.5 * element.mass(i, j) * nodes.velocity[i].dot(nodes.velocity[j]);
-    for (int k = 0; k < N && !scheme.nodal_rotary_inertia; ++k) {
-      const Vector3& W = state.mass_points[element.first_mass_point + k].angular_velocity;
-      out.kinetic += 0.5 * element.mass_points[k].weight * W.dot(element.inertia * W);
-    }
-  });
-  for (std::size_t i = 0; i < model.nodes.size(); ++i) {
-    const NodalInertia& inertia = model.inertias[i];
-    const NodeState& node = state.nodes[i];
-    out.kinetic += 0.5 * inertia.mass * node.velocity.squaredNorm() +
-                   0.5 * node.angular_velocity.dot(lumped_rotary(inertia, scheme) * node.angular_velocity);
-    out.potential -= inertia.total_mass * model.gravity.dot(node.position);
-  }
-  for (const Coordinate& coordinate : model.coordinates)
-    out.strain += stop_energy(coordinate, state.released[coordinate.joint].displacement[coordinate.component % 3]);
-  return out;
-}
-
-Momenta momenta(const Model& model, const Scheme& scheme, const State& state) {
-  Momenta out;
-  for_each_element(model.beams, [&](const auto& element) {
-    constexpr int N = std::decay_t<decltype(element)>::kNodes;
-    const ElementConfiguration<N> nodes(element, state);
-    for (int i = 0; i < N; ++i)
-      for (int j = 0; j < N; ++j) {
-        out.linear += element.mass(i, j) * nodes.velocity[j];
-        out.angular += element.mass(i, j) * nodes.position[i].cross(nodes.velocity[j]);
-      }
-    if (scheme.nodal_rotary_inertia) return;
-    const LocalRotations<N> local(nodes.orientation);
-    for (int k = 0; k < N; ++k) {
-      const auto& point = element.mass_points[k];
-      const Vector3& W = state.mass_points[element.first_mass_point + k].angular_velocity;
-      out.angular += point.weight * (local.evaluate(point.shape, point.derivative).rotation * (element.inertia * W));
-    }
-  });
-  for (std::size_t i = 0; i < model.nodes.size(); ++i) {
-    const NodalInertia& inertia = model.inertias[i];
-    const NodeState& node = state.nodes[i];
-    out.linear += inertia.mass * node.velocity;
-    out.angular += inertia.mass * node.position.cross(node.velocity) +
-                   node.orientation * (lumped_rotary(inertia, scheme) * node.angular_velocity);
-  }
-  return out;
-}
 
 void beam_points(const Model& model, const State& state, const BeamLink& beam, int between,
                  std::vector<BeamPoint>& points) {

@@ -5,17 +5,10 @@
 
 #include "flexarm/joints/joint_map.h"
 #include "flexarm/math/so3.h"
+#include "flexarm/scene/integrator_options.h"
 
 namespace flexarm {
 namespace {
-
-Scheme scheme_of(const scene::SceneDescription& scene, const SimulationOptions& options) {
-  const std::string name = options.scheme.value_or(scene.integrator.scheme);
-  if (const std::optional<Scheme> scheme = find_scheme(name)) return *scheme;
-  std::string known = "auto";
-  for (const Scheme& scheme : schemes()) known += " " + std::string(scheme.name);
-  throw ModelError("unknown integration scheme '" + name + "', expected one of: " + known);
-}
 
 StepSettings settings_of(const scene::SceneDescription& scene, const SimulationOptions& options) {
   StepSettings settings;
@@ -34,8 +27,9 @@ StepSettings settings_of(const scene::SceneDescription& scene, const SimulationO
   return settings;
 }
 
-/// The scene with the step in use, which the stops' penalty must resolve.
+/// The scene with the scheme and the step in use; the stops' penalty must resolve the latter.
 scene::SceneDescription with_options(scene::SceneDescription scene, const SimulationOptions& options) {
+  if (options.scheme) scene.integrator = scene::with_scheme(scene.integrator, *options.scheme);
   scene.integrator.step = settings_of(scene, options).step;
   return scene;
 }
@@ -53,22 +47,15 @@ struct Simulation::Implementation {
 
   Implementation(scene::SceneDescription description, const SimulationOptions& options)
       : scene(with_options(std::move(description), options)),
-        scheme(scheme_of(scene, options)),
+        scheme(make_scheme(scene.integrator)),
         settings(settings_of(scene, options)),
         model(build_model(scene)),
         stepper(model, scheme, settings),
         initial(initial_state(model)) {
     for (const Coordinate& coordinate : model.coordinates) coordinate_names.push_back(coordinate.name);
     for (const LinkFrame& link : model.links) link_names.push_back(link.name);
-    if (!scheme.is_incremental()) stepper.initialise_accelerations(initial);
+    stepper.initialise(initial);
     state = initial;
-  }
-
-  Vector6 node_velocity(int node) const {
-    Vector6 velocity = Vector6::Zero();
-    if (node >= 0)
-      velocity << state.nodes[node].velocity, state.nodes[node].orientation * state.nodes[node].angular_velocity;
-    return velocity;
   }
 };
 
@@ -141,14 +128,11 @@ double Simulation::velocity(std::size_t index) const {
   const Coordinate& coordinate = model.coordinates.at(index);
   const JointMap& joint = model.joints[coordinate.joint];
   const State& state = implementation_->state;
-  NodePose master;
-  if (joint.master >= 0) {
-    master.position = state.nodes[joint.master].position;
-    master.orientation = state.nodes[joint.master].orientation;
-    master.rotation = master.orientation.toRotationMatrix();
-  }
-  return released_rates(joint, master, state.released[coordinate.joint], implementation_->node_velocity(joint.master),
-                        implementation_->node_velocity(joint.slave))[coordinate.component];
+  const bool has_master = joint.master >= 0;
+  const NodePose pose = has_master ? node_pose(state.nodes[joint.master]) : NodePose();
+  const Vector6 velocity = has_master ? spatial_velocity(state.nodes[joint.master]) : Vector6(Vector6::Zero());
+  return released_rates(joint, pose, state.released[coordinate.joint], velocity,
+                        spatial_velocity(state.nodes[joint.slave]))[coordinate.component];
 }
 
 double Simulation::effort(std::size_t index) const {

@@ -7,6 +7,7 @@
 #include "flexarm/integrators/stepper.h"
 #include "flexarm/joints/joint_forces.h"
 #include "integrators/mechanism.h"
+#include "support/scheme_variants.h"
 
 namespace flexarm {
 namespace {
@@ -34,6 +35,7 @@ void expect_consistent_tangent(StepSystem& system, double size) {
           system.evaluate(false);
           const Eigen::VectorXd residual = system.residual();
           system.update(-h * unit);
+          system.evaluate(false);  // all the way back: the iterative interpolation follows the path
           return residual;
         },
         difference_step * size);
@@ -47,7 +49,30 @@ Eigen::VectorXd random_update(int size, RandomSource& random, double scale) {
   return update;
 }
 
-class StepSystemOf : public ::testing::TestWithParam<Scheme> {};
+class StepSystemOf : public ::testing::TestWithParam<SchemeVariant> {
+ protected:
+  const Scheme& scheme() const { return GetParam().scheme; }
+  /// The state with what the scheme keeps in it, random where it may be.
+  State prepared(State state, StepSystem& system, RandomSource& random) {
+    system.initialise(state);
+    for (StrainMemory& memory : state.strain_memory) memory = {0.1 * random.vector6(), random.vector6()};
+    for (Vector6& force : state.forces) force = random.vector6();
+    if (scheme().hht != HhtForm::None) state.reactions.resize(state.nodes.size());
+    for (Vector6& reaction : state.reactions) reaction = random.vector6();
+    for (Vector3& rate : state.momentum_rates) rate = random.vector();
+    for (Vector3& rotation : state.total_rotations) rotation = 0.1 * random.vector();
+    return state;
+  }
+};
+
+/// A step that is symmetric in time leaves the variation of its test functions out of the tangent.
+class ConsistentTangent : public StepSystemOf {};
+std::vector<SchemeVariant> with_consistent_tangent() {
+  std::vector<SchemeVariant> variants;
+  for (const SchemeVariant& variant : scheme_variants(0.2))
+    if (variant.scheme.mid_functions == MidFunctions::Explicit) variants.push_back(variant);
+  return variants;
+}
 
 /// The mechanism without friction, which turns over increments too small for the differences.
 Model smooth_model() {
@@ -56,12 +81,12 @@ Model smooth_model() {
   return model;
 }
 
-TEST_P(StepSystemOf, TangentOfAStep) {
+TEST_P(ConsistentTangent, TangentOfAStep) {
   const Model model = smooth_model();
   RandomSource random(1);
-  State state = random_state(model, random, 0.15);
+  StepSystem system(model, scheme());
+  State state = prepared(random_state(model, random, 0.15), system, random);
   state.time = 0.3;
-  StepSystem system(model, GetParam());
   system.begin(state, 0.2, StepSystem::Guess::Extrapolated);
   system.update(random_update(system.assembler().unknowns(), random, 0.1));
   expect_consistent_tangent(system, 0.25);
@@ -69,29 +94,32 @@ TEST_P(StepSystemOf, TangentOfAStep) {
 
 // Slow enough that smooth friction is not saturated: its slope counts. The increment over which it changes is
 // step * speed = 0.03.
-TEST_P(StepSystemOf, TangentOfAStepWithStickingFriction) {
+TEST_P(ConsistentTangent, TangentOfAStepWithStickingFriction) {
   Model model = build_model(every_joint_scene(false));
   RandomSource random(2);
-  State state = random_state(model, random, 0.05);
+  StepSystem system(model, scheme());
+  State state = prepared(random_state(model, random, 0.05), system, random);
   for (NodeState& node : state.nodes) {
     node.velocity *= 1e-3;
     node.angular_velocity *= 1e-3;
     node.acceleration.setZero();
     node.angular_acceleration.setZero();
   }
-  StepSystem system(model, GetParam());
   system.begin(state, 30.0, StepSystem::Guess::Unchanged);
   system.update(random_update(system.assembler().unknowns(), random, 0.01));
-  expect_consistent_tangent(system, 0.03);
+  // A beta correction divides by a work of the increments, here 0.01: the residual changes its shape over a part of that.
+  const bool divides = scheme().correction == EnergyCorrection::AxialBeta ||
+                       scheme().correction == EnergyCorrection::FullBeta;
+  expect_consistent_tangent(system, divides ? 0.001 : 0.03);
 }
 
-TEST_P(StepSystemOf, TangentInsideAStop) {
+TEST_P(ConsistentTangent, TangentInsideAStop) {
   Model model = smooth_model();
   for (Coordinate& coordinate : model.coordinates)
     if (coordinate.limit) coordinate.limit = LimitStop{0.6, 3.0, 20.0, 0.5};  // the slider's travel is about zero
   RandomSource random(3);
-  const State state = random_state(model, random, 0.1);
-  StepSystem system(model, GetParam());
+  StepSystem system(model, scheme());
+  const State state = prepared(random_state(model, random, 0.1), system, random);
   system.begin(state, 0.2, StepSystem::Guess::Unchanged);
   system.update(random_update(system.assembler().unknowns(), random, 0.1));
   expect_consistent_tangent(system, 0.25);
@@ -102,8 +130,8 @@ TEST_P(StepSystemOf, TangentInsideAStop) {
 TEST_P(StepSystemOf, KinematicsHoldAfterAStep) {
   const Model model = build_model(every_joint_scene(false));
   RandomSource random(4);
-  State state = random_state(model, random, 0.1);
-  StepSystem system(model, GetParam());
+  StepSystem system(model, scheme());
+  State state = prepared(random_state(model, random, 0.1), system, random);
   system.begin(state, 0.2, StepSystem::Guess::Unchanged);
   system.update(random_update(system.assembler().unknowns(), random, 0.1));
   ASSERT_TRUE(system.evaluate(false));
@@ -135,8 +163,10 @@ TEST_P(StepSystemOf, KinematicsHoldAfterAStep) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(AllSchemes, StepSystemOf, ::testing::ValuesIn(schemes()),
-                         [](const auto& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(AllSchemes, StepSystemOf, ::testing::ValuesIn(scheme_variants(0.2)),
+                         [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(AllSchemes, ConsistentTangent, ::testing::ValuesIn(with_consistent_tangent()),
+                         [](const auto& info) { return info.param.name; });
 
 TEST(StepSystem, TangentOfStatics) {
   Model model = build_model(every_joint_scene(false));
@@ -283,10 +313,10 @@ TEST(Stepper, TurnsOfMoreThanNinetyDegreesAreSplit) {
 
 // ---------------------------------------------------------------- conservation by the whole system
 
-class ConservingSchemes : public ::testing::TestWithParam<Scheme> {};
+class ConservingSchemes : public ::testing::TestWithParam<SchemeVariant> {};
 
 TEST_P(ConservingSchemes, FreeMechanismKeepsMomentaAndEnergy) {
-  const Scheme& scheme = GetParam();
+  const Scheme& scheme = GetParam().scheme;
   if (!scheme.conserves_momenta) return;
   scene::SceneDescription scene = every_joint_scene(true);
   // Velocities that every joint allows come from released rates; the mimics' are left at rest.
@@ -295,8 +325,11 @@ TEST_P(ConservingSchemes, FreeMechanismKeepsMomentaAndEnergy) {
                           {"roll/2", 0, 0.9, {}},    {"flight/z", 0, 0.2, {}},   {"flight/ry", 0, 0.6, {}},
                           {"plane/x", 0, 0.3, {}},   {"plane/rz", 0, 0.9, {}},   {"throw/rx", 0, 0.5, {}}};
   const Model model = build_model(scene);
-  Stepper stepper(model, scheme, {1e-2, 1e-10, 20, 0});
+  // The thesis's beta divides by what vanishes where the axial strain rests; then it needs shorter steps, or fails.
+  const bool is_fragile = scheme.correction == EnergyCorrection::AxialBeta;
+  Stepper stepper(model, scheme, {1e-2, 1e-10, 20, is_fragile ? 5 : 0});
   State state = initial_state(model);
+  stepper.initialise(state);
   const Momenta before = momenta(model, scheme, state);
   const double energy = energies(model, scheme, state).total();
   ASSERT_GT(energy, 0.1);
@@ -313,11 +346,14 @@ TEST_P(ConservingSchemes, FreeMechanismKeepsMomentaAndEnergy) {
 }
 
 TEST_P(ConservingSchemes, EnergyBudgetCloses) {
-  const Scheme& scheme = GetParam();
+  const Scheme& scheme = GetParam().scheme;
   if (!scheme.conserves_energy) return;
-  const Model model = build_model(every_joint_scene(false));
+  scene::SceneDescription scene = every_joint_scene(false);
+  if (scheme.scales_velocities) scene.motions.clear();  // refused with them
+  const Model model = build_model(scene);
   Stepper stepper(model, scheme, {5e-3, 1e-10, 30, 3});
   State state = initial_state(model);
+  stepper.initialise(state);
   const double start = energies(model, scheme, state).total();
   for (int step = 0; step < 40; ++step) {
     ASSERT_TRUE(stepper.advance(state).converged) << step;
@@ -329,8 +365,8 @@ TEST_P(ConservingSchemes, EnergyBudgetCloses) {
   EXPECT_GT(std::abs(now.work), 1e-2);
 }
 
-INSTANTIATE_TEST_SUITE_P(AllSchemes, ConservingSchemes, ::testing::ValuesIn(schemes()),
-                         [](const auto& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(AllSchemes, ConservingSchemes, ::testing::ValuesIn(scheme_variants()),
+                         [](const auto& info) { return info.param.name; });
 
 }  // namespace
 }  // namespace flexarm

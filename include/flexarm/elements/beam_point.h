@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "flexarm/math/local_rotation.h"
+#include "flexarm/math/referenced_rotation.h"
 #include "flexarm/model/beam_element.h"
 
 namespace flexarm {
@@ -25,6 +26,11 @@ struct ElementNodes {
   std::array<Vector3, Nodes> increment;       ///< tangent-scaled rotation increments, Lambda_{n+1} = cay(w) Lambda_n
   std::array<Matrix3, Nodes> increment_inverse_tangent;  ///< S(w)^{-1}: dw = S^{-1} spin
   std::array<Vector3, Nodes> velocity, acceleration;     ///< at the begin [m/s, m/s^2]
+  /// Of the interpolations that measure rotations from a reference; the local one has none.
+  std::array<Vector3, Nodes> rotation_vector;
+  RotationParameters parameters = RotationParameters::Unscaled;
+  const InterpolatedRotation<double>* stiffness_reference = nullptr;  ///< per stiffness point of the element
+  const InterpolatedRotation<double>* mass_reference = nullptr;       ///< per mass point
 };
 
 /// Residual {f_i, phi_i} and its derivative with respect to {dr_j, spin_j}, node by node.
@@ -41,21 +47,31 @@ struct ElementSystem {
   }
 };
 
-/// Interpolated rotations of an element, with their variation only where a tangent is wanted.
+/// Interpolated rotations of an element, with their variation only where it is wanted.
 template <int Nodes>
 class ElementRotations {
  public:
-  ElementRotations(const std::array<Quaternion, Nodes>& orientation, bool with_variation) : local_(orientation) {
-    if (with_variation) variation_.emplace(local_);
+  ElementRotations(const ElementNodes<Nodes>& nodes, bool with_variation) {
+    if (nodes.stiffness_reference) {
+      referenced_.emplace(nodes.parameters, nodes.rotation_vector);
+    } else {
+      local_.emplace(nodes.orientation);
+      if (with_variation) variation_.emplace(*local_);
+    }
   }
+  /// `reference` is used by the interpolations that have one.
   InterpolatedRotation<double> evaluate(const NodalValues<Nodes>& shape, const NodalValues<Nodes>& derivative,
+                                        const InterpolatedRotation<double>* reference,
                                         GeneralisedShapeFunctions<Nodes>& generalised) const {
-    return variation_ ? variation_->evaluate(shape, derivative, generalised) : local_.evaluate(shape, derivative);
+    if (variation_) return variation_->evaluate(shape, derivative, generalised);
+    if (local_) return local_->evaluate(shape, derivative);
+    return referenced_->evaluate(shape, derivative, *reference, generalised);
   }
 
  private:
-  LocalRotations<Nodes> local_;
+  std::optional<LocalRotations<Nodes>> local_;
   std::optional<LocalRotationVariation<Nodes>> variation_;
+  std::optional<ReferencedRotations<Nodes>> referenced_;
 };
 
 template <int Nodes>

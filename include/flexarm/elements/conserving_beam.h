@@ -1,32 +1,19 @@
 #pragma once
 /// Beam residual and tangent over a step for the conserving family (beam.md 3.2, beyond.md 1):
-///   g_v^i = int {I^i' n,  I_t^i' m - I_t^i rbar' x n} ds,  n = Lambda_bar N_a,  m = A M_a,  rbar' the mid-point arm.
-/// Momenta are conserved for any stress N_a, M_a, any A and any test functions with sum I_t = 1; the policies below
-/// choose them.
+///   g_v^i = int {I^i' n,  I_t^i' m - I_t^i r'_* x n} ds,  n = Lambda_bar N_a,  m = A M_a.
+/// Momenta are conserved for any stress N_a, M_a, any A and any test functions with sum I_t = 1, if the arm r'_* suits
+/// the rule of the velocities. Here the EM family and what it shares with the momentum-conserving schemes of
+/// momentum_beam.h.
 
 #include <cmath>
 
 #include "flexarm/elements/beam_point.h"
+#include "flexarm/elements/time_rule.h"
 #include "flexarm/math/cayley.h"
 #include "flexarm/math/so3.h"
+#include "flexarm/model/state.h"
 
 namespace flexarm {
-
-/// EM0: A = Lambda_bar, stress the average of both ends (beyond.md 1.1).
-struct AverageStress {
-  static constexpr bool kConjugateStrain = true;  ///< uses the strain increment s conjugate to the nodal increments
-  static constexpr bool kEnergyMultiplier = false;
-};
-/// EM: EM0 plus lambda C s, one multiplier per element that closes the energy balance (beyond.md 1.3).
-struct DiscreteGradientStress {
-  static constexpr bool kConjugateStrain = true;
-  static constexpr bool kEnergyMultiplier = true;
-};
-/// M1: A = T(omega) Lambda_n, unscaled increments (Muñoz 2004, eq. 6.13-6.18).
-struct ExponentialMoment {
-  static constexpr bool kConjugateStrain = false;
-  static constexpr bool kEnergyMultiplier = false;
-};
 
 namespace conserving {
 
@@ -38,7 +25,8 @@ struct Point {
   GeneralisedShapeFunctions<Nodes>
       increments;            // of the interpolated increment's variation, mid-step functions times S^{-1}
   Matrix3 average_rotation;  // (Lambda_n + Lambda_{n+1}) / 2
-  Vector3 arm;               // (r'_n + r'_{n+1}) / 2
+  Vector3 arm;               // r'_*: (r'_n + r'_{n+1}) / 2, or r'_n
+  double arm_weight;         // of the end in it
   Vector6 stress;            // average of both ends
   // Only with a conjugate strain:
   Vector3 increment, increment_derivative;     // interpolated w and w'
@@ -129,20 +117,6 @@ struct Multiplier {
   }
 };
 
-/// Moment map A of the exponential form and d(A a) = derivative * spin for constant a.
-struct ExponentialMomentMap {
-  Matrix3 map;
-  Vector3 increment;
-  Matrix3 begin_rotation;
-  ExponentialMomentMap(const Matrix3& begin, const Matrix3& end) : begin_rotation(begin) {
-    increment = so3::log(Matrix3(end * begin.transpose()));
-    map = so3::tangent(increment) * begin;
-  }
-  Matrix3 derivative(const Vector3& material) const {
-    return so3::xi_tangent(increment, Vector3(begin_rotation * material)) * so3::inverse_tangent(increment);
-  }
-};
-
 /// Stress resultants' material values at a point, the map of the moment to space, and their derivatives.
 template <int Columns>
 struct StressState {
@@ -150,40 +124,21 @@ struct StressState {
   Eigen::Matrix<double, 6, Columns> stress_derivative;
   Matrix3 moment_map;                           // A
   Matrix3 moment_derivative = Matrix3::Zero();  // d(A a) / d(spin) at constant material moment a
-  double dissipated = 0;                        // per length, over the step
 };
 
-/// EM0 and EM: stress + (lambda + eta/h) C s, A the average rotation.
+/// EM family: stress + factor C s - C remembered, A the average rotation.
 template <int Nodes>
-StressState<kIncrementColumns> conjugate_stress_state(const Matrix6& stiffness, const Point<Nodes>& p, double lambda,
-                                                      double viscosity, bool with_tangent) {
+StressState<kIncrementColumns> conjugate_stress_state(const Matrix6& stiffness, const Point<Nodes>& p, double factor,
+                                                      const Vector6& remembered, bool with_tangent) {
   StressState<kIncrementColumns> out;
-  out.stress = p.stress + (lambda + viscosity) * p.conjugate_stress;
-  out.dissipated = viscosity * p.conjugate_strain.dot(p.conjugate_stress);
+  out.stress = p.stress + factor * p.conjugate_stress;
+  out.stress.noalias() -= stiffness.lazyProduct(remembered);
   out.moment_map = p.average_rotation;
   if (!with_tangent) return out;
-  Eigen::Matrix<double, 6, 15> d = (lambda + viscosity) * conjugate_strain_derivative(p);
+  Eigen::Matrix<double, 6, 15> d = factor * conjugate_strain_derivative(p);
   d.template leftCols<9>() += 0.5 * strain_derivative(p.end);
   out.stress_derivative.noalias() = stiffness.lazyProduct(d);
   out.moment_derivative = -0.5 * so3::hat(Vector3(p.end.rotation * out.stress.template tail<3>()));
-  return out;
-}
-
-/// M1: stress + (eta/h) C Delta(strain), A = T(omega) Lambda_n.
-template <int Nodes>
-StressState<kInstantColumns> exponential_stress_state(const Matrix6& stiffness, const Point<Nodes>& p,
-                                                      const PointKinematics& begin, double viscosity,
-                                                      bool with_tangent) {
-  StressState<kInstantColumns> out;
-  const Vector6 increment = p.end.strain - begin.strain;
-  const Vector6 rate_stress = stiffness * increment;
-  out.stress = p.stress + viscosity * rate_stress;
-  out.dissipated = viscosity * increment.dot(rate_stress);
-  const ExponentialMomentMap exponential(begin.rotation, p.end.rotation);
-  out.moment_map = exponential.map;
-  if (!with_tangent) return out;
-  out.stress_derivative.noalias() = stiffness.lazyProduct((0.5 + viscosity) * strain_derivative(p.end));
-  out.moment_derivative = exponential.derivative(out.stress.template tail<3>());
   return out;
 }
 
@@ -194,7 +149,6 @@ void add_point(const typename BeamElement<Nodes>::StiffnessPoint& constants, con
   const Matrix3& average = p.average_rotation;
   const Vector3 n = average * state.stress.template head<3>(), m = state.moment_map * state.stress.template tail<3>();
   add_point_residual<Nodes>(constants.weight, constants.derivative, tests, n, m, p.arm, system.residual);
-  system.dissipated += constants.weight * state.dissipated;
   if (!with_tangent) return;
   Eigen::Matrix<double, 6, Columns> resultants;
   resultants.template topRows<3>().noalias() = average.lazyProduct(state.stress_derivative.template topRows<3>());
@@ -203,22 +157,53 @@ void add_point(const typename BeamElement<Nodes>::StiffnessPoint& constants, con
   resultants.template block<3, 3>(0, 3) -= 0.5 * so3::hat(Vector3(p.end.rotation * state.stress.template head<3>()));
   resultants.template block<3, 3>(3, 3) += state.moment_derivative;
   Eigen::Matrix<double, 3, Columns> couple = so3::hat(p.arm) * resultants.template topRows<3>();
-  couple.template leftCols<3>() -= 0.5 * so3::hat(n);
+  couple.template leftCols<3>() -= p.arm_weight * so3::hat(n);
   add_point_tangent<Nodes, Columns>(constants.weight, tests, {constants.derivative, p.generalised, p.increments},
                                     resultants, couple, system.tangent);
 }
 
-/// Translational inertia (1/h) int I^i I^j mass (v_{n+1} - v_n), v_{n+1} = 2 Delta r / h - v_n, and its damping.
+/// The stiffness points of an element over a step; those at the end go to `end`.
 template <int Nodes>
-void add_translational_inertia(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, double step,
-                               bool with_tangent, ElementSystem<Nodes>& system) {
+void evaluate_points(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const PointKinematics* begin,
+                     double arm_weight, bool with_variation,
+                     std::array<Point<Nodes>, BeamElement<Nodes>::kStiffnessPoints>& points, PointKinematics* end) {
+  const ElementRotations<Nodes> rotations(nodes, with_variation);
+  for (int k = 0; k < BeamElement<Nodes>::kStiffnessPoints; ++k) {
+    const auto& constants = element.stiffness_points[k];
+    Point<Nodes>& p = points[k];
+    const auto* reference = nodes.stiffness_reference ? nodes.stiffness_reference + k : nullptr;
+    const auto rotation = rotations.evaluate(constants.shape, constants.derivative, reference, p.generalised);
+    p.end = point_kinematics(rotation, interpolate<Nodes>(constants.derivative, nodes.end), constants.reference_strain);
+    p.average_rotation = 0.5 * (begin[k].rotation + p.end.rotation);
+    p.arm_weight = arm_weight;
+    p.arm = (1 - arm_weight) * begin[k].tangent + arm_weight * p.end.tangent;
+    p.stress.noalias() = element.stiffness.lazyProduct(0.5 * (begin[k].strain + p.end.strain));
+    end[k] = p.end;
+  }
+}
+
+/// Translational inertia (1/h) int I^i I^j mass (v_{n+1} - v_n), v_{n+1} = factor Delta r / h - (factor - 1) v_n.
+template <int Nodes>
+void add_translational_inertia(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, double factor,
+                               double step, bool with_tangent, ElementSystem<Nodes>& system) {
+  std::array<Vector3, Nodes> force;
+  for (int i = 0; i < Nodes; ++i)
+    force[i] = (factor / step) * ((nodes.end[i] - nodes.begin[i]) / step - nodes.velocity[i]);
+  add_translational<Nodes>(element.mass, force, factor / (step * step), with_tangent, system);
+}
+
+/// Mass-proportional damping by the mean velocity Delta r / h.
+template <int Nodes>
+void add_mass_damping(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, double step,
+                      bool with_tangent, ElementSystem<Nodes>& system) {
+  if (element.mass_damping == 0) return;
   std::array<Vector3, Nodes> mean, force;
   for (int i = 0; i < Nodes; ++i) {
     mean[i] = (nodes.end[i] - nodes.begin[i]) / step;
-    force[i] = (2 / step) * (mean[i] - nodes.velocity[i]) + element.mass_damping * mean[i];
+    force[i] = element.mass_damping * mean[i];
   }
-  add_translational<Nodes>(element.mass, force, (2 / step + element.mass_damping) / step, with_tangent, system);
-  for (int i = 0; i < Nodes && element.mass_damping > 0; ++i)
+  add_translational<Nodes>(element.mass, force, element.mass_damping / step, with_tangent, system);
+  for (int i = 0; i < Nodes; ++i)
     for (int j = 0; j < Nodes; ++j)
       system.dissipated += element.mass_damping * step * element.mass(i, j) * mean[i].dot(mean[j]);
 }
@@ -238,64 +223,89 @@ void element_functions(const BeamElement<Nodes>& element, const std::array<Quate
     local.evaluate(element.stiffness_points[k].shape, element.stiffness_points[k].derivative, functions[k]);
 }
 
-/// Internal forces, stiffness-proportional damping and translational inertia of one element over a step of length
-/// `step`. `begin` holds the element's stiffness points at t_n, `end` receives those at t_{n+1}. Rotary inertia is
-/// added elsewhere.
+/// The numerical damper at a stiffness point, see NumericalDissipation: what it adds to the stress is
+/// factor C s - C remembered, and what it knows at the end.
+struct NumericalDamper {
+  double factor = 0, dissipated = 0;  // [-], [J/m]
+  Vector6 remembered = Vector6::Zero();
+  StrainMemory end;
+
+  NumericalDamper(const NumericalDissipation& d, const StrainMemory& begin, const Vector6& s, const Matrix6& stiffness,
+                  double step) {
+    const Vector6 deviation = s - begin.average;
+    factor = d.stiffness + 2 * d.inertance / (step * step);
+    remembered = d.stiffness * begin.average + (2 * d.inertance / step) * begin.rate;
+    dissipated = d.stiffness * (1 - 0.5 * d.forgetting) * deviation.dot(stiffness * deviation);
+    end.average = begin.average + d.forgetting * deviation;
+    end.rate = (2 / step) * s - begin.rate;
+  }
+};
+
+/// Internal forces, damping and translational inertia of one element over a step of length `step`, EM family. `begin`
+/// holds the element's stiffness points at t_n, `end` receives those at t_{n+1}; `memory`, `end_memory` serve the
+/// schemes with numerical dissipation. Rotary inertia is added elsewhere.
 ///
-/// EM0 and EM test the moment rows with, and interpolate the increments by, generalised shape functions `mid` of about
-/// the middle of the step, fixed during the iteration; M1 with the Lagrange functions. Any `mid` conserves momenta
-/// (sum I_g = 1) and, with the multiplier, energy; those of the middle make Delta(strain) - s third order in the step.
-/// With the Lagrange functions (beyond.md 1.1) it is first order wherever an element is deformed, and the multiplier
-/// that makes up for it has no limit where the strain comes to rest.
-template <class Stress, int Nodes>
-void conserving_beam(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes,
-                     const ElementFunctions<Nodes>& mid, const PointKinematics* begin, double step, bool with_tangent,
-                     PointKinematics* end, ElementSystem<Nodes>& system) {
+/// The moment rows are tested with, and the increments interpolated by, generalised shape functions of about the middle
+/// of the step: `functions` are these (MidFunctions::Explicit) or those of the begin (Symmetric), which are averaged
+/// with those of the end; then the tangent, which leaves their variation out, makes Newton converge linearly, by a
+/// factor that falls with the step. Any of them conserve momenta (sum I_g = 1) and, with the multiplier, energy; those
+/// of the middle make Delta(strain) - s third order in the step. With the Lagrange functions (beyond.md 1.1) it is
+/// first order wherever an element is deformed, and the multiplier that makes up for it has no limit where the strain
+/// comes to rest.
+template <bool WithMultiplier, int Nodes>
+void conserving_beam(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const TimeRule& rule,
+                     const ElementFunctions<Nodes>& functions, const PointKinematics* begin, const StrainMemory* memory,
+                     double step, bool with_tangent, PointKinematics* end, StrainMemory* end_memory,
+                     ElementSystem<Nodes>& system) {
   constexpr int kPoints = BeamElement<Nodes>::kStiffnessPoints;
+  const bool is_symmetric = rule.mid_functions == MidFunctions::Symmetric;
   system.set_zero();
-  const ElementRotations<Nodes> rotations(nodes.orientation, with_tangent);
   std::array<conserving::Point<Nodes>, kPoints> points;
+  conserving::evaluate_points<Nodes>(element, nodes, begin, 0.5, with_tangent || is_symmetric, points, end);
   conserving::Multiplier<Nodes> multiplier;
+  ElementFunctions<Nodes> averages;
+  for (int k = 0; k < kPoints && is_symmetric; ++k)
+    for (int i = 0; i < Nodes; ++i) {
+      averages[k].values[i] = 0.5 * (functions[k].values[i] + points[k].generalised.values[i]);
+      averages[k].derivatives[i] = 0.5 * (functions[k].derivatives[i] + points[k].generalised.derivatives[i]);
+    }
+  const ElementFunctions<Nodes>& mid = is_symmetric ? averages : functions;
   for (int k = 0; k < kPoints; ++k) {
-    const auto& constants = element.stiffness_points[k];
-    conserving::Point<Nodes>& p = points[k];
-    const auto rotation = rotations.evaluate(constants.shape, constants.derivative, p.generalised);
-    p.end = point_kinematics(rotation, interpolate<Nodes>(constants.derivative, nodes.end), constants.reference_strain);
-    p.average_rotation = 0.5 * (begin[k].rotation + p.end.rotation);
-    p.arm = 0.5 * (begin[k].tangent + p.end.tangent);
-    p.stress.noalias() = element.stiffness.lazyProduct(0.5 * (begin[k].strain + p.end.strain));
-    if constexpr (Stress::kConjugateStrain)
-      conserving::set_conjugate_strain<Nodes>(mid[k], element.stiffness, nodes, begin[k], with_tangent, p);
-    if constexpr (Stress::kEnergyMultiplier) multiplier.add(constants, element.stiffness, begin[k], p, with_tangent);
-    end[k] = p.end;
+    conserving::set_conjugate_strain<Nodes>(mid[k], element.stiffness, nodes, begin[k], with_tangent, points[k]);
+    if constexpr (WithMultiplier)
+      multiplier.add(element.stiffness_points[k], element.stiffness, begin[k], points[k], with_tangent);
   }
 
-  const double lambda = Stress::kEnergyMultiplier ? multiplier.value() : 0.0;
+  const double lambda = WithMultiplier ? multiplier.value() : 0.0;
   const double viscosity = element.stiffness_damping / step;
   Eigen::Matrix<double, 6 * Nodes, 1> conjugate_residual = Eigen::Matrix<double, 6 * Nodes, 1>::Zero();
   for (int k = 0; k < kPoints; ++k) {
     const auto& constants = element.stiffness_points[k];
     const conserving::Point<Nodes>& p = points[k];
-    if constexpr (Stress::kConjugateStrain) {
-      const GeneralisedTests<Nodes> tests{mid[k]};
-      conserving::add_point<Nodes>(
-          constants, tests, p,
-          conserving::conjugate_stress_state<Nodes>(element.stiffness, p, lambda, viscosity, with_tangent),
-          with_tangent, system);
-      if (Stress::kEnergyMultiplier && with_tangent)
-        add_point_residual<Nodes>(
-            constants.weight, constants.derivative, tests, p.average_rotation * p.conjugate_stress.template head<3>(),
-            p.average_rotation * p.conjugate_stress.template tail<3>(), p.arm, conjugate_residual);
-    } else {
-      conserving::add_point<Nodes>(
-          constants, LagrangeTests<Nodes>{constants.shape, constants.derivative}, p,
-          conserving::exponential_stress_state<Nodes>(element.stiffness, p, begin[k], viscosity, with_tangent),
-          with_tangent, system);
+    const GeneralisedTests<Nodes> tests{mid[k]};
+    double factor = lambda + viscosity;
+    Vector6 remembered = Vector6::Zero();
+    system.dissipated += constants.weight * viscosity * p.conjugate_strain.dot(p.conjugate_stress);
+    if (rule.dissipation.any()) {
+      const NumericalDamper damper(rule.dissipation, memory[k], p.conjugate_strain, element.stiffness, step);
+      factor += damper.factor;
+      remembered = damper.remembered;
+      system.dissipated += constants.weight * damper.dissipated;
+      end_memory[k] = damper.end;
     }
+    conserving::add_point<Nodes>(
+        constants, tests, p,
+        conserving::conjugate_stress_state<Nodes>(element.stiffness, p, factor, remembered, with_tangent), with_tangent,
+        system);
+    if (WithMultiplier && with_tangent)
+      add_point_residual<Nodes>(constants.weight, constants.derivative, tests,
+                                p.average_rotation * p.conjugate_stress.template head<3>(),
+                                p.average_rotation * p.conjugate_stress.template tail<3>(), p.arm, conjugate_residual);
   }
-  if (Stress::kEnergyMultiplier && with_tangent)
+  if (WithMultiplier && with_tangent)
     system.tangent.noalias() += conjugate_residual.lazyProduct(multiplier.derivative());
-  conserving::add_translational_inertia<Nodes>(element, nodes, step, with_tangent, system);
+  conserving::add_translational_inertia<Nodes>(element, nodes, rule.velocity_factor(), step, with_tangent, system);
+  conserving::add_mass_damping<Nodes>(element, nodes, step, with_tangent, system);
 }
 
 }  // namespace flexarm

@@ -12,9 +12,10 @@ namespace flexarm {
 
 /// Momentum rate of a rotary inertia over a step and its derivative with respect to the spin at the end.
 struct RotaryRate {
-  Vector3 moment;      ///< world axes [N m]
-  Matrix3 derivative;  ///< d(moment)/d(spin)
-  MassPointState end;  ///< angular velocity and acceleration at the end
+  Vector3 moment;           ///< world axes [N m]
+  Matrix3 derivative;       ///< d(moment)/d(spin)
+  MassPointState end;       ///< angular velocity and acceleration at the end
+  Vector3 energy_gradient;  ///< of W.J W / 2 at the end, with respect to the spin; average rule, with the derivative
 };
 
 /// Average rule: (Lambda_1 J W_1 - Lambda_0 J W_0) / h with (W_0 + W_1) / 2 = Omega / h. `increment` is the spatial
@@ -30,6 +31,7 @@ inline RotaryRate average_rotary_rate(const Matrix3& inertia, const Matrix3& beg
   if (!with_derivative) return rate;
   const Matrix3 to_material = begin.transpose() * inverse_tangent, to_momentum = inertia * to_material;
   rate.derivative = (2 / (step * step)) * (end * to_momentum) - so3::hat(Vector3(momentum / step));
+  rate.energy_gradient = (2 / step) * (to_momentum.transpose() * rate.end.angular_velocity);
   return rate;
 }
 
@@ -51,25 +53,48 @@ inline RotaryRate newmark_rotary_rate(const Matrix3& inertia, const Matrix3& beg
   return rate;
 }
 
-/// Adds int I^i (moment rate) ds of one element. `rate(point index, begin rotation, end rotation)` returns a
-/// RotaryRate; `begin`, `end`: section rotations at the mass points.
-template <int Nodes, class Rate>
-void add_rotary_inertia(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const Matrix3* begin,
-                        const Rate& rate, bool with_tangent, Matrix3* end, ElementSystem<Nodes>& system) {
-  const ElementRotations<Nodes> rotations(nodes.orientation, with_tangent);
+/// Momentum-rate form (Muñoz 2004, eq. 4.13): d(Lambda J W)/dt at the end by the rule that gives Newmark's velocities,
+/// (l_1 - l_0) / (gamma h) + (gamma - 1)/gamma (dl/dt)_0.
+inline RotaryRate momentum_rotary_rate(const Matrix3& inertia, const Matrix3& begin, const Matrix3& end,
+                                       const MassPointState& state, const Vector3& begin_rate,
+                                       const NewmarkRule& rule) {
+  RotaryRate rate = newmark_rotary_rate(inertia, begin, end, state, rule);
+  const Vector3 momentum = end * (inertia * rate.end.angular_velocity),
+                increment = so3::log(Matrix3(end * begin.transpose()));
+  const double c = 1 / (rule.gamma * rule.step);
+  rate.moment =
+      c * (momentum - begin * (inertia * state.angular_velocity)) + ((rule.gamma - 1) / rule.gamma) * begin_rate;
+  rate.derivative = c * (rule.velocity_slope() * (end * inertia * begin.transpose() * so3::inverse_tangent(increment)) -
+                         so3::hat(momentum));
+  return rate;
+}
+
+/// Visits the mass points of an element: `visit(k, rotation at the end, generalised functions)`, the latter only with
+/// `with_variation`.
+template <int Nodes, class Visit>
+void for_each_mass_point(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, bool with_variation,
+                         const Visit& visit) {
+  const ElementRotations<Nodes> rotations(nodes, with_variation);
   for (int k = 0; k < BeamElement<Nodes>::kMassPoints; ++k) {
     const auto& constants = element.mass_points[k];
     GeneralisedShapeFunctions<Nodes> generalised;
-    end[k] = rotations.evaluate(constants.shape, constants.derivative, generalised).rotation;
-    const RotaryRate r = rate(k, begin[k], end[k]);
+    const auto* reference = nodes.mass_reference ? nodes.mass_reference + k : nullptr;
+    visit(k, rotations.evaluate(constants.shape, constants.derivative, reference, generalised), generalised);
+  }
+}
+
+/// Adds the moment rate at mass point k to the moment rows, tested with the Lagrange functions.
+template <int Nodes>
+void add_rotary_rate(const BeamElement<Nodes>& element, int k, const RotaryRate& rate,
+                     const GeneralisedShapeFunctions<Nodes>& generalised, bool with_tangent,
+                     ElementSystem<Nodes>& system) {
+  const auto& constants = element.mass_points[k];
+  for (int i = 0; i < Nodes; ++i)
+    system.residual.template segment<3>(6 * i + 3) += constants.weight * constants.shape[i] * rate.moment;
+  for (int j = 0; j < Nodes && with_tangent; ++j) {
+    const Matrix3 column = constants.weight * rate.derivative * generalised.values[j];
     for (int i = 0; i < Nodes; ++i)
-      system.residual.template segment<3>(6 * i + 3) += constants.weight * constants.shape[i] * r.moment;
-    if (!with_tangent) continue;
-    for (int j = 0; j < Nodes; ++j) {
-      const Matrix3 column = constants.weight * r.derivative * generalised.values[j];
-      for (int i = 0; i < Nodes; ++i)
-        system.tangent.template block<3, 3>(6 * i + 3, 6 * j + 3) += constants.shape[i] * column;
-    }
+      system.tangent.template block<3, 3>(6 * i + 3, 6 * j + 3) += constants.shape[i] * column;
   }
 }
 

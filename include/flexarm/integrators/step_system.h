@@ -4,8 +4,10 @@
 #include <tuple>
 #include <vector>
 
-#include "flexarm/elements/conserving_beam.h"
-#include "flexarm/elements/endpoint_beam.h"
+#include "flexarm/elements/momentum_beam.h"
+#include "flexarm/elements/nodal_inertia.h"
+#include "flexarm/elements/rotary_inertia.h"
+#include "flexarm/integrators/rotation_reference.h"
 #include "flexarm/integrators/scheme.h"
 #include "flexarm/joints/joint_map.h"
 #include "flexarm/model/degrees_of_freedom.h"
@@ -45,6 +47,8 @@ class StepSystem {
   void accept_static(State& state);
   /// The state was changed by somebody else: quantities kept from the last step do not hold.
   void invalidate() { points_valid_ = false; }
+  /// Adds to an initial state what the scheme keeps there.
+  void initialise(State& state);
 
   /// Length of the step under way [s]; 0 in statics.
   double step() const { return step_; }
@@ -59,20 +63,42 @@ class StepSystem {
   double largest_node_rotation() const;
 
  private:
-  template <class Stress>
+  template <bool WithMultiplier>
   void add_conserving_beams(bool with_tangent);
-  void add_endpoint_beams(bool with_tangent);
+  void add_momentum_beams(bool with_tangent);
+  void add_endpoint_forces(bool with_tangent);
+  void add_newmark_inertia(bool with_tangent);
   template <int Nodes>
-  void gather_nodes(const BeamElement<Nodes>& element, ElementNodes<Nodes>& nodes) const;
+  void gather_nodes(const BeamElement<Nodes>& element, const std::vector<NodePose>& end,
+                    ElementNodes<Nodes>& nodes) const;
   template <int Nodes>
   void scatter(const BeamElement<Nodes>& element, const ElementSystem<Nodes>& system, bool with_tangent);
   template <int Nodes>
-  void add_rotary(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, bool with_tangent,
-                  ElementSystem<Nodes>& system);
+  void interpolate_forces(const BeamElement<Nodes>& element, bool with_tangent, ElementSystem<Nodes>& system);
+  template <int Nodes>
+  void add_average_rotary(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, bool with_tangent,
+                          ElementEnergy<Nodes>* energy, ElementSystem<Nodes>& system);
+  template <int Nodes>
+  void add_newmark_rotary(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, bool with_tangent,
+                          ElementSystem<Nodes>& system);
+  void add_nodal_forces(bool with_tangent);
+  void add_nodal_force(int node, const Vector6& force, double translational, Eigen::Matrix<double, 6, 3> rotational,
+                       bool of_configuration, bool with_tangent);
   void add_nodal_inertia(bool with_tangent);
-  void add_loads(bool with_tangent);
+  double load_time() const;
+  void interpolate_configuration();
+  void subtract_begin_forces(bool with_tangent);
+  void shift_reactions();
   void fold_joints(bool with_tangent);
   void add_joint_efforts(int joint, bool with_tangent);
+  void compute_begin_rates();
+  NodeStep node_step(std::size_t node) const;
+  double effort_weight() const { return has_reactions() ? 1 / (1 - scheme_.alpha) : 1; }
+  bool has_reactions() const { return is_interpolated() && !state_->reactions.empty(); }
+  NewmarkRule newmark() const { return newmark_rule(scheme_, step_); }
+  bool is_interpolated() const { return scheme_.hht != HhtForm::None && !static_; }
+  void initialise_strain_memory(State& state);
+  void initialise_momentum_rates(State& state);
   void load_begin_configuration(const State& state);
   void compute_mid_functions();
   void compute_begin_points();
@@ -95,6 +121,7 @@ class StepSystem {
   std::vector<Released> released_;
   std::vector<Vector3> increments_;  // per node, tangent-scaled
   std::vector<Matrix3> inverse_tangents_;
+  RotationReference reference_;
   std::vector<PointKinematics> begin_points_, end_points_;
   template <int Nodes>
   using GroupFunctions = std::vector<ElementFunctions<Nodes>>;
@@ -102,6 +129,12 @@ class StepSystem {
   std::vector<Matrix3> begin_mass_rotations_, end_mass_rotations_;
   std::vector<MassPointState> end_mass_points_;
   std::vector<Vector6> end_strain_rates_;
+  std::vector<StrainMemory> end_strain_memory_;
+  // Hilber-Hughes-Taylor family
+  std::vector<NodePose> interpolated_;       // configuration at t_{n+1+alpha}
+  std::vector<Matrix3> interpolated_spins_;  // spin there per spin at the end
+  std::vector<Vector6> end_forces_, end_reactions_;
+  std::vector<Vector3> end_momentum_rates_;
   std::vector<double> history_values_;        // at the scheme's point
   std::vector<double> begin_history_values_;  // at the begin; work of the Newmark family
   std::vector<double> applied_;               // per coordinate: effort in this step

@@ -1,14 +1,17 @@
 #pragma once
 /// Newton's method for one step, and the step control around it: halve on failure, recover after success.
 
+#include <optional>
+
 #include "flexarm/integrators/step_system.h"
+#include "flexarm/integrators/velocity_scaling.h"
 #include "flexarm/solver/linear_solver.h"
 
 namespace flexarm {
 
 /// Outcome of a step; a value, never an exception.
 struct StepResult {
-  enum class Reason { None, NoConvergence, SingularTangent, NotFinite, RotationTooLarge };
+  enum class Reason { None, NoConvergence, SingularTangent, NotFinite, RotationTooLarge, EnergyDefect };
   bool converged = false;
   int iterations = 0;  ///< Newton iterations of all sub-steps
   int halvings = 0;    ///< times that a sub-step had to be halved
@@ -39,8 +42,9 @@ class Stepper {
   /// Equilibrium by `load_steps` equal increments of gravity and loads, halved where Newton asks for it. On failure the
   /// state is untouched.
   StepResult solve_static(State& state, int load_steps);
-  /// Initial accelerations of a scheme that needs them (Newmark), from a short momentum-conserving step.
-  void initialise_accelerations(State& state);
+  /// Adds to an initial state what the scheme keeps there; accelerations (Newmark family) come from a short
+  /// momentum-conserving step.
+  void initialise(State& state);
   /// The state was changed by somebody else: forget what was kept from the last step.
   void invalidate();
 
@@ -54,7 +58,10 @@ class Stepper {
   /// Newton from the present trial configuration; leaves the system evaluated at the solution. With `reuse` it starts
   /// with the factors of an earlier solve and makes new ones only where the iteration is slow.
   bool iterate(Updates updates, bool reuse, StepResult& result);
+  void initialise_accelerations(State& state);
+  /// A step of a composed scheme is several simple ones; on failure the state is untouched.
   bool sub_step(State& state, double step, StepResult& result);
+  bool simple_step(State& state, double step, StepResult& result);
 
   const Model& model_;
   Scheme scheme_;
@@ -62,6 +69,8 @@ class Stepper {
   StepSystem system_;
   LinearSolver solver_;
   Eigen::VectorXd update_;
+  std::optional<VelocityScaling> scaling_;
+  State before_;                       // of a step that may have to be taken back
   double factorised_step_ = 0;         ///< step size for which the factors hold; 0: none
   bool kept_factors_contract_ = true;  ///< in the second iteration of the last solve
   std::vector<double> update_norms_;

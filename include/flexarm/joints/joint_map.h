@@ -44,10 +44,12 @@ void variational_maps(const JointMap& joint, const NodePose& master, const Relea
 
 /// Incremental maps N_Delta over a step from `_begin` to `_end` (joints.md 1.3): the slave's {Delta r, tangent-scaled
 /// rotation increment} equals left du + {..} exactly, so the joint does no work and conserves momenta.
-/// Without `with_tangent` only the left maps are set.
+/// Without `with_tangent` only the left maps are set. `arm_weight`: of the end in the lever arm by which the slave's
+/// force turns the master; 1/2 where momenta are measured with mean arms, 0 with those of the begin (M2, whose joints
+/// then do a little work).
 void incremental_maps(const JointMap& joint, const NodePose& master_begin, const NodePose& master_end,
                       const Released& begin, const Released& end, const Vector6& g, FoldMaps& maps,
-                      bool with_tangent = true);
+                      bool with_tangent = true, double arm_weight = 0.5);
 
 /// Least-squares released rates {scalar, or translation and angular velocity in the joint frame} from spatial
 /// velocities {v, w} of master and slave; `remainder` gets the part of the slave's velocity that the joint does not

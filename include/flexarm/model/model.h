@@ -63,8 +63,7 @@ struct BeamLink {
   std::vector<double> element_ends;  ///< arc length at the end of each [m]
   Attachment tip;
   Vector3 centroid =
-      Vector3::Zero();         ///< mass centroid in the section: nodes lie there, the reference line at -centroid
-  Quaternion section_in_link;  ///< undeformed section frame at the tip, in the link frame
+      Vector3::Zero();  ///< mass centroid in the section: nodes lie there, the reference line at -centroid
   double length = 0, mass = 0, radius = 0;
 };
 

@@ -1,0 +1,25 @@
+#pragma once
+/// Which options of <integrator> go with which scheme.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "flexarm/scene/scene_description.h"
+
+namespace flexarm::scene {
+
+/// Names of the schemes that a scene may ask for, "auto" first.
+const std::vector<std::string_view>& scheme_names();
+
+/// An option that the scheme does not have, or with a value that it does not take.
+struct OptionConflict {
+  std::string attribute, message;
+};
+/// Empty if all options that are set suit the scheme.
+std::vector<OptionConflict> option_conflicts(const IntegratorDescription& integrator);
+
+/// The same description with another scheme; options that this one does not take are forgotten.
+IntegratorDescription with_scheme(IntegratorDescription integrator, const std::string& scheme);
+
+}  // namespace flexarm::scene

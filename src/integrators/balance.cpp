@@ -1,0 +1,107 @@
+#include "flexarm/integrators/balance.h"
+
+#include "flexarm/elements/beam_point.h"
+#include "flexarm/joints/joint_forces.h"
+
+namespace flexarm {
+namespace {
+
+template <int Nodes>
+struct ElementConfiguration {
+  std::array<Vector3, Nodes> position, velocity;
+  std::array<Quaternion, Nodes> orientation;
+
+  ElementConfiguration(const BeamElement<Nodes>& element, const State& state) {
+    for (int i = 0; i < Nodes; ++i) {
+      const NodeState& node = state.nodes[element.nodes[i]];
+      position[i] = node.position;
+      velocity[i] = node.velocity;
+      orientation[i] = node.orientation;
+    }
+  }
+  /// From what the state keeps, or by the local interpolation.
+  template <class Point>
+  PointRotation point_rotation(const Point& point, const std::vector<PointRotation>& kept, int index) const {
+    return kept.empty() ? LocalRotations<Nodes>(orientation).evaluate(point.shape, point.derivative) : kept[index];
+  }
+};
+
+Matrix3 lumped_rotary(const NodalInertia& inertia, const Scheme& scheme) {
+  return scheme.nodal_rotary_inertia ? Matrix3(inertia.rotary + inertia.beam_rotary) : inertia.rotary;
+}
+
+/// Energy of the numerical dissipation's memory [J/m].
+double stored(const NumericalDissipation& d, const StrainMemory& memory, const Matrix6& stiffness) {
+  double energy = 0.5 * d.inertance * memory.rate.dot(stiffness * memory.rate);
+  if (d.forgetting > 0) energy += 0.5 * d.stiffness / d.forgetting * memory.average.dot(stiffness * memory.average);
+  return energy;
+}
+
+}  // namespace
+
+Energies energies(const Model& model, const Scheme& scheme, const State& state) {
+  Energies out;
+  out.work = state.work;
+  out.dissipated = state.dissipated;
+  for_each_element(model.beams, [&](const auto& element) {
+    constexpr int N = std::decay_t<decltype(element)>::kNodes;
+    const ElementConfiguration<N> nodes(element, state);
+    for (int k = 0; k < N - 1; ++k) {
+      const auto& point = element.stiffness_points[k];
+      const int index = element.first_stiffness_point + k;
+      const Vector6 strain = point_kinematics(nodes.point_rotation(point, state.stiffness_rotations, index),
+                                              interpolate<N>(point.derivative, nodes.position), point.reference_strain)
+                                 .strain;
+      out.strain += 0.5 * point.weight * strain.dot(element.stiffness * strain);
+      if (!state.strain_memory.empty())
+        out.strain += point.weight * stored(scheme.dissipation, state.strain_memory[index], element.stiffness);
+    }
+    for (int i = 0; i < N; ++i)
+      for (int j = 0; j < N; ++j) out.kinetic += 0.5 * element.mass(i, j) * nodes.velocity[i].dot(nodes.velocity[j]);
+    for (int k = 0; k < N && !scheme.nodal_rotary_inertia; ++k) {
+      const Vector3& W = state.mass_points[element.first_mass_point + k].angular_velocity;
+      out.kinetic += 0.5 * element.mass_points[k].weight * W.dot(element.inertia * W);
+    }
+  });
+  for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+    const NodalInertia& inertia = model.inertias[i];
+    const NodeState& node = state.nodes[i];
+    out.kinetic += 0.5 * inertia.mass * node.velocity.squaredNorm() +
+                   0.5 * node.angular_velocity.dot(lumped_rotary(inertia, scheme) * node.angular_velocity);
+    out.potential -= inertia.total_mass * model.gravity.dot(node.position);
+  }
+  for (const Coordinate& coordinate : model.coordinates)
+    out.strain += stop_energy(coordinate, state.released[coordinate.joint].displacement[coordinate.component % 3]);
+  return out;
+}
+
+Momenta momenta(const Model& model, const Scheme& scheme, const State& state) {
+  Momenta out;
+  for_each_element(model.beams, [&](const auto& element) {
+    constexpr int N = std::decay_t<decltype(element)>::kNodes;
+    const ElementConfiguration<N> nodes(element, state);
+    for (int i = 0; i < N; ++i)
+      for (int j = 0; j < N; ++j) {
+        out.linear += element.mass(i, j) * nodes.velocity[j];
+        out.angular += element.mass(i, j) * nodes.position[i].cross(nodes.velocity[j]);
+      }
+    if (scheme.nodal_rotary_inertia) return;
+    for (int k = 0; k < N; ++k) {
+      const auto& point = element.mass_points[k];
+      const int index = element.first_mass_point + k;
+      const Vector3& W = state.mass_points[index].angular_velocity;
+      out.angular +=
+          point.weight * (nodes.point_rotation(point, state.mass_rotations, index).rotation * (element.inertia * W));
+    }
+  });
+  for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+    const NodalInertia& inertia = model.inertias[i];
+    const NodeState& node = state.nodes[i];
+    out.linear += inertia.mass * node.velocity;
+    out.angular += inertia.mass * node.position.cross(node.velocity) +
+                   node.orientation * (lumped_rotary(inertia, scheme) * node.angular_velocity);
+  }
+  return out;
+}
+
+}  // namespace flexarm

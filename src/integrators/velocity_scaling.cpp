@@ -1,0 +1,115 @@
+#include "flexarm/integrators/velocity_scaling.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "flexarm/integrators/balance.h"
+#include "flexarm/joints/joint_map.h"
+#include "flexarm/math/so3.h"
+#include "flexarm/model/model_builder.h"
+
+namespace flexarm {
+namespace {
+
+/// A larger change of the velocities in one step is a sign that the step is too long.
+constexpr double kLargestChange = 0.02;
+/// Kinetic energy, relative to the whole energy, below which there is nothing to scale.
+constexpr double kNothingMoves = 1e-8;
+
+}  // namespace
+
+VelocityScaling::VelocityScaling(const Model& model, const Scheme& scheme)
+    : model_(model), scheme_(scheme), tree_of_node_(model.nodes.size(), -1) {
+  for (const Coordinate& coordinate : model.coordinates)
+    if (coordinate.motion >= 0)
+      throw ModelError("<integrator>: scheme 'em_scaled' cannot scale the velocity that <motion> of joint '" +
+                       coordinate.name + "' prescribes; scheme 'em' closes the energy without scaling");
+  for (std::size_t j = 0; j < model.joints.size(); ++j) {  // root to leaf
+    const JointMap& joint = model.joints[j];
+    if (joint.master < 0) {
+      tree_of_node_[joint.slave] = static_cast<int>(trees_.size());
+      trees_.push_back({static_cast<int>(j), {}, {}, {}});
+    } else if (tree_of_node_[joint.master] >= 0) {
+      tree_of_node_[joint.slave] = tree_of_node_[joint.master];
+    }
+    // The far end of a beam belongs to the tree of its near end.
+    for_each_element(model.beams, [&](const auto& element) {
+      const auto tree =
+          std::find_if(element.nodes.begin(), element.nodes.end(), [&](int node) { return tree_of_node_[node] >= 0; });
+      if (tree == element.nodes.end()) return;
+      for (int node : element.nodes) tree_of_node_[node] = tree_of_node_[*tree];
+    });
+  }
+}
+
+void VelocityScaling::project(const State& state) {
+  for (Tree& tree : trees_) {
+    tree.inertia.setZero();
+    tree.momentum.setZero();
+  }
+  const auto add_mass = [&](Tree& tree, double mass, const NodeState& a, const NodeState& b) {
+    const Matrix3 arm_a = so3::hat(a.position), arm_b = so3::hat(b.position);
+    tree.inertia.topLeftCorner<3, 3>().diagonal().array() += mass;
+    tree.inertia.topRightCorner<3, 3>() -= mass * arm_b;
+    tree.inertia.bottomLeftCorner<3, 3>() += mass * arm_a;
+    tree.inertia.bottomRightCorner<3, 3>() -= mass * arm_a * arm_b;
+    tree.momentum.head<3>() += mass * b.velocity;
+    tree.momentum.tail<3>() += mass * a.position.cross(b.velocity);
+  };
+  for_each_element(model_.beams, [&](const auto& element) {
+    constexpr int N = std::decay_t<decltype(element)>::kNodes;
+    Tree& tree = trees_[tree_of_node_[element.nodes[0]]];
+    for (int i = 0; i < N; ++i)
+      for (int j = 0; j < N; ++j)
+        add_mass(tree, element.mass(i, j), state.nodes[element.nodes[i]], state.nodes[element.nodes[j]]);
+  });
+  for (std::size_t i = 0; i < model_.nodes.size(); ++i) {
+    const NodeState& node = state.nodes[i];
+    Tree& tree = trees_[tree_of_node_[i]];
+    add_mass(tree, model_.inertias[i].mass, node, node);
+    const Matrix3 rotation = node.orientation.toRotationMatrix();
+    const Matrix3 J = model_.inertias[i].rotary + model_.inertias[i].beam_rotary;
+    tree.inertia.bottomRightCorner<3, 3>() += rotation * J * rotation.transpose();
+    tree.momentum.tail<3>() += rotation * (J * node.angular_velocity);
+  }
+  for (Tree& tree : trees_) {
+    const JointMap& joint = model_.joints[tree.joint];
+    FoldMaps maps;
+    variational_maps(joint, NodePose(), state.released[tree.joint], Vector6::Zero(), maps);
+    Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6> twists = maps.right;  // of the slave's origin ...
+    for (int k = 0; k < twists.cols(); ++k)                                 // ... to the world's
+      twists.col(k).head<3>() += state.nodes[joint.slave].position.cross(Vector3(twists.col(k).tail<3>()));
+    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> A = twists.transpose() * tree.inertia * twists;
+    const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> b = twists.transpose() * tree.momentum;
+    tree.motion.setZero();
+    if (b.size() > 0) tree.motion = twists * A.ldlt().solve(b).eval();
+  }
+}
+
+bool VelocityScaling::apply(const State& begin, State& state) {
+  const Energies before = energies(model_, scheme_, begin), after = energies(model_, scheme_, state);
+  const double target =
+      before.total() + begin.energy_defect + (after.work - before.work) - (after.dissipated - before.dissipated);
+  const double missing = target - after.total();
+  project(state);
+  double rigid = 0;
+  for (const Tree& tree : trees_) rigid += 0.5 * tree.motion.dot(tree.inertia * tree.motion);
+  const double relative = after.kinetic - rigid;
+  state.energy_defect = missing;
+  if (relative <= kNothingMoves * (after.kinetic + after.strain)) return true;
+  const double square = 1 + missing / relative;
+  if (!(square > 0) || std::abs(std::sqrt(square) - 1) > kLargestChange) return false;
+  const double factor = std::sqrt(square);
+  for (std::size_t i = 0; i < state.nodes.size(); ++i) {
+    NodeState& node = state.nodes[i];
+    const Vector6& motion = trees_[tree_of_node_[i]].motion;
+    const Vector3 spin = motion.tail<3>(), velocity = motion.head<3>() + spin.cross(node.position);
+    const Vector3 material = node.orientation.conjugate() * spin;
+    node.velocity = velocity + factor * (node.velocity - velocity);
+    node.angular_velocity = material + factor * (node.angular_velocity - material);
+  }
+  state.energy_defect = 0;
+  return true;
+}
+
+}  // namespace flexarm

@@ -1,0 +1,46 @@
+#pragma once
+/// All schemes with all their options, for tests that hold for each.
+
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "flexarm/integrators/scheme.h"
+#include "flexarm/scene/integrator_options.h"
+
+namespace flexarm::test {
+
+struct SchemeVariant {
+  std::string name;
+  scene::IntegratorDescription integrator;
+  Scheme scheme;
+  friend std::ostream& operator<<(std::ostream& out, const SchemeVariant& variant) { return out << variant.name; }
+};
+
+/// Every scheme of the table with default options, then with each interpolation and weak form that it takes.
+/// `step`: of numerical dissipation [s].
+inline std::vector<SchemeVariant> scheme_variants(double step = 0.01) {
+  using scene::Interpolation;
+  std::vector<SchemeVariant> variants;
+  const auto add = [&](const std::string& name, const scene::IntegratorDescription& integrator) {
+    if (scene::option_conflicts(integrator).empty()) variants.push_back({name, integrator, make_scheme(integrator)});
+  };
+  for (const Scheme& scheme : schemes()) {
+    scene::IntegratorDescription integrator;
+    integrator.scheme = scheme.name;
+    integrator.step = step;
+    add(integrator.scheme, integrator);
+    for (const auto& [suffix, interpolation] : {std::pair{"_total", Interpolation::Total},
+                                                {"_incremental", Interpolation::Incremental},
+                                                {"_iterative", Interpolation::Iterative}}) {
+      integrator.interpolation = interpolation;
+      add(integrator.scheme + suffix, integrator);
+    }
+    integrator.interpolation = Interpolation::Total;
+    integrator.weak_form = scene::WeakForm::Additive;
+    add(integrator.scheme + "_additive", integrator);
+  }
+  return variants;
+}
+
+}  // namespace flexarm::test
