@@ -119,7 +119,7 @@ void StepSystem::accept(State& state) {
   reference_.accept(state);
   if (is_interpolated()) {
     std::copy(end_forces_.begin(), end_forces_.end(), state.forces.begin());
-    std::copy(end_reactions_.begin(), end_reactions_.end(), state.reactions.begin());
+    state.reactions = end_reactions_;
     std::copy(end_momentum_rates_.begin(), end_momentum_rates_.end(), state.momentum_rates.begin());
   }
   state.time += step_;

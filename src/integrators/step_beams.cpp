@@ -37,16 +37,20 @@ void StepSystem::interpolate_forces(const BeamElement<Nodes>& element, bool with
                                     ElementSystem<Nodes>& system) {
   for (int i = 0; i < Nodes; ++i) end_forces_[element.nodes[i]] += system.residual.template segment<6>(6 * i);
   if (static_) return;
+  system.residual.setZero();  // interpolated for whole nodes
   const double factor = 1 + scheme_.alpha;
-  if (scheme_.hht != HhtForm::Kinematics) {
-    system.residual *= factor;
-    if (with_tangent) system.tangent *= factor;
-    return;
-  }
-  for (int j = 0; j < Nodes && with_tangent; ++j) {
-    system.tangent.template middleCols<3>(6 * j) *= factor;
-    auto spin = system.tangent.template middleCols<3>(6 * j + 3);
-    spin = (spin * interpolated_spins_[element.nodes[j]]).eval();
+  for (int i = 0; i < Nodes && with_tangent; ++i) {
+    const int node = element.nodes[i];
+    if (scheme_.hht == HhtForm::Kinematics) {
+      system.tangent.template middleCols<3>(6 * i) *= factor;
+      auto spin = system.tangent.template middleCols<3>(6 * i + 3);
+      spin = (spin * interpolated_spins_[node]).eval();
+    } else {
+      const Matrix3 slope = interpolated_moment(node, Vector3::Zero(), Vector3::Zero(), false).slope;
+      system.tangent.template middleRows<3>(6 * i) *= factor;
+      auto moment = system.tangent.template middleRows<3>(6 * i + 3);
+      moment = (slope * moment).eval();
+    }
   }
 }
 
@@ -89,10 +93,10 @@ void StepSystem::add_newmark_rotary(const BeamElement<Nodes>& element, const Ele
                         const MassPointState& state = state_->mass_points[first + k];
                         const Matrix3& begin = begin_mass_rotations_[first + k];
                         const RotaryRate rate =
-                            scheme_.hht == HhtForm::Kinematics
-                                ? momentum_rotary_rate(element.inertia, begin, point.rotation, state,
-                                                       state_->momentum_rates[first + k], rule)
-                                : newmark_rotary_rate(element.inertia, begin, point.rotation, state, rule);
+                            scheme_.hht == HhtForm::None
+                                ? newmark_rotary_rate(element.inertia, begin, point.rotation, state, rule)
+                                : momentum_rotary_rate(element.inertia, begin, point.rotation, state,
+                                                       state_->momentum_rates[first + k], rule);
                         end_mass_rotations_[first + k] = point.rotation;
                         end_mass_points_[first + k] = rate.end;
                         end_momentum_rates_[first + k] = rate.moment;

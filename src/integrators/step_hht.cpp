@@ -1,9 +1,11 @@
 // What the Hilber-Hughes-Taylor family adds to Newmark's rule: forces at t_{n+1+alpha} (Muñoz 2004, sec. 4.2).
 //
-// Their accelerations are those of t_{n+1+alpha}, too, and so are the forces that joints transmit; but the slaves'
-// residuals are folded by the maps of t_{n+1}. To fold what belongs to t_{n+1}, the reactions are extrapolated from the
-// last two steps, (1 - alpha) R_{n+1} + alpha R_n; without joints both are zero. Otherwise joints would make the family
-// first order.
+// All else in the balance has to belong to that instant, too, or the family is first order:
+// - Momentum rates in all three forms as the thesis has them for HHT3 only (4.13). With (4.14) the gyroscopic terms
+//   would be those of t_{n+1}.
+// - HHT1 interpolates moments conjugate to rotation vectors and turns them back at the rotation of t_{n+1+alpha}.
+// - Forces that joints transmit are those of t_{n+1+alpha}, but slaves are folded by the maps of t_{n+1}. To fold what
+//   belongs there, reactions are extrapolated from two steps, (1 - alpha) R_{n+1} + alpha R_n; without joints they vanish.
 #include <algorithm>
 
 #include "flexarm/integrators/step_system.h"
@@ -17,12 +19,10 @@ double StepSystem::load_time() const {
 }
 
 void StepSystem::interpolate_configuration() {
-  if (scheme_.hht != HhtForm::Kinematics) {
-    std::copy(end_.begin(), end_.end(), interpolated_.begin());
-    return;
-  }
   const double alpha = scheme_.alpha;
   for (std::size_t i = 0; i < end_.size(); ++i) {
+    interpolated_[i] = end_[i];
+    if (scheme_.hht != HhtForm::Kinematics) continue;
     const Vector3 turn = so3::log(end_[i].orientation * begin_[i].orientation.conjugate()), back = alpha * turn;
     interpolated_[i].position = (1 + alpha) * end_[i].position - alpha * begin_[i].position;
     interpolated_[i].orientation = so3::exp_quaternion(back) * end_[i].orientation;
@@ -31,20 +31,42 @@ void StepSystem::interpolate_configuration() {
   }
 }
 
-void StepSystem::subtract_begin_forces(bool with_tangent) {
-  if (scheme_.hht == HhtForm::Kinematics) return;
+InterpolatedMoment StepSystem::interpolated_moment(int node, const Vector3& begin, const Vector3& end,
+                                                   bool with_derivative) const {
+  InterpolatedMoment out{(1 + scheme_.alpha) * end - scheme_.alpha * begin, (1 + scheme_.alpha) * Matrix3::Identity(),
+                         Matrix3::Zero()};
+  if (scheme_.hht != HhtForm::AdditiveForces) return out;
+  const double alpha = scheme_.alpha;
+  const Vector3 &theta_begin = state_->total_rotations[node], &theta = reference_.total_rotations()[node];
+  const Vector3 between = (1 + alpha) * theta - alpha * theta_begin;
+  const so3::ExponentialMap<double> map(theta);
+  const Matrix3 transposed = map.tangent().transpose(), back = so3::inverse_tangent(between).transpose();
+  const Vector3 additive =
+      (1 + alpha) * (transposed * end) - alpha * (so3::tangent(theta_begin).transpose() * begin);
+  out.value = back * additive;
+  out.slope = (1 + alpha) * back * transposed;
+  if (with_derivative)  // T^{-T}(theta) = T^{-1}(-theta)
+    out.derivative = (1 + alpha) *
+                     (back * map.xi_tangent_transposed(end) - so3::xi_inverse_tangent(Vector3(-between), additive)) *
+                     map.inverse_tangent();
+  return out;
+}
+
+void StepSystem::add_interpolated_forces(bool with_tangent) {
+  const bool of_forces = scheme_.hht != HhtForm::Kinematics;
   for (std::size_t i = 0; i < end_.size(); ++i) {
-    Vector6 force = -scheme_.alpha * state_->forces[i];
-    if (scheme_.hht == HhtForm::AdditiveForces) {  // T_{n+1}^{-T} T_n^T
-      const Vector3 &begin = state_->total_rotations[i], &end = reference_.total_rotations()[i];
-      const Vector3 moment = so3::tangent(begin).transpose() * force.tail<3>();
-      const Matrix3 inverse = so3::inverse_tangent(end);
-      force.tail<3>() = inverse.transpose() * moment;
+    const int node = static_cast<int>(i);
+    Vector6 force = end_forces_[i];
+    if (of_forces) {
+      const Vector6& begin = state_->forces[i];
+      const InterpolatedMoment moment =
+          interpolated_moment(node, begin.tail<3>(), end_forces_[i].tail<3>(), with_tangent);
+      force.head<3>() = (1 + scheme_.alpha) * end_forces_[i].head<3>() - scheme_.alpha * begin.head<3>();
+      force.tail<3>() = moment.value;
       if (with_tangent)
-        Eigen::Map<Matrix6>(assembler_.diagonal_block(static_cast<int>(i))).bottomRightCorner<3, 3>() -=
-            so3::xi_inverse_tangent(Vector3(-end), moment) * inverse;
+        Eigen::Map<Matrix6>(assembler_.diagonal_block(node)).bottomRightCorner<3, 3>() += moment.derivative;
     }
-    Eigen::Map<Vector6>(assembler_.residual(static_cast<int>(i))) += force;
+    Eigen::Map<Vector6>(assembler_.residual(node)) += force;
   }
 }
 

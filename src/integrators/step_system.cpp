@@ -50,20 +50,19 @@ NodeStep StepSystem::node_step(std::size_t node) const {
   return step;
 }
 
-void StepSystem::add_nodal_force(int node, const Vector6& force, double translational,
-                                 Eigen::Matrix<double, 6, 3> rotational, bool of_configuration, bool with_tangent) {
-  double factor = 1;
+void StepSystem::add_nodal_force(int node, const Vector6& force, Eigen::Matrix<double, 6, 3> rotational,
+                                 bool of_configuration, bool with_tangent) {
   if (scheme_.hht != HhtForm::None) end_forces_[node] += force;
-  if (is_interpolated()) {
-    if (scheme_.hht != HhtForm::Kinematics) factor = 1 + scheme_.alpha;
-    if (scheme_.hht == HhtForm::Kinematics && of_configuration)
-      rotational = (rotational * interpolated_spins_[node]).eval();
+  if (!is_interpolated()) {
+    Eigen::Map<Vector6>(assembler_.residual(node)) += force;
+  } else if (scheme_.hht == HhtForm::Kinematics) {
+    if (of_configuration) rotational = (rotational * interpolated_spins_[node]).eval();
+  } else if (with_tangent) {
+    rotational.topRows<3>() *= 1 + scheme_.alpha;
+    rotational.bottomRows<3>() =
+        (interpolated_moment(node, Vector3::Zero(), Vector3::Zero(), false).slope * rotational.bottomRows<3>()).eval();
   }
-  Eigen::Map<Vector6>(assembler_.residual(node)) += factor * force;
-  if (!with_tangent) return;
-  Eigen::Map<Matrix6> tangent(assembler_.diagonal_block(node));
-  tangent.topLeftCorner<3, 3>().diagonal().array() += factor * translational;
-  tangent.rightCols<3>() += factor * rotational;
+  if (with_tangent) Eigen::Map<Matrix6>(assembler_.diagonal_block(node)).rightCols<3>() += rotational;
 }
 
 void StepSystem::add_nodal_forces(bool with_tangent) {
@@ -75,20 +74,20 @@ void StepSystem::add_nodal_forces(bool with_tangent) {
     if (inertia.total_mass > 0) {
       Vector6 weight = Vector6::Zero();
       weight.head<3>() = -load_factor_ * inertia.total_mass * model_.gravity;
-      add_nodal_force(node, weight, 0, none, true, false);
+      add_nodal_force(node, weight, none, true, false);
     }
     if (static_ || inertia.rotary_damping.isZero(0)) continue;
     const NodalAction damping = nodal_damping_action(inertia, scheme_, node_step(i));
     Eigen::Matrix<double, 6, 3> rotational = none;
     rotational.bottomRows<3>() = damping.rotational;
-    add_nodal_force(node, damping.residual, 0, rotational, false, with_tangent);
+    add_nodal_force(node, damping.residual, rotational, false, with_tangent);
     dissipated_ += damping.dissipated;
   }
   const LoadPoint point = static_ || !scheme_.is_incremental() ? LoadPoint::End : LoadPoint::Mean;
   for (const NodalLoad& load : model_.loads) {
     const LoadAction action = load_action(load, load_factor_ * history_values_[load.history],
                                           begin_[load.node].rotation, end[load.node].rotation, point);
-    add_nodal_force(load.node, -action.wrench, 0, -action.derivative, true, with_tangent);
+    add_nodal_force(load.node, -action.wrench, -action.derivative, true, with_tangent);
   }
 }
 
@@ -199,7 +198,7 @@ bool StepSystem::evaluate(bool with_tangent) {
   else
     add_conserving_beams<false>(with_tangent);
   add_nodal_forces(with_tangent);
-  if (is_interpolated()) subtract_begin_forces(with_tangent);
+  if (is_interpolated()) add_interpolated_forces(with_tangent);
   if (!static_) add_nodal_inertia(with_tangent);
   if (!static_ && scheme_.stress == StressRule::EndPoint) {
     if (scheme_.hht == HhtForm::Kinematics) reference_.set_trial(end_);

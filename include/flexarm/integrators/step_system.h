@@ -17,6 +17,13 @@
 
 namespace flexarm {
 
+/// A moment on a node at t_{n+1+alpha} from those at both ends, its derivative with respect to the one at the end, and at
+/// constant moments with respect to the node's spin.
+struct InterpolatedMoment {
+  Vector3 value;
+  Matrix3 slope, derivative;
+};
+
 /// Scratch and trial configuration of a step. Nothing allocates after construction.
 ///
 /// Life of a step: begin(state, h), guess, then evaluate / update until converged, then accept(state).
@@ -82,12 +89,14 @@ class StepSystem {
   void add_newmark_rotary(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, bool with_tangent,
                           ElementSystem<Nodes>& system);
   void add_nodal_forces(bool with_tangent);
-  void add_nodal_force(int node, const Vector6& force, double translational, Eigen::Matrix<double, 6, 3> rotational,
-                       bool of_configuration, bool with_tangent);
+  void add_nodal_force(int node, const Vector6& force, Eigen::Matrix<double, 6, 3> rotational, bool of_configuration,
+                       bool with_tangent);
   void add_nodal_inertia(bool with_tangent);
   double load_time() const;
   void interpolate_configuration();
-  void subtract_begin_forces(bool with_tangent);
+  InterpolatedMoment interpolated_moment(int node, const Vector3& begin, const Vector3& end,
+                                         bool with_derivative) const;
+  void add_interpolated_forces(bool with_tangent);
   void shift_reactions();
   void fold_joints(bool with_tangent);
   void add_joint_efforts(int joint, bool with_tangent);
