@@ -1,7 +1,6 @@
 #include "cli/progress_bar.h"
 
 #include <algorithm>
-#include <string>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -24,15 +23,15 @@ ProgressBar::~ProgressBar() {
   clear();
 }
 
-void ProgressBar::show(double value) {
+void ProgressBar::show(double value, const std::string& label) {
   if (!is_visible_) return;
   const std::chrono::steady_clock::time_point now = std::chrono::steady_clock::now();
   if (now < next_) return;
   next_ = now + kInterval;
   const double part = end_ > begin_ ? std::clamp((value - begin_) / (end_ - begin_), 0.0, 1.0) : 1.0;
   const int filled = static_cast<int>(part * kWidth);
-  fmt::print(stderr, "\r[{}{}] {:3.0f} %  t = {:.4g} s\033[K", std::string(filled, '#'),
-             std::string(kWidth - filled, ' '), 100 * part, value);
+  fmt::print(stderr, "\r[{}{}] {:3.0f} %  {}\033[K", std::string(filled, '#'), std::string(kWidth - filled, ' '),
+             100 * part, label.empty() ? fmt::format("t = {:.4g} s", value) : label);
   std::fflush(stderr);
   is_drawn_ = true;
 }

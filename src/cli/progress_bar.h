@@ -2,6 +2,7 @@
 /// A progress bar on a terminal.
 
 #include <chrono>
+#include <string>
 
 namespace flexarm::cli {
 
@@ -13,8 +14,8 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// Shows `value` between begin and end; at most ten times a second.
-  void show(double value);
+  /// Shows `value` between begin and end; at most ten times a second. Without a label it is a time.
+  void show(double value, const std::string& label = {});
   /// Wipes the bar, so that other output can follow.
   void clear();
 

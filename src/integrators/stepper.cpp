@@ -54,6 +54,7 @@ Stepper::Stepper(const Model& model, const Scheme& scheme, const StepSettings& s
       solver_(system_.assembler().unknowns(), system_.assembler().column_starts(), system_.assembler().row_indices()),
       update_(system_.assembler().unknowns()) {
   update_norms_.reserve(settings.max_iterations + 1);
+  before_.last_increment.reserve(system_.assembler().unknowns());
   if (scheme.scales_velocities) scaling_.emplace(model, scheme);
 }
 

@@ -12,7 +12,7 @@
 namespace flexarm {
 namespace {
 
-constexpr const char* kHeader = "flexarm-checkpoint 1";
+constexpr const char* kHeader = "flexarm-checkpoint 2";
 
 /// Calls `visit(number, may_be_nan)` for every number of a state in a fixed order; the one place that knows its layout.
 template <class AnyState, class Visit>
@@ -45,13 +45,29 @@ void for_each_number(AnyState& state, const Visit& visit) {
   visit(state.last_step, false);
   visit(state.work, false);
   visit(state.dissipated, false);
+  visit(state.energy_defect, false);
+  for (auto& memory : state.strain_memory) {
+    vector(memory.average);
+    vector(memory.rate);
+  }
+  for (auto* points : {&state.stiffness_rotations, &state.mass_rotations})
+    for (auto& point : *points) {
+      for (int k = 0; k < 9; ++k) visit(point.rotation(k / 3, k % 3), false);
+      vector(point.curvature);
+    }
+  for (auto& rotation : state.total_rotations) vector(rotation);
+  for (auto& force : state.forces) vector(force);
+  for (auto& reaction : state.reactions) vector(reaction);
+  for (auto& rate : state.momentum_rates) vector(rate);
 }
 
 /// What must agree for a state to fit a simulation.
 std::string signature(const Simulation& simulation) {
   const State& state = simulation.state();
-  return fmt::format("{} nodes {} joints {} mass_points {} coordinates {}", simulation.scheme(), state.nodes.size(),
-                     state.released.size(), state.mass_points.size(), state.commands.size());
+  const std::size_t kept = state.strain_memory.size() + state.stiffness_rotations.size() +
+                           state.mass_rotations.size() + state.total_rotations.size();
+  return fmt::format("{} nodes {} joints {} mass_points {} coordinates {} kept {}", simulation.scheme(),
+                     state.nodes.size(), state.released.size(), state.mass_points.size(), state.commands.size(), kept);
 }
 
 [[noreturn]] void fail(const std::string& path, const std::string& what) {
@@ -81,8 +97,9 @@ std::string hexadecimal(double value) {
 
 void write_checkpoint(const Simulation& simulation, const std::string& path) {
   const State& state = simulation.state();
-  std::string text = fmt::format("{}\n{}\nsteps {} level {} good {} increments {}\n", kHeader, signature(simulation),
-                                 state.steps, state.halving_level, state.good_steps, state.last_increment.size());
+  std::string text = fmt::format("{}\n{}\nsteps {} level {} good {} increments {} reactions {}\n", kHeader,
+                                 signature(simulation), state.steps, state.halving_level, state.good_steps,
+                                 state.last_increment.size(), state.reactions.size());
   for_each_number(state, [&](double value, bool) { text += hexadecimal(value) + "\n"; });
   text += "end\n";
   const std::string temporary = path + ".partial";
@@ -106,11 +123,13 @@ void read_checkpoint(Simulation& simulation, const std::string& path) {
                    model.substr(0, 120) + "'");
   State state = simulation.state();
   std::string word;
-  std::size_t increments = 0;
-  in >> word >> state.steps >> word >> state.halving_level >> word >> state.good_steps >> word >> increments;
+  std::size_t increments = 0, reactions = 0;
+  in >> word >> state.steps >> word >> state.halving_level >> word >> state.good_steps >> word >> increments >> word >>
+      reactions;
   if (!in || state.steps < 0 || state.halving_level < 0 ||
-      increments > 6 * state.nodes.size() + 6 * state.released.size())
+      increments > 6 * state.nodes.size() + 6 * state.released.size() || reactions > state.nodes.size())
     fail(path, "is damaged in line 3");
+  state.reactions.assign(reactions, Vector6::Zero());
   state.last_increment.assign(increments, 0.0);
   for_each_number(state, [&](double& value, bool may_be_nan) {
     if (!(in >> word)) fail(path, "ends too early");

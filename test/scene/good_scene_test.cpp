@@ -135,7 +135,7 @@ TEST(GoodScene, OtherSections) {
 TEST(GoodScene, Simulation) {
   const SceneDescription scene = good_scene();
   EXPECT_EQ(scene.gravity, Vector3(0, 0, -1.62));
-  EXPECT_EQ(scene.integrator.scheme, "em0");
+  EXPECT_EQ(scene.integrator.scheme, "edmc2");
   EXPECT_EQ(scene.integrator.step, 0.002);
   EXPECT_EQ(scene.integrator.tolerance, 1e-9);
   EXPECT_EQ(scene.integrator.max_iterations, 11);

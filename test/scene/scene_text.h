@@ -70,7 +70,7 @@ inline const char* const kGoodScene =
   </link>
   <simulation>
     <gravity xyz="0 0 -1.62"/>
-    <integrator scheme="em0" step="0.002" tolerance="1e-9" max_iterations="11" max_halvings="3" rho_infinity="0.9"/>
+    <integrator scheme="edmc2" step="0.002" tolerance="1e-9" max_iterations="11" max_halvings="3" rho_infinity="0.9"/>
     <initial joint="shoulder" position="0.3" velocity="0.4"/>
     <initial link="forearm" linear="1 2 3" angular="4 5 6"/>
     <load link="forearm" at="1 0 0" force="0 0 50" moment="1 2 3" frame="follower" history="0:0 1:50"/>

@@ -85,7 +85,9 @@ TEST_P(Allocation, NoneInAThousandSteps) {
   SimulationOptions options;
   options.scheme = scheme;
   options.reuse_factorisation = reuse;
-  Simulation simulation(everything_scene().scene, options);
+  scene::SceneDescription scene = everything_scene().scene;
+  if (scheme == "em_scaled") scene.motions.clear();  // refused with them
+  Simulation simulation(scene, options);
   simulation.command_effort(*simulation.find_coordinate("elbow"), 0.1);
   ASSERT_TRUE(simulation.step().converged);
   int converged = 0;
@@ -97,11 +99,13 @@ TEST_P(Allocation, NoneInAThousandSteps) {
               }
             }),
             0);
+  if (scheme == "beta1" || scheme == "beta2") return;  // these fail where the axial strain rests (beam.md 3.3)
   EXPECT_EQ(converged, 1000);
   EXPECT_GT(std::abs(simulation.position(*simulation.find_coordinate("hinge"))), 0.015) << "the stop must be reached";
 }
 INSTANTIATE_TEST_SUITE_P(Schemes, Allocation,
-                         ::testing::Combine(::testing::Values("em", "em0", "m1", "newmark"), ::testing::Bool()),
+                         ::testing::Combine(::testing::Values("em", "em0", "em_scaled", "em_symmetric", "em4", "edmc1", "edmc2", "m1", "m2", "std", "beta1", "beta2",
+                                           "beta1_repaired", "beta2_repaired", "newmark", "hht1", "hht2", "hht3"), ::testing::Bool()),
                          [](const auto& info) {
                            return std::get<0>(info.param) + (std::get<1>(info.param) ? "_reuse" : "_full");
                          });

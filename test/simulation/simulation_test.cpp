@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "flexarm/scene/integrator_options.h"
 #include "simulation/everything_scene.h"
 
 namespace flexarm::test {
@@ -73,7 +74,8 @@ TEST_F(SmallArm, StartsWhereTheSceneSays) {
 }
 
 TEST_F(SmallArm, ProbeVelocityIsTheRateOfItsPosition) {
-  for (const std::string scheme : {"em", "em0", "m1", "newmark"}) {
+  for (const std::string_view name : scene::scheme_names()) {
+    const std::string scheme(name);
     SimulationOptions options;
     options.scheme = scheme;
     options.step = 1e-4;
@@ -85,7 +87,9 @@ TEST_F(SmallArm, ProbeVelocityIsTheRateOfItsPosition) {
       ASSERT_TRUE(s.step().converged);
       const ProbeState after = s.probe(probe);
       const Vector3 secant = (after.pose.position - before.pose.position) / 1e-4;
-      EXPECT_LT((secant - 0.5 * (before.velocity + after.velocity)).norm(), 1e-5) << scheme << ", probe " << probe;
+      // M2 is of first order: off by the step times half an acceleration of order one.
+      const double bound = scheme == "m2" ? 1e-4 : 1e-5;
+      EXPECT_LT((secant - 0.5 * (before.velocity + after.velocity)).norm(), bound) << scheme << ", probe " << probe;
     }
   }
 }

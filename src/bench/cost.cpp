@@ -1,0 +1,31 @@
+#include "bench/cost.h"
+
+#include <ctime>
+
+#include "bench/scenes.h"
+
+namespace flexarm::bench {
+namespace {
+
+double processor_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+}  // namespace
+
+Measured<Cost> cost_of_run(const Variant& variant, bool quick) {
+  const int steps = quick ? 5 : 150;
+  Simulation arm = simulation(swinging_arm(), variant, 2e-3, 1e-8);
+  arm.step();  // allocates, and knows no increment to continue
+  Cost cost;
+  const double begin = processor_seconds();
+  const std::optional<Failure> failure =
+      run(arm, steps, [&](const StepResult& result) { cost.iterations += result.iterations; });
+  cost.seconds = (processor_seconds() - begin) / steps;
+  cost.iterations /= steps;
+  return {failure, cost};
+}
+
+}  // namespace flexarm::bench

@@ -1,0 +1,31 @@
+#pragma once
+/// How schemes take hard scenes.
+
+#include <string>
+#include <vector>
+
+#include "bench/run.h"
+
+namespace flexarm::bench {
+
+/// A scene that is run with several steps: one run alone is chance where the motion is chaotic.
+struct HardScene {
+  std::string name;
+  scene::SceneDescription scene;
+  double until;               ///< [s]
+  std::vector<double> steps;  ///< [s]
+};
+std::vector<HardScene> hard_scenes();
+
+struct Robustness {
+  int runs = 0, completed = 0;
+  double time_reached = 0;   ///< mean over the runs, part of the end time
+  double halved = 0;         ///< part of all steps in which a sub-step had to be halved
+  double iterations = 0;     ///< of Newton's method per step
+  double energy_defect = 0;  ///< largest error of energy - work + dissipation, relative to the largest energy
+};
+
+/// With the simulator's usual tolerance and step control.
+Robustness robustness(const Variant& variant, const HardScene& hard, bool quick);
+
+}  // namespace flexarm::bench

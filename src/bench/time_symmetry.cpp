@@ -1,0 +1,45 @@
+#include "bench/time_symmetry.h"
+
+#include <algorithm>
+
+#include "bench/scenes.h"
+
+namespace flexarm::bench {
+namespace {
+
+double distance(const State& a, const State& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.nodes.size(); ++i)
+    largest = std::max(largest, (a.nodes[i].position - b.nodes[i].position).norm());
+  return largest;
+}
+
+/// Positions, accelerations and forces stay, velocities change their signs; a predictor is not kept.
+State reversed(State state) {
+  for (NodeState& node : state.nodes) {
+    node.velocity *= -1;
+    node.angular_velocity *= -1;
+  }
+  for (MassPointState& point : state.mass_points) point.angular_velocity *= -1;
+  for (Vector6& rate : state.strain_rates) rate *= -1;
+  state.last_step = 0;
+  return state;
+}
+
+}  // namespace
+
+std::optional<Measured<double>> time_asymmetry(const Variant& variant, bool quick) {
+  if (variant.scheme.dissipation.any()) return std::nullopt;
+  const int steps = quick ? 10 : 40;
+  Simulation tree = simulation(free_tree(), variant, 0.05);
+  const State begin = tree.state();
+  double amplitude = 0;
+  std::optional<Failure> failure =
+      run(tree, steps, [&](const StepResult&) { amplitude = std::max(amplitude, distance(tree.state(), begin)); });
+  if (failure) return Measured<double>{failure, 0};
+  tree.restore(reversed(tree.state()));
+  failure = run(tree, steps);
+  return Measured<double>{failure, distance(tree.state(), begin) / amplitude};
+}
+
+}  // namespace flexarm::bench
