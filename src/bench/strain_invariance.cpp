@@ -15,7 +15,7 @@ constexpr int kNodes = 3, kSteps = 2, kIterates = 2;
 
 /// Rotation of node i at a part of the way, in (0, 1]; not proportional to it.
 Quaternion node_rotation(int i, double part) {
-  const Vector3 along(0.5 * i, -0.3 * i, 0.4 * i), aside(0.2, 0.3 * i, -0.1);
+  const Vector3 along(0.8 * i, -0.5 * i, 0.6 * i), aside(0.2, 0.3 * i, -0.1);
   return so3::exp_quaternion(Vector3(part * along + std::sin(3 * part) * aside));
 }
 

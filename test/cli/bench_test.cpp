@@ -1,0 +1,41 @@
+#include <filesystem>
+
+#include "cli/program.h"
+
+namespace flexarm::cli {
+namespace {
+
+TEST(Bench, UsageErrors) {
+  for (const char* arguments : {"bench", "bench fly", "bench properties --fast"})
+    EXPECT_EQ(shell(std::string("flexarm ") + arguments).status, 2) << arguments;
+}
+
+TEST(Bench, PropertiesReport) {
+  const std::string folder = temporary("reports");
+  const Outcome outcome = shell("flexarm bench properties --quick --output '" + folder + "/new'");
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  const std::string report = read_file(folder + "/new/properties.md");
+  for (const char* row : {"\n| em |", "\n| newmark |", "\n| newmark, total, additive |", "\n| hht3, incremental |"})
+    EXPECT_NE(report.find(row), std::string::npos) << row;
+  const std::string data = read_file(folder + "/new/properties_dissipation.csv");
+  EXPECT_EQ(data.substr(0, data.find('\n')), "scheme,omega_h,spectral_radius");
+  // The picture is drawn where matplotlib is; without it the report says nothing of a picture.
+  const bool is_drawn = std::filesystem::exists(folder + "/new/properties_dissipation.png");
+  EXPECT_EQ(report.find("properties_dissipation.png") != std::string::npos, is_drawn);
+  EXPECT_EQ(outcome.errors.empty(), is_drawn) << outcome.errors;
+
+  // Only times differ from run to run.
+  ASSERT_EQ(shell("flexarm bench properties --quick --output '" + folder + "/again'").status, 0);
+  EXPECT_EQ(read_file(folder + "/again/properties_dissipation.csv"), data);
+}
+
+TEST(Bench, FolderThatCannotBeWritten) {
+  const std::string file = temporary("file");
+  std::ofstream(file) << "x";
+  const Outcome outcome = shell("flexarm bench properties --quick --output '" + file + "'");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.errors, "");
+}
+
+}  // namespace
+}  // namespace flexarm::cli
