@@ -112,6 +112,20 @@ INSTANTIATE_TEST_SUITE_P(Joints, OrderInTime,
                                             ::testing::Values(arm_with_joints())),
                          name_of);
 
+/// At the usual alpha what is of first order in it hides behind the rest.
+std::vector<SchemeVariant> strong_hht() {
+  std::vector<SchemeVariant> strong;
+  for (SchemeVariant variant : scheme_variants())
+    if (variant.scheme.hht != HhtForm::None) {
+      variant.integrator.alpha = -0.3;
+      strong.push_back({variant.name + "_strong", variant.integrator, make_scheme(variant.integrator)});
+    }
+  return strong;
+}
+INSTANTIATE_TEST_SUITE_P(StrongDissipation, OrderInTime,
+                         ::testing::Combine(::testing::ValuesIn(strong_hht()), ::testing::Values(arm_with_joints())),
+                         name_of);
+
 std::vector<SchemeVariant> variants(const std::vector<std::string>& names) {
   std::vector<SchemeVariant> selected;
   for (const SchemeVariant& variant : scheme_variants())
