@@ -9,6 +9,7 @@ namespace {
 using namespace test;
 
 constexpr NewmarkRule kRule{0.3025, 0.6, 0.3};
+constexpr NewmarkRule kInterpolatedRule{0.3025, 0.6, 0.3, -0.1};
 constexpr double kRoundOff = 1e-12;
 
 template <class Count>
@@ -46,6 +47,34 @@ TYPED_TEST(EndpointBeam, TangentWithDamping) {
       step, [&](const ElementNodes<N>& nodes, bool with) { return internal<N>(step, nodes, &kRule, with); });
 }
 
+// At t_{n+1+alpha} the strain rate is interpolated, and so is the velocity of mass-proportional damping.
+TYPED_TEST(EndpointBeam, TangentWithDampingOfInterpolatedKinematics) {
+  constexpr int N = TypeParam::value;
+  RandomSource random(10);
+  RandomStep<N> step(random, 0.5);
+  step.element.stiffness_damping = 0.2;
+  step.element.mass_damping = 0.4;
+  expect_consistent_tangent<N>(step, [&](const ElementNodes<N>& nodes, bool with) {
+    ElementSystem<N> system = internal<N>(step, nodes, &kInterpolatedRule, with);
+    newmark_mass_damping<N>(step.element, nodes, kInterpolatedRule, with, system);
+    return system;
+  });
+}
+
+TYPED_TEST(EndpointBeam, TangentWithGlobalInterpolations) {
+  constexpr int N = TypeParam::value;
+  RandomSource random(11);
+  for (const Interpolation interpolation :
+       {Interpolation::Total, Interpolation::Incremental, Interpolation::Iterative}) {
+    SCOPED_TRACE(static_cast<int>(interpolation));
+    RandomStep<N> step(random, 0.5);
+    step.set_interpolation(random, interpolation);
+    step.element.stiffness_damping = 0.2;
+    expect_consistent_tangent<N>(
+        step, [&](const ElementNodes<N>& nodes, bool with) { return internal<N>(step, nodes, &kRule, with); });
+  }
+}
+
 TYPED_TEST(EndpointBeam, TangentOfNewmarkTranslation) {
   constexpr int N = TypeParam::value;
   RandomSource random(3);
@@ -56,6 +85,7 @@ TYPED_TEST(EndpointBeam, TangentOfNewmarkTranslation) {
       ElementSystem<N> system;
       system.set_zero();
       newmark_translation<N>(step.element, nodes, kRule, with, system);
+      newmark_mass_damping<N>(step.element, nodes, kRule, with, system);
       return system;
     });
   }
@@ -141,18 +171,49 @@ TEST(NewmarkRule, AgreesWithItsDefinition) {
 TYPED_TEST(EndpointBeam, StrainRateFollowsTheRule) {
   constexpr int N = TypeParam::value;
   RandomSource random(9);
-  RandomStep<N> step(random, 0.3);
-  step.element.stiffness_damping = 0.2;
-  std::array<PointKinematics, N - 1> end;
-  std::array<Vector6, N - 1> rates, new_rates;
-  for (Vector6& rate : rates) rate = random.vector6();
-  ElementSystem<N> system;
-  system.set_zero();
-  endpoint_internal<N>(step.element, step.nodes, &kRule, step.begin_points.data(), rates.data(), false, end.data(),
-                       new_rates.data(), system);
-  for (int k = 0; k < N - 1; ++k) {
-    const Vector6 increment = kRule.step * ((1 - kRule.gamma) * rates[k] + kRule.gamma * new_rates[k]);
-    EXPECT_LE(largest(end[k].strain - step.begin_points[k].strain - increment), kRoundOff);
+  for (const NewmarkRule& rule : {kRule, kInterpolatedRule}) {
+    RandomStep<N> step(random, 0.3);
+    step.element.stiffness_damping = 0.2;
+    std::array<PointKinematics, N - 1> end;
+    std::array<Vector6, N - 1> rates, new_rates;
+    for (Vector6& rate : rates) rate = random.vector6();
+    ElementSystem<N> system;
+    system.set_zero();
+    endpoint_internal<N>(step.element, step.nodes, &rule, step.begin_points.data(), rates.data(), false, end.data(),
+                         new_rates.data(), system);
+    double dissipated = 0;
+    for (int k = 0; k < N - 1; ++k) {
+      // The strains are those at t_{n+1+alpha}, where the rate is (1 + alpha) new - alpha old.
+      const Vector6 increment = rule.step * ((1 - rule.gamma) * rates[k] + rule.gamma * new_rates[k]);
+      const Vector6 change = end[k].strain - step.begin_points[k].strain;
+      EXPECT_LE(largest(change - (1 + rule.alpha) * increment), kRoundOff);
+      const Vector6 rate = (1 + rule.alpha) * new_rates[k] - rule.alpha * rates[k];
+      dissipated += step.element.stiffness_points[k].weight * 0.2 * increment.dot(step.element.stiffness * rate);
+    }
+    EXPECT_NEAR(system.dissipated, dissipated, kRoundOff * largest(system.residual));
+  }
+}
+
+// Mass-proportional damping is the mass matrix on the velocities at t_{n+1+alpha}, and dissipates their work.
+TYPED_TEST(EndpointBeam, MassDamping) {
+  constexpr int N = TypeParam::value;
+  RandomSource random(12);
+  for (const NewmarkRule& rule : {kRule, kInterpolatedRule}) {
+    RandomStep<N> step(random, 0.3);
+    step.element.mass_damping = 0.4;
+    ElementSystem<N> system;
+    system.set_zero();
+    newmark_mass_damping<N>(step.element, step.nodes, rule, false, system);
+    Eigen::Matrix<double, 6 * N, 1> expected = Eigen::Matrix<double, 6 * N, 1>::Zero();
+    for (int i = 0; i < N; ++i)
+      for (int j = 0; j < N; ++j) {
+        const Vector3 &v0 = step.nodes.velocity[j], &a0 = step.nodes.acceleration[j];
+        const Vector3 a1 = rule.acceleration(step.nodes.end[j] - step.nodes.begin[j], v0, a0);
+        const Vector3 v1 = rule.velocity(v0, a0, a1);
+        expected.template segment<3>(6 * i) += 0.4 * step.element.mass(i, j) * (v1 + rule.alpha * (v1 - v0));
+      }
+    EXPECT_LE(largest(system.residual - expected), kRoundOff * largest(expected));
+    EXPECT_NEAR(system.dissipated, step.work(system.residual), kRoundOff * largest(expected));
   }
 }
 

@@ -31,4 +31,49 @@ void expect_consistent_tangent(const RandomStep<Nodes>& step, const Kernel& kern
   }
 }
 
+/// Translational velocities at the end by v_1 = factor Delta r / h - (factor - 1) v_0.
+template <int Nodes>
+std::array<Vector3, Nodes> end_velocities(const ElementNodes<Nodes>& nodes, double h, double factor = 2) {
+  std::array<Vector3, Nodes> out;
+  for (int i = 0; i < Nodes; ++i)
+    out[i] = factor / h * (nodes.end[i] - nodes.begin[i]) - (factor - 1) * nodes.velocity[i];
+  return out;
+}
+
+/// Translational kinetic energy.
+template <int Nodes>
+double kinetic_energy(const BeamElement<Nodes>& element, const std::array<Vector3, Nodes>& velocity) {
+  double sum = 0;
+  for (int i = 0; i < Nodes; ++i)
+    for (int j = 0; j < Nodes; ++j) sum += 0.5 * element.mass(i, j) * velocity[i].dot(velocity[j]);
+  return sum;
+}
+
+/// {linear, angular momentum about the origin} of the translation.
+template <int Nodes>
+Vector6 momenta(const BeamElement<Nodes>& element, const std::array<Vector3, Nodes>& position,
+                const std::array<Vector3, Nodes>& velocity) {
+  Vector6 sum = Vector6::Zero();
+  for (int i = 0; i < Nodes; ++i)
+    for (int j = 0; j < Nodes; ++j) {
+      sum.head<3>() += element.mass(i, j) * velocity[j];
+      sum.tail<3>() += element.mass(i, j) * position[i].cross(velocity[j]);
+    }
+  return sum;
+}
+
+/// Resultant {force, moment about the origin} of nodal forces and moments; `end_weight`: of the end in the arms.
+template <int Nodes>
+Vector6 resultant(const ElementNodes<Nodes>& nodes, const Eigen::Matrix<double, 6 * Nodes, 1>& forces,
+                  double end_weight) {
+  Vector6 sum = Vector6::Zero();
+  for (int i = 0; i < Nodes; ++i) {
+    const Vector3 f = forces.template segment<3>(6 * i);
+    const Vector3 arm = (1 - end_weight) * nodes.begin[i] + end_weight * nodes.end[i];
+    sum.head<3>() += f;
+    sum.tail<3>() += arm.cross(f) + forces.template segment<3>(6 * i + 3);
+  }
+  return sum;
+}
+
 }  // namespace flexarm::test

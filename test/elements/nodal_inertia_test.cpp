@@ -19,12 +19,14 @@ struct NodeSample {
   NodeState state;
   Vector3 increment;
   Matrix3 inverse_tangent;
+  Vector3 momentum_rate;
 
   NodeSample(RandomSource& random, double size) {
     begin = pose(random.vector(), random.rotation(3));
     state = {begin.position, begin.orientation, random.vector(), random.vector(), random.vector(), random.vector()};
     set_end(begin.position + size * random.vector(),
             so3::exp_quaternion(Vector3(size * random.vector())) * begin.orientation);
+    momentum_rate = random.vector();
   }
   static NodePose pose(const Vector3& position, const Quaternion& orientation) {
     return {position, orientation, orientation.toRotationMatrix()};
@@ -42,7 +44,7 @@ struct NodeSample {
       out.set_end(end.position, so3::exp_quaternion(Vector3(h * Vector3::Unit(column - 3))) * end.orientation);
     return out;
   }
-  NodeStep step() const { return {begin, end, state, increment, inverse_tangent, kStep}; }
+  NodeStep step() const { return {begin, end, state, increment, inverse_tangent, kStep, momentum_rate}; }
   double work(const Vector6& wrench) const {
     return wrench.head<3>().dot(end.position - begin.position) + wrench.tail<3>().dot(increment);
   }
@@ -57,82 +59,154 @@ NodalInertia random_inertia(RandomSource& random, bool damped) {
   return inertia;
 }
 
-class NodalInertiaAction : public ::testing::TestWithParam<Scheme> {};
+class NodalInertiaTest : public ::testing::TestWithParam<Scheme> {};
 
-TEST_P(NodalInertiaAction, Tangent) {
+/// Tangent of evaluate(step) -> NodalAction against differences of its residual.
+template <class Evaluate>
+void expect_tangent(const NodeSample& sample, const Evaluate& evaluate) {
+  const NodalAction action = evaluate(sample.step());
+  Matrix6 tangent = Matrix6::Zero();
+  tangent.topLeftCorner<3, 3>().diagonal().setConstant(action.translational);
+  tangent.bottomRightCorner<3, 3>() = action.rotational;
+  for (int column = 0; column < 6; ++column) {
+    const Vector6 expected = difference([&](double h) {
+      const NodeSample moved = sample.perturbed(column, h);
+      return evaluate(moved.step()).residual;
+    });
+    EXPECT_LE(largest(tangent.col(column) - expected), difference_tolerance * largest(tangent));
+  }
+}
+
+TEST_P(NodalInertiaTest, Tangents) {
   RandomSource random(1);
-  for (const bool damped : {false, true})
-    for (const double size : {0.01, 0.6}) {
-      const NodalInertia inertia = random_inertia(random, damped);
-      const NodeSample sample(random, size);
-      const flexarm::NodalInertiaAction action = nodal_inertia_action(inertia, GetParam(), sample.step());
-      Matrix6 tangent = Matrix6::Zero();
-      tangent.topLeftCorner<3, 3>().diagonal().setConstant(action.translational);
-      tangent.bottomRightCorner<3, 3>() = action.rotational;
-      for (int column = 0; column < 6; ++column) {
-        const Vector6 expected = difference([&](double h) {
-          const NodeSample moved = sample.perturbed(column, h);
-          return nodal_inertia_action(inertia, GetParam(), moved.step()).residual;
-        });
-        EXPECT_LE(largest(tangent.col(column) - expected), difference_tolerance * largest(tangent));
-      }
-    }
+  for (const double size : {0.01, 0.6}) {
+    const NodalInertia inertia = random_inertia(random, true);
+    const NodeSample sample(random, size);
+    expect_tangent(sample, [&](const NodeStep& step) { return nodal_inertia_action(inertia, GetParam(), step); });
+    expect_tangent(sample, [&](const NodeStep& step) { return nodal_damping_action(inertia, GetParam(), step); });
+    const NodalAction with = nodal_inertia_action(inertia, GetParam(), sample.step());
+    const NodalAction without = nodal_inertia_action(inertia, GetParam(), sample.step(), false);
+    EXPECT_LE(largest(with.residual - without.residual), 1e-14 * largest(with.residual));
+  }
+}
+
+/// The rotary inertia that the scheme has at a node.
+Matrix3 nodal_rotary(const NodalInertia& inertia, const Scheme& scheme) {
+  return inertia.rotary + (scheme.nodal_rotary_inertia ? inertia.beam_rotary : Matrix3::Zero());
 }
 
 // The residual belongs to the velocities that the step ends with: momentum rates, or accelerations.
-TEST_P(NodalInertiaAction, BalanceWithAdvancedState) {
+TEST_P(NodalInertiaTest, BalanceWithAdvancedState) {
   RandomSource random(2);
   const Scheme& scheme = GetParam();
   const NodalInertia inertia = random_inertia(random, false);
-  const Matrix3 J = inertia.rotary + (scheme.nodal_rotary_inertia ? inertia.beam_rotary : Matrix3::Zero());
+  const Matrix3 J = nodal_rotary(inertia, scheme);
   const NodeSample sample(random, 0.6);
   const NodeState after = advanced(scheme, sample.step());
   const Vector6 residual = nodal_inertia_action(inertia, scheme, sample.step()).residual;
+  const Vector3& W = after.angular_velocity;
+  const Vector3 change = sample.end.rotation * (J * W) - sample.begin.rotation * (J * sample.state.angular_velocity);
   Vector6 expected;
-  if (scheme.is_incremental()) {
-    expected << inertia.mass * (after.velocity - sample.state.velocity),
-        sample.end.rotation * (J * after.angular_velocity) -
-            sample.begin.rotation * (J * sample.state.angular_velocity);
-    expected /= kStep;
-  } else {
-    const Vector3& W = after.angular_velocity;
+  if (scheme.is_incremental())
+    expected << inertia.mass / kStep * (after.velocity - sample.state.velocity), change / kStep;
+  else if (scheme.hht != HhtForm::None)  // momentum rates by the rule of Newmark's velocities
+    expected << inertia.mass * after.acceleration,
+        (change / kStep - (1 - scheme.gamma) * sample.momentum_rate) / scheme.gamma;
+  else
     expected << inertia.mass * after.acceleration,
         sample.end.rotation * (W.cross(J * W) + J * after.angular_acceleration);
-  }
   EXPECT_LE(largest(residual - expected), 1e-12 * largest(expected));
   EXPECT_EQ(after.position, sample.end.position);
+  EXPECT_EQ(after.orientation.coeffs(), sample.end.orientation.coeffs());
+}
+
+// (v_0 + v_1)/2 = Delta r / h and (W_0 + W_1)/2 = Omega / h; M2 has v_1 = Delta r / h.
+TEST_P(NodalInertiaTest, VelocitiesFollowTheRule) {
+  const Scheme& scheme = GetParam();
+  if (!scheme.is_incremental()) return;
+  RandomSource random(3);
+  const NodeSample sample(random, 0.6);
+  const NodeState after = advanced(scheme, sample.step());
+  const double end_weight = scheme.name == "m2" ? 1 : 0.5;
+  const Vector3 velocity = (1 - end_weight) * sample.state.velocity + end_weight * after.velocity;
+  EXPECT_LE((kStep * velocity - (sample.end.position - sample.begin.position)).norm(), 1e-14);
+  const Vector3 increment = scheme.body_rotation == RotationRule::TangentScaled
+                                ? sample.increment
+                                : so3::log(sample.end.orientation * sample.begin.orientation.conjugate());
+  const Vector3 spin = 0.5 * (sample.state.angular_velocity + after.angular_velocity);
+  EXPECT_LE((kStep * (sample.begin.rotation * spin) - increment).norm(), 1e-14);
 }
 
 // With tangent-scaled increments the work on a body is exactly the change of its kinetic energy.
-TEST_P(NodalInertiaAction, EnergyBalanceOfTangentScaledSchemes) {
+TEST_P(NodalInertiaTest, EnergyBalanceOfTangentScaledSchemes) {
   const Scheme& scheme = GetParam();
-  if (!scheme.is_incremental() || scheme.rotation != RotationRule::TangentScaled) return;
-  RandomSource random(3);
+  if (!scheme.is_incremental() || scheme.body_rotation != RotationRule::TangentScaled) {
+    EXPECT_FALSE(scheme.conserves_energy);
+    return;
+  }
+  RandomSource random(4);
   const NodalInertia inertia = random_inertia(random, false);
-  const Matrix3 J = inertia.rotary + inertia.beam_rotary;
+  const Matrix3 J = nodal_rotary(inertia, scheme);
   const NodeSample sample(random, 0.8);
   const NodeState after = advanced(scheme, sample.step());
   const auto energy = [&](const NodeState& state) {
     return 0.5 * (inertia.mass * state.velocity.squaredNorm() + state.angular_velocity.dot(J * state.angular_velocity));
   };
   EXPECT_NEAR(sample.work(nodal_inertia_action(inertia, scheme, sample.step()).residual),
-              energy(after) - energy(sample.state), 1e-12 * energy(after));
+              energy(after) - energy(sample.state), 1e-12 * (energy(after) + energy(sample.state)));
 }
 
-TEST_P(NodalInertiaAction, DampingDissipatesExactlyWhatIsCounted) {
+// M2 loses the energy of half the change of the velocity, squared.
+TEST(NodalInertia, BackwardVelocityDissipates) {
+  RandomSource random(5);
+  const Scheme scheme = *find_scheme("m2");
+  NodalInertia inertia;
+  inertia.mass = 1.7;
+  const NodeSample sample(random, 0.8);
+  const Vector3 before = sample.state.velocity, after = advanced(scheme, sample.step()).velocity;
+  const double change = 0.5 * inertia.mass * (after.squaredNorm() - before.squaredNorm());
+  EXPECT_NEAR(sample.work(nodal_inertia_action(inertia, scheme, sample.step()).residual),
+              change + 0.5 * inertia.mass * (after - before).squaredNorm(), 1e-13);
+}
+
+TEST_P(NodalInertiaTest, DampingDissipatesExactlyWhatIsCounted) {
   const Scheme& scheme = GetParam();
-  RandomSource random(4);
+  RandomSource random(6);
   NodalInertia inertia;
   inertia.rotary_damping = random.positive_definite<3>();
   EXPECT_FALSE(inertia.empty());
   const NodeSample sample(random, 0.8);
-  const flexarm::NodalInertiaAction action = nodal_inertia_action(inertia, scheme, sample.step());
-  if (!scheme.is_incremental()) return;
-  EXPECT_GT(action.dissipated, 0);
-  EXPECT_NEAR(sample.work(action.residual), action.dissipated, 1e-13 * action.dissipated);
+  const NodalAction action = nodal_damping_action(inertia, scheme, sample.step());
+  EXPECT_EQ(largest(action.residual.head<3>()), 0);
+  EXPECT_EQ(action.translational, 0);
+  EXPECT_EQ(largest(nodal_inertia_action(inertia, scheme, sample.step()).residual), 0);
+  if (scheme.is_incremental()) {
+    EXPECT_GT(action.dissipated, 0);
+    EXPECT_NEAR(sample.work(action.residual), action.dissipated, 1e-13 * action.dissipated);
+    return;
+  }
+  // At the end; HHT3: interpolated between the moments D W of both ends.
+  const auto moment = [&](const NodePose& pose, const NodeState& state) {
+    return Vector3(pose.rotation * (inertia.rotary_damping * state.angular_velocity));
+  };
+  const double alpha = scheme.name == "hht3" ? scheme.alpha : 0;
+  const Vector3 expected =
+      (1 + alpha) * moment(sample.end, advanced(scheme, sample.step())) - alpha * moment(sample.begin, sample.state);
+  EXPECT_LE((action.residual.tail<3>() - expected).norm(), 1e-12 * expected.norm());
+  const Vector3 turn = so3::log(sample.end.orientation * sample.begin.orientation.conjugate());
+  EXPECT_NEAR(action.dissipated, expected.dot(turn), 1e-12 * expected.norm());
 }
 
-INSTANTIATE_TEST_SUITE_P(AllSchemes, NodalInertiaAction, ::testing::ValuesIn(schemes()),
+TEST(NodalInertia, AlphaBelongsToTheInterpolatedConfigurationOnly) {
+  for (const Scheme& scheme : schemes()) {
+    const NewmarkRule rule = newmark_rule(scheme, kStep);
+    EXPECT_EQ(rule.alpha, scheme.name == "hht3" ? scheme.alpha : 0) << scheme.name;
+    EXPECT_EQ(rule.step, kStep);
+  }
+  EXPECT_LT(find_scheme("hht3")->alpha, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(AllSchemes, NodalInertiaTest, ::testing::ValuesIn(schemes()),
                          [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace

@@ -6,11 +6,11 @@
 
 #include <gtest/gtest.h>
 
+#include "elements/average_rotary.h"
 #include "elements/differences.h"
 #include "flexarm/elements/conserving_beam.h"
 #include "flexarm/elements/endpoint_beam.h"
 #include "flexarm/elements/nodal_inertia.h"
-#include "flexarm/elements/rotary_inertia.h"
 #include "flexarm/integrators/scheme.h"
 #include "flexarm/model/beam_mesh.h"
 
@@ -79,51 +79,79 @@ class Comparison {
     const LocalRotations<Nodes> local(begin_orientation_);
     for (int k = 0; k < Nodes - 1; ++k) {
       const auto& point = element_.stiffness_points[k];
-      begin_points_[k] = point_kinematics(local.evaluate(point.shape, point.derivative),
-                                          interpolate<Nodes>(point.derivative, nodes_.begin), point.reference_strain);
+      begin_stiffness_[k] = local.evaluate(point.shape, point.derivative);
+      begin_points_[k] = point_kinematics(begin_stiffness_[k], interpolate<Nodes>(point.derivative, nodes_.begin),
+                                          point.reference_strain);
     }
     for (int k = 0; k < Nodes; ++k) {
       const auto& point = element_.mass_points[k];
-      begin_mass_rotations_[k] = local.evaluate(point.shape, point.derivative).rotation;
+      begin_mass_[k] = local.evaluate(point.shape, point.derivative);
+      mass_points_[k] = {data_.vector("point_angular_velocity", k), data_.vector("point_angular_acceleration", k)};
     }
   }
 
   void check_all() {
-    check("static", endpoint(nullptr));
-    const NewmarkRule rule{0.25, 0.5, step_};
-    ElementSystem<Nodes> newmark = endpoint(&rule);
-    newmark_translation<Nodes>(element_, nodes_, rule, false, newmark);
-    add_rotary(newmark, [&](int k, const Matrix3& begin, const Matrix3& end) {
-      return newmark_rotary_rate(element_.inertia, begin, end, point_state(k), rule);
-    });
-    check("newmark", newmark);
-
-    ElementSystem<Nodes> m1 = conserving<ExponentialMoment>();
-    add_rotary(m1, [&](int k, const Matrix3& begin, const Matrix3& end) {
-      const Vector3 increment = so3::log(Matrix3(end * begin.transpose()));
-      return average_rotary_rate(element_.inertia, begin, end, increment, so3::inverse_tangent(increment),
-                                 point_state(k), step_);
-    });
-    check("m1", m1);
-    check("em0", with_nodal_inertia("em0", conserving<AverageStress>()));
-    check("em", with_nodal_inertia("em", conserving<DiscreteGradientStress>()));
+    check("static", static_forces(nodes_));
+    for (const char* scheme : {"newmark", "hht2"}) check(scheme, newmark(scheme));
+    for (const char* scheme : {"m1", "m2", "std", "beta1", "beta1_repaired"}) check(scheme, momentum(scheme));
+    check("em0", with_nodal_inertia("em0", conserving<false>()));
+    check("em", with_nodal_inertia("em", conserving<true>()));
     element_.stiffness_damping = data_.number("damping");
-    check("em0_damped", with_nodal_inertia("em0", conserving<AverageStress>()));
-    check("em_damped", with_nodal_inertia("em", conserving<DiscreteGradientStress>()));
+    check("em0_damped", with_nodal_inertia("em0", conserving<false>()));
+    check("em_damped", with_nodal_inertia("em", conserving<true>()));
   }
 
  private:
-  MassPointState point_state(int k) const {
-    return {data_.vector("point_angular_velocity", k), data_.vector("point_angular_acceleration", k)};
-  }
-  ElementSystem<Nodes> endpoint(const NewmarkRule* rule) {
+  ElementSystem<Nodes> static_forces(const ElementNodes<Nodes>& nodes) {
     std::array<PointKinematics, Nodes - 1> end;
+    std::array<Vector6, Nodes - 1> rates, new_rates;
+    for (Vector6& rate : rates) rate.setZero();
     ElementSystem<Nodes> system;
     system.set_zero();
-    endpoint_internal<Nodes>(element_, nodes_, rule, begin_points_.data(), nullptr, false, end.data(), nullptr, system);
+    endpoint_internal<Nodes>(element_, nodes, nullptr, begin_points_.data(), rates.data(), false, end.data(),
+                             new_rates.data(), system);
     return system;
   }
-  template <class Stress>
+  /// Newmark's inertia and the forces at t_{n+1+alpha} (Hilber-Hughes-Taylor, forces conjugate to spins interpolated).
+  ElementSystem<Nodes> newmark(const std::string& scheme) {
+    const double alpha = scheme == "hht2" ? data_.number("alpha") : 0;
+    ElementNodes<Nodes> begin = nodes_;
+    begin.end = begin.begin;
+    begin.orientation = begin_orientation_;
+    ElementSystem<Nodes> system = static_forces(nodes_);
+    system.residual = (1 + alpha) * system.residual - alpha * static_forces(begin).residual;
+    const NewmarkRule rule{0.25 * (1 - alpha) * (1 - alpha), 0.5 - alpha, step_};
+    newmark_translation<Nodes>(element_, nodes_, rule, false, system);
+    for_each_mass_point(
+        element_, nodes_, false,
+        [&](int k, const InterpolatedRotation<double>& point, const GeneralisedShapeFunctions<Nodes>& generalised) {
+          const RotaryRate rate =
+              newmark_rotary_rate(element_.inertia, begin_mass_[k].rotation, point.rotation, mass_points_[k], rule);
+          add_rotary_rate(element_, k, rate, generalised, false, system);
+        });
+    return system;
+  }
+  ElementSystem<Nodes> momentum(const std::string& name) {
+    const Scheme scheme = *find_scheme(name);
+    ElementNodes<Nodes> nodes = nodes_;
+    if (scheme.interpolation == Interpolation::Incremental) {
+      nodes.parameters = RotationParameters::TangentScaled;
+      nodes.rotation_vector = nodes.increment;
+      nodes.stiffness_reference = begin_stiffness_.data();
+      nodes.mass_reference = begin_mass_.data();
+    }
+    std::array<Matrix3, Nodes> begin;
+    for (int k = 0; k < Nodes; ++k) begin[k] = begin_mass_[k].rotation;
+    AverageRotary<Nodes> rotary{element_, nodes, scheme.beam_rotation, begin, mass_points_, step_};
+    std::array<PointKinematics, Nodes - 1> end;
+    ElementSystem<Nodes> system;
+    const auto add = [&](bool with, ElementEnergy<Nodes>* energy, ElementSystem<Nodes>& sum) {
+      rotary(with, energy, sum);
+    };
+    momentum_beam<Nodes>(element_, nodes, scheme, begin_points_.data(), step_, add, false, end.data(), system);
+    return system;
+  }
+  template <bool WithMultiplier>
   ElementSystem<Nodes> conserving() {
     std::array<PointKinematics, Nodes - 1> end;
     ElementSystem<Nodes> system;
@@ -134,13 +162,9 @@ class Comparison {
         lagrange[k].values[i] = element_.stiffness_points[k].shape[i] * Matrix3::Identity();
         lagrange[k].derivatives[i] = element_.stiffness_points[k].derivative[i] * Matrix3::Identity();
       }
-    conserving_beam<Stress, Nodes>(element_, nodes_, lagrange, begin_points_.data(), step_, false, end.data(), system);
+    conserving_beam<WithMultiplier, Nodes>(element_, nodes_, TimeRule(), lagrange, begin_points_.data(), nullptr, step_,
+                                           false, end.data(), nullptr, system);
     return system;
-  }
-  template <class Rate>
-  void add_rotary(ElementSystem<Nodes>& system, const Rate& rate) {
-    std::array<Matrix3, Nodes> end;
-    add_rotary_inertia<Nodes>(element_, nodes_, begin_mass_rotations_.data(), rate, false, end.data(), system);
   }
   /// Adds the rotary inertia of the element's nodes, as the model lumps it.
   ElementSystem<Nodes> with_nodal_inertia(const char* scheme, ElementSystem<Nodes> system) {
@@ -172,7 +196,9 @@ class Comparison {
   std::array<Quaternion, Nodes> begin_orientation_;
   ElementNodes<Nodes> nodes_;
   std::array<PointKinematics, Nodes - 1> begin_points_;
-  std::array<Matrix3, Nodes> begin_mass_rotations_;
+  std::array<InterpolatedRotation<double>, Nodes - 1> begin_stiffness_;
+  std::array<InterpolatedRotation<double>, Nodes> begin_mass_;
+  std::array<MassPointState, Nodes> mass_points_;
 };
 
 TEST(Prototype, TwoNodes) {

@@ -4,9 +4,11 @@
 #include <random>
 
 #include "flexarm/elements/beam_point.h"
+#include "flexarm/elements/time_rule.h"
 #include "flexarm/math/cayley.h"
 #include "flexarm/math/so3.h"
 #include "flexarm/model/beam_mesh.h"
+#include "flexarm/model/state.h"
 
 namespace flexarm::test {
 
@@ -37,7 +39,17 @@ class RandomSource {
   std::uniform_real_distribution<double> uniform_{-1, 1};
 };
 
-/// An element with a curved, twisted undeformed line and full section matrices, over a random step.
+/// Which rotation vector a node has from its reference: of two that give the same rotation the one nearer to another.
+inline Vector3 nearest_vector(const Quaternion& relative, const Vector3& other) {
+  const Vector3 theta = so3::log(relative);
+  const double angle = theta.norm();
+  if (angle < 1e-3) return theta;
+  const Vector3 around = (1 - 2 * M_PI / angle) * theta;
+  return (theta - other).norm() <= (around - other).norm() ? theta : around;
+}
+
+/// An element with a curved, twisted undeformed line and full section matrices, over a random step. Local
+/// interpolation, unless set_interpolation() chooses another.
 template <int Nodes>
 struct RandomStep {
   using Element = BeamElement<Nodes>;
@@ -74,18 +86,62 @@ struct RandomStep {
       set_orientation(i, so3::exp_quaternion(Vector3(size * (turn + 0.5 * random.vector()))) * begin_orientation[i]);
     }
     set_begin_points();
+    for (MassPointState& state : mass_points) state = {random.vector(), random.vector()};
+  }
+  // The nodes point into this object.
+  RandomStep(const RandomStep&) = delete;
+  RandomStep& operator=(const RandomStep&) = delete;
+
+  /// Measures rotations from a reference: the undeformed element (total), the begin (incremental) or the end of the
+  /// step (iterative). The latter two depend on the past, which gives every point a rotation of its own.
+  void set_interpolation(RandomSource& random, Interpolation chosen,
+                         RotationParameters parameters = RotationParameters::Unscaled) {
+    interpolation = chosen;
+    nodes.parameters = parameters;
+    if (interpolation == Interpolation::Local) return;
+    reference_orientation = undeformed_orientation;
+    if (interpolation == Interpolation::Incremental) reference_orientation = begin_orientation;
+    if (interpolation == Interpolation::Iterative) reference_orientation = nodes.orientation;
+    const LocalRotations<Nodes> local(reference_orientation);
+    const auto reference = [&](const auto& point) {
+      InterpolatedRotation<double> out = local.evaluate(point.shape, point.derivative);
+      if (interpolation == Interpolation::Total) return out;
+      out.rotation = random.rotation(0.1) * out.rotation;
+      out.curvature += 0.1 * random.vector();
+      return out;
+    };
+    for (int k = 0; k < Element::kStiffnessPoints; ++k) stiffness_reference[k] = reference(element.stiffness_points[k]);
+    for (int k = 0; k < Element::kMassPoints; ++k) mass_reference[k] = reference(element.mass_points[k]);
+    nodes.stiffness_reference = stiffness_reference.data();
+    nodes.mass_reference = mass_reference.data();
+    for (int i = 0; i < Nodes; ++i) {
+      nodes.rotation_vector[i] = i > 0 ? nodes.rotation_vector[i - 1] : Vector3::Zero();
+      set_orientation(i, nodes.orientation[i]);
+    }
+    set_begin_points();
   }
 
+  /// The interpolation at the begin.
+  ElementNodes<Nodes> nodes_at_begin() const {
+    ElementNodes<Nodes> out = nodes;
+    out.end = out.begin;
+    for (int i = 0; i < Nodes; ++i) set_orientation(i, begin_orientation[i], out);
+    if (interpolation == Interpolation::Iterative) out.stiffness_reference = out.mass_reference = nullptr;
+    return out;
+  }
   void set_begin_points() {
-    const LocalRotations<Nodes> local(begin_orientation);
+    const ElementNodes<Nodes> begin = nodes_at_begin();
+    const ElementRotations<Nodes> rotations(begin, false);
+    GeneralisedShapeFunctions<Nodes> unused;
     for (int k = 0; k < Element::kStiffnessPoints; ++k) {
       const auto& point = element.stiffness_points[k];
-      begin_points[k] = point_kinematics(local.evaluate(point.shape, point.derivative),
-                                         interpolate<Nodes>(point.derivative, nodes.begin), point.reference_strain);
+      begin_points[k] =
+          point_kinematics(rotations.evaluate(point.shape, point.derivative, &stiffness_reference[k], unused),
+                           interpolate<Nodes>(point.derivative, nodes.begin), point.reference_strain);
     }
     for (int k = 0; k < Element::kMassPoints; ++k) {
       const auto& point = element.mass_points[k];
-      begin_mass_rotations[k] = local.evaluate(point.shape, point.derivative).rotation;
+      begin_mass_rotations[k] = rotations.evaluate(point.shape, point.derivative, &mass_reference[k], unused).rotation;
     }
   }
 
@@ -94,6 +150,11 @@ struct RandomStep {
     of.orientation[i] = orientation.normalized();
     of.increment[i] = cayley::increment(begin_orientation[i], of.orientation[i]);
     of.increment_inverse_tangent[i] = cayley::inverse_tangent(of.increment[i]);
+    if (interpolation == Interpolation::Local) return;
+    const Quaternion relative = of.orientation[i] * reference_orientation[i].conjugate();
+    of.rotation_vector[i] = nodes.parameters == RotationParameters::TangentScaled
+                                ? cayley::increment(relative)
+                                : nearest_vector(relative, of.rotation_vector[i]);
   }
   /// Nodes at the end displaced by h along coordinate `column` of {dr_0, spin_0, dr_1, ...}.
   ElementNodes<Nodes> perturbed(int column, double h) const {
@@ -127,6 +188,11 @@ struct RandomStep {
   ElementNodes<Nodes> nodes;
   std::array<PointKinematics, Element::kStiffnessPoints> begin_points;
   std::array<Matrix3, Element::kMassPoints> begin_mass_rotations;
+  std::array<MassPointState, Element::kMassPoints> mass_points;  ///< at the begin
+  Interpolation interpolation = Interpolation::Local;
+  std::array<Quaternion, Nodes> reference_orientation;
+  std::array<InterpolatedRotation<double>, Element::kStiffnessPoints> stiffness_reference;
+  std::array<InterpolatedRotation<double>, Element::kMassPoints> mass_reference;
 };
 
 }  // namespace flexarm::test

@@ -18,6 +18,7 @@ from rotations import exp  # noqa: E402
 
 STEP = 0.3
 DAMPING = 0.05
+ALPHA = -0.1
 
 
 # Parent coordinates of the nodes: Gauss-Lobatto points (the prototype has equally spaced nodes of its own).
@@ -80,6 +81,7 @@ def case(nodes):
 
     write(nodes, "step", [STEP])
     write(nodes, "damping", [DAMPING])
+    write(nodes, "alpha", [ALPHA])
     write(nodes, "section_mass", [mass])
     write(nodes, "stiffness", stiffness)
     write(nodes, "inertia", inertia)
@@ -96,6 +98,11 @@ def case(nodes):
     write(nodes, "static", beam.static(*end, False)[0])
     write(nodes, "newmark", residual(beam, "newmark", begin, end, {}))
     write(nodes, "m1", residual(beam, "m1", begin, end, {}))
+    write(nodes, "m2", residual(beam, "m2", begin, end, {}))
+    write(nodes, "std", residual(beam, "std", begin, end, {}))
+    write(nodes, "beta1", residual(beam, "beta1", begin, end, {"scaled": True, "betafull": False}))
+    write(nodes, "beta1_repaired", residual(beam, "beta1", begin, end, {"scaled": True, "betafull": True}))
+    write(nodes, "hht2", residual(beam, "newmark", begin, end, {"alpha": ALPHA}))
     write(nodes, "em0", residual(beam, "em", begin, end, {"noproj": True}))
     write(nodes, "em0_damped", residual(beam, "em", begin, end, {"noproj": True, "kv": DAMPING}))
     write(nodes, "em", residual(beam, "em", begin, end, {"pool": "element"}))

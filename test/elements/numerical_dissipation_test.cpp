@@ -1,0 +1,165 @@
+// Numerical dissipation of the energy-momentum family by the stress alone.
+#include "elements/kernel_checks.h"
+#include "flexarm/elements/conserving_beam.h"
+#include "flexarm/integrators/scheme.h"
+
+namespace flexarm {
+namespace {
+
+using namespace test;
+
+constexpr double kStep = 0.3;
+constexpr double kRoundOff = 1e-12;
+
+template <class Count>
+class DissipativeBeam : public ::testing::Test {};
+TYPED_TEST_SUITE(DissipativeBeam, NodeCounts);
+
+template <int Nodes>
+using Memory = std::array<StrainMemory, Nodes - 1>;
+
+/// As a past could have left it: the first-order rule keeps no average.
+template <int Nodes>
+Memory<Nodes> random_memory(RandomSource& random, int order, double size) {
+  Memory<Nodes> memory;
+  for (StrainMemory& point : memory) {
+    if (order == 2) point.average = size * random.vector6();
+    point.rate = size / kStep * random.vector6();
+  }
+  return memory;
+}
+
+TimeRule dissipative_rule(int order, double rho) {
+  TimeRule rule;
+  rule.dissipation = numerical_dissipation(order, rho, kStep);
+  return rule;
+}
+
+template <int Nodes>
+struct Dissipative {
+  const RandomStep<Nodes>& step;
+  TimeRule rule;
+  Memory<Nodes> memory, end_memory;
+  ElementFunctions<Nodes> functions;
+  std::array<PointKinematics, Nodes - 1> end;
+
+  Dissipative(const RandomStep<Nodes>& step, const TimeRule& rule, const Memory<Nodes>& memory)
+      : step(step), rule(rule), memory(memory) {
+    element_functions<Nodes>(step.element, step.begin_orientation, functions);
+  }
+  template <bool WithMultiplier>
+  ElementSystem<Nodes> evaluate(const ElementNodes<Nodes>& nodes, bool with_tangent) {
+    ElementSystem<Nodes> system;
+    conserving_beam<WithMultiplier, Nodes>(step.element, nodes, rule, functions, step.begin_points.data(),
+                                           memory.data(), kStep, with_tangent, end.data(), end_memory.data(), system);
+    return system;
+  }
+};
+
+TYPED_TEST(DissipativeBeam, Tangent) {
+  constexpr int N = TypeParam::value;
+  RandomSource random(1);
+  for (const int order : {1, 2})
+    for (const double damping : {0.0, 0.2}) {
+      const double size = 0.4;
+      RandomStep<N> step(random, size);
+      step.element.stiffness_damping = damping;
+      Dissipative<N> dissipative(step, dissipative_rule(order, 0.5), random_memory<N>(random, order, size));
+      expect_consistent_tangent<N>(
+          step,
+          [&](const ElementNodes<N>& nodes, bool with) { return dissipative.template evaluate<true>(nodes, with); },
+          2 * size);
+      expect_consistent_tangent<N>(step, [&](const ElementNodes<N>& nodes, bool with) {
+        return dissipative.template evaluate<false>(nodes, with);
+      });
+    }
+}
+
+/// (stiffness / forgetting) y.Cy / 2 + inertance w.Cw / 2 over the element.
+template <int Nodes>
+double stored(const RandomStep<Nodes>& step, const NumericalDissipation& d, const Memory<Nodes>& memory) {
+  double energy = 0;
+  for (int k = 0; k < Nodes - 1; ++k) {
+    const Vector6 &y = memory[k].average, &w = memory[k].rate;
+    const double weight = step.element.stiffness_points[k].weight;
+    if (d.forgetting > 0) energy += 0.5 * weight * d.stiffness / d.forgetting * y.dot(step.element.stiffness * y);
+    energy += 0.5 * weight * d.inertance * w.dot(step.element.stiffness * w);
+  }
+  return energy;
+}
+
+// Increment . internal forces = change of strain energy and of what the memory stores + dissipated.
+TYPED_TEST(DissipativeBeam, BudgetIsExact) {
+  constexpr int N = TypeParam::value;
+  RandomSource random(2);
+  for (const int order : {1, 2})
+    for (const double rho : {0.0, 0.5, 0.9})
+      for (const double size : {1e-3, 0.1, 0.8})
+        for (const MidFunctions mid : {MidFunctions::Explicit, MidFunctions::Symmetric}) {
+          RandomStep<N> step(random, size);
+          step.element.mass.setZero();
+          TimeRule rule = dissipative_rule(order, rho);
+          rule.mid_functions = mid;
+          Dissipative<N> dissipative(step, rule, random_memory<N>(random, order, size));
+          const ElementSystem<N> system = dissipative.template evaluate<true>(step.nodes, false);
+          const NumericalDissipation& d = rule.dissipation;
+          const double before = step.strain_energy(step.begin_points) + stored(step, d, dissipative.memory);
+          const double after = step.strain_energy(dissipative.end) + stored(step, d, dissipative.end_memory);
+          EXPECT_GE(system.dissipated, 0);
+          EXPECT_NEAR(step.work(system.residual), after - before + system.dissipated,
+                      kRoundOff * (before + after + largest(system.residual) * size * 6 * N));
+        }
+}
+
+TYPED_TEST(DissipativeBeam, MomentaBalance) {
+  constexpr int N = TypeParam::value;
+  RandomSource random(3);
+  for (const int order : {1, 2}) {
+    RandomStep<N> step(random, 0.5);
+    step.element.mass.setZero();
+    Dissipative<N> dissipative(step, dissipative_rule(order, 0.5), random_memory<N>(random, order, 0.5));
+    const ElementSystem<N> system = dissipative.template evaluate<true>(step.nodes, false);
+    EXPECT_LE(resultant<N>(step.nodes, system.residual, 0.5).norm(), kRoundOff * largest(system.residual));
+  }
+}
+
+// The definition: y_1 = y_0 + forgetting (s - y_0), (w_0 + w_1)/2 = s/h; with one strain increment s for both.
+TYPED_TEST(DissipativeBeam, MemoryFollowsItsDefinition) {
+  constexpr int N = TypeParam::value;
+  RandomSource random(4);
+  RandomStep<N> step(random, 0.4);
+  Dissipative<N> dissipative(step, dissipative_rule(2, 0.5), random_memory<N>(random, 2, 0.4));
+  dissipative.template evaluate<true>(step.nodes, false);
+  for (int k = 0; k < N - 1; ++k) {
+    const StrainMemory &begin = dissipative.memory[k], &end = dissipative.end_memory[k];
+    const Vector6 s = 0.5 * kStep * (begin.rate + end.rate);
+    const Vector6 expected = begin.average + dissipative.rule.dissipation.forgetting * (s - begin.average);
+    EXPECT_LE(largest(end.average - expected), kRoundOff);
+  }
+}
+
+// A massless spring of unit stiffness, the limit of infinite frequency: (x_0 + x_1)/2 + stiffness (s - y_0) + inertance
+// (w_1 - w_0)/h = 0. All roots of the step are -rho: the characteristic polynomial is (z + rho)^n.
+TEST(NumericalDissipation, SpectralRadiusAtInfiniteFrequency) {
+  for (const int order : {1, 2})
+    for (const double rho : {0.0, 0.4, 0.8}) {
+      const NumericalDissipation d = numerical_dissipation(order, rho, kStep);
+      const double factor = 0.5 + d.stiffness + 2 * d.inertance / (kStep * kStep);
+      const Vector3 s = -Vector3(1, -d.stiffness, -2 * d.inertance / kStep) / factor;  // times {x, y, w}
+      Matrix3 map;
+      map.row(0) = Vector3::UnitX() + s;
+      map.row(1) = Vector3::UnitY() + d.forgetting * (s - Vector3::UnitY());
+      map.row(2) = 2 / kStep * s - Vector3::UnitZ();
+      if (order == 1) {  // keeps no average
+        map.row(1).setZero();
+        map.col(1).setZero();
+      }
+      const double trace = map.trace(), minors = 0.5 * (trace * trace - (map * map).trace());
+      EXPECT_NEAR(trace, -(order + 1) * rho, 1e-13);
+      EXPECT_NEAR(minors, (2 * order - 1) * rho * rho, 1e-13);
+      EXPECT_NEAR(map.determinant(), order == 2 ? -rho * rho * rho : 0, 1e-13);
+    }
+}
+
+}  // namespace
+}  // namespace flexarm
