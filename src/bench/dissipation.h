@@ -14,8 +14,9 @@ struct DissipationPoint {
   double loss_per_period() const;
 };
 
-/// Free decay of a bar of one element that vibrates along its axis; the amplitude is that of the energy, and its factor
-/// per step a least-squares slope over up to 400 steps.
+/// Free decay of a bar of one element that vibrates along its axis: half the least-squares slope of the logarithm of
+/// the energy over up to 400 steps, summed over a motion that starts with a displacement and one that starts with a
+/// velocity.
 Measured<DissipationPoint> dissipation(const Variant& variant, double frequency, bool quick);
 
 /// Values of omega h for the picture, from 0.05 to 100, equally spaced in the logarithm.

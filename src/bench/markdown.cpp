@@ -173,12 +173,12 @@ Below it the local interpolation.
 const char* const kHardSceneLegend = R"(
 ## Hard scenes
 
-Default options, tolerance 10⁻⁸, at most five halvings; five runs each, steps of 5, 7, 10, 14 and 20 ms. Runs that came
+Default options, tolerance 10⁻⁸, at most five halvings; five runs each, steps of 3, 5, 7, 10 and 14 ms. Runs that came
 to the end (and the mean part of the time that was reached), part of the steps that were halved, Newton iterations per
 step, largest error of energy - work + dissipation.
 
 - **whip**: a beam with EA/(EI/L²) = 10⁶, stretched by a heavy ball, whipped, then let go at 0.3 s: it goes slack.
-- **whip pulled again**: the ball is pushed back and pulled again at 0.5 s.
+- **whip pulled again**: from 0.5 s on the ball is pulled again, and the slack beam snaps taut.
 - **damped chain**: four stiff links on universal and revolute joints with strong dampers, dropped.
 - **release**: a bent cantilever, let go at once.
 

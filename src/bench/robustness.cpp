@@ -7,9 +7,9 @@
 namespace flexarm::bench {
 
 std::vector<HardScene> hard_scenes() {
-  const std::vector<double> steps = {0.005, 0.007, 0.01, 0.014, 0.02};
+  const std::vector<double> steps = {0.003, 0.005, 0.007, 0.01, 0.014};
   return {{"whip", stretched_whip("0:0 0.05:1 0.3:1 0.31:0"), 1, steps},
-          {"whip pulled again", stretched_whip("0:0 0.05:1 0.3:1 0.31:-0.04 0.5:-0.04 0.51:1"), 1, steps},
+          {"whip pulled again", stretched_whip("0:0 0.05:1 0.3:1 0.31:0 0.5:0 0.6:1"), 1, steps},
           {"damped chain", damped_chain(), 2, steps},
           {"release", sudden_release(), 2, steps}};
 }

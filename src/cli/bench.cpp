@@ -18,8 +18,8 @@ struct Arguments {
   bool quick = false;
 };
 
-void write_file(const fs::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
+void write_file(const fs::path& path, const std::string& text, std::ios::openmode mode = std::ios::trunc) {
+  std::ofstream file(path, std::ios::binary | std::ios::out | mode);
   file << text;
   file.close();
   if (!file) throw std::runtime_error("cannot write '" + path.string() + "'");
@@ -52,7 +52,8 @@ int measure_properties(const Arguments& arguments) {
   const fs::path folder = arguments.output, report_file = folder / "properties.md",
                  data = folder / "properties_dissipation.csv", picture = folder / "properties_dissipation.png";
   fs::create_directories(folder);
-  write_file(report_file, "");  // minutes later would be a bad time to find out that this fails
+  // Minutes later would be a bad time to find out that this fails; what is there stays until then.
+  write_file(report_file, "", std::ios::app);
   bench::Report report;
   {
     ProgressBar bar(0, 1, true);
