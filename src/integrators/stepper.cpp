@@ -98,7 +98,9 @@ bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
     system_.update(update_);
     // What remains after this update, by the rate of the last two: new factors square the error, kept ones contract it.
     const double rate = std::min(contraction, 1.0);
-    const double remains = norm * (factorise ? rate * rate : rate);
+    // Symmetric middle functions are not in the tangent: they leave linear convergence with new factors, too.
+    const bool squares = factorise && scheme_.mid_functions == MidFunctions::Explicit;
+    const double remains = norm * (squares ? rate * rate : rate);
     const bool converged =
         reuse ? remains <= std::max(settings_.tolerance * settings_.tolerance, kRoundOff) : norm <= settings_.tolerance;
     if (converged) return system_.evaluate(false) || fail(Reason::NotFinite);
