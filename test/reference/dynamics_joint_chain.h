@@ -1,5 +1,5 @@
 #pragma once
-/// Free trees with every kind of joint, for tests of invariants and of Newton's method.
+/// Free beams and trees with every kind of joint, for tests of invariants and of Newton's method.
 
 #include "reference/dynamics_runs.h"
 
@@ -51,6 +51,16 @@ inline SceneBuilder free_beam_tree() {
   initial_joint(b, "hinge", 0.2, -0.5);
   initial_joint(b, "rail", 0.1, 0.02);
   set_drift(b, {0.002, -0.001, 0.003});
+  return b;
+}
+
+/// A bent, flexible beam that tumbles about no principal axis, so that it must bend and twist.
+inline SceneBuilder tumbling_beam() {
+  SceneBuilder b;
+  b.beam("beam", {{3, 0, 0}, {5, 2, 1}}, soft_section(), 2, 2);
+  b.joint("free", scene::JointKind::Floating, "world", "beam");
+  initial_field(b, "beam", Vector3::Zero(), {0.8, 1.5, -1.1});
+  set_drift(b, {0.003, -0.001, 0.002});
   return b;
 }
 

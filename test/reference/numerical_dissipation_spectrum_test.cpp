@@ -1,0 +1,192 @@
+// Spectrum of numerical dissipation: a bar that vibrates along its axis is a linear oscillator; its motion over many
+// steps follows the roots of the scheme's characteristic polynomial, and these approach rho_infinity for stiff bars.
+#include <complex>
+#include <cstdio>
+#include <limits>
+
+#include <Eigen/Eigenvalues>
+
+#include "flexarm/integrators/scheme.h"
+#include "reference/dynamics_runs.h"
+
+namespace flexarm::test {
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr double kStep = 0.01;  // s
+
+/// The scheme on an oscillator, in multiples of the displacement x: with p = (z - 1)/(z + 1), z the factor per step,
+/// q = (omega h)^2 and (kappa, nu, b) of numerical_dissipation(),
+///   mean v = dx/h                         h v = 2 p x        (and the strain rate w = v, which has the same rule)
+///   y_1 = y_0 + nu (dx - y_0)             y = nu (z - 1) x / (z - 1 + nu)
+///   m dv/h + k [mean x + kappa (dx - y) + (b/h) dw] = 0
+/// and the last, divided by k (z + 1)/2, is
+///   (4/q + 4 b/h^2) p^2 + 1 + 4 kappa p^2 / (2 p + nu (1 - p)) = 0.
+struct Oscillator {
+  double q = 0, kappa = 0, nu = 0, b = 0;  // b in units of h^2
+
+  Oscillator(int order, double rho, double frequency) : q(frequency * frequency) {
+    const NumericalDissipation d = numerical_dissipation(order, rho, kStep);
+    kappa = d.stiffness;
+    nu = d.forgetting;
+    b = d.inertance / (kStep * kStep);
+  }
+  Complex value(const Complex& p) const {
+    return (4 / q + 4 * b) * p * p + 1.0 + (kappa > 0 ? 4 * kappa * p * p / (2.0 * p + nu * (1.0 - p)) : 0.0);
+  }
+  /// Roots p. First order (nu = 0): a quadratic; second: a cubic.
+  std::vector<Complex> roots() const {
+    const double a = 4 / q + 4 * b;
+    // Lowest coefficient first.
+    const std::vector<double> c = nu == 0 ? std::vector<double>{1, 2 * kappa, a}
+                                          : std::vector<double>{nu, 2 - nu, a * nu + 4 * kappa, a * (2 - nu)};
+    const int n = static_cast<int>(c.size()) - 1;
+    Eigen::MatrixXd companion = Eigen::MatrixXd::Zero(n, n);
+    for (int i = 0; i < n; ++i) {
+      companion(i, n - 1) = -c[i] / c[n];
+      if (i > 0) companion(i, i - 1) = 1;
+    }
+    Eigen::VectorXcd values = companion.eigenvalues();
+    for (Complex& p : values)
+      for (int iteration = 0; iteration < 3; ++iteration) {  // polished by Newton's method
+        Complex f = c[n], slope = 0;
+        for (int i = n - 1; i >= 0; --i) slope = slope * p + f, f = f * p + c[i];
+        if (std::abs(slope) > 0) p -= f / slope;
+      }
+    return {values.data(), values.data() + n};
+  }
+};
+
+Complex factor(const Complex& p) {
+  return (1.0 + p) / (1.0 - p);
+}
+
+/// p of the root that is largest in modulus.
+Complex slowest(const Oscillator& oscillator) {
+  Complex largest = 0;
+  double modulus = -1;
+  for (const Complex& p : oscillator.roots())
+    if (std::abs(factor(p)) > modulus) largest = p, modulus = std::abs(factor(p));
+  return largest;
+}
+
+struct Case {
+  int order;
+  double rho, frequency;  ///< omega h
+  friend std::ostream& operator<<(std::ostream& out, const Case& c) {
+    return out << "order " << c.order << ", rho " << c.rho << ", omega h = " << c.frequency;
+  }
+};
+
+/// One axial element, clamped: the consistent mass at its free end is a third of its 1 kg.
+Simulation bar(const Case& c) {
+  SceneBuilder b;
+  const double omega = c.frequency / kStep;
+  b.beam("bar", {{1, 0, 0}}, scene::DirectSection{omega * omega / 3, 1, 1, 1, 1, 1, 1, 1, 1, 1}, 1, 1);
+  b.joint("clamp", scene::JointKind::Fixed, "world", "bar");
+  b.scene.integrator.scheme = "edmc" + std::to_string(c.order);
+  b.scene.integrator.rho_infinity = c.rho;
+  b.scene.integrator.step = kStep;
+  b.scene.integrator.tolerance = 1e-10;
+  SimulationOptions set;
+  set.reuse_factorisation = false;
+  return Simulation(b.scene, set);
+}
+
+int tip_node(const Simulation& simulation) {
+  return std::get<BeamGroup<2>>(simulation.model().beams).elements.front().nodes[1];
+}
+
+/// Starts on the mode x = Re(u z^n) of the root p.
+void start_on(Simulation& simulation, const Oscillator& o, const Complex& p, const Complex& u) {
+  State state = simulation.state();
+  NodeState& tip = state.nodes[tip_node(simulation)];
+  StrainMemory& memory = state.strain_memory.front();
+  tip.position.x() = 1 + u.real();
+  tip.velocity.x() = memory.rate[0] = (2.0 * p * u).real() / kStep;
+  memory.average[0] = o.nu == 0 ? 0 : (o.nu * 2.0 * p * u / (2.0 * p + o.nu * (1.0 - p))).real();
+  simulation.restore(state);
+}
+
+class Spectrum : public ::testing::TestWithParam<Case> {};
+
+// Started on the mode of the slowest root z, the bar's end follows u Re(z^n), and the energy, a quadratic form of the
+// state, is that of this mode: it decays as |z|^{2n} but for a periodic factor.
+TEST_P(Spectrum, MotionFollowsTheSlowestRoot) {
+  const Case c = GetParam();
+  const Oscillator o(c.order, c.rho, c.frequency);
+  const Complex p = slowest(o), z = factor(p);
+  ASSERT_LT(std::abs(o.value(p)), 100 * kEpsilon * (1 + std::abs(4 / o.q * p * p)));
+  const double amplitude = 0.05;
+  Simulation simulation = bar(c);
+  start_on(simulation, o, p, amplitude);
+  const double begin = simulation.energies().total();
+  // Each step rounds the position, which is near 1, and with it h v: the same in the amplitude, and in that of slow
+  // waves 1/(omega h) times as much.
+  const double modulus = std::abs(z);
+  const int steps = modulus > 1 - 1e-9 ? 500 : std::clamp(static_cast<int>(std::log(1e-5) / std::log(modulus)), 3, 500);
+  double defect = 0;
+  Complex u = amplitude;
+  run(simulation, steps, [&] {
+    u *= z;
+    defect = std::max(defect, std::abs(simulation.state().nodes[tip_node(simulation)].position.x() - 1 - u.real()));
+  });
+  const double round_off = 10 * kEpsilon * steps * (1 + 1 / c.frequency);
+  EXPECT_LT(defect, round_off) << c;
+  Simulation theory = bar(c);
+  start_on(theory, o, p, u);
+  const double end = simulation.energies().total(), expected = theory.energies().total();
+  // d(E)/E = 2 d(u)/|u|, twice for the four parts of the state.
+  EXPECT_NEAR(end / expected, 1, 8 * round_off / std::abs(u)) << c;
+  std::printf("order %d rho %.2f omega h %8.2e: |z| = %.6f; %3d steps, defect %.1e of %.1e, energy %.2e of first\n",
+              c.order, c.rho, c.frequency, modulus, steps, defect, round_off, end / begin);
+}
+
+std::vector<Case> spectrum_cases() {
+  std::vector<Case> cases;
+  for (const int order : {1, 2})
+    for (const double rho : {0.0, 0.3, 0.5, 0.8, 0.95})
+      for (const double frequency : {1e-2, 1e-1, 1.0, 3.0, 1e1, 1e2, 1e3, 1e4})
+        cases.push_back({order, rho, frequency});
+  return cases;
+}
+INSTANTIATE_TEST_SUITE_P(Frequencies, Spectrum, ::testing::ValuesIn(spectrum_cases()));
+
+// With P = (1 + rho)/(1 - rho), the polynomial times its denominator is, to first order in 1/q,
+//   first order:  (p + P)^2 / P^2 + 4 p^2/q = 0                       |p + P| = 2 P^2 / sqrt(q),
+//   second order: (p + P)^3 / (3 P^2) + (4 p^2/q) (p + P/3) = 0       |p + P| = 2 P^{5/3} / q^{1/3},
+// so that the modulus of every root tends to rho as |dz| = 2 |p + P| / (1 + P)^2; twice that bounds it.
+TEST(SpectralRadius, TendsToRhoInfinity) {
+  for (const int order : {1, 2})
+    for (const double rho : {0.0, 0.3, 0.5, 0.8, 0.95}) {
+      const double P = (1 + rho) / (1 - rho);
+      for (const double frequency : {1e4, 1e6, 1e8}) {
+        const double q = frequency * frequency;
+        const double dp = order == 1 ? 2 * P * P / std::sqrt(q) : 2 * std::pow(P, 5.0 / 3) / std::cbrt(q);
+        // A root of multiplicity n is known to the n-th root of the round-off of the coefficients.
+        const double numerical = 10 * P * std::pow(kEpsilon, 1.0 / (order + 1));
+        for (const Complex& p : Oscillator(order, rho, frequency).roots())
+          EXPECT_LT(std::abs(factor(p) + rho), 2 * (2 * dp + numerical) / std::pow(1 + P, 2))
+              << "order " << order << ", rho " << rho << ", omega h = " << frequency;
+      }
+    }
+}
+
+// What resolved frequencies lose per step: for small q, p = i sqrt(q)/2 + delta with
+//   first order:  delta = -kappa q / 4                                1 - |z| = kappa q / 2,
+//   second order: delta = -c q^2 / 32, c = 4 kappa (2 - nu) / nu^2    1 - |z| = c q^2 / 16,
+// the next terms being smaller by a factor of the order of sqrt(q) P.
+TEST(SpectralRadius, ResolvedFrequenciesLoseLittle) {
+  for (const double rho : {0.0, 0.5, 0.8}) {
+    const double frequency = 1e-2, q = frequency * frequency, next = 10 * frequency * (1 + rho) / (1 - rho);
+    const Oscillator first(1, rho, frequency), second(2, rho, frequency);
+    const double c = 4 * second.kappa * (2 - second.nu) / (second.nu * second.nu);
+    EXPECT_NEAR((1 - std::abs(factor(slowest(first)))) / (first.kappa * q / 2), 1, next) << rho;
+    EXPECT_NEAR((1 - std::abs(factor(slowest(second)))) / (c * q * q / 16), 1, next) << rho;
+  }
+}
+
+}  // namespace
+}  // namespace flexarm::test
