@@ -15,6 +15,9 @@ namespace {
 constexpr double kLargestChange = 0.02;
 /// Kinetic energy, relative to the whole energy, below which there is nothing to scale.
 constexpr double kNothingMoves = 1e-8;
+/// Way of a mean node in a step, relative to the size of the mechanism, below which a motion is only starting: what its
+/// first steps owe is nothing to the energy that is to come.
+constexpr double kStarting = 1e-5;
 
 }  // namespace
 
@@ -24,6 +27,7 @@ VelocityScaling::VelocityScaling(const Model& model, const Scheme& scheme)
     if (coordinate.motion >= 0)
       throw ModelError("<integrator>: scheme 'em_scaled' cannot scale the velocity that <motion> of joint '" +
                        coordinate.name + "' prescribes; scheme 'em' closes the energy without scaling");
+  for (const NodalInertia& inertia : model.inertias) mass_ += inertia.total_mass;
   for (std::size_t j = 0; j < model.joints.size(); ++j) {  // root to leaf
     const JointMap& joint = model.joints[j];
     if (joint.master < 0) {
@@ -98,6 +102,9 @@ bool VelocityScaling::apply(const State& begin, State& state) {
   state.energy_defect = missing;
   if (relative <= kNothingMoves * (after.kinetic + after.strain)) return true;
   const double square = 1 + missing / relative;
+  const double start_speed = kStarting * model_.length_scale / (state.time - begin.time);
+  const bool is_starting = after.kinetic < 0.5 * mass_ * start_speed * start_speed;
+  if (is_starting && std::abs(square - 1) > kLargestChange) return true;
   if (!(square > 0) || std::abs(std::sqrt(square) - 1) > kLargestChange) return false;
   const double factor = std::sqrt(square);
   for (std::size_t i = 0; i < state.nodes.size(); ++i) {

@@ -126,13 +126,12 @@ struct StressState {
   Matrix3 moment_derivative = Matrix3::Zero();  // d(A a) / d(spin) at constant material moment a
 };
 
-/// EM family: stress + factor C s - C remembered, A the average rotation.
+/// EM family: stress + factor C s - remembered, A the average rotation.
 template <int Nodes>
 StressState<kIncrementColumns> conjugate_stress_state(const Matrix6& stiffness, const Point<Nodes>& p, double factor,
                                                       const Vector6& remembered, bool with_tangent) {
   StressState<kIncrementColumns> out;
-  out.stress = p.stress + factor * p.conjugate_stress;
-  out.stress.noalias() -= stiffness.lazyProduct(remembered);
+  out.stress = p.stress + factor * p.conjugate_stress - remembered;
   out.moment_map = p.average_rotation;
   if (!with_tangent) return out;
   Eigen::Matrix<double, 6, 15> d = factor * conjugate_strain_derivative(p);
@@ -224,7 +223,7 @@ void element_functions(const BeamElement<Nodes>& element, const std::array<Quate
 }
 
 /// The numerical damper at a stiffness point, see NumericalDissipation: what it adds to the stress is
-/// factor C s - C remembered, and what it knows at the end.
+/// factor C s - remembered, and what it knows at the end.
 struct NumericalDamper {
   double factor = 0, dissipated = 0;  // [-], [J/m]
   Vector6 remembered = Vector6::Zero();
@@ -234,7 +233,7 @@ struct NumericalDamper {
                   double step) {
     const Vector6 deviation = s - begin.average;
     factor = d.stiffness + 2 * d.inertance / (step * step);
-    remembered = d.stiffness * begin.average + (2 * d.inertance / step) * begin.rate;
+    remembered = stiffness * (d.stiffness * begin.average + (2 * d.inertance / step) * begin.rate);
     dissipated = d.stiffness * (1 - 0.5 * d.forgetting) * deviation.dot(stiffness * deviation);
     end.average = begin.average + d.forgetting * deviation;
     end.rate = (2 / step) * s - begin.rate;

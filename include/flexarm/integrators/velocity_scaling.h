@@ -17,7 +17,7 @@ class VelocityScaling {
   VelocityScaling(const Model& model, const Scheme& scheme);
 
   /// Gives `state` the energy that `begin` had, plus work, less dissipation. What cannot be given because nothing moves
-  /// but rigidly is carried to the next step. False, and the state is not to be used, if the factor differs from one by
+  /// but rigidly, or a motion is only starting, is carried to the next step. False, and the state is not to be used, if the factor differs from one by
   /// more than 2 %: the step was too long.
   bool apply(const State& begin, State& state);
 
@@ -33,6 +33,7 @@ class VelocityScaling {
   Scheme scheme_;
   std::vector<Tree> trees_;
   std::vector<int> tree_of_node_;
+  double mass_ = 0;
 };
 
 }  // namespace flexarm
