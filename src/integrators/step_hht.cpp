@@ -5,7 +5,8 @@
 //   would be those of t_{n+1}.
 // - HHT1 interpolates moments conjugate to rotation vectors and turns them back at the rotation of t_{n+1+alpha}.
 // - Forces that joints transmit are those of t_{n+1+alpha}, but slaves are folded by the maps of t_{n+1}. To fold what
-//   belongs there, reactions are extrapolated from two steps, (1 - alpha) R_{n+1} + alpha R_n; without joints they vanish.
+//   belongs there, reactions are extrapolated from two steps, (1 - alpha) R_{n+1} + alpha R_n; without joints they
+//   vanish.
 #include <algorithm>
 
 #include "flexarm/integrators/step_system.h"
@@ -41,8 +42,7 @@ InterpolatedMoment StepSystem::interpolated_moment(int node, const Vector3& begi
   const Vector3 between = (1 + alpha) * theta - alpha * theta_begin;
   const so3::ExponentialMap<double> map(theta);
   const Matrix3 transposed = map.tangent().transpose(), back = so3::inverse_tangent(between).transpose();
-  const Vector3 additive =
-      (1 + alpha) * (transposed * end) - alpha * (so3::tangent(theta_begin).transpose() * begin);
+  const Vector3 additive = (1 + alpha) * (transposed * end) - alpha * (so3::tangent(theta_begin).transpose() * begin);
   out.value = back * additive;
   out.slope = (1 + alpha) * back * transposed;
   if (with_derivative)  // T^{-T}(theta) = T^{-1}(-theta)

@@ -30,11 +30,19 @@ VelocityScaling::VelocityScaling(const Model& model, const Scheme& scheme)
   for (const NodalInertia& inertia : model.inertias) mass_ += inertia.total_mass;
   for (std::size_t j = 0; j < model.joints.size(); ++j) {  // root to leaf
     const JointMap& joint = model.joints[j];
-    if (joint.master < 0) {
-      tree_of_node_[joint.slave] = static_cast<int>(trees_.size());
-      trees_.push_back({static_cast<int>(j), {}, {}, {}});
-    } else if (tree_of_node_[joint.master] >= 0) {
-      tree_of_node_[joint.slave] = tree_of_node_[joint.master];
+    const int tree = joint.master < 0 ? static_cast<int>(trees_.size()) : tree_of_node_[joint.master];
+    if (joint.master < 0) trees_.emplace_back();
+    if (tree >= 0) {
+      tree_of_node_[joint.slave] = tree;
+      // A joint with several coordinates is a chain through nodes that hold no mass.
+      Tree& whole = trees_[tree];
+      const bool continues = !whole.chain.empty() && model.joints[whole.chain.back()].slave == joint.master &&
+                             model.inertias[joint.master].total_mass == 0 &&
+                             whole.coordinates + released_count(joint.kind) <= 6;
+      if (joint.master < 0 || continues) {
+        whole.chain.push_back(static_cast<int>(j));
+        whole.coordinates += released_count(joint.kind);
+      }
     }
     // The far end of a beam belongs to the tree of its near end.
     for_each_element(model.beams, [&](const auto& element) {
@@ -77,12 +85,18 @@ void VelocityScaling::project(const State& state) {
     tree.momentum.tail<3>() += rotation * (J * node.angular_velocity);
   }
   for (Tree& tree : trees_) {
-    const JointMap& joint = model_.joints[tree.joint];
-    FoldMaps maps;
-    variational_maps(joint, NodePose(), state.released[tree.joint], Vector6::Zero(), maps);
-    Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6> twists = maps.right;  // of the slave's origin ...
-    for (int k = 0; k < twists.cols(); ++k)                                 // ... to the world's
-      twists.col(k).head<3>() += state.nodes[joint.slave].position.cross(Vector3(twists.col(k).tail<3>()));
+    Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6> twists(6, tree.coordinates);
+    int column = 0;
+    for (const int index : tree.chain) {
+      const JointMap& joint = model_.joints[index];
+      const NodePose master = joint.master < 0 ? NodePose() : node_pose(state.nodes[joint.master]);
+      FoldMaps maps;
+      variational_maps(joint, master, state.released[index], Vector6::Zero(), maps);
+      for (int k = 0; k < maps.right.cols(); ++k, ++column) {  // of the slave's origin, then of the world's
+        twists.col(column) = maps.right.col(k);
+        twists.col(column).head<3>() += state.nodes[joint.slave].position.cross(Vector3(maps.right.col(k).tail<3>()));
+      }
+    }
     const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> A = twists.transpose() * tree.inertia * twists;
     const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> b = twists.transpose() * tree.momentum;
     tree.motion.setZero();

@@ -64,8 +64,8 @@ void for_each_number(AnyState& state, const Visit& visit) {
 /// What must agree for a state to fit a simulation.
 std::string signature(const Simulation& simulation) {
   const State& state = simulation.state();
-  const std::size_t kept = state.strain_memory.size() + state.stiffness_rotations.size() +
-                           state.mass_rotations.size() + state.total_rotations.size();
+  const std::size_t kept = state.strain_memory.size() + state.stiffness_rotations.size() + state.mass_rotations.size() +
+                           state.total_rotations.size();
   return fmt::format("{} nodes {} joints {} mass_points {} coordinates {} kept {}", simulation.scheme(),
                      state.nodes.size(), state.released.size(), state.mass_points.size(), state.commands.size(), kept);
 }

@@ -107,9 +107,10 @@ TEST_P(ConsistentTangent, TangentOfAStepWithStickingFriction) {
   }
   system.begin(state, 30.0, StepSystem::Guess::Unchanged);
   system.update(random_update(system.assembler().unknowns(), random, 0.01));
-  // A beta correction divides by a work of the increments, here 0.01: the residual changes its shape over a part of that.
-  const bool divides = scheme().correction == EnergyCorrection::AxialBeta ||
-                       scheme().correction == EnergyCorrection::FullBeta;
+  // A beta correction divides by a work of the increments, here 0.01: the residual changes its shape over a part of
+  // that.
+  const bool divides =
+      scheme().correction == EnergyCorrection::AxialBeta || scheme().correction == EnergyCorrection::FullBeta;
   expect_consistent_tangent(system, divides ? 0.001 : 0.03);
 }
 

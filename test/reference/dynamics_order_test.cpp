@@ -39,8 +39,8 @@ Problem flying_spaghetti() {
   return {"flying_spaghetti", b, 4, 0.05};
 }
 
-/// A flexible arm with a revolute shoulder, a spherical elbow and a gripper with offset mass, thrown in space and pushed
-/// by a follower force.
+/// A flexible arm with a revolute shoulder, a spherical elbow and a gripper with offset mass, thrown in space and
+/// pushed by a follower force.
 Problem arm_with_joints() {
   using scene::JointKind;
   SceneBuilder b;
@@ -87,7 +87,8 @@ TEST_P(OrderInTime, TipHistory) {
   const auto [variant, problem] = GetParam();
   const int order = variant.scheme.order;
   // Steps at which each order is seen: above round-off, below the pre-asymptotic range.
-  const std::vector<int> refinements = order == 4 ? std::vector<int>{8, 16, 32, 64} : std::vector<int>{4, 8, 16, 32, 64};
+  const std::vector<int> refinements =
+      order == 4 ? std::vector<int>{8, 16, 32, 64} : std::vector<int>{4, 8, 16, 32, 64};
   std::vector<History> runs;
   for (const int refinement : refinements) runs.push_back(tip_history(problem, variant.integrator, refinement));
   // The reference is extrapolated from the two finest runs (Richardson): its own error is of higher order.

@@ -34,7 +34,8 @@ TEST(SimulationErrors, Integrator) {
                "max_iterations must be a whole number from 1 to");
   expect_error(R"(max_halvings="3")", R"(max_halvings="31")", 60, "max_halvings must be a whole number from 0 to 30");
   expect_error(R"(rho_infinity="0.9")", R"(rho_infinity="1.1")", 60, "rho_infinity must be from 0 to 1");
-  const std::string known = R"(scheme="edmc2" step="0.002" tolerance="1e-9" max_iterations="11" max_halvings="3" rho_infinity="0.9")";
+  const std::string known =
+      R"(scheme="edmc2" step="0.002" tolerance="1e-9" max_iterations="11" max_halvings="3" rho_infinity="0.9")";
   for (const std::string_view scheme : scheme_names())
     EXPECT_TRUE(read(good_scene_with(known, "scheme=\"" + std::string(scheme) + "\"")).scene) << scheme;
   for (const char* options :

@@ -103,12 +103,13 @@ TEST_P(Allocation, NoneInAThousandSteps) {
   EXPECT_EQ(converged, 1000);
   EXPECT_GT(std::abs(simulation.position(*simulation.find_coordinate("hinge"))), 0.015) << "the stop must be reached";
 }
-INSTANTIATE_TEST_SUITE_P(Schemes, Allocation,
-                         ::testing::Combine(::testing::Values("em", "em0", "em_scaled", "em_symmetric", "em4", "edmc1", "edmc2", "m1", "m2", "std", "beta1", "beta2",
-                                           "beta1_repaired", "beta2_repaired", "newmark", "hht1", "hht2", "hht3"), ::testing::Bool()),
-                         [](const auto& info) {
-                           return std::get<0>(info.param) + (std::get<1>(info.param) ? "_reuse" : "_full");
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Schemes, Allocation,
+    ::testing::Combine(::testing::Values("em", "em0", "em_scaled", "em_symmetric", "em4", "edmc1", "edmc2", "m1", "m2",
+                                         "std", "beta1", "beta2", "beta1_repaired", "beta2_repaired", "newmark", "hht1",
+                                         "hht2", "hht3"),
+                       ::testing::Bool()),
+    [](const auto& info) { return std::get<0>(info.param) + (std::get<1>(info.param) ? "_reuse" : "_full"); });
 
 // Halving takes a path of its own.
 TEST_F(Allocation, NoneInHalvedOrFailedSteps) {

@@ -142,8 +142,10 @@ TEST_P(Checkpoint, OfAnotherModelOrSchemeIsRefused) {
   EXPECT_THROW(read_checkpoint(another_scheme, path_), std::runtime_error);
 }
 
-INSTANTIATE_TEST_SUITE_P(Schemes, Checkpoint, ::testing::Values("em", "em0", "em_symmetric", "em4", "edmc1", "edmc2", "m1", "m2", "std", "beta1", "beta2",
-                                           "beta1_repaired", "beta2_repaired", "newmark", "hht1", "hht2", "hht3"),
+INSTANTIATE_TEST_SUITE_P(Schemes, Checkpoint,
+                         ::testing::Values("em", "em0", "em_symmetric", "em4", "edmc1", "edmc2", "m1", "m2", "std",
+                                           "beta1", "beta2", "beta1_repaired", "beta2_repaired", "newmark", "hht1",
+                                           "hht2", "hht3"),
                          [](const auto& info) { return info.param; });
 
 class DamagedCheckpoint : public ::testing::Test {

@@ -17,8 +17,8 @@
 
 namespace flexarm {
 
-/// A moment on a node at t_{n+1+alpha} from those at both ends, its derivative with respect to the one at the end, and at
-/// constant moments with respect to the node's spin.
+/// A moment on a node at t_{n+1+alpha} from those at both ends, its derivative with respect to the one at the end, and
+/// at constant moments with respect to the node's spin.
 struct InterpolatedMoment {
   Vector3 value;
   Matrix3 slope, derivative;

@@ -17,13 +17,14 @@ class VelocityScaling {
   VelocityScaling(const Model& model, const Scheme& scheme);
 
   /// Gives `state` the energy that `begin` had, plus work, less dissipation. What cannot be given because nothing moves
-  /// but rigidly, or a motion is only starting, is carried to the next step. False, and the state is not to be used, if the factor differs from one by
-  /// more than 2 %: the step was too long.
+  /// but rigidly, or a motion is only starting, is carried to the next step. False, and the state is not to be used, if
+  /// the factor differs from one by more than 2 %: the step was too long.
   bool apply(const State& begin, State& state);
 
  private:
   struct Tree {
-    int joint = -1;            // to the world
+    std::vector<int> chain;    // elementary joints that hold it to the world
+    int coordinates = 0;       // of the chain
     Matrix6 inertia;           // of the whole, locked, about the world's origin
     Vector6 momentum, motion;  // {p, L}; {v at the origin, w} of the rigid part
   };
