@@ -29,6 +29,16 @@ const char* name_of(scene::JointKind kind) {
       return "spherical";
     case scene::JointKind::Universal:
       return "universal";
+    case scene::JointKind::Screw:
+      return "screw";
+    case scene::JointKind::RackAndPinion:
+      return "rack_and_pinion";
+    case scene::JointKind::Worm:
+      return "worm";
+    case scene::JointKind::Cam:
+      return "cam";
+    case scene::JointKind::Slide:
+      return "slide";
     case scene::JointKind::Cylindrical:
       return "cylindrical";
   }
@@ -61,7 +71,7 @@ void print_joints(const Simulation& simulation) {
   fmt::print("\n{:<24} {:<12} {:<20} {:<20} {}\n", "joint", "kind", "parent", "child", "coordinates");
   for (const scene::JointDescription& joint : joints)
     fmt::print("{:<24} {:<12} {:<20} {:<20} {}\n", joint.name, name_of(joint.kind), joint.parent, joint.child,
-               scene::coordinate_suffixes(joint.kind).size());
+               scene::coordinate_suffixes(joint).size());
 }
 
 /// Lengths in m, stiffnesses in N and N m^2, mass in kg.

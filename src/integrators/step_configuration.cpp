@@ -6,6 +6,12 @@
 #include "flexarm/math/so3.h"
 
 namespace flexarm {
+namespace {
+
+/// Way beyond the end of a line that a stop may let a slider penetrate, relative to the last element.
+constexpr double kLargestOvershoot = 0.1;
+
+}  // namespace
 
 void StepSystem::load_begin_configuration(const State& state) {
   state_ = &state;
@@ -63,13 +69,9 @@ void StepSystem::compute_mid_functions() {
 }
 
 void StepSystem::compute_begin_rates() {
-  const NodePose world;
-  for (std::size_t j = 0; j < model_.joints.size(); ++j) {
-    const JointMap& joint = model_.joints[j];
-    const Vector6 master = joint.master < 0 ? Vector6(Vector6::Zero()) : spatial_velocity(state_->nodes[joint.master]);
-    begin_rates_[j] = released_rates(joint, joint.master < 0 ? world : begin_[joint.master], released_[j], master,
-                                     spatial_velocity(state_->nodes[joint.slave]));
-  }
+  for (std::size_t i = 0; i < begin_velocities_.size(); ++i) begin_velocities_[i] = spatial_velocity(state_->nodes[i]);
+  for (std::size_t j = 0; j < model_.joints.size(); ++j)
+    begin_rates_[j] = released_rates(model_, static_cast<int>(j), begin_, released_[j], begin_velocities_);
 }
 
 void StepSystem::begin(const State& state, double step, Guess guess) {
@@ -129,7 +131,7 @@ void StepSystem::extrapolate() {
   for (std::size_t j = 0; j < model_.joints.size(); ++j) {
     const JointMap& joint = model_.joints[j];
     const int variable = dof_.variable_of_joint(static_cast<int>(j)), count = released_count(joint.kind);
-    if (joint.kind == JointMapKind::Scalar) {
+    if (joint.kind == JointMapKind::Scalar || joint.kind == JointMapKind::Slide) {
       released_[j].displacement[0] += entry(variable, 0);
     } else if (count > 0) {
       Vector3 rotation;
@@ -142,6 +144,13 @@ void StepSystem::extrapolate() {
   }
 }
 
+bool StepSystem::is_on_line(const JointMap& joint, int j) const {
+  const SlideLine& line = model_.slide_lines[joint.line];
+  const double to = released_[j].displacement[0];
+  const int pieces = std::abs(line.piece_at(to) - line.piece_at(state_->released[j].displacement[0])) + 1;
+  return line.overshoot(to) <= kLargestOvershoot && pieces <= SlideLine::kMostPieces;
+}
+
 void StepSystem::set_slaves() {
   for (const Coordinate& coordinate : model_.coordinates)
     if (coordinate.mimicked >= 0) {
@@ -150,10 +159,11 @@ void StepSystem::set_slaves() {
           coordinate.mimic_multiplier * released_[master.joint].displacement[master.component] +
           coordinate.mimic_offset;
     }
-  const NodePose world;
+  is_off_line_ = false;
   for (std::size_t j = 0; j < model_.joints.size(); ++j) {
     const JointMap& joint = model_.joints[j];
-    end_[joint.slave] = slave_pose(joint, joint.master < 0 ? world : end_[joint.master], released_[j]);
+    end_[joint.slave] = slave_pose(model_, static_cast<int>(j), end_, released_[j]);
+    if (joint.kind == JointMapKind::Slide) is_off_line_ = is_off_line_ || !is_on_line(joint, static_cast<int>(j));
   }
 }
 

@@ -9,6 +9,14 @@
 #include "flexarm/math/so3.h"
 
 namespace flexarm {
+namespace {
+
+/// Most nodes that a slider may touch in a step.
+std::size_t slide_node_count(const Model& model) {
+  return model.slide_lines.empty() ? 0 : SlideLine::kMostPieces * slide::kMostNodes;
+}
+
+}  // namespace
 
 StepSystem::StepSystem(const Model& model, const Scheme& scheme)
     : model_(model),
@@ -36,6 +44,8 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme)
       history_values_(model.histories.size()),
       begin_history_values_(model.histories.size()),
       applied_(model.coordinates.size(), 0.0),
+      slide_maps_(slide_node_count(model)),
+      begin_velocities_(model.nodes.size()),
       begin_rates_(model.joints.size()),
       residual_(Eigen::VectorXd::Zero(dof_.unknowns)) {
   for_each_group(model.beams, [&](const auto& group) {
@@ -150,11 +160,29 @@ void StepSystem::add_joint_efforts(int j, bool with_tangent) {
   }
 }
 
+void StepSystem::fold_slide(int j, bool with_tangent) {
+  const JointMap& joint = model_.joints[j];
+  const SlideLine& line = model_.slide_lines[joint.line];
+  const Vector6 g = assembler_.slave_residual(joint.slave);
+  const double to = released_[j].displacement[0];
+  if (!static_ && scheme_.is_incremental())
+    slide_incremental_maps(line, begin_, end_, state_->released[j].displacement[0], to, g, slide_maps_, with_tangent,
+                           scheme_.arm_weight());
+  else
+    slide_variational_maps(line, end_, to, g, slide_maps_, with_tangent);
+  assembler_.fold(j, slide_maps_, with_tangent);
+  add_joint_efforts(j, with_tangent);
+}
+
 void StepSystem::fold_joints(bool with_tangent) {
   const NodePose world;
   FoldMaps maps;
   for (int j = static_cast<int>(model_.joints.size()) - 1; j >= 0; --j) {
     const JointMap& joint = model_.joints[j];
+    if (joint.kind == JointMapKind::Slide) {
+      fold_slide(j, with_tangent);
+      continue;
+    }
     const Vector6 g = assembler_.slave_residual(joint.slave);
     const NodePose& end = joint.master < 0 ? world : end_[joint.master];
     if (!static_ && scheme_.is_incremental())
@@ -182,6 +210,7 @@ void StepSystem::initialise(State& state) {
 }
 
 bool StepSystem::evaluate(bool with_tangent) {
+  if (is_off_line_) return false;
   assembler_.set_zero(with_tangent);
   dissipated_ = 0;
   if (with_tangent && !static_)

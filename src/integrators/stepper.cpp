@@ -40,6 +40,8 @@ const char* to_string(StepResult::Reason reason) {
       return "a quantity is not finite";
     case StepResult::Reason::RotationTooLarge:
       return "a node turns by more than 90 degrees in one step";
+    case StepResult::Reason::OffTheLine:
+      return "a slider leaves its line, or passes too many elements in one step";
     case StepResult::Reason::EnergyDefect:
       return "the step's energy defect is too large to be closed by scaling the velocities";
   }
@@ -72,11 +74,12 @@ bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
     factorised_step_ = 0;
     return false;
   };
-  if (system_.assembler().unknowns() == 0) return system_.evaluate(false) || fail(Reason::NotFinite);
+  const auto not_evaluated = [&] { return system_.is_off_line() ? Reason::OffTheLine : Reason::NotFinite; };
+  if (system_.assembler().unknowns() == 0) return system_.evaluate(false) || fail(not_evaluated());
 
   bool factorise = !reuse || !kept_factors_contract_ || factorised_step_ != system_.step();
   for (int iteration = 0; iteration < settings_.max_iterations; ++iteration) {
-    if (!system_.evaluate(factorise)) return fail(Reason::NotFinite);
+    if (!system_.evaluate(factorise)) return fail(not_evaluated());
     ++result.iterations;
     if (factorise) {
       ++result.factorisations;
@@ -103,7 +106,7 @@ bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
     const double remains = norm * (squares ? rate * rate : rate);
     const bool converged =
         reuse ? remains <= std::max(settings_.tolerance * settings_.tolerance, kRoundOff) : norm <= settings_.tolerance;
-    if (converged) return system_.evaluate(false) || fail(Reason::NotFinite);
+    if (converged) return system_.evaluate(false) || fail(not_evaluated());
     const bool is_slow = iteration > 0 && contraction > kSlowContraction;
     if (iteration == 1) kept_factors_contract_ = !is_slow;
     factorise = !reuse || is_slow;

@@ -17,8 +17,20 @@ struct JointFrame {
 };
 
 Vector3 displacement(const JointMap& joint, const Released& released) {
-  return joint.kind == JointMapKind::Scalar ? Vector3(released.displacement[0] * joint.translation)
-                                            : released.displacement;
+  if (joint.kind != JointMapKind::Scalar) return released.displacement;
+  const double u = released.displacement[0];
+  return (joint.profile ? joint.profile->value(u) : u) * joint.translation;
+}
+
+/// Slope of the travel f(u) at the end of a step and over it, and their derivatives with respect to u at the end.
+struct TravelRate {
+  double slope = 1, curvature = 0;
+  double secant = 1, secant_derivative = 0;
+};
+TravelRate travel_rate(const JointMap& joint, double begin, double end) {
+  if (!joint.profile) return {};
+  const CamProfile& f = *joint.profile;
+  return {f.derivative(end), f.second_derivative(end), f.secant(begin, end), f.secant_derivative(begin, end)};
 }
 
 JointFrame joint_frame(const JointMap& joint, const NodePose& master, const Released& released) {
@@ -69,7 +81,7 @@ NodePose slave_pose(const JointMap& joint, const NodePose& master, const Release
 
 Released updated(const JointMap& joint, const Released& released, const Eigen::Ref<const ReleasedVector>& increment) {
   Released out = released;
-  if (joint.kind == JointMapKind::Scalar) {
+  if (joint.kind == JointMapKind::Scalar || joint.kind == JointMapKind::Slide) {
     out.displacement[0] += increment[0];
   } else if (joint.kind != JointMapKind::Rigid) {
     if (joint.kind == JointMapKind::Free) out.displacement += increment.head<3>();
@@ -81,7 +93,7 @@ Released updated(const JointMap& joint, const Released& released, const Eigen::R
 
 ReleasedVector released_increment(const JointMap& joint, const Released& from, const Released& to) {
   ReleasedVector out(released_count(joint.kind));
-  if (joint.kind == JointMapKind::Scalar) {
+  if (joint.kind == JointMapKind::Scalar || joint.kind == JointMapKind::Slide) {
     out[0] = to.displacement[0] - from.displacement[0];
   } else if (joint.kind != JointMapKind::Rigid) {
     if (joint.kind == JointMapKind::Free) out.head<3>() = to.displacement - from.displacement;
@@ -101,10 +113,15 @@ void variational_maps(const JointMap& joint, const NodePose& master, const Relea
 
   switch (joint.kind) {
     case JointMapKind::Rigid:
+    case JointMapKind::Slide:  // has maps of its own (slide_map.h)
       break;
     case JointMapKind::Scalar: {
-      const Vector3 travel = frame.rotation * joint.translation, turn = frame.rotation * joint.rotation;
+      const double u = released.displacement[0];
+      const TravelRate rate = travel_rate(joint, u, u);
+      const Vector3 direction = frame.rotation * joint.translation, turn = frame.rotation * joint.rotation;
+      const Vector3 travel = rate.slope * direction;
       maps.right.col(0) << travel, turn;
+      maps.released_released(0, 0) = rate.curvature * force.dot(direction);
       maps.released_master.row(0).tail<3>() = -(force.cross(travel) + moment.cross(turn)).transpose();
       maps.master_released.col(0).tail<3>() = -force.cross(travel);
       break;
@@ -149,8 +166,9 @@ void incremental_maps(const JointMap& joint, const NodePose& master_begin, const
   const Vector3 turn_world = B0 * turn;
   const double c = 1 / (1 - 0.25 * w.dot(turn_world));
   const Matrix3 N22 = c * S_inverse.transpose() * B0;
+  const TravelRate travel_of = scalar ? travel_rate(joint, begin.displacement[0], end.displacement[0]) : TravelRate();
   if (scalar) {
-    maps.left.col(0) << N11 * joint.translation, rate.value * (N22 * joint.rotation);
+    maps.left.col(0) << travel_of.secant * (N11 * joint.translation), rate.value * (N22 * joint.rotation);
   } else {
     if (joint.kind == JointMapKind::Free) maps.left.topLeftCorner<3, 3>() = N11;
     maps.left.bottomRightCorner<3, 3>() = N22;
@@ -164,15 +182,16 @@ void incremental_maps(const JointMap& joint, const NodePose& master_begin, const
       S_inverse;
   const Vector3 w_joint = B0.transpose() * w;
   if (scalar) {
-    const Vector3 travel = frame.rotation * joint.translation;
+    const Vector3 travel = travel_of.slope * (frame.rotation * joint.translation);
     maps.right.col(0) << travel, frame.rotation * joint.rotation;
     const double axis_moment = joint.rotation.dot(row_phi);
     // d(rate)/du at constant row_phi, and row_phi through c: d(turn)/du = (1 + |turn|^2/4) rotation.
     maps.released_released(0, 0) =
         rate.derivative * joint.rotation.norm() * axis_moment +
-        rate.value * axis_moment * 0.25 * c * w_joint.dot(joint.rotation) * (1 + 0.25 * turn.squaredNorm());
-    maps.released_master.row(0).tail<3>() =
-        joint.translation.transpose() * row_r_master + rate.value * joint.rotation.transpose() * row_phi_master;
+        rate.value * axis_moment * 0.25 * c * w_joint.dot(joint.rotation) * (1 + 0.25 * turn.squaredNorm()) +
+        travel_of.secant_derivative * force.dot(N11 * joint.translation);
+    maps.released_master.row(0).tail<3>() = travel_of.secant * joint.translation.transpose() * row_r_master +
+                                            rate.value * joint.rotation.transpose() * row_phi_master;
     maps.master_released.col(0).tail<3>() = -arm_weight * force.cross(travel);
     return;
   }

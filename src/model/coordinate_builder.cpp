@@ -1,14 +1,14 @@
 // Released coordinates and their initial values.
 #include <cmath>
 
-#include "flexarm/joints/joint_map.h"
+#include "flexarm/joints/joint_kinematics.h"
 #include "flexarm/math/so3.h"
 #include "mechanism_builder.h"
 
 namespace flexarm {
 
-double MechanismBuilder::initial_position(const std::string& coordinate) const {
-  double position = 0;
+double MechanismBuilder::initial_position(const std::string& coordinate, double otherwise) const {
+  double position = otherwise;
   for (const scene::InitialJoint& initial : scene_.initial_joints)
     if (initial.coordinate == coordinate) position = initial.position;
   for (const scene::PrescribedMotion& motion : scene_.motions)
@@ -20,7 +20,7 @@ Released MechanismBuilder::initial_released(const JointMap& map, const std::vect
   Released out;
   std::vector<double> values;
   for (const std::string& name : names) values.push_back(initial_position(name));
-  if (map.kind == JointMapKind::Scalar) {
+  if (map.kind == JointMapKind::Scalar || map.kind == JointMapKind::Slide) {
     out.displacement[0] = values[0];
   } else if (map.kind != JointMapKind::Rigid) {
     if (map.kind == JointMapKind::Free) out.displacement = Vector3(values[0], values[1], values[2]);
@@ -111,8 +111,7 @@ void MechanismBuilder::update_initial_poses() {
     if (joint_of[i] >= 0) {
       const JointMap& joint = model.joints[joint_of[i]];
       const NodePose world;
-      model.nodes[i] =
-          slave_pose(joint, joint.master < 0 ? world : model.nodes[joint.master], model.initial_released[joint_of[i]]);
+      model.nodes[i] = slave_pose(model, joint_of[i], model.nodes, model.initial_released[joint_of[i]]);
     } else {
       const int parent = node_parents[i];
       const Pose pose = pose_of(parent) * (before[parent].inverse() * before[i]);

@@ -25,26 +25,19 @@ void InitialVelocity::set() {
     if (j >= 0 && model_.joints[j].kind == JointMapKind::Rigid) follow(j, ReleasedVector(0));
 }
 
-Vector6 InitialVelocity::velocity_of(int node) const {
-  return node < 0 ? Vector6(Vector6::Zero()) : model_.initial_velocity[node];
-}
-
 void InitialVelocity::follow(int j, const ReleasedVector& rates) {
-  const JointMap& map = model_.joints[j];
-  const NodePose world;
-  model_.initial_velocity[map.slave] = slave_velocity(map, map.master < 0 ? world : model_.nodes[map.master],
-                                                      model_.initial_released[j], velocity_of(map.master), rates);
+  const SlaveVelocity slave =
+      slave_velocity(model_, j, model_.nodes, model_.initial_released[j], model_.initial_velocity);
+  model_.initial_velocity[model_.joints[j].slave] = slave.carried + slave.columns * rates;
 }
 
 void InitialVelocity::set_joint(const JointRecord& record) {
   if (record.map_count == 0) return;
   const int child = mechanism_.link_index(record.joint->child);
-  const JointMap& first = model_.joints[record.first_map];
   const JointMap& last = model_.joints[record.first_map + record.map_count - 1];
   ReleasedVector rates;
   if (!given_rates(record, rates) && fields_.count(child)) {
-    rates = field_rates(record, velocity_of(first.master),
-                        field_velocity(*fields_[child], child, model_.nodes[last.slave].position));
+    rates = field_rates(record, field_velocity(*fields_[child], child, model_.nodes[last.slave].position));
     for (int c = 0; c < rates.size(); ++c) field_rates_[model_.first_coordinate[record.first_map] + c] = rates[c];
   }
   for (int k = 0, used = 0; k < record.map_count; ++k) {
@@ -97,33 +90,28 @@ double InitialVelocity::given_rate(const Coordinate& coordinate, bool& is_given)
 bool InitialVelocity::given_rates(const JointRecord& record, ReleasedVector& rates) const {
   bool is_given = false;
   std::size_t index = model_.first_coordinate[record.first_map];
-  rates.resize(static_cast<Eigen::Index>(scene::coordinate_suffixes(record.joint->kind).size()));
+  rates.resize(static_cast<Eigen::Index>(scene::coordinate_suffixes(*record.joint).size()));
   for (double& rate : rates) rate = given_rate(model_.coordinates[index++], is_given);
   return is_given;
 }
 
-ReleasedVector InitialVelocity::field_rates(const JointRecord& record, const Vector6& master,
-                                            const Vector6& target) const {
-  const JointMap& last = model_.joints[record.first_map + record.map_count - 1];
-  const Vector3 point = model_.nodes[last.slave].position;
+ReleasedVector InitialVelocity::field_rates(const JointRecord& record, const Vector6& target) {
+  const int last = model_.joints[record.first_map + record.map_count - 1].slave;
+  const Vector3 point = model_.nodes[last].position;
   ReleasedColumns columns(6, 0);
-  const NodePose world;
   for (int k = 0; k < record.map_count; ++k) {
-    const JointMap& map = model_.joints[record.first_map + k];
-    FoldMaps maps;
-    variational_maps(map, map.master < 0 ? world : model_.nodes[map.master],
-                     model_.initial_released[record.first_map + k], Vector6::Zero(), maps);
-    for (int c = 0; c < maps.right.cols(); ++c) {
-      Vector6 column = maps.right.col(c);
-      column.head<3>() += Vector3(column.tail<3>()).cross(point - model_.nodes[map.slave].position);
+    const int j = record.first_map + k;
+    const SlaveVelocity slave =
+        slave_velocity(model_, j, model_.nodes, model_.initial_released[j], model_.initial_velocity);
+    model_.initial_velocity[model_.joints[j].slave] = slave.carried;  // carried along, at rest in the joint
+    for (int c = 0; c < slave.columns.cols(); ++c) {
+      Vector6 column = slave.columns.col(c);
+      column.head<3>() += Vector3(column.tail<3>()).cross(point - model_.nodes[model_.joints[j].slave].position);
       columns.conservativeResize(6, columns.cols() + 1);
       columns.col(columns.cols() - 1) = column;
     }
   }
-  const JointMap& first = model_.joints[record.first_map];
-  const Vector3 master_point = first.master < 0 ? Vector3(Vector3::Zero()) : model_.nodes[first.master].position;
-  Vector6 relative = target - master;
-  relative.head<3>() -= Vector3(master.tail<3>()).cross(point - master_point);
+  const Vector6 relative = target - model_.initial_velocity[last];
   return Eigen::MatrixXd(columns).colPivHouseholderQr().solve(relative);
 }
 

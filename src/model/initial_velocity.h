@@ -4,7 +4,7 @@
 #include <map>
 #include <vector>
 
-#include "flexarm/joints/joint_map.h"
+#include "flexarm/joints/joint_kinematics.h"
 #include "mechanism_builder.h"
 
 namespace flexarm {
@@ -28,10 +28,9 @@ class InitialVelocity {
   bool given_rates(const JointRecord& record, ReleasedVector& rates) const;
   double given_rate(const Coordinate& coordinate, bool& is_given) const;
   /// Least-squares rates for the velocity that the child's field asks of the joint's last slave.
-  ReleasedVector field_rates(const JointRecord& record, const Vector6& master, const Vector6& target) const;
+  ReleasedVector field_rates(const JointRecord& record, const Vector6& target);
   Vector6 field_velocity(const scene::InitialLink& field, int link, const Vector3& point) const;
   void check_field(const scene::InitialLink& field, int link) const;
-  Vector6 velocity_of(int node) const;
 
   const scene::SceneDescription& scene_;
   MechanismBuilder& mechanism_;

@@ -60,6 +60,8 @@ void finish_mass_properties(const scene::SceneDescription& scene, const std::vec
     const NodePose& master = joint.master < 0 ? world : model.nodes[joint.master];
     const Matrix3 frame = master.rotation * joint.origin.orientation.toRotationMatrix();
     Vector3 translation = joint.translation, rotation = joint.rotation;
+    if (joint.profile)
+      translation *= joint.profile->derivative(model.initial_released[coordinate.joint].displacement[0]);
     if (joint.kind != JointMapKind::Scalar) {
       const Vector3 unit = Vector3::Unit(coordinate.component % 3);
       translation = coordinate.is_angle ? Vector3::Zero() : unit;

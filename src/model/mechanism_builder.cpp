@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "flexarm/joints/joint_map.h"
+#include "flexarm/joints/joint_kinematics.h"
 #include "flexarm/math/shape_functions.h"
 #include "flexarm/math/so3.h"
 #include "initial_velocity.h"
@@ -17,8 +17,10 @@ std::pair<Vector3, Vector3> plane_axes(const Vector3& axis) {
   return {first, axis.cross(first)};
 }
 
-JointMap scalar_map(const Vector3& translation, const Vector3& rotation) {
+/// `offset`: of the moved frame from the joint's origin at coordinate 0.
+JointMap scalar_map(const Vector3& translation, const Vector3& rotation, const Vector3& offset = Vector3::Zero()) {
   JointMap map;
+  map.origin.position = offset;
   map.kind = JointMapKind::Scalar;
   map.translation = translation;
   map.rotation = rotation;
@@ -51,10 +53,23 @@ std::vector<JointMap> elementary_joints(const scene::JointDescription& joint) {
       return {scalar_map(zero, a), scalar_map(zero, a2)};
     case JointKind::Cylindrical:
       return {scalar_map(a, zero), scalar_map(zero, a)};
+    case JointKind::Screw:
+      return {scalar_map(joint.ratio * a, a)};
+    case JointKind::RackAndPinion:  // the pinion's centre lies off the pitch line
+      return {scalar_map(joint.ratio * joint.direction, a, joint.ratio * joint.direction.cross(a))};
+    case JointKind::Worm:
+      return {scalar_map(joint.ratio * joint.direction, a, joint.offset * joint.direction.cross(a))};
+    case JointKind::Cam: {
+      JointMap map = scalar_map(joint.direction, a);
+      map.profile = joint.profile;
+      return {map};
+    }
     case JointKind::Spherical:
       return {map_of_kind(JointMapKind::Spherical)};
     case JointKind::Floating:
       return {map_of_kind(JointMapKind::Free)};
+    case JointKind::Slide:
+      break;  // by its rotation
   }
   return {};
 }
@@ -169,11 +184,10 @@ Pose MechanismBuilder::pose_of(int node) const {
 }
 
 int MechanismBuilder::add_map(JointMap map, const Released& released) {
-  NodePose master;
-  if (map.master >= 0) master = model.nodes[map.master];
-  const NodePose slave = slave_pose(map, master, released);
-  map.slave = add_node({slave.position, slave.orientation}, map.master);
+  const int joint = static_cast<int>(model.joints.size());
   model.joints.push_back(map);
+  const NodePose slave = slave_pose(model, joint, model.nodes, released);
+  map.slave = model.joints[joint].slave = add_node({slave.position, slave.orientation}, map.master);
   model.initial_released.push_back(released);
   model.first_coordinate.push_back(static_cast<int>(model.coordinates.size()));
   return map.slave;
@@ -195,31 +209,86 @@ Attachment MechanismBuilder::attachment(const std::string& link, const Vector3& 
   return {meshes[index]->first_node + node, meshes[index]->mesh.nodes[node].pose.inverse()};
 }
 
+int MechanismBuilder::slide_line(int link) {
+  const auto [entry, is_new] = slide_lines_.emplace(link, static_cast<int>(model.slide_lines.size()));
+  if (!is_new) return entry->second;
+  const LinkMesh& mesh = *meshes[link];
+  SlideLine line;
+  double begin = 0;
+  for (const MeshElement& element : mesh.mesh.elements) {
+    // At a kink the next element begins with a node of its own, welded to this one's last.
+    const int front = mesh.first_node + element.nodes.front();
+    if (line.nodes.empty() || line.nodes.back() != front) line.nodes.push_back(front);
+    const int first = static_cast<int>(line.nodes.size()) - 1, count = static_cast<int>(element.nodes.size());
+    for (int i = 1; i < count; ++i) line.nodes.push_back(mesh.first_node + element.nodes[i]);
+    line.pieces.push_back({first, count, begin, element.end});
+    begin = element.end;
+  }
+  model.slide_lines.push_back(line);
+  return entry->second;
+}
+
+Attachment MechanismBuilder::add_slide(const scene::JointDescription& joint) {
+  const scene::SlideDescription& slide = *joint.slide;
+  const std::string where = at(slide.location, "<slide> of joint '" + joint.name + "'");
+  const int parent = link_index(joint.parent);
+  if (!meshes[parent]) throw ModelError(where + "link '" + joint.parent + "' has no <beam> to slide on");
+  if (!joint.origin.position.isZero(0))
+    throw ModelError(where + "the place on the line is 'start'; xyz of the joint's <origin> must be 0 0 0");
+  const LinkMesh& mesh = *meshes[parent];
+  JointMap map;
+  map.kind = JointMapKind::Slide;
+  map.line = slide_line(parent);
+  const SlideLine& line = model.slide_lines[map.line];
+  map.master = line.nodes.front();
+  const std::string name = joint.name + scene::coordinate_suffixes(joint).front();
+  Released released;
+  released.displacement[0] = initial_position(name, slide.start);
+  for (const double x : {slide.start, released.displacement[0]})
+    if (x > line.length() || x < 0)
+      throw ModelError(where + "the arc length must be from 0 to " + std::to_string(line.length()) + ", got " +
+                       std::to_string(x));
+  const int node = add_map(map, released);
+  scene::JointDescription travel = joint;
+  travel.limits.reset();
+  if (slide.on_end == scene::SlideDescription::End::Stop) travel.limits = scene::JointLimits{0, line.length()};
+  add_coordinates(travel, {name});
+  // The joint's frame is fixed to the section: its orientation in the link where the undeformed line starts.
+  const Pose section = mesh.centreline.at(slide.start);
+  return {node, Pose{-mesh.mesh.centroid, section.orientation.conjugate() * joint.origin.orientation}};
+}
+
 void MechanismBuilder::add_joint(const scene::JointDescription& joint) {
   const int child = link_index(joint.child);
-  const Attachment parent = attachment(joint.parent, joint.origin.position);
-  const Pose origin = parent.offset * joint.origin;
   JointRecord record{&joint, static_cast<int>(model.joints.size()), 0};
-  if (joint.kind == scene::JointKind::Fixed) {
+  const bool slides = joint.kind == scene::JointKind::Slide;
+  const Attachment parent = slides ? add_slide(joint) : attachment(joint.parent, joint.origin.position);
+  const Pose origin = slides ? parent.offset : parent.offset * joint.origin;
+  const scene::JointKind rotation = slides ? joint.slide->rotation : joint.kind;
+  if (rotation == scene::JointKind::Fixed) {
+    record.map_count = slides ? 1 : 0;
     place_link(child, {parent.node, origin});
   } else {
     // The child's first mesh node is the slave itself where its section lies in the link origin.
     const bool direct = meshes[child] && meshes[child]->mesh.centroid.isZero(0);
-    std::vector<JointMap> maps = elementary_joints(joint);
+    scene::JointDescription released = joint;
+    released.kind = rotation;
+    if (slides) released.limits.reset();
+    std::vector<JointMap> maps = elementary_joints(released);
     int node = parent.node;
-    const std::vector<std::string>& suffixes = scene::coordinate_suffixes(joint.kind);
-    std::size_t suffix = 0;
+    const std::vector<std::string>& suffixes = scene::coordinate_suffixes(joint);
+    std::size_t suffix = slides ? 1 : 0;
     for (std::size_t k = 0; k < maps.size(); ++k) {
       JointMap& map = maps[k];
       map.master = node;
-      if (k == 0) map.origin = origin;
+      if (k == 0) map.origin = origin * map.origin;
       if (k + 1 == maps.size() && direct) map.slave_orientation = meshes[child]->mesh.nodes[0].pose.orientation;
       std::vector<std::string> names;
       for (int c = 0; c < released_count(map.kind); ++c) names.push_back(joint.name + suffixes[suffix++]);
       node = add_map(map, initial_released(map, names));
-      add_coordinates(joint, names);
+      add_coordinates(released, names);
     }
-    record.map_count = static_cast<int>(maps.size());
+    record.map_count = static_cast<int>(maps.size()) + (slides ? 1 : 0);
     if (direct)
       place_beam(child, node);
     else

@@ -66,10 +66,15 @@ class MechanismBuilder {
   /// Adds an elementary joint with its slave node; returns the node.
   int add_map(JointMap map, const Released& released);
   int add_rigid(int master, const Pose& offset);
+  /// Adds the section that slides along the parent's line; what the joint moves hangs on it.
+  Attachment add_slide(const scene::JointDescription& joint);
+  /// The line of a flexible link; made once.
+  int slide_line(int link);
 
   void add_coordinates(const scene::JointDescription& joint, const std::vector<std::string>& names);
   Released initial_released(const JointMap& map, const std::vector<std::string>& names) const;
-  double initial_position(const std::string& coordinate) const;
+  /// What the scene gives, else `otherwise`.
+  double initial_position(const std::string& coordinate, double otherwise = 0) const;
   int coordinate_index(const std::string& name, const std::string& where) const;
   void connect_coordinates();
   void update_initial_poses();
@@ -77,6 +82,7 @@ class MechanismBuilder {
   const scene::SceneDescription& scene_;
   std::map<std::string, int> link_indices_;
   std::vector<const scene::JointDescription*> ordered_joints_;  // root to leaf
+  std::map<int, int> slide_lines_;                              // by link: index into Model::slide_lines
   std::vector<std::vector<double>> attachments_;                // per link: arc lengths of element borders
   std::vector<JointRecord> records_;                            // root to leaf
   std::map<int, Body> bodies_;                                  // by node

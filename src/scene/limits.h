@@ -12,6 +12,7 @@ constexpr std::size_t kMostJoints = 10000;
 constexpr std::size_t kMostSimulationEntries = 10000;  ///< children of <simulation>
 constexpr std::size_t kMostCentrelinePieces = 10000;   ///< per beam
 constexpr double kLongestPiece = 1e9;                  ///< of a centreline, and radius of an arc [m]
+constexpr std::size_t kMostProfilePoints = 10000;      ///< of a cam
 constexpr int kMostBeamElements = 100000;              ///< per beam
 constexpr int kMostNewtonIterations = 1000;
 constexpr int kMostHalvings = 30;               ///< a step over 2^30

@@ -122,7 +122,7 @@ class ReferenceCheck {
     for (const LinkDescription& link : scene.links) links_.emplace(link.name, &link);
     for (const JointDescription& joint : scene.joints) {
       joints_.emplace(joint.name, &joint);
-      for (const std::string& suffix : coordinate_suffixes(joint.kind)) add_coordinate(joint, joint.name + suffix);
+      for (const std::string& suffix : coordinate_suffixes(joint)) add_coordinate(joint, joint.name + suffix);
     }
   }
 
@@ -186,9 +186,9 @@ class ReferenceCheck {
       return;
     }
     if (unreadable_.count(target) > 0 || unreadable_.count(joint.name) > 0) return;
-    if (coordinate_suffixes(joint.kind).size() != 1)
+    if (coordinate_suffixes(joint).size() != 1)
       findings_.error(joint.location.line, element, "only a joint with one coordinate can mimic");
-    if (coordinate_suffixes(found->second->kind).size() != 1)
+    if (coordinate_suffixes(*found->second).size() != 1)
       findings_.error(joint.location.line, element, "only a joint with one coordinate can be mimicked", quoted(target));
   }
 
@@ -234,7 +234,7 @@ class ReferenceCheck {
     const auto joint = joints_.find(name);
     if (joint == joints_.end()) return "the name of a joint's coordinate";
     std::string known;
-    for (const std::string& suffix : coordinate_suffixes(joint->second->kind))
+    for (const std::string& suffix : coordinate_suffixes(*joint->second))
       known += (known.empty() ? "one of " : ", ") + quoted(name + suffix);
     return known.empty() ? "movable" : known;
   }

@@ -1,5 +1,8 @@
 #include "scene/standard_reader.h"
 
+#include "scene/couple_reader.h"
+#include "scene/slide_reader.h"
+
 #include <fmt/format.h>
 #include <Eigen/Eigenvalues>
 
@@ -131,18 +134,28 @@ std::optional<JointKind> read_kind(const XmlElement& element, const char* attrib
   return std::nullopt;
 }
 
-/// The kind, after looking at <release>.
+/// The kind, after looking at <release>. Those of <couple> and <slide> are read with their data.
 std::optional<JointKind> read_joint_kind(const XmlElement& joint) {
   const std::optional<JointKind> type = read_kind(joint, "type", kTypes);
-  const std::optional<XmlElement> release = joint.child("release");
-  if (!release) return type;
-  release->expect_only({"kind"});
-  const std::optional<JointKind> kind = read_kind(*release, "kind", kReleases);
+  std::vector<XmlElement> narrowing;
+  for (const char* tag : {"release", "couple", "slide"})
+    if (const std::optional<XmlElement> child = joint.child(tag)) narrowing.push_back(*child);
+  if (narrowing.empty()) return type;
+  if (narrowing.size() > 1) narrowing.back().error("a joint has one of <release>, <couple>, <slide>");
+  const XmlElement& first = narrowing.front();
   if (type && *type != JointKind::Floating) {
-    release->error("the type of the joint must be 'floating'", quoted(joint.text("type").value_or("")));
+    first.error("the type of the joint must be 'floating'", quoted(joint.text("type").value_or("")));
     return std::nullopt;
   }
-  return kind;
+  if (first.tag() == "couple") return JointKind::Screw;  // until it is read: one with an axis
+  if (first.tag() == "slide") return JointKind::Slide;
+  first.expect_only({"kind"});
+  return read_kind(first, "kind", kReleases);
+}
+
+bool has_dependent_travel(JointKind kind) {
+  return kind == JointKind::Screw || kind == JointKind::RackAndPinion || kind == JointKind::Worm ||
+         kind == JointKind::Cam;
 }
 
 bool uses_axis(JointKind kind) {
@@ -156,7 +169,13 @@ void read_axes(const XmlElement& joint, JointDescription& description) {
   } else if (axis) {
     axis->vector("xyz");  // exporters give fixed joints the axis 0 0 0
   }
-  if (description.kind != JointKind::Universal) {
+  if (joint.child("couple")) {
+    if (!axis) joint.error("a joint with <couple> needs the axis of its angle, <axis xyz=\"...\"/>");
+    return;
+  }
+  const bool is_universal = description.kind == JointKind::Universal ||
+                            (description.slide && description.slide->rotation == JointKind::Universal);
+  if (!is_universal) {
     if (axis2) axis2->error("only a joint with <release kind=\"universal\"/> has a second axis");
     return;
   }
@@ -176,7 +195,10 @@ void read_limits(const XmlElement& joint, const urdf::Joint& read, JointDescript
   if (!read.limits) return;
   const urdf::JointLimits& limits = *read.limits;
   description.effort_limit = limits.effort;
-  if (description.kind != JointKind::Revolute && description.kind != JointKind::Prismatic) return;
+  if (has_dependent_travel(description.kind) && limits.lower == limits.upper) return;  // given for effort only
+  if (description.kind != JointKind::Revolute && description.kind != JointKind::Prismatic &&
+      !has_dependent_travel(description.kind))
+    return;
   const XmlElement element = joint.child("limit").value_or(joint);
   if (limits.lower > limits.upper)
     element.error("lower must be <= upper", fmt::format("lower '{}', upper '{}'", limits.lower, limits.upper));
@@ -186,10 +208,8 @@ void read_limits(const XmlElement& joint, const urdf::Joint& read, JointDescript
 
 void check_joint_structure(const XmlElement& joint) {
   joint.expect_at_most_one({"origin", "parent", "child", "axis", "axis2", "limit", "dynamics", "mimic", "release",
-                            "safety_controller", "calibration"});
+                            "couple", "safety_controller", "calibration"});
   check_attributes(joint, kJointAttributes);
-  for (const char* tag : {"slide", "couple"})
-    if (const std::optional<XmlElement> child = joint.child(tag)) child->error("not yet supported in this version");
   const std::string type = joint.xml().Attribute("type") ? joint.xml().Attribute("type") : "";
   if ((type == "revolute" || type == "prismatic") && !joint.child("limit"))
     joint.error("a " + type + " joint needs <limit effort=\"...\" velocity=\"...\" lower=\"...\" upper=\"...\"/>");
@@ -236,7 +256,10 @@ JointDescription read_joint(const XmlElement& unnamed) {
   check_joint_structure(joint);
   if (const std::optional<JointKind> kind = read_joint_kind(joint)) {
     description.kind = *kind;
+    if (const std::optional<XmlElement> slide = joint.child("slide"); slide && *kind == JointKind::Slide)
+      read_slide(*slide, description);
     read_axes(joint, description);
+    if (const std::optional<XmlElement> couple = joint.child("couple")) read_couple(joint, *couple, description);
   }
   if (joint.findings().error_count() > errors) return description;
 

@@ -139,6 +139,23 @@ std::optional<std::vector<double>> XmlElement::numbers(const char* attribute, st
   return numbers;
 }
 
+std::optional<std::vector<double>> XmlElement::all_numbers(const char* attribute, std::size_t most) const {
+  const std::optional<std::string> value = text(attribute);
+  if (!value) return std::nullopt;
+  std::vector<double> numbers;
+  std::string_view rest = *value;
+  for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
+    const std::optional<double> number = parse_number(word);
+    if (!number || numbers.size() == most) {
+      attribute_error(attribute,
+                      std::string(attribute) + " must be at most " + std::to_string(most) + " finite numbers");
+      return std::nullopt;
+    }
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
 std::optional<double> XmlElement::number(const char* attribute, const NumberRange& range) const {
   const std::optional<std::vector<double>> values = numbers(attribute, 1, range);
   if (!values) return std::nullopt;

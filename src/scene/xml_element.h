@@ -67,6 +67,8 @@ class XmlElement {
   double number(const char* attribute, const NumberRange& range, double fallback) const;
   /// `count` numbers separated by white space.
   std::optional<std::vector<double>> numbers(const char* attribute, std::size_t count, const NumberRange& range) const;
+  /// Any count of them up to `most`.
+  std::optional<std::vector<double>> all_numbers(const char* attribute, std::size_t most) const;
   /// `alternative` ends the message (" or 'auto'").
   std::optional<int> integer(const char* attribute, int least, int most, const char* alternative = "") const;
   std::optional<Vector3> vector(const char* attribute) const;

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "flexarm/joints/joint_map.h"
+#include "flexarm/joints/joint_kinematics.h"
 #include "flexarm/math/so3.h"
 #include "flexarm/scene/integrator_options.h"
 
@@ -44,6 +44,8 @@ struct Simulation::Implementation {
   Stepper stepper;
   State initial, state;
   std::vector<std::string> coordinate_names, link_names;
+  mutable std::vector<NodePose> poses;  // scratch of velocity()
+  mutable std::vector<Vector6> velocities;
 
   Implementation(scene::SceneDescription description, const SimulationOptions& options)
       : scene(with_options(std::move(description), options)),
@@ -56,6 +58,8 @@ struct Simulation::Implementation {
     for (const LinkFrame& link : model.links) link_names.push_back(link.name);
     stepper.initialise(initial);
     state = initial;
+    poses.resize(model.nodes.size());
+    velocities.resize(model.nodes.size());
   }
 };
 
@@ -128,11 +132,19 @@ double Simulation::velocity(std::size_t index) const {
   const Coordinate& coordinate = model.coordinates.at(index);
   const JointMap& joint = model.joints[coordinate.joint];
   const State& state = implementation_->state;
-  const bool has_master = joint.master >= 0;
-  const NodePose pose = has_master ? node_pose(state.nodes[joint.master]) : NodePose();
-  const Vector6 velocity = has_master ? spatial_velocity(state.nodes[joint.master]) : Vector6(Vector6::Zero());
-  return released_rates(joint, pose, state.released[coordinate.joint], velocity,
-                        spatial_velocity(state.nodes[joint.slave]))[coordinate.component];
+  std::vector<NodePose>& nodes = implementation_->poses;
+  std::vector<Vector6>& velocities = implementation_->velocities;
+  const auto load = [&](int node) {
+    if (node < 0) return;
+    nodes[node] = node_pose(state.nodes[node]);
+    velocities[node] = spatial_velocity(state.nodes[node]);
+  };
+  load(joint.slave);
+  load(joint.master);
+  if (joint.kind == JointMapKind::Slide)
+    for (const int node : model.slide_lines[joint.line].nodes) load(node);
+  return released_rates(model, coordinate.joint, nodes, state.released[coordinate.joint],
+                        velocities)[coordinate.component];
 }
 
 double Simulation::effort(std::size_t index) const {

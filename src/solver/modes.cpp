@@ -27,23 +27,27 @@ constexpr int kExtraModes = 12;
 constexpr double kEnergyRoundOff = 8 * std::numeric_limits<double>::epsilon();
 
 /// Maps of all joints at a configuration, for zero residual.
-std::vector<FoldMaps> joint_maps(const Model& model, const State& state) {
-  std::vector<FoldMaps> maps(model.joints.size());
+struct JointMaps {
+  std::vector<FoldMaps> folds;    // per joint
+  std::vector<SlideMaps> slides;  // per joint; used for those that slide
+};
+JointMaps joint_maps(const Model& model, const State& state) {
+  std::vector<NodePose> nodes;
+  for (const NodeState& node : state.nodes) nodes.push_back(node_pose(node));
+  JointMaps maps{std::vector<FoldMaps>(model.joints.size()), std::vector<SlideMaps>(model.joints.size())};
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
     const JointMap& joint = model.joints[j];
-    NodePose master;
-    if (joint.master >= 0) {
-      master.position = state.nodes[joint.master].position;
-      master.orientation = state.nodes[joint.master].orientation;
-      master.rotation = master.orientation.toRotationMatrix();
-    }
-    variational_maps(joint, master, state.released[j], Vector6::Zero(), maps[j]);
+    if (joint.kind == JointMapKind::Slide)
+      slide_variational_maps(model.slide_lines[joint.line], nodes, state.released[j].displacement[0], Vector6::Zero(),
+                             maps.slides[j]);
+    else
+      variational_maps(joint, joint.master < 0 ? NodePose() : nodes[joint.master], state.released[j], Vector6::Zero(),
+                       maps.folds[j]);
   }
   return maps;
 }
 
-void assemble_mass(const Model& model, const State& state, const std::vector<FoldMaps>& maps,
-                   SparseAssembler& assembler) {
+void assemble_mass(const Model& model, const State& state, const JointMaps& maps, SparseAssembler& assembler) {
   assembler.set_zero();
   for_each_element(model.beams, [&](const auto& element) {
     constexpr int N = std::decay_t<decltype(element)>::kNodes;
@@ -71,7 +75,12 @@ void assemble_mass(const Model& model, const State& state, const std::vector<Fol
     block.topLeftCorner<3, 3>().diagonal().array() += inertia.mass;
     block.bottomRightCorner<3, 3>() += rotation * inertia.rotary * rotation.transpose();
   }
-  for (int j = static_cast<int>(model.joints.size()) - 1; j >= 0; --j) assembler.fold(j, maps[j], true);
+  for (int j = static_cast<int>(model.joints.size()) - 1; j >= 0; --j) {
+    if (model.joints[j].kind == JointMapKind::Slide)
+      assembler.fold(j, maps.slides[j], true);
+    else
+      assembler.fold(j, maps.folds[j], true);
+  }
   assembler.fold_mimics(true);
   assembler.gather_tangent();
 }
@@ -162,7 +171,7 @@ bool is_rigid(const SparseAssembler& stiffness, const Eigen::VectorXd& motion) {
   return std::abs(energy) <= kEnergyRoundOff * magnitude;
 }
 
-std::vector<Vector6> expand(const Model& model, const DegreesOfFreedom& dof, const std::vector<FoldMaps>& maps,
+std::vector<Vector6> expand(const Model& model, const DegreesOfFreedom& dof, const JointMaps& maps,
                             const Eigen::VectorXd& vector) {
   std::vector<Vector6> motion(model.nodes.size(), Vector6::Zero());
   std::vector<double> scalars(dof.scalar_count, 0.0);
@@ -174,14 +183,22 @@ std::vector<Vector6> expand(const Model& model, const DegreesOfFreedom& dof, con
     for (int k = 0; k < 6; ++k) motion[i][k] = scalars[dof.first[i] + k];
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
     const JointMap& joint = model.joints[j];
+    const double* rates = &scalars[dof.first[dof.variable_of_joint(static_cast<int>(j))]];
     Vector6& slave = motion[joint.slave];
     slave.setZero();
+    if (joint.kind == JointMapKind::Slide) {
+      const SlideMaps& map = maps.slides[j];
+      slave = rates[0] * map.released_right;
+      for (int k = 0; k < map.count; ++k)
+        slave += map.right[k] * motion[model.slide_lines[joint.line].nodes[map.first + k]];
+      continue;
+    }
+    const FoldMaps& map = maps.folds[j];
     if (joint.master >= 0) {
       slave = motion[joint.master];
-      slave.head<3>() += motion[joint.master].tail<3>().cross(maps[j].lever_right);
+      slave.head<3>() += motion[joint.master].tail<3>().cross(map.lever_right);
     }
-    for (int k = 0; k < maps[j].right.cols(); ++k)
-      slave += maps[j].right.col(k) * scalars[dof.first[dof.variable_of_joint(static_cast<int>(j))] + k];
+    for (int k = 0; k < map.right.cols(); ++k) slave += map.right.col(k) * rates[k];
   }
   double largest = 0;
   for (const Vector6& m : motion) largest = std::max(largest, m.cwiseAbs().maxCoeff());
@@ -197,7 +214,7 @@ std::vector<Mode> natural_modes(const Model& model, const State& state, int coun
   system.begin_static(state, 1.0);
   if (!system.evaluate(true)) throw std::runtime_error("the stiffness is not finite");
   const DegreesOfFreedom& dof = system.degrees_of_freedom();
-  const std::vector<FoldMaps> maps = joint_maps(model, state);
+  const JointMaps maps = joint_maps(model, state);
   SparseAssembler mass(model, dof);
   assemble_mass(model, state, maps, mass);
 

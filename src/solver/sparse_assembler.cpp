@@ -74,6 +74,46 @@ class SparseAssembler::PatternBuilder {
     a_.joint_folds_[j] = fold;
   }
 
+  void fold_slide(int j) {
+    const JointMap& joint = a_.model_.joints[j];
+    const SlideLine& line = a_.model_.slide_lines[joint.line];
+    const int s = a_.dof_.variable_of_node(joint.slave), u = a_.dof_.variable_of_joint(j);
+    const int reach = SlideLine::kMostPieces * line.pieces.front().node_count;
+    std::vector<int> place(a_.dof_.size.size(), -1);  // of a variable in the line
+    for (std::size_t k = 0; k < line.nodes.size(); ++k) place[line.nodes[k]] = static_cast<int>(k);
+    const int count = static_cast<int>(line.nodes.size());
+    // Blocks of `other` with every node of the line with which it can be active.
+    const auto blocks = [&](int other, bool other_is_row) {
+      const int first = static_cast<int>(a_.slide_blocks_.size());
+      for (int k = 0; k < count; ++k) {
+        const bool together = place[other] < 0 || std::abs(place[other] - k) <= reach;
+        a_.slide_blocks_.push_back(!together      ? -1
+                                   : other_is_row ? block(other, line.nodes[k])
+                                                  : block(line.nodes[k], other));
+      }
+      return first;
+    };
+    SlideFold fold;
+    fold.first_column_fold = static_cast<int>(a_.slide_columns_.size());
+    const std::vector<int> rows = rows_of_[s];
+    for (const int i : rows)
+      if (!folded_[i]) a_.slide_columns_.push_back({block(i, s), block(i, u), blocks(i, true), a_.dof_.size[i]});
+    fold.last_column_fold = static_cast<int>(a_.slide_columns_.size());
+    fold.first_row_fold = static_cast<int>(a_.slide_rows_.size());
+    const std::vector<int> columns = columns_of_[s];
+    for (const int k : columns)
+      if (!folded_[k] && k != s)
+        a_.slide_rows_.push_back({block(s, k), block(u, k), blocks(k, false), a_.dof_.size[k]});
+    fold.last_row_fold = static_cast<int>(a_.slide_rows_.size());
+    fold.released_released = block(u, u);
+    fold.released_masters = blocks(u, true);
+    fold.masters_released = blocks(u, false);
+    fold.masters_masters = static_cast<int>(a_.slide_blocks_.size());
+    for (const int node : line.nodes) blocks(node, true);
+    folded_[s] = true;
+    a_.slide_folds_[j] = fold;
+  }
+
   void fold_mimic(const DegreesOfFreedom::Mimic& mimic) {
     const int s = mimic.slave_variable, m = mimic.master_variable;
     const std::vector<int> rows = rows_of_[s];
@@ -97,7 +137,7 @@ class SparseAssembler::PatternBuilder {
 };
 
 SparseAssembler::SparseAssembler(const Model& model, const DegreesOfFreedom& dof)
-    : model_(model), dof_(dof), joint_folds_(model.joints.size()) {
+    : model_(model), dof_(dof), joint_folds_(model.joints.size()), slide_folds_(model.joints.size()) {
   PatternBuilder pattern(*this);
   for (std::size_t v = 0; v < dof.size.size(); ++v)
     diagonal_.push_back(pattern.block(static_cast<int>(v), static_cast<int>(v)));
@@ -106,7 +146,12 @@ SparseAssembler::SparseAssembler(const Model& model, const DegreesOfFreedom& dof
     for (const int i : element.nodes)
       for (const int j : element.nodes) element_blocks_.push_back(pattern.block(i, j));
   });
-  for (int j = static_cast<int>(model.joints.size()) - 1; j >= 0; --j) pattern.fold_joint(j);
+  for (int j = static_cast<int>(model.joints.size()) - 1; j >= 0; --j) {
+    if (model.joints[j].kind == JointMapKind::Slide)
+      pattern.fold_slide(j);
+    else
+      pattern.fold_joint(j);
+  }
   for (const DegreesOfFreedom::Mimic& mimic : dof.mimics) pattern.fold_mimic(mimic);
   for (const Block& block : blocks_) dead_.push_back(pattern.folded(block.row) || pattern.folded(block.column));
   values_.assign(pattern.value_count(), 0.0);
@@ -167,6 +212,59 @@ void SparseAssembler::fold(int j, const FoldMaps& maps, bool with_tangent) {
   fold_columns(fold, maps);
   fold_rows(fold, maps);
   add_geometric(fold.geometric, maps);
+}
+
+void SparseAssembler::fold(int j, const SlideMaps& maps, bool with_tangent) {
+  const JointMap& joint = model_.joints[j];
+  const SlideLine& line = model_.slide_lines[joint.line];
+  const Vector6 g = slave_residual(joint.slave);
+  residual(dof_.variable_of_joint(j))[0] += maps.released_left.dot(g);
+  for (int k = 0; k < maps.count; ++k)
+    Eigen::Map<Vector6>(residual(line.nodes[maps.first + k])) += maps.left[k].transpose() * g;
+  if (!with_tangent) return;
+  const SlideFold& fold = slide_folds_[j];
+  fold_slide_columns(fold, maps);
+  fold_slide_rows(fold, maps);
+  const int count = static_cast<int>(line.nodes.size());
+  values_[blocks_[fold.released_released].offset] += maps.released_released;
+  for (int i = 0; i < maps.count; ++i) {
+    const int node = maps.first + i;
+    Eigen::Map<Vector6>(slide_block(fold.released_masters + node)) += maps.released_master[i];
+    Eigen::Map<Vector6>(slide_block(fold.masters_released + node)) += maps.master_released[i];
+    for (int k = 0; k < maps.count; ++k)
+      Eigen::Map<Matrix6>(slide_block(fold.masters_masters + node * count + maps.first + k)) +=
+          maps.master_master[i * maps.count + k];
+  }
+}
+
+void SparseAssembler::fold_slide_columns(const SlideFold& fold, const SlideMaps& maps) {
+  using Columns = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::ColMajor, 6, 6>;
+  using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1>;
+  for (int f = fold.first_column_fold; f < fold.last_column_fold; ++f) {
+    const SlideOperation& op = slide_columns_[f];
+    const Columns from = Eigen::Map<const Columns>(values_.data() + blocks_[op.source].offset, op.size, 6);
+    if (from.isZero(0)) continue;
+    Eigen::Map<Column>(values_.data() + blocks_[op.to_released].offset, op.size) +=
+        from.lazyProduct(maps.released_right);
+    for (int k = 0; k < maps.count; ++k)
+      if (double* to = slide_block(op.to_masters + maps.first + k))
+        Eigen::Map<Columns>(to, op.size, 6) += from.lazyProduct(maps.right[k]);
+  }
+}
+
+void SparseAssembler::fold_slide_rows(const SlideFold& fold, const SlideMaps& maps) {
+  using Rows = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
+  using Row = Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, 6>;
+  for (int f = fold.first_row_fold; f < fold.last_row_fold; ++f) {
+    const SlideOperation& op = slide_rows_[f];
+    const Rows from = Eigen::Map<const Rows>(values_.data() + blocks_[op.source].offset, 6, op.size);
+    if (from.isZero(0)) continue;  // a node of the line that is not active
+    Eigen::Map<Row>(values_.data() + blocks_[op.to_released].offset, op.size) +=
+        maps.released_left.transpose().lazyProduct(from);
+    for (int k = 0; k < maps.count; ++k)
+      if (double* to = slide_block(op.to_masters + maps.first + k))
+        Eigen::Map<Rows>(to, 6, op.size) += maps.left[k].transpose().lazyProduct(from);
+  }
 }
 
 void SparseAssembler::fold_columns(const JointFold& fold, const FoldMaps& maps) {

@@ -2,6 +2,7 @@
 /// One mechanism with everything in it, and random states of any model.
 
 #include "elements/random_element.h"
+#include "flexarm/joints/joint_kinematics.h"
 #include "flexarm/model/model_builder.h"
 #include "flexarm/simulation/observables.h"
 #include "support/scene_builder.h"
@@ -63,6 +64,8 @@ inline scene::SceneDescription every_joint_scene(bool floating) {
   body("echo_body");
   body("second_car");
   body("rock");
+  body("runner");
+  beam("mast", {Vector3(0, 0.3, 0.5)}, 1, 2, false);
 
   joint("base", floating ? JointKind::Floating : JointKind::Fixed, "world", "base", Vector3(0.1, 0.2, 0.3));
   joint("shoulder", JointKind::Revolute, "base", "upper", Vector3(0.3, 0, 0));
@@ -79,6 +82,12 @@ inline scene::SceneDescription every_joint_scene(bool floating) {
       scene::Mimic{"follow", -0.5, 0.2};  // a mimic of a mimic
   joint("second_slider", JointKind::Prismatic, "rock", "second_car", Vector3(0, 0.3, 0)).mimic =
       scene::Mimic{"slider", 1.3, 0};
+  const auto slide = [&](const std::string& name, const std::string& parent, const std::string& child, double start,
+                         JointKind rotation) {
+    joint(name, JointKind::Slide, parent, child, Vector3::Zero()).slide = scene::SlideDescription{start, rotation};
+  };
+  slide("run", "upper", "runner", 0.4, JointKind::Spherical);
+  slide("walk", "finger", "mast", 0.35, JointKind::Revolute);
   joint("throw", JointKind::Floating, "world", "rock", Vector3(0, 2, 0));
   if (floating) return builder.scene;
 
@@ -120,22 +129,18 @@ inline State random_state(const Model& model, RandomSource& random, double size)
   // Slaves and free nodes in their order: masters come first.
   std::vector<int> joint_of(model.nodes.size(), -1);
   for (std::size_t j = 0; j < model.joints.size(); ++j) joint_of[model.joints[j].slave] = static_cast<int>(j);
+  std::vector<NodePose> poses(model.nodes.size());
   for (std::size_t i = 0; i < model.nodes.size(); ++i) {
     NodeState& node = state.nodes[i];
     if (joint_of[i] >= 0) {
-      const JointMap& joint = model.joints[joint_of[i]];
-      NodePose master;
-      if (joint.master >= 0) {
-        const NodeState& m = state.nodes[joint.master];
-        master = {m.position, m.orientation, m.orientation.toRotationMatrix()};
-      }
-      const NodePose pose = slave_pose(joint, master, state.released[joint_of[i]]);
-      node.position = pose.position;
-      node.orientation = pose.orientation;
+      poses[i] = slave_pose(model, joint_of[i], poses, state.released[joint_of[i]]);
+      node.position = poses[i].position;
+      node.orientation = poses[i].orientation;
     } else {
       node.position += size * random.vector();
       node.orientation = (random.rotation(size) * node.orientation).normalized();
     }
+    poses[i] = node_pose(node);
     node.velocity = random.vector();
     node.angular_velocity = random.vector();
     node.acceleration = random.vector();

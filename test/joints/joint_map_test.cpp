@@ -48,12 +48,14 @@ struct KindOfJoint {
   const char* name;
   JointMapKind kind;
   bool translates, rotates;  // Scalar
+  bool by_profile = false;   // its travel
 };
 
 const KindOfJoint kKinds[] = {
-    {"Rigid", JointMapKind::Rigid, false, false},         {"Revolute", JointMapKind::Scalar, false, true},
-    {"Prismatic", JointMapKind::Scalar, true, false},     {"Coupled", JointMapKind::Scalar, true, true},
-    {"Spherical", JointMapKind::Spherical, false, false}, {"Free", JointMapKind::Free, false, false}};
+    {"Rigid", JointMapKind::Rigid, false, false},     {"Revolute", JointMapKind::Scalar, false, true},
+    {"Prismatic", JointMapKind::Scalar, true, false}, {"Coupled", JointMapKind::Scalar, true, true},
+    {"Cam", JointMapKind::Scalar, true, true, true},  {"Spherical", JointMapKind::Spherical, false, false},
+    {"Free", JointMapKind::Free, false, false}};
 
 /// Increments of size `size` in everything; axes are neither unit vectors nor parallel to each other.
 JointStep random_step(RandomSource& random, const KindOfJoint& kind, bool world, double size) {
@@ -65,6 +67,8 @@ JointStep random_step(RandomSource& random, const KindOfJoint& kind, bool world,
   out.joint.slave_orientation = random.rotation(3);
   if (kind.translates) out.joint.translation = 0.7 * random.unit();
   if (kind.rotates) out.joint.rotation = 1.2 * random.unit();
+  if (kind.by_profile)  // analytic: differences must not cross knots
+    out.joint.profile = std::make_shared<CamProfile>(CamProfile::eccentric(0.6, 0.1));
   if (!world) {
     out.master_begin = node(random.vector(), random.rotation(3));
     out.master_end = node(out.master_begin.position + size * random.vector(),

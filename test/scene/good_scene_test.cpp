@@ -202,12 +202,17 @@ TEST(GoodScene, ReleasesOfEveryKind) {
 }
 
 TEST(GoodScene, CoordinateSuffixesCountTheFreedoms) {
-  EXPECT_TRUE(coordinate_suffixes(JointKind::Fixed).empty());
-  EXPECT_EQ(coordinate_suffixes(JointKind::Prismatic), std::vector<std::string>{""});
-  EXPECT_EQ(coordinate_suffixes(JointKind::Planar), (std::vector<std::string>{"/x", "/y", "/rz"}));
-  EXPECT_EQ(coordinate_suffixes(JointKind::Spherical), (std::vector<std::string>{"/rx", "/ry", "/rz"}));
-  EXPECT_EQ(coordinate_suffixes(JointKind::Cylindrical), (std::vector<std::string>{"/1", "/2"}));
-  EXPECT_EQ(coordinate_suffixes(JointKind::Floating).size(), 6u);
+  const auto suffixes = [](JointKind kind) {
+    JointDescription joint;
+    joint.kind = kind;
+    return coordinate_suffixes(joint);
+  };
+  EXPECT_TRUE(suffixes(JointKind::Fixed).empty());
+  EXPECT_EQ(suffixes(JointKind::Prismatic), std::vector<std::string>{""});
+  EXPECT_EQ(suffixes(JointKind::Planar), (std::vector<std::string>{"/x", "/y", "/rz"}));
+  EXPECT_EQ(suffixes(JointKind::Spherical), (std::vector<std::string>{"/rx", "/ry", "/rz"}));
+  EXPECT_EQ(suffixes(JointKind::Cylindrical), (std::vector<std::string>{"/1", "/2"}));
+  EXPECT_EQ(suffixes(JointKind::Floating).size(), 6u);
 }
 
 TEST(GoodScene, FileAndTextAgree) {

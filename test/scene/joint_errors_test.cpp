@@ -88,11 +88,62 @@ TEST(JointErrors, Release) {
                "the type of the joint must be 'floating', got 'continuous'");
 }
 
+TEST(JointErrors, Couple) {
+  // The wrist: type floating, axis 0 1 0, a second axis.
+  const std::string release = R"(<release kind="universal"/>)";
+  const auto expect_couple_error = [&](const std::string& couple, const std::string& fragment) {
+    expect_error(release, couple, 44, fragment);
+  };
+  expect_couple_error(R"(<couple kind="gear"/>)", "kind must be one of screw, rack_and_pinion, worm, cam, got 'gear'");
+  expect_couple_error(R"(<couple kind="screw"/>)", "<couple> of joint 'wrist': attribute 'pitch' is missing");
+  expect_couple_error(R"(<couple kind="screw" pitch="0"/>)", "pitch must be different from 0, got '0'");
+  expect_couple_error(R"(<couple kind="screw" pitch="1" radius="1"/>)", "unknown attribute, expected kind, pitch");
+  expect_couple_error(R"(<couple kind="rack_and_pinion" radius="-1" direction="1 0 0"/>)", "radius must be > 0");
+  expect_couple_error(R"(<couple kind="rack_and_pinion" radius="1" direction="1 1 0"/>)",
+                      "the direction must be normal to the joint's axis, got '1 1 0'");
+  expect_couple_error(R"(<couple kind="worm"/>)", "attribute 'ratio' is missing");
+  expect_couple_error(R"(<couple kind="cam" direction="1 0 0"/>)", "a cam needs <profile kind=");
+  const auto with_profile = [](const std::string& profile) {
+    return R"(<couple kind="cam" direction="1 0 0">)" + profile + "</couple>";
+  };
+  expect_couple_error(with_profile(R"(<profile kind="round"/>)"), "kind must be 'eccentric' or 'table', got 'round'");
+  expect_couple_error(with_profile(R"(<profile kind="eccentric" radius="0"/>)"), "radius must be > 0");
+  expect_couple_error(with_profile(R"(<profile kind="table" theta="0 1 2" r="0 1"/>)"),
+                      "a profile needs a travel for every angle");
+  expect_couple_error(with_profile(R"(<profile kind="table" theta="0 1 x" r="0 1 2"/>)"),
+                      "theta must be at most 10000 finite numbers, got '0 1 x'");
+  expect_couple_error(release + R"(<couple kind="screw" pitch="1"/>)",
+                      "a joint has one of <release>, <couple>, <slide>");
+  expect_error(R"(<limit effort="7")", R"(<couple kind="screw" pitch="1"/><limit effort="7")", 25,
+               "the type of the joint must be 'floating', got 'continuous'");
+  for (const char* couple :
+       {R"(<couple kind="screw" pitch="-0.1"/>)", R"(<couple kind="worm" ratio="0.1" offset="0.2"/>)",
+        R"(<couple kind="rack_and_pinion" radius="0.1" direction="1 0 0"/>)",
+        R"(<couple kind="cam" direction="1 0 0"><profile kind="eccentric" radius="0.1" offset="0.05"/></couple>)",
+        R"(<couple kind="cam" direction="1 0 0"><profile kind="table" theta="0 1 2 4" r="0 1 2 1"/></couple>)"}) {
+    const ReadResult result = read(good_scene_with(release, couple));
+    // The scene speaks of two coordinates of the wrist; a couple leaves one.
+    for (const Diagnostic& diagnostic : result.diagnostics)
+      EXPECT_NE(diagnostic.text().find("wrist/"), std::string::npos) << diagnostic.text();
+  }
+}
+
+TEST(JointErrors, Slide) {
+  const std::string release = R"(<release kind="universal"/>)";
+  const auto expect_slide_error = [&](const std::string& attributes, const std::string& fragment) {
+    expect_error(release, "<slide " + attributes + "/>", 44, fragment);
+  };
+  expect_slide_error(R"(rotation="universal")", "<slide> of joint 'wrist': attribute 'start' is missing");
+  expect_slide_error(R"(start="-1" rotation="universal")", "start must be >= 0, got '-1'");
+  expect_slide_error(R"(start="0" rotation="universal" on_end="bounce")", "on_end must be 'stop' or 'error'");
+  expect_slide_error(R"(start="0" rotation="universal" on_end="free")", "not yet supported in this version");
+  expect_slide_error(R"(start="0" rotation="universal" scheme="alg1")", "not yet supported in this version");
+  expect_slide_error(R"(start="0" rotation="universal" scheme="best")", "scheme must be 'sm_em', got 'best'");
+  expect_slide_error(R"(start="0" rotation="universal" speed="1")", "unknown attribute, expected start, rotation");
+  expect_error(release, release + R"(<slide start="0.8"/>)", 44, "a joint has one of <release>, <couple>, <slide>");
+}
+
 TEST(JointErrors, NotYetSupported) {
-  expect_error(R"(<release kind="universal"/>)", R"(<release kind="universal"/><slide start="0.8"/>)", 44,
-               "<slide> of joint 'wrist': not yet supported in this version");
-  expect_error(R"(<release kind="universal"/>)", R"(<release kind="universal"/><couple kind="screw" pitch="1"/>)", 44,
-               "<couple> of joint 'wrist': not yet supported in this version");
   expect_error(R"(<link name="world"/>)", R"(<link name="world"/><loop_joint name="l" type="fixed"/>)", 4,
                "<loop_joint> of robot 'arm': not yet supported in this version");
 }

@@ -9,7 +9,7 @@
 #include "flexarm/elements/rotary_inertia.h"
 #include "flexarm/integrators/rotation_reference.h"
 #include "flexarm/integrators/scheme.h"
-#include "flexarm/joints/joint_map.h"
+#include "flexarm/joints/joint_kinematics.h"
 #include "flexarm/model/degrees_of_freedom.h"
 #include "flexarm/model/model.h"
 #include "flexarm/model/state.h"
@@ -57,6 +57,8 @@ class StepSystem {
   /// Adds to an initial state what the scheme keeps there.
   void initialise(State& state);
 
+  /// True where a slider has left its line, or goes over more elements than a step may.
+  bool is_off_line() const { return is_off_line_; }
   /// Length of the step under way [s]; 0 in statics.
   double step() const { return step_; }
   const Eigen::VectorXd& residual() const { return residual_; }
@@ -105,6 +107,8 @@ class StepSystem {
   double effort_weight() const { return has_reactions() ? 1 / (1 - scheme_.alpha) : 1; }
   bool has_reactions() const { return is_interpolated() && !state_->reactions.empty(); }
   NewmarkRule newmark() const { return newmark_rule(scheme_, step_); }
+  bool is_on_line(const JointMap& joint, int j) const;
+  void fold_slide(int joint, bool with_tangent);
   bool is_interpolated() const { return scheme_.hht != HhtForm::None && !static_; }
   void initialise_strain_memory(State& state);
   void initialise_momentum_rates(State& state);
@@ -147,7 +151,10 @@ class StepSystem {
   std::vector<double> history_values_;        // at the scheme's point
   std::vector<double> begin_history_values_;  // at the begin; work of the Newmark family
   std::vector<double> applied_;               // per coordinate: effort in this step
-  std::vector<ReleasedVector> begin_rates_;   // per joint; Newmark family
+  bool is_off_line_ = false;
+  SlideMaps slide_maps_;
+  std::vector<Vector6> begin_velocities_;    // per node, spatial; Newmark family
+  std::vector<ReleasedVector> begin_rates_;  // per joint; Newmark family
   bool points_valid_ = false;
   double dissipated_ = 0;
   Eigen::VectorXd residual_;

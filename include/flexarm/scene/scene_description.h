@@ -1,11 +1,13 @@
 #pragma once
 /// What a scene file says: names and SI numbers, immutable, no numerics.
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "flexarm/math/cam_profile.h"
 #include "flexarm/math/pose.h"
 #include "flexarm/math/time_function.h"
 
@@ -96,7 +98,23 @@ struct LinkDescription {
   SourceLocation location;
 };
 
-enum class JointKind { Fixed, Revolute, Continuous, Prismatic, Planar, Floating, Spherical, Universal, Cylindrical };
+enum class JointKind {
+  Fixed,
+  Revolute,
+  Continuous,
+  Prismatic,
+  Planar,
+  Floating,
+  Spherical,
+  Universal,
+  Cylindrical,
+  // One coordinate, an angle about `axis`, on which a travel depends:
+  Screw,
+  RackAndPinion,
+  Worm,
+  Cam,
+  Slide  ///< along the parent's flexible centreline: arc length, then what SlideDescription::rotation releases
+};
 
 struct JointLimits {
   double lower, upper;  ///< position [rad or m]
@@ -108,14 +126,28 @@ struct Mimic {
   double multiplier = 1, offset = 0;
 };
 
+struct SlideDescription {
+  enum class End { Stop, Error };
+  double start = 0;                           ///< initial arc length [m]
+  JointKind rotation = JointKind::Spherical;  ///< Fixed, Revolute, Universal or Spherical
+  End on_end = End::Stop;                     ///< what the ends of the line are
+  SourceLocation location;
+};
+
 struct JointDescription {
   std::string name;
   JointKind kind = JointKind::Fixed;
-  std::string parent, child;          ///< link names
-  Pose origin;                        ///< joint frame in the parent link frame
-  Vector3 axis = Vector3::UnitX();    ///< unit vector in the joint frame (planar: the normal)
-  Vector3 axis2 = Vector3::UnitY();   ///< universal: second axis, unit, in the joint frame turned by the first angle
-  std::optional<JointLimits> limits;  ///< only where positions are limited (revolute, prismatic)
+  std::string parent, child;         ///< link names
+  Pose origin;                       ///< joint frame in the parent link frame
+  Vector3 axis = Vector3::UnitX();   ///< unit vector in the joint frame (planar: the normal)
+  Vector3 axis2 = Vector3::UnitY();  ///< universal: second axis, unit, in the joint frame turned by the first angle
+  // Joints with dependent travel
+  double ratio = 0;   ///< travel per angle: pitch, radius of the pinion, ratio of the worm [m/rad]
+  double offset = 0;  ///< worm: of the moved axis from the joint's origin, along direction x axis [m]
+  Vector3 direction = Vector3::UnitX();       ///< of the travel, unit, in the joint frame; a screw's is its axis
+  std::shared_ptr<const CamProfile> profile;  ///< cam: travel over the angle
+  std::optional<SlideDescription> slide;      ///< of JointKind::Slide
+  std::optional<JointLimits> limits;  ///< only where positions are limited (revolute, prismatic, dependent travel)
   double effort_limit = 0;            ///< commanded efforts saturate here, any kind [N or N m]; 0: unlimited
   double damping = 0;                 ///< per released coordinate [N s/m or N m s/rad]
   double friction = 0;                ///< Coulomb effort per released coordinate [N or N m]
@@ -228,7 +260,8 @@ struct SceneDescription {
 
 /// Suffixes of the released coordinates of a joint in their order: {""} for one coordinate, {} for none,
 /// planar /x /y /rz (axis-normal plane), floating /x /y /z /rx /ry /rz, spherical /rx /ry /rz, universal /1 /2 (the two
-/// angles), cylindrical /1 /2 (travel, angle). Rotations /rx /ry /rz are the components of the rotation vector.
-const std::vector<std::string>& coordinate_suffixes(JointKind kind);
+/// angles), cylindrical /1 /2 (travel, angle), slides {""} if they release no rotation, else /s (arc length) and /rx
+/// /ry /rz, /1 or /1 /2 of their rotation. Rotations /rx /ry /rz are the components of the rotation vector.
+const std::vector<std::string>& coordinate_suffixes(const JointDescription& joint);
 
 }  // namespace flexarm::scene

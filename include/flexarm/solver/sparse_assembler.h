@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "flexarm/joints/joint_map.h"
+#include "flexarm/joints/slide_map.h"
 #include "flexarm/model/degrees_of_freedom.h"
 
 namespace flexarm {
@@ -32,6 +33,7 @@ class SparseAssembler {
   Eigen::Map<const Vector6> slave_residual(int node) const { return Eigen::Map<const Vector6>(residual(node)); }
   /// Folds the slave of `joint`; to be called leaf to root, with the maps for the slave's total residual.
   void fold(int joint, const FoldMaps& maps, bool with_tangent);
+  void fold(int joint, const SlideMaps& maps, bool with_tangent);
   /// Folds mimicking coordinates; after all joints.
   void fold_mimics(bool with_tangent);
   /// Writes the reduced residual and, if asked, the compressed-column values.
@@ -62,6 +64,15 @@ class SparseAssembler {
     int first_column_fold, last_column_fold, first_row_fold, last_row_fold;
     Geometric geometric;
   };
+  /// The like for a slave of many masters: the line's nodes, of which the maps name the active ones. Indices into
+  /// slide_blocks_, one entry per node of the line; -1 where two nodes are never active together.
+  struct SlideOperation {
+    int source, to_released, to_masters, size;
+  };
+  struct SlideFold {
+    int first_column_fold = 0, last_column_fold = 0, first_row_fold = 0, last_row_fold = 0;
+    int released_released = -1, released_masters = -1, masters_released = -1, masters_masters = -1;
+  };
   struct ScaledAddition {
     int source, target, count;
     double factor;
@@ -75,7 +86,13 @@ class SparseAssembler {
   void fold_columns(const JointFold& fold, const FoldMaps& maps);
   void fold_rows(const JointFold& fold, const FoldMaps& maps);
   void add_geometric(const Geometric& geometric, const FoldMaps& maps);
+  void fold_slide_columns(const SlideFold& fold, const SlideMaps& maps);
+  void fold_slide_rows(const SlideFold& fold, const SlideMaps& maps);
   void build_compressed_columns();
+  double* slide_block(int index) {
+    const int block = slide_blocks_[index];
+    return block < 0 ? nullptr : values_.data() + blocks_[block].offset;
+  }
 
   const Model& model_;
   const DegreesOfFreedom& dof_;
@@ -84,6 +101,9 @@ class SparseAssembler {
   std::vector<ColumnFold> column_folds_;
   std::vector<RowFold> row_folds_;
   std::vector<JointFold> joint_folds_;
+  std::vector<SlideOperation> slide_columns_, slide_rows_;
+  std::vector<SlideFold> slide_folds_;  // per joint
+  std::vector<int> slide_blocks_;
   std::vector<ScaledAddition> mimic_folds_;
   std::vector<bool> dead_;  // per block: consumed by a fold
   std::vector<double> values_, residual_, reduced_values_;

@@ -1,0 +1,38 @@
+#pragma once
+/// A flexible centreline on which something slides: its elements in order, with one arc length over all of them.
+
+#include <algorithm>
+#include <vector>
+
+namespace flexarm {
+
+/// One element of the line, between the arc lengths `begin` and `end` of the undeformed line [m].
+struct SlidePiece {
+  int first_node = 0;  ///< index into SlideLine::nodes of its first node
+  int node_count = 2;
+  double begin = 0, end = 0;
+};
+
+/// Nodes follow each other along the line; neighbouring elements share one.
+struct SlideLine {
+  /// Elements that a step may touch; a longer way is taken in shorter steps.
+  static constexpr int kMostPieces = 3;
+
+  std::vector<int> nodes;  ///< of the model
+  std::vector<SlidePiece> pieces;
+
+  double length() const { return pieces.back().end; }
+  /// Index of the piece that contains the arc length; the end pieces beyond the ends.
+  int piece_at(double arc_length) const {
+    const auto after = std::upper_bound(pieces.begin() + 1, pieces.end(), arc_length,
+                                        [](double x, const SlidePiece& piece) { return x < piece.begin; });
+    return static_cast<int>(after - pieces.begin()) - 1;
+  }
+  /// How far it lies beyond the ends, relative to the length of the element there; 0 on the line.
+  double overshoot(double arc_length) const {
+    const SlidePiece& piece = arc_length < 0 ? pieces.front() : pieces.back();
+    return std::max({0.0, -arc_length, arc_length - length()}) / (piece.end - piece.begin);
+  }
+};
+
+}  // namespace flexarm

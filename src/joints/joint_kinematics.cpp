@@ -1,0 +1,46 @@
+#include "flexarm/joints/joint_kinematics.h"
+
+namespace flexarm {
+
+NodePose slave_pose(const Model& model, int j, const std::vector<NodePose>& nodes, const Released& released) {
+  const JointMap& joint = model.joints[j];
+  if (joint.kind == JointMapKind::Slide)
+    return slide_pose(model.slide_lines[joint.line], nodes, released.displacement[0]);
+  return slave_pose(joint, joint.master < 0 ? NodePose() : nodes[joint.master], released);
+}
+
+SlaveVelocity slave_velocity(const Model& model, int j, const std::vector<NodePose>& nodes, const Released& released,
+                             const std::vector<Vector6>& velocities) {
+  const JointMap& joint = model.joints[j];
+  SlaveVelocity out;
+  out.carried.setZero();
+  if (joint.kind == JointMapKind::Slide) {
+    const SlideLine& line = model.slide_lines[joint.line];
+    thread_local SlideMaps maps;
+    slide_variational_maps(line, nodes, released.displacement[0], Vector6::Zero(), maps, false);
+    for (int k = 0; k < maps.count; ++k) out.carried += maps.right[k] * velocities[line.nodes[maps.first + k]];
+    out.columns = maps.released_right;
+    return out;
+  }
+  const NodePose master = joint.master < 0 ? NodePose() : nodes[joint.master];
+  FoldMaps maps;
+  variational_maps(joint, master, released, Vector6::Zero(), maps);
+  out.columns = maps.right;
+  if (joint.master >= 0)
+    out.carried = slave_velocity(joint, master, released, velocities[joint.master],
+                                 ReleasedVector::Zero(released_count(joint.kind)));
+  return out;
+}
+
+ReleasedVector released_rates(const Model& model, int j, const std::vector<NodePose>& nodes, const Released& released,
+                              const std::vector<Vector6>& velocities) {
+  const JointMap& joint = model.joints[j];
+  if (joint.kind != JointMapKind::Slide)
+    return released_rates(joint, joint.master < 0 ? NodePose() : nodes[joint.master], released,
+                          joint.master < 0 ? Vector6(Vector6::Zero()) : velocities[joint.master],
+                          velocities[joint.slave]);
+  const SlaveVelocity slave = slave_velocity(model, j, nodes, released, velocities);
+  return slave.columns.transpose() * (velocities[joint.slave] - slave.carried) / slave.columns.col(0).squaredNorm();
+}
+
+}  // namespace flexarm

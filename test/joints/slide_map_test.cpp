@@ -1,0 +1,199 @@
+// A section that slides along a line of several elements: its maps against exact kinematics and differences.
+#include "flexarm/joints/slide_map.h"
+
+#include <gtest/gtest.h>
+
+#include "elements/differences.h"
+#include "elements/random_element.h"
+
+namespace flexarm {
+namespace {
+
+using namespace test;
+
+/// A line of three elements of one order, 1.5 m long, bent and twisted at random at both ends of a step.
+struct SlideStep {
+  SlideLine line;
+  std::vector<NodePose> begin, end;
+  double from = 0, to = 0, arm_weight = 0.5;
+
+  SlideStep(RandomSource& random, int order, double size) {
+    const double borders[] = {0, 0.4, 1.1, 1.5};
+    for (int e = 0; e < 3; ++e) line.pieces.push_back({e * order, order + 1, borders[e], borders[e + 1]});
+    for (int i = 0; i <= 3 * order; ++i) {
+      line.nodes.push_back(i);
+      const SlidePiece& piece = line.pieces[std::min(i / order, 2)];
+      const double xi = node_coordinate(order + 1, i - piece.first_node);
+      const double x = piece.begin + 0.5 * (1 + xi) * (piece.end - piece.begin);
+      NodePose pose;
+      pose.position = Vector3(x, 0.3 * x * x, -0.2 * x) + 0.05 * random.vector();
+      pose.orientation = random.rotation(0.2) * so3::exp_quaternion(Vector3(0.4 * x, 0, 0.5 * x));
+      set(pose);
+      begin.push_back(pose);
+      pose.position += size * random.vector();
+      pose.orientation =
+          so3::exp_quaternion(Vector3(size * (Vector3(0.5, -0.7, 1) + 0.3 * random.vector()))) * pose.orientation;
+      set(pose);
+      end.push_back(pose);
+    }
+  }
+  static void set(NodePose& pose) {
+    pose.orientation.normalize();
+    pose.rotation = pose.orientation.toRotationMatrix();
+  }
+
+  SlideStep perturbed(int column, double h) const {  // 0: arc length, then {dr, spin} of the nodes
+    SlideStep out = *this;
+    if (column == 0) {
+      out.to += h;
+      return out;
+    }
+    NodePose& pose = out.end[(column - 1) / 6];
+    const int c = (column - 1) % 6;
+    if (c < 3)
+      pose.position[c] += h;
+    else
+      pose.orientation = so3::exp_quaternion(Vector3(h * Vector3::Unit(c - 3))) * pose.orientation;
+    set(pose);
+    return out;
+  }
+  SlideMaps maps(const Vector6& g, bool incremental, bool with_tangent = true) const {
+    SlideMaps out;
+    if (incremental)
+      slide_incremental_maps(line, begin, end, from, to, g, out, with_tangent, arm_weight);
+    else
+      slide_variational_maps(line, end, to, g, out, with_tangent);
+    return out;
+  }
+  /// {released row, rows of all nodes of the line}.
+  Eigen::VectorXd rows(const Vector6& g, bool incremental) const {
+    const SlideMaps m = maps(g, incremental, false);
+    Eigen::VectorXd out = Eigen::VectorXd::Zero(1 + 6 * line.nodes.size());
+    out[0] = m.released_left.dot(g);
+    for (int j = 0; j < m.count; ++j) out.segment<6>(1 + 6 * (m.first + j)) = m.left[j].transpose() * g;
+    return out;
+  }
+};
+
+/// Arc lengths at the begin and the end: within an element, on a border, over one border and over two, both ways, and
+/// no travel at all.
+const std::pair<double, double> kTravels[] = {
+    {0.5, 0.8}, {0.8, 0.5}, {0.3, 0.45},       {0.45, 0.3},       {0.1, 1.3}, {1.3, 0.1},        {0.4, 0.7},
+    {0.7, 0.4}, {0.6, 0.6}, {0.6, 0.6 + 1e-7}, {0.4, 0.4 + 1e-9}, {0, 1.5},   {0.399999, 0.4001}};
+
+class SlideMapsOfOrder : public ::testing::TestWithParam<int> {};
+
+// joints.md 4.5: the section's increments are exactly what the maps make of the nodes' and of Delta X.
+TEST_P(SlideMapsOfOrder, IncrementsAreMappedExactly) {
+  RandomSource random(1);
+  for (const double size : {0.0, 1e-6, 0.1, 0.6})
+    for (const auto& [from, to] : kTravels) {
+      SlideStep step(random, GetParam(), size);
+      step.arm_weight = random.number() < 0 ? 0 : 0.5;
+      step.from = from;
+      step.to = to;
+      const SlideMaps maps = step.maps(Vector6::Zero(), true, false);
+      const NodePose before = slide_pose(step.line, step.begin, from), after = slide_pose(step.line, step.end, to);
+      Vector6 expected, mapped = (to - from) * maps.released_left;
+      expected << after.position - before.position, cayley::increment(before.orientation, after.orientation);
+      for (int j = 0; j < maps.count; ++j) {
+        const int node = maps.first + j;
+        Vector6 increment;
+        increment << step.end[node].position - step.begin[node].position,
+            cayley::increment(step.begin[node].orientation, step.end[node].orientation);
+        mapped += maps.left[j] * increment;
+      }
+      // Short travels take the curvature in the middle: error of third order in a travel of 1e-5.
+      EXPECT_LE((mapped - expected).norm(), 2e-14) << size << ": " << from << " to " << to;
+    }
+}
+
+// Sum of forces and of moments about the origin, with mean arms, are those of the slave.
+TEST_P(SlideMapsOfOrder, MomentaArePassedOn) {
+  RandomSource random(2);
+  for (const auto& [from, to] : kTravels) {
+    SlideStep step(random, GetParam(), 0.5);
+    step.arm_weight = random.number() < 0 ? 0 : 0.5;
+    const auto arm_of = [&](const Vector3& begin, const Vector3& end) {
+      return Vector3((1 - step.arm_weight) * begin + step.arm_weight * end);
+    };
+    step.from = from;
+    step.to = to;
+    const Vector6 g = random.vector6();
+    const Eigen::VectorXd rows = step.rows(g, true);
+    const Vector3 arm =
+        arm_of(slide_pose(step.line, step.begin, from).position, slide_pose(step.line, step.end, to).position);
+    Vector3 force = -g.head<3>(), moment = -g.tail<3>() - arm.cross(g.head<3>());
+    for (std::size_t j = 0; j < step.line.nodes.size(); ++j) {
+      const Vector3 f = rows.segment<3>(1 + 6 * j), m = rows.segment<3>(4 + 6 * j);
+      force += f;
+      moment += m + arm_of(step.begin[j].position, step.end[j].position).cross(f);
+    }
+    EXPECT_LE(force.norm(), 1e-14);
+    EXPECT_LE(moment.norm(), 2e-14) << from << " to " << to;
+  }
+}
+
+TEST_P(SlideMapsOfOrder, ColumnsAreTheDerivativeOfTheSection) {
+  RandomSource random(3);
+  SlideStep step(random, GetParam(), 0.4);
+  step.from = 0.3;
+  step.to = 0.75;
+  const SlideMaps maps = step.maps(Vector6::Zero(), false, false);
+  const NodePose pose = slide_pose(step.line, step.end, step.to);
+  for (int column = 0; column <= 6 * maps.count; ++column) {
+    const int global = column == 0 ? 0 : column + 6 * maps.first;
+    const Eigen::VectorXd expected = difference(
+        [&](double h) {
+          const SlideStep moved = step.perturbed(global, h);
+          const NodePose to = slide_pose(moved.line, moved.end, moved.to);
+          Vector6 change;
+          change << to.position, so3::log(Quaternion(to.orientation * pose.orientation.conjugate()));
+          return Eigen::VectorXd(change);
+        },
+        difference_step);
+    const Vector6 actual =
+        column == 0 ? maps.released_right : Vector6(maps.right[(column - 1) / 6].col((column - 1) % 6));
+    EXPECT_LE((actual - expected).norm(), difference_tolerance) << column;
+  }
+}
+
+TEST_P(SlideMapsOfOrder, GeometricBlocksAreTheDerivativeOfTheRows) {
+  RandomSource random(4);
+  for (const bool incremental : {false, true})
+    for (const auto& [from, to] : {std::pair{0.5, 0.8}, {0.3, 0.7}, {1.3, 0.1}, {0.6, 0.6}}) {
+      SlideStep step(random, GetParam(), 0.4);
+      step.from = from;
+      step.to = to;
+      const Vector6 g = random.vector6();
+      const SlideMaps maps = step.maps(g, incremental);
+      for (int column = 0; column <= 6 * maps.count; ++column) {
+        const int global = column == 0 ? 0 : column + 6 * maps.first;
+        const Eigen::VectorXd expected =
+            difference([&](double h) { return step.perturbed(global, h).rows(g, incremental); }, difference_step);
+        Eigen::VectorXd actual = Eigen::VectorXd::Zero(expected.size());
+        const int j = (column - 1) / 6, c = (column - 1) % 6;
+        actual[0] = column == 0 ? maps.released_released : maps.released_master[j][c];
+        for (int i = 0; i < maps.count; ++i)
+          actual.segment<6>(1 + 6 * (maps.first + i)) =
+              column == 0 ? maps.master_released[i] : Vector6(maps.master_master[i * maps.count + j].col(c));
+        // Where nothing has travelled, differences of the rows take the curvature's short form: rough to its square.
+        const double tolerance = (from == to ? 1e-6 : 10 * difference_tolerance) * (1 + expected.norm());
+        EXPECT_LE((actual - expected).norm(), tolerance) << incremental << " " << from << " " << to << ": " << column;
+      }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Orders, SlideMapsOfOrder, ::testing::Values(1, 2, 3, 4));
+
+TEST(SlideLine, PieceAt) {
+  RandomSource random(5);
+  const SlideLine line = SlideStep(random, 2, 0).line;
+  EXPECT_EQ(line.length(), 1.5);
+  for (const auto& [x, piece] :
+       {std::pair{-0.1, 0}, {0.0, 0}, {0.39, 0}, {0.4, 1}, {1.0, 1}, {1.1, 2}, {1.5, 2}, {2.0, 2}})
+    EXPECT_EQ(line.piece_at(x), piece) << x;
+}
+
+}  // namespace
+}  // namespace flexarm

@@ -1,0 +1,187 @@
+// Sliding on a flexible line: invariants across the borders of elements, closed forms, and the thesis's example 12.2.
+#include <cmath>
+#include <cstdio>
+
+#include "reference/dynamics_joint_chain.h"
+
+namespace flexarm::test {
+namespace {
+
+using scene::JointKind;
+
+scene::JointDescription& add_slide(SceneBuilder& b, const std::string& name, const std::string& parent,
+                                   const std::string& child, double start, JointKind rotation) {
+  scene::JointDescription& joint =
+      b.joint(name, JointKind::Slide, parent, child, Vector3::Zero(), Vector3(1, 2, 2) / 3);
+  joint.axis2 = Vector3(0, 0.6, 0.8);
+  joint.slide = scene::SlideDescription{start, rotation};
+  return joint;
+}
+
+std::string first_coordinate(JointKind rotation) {
+  return rotation == JointKind::Fixed ? "run" : "run/s";
+}
+
+/// A flexible arm with a body at its end slides on a free, curved, spinning beam of eight elements.
+SceneBuilder runner_on_a_free_beam(JointKind rotation) {
+  SceneBuilder b;
+  b.beam("line", {{2, 0, 0}, {4, 0.001, 0}}, soft_section(), 8, 2);
+  b.beam("arm", {{0, 0.8, 0.3}}, soft_section(), 1, 2);
+  b.body("hand", 0.8, {0.2, 0.1, -0.1}, 0.2 * body_inertia());
+  b.joint("free", JointKind::Floating, "world", "line");
+  add_slide(b, "run", "line", "arm", 1.3, rotation);
+  b.joint("wrist", JointKind::Fixed, "arm", "hand", {0, 0.8, 0.3});
+  initial_field(b, "line", {0.1, -0.2, 0.1}, {0.3, 0.5, 1.0});
+  initial_joint(b, first_coordinate(rotation), 1.3, 1.5);
+  return b;
+}
+
+class FreeSlide : public ::testing::TestWithParam<JointKind> {};
+
+// 4 s: the runner passes most of the line and its end's stop throws it back.
+TEST_P(FreeSlide, ConservesEnergyAndMomentaAcrossElements) {
+  for (const char* scheme : {"em", "em_scaled", "std", "beta2_repaired"}) {
+    const bool is_invariant = std::string(scheme) != "std";  // std's own interpolation is not the slide's
+    Simulation simulation(runner_on_a_free_beam(GetParam()).scene, options(scheme, 0.01, 1e-10));
+    InvariantDrift drift(simulation);
+    const std::size_t s = *simulation.find_coordinate(first_coordinate(GetParam()));
+    double least = 4, most = 0;
+    run(simulation, 400, [&] {
+      drift.observe();
+      least = std::min(least, simulation.position(s));
+      most = std::max(most, simulation.position(s));
+    });
+    std::printf("%s: from %.2f to %.2f m, drift of energy %.1e, momentum %.1e, angular momentum %.1e\n", scheme, least,
+                most, drift.energy(), drift.momentum(), drift.angular_momentum());
+    EXPECT_GT(most - least, 1.0) << "it must pass two elements";
+    if (is_invariant) {
+      EXPECT_LT(drift.energy(), 1e-10) << scheme;
+    }
+    EXPECT_LT(drift.momentum(), 1e-11) << scheme;
+    EXPECT_LT(drift.angular_momentum(), 1e-11) << scheme;
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Rotations, FreeSlide,
+                         ::testing::Values(JointKind::Fixed, JointKind::Revolute, JointKind::Universal,
+                                           JointKind::Spherical));
+
+/// A bead of mass 1 on a clamped, nearly rigid straight beam along `direction`, released at 0.2 m.
+SceneBuilder bead(const Vector3& direction) {
+  SceneBuilder b;
+  b.beam("line", {2 * direction.normalized()}, scene::DirectSection{1e9, 1e9, 1e9, 1e9, 1e9, 1e9, 1, 0.1, 0.1, 0.1}, 6,
+         2);
+  b.body("bead", 1, Vector3::Zero(), 1e-3 * Matrix3::Identity());
+  b.joint("clamp", JointKind::Fixed, "world", "line");
+  add_slide(b, "run", "line", "bead", 0.2, JointKind::Fixed);
+  return b;
+}
+
+TEST(Slide, BeadFallsDownAnInclinedLine) {
+  SceneBuilder b = bead({3, 0, -4});
+  b.scene.gravity = {0, 0, -10};
+  Simulation simulation(b.scene, options("em", 0.005));
+  run(simulation, 100);
+  // The line bends by 1e-8 m; what remains is the step's round-off.
+  EXPECT_NEAR(simulation.position(0), 0.2 + 0.5 * 8 * 0.25, 1e-6);
+  EXPECT_NEAR(simulation.velocity(0), 8 * 0.5, 1e-4);
+}
+
+TEST(Slide, EndsAreStopsWithRestitution) {
+  SceneBuilder b = bead({3, 0, -4});
+  b.scene.gravity = {0, 0, -10};
+  Simulation simulation(b.scene, options("em", 0.002));
+  const double start = simulation.energies().total();
+  double most = 0, rebound = 0;
+  run(simulation, 1000, [&] {
+    most = std::max(most, simulation.position(0));
+    rebound = std::min(rebound, simulation.velocity(0));
+  });
+  EXPECT_LT(most, 2.03);
+  EXPECT_NEAR(rebound, -0.3 * std::sqrt(2 * 8 * 1.8), 0.3);  // coefficient of restitution 0.3
+  const Energies e = simulation.energies();
+  // What Newton leaves, 1e-15 m times EA over an element, does work on 0.01 m in each of 1000 steps.
+  EXPECT_NEAR(e.total() + e.dissipated, start, 1000 * 1e-15 * 3e9 * 0.01);
+}
+
+TEST(Slide, AnErrorEndFailsAndKeepsTheState) {
+  SceneBuilder b = bead({3, 0, -4});
+  b.scene.joints.back().slide->on_end = scene::SlideDescription::End::Error;
+  b.scene.gravity = {0, 0, -10};
+  Simulation simulation(b.scene, options("em", 0.01));
+  StepResult result;
+  do result = simulation.step();
+  while (result.converged && simulation.time() < 2);
+  EXPECT_FALSE(result.converged);
+  EXPECT_STREQ(to_string(result.reason), "a slider leaves its line, or passes too many elements in one step");
+  EXPECT_NEAR(simulation.time(), std::sqrt(2 * 1.8 / 8), 0.05);
+  EXPECT_TRUE(std::isfinite(simulation.position(0)));
+}
+
+// Back and forth over fifty borders and more, driven; the drive's work is what the energy changes by.
+TEST(Slide, BackAndForthOverManyElements) {
+  SceneBuilder b;
+  b.beam("line", {{3, 0, 0}}, soft_section(), 12, 2);
+  b.beam("arm", {{0, 0.5, 0.2}}, soft_section(), 1, 2);
+  b.joint("clamp", JointKind::Fixed, "world", "line");
+  add_slide(b, "run", "line", "arm", 1.5, JointKind::Fixed);
+  b.scene.gravity = {0, 0, -2};
+  b.scene.motions.push_back({"run", TimeFunction::parse("1.5+1.3*sin(2*t)"), {}});
+  Simulation simulation(b.scene, options("em", 0.01, 1e-10));
+  InvariantDrift drift(simulation);
+  int crossings = 0;
+  double last = 1.5;
+  run(simulation, 1000, [&] {
+    drift.observe();
+    const double now = simulation.position(0);
+    crossings += std::abs(static_cast<int>(now / 0.25) - static_cast<int>(last / 0.25));
+    last = now;
+  });
+  EXPECT_GE(crossings, 50);
+  EXPECT_LT(drift.energy(), 1e-10);
+  std::printf("%d borders, defect of the energy balance %.1e\n", crossings, drift.energy());
+}
+
+// Thesis 12.2 in the reading of thesis_examples.md, whose figures come from a program of its own.
+TEST(Slide, ThesisFreeSlidingMass) {
+  SceneBuilder b;
+  const scene::DirectSection section{100, 100 / 2.6, 100 / 2.6, 20 / 1.3, 20, 20, 0.08, 0.032, 0.016, 0.016};
+  b.beam("AB", {{0, 3, 1}}, section, 4, 2);
+  b.beam("BM", {{1, 0, 0}}, section, 1, 2);
+  b.body("M", 1, Vector3::Zero(), Matrix3::Zero());
+  b.joint("free", JointKind::Floating, "world", "AB");
+  const double length = std::sqrt(10.0);
+  add_slide(b, "run", "AB", "BM", length, JointKind::Spherical).slide->on_end = scene::SlideDescription::End::Error;
+  b.joint("tip", JointKind::Fixed, "BM", "M", {1, 0, 0});
+  b.scene.joints[1].origin.orientation = Quaternion::Identity();
+  initial_field(b, "BM", {0, -10, -10}, Vector3::Zero());
+  Simulation simulation(b.scene, options("em", 0.002, 1e-10));
+  // All of BM but its sliding end has the velocity.
+  State state = simulation.state();
+  const int end = simulation.model().joints[2].slave;
+  for (std::size_t j = 0; j < simulation.model().joints.size(); ++j)
+    if (simulation.model().joints[j].kind == JointMapKind::Slide || simulation.model().joints[j].slave == end)
+      state.nodes[simulation.model().joints[j].slave].velocity.setZero();
+  simulation.restore(state);
+  InvariantDrift drift(simulation);
+  EXPECT_NEAR(simulation.energies().total(), 106.4, 0.05);
+  const std::size_t s = *simulation.find_coordinate("run/s");
+  const std::pair<double, double> expected[] = {{0.022, -0.148}, {0.042, -0.389}, {0.062, -0.511}, {0.082, -0.715},
+                                                {0.102, -0.948}, {0.122, -1.122}, {0.142, -1.321}, {0.162, -1.634}};
+  std::size_t next = 0;
+  run(simulation, 85, [&] {
+    drift.observe();
+    if (next < std::size(expected) && std::abs(simulation.time() - expected[next].first) < 1e-6) {
+      EXPECT_NEAR(simulation.position(s) - length, expected[next].second, 6e-4) << simulation.time();
+      ++next;
+    }
+  });
+  EXPECT_EQ(next, std::size(expected));
+  const Vector3 mass = simulation.link_pose(3).position;
+  EXPECT_LT((mass - Vector3(0.9395, 1.3106, -0.6671)).norm(), 5e-4);
+  EXPECT_LT(drift.energy(), 1e-11);
+  EXPECT_LT(drift.angular_momentum(), 1e-11);
+  std::printf("energy %.1e, angular momentum %.1e\n", drift.energy(), drift.angular_momentum());
+}
+
+}  // namespace
+}  // namespace flexarm::test
