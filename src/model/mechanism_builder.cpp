@@ -209,23 +209,26 @@ Attachment MechanismBuilder::attachment(const std::string& link, const Vector3& 
   return {meshes[index]->first_node + node, meshes[index]->mesh.nodes[node].pose.inverse()};
 }
 
-int MechanismBuilder::slide_line(int link) {
-  const auto [entry, is_new] = slide_lines_.emplace(link, static_cast<int>(model.slide_lines.size()));
-  if (!is_new) return entry->second;
+int MechanismBuilder::slide_line(int link, double start) {
   const LinkMesh& mesh = *meshes[link];
   SlideLine line;
   double begin = 0;
   for (const MeshElement& element : mesh.mesh.elements) {
-    // At a kink the next element begins with a node of its own, welded to this one's last.
     const int front = mesh.first_node + element.nodes.front();
-    if (line.nodes.empty() || line.nodes.back() != front) line.nodes.push_back(front);
+    if (!line.nodes.empty() && line.nodes.back() != front) {  // a kink: the next element begins with its own node
+      if (start <= begin) break;
+      line = SlideLine();
+    }
+    if (line.nodes.empty()) line.nodes.push_back(front);
     const int first = static_cast<int>(line.nodes.size()) - 1, count = static_cast<int>(element.nodes.size());
     for (int i = 1; i < count; ++i) line.nodes.push_back(mesh.first_node + element.nodes[i]);
     line.pieces.push_back({first, count, begin, element.end});
     begin = element.end;
   }
+  for (std::size_t i = 0; i < model.slide_lines.size(); ++i)
+    if (model.slide_lines[i].nodes == line.nodes) return static_cast<int>(i);
   model.slide_lines.push_back(line);
-  return entry->second;
+  return static_cast<int>(model.slide_lines.size()) - 1;
 }
 
 Attachment MechanismBuilder::add_slide(const scene::JointDescription& joint) {
@@ -238,20 +241,20 @@ Attachment MechanismBuilder::add_slide(const scene::JointDescription& joint) {
   const LinkMesh& mesh = *meshes[parent];
   JointMap map;
   map.kind = JointMapKind::Slide;
-  map.line = slide_line(parent);
+  map.line = slide_line(parent, slide.start);
   const SlideLine& line = model.slide_lines[map.line];
   map.master = line.nodes.front();
   const std::string name = joint.name + scene::coordinate_suffixes(joint).front();
   Released released;
   released.displacement[0] = initial_position(name, slide.start);
   for (const double x : {slide.start, released.displacement[0]})
-    if (x > line.length() || x < 0)
-      throw ModelError(where + "the arc length must be from 0 to " + std::to_string(line.length()) + ", got " +
-                       std::to_string(x));
+    if (!(x >= line.begin() && x <= line.end()))
+      throw ModelError(where + "the arc length must be from " + std::to_string(line.begin()) + " to " +
+                       std::to_string(line.end()) + " (the ends of the line or kinks), got " + std::to_string(x));
   const int node = add_map(map, released);
   scene::JointDescription travel = joint;
   travel.limits.reset();
-  if (slide.on_end == scene::SlideDescription::End::Stop) travel.limits = scene::JointLimits{0, line.length()};
+  if (slide.on_end == scene::SlideDescription::End::Stop) travel.limits = scene::JointLimits{line.begin(), line.end()};
   add_coordinates(travel, {name});
   // The joint's frame is fixed to the section: its orientation in the link where the undeformed line starts.
   const Pose section = mesh.centreline.at(slide.start);

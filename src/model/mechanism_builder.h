@@ -68,8 +68,8 @@ class MechanismBuilder {
   int add_rigid(int master, const Pose& offset);
   /// Adds the section that slides along the parent's line; what the joint moves hangs on it.
   Attachment add_slide(const scene::JointDescription& joint);
-  /// The line of a flexible link; made once.
-  int slide_line(int link);
+  /// The smooth stretch of a flexible link's line that contains the arc length `start`; made once.
+  int slide_line(int link, double start);
 
   void add_coordinates(const scene::JointDescription& joint, const std::vector<std::string>& names);
   Released initial_released(const JointMap& map, const std::vector<std::string>& names) const;
@@ -82,7 +82,6 @@ class MechanismBuilder {
   const scene::SceneDescription& scene_;
   std::map<std::string, int> link_indices_;
   std::vector<const scene::JointDescription*> ordered_joints_;  // root to leaf
-  std::map<int, int> slide_lines_;                              // by link: index into Model::slide_lines
   std::vector<std::vector<double>> attachments_;                // per link: arc lengths of element borders
   std::vector<JointRecord> records_;                            // root to leaf
   std::map<int, Body> bodies_;                                  // by node

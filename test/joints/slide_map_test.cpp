@@ -189,7 +189,10 @@ INSTANTIATE_TEST_SUITE_P(Orders, SlideMapsOfOrder, ::testing::Values(1, 2, 3, 4)
 TEST(SlideLine, PieceAt) {
   RandomSource random(5);
   const SlideLine line = SlideStep(random, 2, 0).line;
-  EXPECT_EQ(line.length(), 1.5);
+  EXPECT_EQ(line.end(), 1.5);
+  EXPECT_EQ(line.overshoot(0.7), 0);
+  EXPECT_NEAR(line.overshoot(1.54), 0.1, 1e-14);
+  EXPECT_NEAR(line.overshoot(-0.1), 0.25, 1e-14);
   for (const auto& [x, piece] :
        {std::pair{-0.1, 0}, {0.0, 0}, {0.39, 0}, {0.4, 1}, {1.0, 1}, {1.1, 2}, {1.5, 2}, {2.0, 2}})
     EXPECT_EQ(line.piece_at(x), piece) << x;

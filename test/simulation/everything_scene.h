@@ -40,6 +40,19 @@ inline SceneBuilder everything_scene() {
     joint.friction = 0.05;
   }
   b.scene.joints.back().mimic = scene::Mimic{"elbow", 0.5, 0.1};
+  const std::pair<std::string, JointKind> riders[] = {{"rider", JointKind::Spherical}, {"walker", JointKind::Revolute}};
+  for (const auto& [name, rotation] : riders) {
+    b.body(name + "_body", 0.2, {0.05, 0.02, 0.01}, 0.1 * inertia);
+    scene::JointDescription& joint =
+        b.joint(name, JointKind::Slide, name == "rider" ? "beam2" : "beam3", name + "_body", {0, 0, 0}, {0, 0.6, 0.8});
+    joint.slide = scene::SlideDescription{0.4, rotation};
+    joint.damping = 0.5;
+    joint.friction = 0.05;
+  }
+  b.body("valve", 0.2, {0.05, 0.02, 0.01}, 0.1 * inertia);
+  scene::JointDescription& cam = b.joint("cam", JointKind::Cam, "beam2", "valve", {0.5, 0, 0}, {0, 1, 0});
+  cam.profile = std::make_shared<CamProfile>(CamProfile::eccentric(0.05, 0.01));
+  cam.damping = 0.1;
   b.scene.motions.push_back({"driven", TimeFunction::parse("0.05*sin(5*t)"), {}});
   b.scene.efforts.push_back({"elbow", TimeFunction::parse("t < 1 ? sin(10*t) : 0.5"), {}});
   b.scene.efforts.push_back({"continuous", TimeFunction::parse("0:0 1:0.2 2:0"), {}});

@@ -13,7 +13,7 @@ struct SlidePiece {
   double begin = 0, end = 0;
 };
 
-/// Nodes follow each other along the line; neighbouring elements share one.
+/// A smooth stretch of it: a kink ends the line. Nodes follow each other; neighbouring elements share one.
 struct SlideLine {
   /// Elements that a step may touch; a longer way is taken in shorter steps.
   static constexpr int kMostPieces = 3;
@@ -21,7 +21,8 @@ struct SlideLine {
   std::vector<int> nodes;  ///< of the model
   std::vector<SlidePiece> pieces;
 
-  double length() const { return pieces.back().end; }
+  double begin() const { return pieces.front().begin; }
+  double end() const { return pieces.back().end; }
   /// Index of the piece that contains the arc length; the end pieces beyond the ends.
   int piece_at(double arc_length) const {
     const auto after = std::upper_bound(pieces.begin() + 1, pieces.end(), arc_length,
@@ -30,8 +31,8 @@ struct SlideLine {
   }
   /// How far it lies beyond the ends, relative to the length of the element there; 0 on the line.
   double overshoot(double arc_length) const {
-    const SlidePiece& piece = arc_length < 0 ? pieces.front() : pieces.back();
-    return std::max({0.0, -arc_length, arc_length - length()}) / (piece.end - piece.begin);
+    const SlidePiece& piece = arc_length < begin() ? pieces.front() : pieces.back();
+    return std::max({0.0, begin() - arc_length, arc_length - end()}) / (piece.end - piece.begin);
   }
 };
 
