@@ -1,30 +1,17 @@
 #include "flexarm/integrators/balance.h"
 
-#include "flexarm/elements/beam_point.h"
+#include "flexarm/elements/element_configuration.h"
 #include "flexarm/joints/joint_forces.h"
 
 namespace flexarm {
 namespace {
 
-template <int Nodes>
-struct ElementConfiguration {
-  std::array<Vector3, Nodes> position, velocity;
-  std::array<Quaternion, Nodes> orientation;
-
-  ElementConfiguration(const BeamElement<Nodes>& element, const State& state) {
-    for (int i = 0; i < Nodes; ++i) {
-      const NodeState& node = state.nodes[element.nodes[i]];
-      position[i] = node.position;
-      velocity[i] = node.velocity;
-      orientation[i] = node.orientation;
-    }
-  }
-  /// From what the state keeps, or by the local interpolation.
-  template <class Point>
-  PointRotation point_rotation(const Point& point, const std::vector<PointRotation>& kept, int index) const {
-    return kept.empty() ? LocalRotations<Nodes>(orientation).evaluate(point.shape, point.derivative) : kept[index];
-  }
-};
+/// Rotation of a point from what the state keeps, or by the local interpolation.
+template <int Nodes, class Point>
+PointRotation point_rotation(const ElementConfiguration<Nodes>& nodes, const Point& point,
+                             const std::vector<PointRotation>& kept, int index) {
+  return kept.empty() ? LocalRotations<Nodes>(nodes.orientation).evaluate(point.shape, point.derivative) : kept[index];
+}
 
 Matrix3 lumped_rotary(const NodalInertia& inertia, const Scheme& scheme) {
   return scheme.nodal_rotary_inertia ? Matrix3(inertia.rotary + inertia.beam_rotary) : inertia.rotary;
@@ -49,7 +36,7 @@ Energies energies(const Model& model, const Scheme& scheme, const State& state) 
     for (int k = 0; k < N - 1; ++k) {
       const auto& point = element.stiffness_points[k];
       const int index = element.first_stiffness_point + k;
-      const Vector6 strain = point_kinematics(nodes.point_rotation(point, state.stiffness_rotations, index),
+      const Vector6 strain = point_kinematics(point_rotation<N>(nodes, point, state.stiffness_rotations, index),
                                               interpolate<N>(point.derivative, nodes.position), point.reference_strain)
                                  .strain;
       out.strain += 0.5 * point.weight * strain.dot(element.stiffness * strain);
@@ -90,8 +77,8 @@ Momenta momenta(const Model& model, const Scheme& scheme, const State& state) {
       const auto& point = element.mass_points[k];
       const int index = element.first_mass_point + k;
       const Vector3& W = state.mass_points[index].angular_velocity;
-      out.angular +=
-          point.weight * (nodes.point_rotation(point, state.mass_rotations, index).rotation * (element.inertia * W));
+      out.angular += point.weight *
+                     (point_rotation<N>(nodes, point, state.mass_rotations, index).rotation * (element.inertia * W));
     }
   });
   for (std::size_t i = 0; i < model.nodes.size(); ++i) {

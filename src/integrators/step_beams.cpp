@@ -1,5 +1,6 @@
 // What beams contribute to residual and tangent of a step.
 #include "flexarm/elements/additive_beam.h"
+#include "flexarm/elements/element_configuration.h"
 #include "flexarm/integrators/step_system.h"
 #include "flexarm/math/so3.h"
 
@@ -149,27 +150,19 @@ void StepSystem::initialise_strain_memory(State& state) {
   state.strain_memory.assign(model_.stiffness_point_count, StrainMemory());
   for_each_element(model_.beams, [&](const auto& element) {
     constexpr int N = std::decay_t<decltype(element)>::kNodes;
-    std::array<Quaternion, N> orientation;
-    std::array<Vector3, N> position, velocity, spin;
-    for (int i = 0; i < N; ++i) {
-      const NodeState& node = state.nodes[element.nodes[i]];
-      orientation[i] = node.orientation;
-      position[i] = node.position;
-      velocity[i] = node.velocity;
-      spin[i] = node.orientation * node.angular_velocity;
-    }
-    const LocalRotationVariation<N> local{LocalRotations<N>(orientation)};
+    const ElementConfiguration<N> nodes(element, state);
+    const LocalRotationVariation<N> local{LocalRotations<N>(nodes.orientation)};
     for (int k = 0; k < N - 1; ++k) {
       const auto& constants = element.stiffness_points[k];
       GeneralisedShapeFunctions<N> functions;
       const PointKinematics point =
           point_kinematics(local.evaluate(constants.shape, constants.derivative, functions),
-                           interpolate<N>(constants.derivative, position), constants.reference_strain);
+                           interpolate<N>(constants.derivative, nodes.position), constants.reference_strain);
       Eigen::Matrix<double, 9, 1> rate = Eigen::Matrix<double, 9, 1>::Zero();  // of {r', spin, spin'}
-      rate.head<3>() = interpolate<N>(constants.derivative, velocity);
+      rate.head<3>() = interpolate<N>(constants.derivative, nodes.velocity);
       for (int i = 0; i < N; ++i) {
-        rate.segment<3>(3) += functions.values[i] * spin[i];
-        rate.tail<3>() += functions.derivatives[i] * spin[i];
+        rate.segment<3>(3) += functions.values[i] * nodes.spin[i];
+        rate.tail<3>() += functions.derivatives[i] * nodes.spin[i];
       }
       state.strain_memory[element.first_stiffness_point + k].rate = strain_derivative(point) * rate;
     }

@@ -209,58 +209,6 @@ Attachment MechanismBuilder::attachment(const std::string& link, const Vector3& 
   return {meshes[index]->first_node + node, meshes[index]->mesh.nodes[node].pose.inverse()};
 }
 
-int MechanismBuilder::slide_line(int link, double start) {
-  const LinkMesh& mesh = *meshes[link];
-  SlideLine line;
-  double begin = 0;
-  for (const MeshElement& element : mesh.mesh.elements) {
-    const int front = mesh.first_node + element.nodes.front();
-    if (!line.nodes.empty() && line.nodes.back() != front) {  // a kink: the next element begins with its own node
-      if (start <= begin) break;
-      line = SlideLine();
-    }
-    if (line.nodes.empty()) line.nodes.push_back(front);
-    const int first = static_cast<int>(line.nodes.size()) - 1, count = static_cast<int>(element.nodes.size());
-    for (int i = 1; i < count; ++i) line.nodes.push_back(mesh.first_node + element.nodes[i]);
-    line.pieces.push_back({first, count, begin, element.end});
-    begin = element.end;
-  }
-  for (std::size_t i = 0; i < model.slide_lines.size(); ++i)
-    if (model.slide_lines[i].nodes == line.nodes) return static_cast<int>(i);
-  model.slide_lines.push_back(line);
-  return static_cast<int>(model.slide_lines.size()) - 1;
-}
-
-Attachment MechanismBuilder::add_slide(const scene::JointDescription& joint) {
-  const scene::SlideDescription& slide = *joint.slide;
-  const std::string where = at(slide.location, "<slide> of joint '" + joint.name + "'");
-  const int parent = link_index(joint.parent);
-  if (!meshes[parent]) throw ModelError(where + "link '" + joint.parent + "' has no <beam> to slide on");
-  if (!joint.origin.position.isZero(0))
-    throw ModelError(where + "the place on the line is 'start'; xyz of the joint's <origin> must be 0 0 0");
-  const LinkMesh& mesh = *meshes[parent];
-  JointMap map;
-  map.kind = JointMapKind::Slide;
-  map.line = slide_line(parent, slide.start);
-  const SlideLine& line = model.slide_lines[map.line];
-  map.master = line.nodes.front();
-  const std::string name = joint.name + scene::coordinate_suffixes(joint).front();
-  Released released;
-  released.displacement[0] = initial_position(name, slide.start);
-  for (const double x : {slide.start, released.displacement[0]})
-    if (!(x >= line.begin() && x <= line.end()))
-      throw ModelError(where + "the arc length must be from " + std::to_string(line.begin()) + " to " +
-                       std::to_string(line.end()) + " (the ends of the line or kinks), got " + std::to_string(x));
-  const int node = add_map(map, released);
-  scene::JointDescription travel = joint;
-  travel.limits.reset();
-  if (slide.on_end == scene::SlideDescription::End::Stop) travel.limits = scene::JointLimits{line.begin(), line.end()};
-  add_coordinates(travel, {name});
-  // The joint's frame is fixed to the section: its orientation in the link where the undeformed line starts.
-  const Pose section = mesh.centreline.at(slide.start);
-  return {node, Pose{-mesh.mesh.centroid, section.orientation.conjugate() * joint.origin.orientation}};
-}
-
 void MechanismBuilder::add_joint(const scene::JointDescription& joint) {
   const int child = link_index(joint.child);
   JointRecord record{&joint, static_cast<int>(model.joints.size()), 0};

@@ -3,27 +3,12 @@
 #include <algorithm>
 #include <limits>
 
-#include "flexarm/elements/beam_point.h"
+#include "flexarm/elements/element_configuration.h"
 #include "flexarm/math/quadrature.h"
 #include "flexarm/math/shape_functions.h"
 
 namespace flexarm {
 namespace {
-
-template <int Nodes>
-struct ElementConfiguration {
-  std::array<Vector3, Nodes> position, velocity;
-  std::array<Quaternion, Nodes> orientation;
-
-  ElementConfiguration(const BeamElement<Nodes>& element, const State& state) {
-    for (int i = 0; i < Nodes; ++i) {
-      const NodeState& node = state.nodes[element.nodes[i]];
-      position[i] = node.position;
-      velocity[i] = node.velocity;
-      orientation[i] = node.orientation;
-    }
-  }
-};
 
 /// Visits an element of a beam by its index in the group of its order.
 template <class Visit>
@@ -110,10 +95,7 @@ ProbeState probe_state(const Model& model, const State& state, const ProbePoint&
     LocalRotationVariation<N>(LocalRotations<N>(nodes.orientation))
         .evaluate(functions.values, functions.derivatives, generalised);
     Vector3 spin = Vector3::Zero();
-    for (int i = 0; i < N; ++i) {
-      const NodeState& node = state.nodes[element.nodes[i]];
-      spin += generalised.values[i] * (node.orientation * node.angular_velocity);
-    }
+    for (int i = 0; i < N; ++i) spin += generalised.values[i] * nodes.spin[i];
     out.velocity = interpolate<N>(functions.values, nodes.velocity) + spin.cross(out.pose.position - section.position);
   });
   return out;
