@@ -215,7 +215,7 @@ bool StepSystem::evaluate(bool with_tangent) {
   dissipated_ = 0;
   if (with_tangent && !static_)
     for (std::size_t i = 0; i < increments_.size(); ++i) inverse_tangents_[i] = cayley::inverse_tangent(increments_[i]);
-  std::fill(end_forces_.begin(), end_forces_.end(), Vector6::Zero());
+  if (scheme_.hht != HhtForm::None) std::fill(end_forces_.begin(), end_forces_.end(), Vector6::Zero());
   if (is_interpolated()) interpolate_configuration();
   reference_.set_trial(is_interpolated() ? interpolated_ : end_);
   if (static_ || scheme_.stress == StressRule::EndPoint)

@@ -28,6 +28,13 @@ VelocityScaling::VelocityScaling(const Model& model, const Scheme& scheme)
       throw ModelError("<integrator>: scheme 'em_scaled' cannot scale the velocity that <motion> of joint '" +
                        coordinate.name + "' prescribes; scheme 'em' closes the energy without scaling");
   for (const NodalInertia& inertia : model.inertias) mass_ += inertia.total_mass;
+  std::vector<std::vector<int>> neighbours(model.nodes.size());  // in elements
+  for_each_element(model.beams, [&](const auto& element) {
+    for (std::size_t i = 1; i < element.nodes.size(); ++i) {
+      neighbours[element.nodes[i - 1]].push_back(element.nodes[i]);
+      neighbours[element.nodes[i]].push_back(element.nodes[i - 1]);
+    }
+  });
   for (std::size_t j = 0; j < model.joints.size(); ++j) {  // root to leaf
     const JointMap& joint = model.joints[j];
     const int tree = joint.master < 0 ? static_cast<int>(trees_.size()) : tree_of_node_[joint.master];
@@ -44,13 +51,17 @@ VelocityScaling::VelocityScaling(const Model& model, const Scheme& scheme)
         whole.coordinates += released_count(joint.kind);
       }
     }
-    // The far end of a beam belongs to the tree of its near end.
-    for_each_element(model.beams, [&](const auto& element) {
-      const auto tree =
-          std::find_if(element.nodes.begin(), element.nodes.end(), [&](int node) { return tree_of_node_[node] >= 0; });
-      if (tree == element.nodes.end()) return;
-      for (int node : element.nodes) tree_of_node_[node] = tree_of_node_[*tree];
-    });
+    // All of a beam belongs to the tree of its near end.
+    std::vector<int> reached = {joint.slave};
+    while (tree >= 0 && !reached.empty()) {
+      const int node = reached.back();
+      reached.pop_back();
+      for (const int other : neighbours[node])
+        if (tree_of_node_[other] < 0) {
+          tree_of_node_[other] = tree;
+          reached.push_back(other);
+        }
+    }
   }
 }
 
