@@ -156,8 +156,7 @@ void StepSystem::set_slaves() {
     if (coordinate.mimicked >= 0) {
       const Coordinate& master = model_.coordinates[coordinate.mimicked];
       released_[coordinate.joint].displacement[coordinate.component] =
-          coordinate.mimic_multiplier * released_[master.joint].displacement[master.component] +
-          coordinate.mimic_offset;
+          coordinate.mimic.value(released_[master.joint].displacement[master.component]);
     }
   is_off_line_ = false;
   for (std::size_t j = 0; j < model_.joints.size(); ++j) {

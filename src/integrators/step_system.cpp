@@ -45,6 +45,7 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme)
       begin_history_values_(model.histories.size()),
       applied_(model.coordinates.size(), 0.0),
       slide_maps_(slide_node_count(model)),
+      mimic_maps_(dof_.mimics.size()),
       begin_velocities_(model.nodes.size()),
       begin_rates_(model.joints.size()),
       residual_(Eigen::VectorXd::Zero(dof_.unknowns)) {
@@ -193,7 +194,18 @@ void StepSystem::fold_joints(bool with_tangent) {
     assembler_.fold(j, maps, with_tangent);
     add_joint_efforts(j, with_tangent);
   }
-  assembler_.fold_mimics(with_tangent);
+  for (std::size_t i = 0; i < mimic_maps_.size(); ++i) mimic_maps_[i] = mimic_map(dof_.mimics[i].coordinate);
+  assembler_.fold_mimics(mimic_maps_, with_tangent);
+}
+
+MimicMap StepSystem::mimic_map(int coordinate) const {
+  const Coordinate& following = model_.coordinates[coordinate];
+  const int joint = model_.coordinates[following.mimicked].joint;
+  const double from = state_->released[joint].displacement[0], to = released_[joint].displacement[0];
+  const MimicLaw& law = following.mimic;
+  const double right = law.derivative(to);
+  if (static_ || !scheme_.is_incremental()) return {right, right, law.second_derivative(to)};
+  return {law.secant(from, to), right, law.secant_derivative(from, to)};
 }
 
 void StepSystem::initialise(State& state) {

@@ -89,14 +89,14 @@ void MechanismBuilder::connect_coordinates() {
     }
     if (coordinate.motion >= 0) throw ModelError(where + "the motion of the joint is prescribed as well");
     coordinate.mimicked = coordinate_index(master, where);
-    coordinate.mimic_multiplier = multiplier;
-    coordinate.mimic_offset = offset;
+    coordinate.mimic.multiplier = multiplier;
+    coordinate.mimic.offset = offset;
     coordinate.limit.reset();
     if (model.joints[model.coordinates[coordinate.mimicked].joint].kind != JointMapKind::Scalar)
       throw ModelError(where + "only a joint with one coordinate can be mimicked");
     const Coordinate& base = model.coordinates[coordinate.mimicked];
     model.initial_released[coordinate.joint].displacement[0] =
-        multiplier * model.initial_released[base.joint].displacement[0] + offset;
+        coordinate.mimic.value(model.initial_released[base.joint].displacement[0]);
   }
   update_initial_poses();
 }
@@ -109,8 +109,6 @@ void MechanismBuilder::update_initial_poses() {
   for (std::size_t j = 0; j < model.joints.size(); ++j) joint_of[model.joints[j].slave] = static_cast<int>(j);
   for (std::size_t i = 0; i < model.nodes.size(); ++i) {
     if (joint_of[i] >= 0) {
-      const JointMap& joint = model.joints[joint_of[i]];
-      const NodePose world;
       model.nodes[i] = slave_pose(model, joint_of[i], model.nodes, model.initial_released[joint_of[i]]);
     } else {
       const int parent = node_parents[i];

@@ -17,12 +17,13 @@ DegreesOfFreedom::DegreesOfFreedom(const Model& model)
   for (int i = 0; i < node_count; ++i)
     if (slave_joint[i] >= 0)
       for (int k = 0; k < 6; ++k) dependent[first[i] + k] = true;
-  for (const Coordinate& coordinate : model.coordinates) {
+  for (std::size_t index = 0; index < model.coordinates.size(); ++index) {
+    const Coordinate& coordinate = model.coordinates[index];
     const int variable = variable_of_joint(coordinate.joint);
     if (coordinate.motion >= 0 || coordinate.mimicked >= 0) dependent[first[variable] + coordinate.component] = true;
     if (coordinate.mimicked >= 0)
       mimics.push_back(
-          {variable, variable_of_joint(model.coordinates[coordinate.mimicked].joint), coordinate.mimic_multiplier});
+          {variable, variable_of_joint(model.coordinates[coordinate.mimicked].joint), static_cast<int>(index)});
   }
 
   equation.assign(scalar_count, -1);

@@ -70,12 +70,12 @@ void InitialVelocity::set_beam(int link) {
 
 double InitialVelocity::given_rate(const Coordinate& coordinate, bool& is_given) const {
   if (coordinate.mimicked >= 0) {
+    const Coordinate& master = model_.coordinates[coordinate.mimicked];
     const auto from_field = field_rates_.find(coordinate.mimicked);
     bool ignored = false;
     is_given = true;
-    return coordinate.mimic_multiplier * (from_field != field_rates_.end()
-                                              ? from_field->second
-                                              : given_rate(model_.coordinates[coordinate.mimicked], ignored));
+    return coordinate.mimic.derivative(model_.initial_released[master.joint].displacement[0]) *
+           (from_field != field_rates_.end() ? from_field->second : given_rate(master, ignored));
   }
   if (coordinate.motion >= 0) {
     is_given = true;

@@ -33,7 +33,26 @@ JointMap map_of_kind(JointMapKind kind) {
   return map;
 }
 
-/// The chain of elementary joints that makes up a joint.
+/// Of a joint whose travel depends on its angle.
+struct DependentTravel {
+  double ratio;  // travel per angle, or per travel of the profile
+  Vector3 direction, offset;
+};
+DependentTravel dependent_travel(const scene::JointDescription& joint) {
+  const Vector3 axis = joint.axis.normalized();
+  switch (joint.kind) {
+    case scene::JointKind::RackAndPinion:  // the pinion's centre lies off the pitch line
+      return {joint.ratio, joint.direction, joint.ratio * joint.direction.cross(axis)};
+    case scene::JointKind::Worm:
+      return {joint.ratio, joint.direction, joint.offset * joint.direction.cross(axis)};
+    case scene::JointKind::Cam:
+      return {1, joint.direction, Vector3::Zero()};
+    default:
+      return {joint.ratio, axis, Vector3::Zero()};
+  }
+}
+
+/// The chain of elementary joints that makes up a joint; without the travel of one that is coupled to a slide.
 std::vector<JointMap> elementary_joints(const scene::JointDescription& joint) {
   using scene::JointKind;
   const Vector3 zero = Vector3::Zero(), a = joint.axis.normalized(), a2 = joint.axis2.normalized();
@@ -54,14 +73,13 @@ std::vector<JointMap> elementary_joints(const scene::JointDescription& joint) {
     case JointKind::Cylindrical:
       return {scalar_map(a, zero), scalar_map(zero, a)};
     case JointKind::Screw:
-      return {scalar_map(joint.ratio * a, a)};
-    case JointKind::RackAndPinion:  // the pinion's centre lies off the pitch line
-      return {scalar_map(joint.ratio * joint.direction, a, joint.ratio * joint.direction.cross(a))};
+    case JointKind::RackAndPinion:
     case JointKind::Worm:
-      return {scalar_map(joint.ratio * joint.direction, a, joint.offset * joint.direction.cross(a))};
     case JointKind::Cam: {
-      JointMap map = scalar_map(joint.direction, a);
+      const DependentTravel travel = dependent_travel(joint);
+      JointMap map = scalar_map(travel.ratio * travel.direction, a, travel.offset);
       map.profile = joint.profile;
+      if (joint.slide) map.translation.setZero();  // the slide makes it
       return {map};
     }
     case JointKind::Spherical:
@@ -224,7 +242,10 @@ void MechanismBuilder::add_joint(const scene::JointDescription& joint) {
     const bool direct = meshes[child] && meshes[child]->mesh.centroid.isZero(0);
     scene::JointDescription released = joint;
     released.kind = rotation;
-    if (slides) released.limits.reset();
+    if (slides) {
+      released.limits.reset();
+      released.direction = joint.origin.orientation.conjugate() * Vector3::UnitX();  // of the line
+    }
     std::vector<JointMap> maps = elementary_joints(released);
     int node = parent.node;
     const std::vector<std::string>& suffixes = scene::coordinate_suffixes(joint);
@@ -239,6 +260,7 @@ void MechanismBuilder::add_joint(const scene::JointDescription& joint) {
       node = add_map(map, initial_released(map, names));
       add_coordinates(released, names);
     }
+    if (slides && scene::has_dependent_travel(rotation)) couple_slide(released);
     record.map_count = static_cast<int>(maps.size()) + (slides ? 1 : 0);
     if (direct)
       place_beam(child, node);

@@ -68,6 +68,8 @@ class MechanismBuilder {
   int add_rigid(int master, const Pose& offset);
   /// Adds the section that slides along the parent's line; what the joint moves hangs on it.
   Attachment add_slide(const scene::JointDescription& joint);
+  /// Lets the arc length of the slide made last follow the angle of its joint, both added last.
+  void couple_slide(const scene::JointDescription& joint);
   /// The smooth stretch of a flexible link's line that contains the arc length `start`; made once.
   int slide_line(int link, double start);
 

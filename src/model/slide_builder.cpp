@@ -31,7 +31,9 @@ Attachment MechanismBuilder::add_slide(const scene::JointDescription& joint) {
   const int parent = link_index(joint.parent);
   if (!meshes[parent]) throw ModelError(where + "link '" + joint.parent + "' has no <beam> to slide on");
   if (!joint.origin.position.isZero(0))
-    throw ModelError(where + "the place on the line is 'start'; xyz of the joint's <origin> must be 0 0 0");
+    throw ModelError(where +
+                     "the place on the line is 'start', beside it is 'offset'; xyz of the joint's <origin> must "
+                     "be 0 0 0");
   const LinkMesh& mesh = *meshes[parent];
   JointMap map;
   map.kind = JointMapKind::Slide;
@@ -52,7 +54,17 @@ Attachment MechanismBuilder::add_slide(const scene::JointDescription& joint) {
   add_coordinates(travel, {name});
   // The joint's frame is fixed to the section: its orientation in the link where the undeformed line starts.
   const Pose section = mesh.centreline.at(slide.start);
-  return {node, Pose{-mesh.mesh.centroid, section.orientation.conjugate() * joint.origin.orientation}};
+  const Pose frame{-mesh.mesh.centroid, section.orientation.conjugate() * joint.origin.orientation};
+  return {node, frame * Pose{slide.offset, Quaternion::Identity()}};
+}
+
+void MechanismBuilder::couple_slide(const scene::JointDescription& joint) {
+  const int angle = static_cast<int>(model.coordinates.size()) - 1;
+  Coordinate& travel = model.coordinates[angle - 1];
+  travel.mimicked = angle;
+  travel.mimic = {joint.kind == scene::JointKind::Cam ? 1.0 : joint.ratio, joint.slide->start, joint.profile};
+  model.initial_released[travel.joint].displacement[0] =
+      travel.mimic.value(model.initial_released[model.coordinates[angle].joint].displacement[0]);
 }
 
 }  // namespace flexarm

@@ -7,10 +7,12 @@
 namespace flexarm::scene {
 namespace {
 
-constexpr NumberRange kNotZero{"different from 0", [](double x) { return x != 0; }};
-
-/// A travel of a rack or cam has no part along the axis, about which the joint turns.
+/// A travel of a rack or cam has no part along the axis, about which the joint turns. On a slide it is along the line.
 void read_normal_direction(const XmlElement& couple, JointDescription& description) {
+  if (description.slide) {
+    if (couple.has("direction")) couple.attribute_error("direction", "on a slide the travel is along the line");
+    return;
+  }
   const std::optional<Vector3> direction = couple.direction("direction");
   if (!direction) return;
   description.direction = *direction;
@@ -56,6 +58,7 @@ void read_worm(const XmlElement& joint, const XmlElement& couple, JointDescripti
   description.kind = JointKind::Worm;
   description.ratio = couple.number("ratio", kNotZero).value_or(0);
   description.offset = couple.number("offset", kAnyNumber, 0);
+  if (description.slide) return;
   const std::optional<XmlElement> axis2 = joint.child("axis2");
   if (!axis2) {
     joint.error("a worm needs the direction of its travel, <axis2 xyz=\"...\"/>");

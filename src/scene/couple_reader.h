@@ -5,7 +5,7 @@
 
 namespace flexarm::scene {
 
-/// Kind and data of the joint; its axis must have been read. Findings are recorded.
+/// Kind and data of the joint; its axis, and that it is a slide, must have been read. Findings are recorded.
 void read_couple(const XmlElement& joint, const XmlElement& couple, JointDescription& description);
 
 }  // namespace flexarm::scene

@@ -8,8 +8,8 @@ const std::vector<std::string>& slide_suffixes(JointKind rotation) {
   static const std::vector<std::string> fixed = {""}, revolute = {"/s", "/1"}, universal = {"/s", "/1", "/2"},
                                         spherical = {"/s", "/rx", "/ry", "/rz"};
   if (rotation == JointKind::Fixed) return fixed;
-  if (rotation == JointKind::Revolute) return revolute;
-  return rotation == JointKind::Universal ? universal : spherical;
+  if (rotation == JointKind::Universal) return universal;
+  return rotation == JointKind::Spherical ? spherical : revolute;
 }
 
 }  // namespace

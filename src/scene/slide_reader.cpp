@@ -1,40 +1,51 @@
 #include "scene/slide_reader.h"
 
-#include <algorithm>
+#include "scene/choice.h"
+#include "scene/couple_reader.h"
 
 namespace flexarm::scene {
+namespace {
 
-void read_slide(const XmlElement& slide, JointDescription& description) {
-  slide.expect_only({"start", "rotation", "on_end", "scheme"});
+constexpr Choice<JointKind> kRotations[] = {{"spherical", JointKind::Spherical},
+                                            {"fixed", JointKind::Fixed},
+                                            {"revolute", JointKind::Revolute},
+                                            {"universal", JointKind::Universal},
+                                            {"screw", JointKind::Screw}};
+constexpr Choice<SlideDescription::End> kEnds[] = {{"stop", SlideDescription::End::Stop},
+                                                   {"error", SlideDescription::End::Error},
+                                                   {"free", SlideDescription::End::Free}};
+constexpr Choice<bool> kLines[] = {{"elements", false}, {"smooth", true}};
+constexpr Choice<const char*> kSchemes[] = {{"sm_em", "sm_em"}, {"alg1", "alg1"}, {"alg2", "alg2"},
+                                            {"alg3", "alg3"},   {"alg4", "alg4"}, {"sme", "sme"}};
+
+/// What turns on the section: one of the rotations, or a joint whose travel is that along the line.
+JointKind read_rotation(const XmlElement& joint, const XmlElement& slide, JointDescription& description) {
+  const JointKind rotation = read_choice(slide, "rotation", kRotations, JointKind::Spherical);
+  if (const std::optional<XmlElement> couple = slide.child("couple")) {
+    if (slide.has("rotation")) slide.attribute_error("rotation", "<couple> says how it turns; leave this out");
+    read_couple(joint, *couple, description);
+    return description.kind;
+  }
+  if (rotation == JointKind::Screw)
+    description.ratio = slide.number("pitch", kNotZero).value_or(0);
+  else if (slide.has("pitch"))
+    slide.attribute_error("pitch", "only rotation=\"screw\" has a pitch; leave this out");
+  return rotation;
+}
+
+}  // namespace
+
+void read_slide(const XmlElement& joint, const XmlElement& slide, JointDescription& description) {
+  slide.expect_only({"start", "rotation", "pitch", "on_end", "scheme", "line", "offset"}, {"couple"});
   SlideDescription out;
   out.location = slide.location();
   out.start = slide.number("start", kNonNegative).value_or(0);
-  const std::string rotation = slide.has("rotation") ? slide.text("rotation").value_or("") : "spherical";
-  if (rotation == "fixed")
-    out.rotation = JointKind::Fixed;
-  else if (rotation == "revolute")
-    out.rotation = JointKind::Revolute;
-  else if (rotation == "universal")
-    out.rotation = JointKind::Universal;
-  else if (rotation == "screw")
-    slide.attribute_error("rotation", "a screw on a slide is not yet supported in this version");
-  else if (rotation != "spherical")
-    slide.attribute_error("rotation", "rotation must be one of spherical, fixed, revolute, universal");
-  const std::string on_end = slide.has("on_end") ? slide.text("on_end").value_or("") : "stop";
-  if (on_end == "error")
-    out.on_end = SlideDescription::End::Error;
-  else if (on_end == "free")
-    slide.attribute_error("on_end", "leaving the line is not yet supported in this version; 'stop' and 'error' are");
-  else if (on_end != "stop")
-    slide.attribute_error("on_end", "on_end must be 'stop' or 'error'");
-  if (slide.has("scheme")) {
-    const std::string scheme = slide.text("scheme").value_or("");
-    constexpr const char* kPlanned[] = {"alg1", "alg2", "alg3", "alg4", "sme"};
-    if (std::find(std::begin(kPlanned), std::end(kPlanned), scheme) != std::end(kPlanned))
-      slide.attribute_error("scheme", "this scheme is not yet supported in this version; 'sm_em' is");
-    else if (scheme != "sm_em")
-      slide.attribute_error("scheme", "scheme must be 'sm_em'");
-  }
+  description.slide = out;
+  out.rotation = read_rotation(joint, slide, description);
+  out.on_end = read_choice(slide, "on_end", kEnds, out.on_end);
+  out.scheme = read_choice(slide, "scheme", kSchemes, "sm_em");
+  out.smooth = read_choice(slide, "line", kLines, out.smooth);
+  out.offset = slide.vector("offset", out.offset);
   description.kind = JointKind::Slide;
   description.slide = out;
 }

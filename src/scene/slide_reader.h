@@ -5,7 +5,7 @@
 
 namespace flexarm::scene {
 
-/// Kind and data of the joint. Findings are recorded.
-void read_slide(const XmlElement& slide, JointDescription& description);
+/// Kind and data of the joint, all but its axes. Findings are recorded.
+void read_slide(const XmlElement& joint, const XmlElement& slide, JointDescription& description);
 
 }  // namespace flexarm::scene

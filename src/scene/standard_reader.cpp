@@ -1,5 +1,6 @@
 #include "scene/standard_reader.h"
 
+#include "scene/choice.h"
 #include "scene/couple_reader.h"
 #include "scene/slide_reader.h"
 
@@ -107,36 +108,18 @@ std::optional<RigidInertia> read_inertial(const XmlElement& inertial) {
 
 // ---------------------------------------------------------------- joints
 
-/// What urdfdom's and our own types of joint have in common.
-struct Kind {
-  const char* type;
-  JointKind kind;
-};
-constexpr Kind kTypes[] = {{"fixed", JointKind::Fixed},           {"revolute", JointKind::Revolute},
-                           {"continuous", JointKind::Continuous}, {"prismatic", JointKind::Prismatic},
-                           {"planar", JointKind::Planar},         {"floating", JointKind::Floating}};
-constexpr Kind kReleases[] = {{"spherical", JointKind::Spherical},
-                              {"universal", JointKind::Universal},
-                              {"cylindrical", JointKind::Cylindrical},
-                              {"planar", JointKind::Planar},
-                              {"free", JointKind::Floating}};
-
-template <std::size_t Count>
-std::optional<JointKind> read_kind(const XmlElement& element, const char* attribute, const Kind (&kinds)[Count]) {
-  const std::optional<std::string> value = element.text(attribute);
-  if (!value) return std::nullopt;
-  std::string known;
-  for (const Kind& kind : kinds) {
-    if (*value == kind.type) return kind.kind;
-    known += (known.empty() ? "" : ", ") + std::string(kind.type);
-  }
-  element.attribute_error(attribute, std::string(attribute) + " must be one of " + known);
-  return std::nullopt;
-}
+constexpr Choice<JointKind> kTypes[] = {{"fixed", JointKind::Fixed},           {"revolute", JointKind::Revolute},
+                                        {"continuous", JointKind::Continuous}, {"prismatic", JointKind::Prismatic},
+                                        {"planar", JointKind::Planar},         {"floating", JointKind::Floating}};
+constexpr Choice<JointKind> kReleases[] = {{"spherical", JointKind::Spherical},
+                                           {"universal", JointKind::Universal},
+                                           {"cylindrical", JointKind::Cylindrical},
+                                           {"planar", JointKind::Planar},
+                                           {"free", JointKind::Floating}};
 
 /// The kind, after looking at <release>. Those of <couple> and <slide> are read with their data.
 std::optional<JointKind> read_joint_kind(const XmlElement& joint) {
-  const std::optional<JointKind> type = read_kind(joint, "type", kTypes);
+  const std::optional<JointKind> type = read_choice(joint, "type", kTypes);
   std::vector<XmlElement> narrowing;
   for (const char* tag : {"release", "couple", "slide"})
     if (const std::optional<XmlElement> child = joint.child(tag)) narrowing.push_back(*child);
@@ -150,12 +133,7 @@ std::optional<JointKind> read_joint_kind(const XmlElement& joint) {
   if (first.tag() == "couple") return JointKind::Screw;  // until it is read: one with an axis
   if (first.tag() == "slide") return JointKind::Slide;
   first.expect_only({"kind"});
-  return read_kind(first, "kind", kReleases);
-}
-
-bool has_dependent_travel(JointKind kind) {
-  return kind == JointKind::Screw || kind == JointKind::RackAndPinion || kind == JointKind::Worm ||
-         kind == JointKind::Cam;
+  return read_choice(first, "kind", kReleases);
 }
 
 bool uses_axis(JointKind kind) {
@@ -169,8 +147,10 @@ void read_axes(const XmlElement& joint, JointDescription& description) {
   } else if (axis) {
     axis->vector("xyz");  // exporters give fixed joints the axis 0 0 0
   }
-  if (joint.child("couple")) {
-    if (!axis) joint.error("a joint with <couple> needs the axis of its angle, <axis xyz=\"...\"/>");
+  const bool is_coupled_slide = description.slide && has_dependent_travel(description.slide->rotation);
+  if (joint.child("couple") || is_coupled_slide) {
+    if (!axis && !is_coupled_slide)
+      joint.error("a joint with <couple> needs the axis of its angle, <axis xyz=\"...\"/>");
     return;
   }
   const bool is_universal = description.kind == JointKind::Universal ||
@@ -257,7 +237,7 @@ JointDescription read_joint(const XmlElement& unnamed) {
   if (const std::optional<JointKind> kind = read_joint_kind(joint)) {
     description.kind = *kind;
     if (const std::optional<XmlElement> slide = joint.child("slide"); slide && *kind == JointKind::Slide)
-      read_slide(*slide, description);
+      read_slide(joint, *slide, description);
     read_axes(joint, description);
     if (const std::optional<XmlElement> couple = joint.child("couple")) read_couple(joint, *couple, description);
   }

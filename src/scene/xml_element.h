@@ -20,6 +20,7 @@ struct NumberRange {
 };
 constexpr NumberRange kAnyNumber{"a finite number", [](double) { return true; }};
 constexpr NumberRange kPositive{"> 0", [](double x) { return x > 0; }};
+constexpr NumberRange kNotZero{"different from 0", [](double x) { return x != 0; }};
 constexpr NumberRange kNonNegative{">= 0", [](double x) { return x >= 0; }};
 
 /// A view: element and findings must outlive it.

@@ -30,11 +30,12 @@ constexpr double kEnergyRoundOff = 8 * std::numeric_limits<double>::epsilon();
 struct JointMaps {
   std::vector<FoldMaps> folds;    // per joint
   std::vector<SlideMaps> slides;  // per joint; used for those that slide
+  std::vector<MimicMap> mimics;
 };
-JointMaps joint_maps(const Model& model, const State& state) {
+JointMaps joint_maps(const Model& model, const DegreesOfFreedom& dof, const State& state) {
   std::vector<NodePose> nodes;
   for (const NodeState& node : state.nodes) nodes.push_back(node_pose(node));
-  JointMaps maps{std::vector<FoldMaps>(model.joints.size()), std::vector<SlideMaps>(model.joints.size())};
+  JointMaps maps{std::vector<FoldMaps>(model.joints.size()), std::vector<SlideMaps>(model.joints.size()), {}};
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
     const JointMap& joint = model.joints[j];
     if (joint.kind == JointMapKind::Slide)
@@ -43,6 +44,12 @@ JointMaps joint_maps(const Model& model, const State& state) {
     else
       variational_maps(joint, joint.master < 0 ? NodePose() : nodes[joint.master], state.released[j], Vector6::Zero(),
                        maps.folds[j]);
+  }
+  for (const DegreesOfFreedom::Mimic& mimic : dof.mimics) {
+    const Coordinate& following = model.coordinates[mimic.coordinate];
+    const int master = model.coordinates[following.mimicked].joint;
+    const double slope = following.mimic.derivative(state.released[master].displacement[0]);
+    maps.mimics.push_back({slope, slope, 0});
   }
   return maps;
 }
@@ -81,7 +88,7 @@ void assemble_mass(const Model& model, const State& state, const JointMaps& maps
     else
       assembler.fold(j, maps.folds[j], true);
   }
-  assembler.fold_mimics(true);
+  assembler.fold_mimics(maps.mimics, true);
   assembler.gather_tangent();
 }
 
@@ -177,8 +184,9 @@ std::vector<Vector6> expand(const Model& model, const DegreesOfFreedom& dof, con
   std::vector<double> scalars(dof.scalar_count, 0.0);
   for (int s = 0; s < dof.scalar_count; ++s)
     if (dof.equation[s] >= 0) scalars[s] = vector[dof.equation[s]];
-  for (const DegreesOfFreedom::Mimic& mimic : dof.mimics)
-    scalars[dof.first[mimic.slave_variable]] = mimic.factor * scalars[dof.first[mimic.master_variable]];
+  for (std::size_t i = 0; i < dof.mimics.size(); ++i)
+    scalars[dof.first[dof.mimics[i].slave_variable]] =
+        maps.mimics[i].right * scalars[dof.first[dof.mimics[i].master_variable]];
   for (std::size_t i = 0; i < motion.size(); ++i)
     for (int k = 0; k < 6; ++k) motion[i][k] = scalars[dof.first[i] + k];
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
@@ -214,7 +222,7 @@ std::vector<Mode> natural_modes(const Model& model, const State& state, int coun
   system.begin_static(state, 1.0);
   if (!system.evaluate(true)) throw std::runtime_error("the stiffness is not finite");
   const DegreesOfFreedom& dof = system.degrees_of_freedom();
-  const JointMaps maps = joint_maps(model, state);
+  const JointMaps maps = joint_maps(model, dof, state);
   SparseAssembler mass(model, dof);
   assemble_mass(model, state, maps, mass);
 

@@ -116,12 +116,18 @@ class SparseAssembler::PatternBuilder {
 
   void fold_mimic(const DegreesOfFreedom::Mimic& mimic) {
     const int s = mimic.slave_variable, m = mimic.master_variable;
+    MimicFold fold;
+    fold.first_column_fold = static_cast<int>(a_.mimic_additions_.size());
     const std::vector<int> rows = rows_of_[s];
     for (const int i : rows)
-      if (!folded_[i]) a_.mimic_folds_.push_back({block(i, s), block(i, m), a_.dof_.size[i], mimic.factor});
+      if (!folded_[i]) a_.mimic_additions_.push_back({block(i, s), block(i, m), a_.dof_.size[i]});
+    fold.first_row_fold = static_cast<int>(a_.mimic_additions_.size());
     const std::vector<int> columns = columns_of_[s];
     for (const int k : columns)
-      if (!folded_[k] && k != s) a_.mimic_folds_.push_back({block(s, k), block(m, k), a_.dof_.size[k], mimic.factor});
+      if (!folded_[k] && k != s) a_.mimic_additions_.push_back({block(s, k), block(m, k), a_.dof_.size[k]});
+    fold.last_row_fold = static_cast<int>(a_.mimic_additions_.size());
+    fold.master = block(m, m);
+    a_.mimic_folds_.push_back(fold);
     folded_[s] = true;
   }
 
@@ -315,13 +321,23 @@ void SparseAssembler::add_geometric(const Geometric& geometric, const FoldMaps& 
   add(geometric.master_master, maps.master_master);
 }
 
-void SparseAssembler::fold_mimics(bool with_tangent) {
-  for (const DegreesOfFreedom::Mimic& mimic : dof_.mimics)
-    *residual(mimic.master_variable) += mimic.factor * *residual(mimic.slave_variable);
-  if (!with_tangent) return;
-  for (const ScaledAddition& op : mimic_folds_)
-    for (int k = 0; k < op.count; ++k)
-      values_[blocks_[op.target].offset + k] += op.factor * values_[blocks_[op.source].offset + k];
+void SparseAssembler::fold_mimics(const std::vector<MimicMap>& maps, bool with_tangent) {
+  const auto add = [&](int first, int last, double factor) {
+    for (int f = first; f < last; ++f) {
+      const ScaledAddition& op = mimic_additions_[f];
+      for (int k = 0; k < op.count; ++k)
+        values_[blocks_[op.target].offset + k] += factor * values_[blocks_[op.source].offset + k];
+    }
+  };
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    const double row = *residual(dof_.mimics[i].slave_variable);
+    *residual(dof_.mimics[i].master_variable) += maps[i].left * row;
+    if (!with_tangent) continue;
+    const MimicFold& fold = mimic_folds_[i];
+    add(fold.first_column_fold, fold.first_row_fold, maps[i].right);
+    add(fold.first_row_fold, fold.last_row_fold, maps[i].left);
+    values_[blocks_[fold.master].offset] += maps[i].left_derivative * row;
+  }
 }
 
 void SparseAssembler::gather(Eigen::VectorXd& residual) const {

@@ -109,6 +109,7 @@ class StepSystem {
   NewmarkRule newmark() const { return newmark_rule(scheme_, step_); }
   bool is_on_line(const JointMap& joint, int j) const;
   void fold_slide(int joint, bool with_tangent);
+  MimicMap mimic_map(int coordinate) const;
   bool is_interpolated() const { return scheme_.hht != HhtForm::None && !static_; }
   void initialise_strain_memory(State& state);
   void initialise_momentum_rates(State& state);
@@ -153,6 +154,7 @@ class StepSystem {
   std::vector<double> applied_;               // per coordinate: effort in this step
   bool is_off_line_ = false;
   SlideMaps slide_maps_;
+  std::vector<MimicMap> mimic_maps_;
   std::vector<Vector6> begin_velocities_;    // per node, spatial; Newmark family
   std::vector<ReleasedVector> begin_rates_;  // per joint; Newmark family
   bool points_valid_ = false;

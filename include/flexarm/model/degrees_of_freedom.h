@@ -23,10 +23,10 @@ struct DegreesOfFreedom {
   int unknowns = 0;              ///< equations
   std::vector<int> slave_joint;  ///< per node: joint of which it is the slave, or -1
 
-  /// A scalar that follows another one: d(slave) = factor d(master).
+  /// A coordinate that follows another one; both are alone in their variables.
   struct Mimic {
     int slave_variable, master_variable;
-    double factor;
+    int coordinate;  ///< the following one
   };
   std::vector<Mimic> mimics;  ///< an entry's master is never the slave of an earlier entry
 };

@@ -9,6 +9,7 @@
 
 #include "flexarm/math/cam_profile.h"
 #include "flexarm/math/pose.h"
+#include "flexarm/model/slide_line.h"
 
 namespace flexarm {
 
@@ -44,6 +45,7 @@ struct JointMap {
   Pose origin;                                            ///< joint frame in the master node's frame (b, A)
   Quaternion slave_orientation = Quaternion::Identity();  ///< Lambda_0: slave node's frame in the moved joint frame
   int line = -1;                                          ///< Slide: index into Model::slide_lines
+  SlideAlgorithm algorithm;                               ///< Slide
   Vector3 translation = Vector3::Zero();                  ///< Scalar: travel per unit of f(coordinate), joint frame
   std::shared_ptr<const CamProfile> profile;              ///< Scalar: f; null: f(u) = u
   Vector3 rotation = Vector3::Zero();                     ///< Scalar: rotation vector per unit coordinate, joint frame

@@ -1,6 +1,7 @@
 #pragma once
 /// The mechanism as numbers: nodes, elements, joints, loads and their numbering. Immutable after building.
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,6 +37,21 @@ struct LimitStop {
   double lower, upper, stiffness, damping;
 };
 
+/// How a coordinate follows another one u: offset + multiplier f(u).
+struct MimicLaw {
+  double multiplier = 1, offset = 0;
+  std::shared_ptr<const CamProfile> profile;  ///< f; null: f(u) = u
+
+  double value(double u) const { return offset + multiplier * (profile ? profile->value(u) : u); }
+  double derivative(double u) const { return multiplier * (profile ? profile->derivative(u) : 1.0); }
+  double second_derivative(double u) const { return profile ? multiplier * profile->second_derivative(u) : 0.0; }
+  double secant(double from, double to) const { return multiplier * (profile ? profile->secant(from, to) : 1.0); }
+  /// Of the secant, with respect to `to`.
+  double secant_derivative(double from, double to) const {
+    return profile ? multiplier * profile->secant_derivative(from, to) : 0.0;
+  }
+};
+
 /// One released scalar as users see it.
 struct Coordinate {
   std::string name;
@@ -43,12 +59,14 @@ struct Coordinate {
   int component = 0;      ///< row among the joint's released coordinates
   bool is_angle = false;  ///< component of a rotation vector of a Spherical or Free joint
   double damping = 0, friction = 0;
-  double effort_limit = 0;  ///< 0: none
+  bool sticks = false;              ///< set-valued Coulomb law; else smooth
+  double friction_coefficient = 0;  ///< of the joint's normal force, times a radius where the coordinate is an angle
+  double effort_limit = 0;          ///< 0: none
   std::optional<LimitStop> limit;
   int motion = -1;    ///< history index of a prescribed position; -1: free
   int effort = -1;    ///< history index of the scene's effort; -1: none
   int mimicked = -1;  ///< coordinate that this one follows; -1: none
-  double mimic_multiplier = 1, mimic_offset = 0;
+  MimicLaw mimic;
 };
 
 /// A frame fixed to a node.

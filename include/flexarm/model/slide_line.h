@@ -13,6 +13,21 @@ struct SlidePiece {
   double begin = 0, end = 0;
 };
 
+/// How the contact of a slider is carried over a step (Muñoz 2004, Tables 9.3, 9.5; joints.md 4.4, 4.5).
+enum class SlideStep {
+  SmEm,         ///< exact contact, momentum and work, over any border
+  MidContact,   ///< SM1-NTa: contact in the middle of the step, exact momentum and work; within an element
+  EndContact,   ///< SM1-NTb: contact at the end, exact work
+  EnterMid,     ///< SM1-Ta: from one element into another one, off the line at the end
+  EnterEnd,     ///< SM1-Tb: the same, on the line
+  BeginWeights  ///< SM2-NT: with weights of the begin, for M2
+};
+
+/// Its choice within an element and over borders.
+struct SlideAlgorithm {
+  SlideStep within = SlideStep::SmEm, across = SlideStep::SmEm;
+};
+
 /// A smooth stretch of it: a kink ends the line. Nodes follow each other; neighbouring elements share one.
 struct SlideLine {
   /// Elements that a step may touch; a longer way is taken in shorter steps.
@@ -20,6 +35,7 @@ struct SlideLine {
 
   std::vector<int> nodes;  ///< of the model
   std::vector<SlidePiece> pieces;
+  bool smooth = false;  ///< C1 weights: the line's tangent is continuous over borders (beyond.md 2)
 
   double begin() const { return pieces.front().begin; }
   double end() const { return pieces.back().end; }

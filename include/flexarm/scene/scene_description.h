@@ -116,6 +116,12 @@ enum class JointKind {
   Slide  ///< along the parent's flexible centreline: arc length, then what SlideDescription::rotation releases
 };
 
+/// Screw, rack and pinion, worm, cam.
+constexpr bool has_dependent_travel(JointKind kind) {
+  return kind == JointKind::Screw || kind == JointKind::RackAndPinion || kind == JointKind::Worm ||
+         kind == JointKind::Cam;
+}
+
 struct JointLimits {
   double lower, upper;  ///< position [rad or m]
   double velocity = 0;  ///< kept, not enforced
@@ -127,11 +133,30 @@ struct Mimic {
 };
 
 struct SlideDescription {
-  enum class End { Stop, Error };
-  double start = 0;                           ///< initial arc length [m]
-  JointKind rotation = JointKind::Spherical;  ///< Fixed, Revolute, Universal or Spherical
-  End on_end = End::Stop;                     ///< what the ends of the line are
+  enum class End {
+    Stop,   ///< a unilateral stop with restitution
+    Error,  ///< the step fails
+    Free    ///< what slides leaves the line and flies on
+  };
+  double start = 0;  ///< initial arc length [m]
+  /// Fixed, Revolute, Universal, Spherical, or a kind with dependent travel: then the arc length is `start` + travel.
+  JointKind rotation = JointKind::Spherical;
+  End on_end = End::Stop;            ///< what the ends of the line are
+  std::string scheme = "sm_em";      ///< how the contact is carried over a step (docs/schemes.md)
+  bool smooth = false;               ///< tangents of the line are continuous over the borders of elements
+  Vector3 offset = Vector3::Zero();  ///< rigid segment from the line to the joint, in the joint's frame [m]
   SourceLocation location;
+};
+
+/// Dry friction of a joint's released coordinates, besides the constant effort of <dynamics friction>.
+struct FrictionDescription {
+  enum class Law {
+    Smooth,  ///< F tanh(rate / v)
+    Coulomb  ///< set-valued: sticks exactly
+  };
+  Law law = Law::Smooth;
+  double coefficient = 0;  ///< of the force normal to the travel, or across the axis [-]
+  double radius = 0;       ///< at which it acts on rotations: of the bearing [m]
 };
 
 struct JointDescription {
@@ -151,7 +176,9 @@ struct JointDescription {
   double effort_limit = 0;            ///< commanded efforts saturate here, any kind [N or N m]; 0: unlimited
   double damping = 0;                 ///< per released coordinate [N s/m or N m s/rad]
   double friction = 0;                ///< Coulomb effort per released coordinate [N or N m]
+  FrictionDescription friction_law;
   std::optional<Mimic> mimic;
+  Pose child_origin;  ///< loop joints: joint frame in the child link frame
   SourceLocation location;
 };
 
@@ -247,7 +274,8 @@ struct SceneDescription {
   std::string root_link;  ///< its name is the world frame's
   std::vector<LinkDescription> links;
   std::vector<JointDescription> joints;
-  Vector3 gravity = Vector3(0, 0, -9.81);  ///< [m/s^2]
+  std::vector<JointDescription> loop_joints;  ///< close loops of the tree that `joints` form
+  Vector3 gravity = Vector3(0, 0, -9.81);     ///< [m/s^2]
   IntegratorDescription integrator;
   std::vector<InitialJoint> initial_joints;
   std::vector<InitialLink> initial_links;
@@ -261,7 +289,8 @@ struct SceneDescription {
 /// Suffixes of the released coordinates of a joint in their order: {""} for one coordinate, {} for none,
 /// planar /x /y /rz (axis-normal plane), floating /x /y /z /rx /ry /rz, spherical /rx /ry /rz, universal /1 /2 (the two
 /// angles), cylindrical /1 /2 (travel, angle), slides {""} if they release no rotation, else /s (arc length) and /rx
-/// /ry /rz, /1 or /1 /2 of their rotation. Rotations /rx /ry /rz are the components of the rotation vector.
+/// /ry /rz, /1 or /1 /2 of their rotation (/1: also the angle on which the arc length depends). Rotations /rx /ry /rz
+/// are the components of the rotation vector.
 const std::vector<std::string>& coordinate_suffixes(const JointDescription& joint);
 
 }  // namespace flexarm::scene

@@ -10,6 +10,12 @@
 
 namespace flexarm {
 
+/// Of a coordinate that follows another one: the factors of its row and of its column, and the derivative of the
+/// former.
+struct MimicMap {
+  double left, right, left_derivative;
+};
+
 /// Block-sparse nodal tangent and its reduction to compressed columns.
 ///
 /// Every pair of coupled variables has a dense column-major block. Folding slave s with released variable u and master
@@ -34,8 +40,8 @@ class SparseAssembler {
   /// Folds the slave of `joint`; to be called leaf to root, with the maps for the slave's total residual.
   void fold(int joint, const FoldMaps& maps, bool with_tangent);
   void fold(int joint, const SlideMaps& maps, bool with_tangent);
-  /// Folds mimicking coordinates; after all joints.
-  void fold_mimics(bool with_tangent);
+  /// Folds coordinates that follow others; after all joints. `maps`: per entry of DegreesOfFreedom::mimics.
+  void fold_mimics(const std::vector<MimicMap>& maps, bool with_tangent);
   /// Writes the reduced residual and, if asked, the compressed-column values.
   void gather(Eigen::VectorXd& residual) const;
   void gather_tangent();
@@ -75,7 +81,9 @@ class SparseAssembler {
   };
   struct ScaledAddition {
     int source, target, count;
-    double factor;
+  };
+  struct MimicFold {
+    int first_column_fold, first_row_fold, last_row_fold, master;  // into mimic_folds_; block
   };
   struct Copy {
     std::size_t from;
@@ -104,7 +112,8 @@ class SparseAssembler {
   std::vector<SlideOperation> slide_columns_, slide_rows_;
   std::vector<SlideFold> slide_folds_;  // per joint
   std::vector<int> slide_blocks_;
-  std::vector<ScaledAddition> mimic_folds_;
+  std::vector<ScaledAddition> mimic_additions_;
+  std::vector<MimicFold> mimic_folds_;
   std::vector<bool> dead_;  // per block: consumed by a fold
   std::vector<double> values_, residual_, reduced_values_;
   std::vector<Copy> copies_;
