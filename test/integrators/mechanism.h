@@ -65,6 +65,7 @@ inline scene::SceneDescription every_joint_scene(bool floating) {
   body("second_car");
   body("rock");
   body("runner");
+  body("tappet");
   beam("mast", {Vector3(0, 0.3, 0.5)}, 1, 2, false);
 
   joint("base", floating ? JointKind::Floating : JointKind::Fixed, "world", "base", Vector3(0.1, 0.2, 0.3));
@@ -88,6 +89,9 @@ inline scene::SceneDescription every_joint_scene(bool floating) {
   };
   slide("run", "upper", "runner", 0.4, JointKind::Spherical);
   slide("walk", "finger", "mast", 0.35, JointKind::Revolute);
+  slide("follower_cam", "finger", "tappet", 0.3, JointKind::Cam);
+  builder.scene.joints.back().profile = std::make_shared<CamProfile>(CamProfile::eccentric(0.2, -0.1));
+  builder.scene.joints.back().slide->offset = 0.2 * random.vector();
   joint("throw", JointKind::Floating, "world", "rock", Vector3(0, 2, 0));
   if (floating) return builder.scene;
 
@@ -123,8 +127,7 @@ inline State random_state(const Model& model, RandomSource& random, double size)
     if (coordinate.mimicked >= 0) {
       const Coordinate& master = model.coordinates[coordinate.mimicked];
       state.released[coordinate.joint].displacement[coordinate.component] =
-          coordinate.mimic_multiplier * state.released[master.joint].displacement[master.component] +
-          coordinate.mimic_offset;
+          coordinate.mimic.value(state.released[master.joint].displacement[master.component]);
     }
   // Slaves and free nodes in their order: masters come first.
   std::vector<int> joint_of(model.nodes.size(), -1);

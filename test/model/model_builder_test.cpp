@@ -104,9 +104,9 @@ TEST(BuildModel, MimicsOfMimicsAreResolved) {
   for (const Coordinate& coordinate : model.coordinates)
     if (coordinate.name == "echo") {
       EXPECT_EQ(model.coordinates[coordinate.mimicked].name, "shoulder");
-      EXPECT_NEAR(coordinate.mimic_multiplier, -0.5 * 0.7, 1e-15);
-      EXPECT_NEAR(coordinate.mimic_offset, -0.5 * 0.1 + 0.2, 1e-15);
-      EXPECT_NEAR(model.initial_released[coordinate.joint].displacement[0], coordinate.mimic_offset, 1e-15);
+      EXPECT_NEAR(coordinate.mimic.multiplier, -0.5 * 0.7, 1e-15);
+      EXPECT_NEAR(coordinate.mimic.offset, -0.5 * 0.1 + 0.2, 1e-15);
+      EXPECT_NEAR(model.initial_released[coordinate.joint].displacement[0], coordinate.mimic.offset, 1e-15);
     }
 }
 

@@ -22,6 +22,11 @@ std::string first_coordinate(JointKind rotation) {
   return rotation == JointKind::Fixed ? "run" : "run/s";
 }
 
+/// What moves of itself: the angle of a joint with dependent travel, else the arc length.
+std::string free_coordinate(JointKind rotation) {
+  return scene::has_dependent_travel(rotation) ? "run/1" : first_coordinate(rotation);
+}
+
 /// A flexible arm with a body at its end slides on a free, spinning beam of eight elements.
 SceneBuilder runner_on_a_free_beam(JointKind rotation) {
   SceneBuilder b;
@@ -29,10 +34,16 @@ SceneBuilder runner_on_a_free_beam(JointKind rotation) {
   b.beam("arm", {{0, 0.8, 0.3}}, soft_section(), 1, 2);
   b.body("hand", 0.8, {0.2, 0.1, -0.1}, 0.2 * body_inertia());
   b.joint("free", JointKind::Floating, "world", "line");
-  add_slide(b, "run", "line", "arm", 1.3, rotation);
+  scene::JointDescription& run = add_slide(b, "run", "line", "arm", 1.3, rotation);
+  run.ratio = 0.4;
+  run.offset = 0.1;
+  if (rotation == JointKind::Cam)  // its followers pass three borders of elements back and forth
+    run.profile = std::make_shared<CamProfile>(CamProfile::periodic({0, 1, 2.4, 4.1, 5}, {0, 0.6, 1.5, 1.2, 0.2}));
+  if (rotation != JointKind::Spherical) run.slide->offset = {0.05, 0.1, -0.1};
   b.joint("wrist", JointKind::Fixed, "arm", "hand", {0, 0.8, 0.3});
   initial_field(b, "line", {0.1, -0.2, 0.1}, {0.3, 0.5, 1.0});
-  initial_joint(b, first_coordinate(rotation), 1.3, 1.5);
+  const bool is_coupled = scene::has_dependent_travel(rotation);
+  initial_joint(b, free_coordinate(rotation), is_coupled ? 0.2 : 1.3, is_coupled ? 3.5 : 1.5);
   return b;
 }
 
@@ -60,7 +71,23 @@ TEST_P(FreeSlide, ConservesEnergyAndMomentaAcrossElements) {
 }
 INSTANTIATE_TEST_SUITE_P(Rotations, FreeSlide,
                          ::testing::Values(JointKind::Fixed, JointKind::Revolute, JointKind::Universal,
-                                           JointKind::Spherical));
+                                           JointKind::Spherical, JointKind::Screw, JointKind::RackAndPinion,
+                                           JointKind::Worm, JointKind::Cam));
+
+// The arc length follows the angle at every step, to round-off, in every family of schemes.
+TEST(Slide, CoupledTravelFollowsItsAngle) {
+  for (const JointKind kind : {JointKind::Screw, JointKind::RackAndPinion, JointKind::Worm, JointKind::Cam})
+    for (const char* scheme : {"em", "m1", "m2", "newmark", "hht2"}) {
+      const SceneBuilder b = runner_on_a_free_beam(kind);
+      Simulation simulation(b.scene, options(scheme, 0.01));
+      const std::size_t s = *simulation.find_coordinate("run/s"), angle = *simulation.find_coordinate("run/1");
+      const scene::JointDescription& run = b.scene.joints[1];
+      test::run(simulation, 50, [&] {
+        const double u = simulation.position(angle);
+        EXPECT_NEAR(simulation.position(s), 1.3 + (run.profile ? run.profile->value(u) : 0.4 * u), 1e-14);
+      });
+    }
+}
 
 /// A bead of mass 1 on a clamped, nearly rigid straight beam along `direction`, released at 0.2 m.
 SceneBuilder bead(const Vector3& direction) {
@@ -81,6 +108,22 @@ TEST(Slide, BeadFallsDownAnInclinedLine) {
   // The line bends by 1e-8 m; what remains is the step's round-off.
   EXPECT_NEAR(simulation.position(0), 0.2 + 0.5 * 8 * 0.25, 1e-6);
   EXPECT_NEAR(simulation.velocity(0), 8 * 0.5, 1e-4);
+}
+
+/// A wheel of inertia 0.3 about the line's tangent, as nut of a screw of 0.4 m/rad on a stiff vertical line.
+TEST(Slide, ScrewUnderItsWeight) {
+  SceneBuilder b = bead({0, 0, -1});
+  b.scene.links.back().inertial = scene::RigidInertia{2, Vector3::Zero(), 0.3 * Matrix3::Identity()};
+  scene::JointDescription& nut = b.scene.joints.back();
+  nut.slide->rotation = JointKind::Screw;
+  nut.ratio = 0.4;
+  nut.axis = Vector3::UnitX();
+  b.scene.gravity = {0, 0, -10};
+  Simulation simulation(b.scene, options("em", 0.005, 1e-12));
+  run(simulation, 80);
+  const double acceleration = 2 * 10 * 0.4 / (0.3 + 2 * 0.4 * 0.4);
+  const double turned = 0.005 * acceleration * 0.4;  // in a step: the tangent-scaled rule's error is in its square
+  EXPECT_NEAR(simulation.position(1), 0.5 * acceleration * 0.16, 0.08 * acceleration * turned * turned + 1e-6);
 }
 
 TEST(Slide, EndsAreStopsWithRestitution) {
