@@ -1,5 +1,6 @@
 #include "mechanism_builder.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "flexarm/joints/joint_kinematics.h"
@@ -129,7 +130,10 @@ void MechanismBuilder::order_joints() {
   // Depth first: nodes of a branch stand together, which keeps the matrix banded.
   std::vector<const scene::JointDescription*> stack;
   const auto push_children = [&](const std::string& link) {
-    const auto& list = children[link_index(link)];
+    auto& list = children[link_index(link)];
+    // What slides comes after the beams that are welded to the line.
+    std::stable_partition(list.begin(), list.end(),
+                          [](const scene::JointDescription* joint) { return joint->kind != scene::JointKind::Slide; });
     stack.insert(stack.end(), list.rbegin(), list.rend());
   };
   push_children(scene_.root_link);

@@ -70,8 +70,15 @@ class MechanismBuilder {
   Attachment add_slide(const scene::JointDescription& joint);
   /// Lets the arc length of the slide made last follow the angle of its joint, both added last.
   void couple_slide(const scene::JointDescription& joint);
-  /// The smooth stretch of a flexible link's line that contains the arc length `start`; made once.
+  /// The smooth stretch that contains the arc length `start` of a flexible link, over beams welded to it; made once.
+  /// Arc lengths count from the link's origin, and are negative before it.
   int slide_line(int link, double start);
+  int add_line(const SlideLine& line);
+  /// True where the section of node `after` is that of node `before` in place and direction.
+  bool continues(int before, int after) const;
+  /// The links whose beams are fixed tip to origin without a kink, one of them `link`, in order.
+  std::vector<int> welded_beams(int link) const;
+  int last_node(int link) const { return model.links[link].beam->tip.node; }
 
   void add_coordinates(const scene::JointDescription& joint, const std::vector<std::string>& names);
   Released initial_released(const JointMap& map, const std::vector<std::string>& names) const;

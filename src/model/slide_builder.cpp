@@ -3,24 +3,74 @@
 
 namespace flexarm {
 
-int MechanismBuilder::slide_line(int link, double start) {
-  const LinkMesh& mesh = *meshes[link];
-  SlideLine line;
-  double begin = 0;
-  for (const MeshElement& element : mesh.mesh.elements) {
-    const int front = mesh.first_node + element.nodes.front();
-    if (!line.nodes.empty() && line.nodes.back() != front) {  // a kink: the next element begins with its own node
-      if (start <= begin) break;
-      line = SlideLine();
+namespace {
+
+/// Of poses that are equal: relative to the distance from the origin, and in radians.
+constexpr double kSamePlace = 1e-9, kSameDirection = 1e-6;
+
+}  // namespace
+
+bool MechanismBuilder::continues(int before, int after) const {
+  if (before == after) return true;
+  const Pose a = pose_of(before), b = pose_of(after);
+  const double scale = 1 + a.position.norm();
+  return (a.position - b.position).norm() <= kSamePlace * scale &&
+         a.orientation.angularDistance(b.orientation) <= kSameDirection;
+}
+
+std::vector<int> MechanismBuilder::welded_beams(int link) const {
+  std::vector<int> chain = {link};
+  const auto extend = [&](bool forward) {
+    for (bool grows = true; grows && chain.size() < meshes.size();) {
+      grows = false;
+      for (const scene::JointDescription* joint : ordered_joints_) {
+        const int parent = link_index(joint->parent), child = link_index(joint->child);
+        if (joint->kind != scene::JointKind::Fixed || (forward ? parent : child) != (forward ? chain.back() : chain[0]))
+          continue;
+        const bool are_placed = meshes[parent] && meshes[child] && meshes[child]->first_node >= 0;
+        if (!are_placed || !continues(last_node(parent), meshes[child]->first_node)) continue;
+        chain.insert(forward ? chain.end() : chain.begin(), forward ? child : parent);
+        grows = true;
+        break;
+      }
     }
-    if (line.nodes.empty()) line.nodes.push_back(front);
-    const int first = static_cast<int>(line.nodes.size()) - 1, count = static_cast<int>(element.nodes.size());
-    for (int i = 1; i < count; ++i) line.nodes.push_back(mesh.first_node + element.nodes[i]);
-    line.pieces.push_back({first, count, begin, element.end});
-    begin = element.end;
+  };
+  extend(false);
+  extend(true);
+  return chain;
+}
+
+int MechanismBuilder::slide_line(int link, double start) {
+  const std::vector<int> chain = welded_beams(link);
+  double begin = 0;
+  for (const int before : chain) {
+    if (before == link) break;
+    begin -= meshes[before]->centreline.length();
   }
+  SlideLine line;
+  for (const int beam : chain) {
+    const double origin = begin;
+    for (const MeshElement& element : meshes[beam]->mesh.elements) {
+      const int base = meshes[beam]->first_node, front = base + element.nodes.front();
+      if (!line.nodes.empty() && !continues(line.nodes.back(), front)) {  // a kink
+        if (start <= begin) return add_line(line);
+        line = SlideLine();
+      }
+      if (line.nodes.empty() || line.nodes.back() != front) line.nodes.push_back(front);
+      const int first = static_cast<int>(line.nodes.size()) - 1, count = static_cast<int>(element.nodes.size());
+      for (int i = 1; i < count; ++i) line.nodes.push_back(base + element.nodes[i]);
+      line.pieces.push_back({first, count, begin, origin + element.end});
+      begin = origin + element.end;
+    }
+  }
+  return add_line(line);
+}
+
+int MechanismBuilder::add_line(const SlideLine& line) {
   for (std::size_t i = 0; i < model.slide_lines.size(); ++i)
-    if (model.slide_lines[i].nodes == line.nodes) return static_cast<int>(i);
+    if (model.slide_lines[i].nodes == line.nodes && model.slide_lines[i].begin() == line.begin() &&
+        model.slide_lines[i].smooth == line.smooth)
+      return static_cast<int>(i);
   model.slide_lines.push_back(line);
   return static_cast<int>(model.slide_lines.size()) - 1;
 }
