@@ -65,7 +65,6 @@ inline scene::SceneDescription every_joint_scene(bool floating) {
   body("second_car");
   body("rock");
   body("runner");
-  body("tappet");
   beam("mast", {Vector3(0, 0.3, 0.5)}, 1, 2, false);
 
   joint("base", floating ? JointKind::Floating : JointKind::Fixed, "world", "base", Vector3(0.1, 0.2, 0.3));
@@ -89,10 +88,13 @@ inline scene::SceneDescription every_joint_scene(bool floating) {
   };
   slide("run", "upper", "runner", 0.4, JointKind::Spherical);
   slide("walk", "finger", "mast", 0.35, JointKind::Revolute);
-  slide("follower_cam", "finger", "tappet", 0.3, JointKind::Cam);
-  builder.scene.joints.back().profile = std::make_shared<CamProfile>(CamProfile::eccentric(0.2, -0.1));
-  builder.scene.joints.back().slide->offset = 0.2 * random.vector();
   joint("throw", JointKind::Floating, "world", "rock", Vector3(0, 2, 0));
+  builder.body("tappet", 0.8, {0.02, -0.05, 0.03}, 0.1 * Matrix3::Identity());
+  scene::JointDescription& cam =
+      builder.joint("cam", JointKind::Slide, "upper", "tappet", Vector3::Zero(), Vector3(2, 1, 2) / 3);
+  cam.slide = scene::SlideDescription{0.3, JointKind::Cam};
+  cam.slide->offset = {0.05, -0.1, 0.15};
+  cam.profile = std::make_shared<CamProfile>(CamProfile::eccentric(0.2, -0.1));
   if (floating) return builder.scene;
 
   builder.scene.gravity = Vector3(0.3, -0.2, -2);
