@@ -10,6 +10,8 @@ namespace {
 
 /// Way beyond the end of a line that a stop may let a slider penetrate, relative to the last element.
 constexpr double kLargestOvershoot = 0.1;
+/// The same of one that leaves the line, which happens at the end of the step.
+constexpr double kLargestWayBeyond = 1.0;
 
 }  // namespace
 
@@ -148,7 +150,8 @@ bool StepSystem::is_on_line(const JointMap& joint, int j) const {
   const SlideLine& line = model_.slide_lines[joint.line];
   const double to = released_[j].displacement[0];
   const int pieces = std::abs(line.piece_at(to) - line.piece_at(state_->released[j].displacement[0])) + 1;
-  return line.overshoot(to) <= kLargestOvershoot && pieces <= SlideLine::kMostPieces;
+  const double largest = joint.leaving < 0 ? kLargestOvershoot : kLargestWayBeyond;
+  return line.overshoot(to) <= largest && pieces <= SlideLine::kMostPieces;
 }
 
 void StepSystem::set_slaves() {

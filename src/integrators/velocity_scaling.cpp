@@ -27,6 +27,11 @@ VelocityScaling::VelocityScaling(const Model& model, const Scheme& scheme)
     if (coordinate.motion >= 0)
       throw ModelError("<integrator>: scheme 'em_scaled' cannot scale the velocity that <motion> of joint '" +
                        coordinate.name + "' prescribes; scheme 'em' closes the energy without scaling");
+  for (const JointMap& joint : model.joints)
+    if (joint.leaving >= 0)
+      throw ModelError(
+          "<integrator>: scheme 'em_scaled' is not made for a slide with on_end=\"free\", whose trees change; scheme "
+          "'em' closes the energy without scaling");
   for (const NodalInertia& inertia : model.inertias) mass_ += inertia.total_mass;
   std::vector<std::vector<int>> neighbours(model.nodes.size());  // in elements
   for_each_element(model.beams, [&](const auto& element) {

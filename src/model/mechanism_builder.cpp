@@ -238,9 +238,13 @@ void MechanismBuilder::add_joint(const scene::JointDescription& joint) {
   const Attachment parent = slides ? add_slide(joint) : attachment(joint.parent, joint.origin.position);
   const Pose origin = slides ? parent.offset : parent.offset * joint.origin;
   const scene::JointKind rotation = slides ? joint.slide->rotation : joint.kind;
+  const int slide = slides ? record.first_map : -1;
+  const bool leaves = slides && joint.slide->on_end == scene::SlideDescription::End::Free;
   if (rotation == scene::JointKind::Fixed) {
     record.map_count = slides ? 1 : 0;
-    place_link(child, {parent.node, origin});
+    // What leaves the line needs a node of its own.
+    place_link(child, leaves ? Attachment{add_rigid(parent.node, origin), Pose()} : Attachment{parent.node, origin});
+    if (leaves) model.joints[slide].leaving = slide + 1;
   } else {
     // The child's first mesh node is the slave itself where its section lies in the link origin.
     const bool direct = meshes[child] && meshes[child]->mesh.centroid.isZero(0);
@@ -265,6 +269,7 @@ void MechanismBuilder::add_joint(const scene::JointDescription& joint) {
       add_coordinates(released, names);
     }
     if (slides && scene::has_dependent_travel(rotation)) couple_slide(released);
+    if (leaves) model.joints[slide].leaving = static_cast<int>(model.joints.size()) - 1;
     record.map_count = static_cast<int>(maps.size()) + (slides ? 1 : 0);
     if (direct)
       place_beam(child, node);

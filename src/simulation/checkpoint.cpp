@@ -12,7 +12,7 @@
 namespace flexarm {
 namespace {
 
-constexpr const char* kHeader = "flexarm-checkpoint 2";
+constexpr const char* kHeader = "flexarm-checkpoint 3";
 
 /// Calls `visit(number, may_be_nan)` for every number of a state in a fixed order; the one place that knows its layout.
 template <class AnyState, class Visit>
@@ -67,7 +67,17 @@ std::string signature(const Simulation& simulation) {
   const std::size_t kept = state.strain_memory.size() + state.stiffness_rotations.size() + state.mass_rotations.size() +
                            state.total_rotations.size();
   return fmt::format("{} nodes {} joints {} mass_points {} coordinates {} kept {}", simulation.scheme(),
-                     state.nodes.size(), state.released.size(), state.mass_points.size(), state.commands.size(), kept);
+                     state.nodes.size() - state.left_lines.size(), state.released.size(), state.mass_points.size(),
+                     state.commands.size(), kept);
+}
+
+/// What is kept per node, for another number of nodes.
+void resize_nodes(State& state, std::size_t count) {
+  if (!state.total_rotations.empty()) state.total_rotations.resize(count, Vector3::Zero());
+  if (!state.forces.empty()) state.forces.resize(count, Vector6::Zero());
+  if (!state.momentum_rates.empty())
+    state.momentum_rates.resize(state.momentum_rates.size() - state.nodes.size() + count, Vector3::Zero());
+  state.nodes.resize(count);
 }
 
 [[noreturn]] void fail(const std::string& path, const std::string& what) {
@@ -97,9 +107,10 @@ std::string hexadecimal(double value) {
 
 void write_checkpoint(const Simulation& simulation, const std::string& path) {
   const State& state = simulation.state();
-  std::string text = fmt::format("{}\n{}\nsteps {} level {} good {} increments {} reactions {}\n", kHeader,
+  std::string text = fmt::format("{}\n{}\nsteps {} level {} good {} increments {} reactions {} left {} {}\n", kHeader,
                                  signature(simulation), state.steps, state.halving_level, state.good_steps,
-                                 state.last_increment.size(), state.reactions.size());
+                                 state.last_increment.size(), state.reactions.size(), state.left_lines.size(),
+                                 fmt::join(state.left_lines, " "));
   for_each_number(state, [&](double value, bool) { text += hexadecimal(value) + "\n"; });
   text += "end\n";
   const std::string temporary = path + ".partial";
@@ -123,12 +134,16 @@ void read_checkpoint(Simulation& simulation, const std::string& path) {
                    model.substr(0, 120) + "'");
   State state = simulation.state();
   std::string word;
-  std::size_t increments = 0, reactions = 0;
+  std::size_t increments = 0, reactions = 0, left = 0;
   in >> word >> state.steps >> word >> state.halving_level >> word >> state.good_steps >> word >> increments >> word >>
-      reactions;
-  if (!in || state.steps < 0 || state.halving_level < 0 ||
-      increments > 6 * state.nodes.size() + 6 * state.released.size() || reactions > state.nodes.size())
-    fail(path, "is damaged in line 3");
+      reactions >> word >> left;
+  const auto damaged = [&] { fail(path, "is damaged in line 3"); };
+  if (!in || state.steps < 0 || state.halving_level < 0 || left > state.released.size()) damaged();
+  resize_nodes(state, state.nodes.size() - state.left_lines.size() + left);
+  state.left_lines.resize(left);
+  for (int& joint : state.left_lines) in >> joint;
+  if (!in || increments > 6 * state.nodes.size() + 6 * state.released.size() || reactions > state.nodes.size())
+    damaged();
   state.reactions.assign(reactions, Vector6::Zero());
   state.last_increment.assign(increments, 0.0);
   for_each_number(state, [&](double& value, bool may_be_nan) {

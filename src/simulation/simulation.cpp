@@ -1,10 +1,13 @@
 #include "flexarm/simulation/simulation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "flexarm/joints/joint_kinematics.h"
 #include "flexarm/math/so3.h"
+#include "flexarm/model/line_release.h"
 #include "flexarm/scene/integrator_options.h"
 
 namespace flexarm {
@@ -41,7 +44,8 @@ struct Simulation::Implementation {
   Scheme scheme;
   StepSettings settings;
   Model model;
-  Stepper stepper;
+  std::unique_ptr<const Model> built;  ///< once something has left its line: the model as the scene says it
+  std::unique_ptr<Stepper> stepper;
   State initial, state;
   std::vector<std::string> coordinate_names, link_names;
   mutable std::vector<NodePose> poses;  // scratch of velocity()
@@ -52,14 +56,55 @@ struct Simulation::Implementation {
         scheme(make_scheme(scene.integrator)),
         settings(settings_of(scene, options)),
         model(build_model(scene)),
-        stepper(model, scheme, settings),
+        stepper(std::make_unique<Stepper>(model, scheme, settings)),
         initial(initial_state(model)) {
     for (const Coordinate& coordinate : model.coordinates) coordinate_names.push_back(coordinate.name);
     for (const LinkFrame& link : model.links) link_names.push_back(link.name);
-    stepper.initialise(initial);
+    stepper->initialise(initial);
     state = initial;
+    fit_to_model();
+  }
+
+  void fit_to_model() {
     poses.resize(model.nodes.size());
     velocities.resize(model.nodes.size());
+  }
+
+  void release_from_lines() {
+    for (int slide; (slide = slide_beyond_end(model, state)) >= 0;) {
+      State released = state_after_release(model, state, slide);
+      if (!built) built = std::make_unique<const Model>(model);
+      set_model(model_after_release(model, state, slide));
+      state = std::move(released);
+    }
+  }
+
+  void set_model(Model changed) {
+    model = std::move(changed);
+    stepper = std::make_unique<Stepper>(model, scheme, settings);
+    fit_to_model();
+  }
+
+  /// The model in which these slides have left their lines.
+  void fit_to_state(const State& other) {
+    if (other.left_lines == state.left_lines) return;
+    Model changed = built ? *built : model;
+    for (const int slide : other.left_lines) changed = model_after_release(std::move(changed), other, slide);
+    if (!built) built = std::make_unique<const Model>(model);
+    set_model(std::move(changed));
+  }
+
+  /// False for what is not a state of this scene.
+  bool fits(const State& other) const {
+    const Model& as_built = built ? *built : model;
+    const auto leaves = [&](int j) {
+      return j >= 0 && j < static_cast<int>(as_built.joints.size()) && as_built.joints[j].leaving >= 0;
+    };
+    const std::set<int> distinct(other.left_lines.begin(), other.left_lines.end());
+    return std::all_of(distinct.begin(), distinct.end(), leaves) && distinct.size() == other.left_lines.size() &&
+           other.nodes.size() == as_built.nodes.size() + distinct.size() &&
+           other.released.size() == state.released.size() && other.mass_points.size() == state.mass_points.size() &&
+           other.commands.size() == state.commands.size();
   }
 };
 
@@ -80,21 +125,22 @@ const State& Simulation::state() const {
 }
 
 StepResult Simulation::step() {
-  return implementation_->stepper.advance(implementation_->state);
+  const StepResult result = implementation_->stepper->advance(implementation_->state);
+  implementation_->release_from_lines();
+  return result;
 }
 
 void Simulation::reset() {
+  implementation_->fit_to_state(implementation_->initial);
   implementation_->state = implementation_->initial;
-  implementation_->stepper.invalidate();
+  implementation_->stepper->invalidate();
 }
 
 void Simulation::restore(const State& state) {
-  const State& mine = implementation_->state;
-  if (state.nodes.size() != mine.nodes.size() || state.released.size() != mine.released.size() ||
-      state.mass_points.size() != mine.mass_points.size() || state.commands.size() != mine.commands.size())
-    throw std::invalid_argument("the state belongs to another model");
+  if (!implementation_->fits(state)) throw std::invalid_argument("the state belongs to another model");
+  implementation_->fit_to_state(state);
   implementation_->state = state;
-  implementation_->stepper.invalidate();
+  implementation_->stepper->invalidate();
 }
 
 double Simulation::time() const {
@@ -213,7 +259,7 @@ ProbeState Simulation::probe(std::size_t index) const {
 
 StepResult Simulation::solve_static(int load_steps) {
   if (load_steps < 1) throw std::invalid_argument("the number of load steps must be >= 1");
-  return implementation_->stepper.solve_static(implementation_->state, load_steps);
+  return implementation_->stepper->solve_static(implementation_->state, load_steps);
 }
 
 std::vector<Mode> Simulation::natural_modes(int count) const {
@@ -225,10 +271,10 @@ std::size_t Simulation::node_count() const {
   return implementation_->model.nodes.size();
 }
 std::size_t Simulation::degrees_of_freedom() const {
-  return implementation_->stepper.degrees_of_freedom().unknowns;
+  return implementation_->stepper->degrees_of_freedom().unknowns;
 }
 const std::vector<double>& Simulation::update_norms() const {
-  return implementation_->stepper.update_norms();
+  return implementation_->stepper->update_norms();
 }
 
 }  // namespace flexarm

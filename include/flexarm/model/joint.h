@@ -46,9 +46,10 @@ struct JointMap {
   Quaternion slave_orientation = Quaternion::Identity();  ///< Lambda_0: slave node's frame in the moved joint frame
   int line = -1;                                          ///< Slide: index into Model::slide_lines
   SlideAlgorithm algorithm;                               ///< Slide
-  Vector3 translation = Vector3::Zero();                  ///< Scalar: travel per unit of f(coordinate), joint frame
-  std::shared_ptr<const CamProfile> profile;              ///< Scalar: f; null: f(u) = u
-  Vector3 rotation = Vector3::Zero();                     ///< Scalar: rotation vector per unit coordinate, joint frame
+  int leaving = -1;  ///< Slide: joint whose slave flies on beyond the line's ends; -1: it does not leave
+  Vector3 translation = Vector3::Zero();      ///< Scalar: travel per unit of f(coordinate), joint frame
+  std::shared_ptr<const CamProfile> profile;  ///< Scalar: f; null: f(u) = u
+  Vector3 rotation = Vector3::Zero();         ///< Scalar: rotation vector per unit coordinate, joint frame
 };
 
 /// Values of the released coordinates.

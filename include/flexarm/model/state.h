@@ -49,6 +49,7 @@ struct State {
   double time = 0;                 ///< [s]
   std::vector<NodeState> nodes;    ///< slaves included
   std::vector<Released> released;  ///< per elementary joint
+  std::vector<int> left_lines;     ///< joints that have slid off their lines, in the order in which they did
   std::vector<MassPointState> mass_points;
   std::vector<Vector6> strain_rates;  ///< per stiffness point; Newmark family with damping only
   // Empty unless the scheme needs them:
