@@ -29,7 +29,10 @@ SceneBuilder leaving(JointKind rotation) {
                 is_coupled                     ? "run/1"
                 : rotation == JointKind::Fixed ? "run"
                                                : "run/s",
-                is_coupled ? 0.2 : 1.3, is_coupled ? 5.0 : 3.0);
+                is_coupled ? 0.2 : 1.3,
+                is_coupled                     ? 5.0
+                : rotation == JointKind::Fixed ? 6.0
+                                               : 2.0);
   return b;
 }
 
