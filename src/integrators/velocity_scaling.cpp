@@ -44,6 +44,11 @@ VelocityScaling::VelocityScaling(const Model& model, const Scheme& scheme)
     const JointMap& joint = model.joints[j];
     const int tree = joint.master < 0 ? static_cast<int>(trees_.size()) : tree_of_node_[joint.master];
     if (joint.master < 0) trees_.emplace_back();
+    const int held = tree_of_node_[joint.slave];  // already: through its beam, the joint closes a loop
+    if (held >= 0 && held != tree)
+      throw ModelError(
+          "<integrator>: scheme 'em_scaled' cannot scale the velocities of a loop that is closed through the world; "
+          "scheme 'em' closes the energy without scaling");
     if (tree >= 0) {
       tree_of_node_[joint.slave] = tree;
       // A joint with several coordinates is a chain through nodes that hold no mass.

@@ -53,21 +53,7 @@ int MechanismBuilder::coordinate_index(const std::string& name, const std::strin
   throw ModelError(where + "there is no joint coordinate '" + name + "'");
 }
 
-void MechanismBuilder::connect_coordinates() {
-  for (const scene::InitialJoint& initial : scene_.initial_joints)
-    coordinate_index(initial.coordinate, at(initial.location, "<initial>"));
-  for (const scene::PrescribedMotion& motion : scene_.motions) {
-    const std::string where = at(motion.location, "<motion>");
-    Coordinate& coordinate = model.coordinates[coordinate_index(motion.coordinate, where)];
-    if (coordinate.is_angle)
-      throw ModelError(where + "a component of a free rotation cannot be prescribed ('" + motion.coordinate + "')");
-    coordinate.motion = add_history(motion.position);
-    coordinate.limit.reset();
-  }
-  for (const scene::JointEffort& effort : scene_.efforts)
-    model.coordinates[coordinate_index(effort.coordinate, at(effort.location, "<effort>"))].effort =
-        add_history(effort.history);
-
+void MechanismBuilder::connect_mimics() {
   // Chains of mimics are followed to the coordinate that none of them mimics.
   for (const JointRecord& record : records_) {
     if (!record.joint->mimic) continue;
@@ -87,7 +73,9 @@ void MechanismBuilder::connect_coordinates() {
       if (!next) break;
       mimic = next;
     }
-    if (coordinate.motion >= 0) throw ModelError(where + "the motion of the joint is prescribed as well");
+    for (const scene::PrescribedMotion& motion : scene_.motions)
+      if (motion.coordinate == coordinate.name)
+        throw ModelError(where + "the motion of the joint is prescribed as well");
     coordinate.mimicked = coordinate_index(master, where);
     coordinate.mimic.multiplier = multiplier;
     coordinate.mimic.offset = offset;
@@ -99,6 +87,22 @@ void MechanismBuilder::connect_coordinates() {
         coordinate.mimic.value(model.initial_released[base.joint].displacement[0]);
   }
   update_initial_poses();
+}
+
+void MechanismBuilder::connect_coordinates() {
+  for (const scene::InitialJoint& initial : scene_.initial_joints)
+    coordinate_index(initial.coordinate, at(initial.location, "<initial>"));
+  for (const scene::PrescribedMotion& motion : scene_.motions) {
+    const std::string where = at(motion.location, "<motion>");
+    Coordinate& coordinate = model.coordinates[coordinate_index(motion.coordinate, where)];
+    if (coordinate.is_angle)
+      throw ModelError(where + "a component of a free rotation cannot be prescribed ('" + motion.coordinate + "')");
+    coordinate.motion = add_history(motion.position);
+    coordinate.limit.reset();
+  }
+  for (const scene::JointEffort& effort : scene_.efforts)
+    model.coordinates[coordinate_index(effort.coordinate, at(effort.location, "<effort>"))].effort =
+        add_history(effort.history);
 }
 
 void MechanismBuilder::update_initial_poses() {

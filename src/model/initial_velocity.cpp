@@ -7,6 +7,9 @@ InitialVelocity::InitialVelocity(const scene::SceneDescription& scene, Mechanism
   for (const scene::InitialLink& field : scene.initial_links) fields_[mechanism.link_index(field.link)] = &field;
   for (const scene::InitialJoint& initial : scene.initial_joints) initial_rates_[initial.coordinate] = initial.velocity;
   for (std::size_t j = 0; j < model_.joints.size(); ++j) joint_of_[model_.joints[j].slave] = static_cast<int>(j);
+  for (const JointRecord& record : mechanism.records())
+    if (record.closed_node >= 0) joint_of_[record.closed_node] = -1;
+  for (const JointMap& joint : model_.joints) rates_.push_back(ReleasedVector::Zero(released_count(joint.kind)));
   model_.initial_velocity.assign(model_.nodes.size(), Vector6::Zero());
 }
 
@@ -14,6 +17,7 @@ void InitialVelocity::set() {
   const int root = mechanism_.link_index(scene_.root_link);
   if (mechanism_.meshes[root]) set_beam(root);
   for (const JointRecord& record : mechanism_.records()) {
+    if (record.closed_node >= 0) break;  // they come last
     const int child = mechanism_.link_index(record.joint->child);
     set_joint(record);
     if (mechanism_.meshes[child])
@@ -23,9 +27,33 @@ void InitialVelocity::set() {
   }
   for (const int j : joint_of_)  // centres of mass
     if (j >= 0 && model_.joints[j].kind == JointMapKind::Rigid) follow(j, ReleasedVector(0));
+  close_loops();
+}
+
+void InitialVelocity::close_loops() {
+  std::map<int, const JointRecord*> loops;  // by first map
+  for (const JointRecord& record : mechanism_.records())
+    if (record.closed_node >= 0) loops[record.first_map] = &record;
+  if (loops.empty()) return;
+  for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+    if (const auto loop = loops.find(j); loop != loops.end()) set_loop(*loop->second);
+    follow(j, rates_[j]);
+  }
+}
+
+void InitialVelocity::set_loop(const JointRecord& record) {
+  const Vector6 held = model_.initial_velocity[record.closed_node];
+  ReleasedVector rates;
+  if (!given_rates(record, rates) && rates.size() > 0) rates = field_rates(record, held);
+  for (int k = 0, used = 0; k < record.map_count; ++k) {
+    ReleasedVector& own = rates_[record.first_map + k];
+    own = rates.segment(used, own.size()).eval();
+    used += static_cast<int>(own.size());
+  }
 }
 
 void InitialVelocity::follow(int j, const ReleasedVector& rates) {
+  rates_[j] = rates;
   const SlaveVelocity slave =
       slave_velocity(model_, j, model_.nodes, model_.initial_released[j], model_.initial_velocity);
   model_.initial_velocity[model_.joints[j].slave] = slave.carried + slave.columns * rates;

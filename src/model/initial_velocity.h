@@ -9,7 +9,8 @@
 
 namespace flexarm {
 
-/// Root to leaf: every link moves rigidly with its joint, unless the scene gives it a field of its own.
+/// Root to leaf: every link moves rigidly with its joint, unless the scene gives it a field of its own. Then the joints
+/// that close loops take the nodes that they hold along; what that changes is a rate of deformation of their beams.
 class InitialVelocity {
  public:
   InitialVelocity(const scene::SceneDescription& scene, MechanismBuilder& mechanism);
@@ -22,6 +23,10 @@ class InitialVelocity {
 
   void set_joint(const JointRecord& record);
   void set_beam(int link);
+  /// Rates of a joint that closes a loop: as given, else what leaves its slave's velocity least changed.
+  void set_loop(const JointRecord& record);
+  /// Lets every slave follow once more, those of closing joints included.
+  void close_loops();
   /// Velocity of a joint's slave from its master's.
   void follow(int joint, const ReleasedVector& rates);
   /// Rates that the scene gives or implies (motion, mimic); false if none is given.
@@ -38,7 +43,8 @@ class InitialVelocity {
   std::map<int, const scene::InitialLink*> fields_;  // by link
   std::map<std::string, double> initial_rates_;      // by coordinate, as the scene gives them
   std::map<int, double> field_rates_;                // by coordinate: what a field gave, for mimics further out
-  std::vector<int> joint_of_;                        // by node: the joint of which it is the slave, or -1
+  std::vector<int> joint_of_;                        // by node: the joint of the tree of which it is the slave, or -1
+  std::vector<ReleasedVector> rates_;                // by joint
 };
 
 }  // namespace flexarm

@@ -47,6 +47,13 @@ std::vector<Composite> composites(const std::vector<int>& parents, const Model& 
   }
   for (int i = static_cast<int>(out.size()) - 1; i >= 0; --i)
     if (parents[i] >= 0) out[parents[i]] += out[i];  // parents come before their children
+  // A joint that closes a loop moves the beam on whose node it ends; the nodes of its chain carry nothing themselves.
+  for (std::size_t j = model.joints.size(); j-- > 0;) {
+    const JointMap& joint = model.joints[j];
+    const bool closes = parents[joint.slave] != joint.master && joint.kind != JointMapKind::Slide;
+    if (joint.master >= 0 && out[joint.master].mass == 0)
+      out[joint.master] = out[closes ? parents[joint.slave] : joint.slave];
+  }
   return out;
 }
 

@@ -53,7 +53,8 @@ DependentTravel dependent_travel(const scene::JointDescription& joint) {
   }
 }
 
-/// The chain of elementary joints that makes up a joint; without the travel of one that is coupled to a slide.
+}  // namespace
+
 std::vector<JointMap> elementary_joints(const scene::JointDescription& joint) {
   using scene::JointKind;
   const Vector3 zero = Vector3::Zero(), a = joint.axis.normalized(), a2 = joint.axis2.normalized();
@@ -92,8 +93,6 @@ std::vector<JointMap> elementary_joints(const scene::JointDescription& joint) {
   }
   return {};
 }
-
-}  // namespace
 
 std::string MechanismBuilder::at(const scene::SourceLocation& location, const std::string& element) {
   return location.file + ":" + std::to_string(location.line) + ": " + element + ": ";
@@ -164,6 +163,10 @@ void MechanismBuilder::build() {
     if (meshes[index]) attachments_[index].push_back(meshes[index]->centreline.nearest(point));
   };
   for (const scene::JointDescription& joint : scene_.joints) attach(joint.parent, joint.origin.position);
+  for (const scene::JointDescription& joint : scene_.loop_joints) {
+    attach(joint.parent, joint.origin.position);
+    attach(joint.child, joint.child_origin.position);
+  }
   for (const scene::PointLoad& load : scene_.loads) attach(load.link, load.at);
   for (std::size_t i = 0; i < meshes.size(); ++i)
     if (meshes[i]) meshes[i]->mesh = mesh_beam(*scene_.links[i].beam, meshes[i]->centreline, attachments_[i]);
@@ -184,6 +187,8 @@ void MechanismBuilder::build() {
   });
   model.stiffness_point_count = stiffness_point;
   model.mass_point_count = mass_point;
+  connect_mimics();
+  close_loops();
   connect_coordinates();
   InitialVelocity(scene_, *this).set();
 }

@@ -14,6 +14,9 @@
 
 namespace flexarm {
 
+/// The chain of elementary joints that makes up a joint; without the travel of one that is coupled to a slide.
+std::vector<JointMap> elementary_joints(const scene::JointDescription& joint);
+
 class MechanismBuilder {
  public:
   struct LinkMesh {
@@ -22,10 +25,11 @@ class MechanismBuilder {
     int first_node;  ///< mesh node i is node first_node + i of the model
   };
 
-  /// A joint of the scene and its elementary maps.
+  /// A joint of the scene and its elementary maps. Those that close loops come last.
   struct JointRecord {
     const scene::JointDescription* joint;
     int first_map, map_count;
+    int closed_node = -1;  ///< of a loop joint: the beam's node that its last map moves
   };
 
   explicit MechanismBuilder(const scene::SceneDescription& scene);
@@ -38,6 +42,8 @@ class MechanismBuilder {
   std::vector<double> length_weights(int link) const;
   int add_history(const TimeFunction& function);
   Pose pose_of(int node) const;
+  /// Of the mechanism as it starts [m].
+  double extent() const;
   const std::vector<JointRecord>& records() const { return records_; }  ///< root to leaf
   /// "file:line: element: "
   static std::string at(const scene::SourceLocation& location, const std::string& element);
@@ -80,11 +86,26 @@ class MechanismBuilder {
   std::vector<int> welded_beams(int link) const;
   int last_node(int link) const { return model.links[link].beam->tip.node; }
 
+  /// Adds the joints that close loops of the tree, which stands as it starts, and sorts all of them root to leaf.
+  void close_loops();
+  void add_loop(const scene::JointDescription& joint);
+  /// From `master` through `maps`, the first at `frame` (world), to the existing node `slave`.
+  void chain_loop(const scene::JointDescription& joint, const std::vector<JointMap>& maps,
+                  const std::vector<std::string>& names, int master, int slave, const Pose& frame);
+  void sort_joints();
+  /// Per node: the joint of which it is the slave, or -1.
+  std::vector<int> slave_joints() const;
+  /// The same frame, seen from the node at the root of the rigid body to which it is fixed.
+  Attachment carrier(Attachment frame) const;
+  /// The node is free, and `master` does not follow from it.
+  bool can_become_slave(int node, int master) const;
+
   void add_coordinates(const scene::JointDescription& joint, const std::vector<std::string>& names);
   Released initial_released(const JointMap& map, const std::vector<std::string>& names) const;
   /// What the scene gives, else `otherwise`.
   double initial_position(const std::string& coordinate, double otherwise = 0) const;
   int coordinate_index(const std::string& name, const std::string& where) const;
+  void connect_mimics();
   void connect_coordinates();
   void update_initial_poses();
 

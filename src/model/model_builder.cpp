@@ -88,24 +88,15 @@ class LoadPlacer {
   Model& model_;
 };
 
-/// Extent of the mechanism: the scale of displacements in the convergence test.
-double length_scale(const Model& model) {
-  double extent = 0;
-  for (const LinkFrame& link : model.links)
-    if (link.beam) extent = std::max(extent, link.beam->length);
-  for (const NodePose& a : model.nodes) extent = std::max(extent, (a.position - model.nodes.front().position).norm());
-  return extent > 0 ? extent : 1.0;
-}
-
 }  // namespace
 
 Model build_model(const scene::SceneDescription& scene) {
   MechanismBuilder mechanism(scene);
   mechanism.build();
   LoadPlacer(scene, mechanism).place();
+  mechanism.model.length_scale = mechanism.extent();
   Model model = std::move(mechanism.model);
   model.gravity = scene.gravity;
-  model.length_scale = length_scale(model);
   finish_mass_properties(scene, mechanism.node_parents, model);
   return model;
 }

@@ -15,31 +15,39 @@ std::string line_text(const SourceLocation& location) {
   return "line " + std::to_string(location.line);
 }
 
+using NamesTaken = std::map<std::string, int>;  // and the line that took them
+
 /// Records names that come twice. Missing names are recorded already.
 template <class Named>
-void check_unique(const std::vector<Named>& things, const char* tag, Findings& findings) {
-  std::map<std::string, int> first_line;
+NamesTaken check_unique(const std::vector<Named>& things, const char* tag, Findings& findings, NamesTaken taken = {}) {
   for (const Named& thing : things) {
-    const auto [first, is_new] = first_line.emplace(thing.name, thing.location.line);
+    const auto [first, is_new] = taken.emplace(thing.name, thing.location.line);
     if (!is_new && !thing.name.empty())
       findings.error(thing.location.line, element_of(tag, thing.name),
                      "name is taken, by line " + std::to_string(first->second), quoted(thing.name));
   }
+  return taken;
 }
 
 // ---------------------------------------------------------------- tree
 
-/// The joint above each link; records joints to nowhere and links with two joints.
-std::map<std::string, const JointDescription*> find_parents(const SceneDescription& scene, Findings& findings) {
+/// Records joints to nowhere.
+void check_links(const SceneDescription& scene, const std::vector<JointDescription>& joints, const char* joint_tag,
+                 Findings& findings) {
   std::set<std::string> links;
   for (const LinkDescription& link : scene.links) links.insert(link.name);
+  for (const JointDescription& joint : joints)
+    for (const auto& [tag, name] : {std::pair("parent", joint.parent), std::pair("child", joint.child)})
+      if (!name.empty() && links.count(name) == 0)
+        findings.error(joint.location.line, element_of(joint_tag, joint.name),
+                       std::string(tag) + " must be a link of the scene", quoted(name));
+}
+
+/// The joint above each link; records links with two joints.
+std::map<std::string, const JointDescription*> find_parents(const SceneDescription& scene, Findings& findings) {
   std::map<std::string, const JointDescription*> parents;
   for (const JointDescription& joint : scene.joints) {
     const std::string element = element_of("joint", joint.name);
-    for (const auto& [tag, name] : {std::pair("parent", joint.parent), std::pair("child", joint.child)}) {
-      if (!name.empty() && links.count(name) == 0)
-        findings.error(joint.location.line, element, std::string(tag) + " must be a link of the scene", quoted(name));
-    }
     if (!joint.parent.empty() && joint.parent == joint.child)
       findings.error(joint.location.line, element, "parent and child must be different links", quoted(joint.child));
     const auto [first, is_new] = parents.emplace(joint.child, &joint);
@@ -91,7 +99,9 @@ void check_rings(const SceneDescription& scene, const std::map<std::string, cons
 void check_tree(SceneDescription& scene, Findings& findings) {
   const std::size_t errors = findings.error_count();
   check_unique(scene.links, "link", findings);
-  check_unique(scene.joints, "joint", findings);
+  check_unique(scene.loop_joints, "loop_joint", findings, check_unique(scene.joints, "joint", findings));
+  check_links(scene, scene.joints, "joint", findings);
+  check_links(scene, scene.loop_joints, "loop_joint", findings);
   const std::map<std::string, const JointDescription*> parents = find_parents(scene, findings);
   check_rings(scene, parents, findings);
   const bool are_joints_good = findings.error_count() == errors &&
@@ -120,9 +130,10 @@ class ReferenceCheck {
   ReferenceCheck(const SceneDescription& scene, const std::set<std::string>& unreadable, Findings& findings)
       : scene_(scene), unreadable_(unreadable), findings_(findings) {
     for (const LinkDescription& link : scene.links) links_.emplace(link.name, &link);
-    for (const JointDescription& joint : scene.joints) {
-      joints_.emplace(joint.name, &joint);
-      for (const std::string& suffix : coordinate_suffixes(joint)) add_coordinate(joint, joint.name + suffix);
+    for (const JointDescription& joint : scene.joints) add_joint(joint);
+    for (const JointDescription& joint : scene.loop_joints) {
+      add_joint(joint);
+      loops_.insert(joint.name);
     }
   }
 
@@ -167,6 +178,11 @@ class ReferenceCheck {
   }
 
  private:
+  void add_joint(const JointDescription& joint) {
+    joints_.emplace(joint.name, &joint);
+    for (const std::string& suffix : coordinate_suffixes(joint)) add_coordinate(joint, joint.name + suffix);
+  }
+
   void add_coordinate(const JointDescription& joint, const std::string& name) {
     const auto [first, is_new] = coordinates_.emplace(name, &joint);
     if (!is_new && first->second->name != joint.name)
@@ -185,6 +201,10 @@ class ReferenceCheck {
       findings_.error(joint.location.line, element, "mimic joint must be a joint of the scene", quoted(target));
       return;
     }
+    if (loops_.count(target) > 0) {
+      findings_.error(joint.location.line, element, "a <loop_joint> cannot be mimicked", quoted(target));
+      return;
+    }
     if (unreadable_.count(target) > 0 || unreadable_.count(joint.name) > 0) return;
     if (coordinate_suffixes(joint).size() != 1)
       findings_.error(joint.location.line, element, "only a joint with one coordinate can mimic");
@@ -200,7 +220,10 @@ class ReferenceCheck {
       const char* element = "<initial> of simulation";
       check_coordinate(initial.coordinate, initial.location, element, placed);
       check_not_prescribed(initial.coordinate, initial.location, element, moved);
+      if (initial.position != 0) check_no_loop(initial.coordinate, initial.location, element);
     }
+    for (const PrescribedMotion& motion : scene_.motions)
+      if (motion.position(0.0) != 0) check_no_loop(motion.coordinate, motion.location, "<motion> of simulation");
     for (const JointEffort& effort : scene_.efforts) {
       const char* element = "<effort> of simulation";
       check_coordinate(effort.coordinate, effort.location, element, driven);
@@ -230,6 +253,14 @@ class ReferenceCheck {
       findings_.error(location.line, element, "the coordinate's <motion> prescribes it already", quoted(name));
   }
 
+  void check_no_loop(const std::string& coordinate, const SourceLocation& location, const char* element) const {
+    const auto found = coordinates_.find(coordinate);
+    if (found != coordinates_.end() && loops_.count(found->second->name) > 0)
+      findings_.error(location.line, element,
+                      "a <loop_joint> starts at 0, which is where the tree of joints places its links",
+                      quoted(coordinate));
+  }
+
   std::string known_coordinates(const std::string& name) const {
     const auto joint = joints_.find(name);
     if (joint == joints_.end()) return "the name of a joint's coordinate";
@@ -249,6 +280,7 @@ class ReferenceCheck {
   Findings& findings_;
   std::map<std::string, const LinkDescription*> links_;
   std::map<std::string, const JointDescription*> joints_, coordinates_;
+  std::set<std::string> loops_;  // names of joints that close loops
 };
 
 }  // namespace

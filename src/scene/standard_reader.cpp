@@ -188,7 +188,7 @@ void read_limits(const XmlElement& joint, const urdf::Joint& read, JointDescript
 
 void check_joint_structure(const XmlElement& joint) {
   joint.expect_at_most_one({"origin", "parent", "child", "axis", "axis2", "limit", "dynamics", "mimic", "release",
-                            "couple", "safety_controller", "calibration"});
+                            "couple", "child_origin", "safety_controller", "calibration"});
   check_attributes(joint, kJointAttributes);
   const std::string type = joint.xml().Attribute("type") ? joint.xml().Attribute("type") : "";
   if ((type == "revolute" || type == "prismatic") && !joint.child("limit"))
@@ -200,6 +200,25 @@ std::string read_link_name(const XmlElement& joint, const char* tag) {
   const std::optional<XmlElement> child = joint.child(tag);
   if (!child) joint.error("<" + std::string(tag) + " link=\"...\"/> is missing");
   return child ? child->text("link").value_or("") : "";
+}
+
+/// As a <joint> between stand-ins for its links, which keep urdfdom from complaining about the rest of the file.
+std::string printed_joint(const XmlElement& joint) {
+  tinyxml2::XMLDocument document;
+  tinyxml2::XMLElement* copy = joint.xml().DeepClone(&document)->ToElement();
+  document.InsertEndChild(copy);
+  copy->SetName("joint");
+  for (const char* tag : {"parent", "child"}) copy->FirstChildElement(tag)->SetAttribute("link", tag);
+  return printed(*copy);
+}
+
+Pose read_child_origin(const XmlElement& origin) {
+  origin.expect_only({"xyz", "rpy"});
+  const Vector3 rpy = origin.vector("rpy", Vector3::Zero());
+  urdf::Rotation rotation;
+  rotation.setFromRPY(rpy.x(), rpy.y(), rpy.z());
+  const Vector3 xyz = origin.vector("xyz", Vector3::Zero());
+  return {xyz, Quaternion(rotation.w, rotation.x, rotation.y, rotation.z).normalized()};
 }
 
 }  // namespace
@@ -243,13 +262,8 @@ JointDescription read_joint(const XmlElement& unnamed) {
   }
   if (joint.findings().error_count() > errors) return description;
 
-  // urdfdom joins by name; stand-ins for the links keep it from complaining about the rest of the file.
-  tinyxml2::XMLDocument links;
-  for (const std::string& name : {description.parent, description.child})
-    links.InsertEndChild(links.NewElement("link"))->ToElement()->SetAttribute("name", name.c_str());
-  if (description.parent == description.child) return description;  // reported with the tree
-  const urdf::ModelInterfaceSharedPtr model = read_alone(
-      joint, printed(*links.FirstChildElement()) + printed(*links.LastChildElement()) + printed(joint.xml()));
+  const urdf::ModelInterfaceSharedPtr model =
+      read_alone(joint, "<link name=\"parent\"/><link name=\"child\"/>" + printed_joint(joint));
   const urdf::JointConstSharedPtr read = model ? model->getJoint(description.name) : nullptr;
   if (!read) return description;
   description.origin = from_urdf(read->parent_to_joint_origin_transform);
@@ -259,6 +273,25 @@ JointDescription read_joint(const XmlElement& unnamed) {
   }
   if (read->mimic) description.mimic = Mimic{read->mimic->joint_name, read->mimic->multiplier, read->mimic->offset};
   read_limits(joint, *read, description);
+  return description;
+}
+
+JointDescription read_loop_joint(const XmlElement& unnamed) {
+  const XmlElement joint = unnamed.with_name(unnamed.text("name").value_or(""));
+  const std::size_t errors = joint.findings().error_count();
+  for (const char* tag : {"slide", "mimic"})
+    if (const std::optional<XmlElement> child = joint.child(tag))
+      child->error("a <loop_joint> cannot have a <" + std::string(tag) + ">");
+  joint.expect_only({"name", "type"}, {"origin", "parent", "child", "axis", "axis2", "limit", "dynamics", "mimic",
+                                       "release", "couple", "slide", "child_origin"});
+  JointDescription description;
+  if (joint.findings().error_count() == errors) description = read_joint(unnamed);
+  description.name = unnamed.text("name").value_or("");
+  description.location = unnamed.location();
+  if (const std::optional<XmlElement> origin = joint.child("child_origin"))
+    description.child_origin = read_child_origin(*origin);
+  if (description.kind == JointKind::Floating && joint.findings().error_count() == errors)
+    joint.error("a <loop_joint> must hold something: not 'floating' alone, nor <release kind=\"free\"/>");
   return description;
 }
 

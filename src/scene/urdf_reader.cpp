@@ -19,14 +19,17 @@ struct Place {
   const char* tag;
   const char* parent;
 };
-constexpr Place kPlaces[] = {{"beam", "link"},    {"release", "joint"},    {"axis2", "joint"},     {"slide", "joint"},
-                             {"couple", "joint"}, {"simulation", "robot"}, {"loop_joint", "robot"}};
+constexpr Place kPlaces[] = {{"beam", "link"},        {"release", "joint"},   {"axis2", "joint"},
+                             {"slide", "joint"},      {"couple", "joint"},    {"child_origin", "loop_joint"},
+                             {"simulation", "robot"}, {"loop_joint", "robot"}};
 
 /// Records our elements where they would be ignored like a stranger's.
 void check_places(const XmlElement& element) {
+  const std::string tag = element.tag();
   for (const XmlElement& child : element.children()) {
     for (const Place& place : kPlaces) {
-      if (child.tag() == place.tag && element.tag() != place.parent)
+      const bool is_here = tag == place.parent || (tag == "loop_joint" && std::string_view(place.parent) == "joint");
+      if (child.tag() == place.tag && !is_here)
         child.error("<" + child.tag() + "> must be a child of <" + place.parent + ">");
     }
   }
@@ -45,6 +48,7 @@ class SceneReader {
     for (const XmlElement& child : robot.children()) read_child(child);
     check_size(robot, "links", scene_.links.size(), kMostLinks);
     check_size(robot, "joints", scene_.joints.size(), kMostJoints);
+    check_size(robot, "loop joints", scene_.loop_joints.size(), kMostJoints);
     if (scene_.links.empty()) robot.error("at least one <link> is expected");
     check_tree(scene_, findings_);
     check_references(scene_, unreadable_, findings_);
@@ -64,8 +68,10 @@ class SceneReader {
       if (findings_.error_count() > errors) unreadable_.insert(scene_.joints.back().name);
     } else if (tag == "material") {
       check_with_urdfdom(child);
-    } else if (tag == "loop_joint") {
-      child.error("not yet supported in this version");
+    } else if (tag == "loop_joint" && scene_.loop_joints.size() <= kMostJoints) {
+      check_places(child);
+      scene_.loop_joints.push_back(read_loop_joint(child));
+      if (findings_.error_count() > errors) unreadable_.insert(scene_.loop_joints.back().name);
     } else if (tag == "simulation") {
       read_simulation(child, scene_);
     }
