@@ -48,7 +48,7 @@ const char* name_of(scene::JointKind kind) {
 void print_size(const Simulation& simulation) {
   const scene::SceneDescription& scene = simulation.scene();
   fmt::print("scene '{}': {} links, {} joints, {} nodes, {} degrees of freedom\n", scene.name, scene.links.size(),
-             scene.joints.size(), simulation.node_count(), simulation.degrees_of_freedom());
+             scene.joints.size() + scene.loop_joints.size(), simulation.node_count(), simulation.degrees_of_freedom());
   fmt::print("scheme {}, step {} s, gravity {} {} {} m/s^2\n", simulation.scheme(), simulation.step_size(),
              scene.gravity.x(), scene.gravity.y(), scene.gravity.z());
 }
@@ -66,7 +66,9 @@ void print_links(const Simulation& simulation) {
 }
 
 void print_joints(const Simulation& simulation) {
-  const std::vector<scene::JointDescription>& joints = simulation.scene().joints;
+  std::vector<scene::JointDescription> joints = simulation.scene().joints;
+  const std::vector<scene::JointDescription>& loops = simulation.scene().loop_joints;
+  joints.insert(joints.end(), loops.begin(), loops.end());
   if (joints.empty()) return;
   fmt::print("\n{:<24} {:<12} {:<20} {:<20} {}\n", "joint", "kind", "parent", "child", "coordinates");
   for (const scene::JointDescription& joint : joints)
