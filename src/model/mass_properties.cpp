@@ -34,6 +34,15 @@ struct Composite {
   }
 };
 
+/// The innermost node that a loop's slave, but not its master, hangs on.
+int start_of_loop(const std::vector<int>& parents, const JointMap& joint) {
+  std::vector<bool> carries_master(parents.size(), false);
+  for (int node = joint.master; node >= 0; node = parents[node]) carries_master[node] = true;
+  int start = joint.slave;
+  while (parents[start] >= 0 && !carries_master[parents[start]]) start = parents[start];
+  return start;
+}
+
 std::vector<Composite> composites(const std::vector<int>& parents, const Model& model) {
   std::vector<Composite> out(model.nodes.size());
   for (std::size_t i = 0; i < model.nodes.size(); ++i) {
@@ -47,12 +56,12 @@ std::vector<Composite> composites(const std::vector<int>& parents, const Model& 
   }
   for (int i = static_cast<int>(out.size()) - 1; i >= 0; --i)
     if (parents[i] >= 0) out[parents[i]] += out[i];  // parents come before their children
-  // A joint that closes a loop moves the beam on whose node it ends; the nodes of its chain carry nothing themselves.
+  // A joint that closes a loop moves what hangs in it; the nodes of its chain carry nothing themselves.
   for (std::size_t j = model.joints.size(); j-- > 0;) {
     const JointMap& joint = model.joints[j];
+    if (joint.master < 0 || out[joint.master].mass != 0) continue;
     const bool closes = parents[joint.slave] != joint.master && joint.kind != JointMapKind::Slide;
-    if (joint.master >= 0 && out[joint.master].mass == 0)
-      out[joint.master] = out[closes ? parents[joint.slave] : joint.slave];
+    out[joint.master] = out[closes ? start_of_loop(parents, joint) : joint.slave];
   }
   return out;
 }

@@ -150,11 +150,6 @@ TEST(JointErrors, Slide) {
   expect_error(release, release + R"(<slide start="0.8"/>)", 44, "a joint has one of <release>, <couple>, <slide>");
 }
 
-TEST(JointErrors, NotYetSupported) {
-  expect_error(R"(<link name="world"/>)", R"(<link name="world"/><loop_joint name="l" type="fixed"/>)", 4,
-               "<loop_joint> of robot 'arm': not yet supported in this version");
-}
-
 TEST(TreeErrors, Names) {
   expect_one_error(tree(joint("i", "w", "a") + joint("i", "a", "b") + joint("k", "b", "c")), 3,
                    "<joint> 'i': name is taken, by line 2");

@@ -1,0 +1,251 @@
+// Loops with a flexible link in them, closed by master and slave: invariants, closed forms, and the same mechanism cut
+// at different places.
+#include <cmath>
+
+#include "reference/dynamics_runs.h"
+#include "support/loops.h"
+
+namespace flexarm::test {
+namespace {
+
+using scene::JointKind;
+
+constexpr double kPi = 3.14159265358979323846;
+const Vector3 kAcross(0, 1, 0);
+
+scene::DirectSection soft() {
+  return section(2e4, 1e4, 150, 200, 0.5, 0.02, 0.01);
+}
+
+enum class Cut { Ground, GroundFromRocker, Coupler };
+
+/// Crank, coupler with a body beside it, and rocker, flexible, in the x-z plane; driven by its weight.
+SceneBuilder four_bar(Cut cut) {
+  SceneBuilder b;
+  b.scene.gravity = {1, 0, -9.81};
+  b.beam("crank", {{0.1, 0, 0.4}}, soft(), 2, 2);
+  b.beam("coupler", {{1, 0, 0.2}}, soft(), 2, 2);
+  const Vector3 rocker(0.2, 0, -0.7), hip(1.1, 0, 0.6);
+  b.beam("rocker", {cut == Cut::Coupler ? Vector3(-rocker) : rocker}, soft(), 2, 2);
+  b.body("body", 0.5, {0.05, 0.1, 0.1}, Vector3(0.02, 0.01, 0.015).asDiagonal());
+  b.joint("ground", JointKind::Continuous, "world", "crank", {0, 0, 0}, kAcross);
+  b.joint("knee", JointKind::Continuous, "crank", "coupler", {0.1, 0, 0.4}, kAcross);
+  b.joint("glue", JointKind::Fixed, "coupler", "body", {0.5, 0, 0.1});
+  if (cut == Cut::Coupler) {
+    b.joint("foot", JointKind::Continuous, "world", "rocker", hip + rocker, kAcross);
+    close_loop(b, "hip", JointKind::Continuous, "coupler", "rocker", -rocker, kAcross);
+  } else {
+    b.joint("hip", JointKind::Continuous, "coupler", "rocker", {1, 0, 0.2}, kAcross);
+    close_loop(b, "foot", JointKind::Continuous, "world", "rocker", rocker, kAcross);
+    if (cut == Cut::GroundFromRocker) {  // the same joint, with the roles of its links exchanged
+      scene::JointDescription& foot = b.scene.loop_joints.back();
+      std::swap(foot.parent, foot.child);
+      std::swap(foot.origin, foot.child_origin);
+    }
+  }
+  return b;
+}
+
+TEST(FlexibleLoop, FourBarKeepsItsEnergyOverLargeSteps) {
+  for (const Cut cut : {Cut::Ground, Cut::GroundFromRocker, Cut::Coupler})
+    for (const char* scheme : {"em", "std", "edmc2", "beta2_repaired"}) {
+      Simulation simulation(four_bar(cut).scene, options(scheme, 0.02, 1e-11));
+      InvariantDrift drift(simulation);
+      run(simulation, 40, [&] { drift.observe(); });
+      EXPECT_LT(drift.energy(), 1e-12) << scheme;
+      EXPECT_GT(std::abs(simulation.position(0)), 1);
+    }
+}
+
+// Where the loop is cut does not matter, but for the sign of a coordinate whose links change roles.
+TEST(FlexibleLoop, FourBarMovesTheSameWhereverItIsCut) {
+  for (const char* scheme : {"em", "m1", "newmark", "hht3"}) {
+    std::vector<Simulation> simulations;
+    for (const Cut cut : {Cut::Ground, Cut::GroundFromRocker, Cut::Coupler})
+      simulations.emplace_back(four_bar(cut).scene, options(scheme, 0.005, 1e-12));
+    const auto value = [](const Simulation& s, const char* name) { return s.position(*s.find_coordinate(name)); };
+    for (int n = 0; n < 60; ++n)
+      for (Simulation& simulation : simulations) ASSERT_TRUE(simulation.step().converged) << scheme;
+    EXPECT_GT(std::abs(value(simulations[0], "foot")), 0.05);
+    // The maps of a step are exact in conserving schemes, but their averages are not the same functions.
+    for (const char* name : {"ground", "knee", "hip", "foot"}) {
+      const double expected = value(simulations[0], name);
+      const double sign = std::string(name) == "foot" ? -1 : 1;
+      EXPECT_NEAR(sign * value(simulations[1], name), expected, 1e-9) << scheme << " " << name;
+      EXPECT_NEAR(value(simulations[2], name), expected, 1e-9) << scheme << " " << name;
+    }
+  }
+}
+
+TEST(FlexibleLoop, WorkOfADriveAccountsForTheEnergy) {
+  for (const char* driven : {"ground", "knee", "foot"}) {
+    SceneBuilder b = four_bar(Cut::Ground);
+    b.scene.motions.push_back({driven, TimeFunction::parse("0.6*(1-cos(3*t))"), {}});
+    Simulation simulation(b.scene, options("em", 0.02, 1e-11));
+    InvariantDrift drift(simulation);
+    run(simulation, 40, [&] { drift.observe(); });
+    EXPECT_LT(drift.energy(), 1e-12) << driven;
+    EXPECT_GT(std::abs(simulation.energies().work), 0.1) << driven;
+  }
+}
+
+TEST(FlexibleLoop, EffortFrictionAndStopsActOnTheClosingJoint) {
+  SceneBuilder b = four_bar(Cut::Ground);
+  scene::JointDescription& foot = b.scene.loop_joints.back();
+  foot.damping = 0.2;
+  foot.friction = 0.1;
+  foot.limits = scene::JointLimits{-0.2, 0.2};
+  b.scene.efforts.push_back({"foot", TimeFunction(3), {}});
+  Simulation simulation(b.scene, options("em", 0.01, 1e-11));
+  InvariantDrift drift(simulation);
+  double most = 0, speed = 0;
+  const std::size_t index = *simulation.find_coordinate("foot");
+  run(simulation, 300, [&] {
+    drift.observe();
+    most = std::max(most, std::abs(simulation.position(index)));
+    speed = std::max(speed, std::abs(simulation.velocity(index)));
+  });
+  EXPECT_LT(drift.energy(), 1e-11);
+  EXPECT_GT(most, 0.2);
+  // A stop is made so stiff that half a period of contact with all that it holds lasts ten steps.
+  EXPECT_LT(most, 0.2 + speed * 10 * 0.01 / kPi) << "the stop must hold";
+  EXPECT_GT(simulation.energies().dissipated, 0.1);
+}
+
+// ---------------------------------------------------------------- free flight
+
+/// A floating body with two beams; the tip of one is held by a joint to a body that turns on the tip of the other.
+SceneBuilder free_loop(JointKind kind, bool reversed) {
+  SceneBuilder b;
+  b.body("trunk", 1, {0.1, 0, 0.05}, Vector3(0.05, 0.06, 0.07).asDiagonal());
+  b.beam("left", {{0.6, 0.3, 0}, {0.9, 0, 0.1}}, soft(), 2, 2);
+  b.beam("right", {{0.5, -0.4, 0.1}}, soft(), 2, 3);
+  b.body("hand", 0.4, {0.05, 0.02, 0}, Vector3(0.004, 0.006, 0.005).asDiagonal());
+  b.joint("flight", JointKind::Floating, "world", "trunk");
+  b.joint("left", JointKind::Fixed, "trunk", "left");
+  b.joint("right", JointKind::Revolute, "trunk", "right", {0, -0.1, 0}, {0.6, 0, 0.8});
+  b.joint("hand", JointKind::Revolute, "right", "hand", {0.5, -0.4, 0.1}, {0, 0.6, 0.8});
+  scene::JointDescription& loop = close_loop(b, "loop", kind, "hand", "left", {0.9, 0, 0.1}, {0.48, 0.6, 0.64});
+  loop.axis2 = Vector3::UnitX();
+  loop.ratio = 0.3;
+  if (reversed) {
+    std::swap(loop.parent, loop.child);
+    std::swap(loop.origin, loop.child_origin);
+  }
+  initial_field(b, "trunk", {0.02, -0.01, 0.03}, {2, -3, 4});
+  return b;
+}
+
+class FreeLoop : public ::testing::TestWithParam<std::tuple<JointKind, bool>> {};
+
+TEST_P(FreeLoop, ConservesEnergyAndMomenta) {
+  const auto [kind, reversed] = GetParam();
+  if (reversed && kind == JointKind::Spherical) {
+    EXPECT_THROW(Simulation(free_loop(kind, true).scene), ModelError);
+    return;
+  }
+  SceneBuilder b = free_loop(kind, reversed);
+  set_drift(b, Vector3::Zero());
+  for (const char* scheme : {"em", "em_scaled", "std", "m1"}) {
+    Simulation simulation(b.scene, options(scheme, 0.01, 1e-11));
+    InvariantDrift drift(simulation);
+    run(simulation, 100, [&] { drift.observe(); });
+    EXPECT_LT(drift.energy(), std::string(scheme) == "m1" ? 1 : 1e-11) << scheme;
+    EXPECT_LT(drift.momentum(), 1e-11) << scheme;
+    EXPECT_LT(drift.angular_momentum(), 1e-11) << scheme;
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Kinds, FreeLoop,
+                         ::testing::Combine(::testing::Values(JointKind::Fixed, JointKind::Revolute,
+                                                              JointKind::Prismatic, JointKind::Spherical,
+                                                              JointKind::Universal, JointKind::Cylindrical,
+                                                              JointKind::Planar, JointKind::Screw),
+                                            ::testing::Bool()));
+
+// One beam whose end is welded to its own beginning.
+TEST(FlexibleLoop, ClosedRingFliesWithItsMomenta) {
+  SceneBuilder b;
+  b.beam("ring", {{0.5, 0, 0}, {0.5, 0.5, 0.2}, {0, 0.5, 0.2}, {0, 0, 0}}, soft(), 8, 2);
+  b.joint("flight", JointKind::Floating, "world", "ring");
+  scene::JointDescription weld;
+  weld.name = "weld";
+  weld.parent = weld.child = "ring";
+  b.scene.loop_joints.push_back(weld);
+  b.scene.loop_joints.back().child_origin.position = Vector3::Zero();
+  EXPECT_THROW(Simulation(b.scene), ModelError) << "both places are the same section";
+
+  // Opened by a little, the nearest section is the end's.
+  b.scene.links.back().beam->centreline.back().to = Vector3(0, 0.01, 0);
+  b.scene.loop_joints.back().origin.position = b.scene.loop_joints.back().child_origin.position = Vector3(0, 0.01, 0);
+  b.scene.loop_joints.back().parent = "trunk";
+  b.body("trunk", 0.1, {0, 0, 0}, Vector3(0.01, 0.01, 0.01).asDiagonal());
+  b.joint("glue", JointKind::Fixed, "ring", "trunk");
+  initial_field(b, "ring", {0.02, -0.01, 0.03}, {2, -3, 4});
+  set_drift(b, Vector3::Zero());
+  for (const char* scheme : {"em", "std"}) {
+    Simulation simulation(b.scene, options(scheme, 0.01, 1e-11));
+    InvariantDrift drift(simulation);
+    run(simulation, 100, [&] { drift.observe(); });
+    EXPECT_LT(drift.energy(), 1e-11) << scheme;
+    EXPECT_LT(drift.momentum(), 1e-11) << scheme;
+    EXPECT_LT(drift.angular_momentum(), 1e-11) << scheme;
+  }
+}
+
+// ---------------------------------------------------------------- statics and modes
+
+enum class Ends { Clamped, ClampedBeside, Hinged };
+
+/// A beam of unit length along x that both its ends hold.
+SceneBuilder held_beam(Ends ends, int elements) {
+  SceneBuilder b;
+  b.beam("beam", {{1, 0, 0}}, section(1e6, 4e5, 50, 100, 0.5, 1e-4, 5e-5), elements, 2);
+  if (ends == Ends::Hinged) {
+    b.joint("near", JointKind::Universal, "world", "beam", {0, 0, 0}, {0, 1, 0}).axis2 = Vector3(0, 0, 1);
+    close_loop(b, "far", JointKind::Spherical, "world", "beam", {1, 0, 0});
+  } else if (ends == Ends::Clamped) {
+    b.joint("near", JointKind::Fixed, "world", "beam");
+    close_loop(b, "far", JointKind::Fixed, "world", "beam", {1, 0, 0});
+  } else {  // by a body that sticks out from the tip
+    b.body("bracket", 0, Vector3::Zero(), Matrix3::Zero());
+    b.joint("near", JointKind::Fixed, "world", "beam");
+    b.joint("glue", JointKind::Fixed, "beam", "bracket", {1, 0, 0.2});
+    close_loop(b, "far", JointKind::Fixed, "world", "bracket", {0.1, 0.3, 0});
+  }
+  return b;
+}
+
+// Bending and shear by a uniform load so small that the beam's stretching counts for less than 1e-7.
+TEST(FlexibleLoop, SagOfABeamHeldAtBothEnds) {
+  const double load = 1e-3, ei = 100, ga = 4e5;
+  for (const Ends ends : {Ends::Clamped, Ends::ClampedBeside, Ends::Hinged}) {
+    const double expected = load / ei * (ends == Ends::Hinged ? 5 : 1) / 384 + load / ga / 8;
+    double error[3];
+    for (int refinement = 0; refinement < 3; ++refinement) {
+      SceneBuilder b = held_beam(ends, 2 << refinement);
+      b.scene.distributed_loads.push_back({"beam", {0, 0, load}, scene::LoadFrame::World, TimeFunction(1), {}});
+      b.probe("middle", "beam", {0.5, 0, 0});
+      Simulation simulation(b.scene, options("newmark", 0.01, 1e-13));
+      ASSERT_TRUE(simulation.solve_static(1).converged);
+      error[refinement] = std::abs(simulation.probe(0).pose.position.z() / expected - 1);
+    }
+    // Displacements of quadratic elements at their nodes converge at fourth order.
+    EXPECT_LT(error[1], 0.1 * error[0] + 1e-7);
+    EXPECT_LT(error[2], 0.1 * error[1] + 1e-7);
+    EXPECT_LT(error[2], 1e-3);
+  }
+}
+
+// First frequency of a slender beam: 4.730041^2 or pi^2, times sqrt(EI / m L^4).
+TEST(FlexibleLoop, FrequencyOfABeamHeldAtBothEnds) {
+  for (const Ends ends : {Ends::Clamped, Ends::ClampedBeside, Ends::Hinged}) {
+    const Simulation simulation(held_beam(ends, 16).scene);
+    const double number = ends == Ends::Hinged ? kPi : 4.730040744862704;
+    const double expected = number * number * std::sqrt(100 / 0.5) / (2 * kPi);
+    // Shear and rotary inertia lower it by number^2 (EI / GA + J / m) times a factor of order one.
+    EXPECT_NEAR(simulation.natural_modes(1)[0].frequency / expected, 1, 2 * number * number * (100 / 4e5 + 1e-4));
+  }
+}
+
+}  // namespace
+}  // namespace flexarm::test
