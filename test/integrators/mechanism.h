@@ -5,7 +5,7 @@
 #include "flexarm/joints/joint_kinematics.h"
 #include "flexarm/model/model_builder.h"
 #include "flexarm/simulation/observables.h"
-#include "support/scene_builder.h"
+#include "support/loops.h"
 
 namespace flexarm::test {
 
@@ -95,6 +95,15 @@ inline scene::SceneDescription every_joint_scene(bool floating) {
   cam.slide = scene::SlideDescription{0.3, JointKind::Cam};
   cam.slide->offset = {0.05, -0.1, 0.15};
   cam.profile = std::make_shared<CamProfile>(CamProfile::eccentric(0.2, -0.1));
+  // The follower's tip hangs on the hand; the mast's turns and travels on the plate, by a joint from its side.
+  close_loop(builder, "clasp", JointKind::Universal, "hand", "follower", Vector3(0.5, 0, 0.2), Vector3(0.6, 0, 0.8))
+      .axis2 = Vector3(0, 0.8, 0.6);
+  scene::JointDescription& ring =
+      close_loop(builder, "ring", JointKind::Cylindrical, "plate", "mast", Vector3(0, 0.3, 0.5), Vector3(2, 1, 2) / 3);
+  std::swap(ring.parent, ring.child);
+  std::swap(ring.origin, ring.child_origin);
+  if (!floating)
+    for (scene::JointDescription& loop : builder.scene.loop_joints) loop.damping = 0.3, loop.friction = 0.2;
   if (floating) return builder.scene;
 
   builder.scene.gravity = Vector3(0.3, -0.2, -2);
@@ -131,17 +140,10 @@ inline State random_state(const Model& model, RandomSource& random, double size)
       state.released[coordinate.joint].displacement[coordinate.component] =
           coordinate.mimic.value(state.released[master.joint].displacement[master.component]);
     }
-  // Slaves and free nodes in their order: masters come first.
-  std::vector<int> joint_of(model.nodes.size(), -1);
-  for (std::size_t j = 0; j < model.joints.size(); ++j) joint_of[model.joints[j].slave] = static_cast<int>(j);
   std::vector<NodePose> poses(model.nodes.size());
   for (std::size_t i = 0; i < model.nodes.size(); ++i) {
     NodeState& node = state.nodes[i];
-    if (joint_of[i] >= 0) {
-      poses[i] = slave_pose(model, joint_of[i], poses, state.released[joint_of[i]]);
-      node.position = poses[i].position;
-      node.orientation = poses[i].orientation;
-    } else {
+    if (!slave[i]) {
       node.position += size * random.vector();
       node.orientation = (random.rotation(size) * node.orientation).normalized();
     }
@@ -150,6 +152,12 @@ inline State random_state(const Model& model, RandomSource& random, double size)
     node.angular_velocity = random.vector();
     node.acceleration = random.vector();
     node.angular_acceleration = random.vector();
+  }
+  for (std::size_t j = 0; j < model.joints.size(); ++j) {  // root to leaf
+    const int node = model.joints[j].slave;
+    poses[node] = slave_pose(model, static_cast<int>(j), poses, state.released[j]);
+    state.nodes[node].position = poses[node].position;
+    state.nodes[node].orientation = poses[node].orientation;
   }
   for (MassPointState& point : state.mass_points) point = {random.vector(), random.vector()};
   for (Vector6& rate : state.strain_rates) rate = random.vector6();

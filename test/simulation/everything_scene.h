@@ -1,12 +1,12 @@
 #pragma once
 /// One scene with all that a scene can have.
 
-#include "support/scene_builder.h"
+#include "support/loops.h"
 
 namespace flexarm::test {
 
 /// Beams of all orders, every kind of joint, dead and follower loads with expressions and tables, friction, damping,
-/// limits, mimic, prescribed motion, efforts and material damping, under gravity.
+/// limits, mimic, a loop, prescribed motion, efforts and material damping, under gravity.
 inline SceneBuilder everything_scene() {
   using scene::JointKind;
   SceneBuilder b;
@@ -53,6 +53,12 @@ inline SceneBuilder everything_scene() {
   scene::JointDescription& cam = b.joint("cam", JointKind::Cam, "beam2", "valve", {0.5, 0, 0}, {0, 1, 0});
   cam.profile = std::make_shared<CamProfile>(CamProfile::eccentric(0.05, 0.01));
   cam.damping = 0.1;
+  b.beam("strut", {{0.3, 0.2, 0}}, s, 2, 2);
+  b.joint("strut", JointKind::Spherical, "beam4", "strut", {0.5, 0, 0});
+  scene::JointDescription& loop = close_loop(b, "loop", JointKind::Universal, "beam4", "strut", {0.3, 0.2, 0});
+  loop.axis2 = Vector3::UnitX();
+  loop.damping = 0.5;
+  loop.friction = 0.05;
   b.scene.motions.push_back({"driven", TimeFunction::parse("0.05*sin(5*t)"), {}});
   b.scene.efforts.push_back({"elbow", TimeFunction::parse("t < 1 ? sin(10*t) : 0.5"), {}});
   b.scene.efforts.push_back({"continuous", TimeFunction::parse("0:0 1:0.2 2:0"), {}});
