@@ -5,7 +5,8 @@ namespace flexarm {
 InitialVelocity::InitialVelocity(const scene::SceneDescription& scene, MechanismBuilder& mechanism)
     : scene_(scene), mechanism_(mechanism), model_(mechanism.model), joint_of_(model_.nodes.size(), -1) {
   for (const scene::InitialLink& field : scene.initial_links) fields_[mechanism.link_index(field.link)] = &field;
-  for (const scene::InitialJoint& initial : scene.initial_joints) initial_rates_[initial.coordinate] = initial.velocity;
+  for (const scene::InitialJoint& initial : scene.initial_joints)
+    if (initial.gives_velocity || initial.velocity != 0) initial_rates_[initial.coordinate] = initial.velocity;
   for (std::size_t j = 0; j < model_.joints.size(); ++j) joint_of_[model_.joints[j].slave] = static_cast<int>(j);
   for (const JointRecord& record : mechanism.records())
     if (record.closed_node >= 0) joint_of_[record.closed_node] = -1;
@@ -111,7 +112,7 @@ double InitialVelocity::given_rate(const Coordinate& coordinate, bool& is_given)
   }
   const auto found = initial_rates_.find(coordinate.name);
   if (found == initial_rates_.end()) return 0;
-  is_given = is_given || found->second != 0;  // an initial position alone does not speak of velocity
+  is_given = true;
   return found->second;
 }
 

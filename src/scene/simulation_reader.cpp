@@ -85,7 +85,8 @@ void read_initial(const XmlElement& initial, SceneDescription& scene) {
     if (!initial.has("position") && !initial.has("velocity"))
       initial.error("attribute 'position' or 'velocity' is missing");
     scene.initial_joints.push_back({initial.text("joint").value_or(""), initial.number("position", kAnyNumber, 0),
-                                    initial.number("velocity", kAnyNumber, 0), initial.location()});
+                                    initial.number("velocity", kAnyNumber, 0), initial.location(),
+                                    initial.has("velocity")});
   }
 }
 

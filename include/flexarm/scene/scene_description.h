@@ -218,6 +218,7 @@ struct InitialJoint {
   std::string coordinate;
   double position = 0, velocity = 0;
   SourceLocation location;
+  bool gives_velocity = false;  ///< where it is 0: the joint is at rest, whatever field its child link has
 };
 
 /// Initial rigid velocity field of a link, world axes: v(x) = linear + angular x (x - link origin). [m/s, rad/s]
