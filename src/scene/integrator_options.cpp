@@ -56,6 +56,13 @@ std::vector<OptionConflict> option_conflicts(const IntegratorDescription& integr
   return conflicts;
 }
 
+std::string slide_scheme_conflict(const std::string& slide, const std::string& scheme) {
+  if (slide == "sm_em" || is_newmark_family(scheme)) return "";
+  const std::string owner = slide == "sme" ? "std" : slide == "alg2" ? "m2" : "m1";
+  if (scheme == owner) return "";
+  return "slide scheme '" + slide + "' belongs to integrator scheme '" + owner + "', not to '" + scheme + "'";
+}
+
 IntegratorDescription with_scheme(IntegratorDescription integrator, const std::string& scheme) {
   integrator.scheme = scheme;
   for (const OptionConflict& conflict : option_conflicts(integrator)) {
