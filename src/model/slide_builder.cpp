@@ -101,7 +101,7 @@ Attachment MechanismBuilder::add_slide(const scene::JointDescription& joint) {
   JointMap map;
   map.kind = JointMapKind::Slide;
   map.line = slide_line(parent, slide);
-  map.algorithm = slide_algorithm(slide.scheme);
+  if (!scene::is_newmark_family(scene_.integrator.scheme)) map.algorithm = slide_algorithm(slide.scheme);
   const SlideLine& line = model.slide_lines[map.line];
   map.master = line.nodes.front();
   const std::string name = joint.name + scene::coordinate_suffixes(joint).front();

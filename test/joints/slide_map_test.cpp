@@ -135,6 +135,31 @@ TEST_P(SlideMapsOfLine, IncrementsAreMappedExactly) {
       }
 }
 
+// joints.md 4.4: with the contact in the middle the slave goes another way than the maps do, by -Delta I^j Delta r_j /
+// 2 within an element, and by the whole way over the line as it was at a border; less twice what it was off the line.
+TEST_P(SlideMapsOfLine, ContactInTheMiddleDoesTheWorkOfItsDefect) {
+  RandomSource random(7);
+  for (const SlideStep form : {SlideStep::MidContact, SlideStep::EnterMid})
+    for (const auto& [from, to] : kTravels) {
+      Travel step(random, GetParam(), 0.4);
+      step.set_step(form);
+      step.from = from;
+      step.to = to;
+      const Vector3 off = 0.01 * random.vector(), r00 = slide_pose(step.line, step.begin, from).position,
+                    r01 = slide_pose(step.line, step.end, from).position,
+                    r10 = slide_pose(step.line, step.begin, to).position,
+                    r11 = slide_pose(step.line, step.end, to).position;
+      const SlideMaps maps = step.maps(Vector6::Zero(), true, false);
+      Vector3 mapped = (to - from) * maps.released_left.head<3>();
+      for (int j = 0; j < maps.count; ++j)
+        mapped += maps.left[j](0, 0) * (step.end[maps.first + j].position - step.begin[maps.first + j].position);
+      const Vector3 actual = slide_pose(step.travel(), r00 + off).position - (r00 + off);
+      const Vector3 defect =
+          form == SlideStep::MidContact ? Vector3(-0.5 * (r11 - r10 - r01 + r00)) : Vector3(r10 - r00);
+      EXPECT_LE((actual - mapped - defect + 2 * off).norm(), 1e-14) << from << " to " << to;
+    }
+}
+
 // Sum of forces and of moments about the origin, with mean arms, are those of the slave.
 TEST_P(SlideMapsOfLine, MomentaArePassedOn) {
   RandomSource random(2);
