@@ -154,6 +154,17 @@ bool StepSystem::is_on_line(const JointMap& joint, int j) const {
   return line.overshoot(to) <= largest && pieces <= SlideLine::kMostPieces;
 }
 
+SlideTravel StepSystem::slide_travel(int j) const {
+  const JointMap& joint = model_.joints[j];
+  return {model_.slide_lines[joint.line],
+          begin_,
+          end_,
+          state_->released[j].displacement[0],
+          released_[j].displacement[0],
+          joint.algorithm,
+          scheme_.arm_weight()};
+}
+
 void StepSystem::set_slaves() {
   for (const Coordinate& coordinate : model_.coordinates)
     if (coordinate.mimicked >= 0) {
@@ -164,7 +175,10 @@ void StepSystem::set_slaves() {
   is_off_line_ = false;
   for (std::size_t j = 0; j < model_.joints.size(); ++j) {
     const JointMap& joint = model_.joints[j];
-    end_[joint.slave] = slave_pose(model_, static_cast<int>(j), end_, released_[j]);
+    if (joint.kind == JointMapKind::Slide && !static_ && scheme_.is_incremental())
+      end_[joint.slave] = slide_pose(slide_travel(static_cast<int>(j)), begin_[joint.slave].position);
+    else
+      end_[joint.slave] = slave_pose(model_, static_cast<int>(j), end_, released_[j]);
     if (joint.kind == JointMapKind::Slide) is_off_line_ = is_off_line_ || !is_on_line(joint, static_cast<int>(j));
   }
 }

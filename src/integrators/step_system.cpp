@@ -13,7 +13,15 @@ namespace {
 
 /// Most nodes that a slider may touch in a step.
 std::size_t slide_node_count(const Model& model) {
-  return model.slide_lines.empty() ? 0 : SlideLine::kMostPieces * slide::kMostNodes;
+  std::size_t most = 0;
+  for (const SlideLine& line : model.slide_lines) {
+    const int pieces = static_cast<int>(line.pieces.size());
+    for (int p = 0; p < pieces; ++p) {
+      const NodeRange active = line.support(p, std::min(p + SlideLine::kMostPieces, pieces) - 1);
+      most = std::max(most, static_cast<std::size_t>(active.end - active.first));
+    }
+  }
+  return most;
 }
 
 }  // namespace
@@ -162,15 +170,12 @@ void StepSystem::add_joint_efforts(int j, bool with_tangent) {
 }
 
 void StepSystem::fold_slide(int j, bool with_tangent) {
-  const JointMap& joint = model_.joints[j];
-  const SlideLine& line = model_.slide_lines[joint.line];
-  const Vector6 g = assembler_.slave_residual(joint.slave);
-  const double to = released_[j].displacement[0];
+  const Vector6 g = assembler_.slave_residual(model_.joints[j].slave);
+  const SlideTravel travel = slide_travel(j);
   if (!static_ && scheme_.is_incremental())
-    slide_incremental_maps(line, begin_, end_, state_->released[j].displacement[0], to, g, slide_maps_, with_tangent,
-                           scheme_.arm_weight());
+    slide_incremental_maps(travel, g, slide_maps_, with_tangent);
   else
-    slide_variational_maps(line, end_, to, g, slide_maps_, with_tangent);
+    slide_variational_maps(travel.line, end_, travel.to, g, slide_maps_, with_tangent);
   assembler_.fold(j, slide_maps_, with_tangent);
   add_joint_efforts(j, with_tangent);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "flexarm/joints/slide_variation.h"
 #include "flexarm/math/so3.h"
 
 namespace flexarm {
@@ -44,6 +45,32 @@ struct Configuration {
   }
 };
 
+/// What the forms of the incremental maps differ in.
+struct ContactRule {
+  double weight = 0.5;        ///< c, of the end of the step in the nodes' weights
+  double arm_weight = 0.5;    ///< where `moves_arm`: of the end in moment arms
+  bool moves_arm = false;     ///< what the arms lack goes into the moments (SM-EM)
+  bool is_in_middle = false;  ///< the contact holds in the middle of the step only
+};
+
+ContactRule contact_rule(SlideStep step, double arm_weight) {
+  switch (step) {
+    case SlideStep::MidContact:
+      return {0.5, arm_weight, false, true};
+    case SlideStep::EndContact:
+      return {0.5, arm_weight, false, false};
+    case SlideStep::EnterMid:
+      return {1.0, arm_weight, false, true};
+    case SlideStep::EnterEnd:
+      return {1.0, arm_weight, false, false};
+    case SlideStep::BeginWeights:
+      return {0.0, arm_weight, false, false};
+    case SlideStep::SmEm:
+      break;
+  }
+  return {arm_weight, arm_weight, true, false};
+}
+
 /// What a step makes of the line, for rows with scalars S.
 template <typename S>
 struct Step {
@@ -52,10 +79,12 @@ struct Step {
   double from;
   S to;
   int piece_from, piece_to;
-  int first, count;         // active nodes
-  double arm_weight = 0.5;  // of the end in moment arms
-  /// Weight of node j in the contact, with the same mean as the arms.
-  S contact(const S& at_begin, const S& at_end) const { return S(1 - arm_weight) * at_begin + S(arm_weight) * at_end; }
+  int first, count;  // active nodes
+  ContactRule rule;
+  /// Weight of node j in the contact.
+  S contact(const S& at_begin, const S& at_end) const {
+    return S(1 - rule.weight) * at_begin + S(rule.weight) * at_end;
+  }
 };
 
 template <typename S>
@@ -76,32 +105,31 @@ struct Scratch {
   }
 };
 
-template <typename S>
-void add_weights(const Step<S>& step, int piece, const std::array<S, slide::kMostNodes>& values, const S& factor,
-                 std::vector<S>& sum) {
-  const SlidePiece& p = step.line.pieces[piece];
-  for (int i = 0; i < p.node_count; ++i) sum[p.first_node + i - step.first] += factor * values[i];
+template <typename S, typename W>
+void add_weights(const Step<S>& step, const slide::LineWeights<W>& weights, const S& factor, std::vector<S>& sum) {
+  for (int i = 0; i < weights.count; ++i) sum[weights.first + i - step.first] += factor * weights.values[i];
 }
 
 template <typename S>
 void set_weights(const Step<S>& step, Scratch<S>& scratch) {
-  const SlidePiece &p = step.line.pieces[step.piece_from], &q = step.line.pieces[step.piece_to];
-  add_weights(step, step.piece_from, slide::weights(p, S(step.from)).values, S(1), scratch.begin);
-  add_weights(step, step.piece_to, slide::weights(q, step.to).values, S(1), scratch.end);
+  const SlideLine& line = step.line;
+  const SlidePiece &p = line.pieces[step.piece_from], &q = line.pieces[step.piece_to];
+  add_weights(step, slide::line_weights(line, step.piece_from, step.from), S(1), scratch.begin);
+  add_weights(step, slide::line_weights(line, step.piece_to, step.to), S(1), scratch.end);
   if (step.piece_from == step.piece_to) {
-    add_weights(step, step.piece_to, slide::divided_differences(q, step.from, step.to), S(1), scratch.difference);
+    add_weights(step, slide::line_differences(line, step.piece_to, step.from, step.to), S(1), scratch.difference);
     return;
   }
   // By way of the borders between both elements: each part is free of cancellation.
   const bool forward = step.piece_to > step.piece_from;
   const double leave = forward ? p.end : p.begin, enter = forward ? q.begin : q.end;
   const S change = step.to - step.from;
-  add_weights(step, step.piece_from, slide::divided_differences(p, step.from, S(leave)), (leave - step.from) / change,
+  add_weights(step, slide::line_differences(line, step.piece_from, step.from, leave), (leave - step.from) / change,
               scratch.difference);
-  add_weights(step, step.piece_to, slide::divided_differences(q, enter, step.to), (step.to - enter) / change,
+  add_weights(step, slide::line_differences(line, step.piece_to, enter, step.to), (step.to - enter) / change,
               scratch.difference);
-  scratch.difference[(forward ? p.first_node + p.node_count - 1 : p.first_node) - step.first] -= S(1) / change;
-  scratch.difference[(forward ? q.first_node : q.first_node + q.node_count - 1) - step.first] += S(1) / change;
+  scratch.difference[(forward ? p.end_node() - 1 : p.first_node) - step.first] -= S(1) / change;
+  scratch.difference[(forward ? q.first_node : q.end_node() - 1) - step.first] += S(1) / change;
 }
 
 /// Tangent-scaled increment from one rotation to another.
@@ -119,34 +147,35 @@ struct RotationSplit {
 template <typename S>
 RotationSplit<S> split_rotation(const Step<S>& step) {
   const S from(step.from), change = step.to - step.from;
-  const Matrix3T<S> at_00 = section_at(step.line, step.piece_from, from, step.begin).rotation,
-                    at_01 = section_at(step.line, step.piece_from, from, step.end).rotation,
-                    at_10 = section_at(step.line, step.piece_to, step.to, step.begin).rotation,
-                    at_11 = section_at(step.line, step.piece_to, step.to, step.end).rotation;
+  const Matrix3T<S> at_00 = frame_at(step.line, step.piece_from, from, step.begin).rotation,
+                    at_01 = frame_at(step.line, step.piece_from, from, step.end).rotation,
+                    at_10 = frame_at(step.line, step.piece_to, step.to, step.begin).rotation,
+                    at_11 = frame_at(step.line, step.piece_to, step.to, step.end).rotation;
   // Move, then slide; slide, then move.
   const Vector3T<S> a1 = increment(at_00, at_01), b1 = increment(at_01, at_11), b2 = increment(at_00, at_10),
                     a2 = increment(at_10, at_11);
   const SlidePiece& piece = step.line.pieces[step.piece_from];
   Vector3T<S> along1, along2;
   const bool same = step.piece_from == step.piece_to;
-  if (std::abs(real(change)) < (same ? kShort : 1e-9) * (piece.end - piece.begin)) {
+  if (std::abs(real(change)) < (same ? kShort : 1e-9) * piece.length()) {
     const S middle = S(0.5) * (from + step.to);
     const int at = step.line.piece_at(real(middle));
-    along1 = section_at(step.line, at, middle, step.end).spatial_curvature;
-    along2 = section_at(step.line, at, middle, step.begin).spatial_curvature;
+    along1 = frame_at(step.line, at, middle, step.end).spatial_curvature;
+    along2 = frame_at(step.line, at, middle, step.begin).spatial_curvature;
   } else {
     along1 = b1 / change;
     along2 = b2 / change;
   }
   const S c1 = S(1) / (S(1) - S(0.25) * so3::dot(a1, b1)), c2 = S(1) / (S(1) - S(0.25) * so3::dot(a2, b2));
   RotationSplit<S> out;
-  out.fixed = S(0.5) * (a1 + a2);
-  out.along =
-      S(0.5) * (c1 * (cayley::inverse_tangent(a1) * along1) + c2 * (cayley::inverse_tangent(a2).transpose() * along2));
+  const S end(step.rule.weight), begin(1 - step.rule.weight);
+  out.fixed = begin * a1 + end * a2;
+  out.along = begin * c1 * (cayley::inverse_tangent(a1) * along1) +
+              end * c2 * (cayley::inverse_tangent(a2).transpose() * along2);
   return out;
 }
 
-/// Everything that the rows of SM-EM consist of, except g.
+/// Everything that the rows consist of, except g.
 template <typename S>
 struct IncrementalRows {
   Vector3T<S> travel, turn;         // rho, kappa: the released row is travel . f + turn . m
@@ -158,6 +187,7 @@ template <typename S>
 IncrementalRows<S> incremental_rows(const Step<S>& step, Scratch<S>& scratch) {
   scratch.resize(step.count);
   set_weights(step, scratch);
+  const double c = step.rule.weight, a = step.rule.arm_weight;
   IncrementalRows<S> out;
   out.travel.setZero();
   out.mean_rotation.setZero();
@@ -165,8 +195,8 @@ IncrementalRows<S> incremental_rows(const Step<S>& step, Scratch<S>& scratch) {
   for (int j = 0; j < step.count; ++j) {
     const PoseT<S> begin = step.begin(step.first + j), end = step.end(step.first + j);
     scratch.rotation[j] = cayley::increment(begin.orientation, end.orientation);
-    out.travel += scratch.difference[j] * (S(step.arm_weight) * begin.position + S(1 - step.arm_weight) * end.position);
-    defect += S(step.arm_weight * (1 - step.arm_weight)) * scratch.difference[j] * (end.position - begin.position);
+    out.travel += scratch.difference[j] * (S(c) * begin.position + S(1 - c) * end.position);
+    if (step.rule.moves_arm) defect += S(a * (1 - a)) * scratch.difference[j] * (end.position - begin.position);
     interpolated += step.contact(scratch.begin[j], scratch.end[j]) * scratch.rotation[j];
     out.mean_rotation += S(1.0 / step.count) * scratch.rotation[j];
   }
@@ -203,7 +233,7 @@ template <typename S>
 S evaluate_variational(const Step<S>& step, const Vector6& g, Scratch<S>& scratch) {
   scratch.resize(step.count);
   const Vector3T<S> force = g.head<3>().template cast<S>(), moment = g.tail<3>().template cast<S>();
-  const slide::Weights<S> w = slide::weights(step.line.pieces[step.piece_to], step.to);
+  const slide::LineWeights<S> w = slide::line_weights(step.line, step.piece_to, step.to);
   for (int j = 0; j < step.count; ++j) {
     scratch.rows[j].template head<3>() = w.values[j] * force;
     scratch.rows[j].template tail<3>() = w.values[j] * moment;
@@ -219,37 +249,37 @@ S evaluate(Form form, const Step<S>& step, const Vector6& g, Scratch<S>& scratch
   return form == Form::Incremental ? evaluate_incremental(step, g, scratch) : evaluate_variational(step, g, scratch);
 }
 
-/// Columns of the slave at the end: dr = I^j dr_j + r' dX, spin = I_g^j spin_j + k dX.
+/// Columns of the slave at the end: dr = I^j dr_j + r' dX, spin = I_g^j spin_j + k dX; where the contact is in the
+/// middle, dr = d(2 I^j_c r_{j,1/2}).
 void set_right(const Step<double>& step, SlideMaps& maps) {
-  const SlidePiece& piece = step.line.pieces[step.piece_to];
-  const slide::Weights<double> w = slide::weights(piece, step.to);
-  const Section<double> section = section_at(step.line, step.piece_to, step.to, step.end);
-  maps.released_right << section.tangent, section.spatial_curvature;
+  const slide::LineWeights<double> w = slide::line_weights(step.line, step.piece_to, step.to);
+  const FrameVariation frame(step.line, step.piece_to, step.to, step.end);
   for (int j = 0; j < maps.count; ++j) maps.right[j].setZero();
-  slide::with_node_count(piece.node_count, [&](auto count) {
-    constexpr int N = decltype(count)::value;
-    std::array<Quaternion, N> orientation;
-    NodalValues<N> values, derivatives;
-    for (int i = 0; i < N; ++i) {
-      orientation[i] = step.end(piece.first_node + i).orientation;
-      values[i] = w.values[i];
-      derivatives[i] = w.derivatives[i];
-    }
-    GeneralisedShapeFunctions<N> functions;
-    LocalRotationVariation<N>(LocalRotations<N>(orientation)).evaluate(values, derivatives, functions);
-    for (int i = 0; i < N; ++i) {
-      Matrix6& right = maps.right[piece.first_node + i - maps.first];
-      right.topLeftCorner<3, 3>() = values[i] * Matrix3::Identity();
-      right.bottomRightCorner<3, 3>() = functions.values[i];
-    }
-  });
+  Vector3 tangent = Vector3::Zero();
+  const double c = step.rule.weight;
+  for (int i = 0; i < w.count; ++i) {
+    Matrix6& right = maps.right[w.first + i - maps.first];
+    right.topLeftCorner<3, 3>().diagonal().setConstant(step.rule.is_in_middle ? c * w.values[i] : w.values[i]);
+    right.bottomRightCorner<3, 3>() = frame.values[i];
+    const Vector3 end = step.end(w.first + i).position;
+    if (step.rule.is_in_middle)
+      tangent += c * w.derivatives[i] * (step.begin(w.first + i).position + end);
+    else
+      tangent += w.derivatives[i] * end;
+  }
+  if (step.rule.is_in_middle && c < 1) {
+    const slide::LineWeights<double> begin = slide::line_weights(step.line, step.piece_from, step.from);
+    for (int i = 0; i < begin.count; ++i)
+      maps.right[begin.first + i - maps.first].topLeftCorner<3, 3>().diagonal().array() += (1 - c) * begin.values[i];
+  }
+  maps.released_right << tangent, frame.spatial_curvature;
 }
 
 /// Left maps from rows for unit residuals.
 void set_left(Form form, const Step<double>& step, Scratch<double>& scratch, SlideMaps& maps) {
   if (form == Form::Variational) {
     maps.released_left = maps.released_right;
-    for (int j = 0; j < maps.count; ++j) maps.left[j] = maps.right[j].topLeftCorner<1, 1>()(0, 0) * Matrix6::Identity();
+    for (int j = 0; j < maps.count; ++j) maps.left[j] = maps.right[j](0, 0) * Matrix6::Identity();
     return;
   }
   const IncrementalRows<double> r = incremental_rows(step, scratch);
@@ -274,7 +304,7 @@ void set_geometric(Form form, const Step<double>& base, const Vector6& g, SlideM
                      base.piece_to,
                      base.first,
                      base.count,
-                     base.arm_weight};
+                     base.rule};
   step.to = Complex(base.to, kStep);
   maps.released_released = evaluate(form, step, g, scratch).imag() / kStep;
   for (int i = 0; i < maps.count; ++i) maps.master_released[i] = scratch.rows[i].imag() / kStep;
@@ -327,30 +357,54 @@ NodePose slide_pose(const SlideLine& line, const std::vector<NodePose>& nodes, d
   return pose;
 }
 
+NodePose slide_pose(const SlideTravel& travel, const Vector3& begin_position) {
+  NodePose pose = slide_pose(travel.line, travel.end, travel.to);
+  const ContactRule rule = contact_rule(travel.step(), travel.arm_weight);
+  if (!rule.is_in_middle) return pose;
+  pose.position = -begin_position;
+  const auto add = [&](double factor, double arc_length) {
+    const slide::LineWeights<double> w = slide::line_weights(travel.line, travel.line.piece_at(arc_length), arc_length);
+    for (int i = 0; i < w.count; ++i) {
+      const int node = travel.line.nodes[w.first + i];
+      pose.position += factor * w.values[i] * (travel.begin[node].position + travel.end[node].position);
+    }
+  };
+  add(1 - rule.weight, travel.from);
+  add(rule.weight, travel.to);
+  return pose;
+}
+
 void slide_variational_maps(const SlideLine& line, const std::vector<NodePose>& nodes, double arc_length,
                             const Vector6& g, SlideMaps& maps, bool with_tangent) {
   const int piece = line.piece_at(arc_length);
-  const Step<double> step{
-      line,  configuration(line, nodes),    configuration(line, nodes),   arc_length, arc_length, piece,
-      piece, line.pieces[piece].first_node, line.pieces[piece].node_count};
+  const NodeRange active = line.support(piece, piece);
+  const Step<double> step{line,
+                          configuration(line, nodes),
+                          configuration(line, nodes),
+                          arc_length,
+                          arc_length,
+                          piece,
+                          piece,
+                          active.first,
+                          active.end - active.first,
+                          {}};
   set_maps(Form::Variational, step, g, maps, with_tangent);
 }
 
-void slide_incremental_maps(const SlideLine& line, const std::vector<NodePose>& begin, const std::vector<NodePose>& end,
-                            double arc_length_begin, double arc_length_end, const Vector6& g, SlideMaps& maps,
-                            bool with_tangent, double arm_weight) {
-  const int from = line.piece_at(arc_length_begin), to = line.piece_at(arc_length_end);
-  const SlidePiece &low = line.pieces[std::min(from, to)], &high = line.pieces[std::max(from, to)];
+void slide_incremental_maps(const SlideTravel& travel, const Vector6& g, SlideMaps& maps, bool with_tangent) {
+  const SlideLine& line = travel.line;
+  const int from = line.piece_at(travel.from), to = line.piece_at(travel.to);
+  const NodeRange active = line.support(std::min(from, to), std::max(from, to));
   const Step<double> step{line,
-                          configuration(line, begin),
-                          configuration(line, end),
-                          arc_length_begin,
-                          arc_length_end,
+                          configuration(line, travel.begin),
+                          configuration(line, travel.end),
+                          travel.from,
+                          travel.to,
                           from,
                           to,
-                          low.first_node,
-                          high.first_node + high.node_count - low.first_node,
-                          arm_weight};
+                          active.first,
+                          active.end - active.first,
+                          contact_rule(travel.step(), travel.arm_weight)};
   set_maps(Form::Incremental, step, g, maps, with_tangent);
 }
 

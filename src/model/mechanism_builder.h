@@ -76,9 +76,9 @@ class MechanismBuilder {
   Attachment add_slide(const scene::JointDescription& joint);
   /// Lets the arc length of the slide made last follow the angle of its joint, both added last.
   void couple_slide(const scene::JointDescription& joint);
-  /// The smooth stretch that contains the arc length `start` of a flexible link, over beams welded to it; made once.
+  /// The smooth stretch that contains where a slide on a flexible link starts, over beams welded to it; made once.
   /// Arc lengths count from the link's origin, and are negative before it.
-  int slide_line(int link, double start);
+  int slide_line(int link, const scene::SlideDescription& slide);
   int add_line(const SlideLine& line);
   /// True where the section of node `after` is that of node `before` in place and direction.
   bool continues(int before, int after) const;

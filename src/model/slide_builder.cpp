@@ -1,12 +1,22 @@
 // Lines on which something slides, and the sections that slide on them.
 #include "mechanism_builder.h"
 
-namespace flexarm {
+#include "flexarm/scene/integrator_options.h"
 
+namespace flexarm {
 namespace {
 
 /// Of poses that are equal: relative to the distance from the origin, and in radians.
 constexpr double kSamePlace = 1e-9, kSameDirection = 1e-6;
+
+/// The thesis's strategies (Muñoz 2004, ch. 12; joints.md 4.4). `sme` is SM-EM on beams of scheme std (4.6).
+SlideAlgorithm slide_algorithm(const std::string& name) {
+  if (name == "alg1") return {SlideStep::MidContact, SlideStep::EnterEnd};
+  if (name == "alg2") return {SlideStep::BeginWeights, SlideStep::EnterEnd};
+  if (name == "alg3") return {SlideStep::EndContact, SlideStep::EnterEnd};
+  if (name == "alg4") return {SlideStep::MidContact, SlideStep::EnterMid};
+  return {};
+}
 
 }  // namespace
 
@@ -40,21 +50,22 @@ std::vector<int> MechanismBuilder::welded_beams(int link) const {
   return chain;
 }
 
-int MechanismBuilder::slide_line(int link, double start) {
+int MechanismBuilder::slide_line(int link, const scene::SlideDescription& slide) {
   const std::vector<int> chain = welded_beams(link);
   double begin = 0;
   for (const int before : chain) {
     if (before == link) break;
     begin -= meshes[before]->centreline.length();
   }
-  SlideLine line;
+  SlideLine line, empty;
+  line.smooth = empty.smooth = slide.smooth;
   for (const int beam : chain) {
     const double origin = begin;
     for (const MeshElement& element : meshes[beam]->mesh.elements) {
       const int base = meshes[beam]->first_node, front = base + element.nodes.front();
       if (!line.nodes.empty() && !continues(line.nodes.back(), front)) {  // a kink
-        if (start <= begin) return add_line(line);
-        line = SlideLine();
+        if (slide.start <= begin) return add_line(line);
+        line = empty;
       }
       if (line.nodes.empty() || line.nodes.back() != front) line.nodes.push_back(front);
       const int first = static_cast<int>(line.nodes.size()) - 1, count = static_cast<int>(element.nodes.size());
@@ -84,10 +95,13 @@ Attachment MechanismBuilder::add_slide(const scene::JointDescription& joint) {
     throw ModelError(where +
                      "the place on the line is 'start', beside it is 'offset'; xyz of the joint's <origin> must "
                      "be 0 0 0");
+  const std::string conflict = scene::slide_scheme_conflict(slide.scheme, scene_.integrator.scheme);
+  if (!conflict.empty()) throw ModelError(where + conflict);
   const LinkMesh& mesh = *meshes[parent];
   JointMap map;
   map.kind = JointMapKind::Slide;
-  map.line = slide_line(parent, slide.start);
+  map.line = slide_line(parent, slide);
+  if (!scene::is_newmark_family(scene_.integrator.scheme)) map.algorithm = slide_algorithm(slide.scheme);
   const SlideLine& line = model.slide_lines[map.line];
   map.master = line.nodes.front();
   const std::string name = joint.name + scene::coordinate_suffixes(joint).front();

@@ -9,10 +9,6 @@ bool is_one_of(std::string_view name, std::initializer_list<std::string_view> na
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-bool is_newmark_family(std::string_view scheme) {
-  return is_one_of(scheme, {"newmark", "hht1", "hht2", "hht3"});
-}
-
 /// Schemes whose kernels take any interpolation; the energy-momentum ones are built on the local one.
 bool is_for_all_interpolations(std::string_view scheme) {
   return is_newmark_family(scheme) ||
@@ -20,6 +16,10 @@ bool is_for_all_interpolations(std::string_view scheme) {
 }
 
 }  // namespace
+
+bool is_newmark_family(std::string_view scheme) {
+  return is_one_of(scheme, {"newmark", "hht1", "hht2", "hht3"});
+}
 
 const std::vector<std::string_view>& scheme_names() {
   static const std::vector<std::string_view> names = {
@@ -54,6 +54,13 @@ std::vector<OptionConflict> option_conflicts(const IntegratorDescription& integr
   require(!is_additive || interpolation == Interpolation::Total, "weak_form",
           "the additive form needs interpolation=\"total\"");
   return conflicts;
+}
+
+std::string slide_scheme_conflict(const std::string& slide, const std::string& scheme) {
+  if (slide == "sm_em" || is_newmark_family(scheme)) return "";
+  const std::string owner = slide == "sme" ? "std" : slide == "alg2" ? "m2" : "m1";
+  if (scheme == owner) return "";
+  return "slide scheme '" + slide + "' belongs to integrator scheme '" + owner + "', not to '" + scheme + "'";
 }
 
 IntegratorDescription with_scheme(IntegratorDescription integrator, const std::string& scheme) {

@@ -78,15 +78,20 @@ class SparseAssembler::PatternBuilder {
     const JointMap& joint = a_.model_.joints[j];
     const SlideLine& line = a_.model_.slide_lines[joint.line];
     const int s = a_.dof_.variable_of_node(joint.slave), u = a_.dof_.variable_of_joint(j);
-    const int reach = SlideLine::kMostPieces * line.pieces.front().node_count;
     std::vector<int> place(a_.dof_.size.size(), -1);  // of a variable in the line
     for (std::size_t k = 0; k < line.nodes.size(); ++k) place[line.nodes[k]] = static_cast<int>(k);
-    const int count = static_cast<int>(line.nodes.size());
+    const int count = static_cast<int>(line.nodes.size()), pieces = static_cast<int>(line.pieces.size());
+    std::vector<int> partners_end(count);  // a node is active together with those between it and this one
+    for (int p = 0; p < pieces; ++p) {
+      const NodeRange active = line.support(p, std::min(p + SlideLine::kMostPieces, pieces) - 1);
+      for (int k = active.first; k < active.end; ++k) partners_end[k] = std::max(partners_end[k], active.end);
+    }
     // Blocks of `other` with every node of the line with which it can be active.
     const auto blocks = [&](int other, bool other_is_row) {
       const int first = static_cast<int>(a_.slide_blocks_.size());
       for (int k = 0; k < count; ++k) {
-        const bool together = place[other] < 0 || std::abs(place[other] - k) <= reach;
+        const int at = place[other];
+        const bool together = at < 0 || std::max(at, k) < partners_end[std::min(at, k)];
         a_.slide_blocks_.push_back(!together      ? -1
                                    : other_is_row ? block(other, line.nodes[k])
                                                   : block(line.nodes[k], other));

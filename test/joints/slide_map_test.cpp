@@ -11,19 +11,36 @@ namespace {
 
 using namespace test;
 
-/// A line of three elements of one order, 1.5 m long, bent and twisted at random at both ends of a step.
-struct SlideStep {
+/// Kinds of lines: elements of one order, or of all, plain or smooth.
+struct LineKind {
+  int order;  // 0: 3, 2, 4
+  bool smooth;
+  friend std::ostream& operator<<(std::ostream& out, const LineKind& kind) {
+    return out << (kind.smooth ? "smooth" : "elements") << " of order " << kind.order;
+  }
+};
+
+/// A line of three elements, 1.5 m long, bent and twisted at random at both ends of a step.
+struct Travel {
   SlideLine line;
   std::vector<NodePose> begin, end;
   double from = 0, to = 0, arm_weight = 0.5;
+  SlideAlgorithm algorithm;
 
-  SlideStep(RandomSource& random, int order, double size) {
+  Travel(RandomSource& random, const LineKind& kind, double size) {
     const double borders[] = {0, 0.4, 1.1, 1.5};
-    for (int e = 0; e < 3; ++e) line.pieces.push_back({e * order, order + 1, borders[e], borders[e + 1]});
-    for (int i = 0; i <= 3 * order; ++i) {
+    const int mixed[] = {3, 2, 4};
+    line.smooth = kind.smooth;
+    for (int e = 0, node = 0; e < 3; ++e) {
+      const int order = kind.order > 0 ? kind.order : mixed[e];
+      line.pieces.push_back({node, order + 1, borders[e], borders[e + 1]});
+      node += order;
+    }
+    for (int i = 0, e = 0; i < line.pieces.back().end_node(); ++i) {
       line.nodes.push_back(i);
-      const SlidePiece& piece = line.pieces[std::min(i / order, 2)];
-      const double xi = node_coordinate(order + 1, i - piece.first_node);
+      if (i >= line.pieces[e].end_node()) ++e;
+      const SlidePiece& piece = line.pieces[e];
+      const double xi = node_coordinate(piece.node_count, i - piece.first_node);
       const double x = piece.begin + 0.5 * (1 + xi) * (piece.end - piece.begin);
       NodePose pose;
       pose.position = Vector3(x, 0.3 * x * x, -0.2 * x) + 0.05 * random.vector();
@@ -42,8 +59,8 @@ struct SlideStep {
     pose.rotation = pose.orientation.toRotationMatrix();
   }
 
-  SlideStep perturbed(int column, double h) const {  // 0: arc length, then {dr, spin} of the nodes
-    SlideStep out = *this;
+  Travel perturbed(int column, double h) const {  // 0: arc length, then {dr, spin} of the nodes
+    Travel out = *this;
     if (column == 0) {
       out.to += h;
       return out;
@@ -57,10 +74,12 @@ struct SlideStep {
     set(pose);
     return out;
   }
+  SlideTravel travel() const { return {line, begin, end, from, to, algorithm, arm_weight}; }
+  void set_step(SlideStep step) { algorithm = {step, step}; }
   SlideMaps maps(const Vector6& g, bool incremental, bool with_tangent = true) const {
     SlideMaps out;
     if (incremental)
-      slide_incremental_maps(line, begin, end, from, to, g, out, with_tangent, arm_weight);
+      slide_incremental_maps(travel(), g, out, with_tangent);
     else
       slide_variational_maps(line, end, to, g, out, with_tangent);
     return out;
@@ -81,38 +100,71 @@ const std::pair<double, double> kTravels[] = {
     {0.5, 0.8}, {0.8, 0.5}, {0.3, 0.45},       {0.45, 0.3},       {0.1, 1.3}, {1.3, 0.1},        {0.4, 0.7},
     {0.7, 0.4}, {0.6, 0.6}, {0.6, 0.6 + 1e-7}, {0.4, 0.4 + 1e-9}, {0, 1.5},   {0.399999, 0.4001}};
 
-class SlideMapsOfOrder : public ::testing::TestWithParam<int> {};
+class SlideMapsOfLine : public ::testing::TestWithParam<LineKind> {};
 
-// joints.md 4.5: the section's increments are exactly what the maps make of the nodes' and of Delta X.
-TEST_P(SlideMapsOfOrder, IncrementsAreMappedExactly) {
+const SlideStep kSteps[] = {SlideStep::SmEm,     SlideStep::MidContact, SlideStep::EndContact,
+                            SlideStep::EnterMid, SlideStep::EnterEnd,   SlideStep::BeginWeights};
+const SlideStep kStepsOnTheLine[] = {SlideStep::SmEm, SlideStep::EndContact, SlideStep::EnterEnd,
+                                     SlideStep::BeginWeights};
+
+// joints.md 4.3 to 4.5: the section's increments are exactly what the maps make of the nodes' and of Delta X. For the
+// weights of each of these steps that is so over any border.
+TEST_P(SlideMapsOfLine, IncrementsAreMappedExactly) {
   RandomSource random(1);
-  for (const double size : {0.0, 1e-6, 0.1, 0.6})
+  for (const SlideStep form : kStepsOnTheLine)
+    for (const double size : {0.0, 1e-6, 0.1, 0.6})
+      for (const auto& [from, to] : kTravels) {
+        Travel step(random, GetParam(), size);
+        step.set_step(form);
+        step.arm_weight = random.number() < 0 ? 0 : 0.5;
+        step.from = from;
+        step.to = to;
+        const SlideMaps maps = step.maps(Vector6::Zero(), true, false);
+        const NodePose before = slide_pose(step.line, step.begin, from), after = slide_pose(step.line, step.end, to);
+        Vector6 expected, mapped = (to - from) * maps.released_left;
+        expected << after.position - before.position, cayley::increment(before.orientation, after.orientation);
+        for (int j = 0; j < maps.count; ++j) {
+          const int node = maps.first + j;
+          Vector6 increment;
+          increment << step.end[node].position - step.begin[node].position,
+              cayley::increment(step.begin[node].orientation, step.end[node].orientation);
+          mapped += maps.left[j] * increment;
+        }
+        // Short travels take the curvature in the middle: error of third order in a travel of 1e-5.
+        EXPECT_LE((mapped - expected).norm(), 2e-14) << size << ": " << from << " to " << to;
+      }
+}
+
+// joints.md 4.4: with the contact in the middle the slave goes another way than the maps do, by -Delta I^j Delta r_j /
+// 2 within an element, and by the whole way over the line as it was at a border; less twice what it was off the line.
+TEST_P(SlideMapsOfLine, ContactInTheMiddleDoesTheWorkOfItsDefect) {
+  RandomSource random(7);
+  for (const SlideStep form : {SlideStep::MidContact, SlideStep::EnterMid})
     for (const auto& [from, to] : kTravels) {
-      SlideStep step(random, GetParam(), size);
-      step.arm_weight = random.number() < 0 ? 0 : 0.5;
+      Travel step(random, GetParam(), 0.4);
+      step.set_step(form);
       step.from = from;
       step.to = to;
+      const Vector3 off = 0.01 * random.vector(), r00 = slide_pose(step.line, step.begin, from).position,
+                    r01 = slide_pose(step.line, step.end, from).position,
+                    r10 = slide_pose(step.line, step.begin, to).position,
+                    r11 = slide_pose(step.line, step.end, to).position;
       const SlideMaps maps = step.maps(Vector6::Zero(), true, false);
-      const NodePose before = slide_pose(step.line, step.begin, from), after = slide_pose(step.line, step.end, to);
-      Vector6 expected, mapped = (to - from) * maps.released_left;
-      expected << after.position - before.position, cayley::increment(before.orientation, after.orientation);
-      for (int j = 0; j < maps.count; ++j) {
-        const int node = maps.first + j;
-        Vector6 increment;
-        increment << step.end[node].position - step.begin[node].position,
-            cayley::increment(step.begin[node].orientation, step.end[node].orientation);
-        mapped += maps.left[j] * increment;
-      }
-      // Short travels take the curvature in the middle: error of third order in a travel of 1e-5.
-      EXPECT_LE((mapped - expected).norm(), 2e-14) << size << ": " << from << " to " << to;
+      Vector3 mapped = (to - from) * maps.released_left.head<3>();
+      for (int j = 0; j < maps.count; ++j)
+        mapped += maps.left[j](0, 0) * (step.end[maps.first + j].position - step.begin[maps.first + j].position);
+      const Vector3 actual = slide_pose(step.travel(), r00 + off).position - (r00 + off);
+      const Vector3 defect =
+          form == SlideStep::MidContact ? Vector3(-0.5 * (r11 - r10 - r01 + r00)) : Vector3(r10 - r00);
+      EXPECT_LE((actual - mapped - defect + 2 * off).norm(), 1e-14) << from << " to " << to;
     }
 }
 
 // Sum of forces and of moments about the origin, with mean arms, are those of the slave.
-TEST_P(SlideMapsOfOrder, MomentaArePassedOn) {
+TEST_P(SlideMapsOfLine, MomentaArePassedOn) {
   RandomSource random(2);
   for (const auto& [from, to] : kTravels) {
-    SlideStep step(random, GetParam(), 0.5);
+    Travel step(random, GetParam(), 0.5);
     step.arm_weight = random.number() < 0 ? 0 : 0.5;
     const auto arm_of = [&](const Vector3& begin, const Vector3& end) {
       return Vector3((1 - step.arm_weight) * begin + step.arm_weight * end);
@@ -134,61 +186,125 @@ TEST_P(SlideMapsOfOrder, MomentaArePassedOn) {
   }
 }
 
-TEST_P(SlideMapsOfOrder, ColumnsAreTheDerivativeOfTheSection) {
-  RandomSource random(3);
-  SlideStep step(random, GetParam(), 0.4);
-  step.from = 0.3;
-  step.to = 0.75;
-  const SlideMaps maps = step.maps(Vector6::Zero(), false, false);
-  const NodePose pose = slide_pose(step.line, step.end, step.to);
-  for (int column = 0; column <= 6 * maps.count; ++column) {
-    const int global = column == 0 ? 0 : column + 6 * maps.first;
-    const Eigen::VectorXd expected = difference(
-        [&](double h) {
-          const SlideStep moved = step.perturbed(global, h);
-          const NodePose to = slide_pose(moved.line, moved.end, moved.to);
-          Vector6 change;
-          change << to.position, so3::log(Quaternion(to.orientation * pose.orientation.conjugate()));
-          return Eigen::VectorXd(change);
-        },
-        difference_step);
-    const Vector6 actual =
-        column == 0 ? maps.released_right : Vector6(maps.right[(column - 1) / 6].col((column - 1) % 6));
-    EXPECT_LE((actual - expected).norm(), difference_tolerance) << column;
-  }
-}
-
-TEST_P(SlideMapsOfOrder, GeometricBlocksAreTheDerivativeOfTheRows) {
-  RandomSource random(4);
-  for (const bool incremental : {false, true})
-    for (const auto& [from, to] : {std::pair{0.5, 0.8}, {0.3, 0.7}, {1.3, 0.1}, {0.6, 0.6}}) {
-      SlideStep step(random, GetParam(), 0.4);
+// joints.md 4.4: with the contact in the middle, and with SM2's weights and arms, the momenta are exact; with that at
+// the end, the arm lacks e = Delta I^j Delta r_j / 4, and at a border half of the way over it in the line as it was.
+TEST_P(SlideMapsOfLine, AlgorithmsPassOnMomentaAsTheirTablesSay) {
+  RandomSource random(6);
+  for (const SlideStep form : {SlideStep::MidContact, SlideStep::EndContact, SlideStep::EnterMid, SlideStep::EnterEnd,
+                               SlideStep::BeginWeights})
+    for (const auto& [from, to] : kTravels) {
+      Travel step(random, GetParam(), 0.5);
+      step.set_step(form);
       step.from = from;
       step.to = to;
+      step.arm_weight = form == SlideStep::BeginWeights ? 0 : 0.5;
+      const auto place = [&](const std::vector<NodePose>& nodes, double x) {
+        return slide_pose(step.line, nodes, x).position;
+      };
+      const Vector3 begin = place(step.begin, from) + 0.01 * random.vector();  // perhaps off the line already
+      const bool is_in_middle = form == SlideStep::MidContact || form == SlideStep::EnterMid;
+      const Vector3 r_begin = is_in_middle ? begin : place(step.begin, from);
+      const Vector3 r_end = slide_pose(step.travel(), r_begin).position;
+      if (!is_in_middle) {
+        EXPECT_LE((r_end - place(step.end, to)).norm(), 1e-15);
+      }
+      Vector3 lacking = Vector3::Zero();
+      if (form == SlideStep::EndContact)
+        lacking =
+            0.25 * (place(step.end, to) - place(step.begin, to) - place(step.end, from) + place(step.begin, from));
+      if (form == SlideStep::EnterEnd) lacking = -0.5 * (place(step.begin, to) - place(step.begin, from));
+      const auto arm_of = [&](const Vector3& a, const Vector3& b) {
+        return Vector3((1 - step.arm_weight) * a + step.arm_weight * b);
+      };
       const Vector6 g = random.vector6();
-      const SlideMaps maps = step.maps(g, incremental);
+      const Eigen::VectorXd rows = step.rows(g, true);
+      const Vector3 arm = arm_of(r_begin, r_end) - lacking;
+      Vector3 force = -g.head<3>(), moment = -g.tail<3>() - arm.cross(g.head<3>());
+      for (std::size_t j = 0; j < step.line.nodes.size(); ++j) {
+        const Vector3 f = rows.segment<3>(1 + 6 * j), m = rows.segment<3>(4 + 6 * j);
+        force += f;
+        moment += m + arm_of(step.begin[j].position, step.end[j].position).cross(f);
+      }
+      EXPECT_LE(force.norm(), 1e-14);
+      EXPECT_LE(moment.norm(), 2e-14) << static_cast<int>(form) << ": " << from << " to " << to;
+    }
+}
+
+TEST_P(SlideMapsOfLine, ColumnsAreTheDerivativeOfTheSection) {
+  RandomSource random(3);
+  for (const SlideStep form : kSteps)
+    for (const auto& [from, to] : {std::pair{0.5, 0.75}, {0.3, 0.75}, {0.3, 1.3}}) {
+      Travel step(random, GetParam(), 0.4);
+      step.set_step(form);
+      step.from = from;
+      step.to = to;
+      const Vector3 begin = random.vector();
+      const SlideMaps maps = step.maps(Vector6::Zero(), true, false);
+      const NodePose pose = slide_pose(step.travel(), begin);
       for (int column = 0; column <= 6 * maps.count; ++column) {
         const int global = column == 0 ? 0 : column + 6 * maps.first;
-        const Eigen::VectorXd expected =
-            difference([&](double h) { return step.perturbed(global, h).rows(g, incremental); }, difference_step);
-        Eigen::VectorXd actual = Eigen::VectorXd::Zero(expected.size());
-        const int j = (column - 1) / 6, c = (column - 1) % 6;
-        actual[0] = column == 0 ? maps.released_released : maps.released_master[j][c];
-        for (int i = 0; i < maps.count; ++i)
-          actual.segment<6>(1 + 6 * (maps.first + i)) =
-              column == 0 ? maps.master_released[i] : Vector6(maps.master_master[i * maps.count + j].col(c));
-        // Where nothing has travelled, differences of the rows take the curvature's short form: rough to its square.
-        const double tolerance = (from == to ? 1e-6 : 10 * difference_tolerance) * (1 + expected.norm());
-        EXPECT_LE((actual - expected).norm(), tolerance) << incremental << " " << from << " " << to << ": " << column;
+        const Eigen::VectorXd expected = difference(
+            [&](double h) {
+              const Travel moved = step.perturbed(global, h);
+              const NodePose to = slide_pose(moved.travel(), begin);
+              Vector6 change;
+              change << to.position, so3::log(Quaternion(to.orientation * pose.orientation.conjugate()));
+              return Eigen::VectorXd(change);
+            },
+            difference_step);
+        const Vector6 actual =
+            column == 0 ? maps.released_right : Vector6(maps.right[(column - 1) / 6].col((column - 1) % 6));
+        EXPECT_LE((actual - expected).norm(), difference_tolerance) << static_cast<int>(form) << ": " << column;
       }
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Orders, SlideMapsOfOrder, ::testing::Values(1, 2, 3, 4));
+TEST_P(SlideMapsOfLine, GeometricBlocksAreTheDerivativeOfTheRows) {
+  RandomSource random(4);
+  const auto check = [&](const Travel& step, bool incremental) {
+    const Vector6 g = random.vector6();
+    const SlideMaps maps = step.maps(g, incremental);
+    const double size = 0.25;  // of a rotation over which the rows change their shape: they divide by squares of them
+    for (int column = 0; column <= 6 * maps.count; ++column) {
+      const int global = column == 0 ? 0 : column + 6 * maps.first;
+      const Eigen::VectorXd expected =
+          difference([&](double h) { return step.perturbed(global, h).rows(g, incremental); }, size * difference_step);
+      Eigen::VectorXd actual = Eigen::VectorXd::Zero(expected.size());
+      const int j = (column - 1) / 6, c = (column - 1) % 6;
+      actual[0] = column == 0 ? maps.released_released : maps.released_master[j][c];
+      for (int i = 0; i < maps.count; ++i)
+        actual.segment<6>(1 + 6 * (maps.first + i)) =
+            column == 0 ? maps.master_released[i] : Vector6(maps.master_master[i * maps.count + j].col(c));
+      // Where nothing has travelled, differences of the rows take the curvature's short form: rough to its square.
+      const double tolerance = (step.from == step.to ? 1e-6 : 10 * difference_tolerance / size) * (1 + expected.norm());
+      EXPECT_LE((actual - expected).norm(), tolerance) << incremental << static_cast<int>(step.algorithm.within) << " "
+                                                       << step.from << " " << step.to << ": " << column;
+    }
+  };
+  for (const auto& [from, to] : {std::pair{0.5, 0.8}, {0.3, 0.7}, {1.3, 0.1}, {0.6, 0.6}}) {
+    Travel step(random, GetParam(), 0.4);
+    step.from = from;
+    step.to = to;
+    check(step, false);
+    for (const SlideStep form : kSteps) {
+      step.set_step(form);
+      step.arm_weight = form == SlideStep::BeginWeights ? 0 : 0.5;
+      check(step, true);
+    }
+    step.set_step(SlideStep::SmEm);
+    step.arm_weight = 0;
+    check(step, true);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Orders, SlideMapsOfLine,
+                         ::testing::Values(LineKind{1, false}, LineKind{2, false}, LineKind{3, false},
+                                           LineKind{4, false}, LineKind{0, false}, LineKind{1, true}, LineKind{2, true},
+                                           LineKind{3, true}, LineKind{0, true}));
 
 TEST(SlideLine, PieceAt) {
   RandomSource random(5);
-  const SlideLine line = SlideStep(random, 2, 0).line;
+  const SlideLine line = Travel(random, {2, false}, 0).line;
   EXPECT_EQ(line.end(), 1.5);
   EXPECT_EQ(line.overshoot(0.7), 0);
   EXPECT_NEAR(line.overshoot(1.54), 0.1, 1e-14);

@@ -2,50 +2,12 @@
 #include <cmath>
 #include <cstdio>
 
-#include "reference/dynamics_joint_chain.h"
+#include "reference/slide_scenes.h"
 
 namespace flexarm::test {
 namespace {
 
 using scene::JointKind;
-
-scene::JointDescription& add_slide(SceneBuilder& b, const std::string& name, const std::string& parent,
-                                   const std::string& child, double start, JointKind rotation) {
-  scene::JointDescription& joint =
-      b.joint(name, JointKind::Slide, parent, child, Vector3::Zero(), Vector3(1, 2, 2) / 3);
-  joint.axis2 = Vector3(0, 0.6, 0.8);
-  joint.slide = scene::SlideDescription{start, rotation};
-  return joint;
-}
-
-std::string first_coordinate(JointKind rotation) {
-  return rotation == JointKind::Fixed ? "run" : "run/s";
-}
-
-/// What moves of itself: the angle of a joint with dependent travel, else the arc length.
-std::string free_coordinate(JointKind rotation) {
-  return scene::has_dependent_travel(rotation) ? "run/1" : first_coordinate(rotation);
-}
-
-/// A flexible arm with a body at its end slides on a free, spinning beam of eight elements.
-SceneBuilder runner_on_a_free_beam(JointKind rotation) {
-  SceneBuilder b;
-  b.beam("line", {{4, 0.3, 0.2}}, soft_section(), 8, 2);
-  b.beam("arm", {{0, 0.8, 0.3}}, soft_section(), 1, 2);
-  b.body("hand", 0.8, {0.2, 0.1, -0.1}, 0.2 * body_inertia());
-  b.joint("free", JointKind::Floating, "world", "line");
-  scene::JointDescription& run = add_slide(b, "run", "line", "arm", 1.3, rotation);
-  run.ratio = 0.4;
-  run.offset = 0.1;
-  if (rotation == JointKind::Cam)  // its followers pass three borders of elements back and forth
-    run.profile = std::make_shared<CamProfile>(CamProfile::periodic({0, 1, 2.4, 4.1, 5}, {0, 0.6, 1.5, 1.2, 0.2}));
-  if (rotation != JointKind::Spherical) run.slide->offset = {0.05, 0.1, -0.1};
-  b.joint("wrist", JointKind::Fixed, "arm", "hand", {0, 0.8, 0.3});
-  initial_field(b, "line", {0.1, -0.2, 0.1}, {0.3, 0.5, 1.0});
-  const bool is_coupled = scene::has_dependent_travel(rotation);
-  initial_joint(b, free_coordinate(rotation), is_coupled ? 0.2 : 1.3, is_coupled ? 3.5 : 1.5);
-  return b;
-}
 
 class FreeSlide : public ::testing::TestWithParam<JointKind> {};
 
@@ -183,20 +145,7 @@ TEST(Slide, BackAndForthOverManyElements) {
 
 // Thesis 12.2 in the reading of thesis_examples.md, whose figures come from a program of its own.
 TEST(Slide, ThesisFreeSlidingMass) {
-  SceneBuilder b;
-  const scene::DirectSection section{100, 100 / 2.6, 100 / 2.6, 20 / 1.3, 20, 20, 0.08, 0.032, 0.016, 0.016};
-  b.beam("AB", {{0, 3, 1}}, section, 4, 2);
-  b.beam("BM", {{1, 0, 0}}, section, 1, 2);
-  b.body("M", 1, Vector3::Zero(), Matrix3::Zero());
-  b.joint("free", JointKind::Floating, "world", "AB");
-  const double length = std::sqrt(10.0);
-  add_slide(b, "run", "AB", "BM", length, JointKind::Spherical).slide->on_end = scene::SlideDescription::End::Error;
-  b.joint("tip", JointKind::Fixed, "BM", "M", {1, 0, 0});
-  b.scene.joints[1].origin.orientation = Quaternion::Identity();
-  // All of BM but its sliding end has the velocity.
-  initial_field(b, "BM", {0, -10, -10}, Vector3::Zero());
-  b.scene.initial_joints.push_back({"run/s", length, 0, {}, true});
-  Simulation simulation(b.scene, options("em", 0.002, 1e-10));
+  Simulation simulation = thesis_free_sliding_mass("em", 0.002);
   InvariantDrift drift(simulation);
   EXPECT_NEAR(simulation.energies().total(), 106.4, 0.05);
   const std::size_t s = *simulation.find_coordinate("run/s");
@@ -206,7 +155,7 @@ TEST(Slide, ThesisFreeSlidingMass) {
   run(simulation, 85, [&] {
     drift.observe();
     if (next < std::size(expected) && std::abs(simulation.time() - expected[next].first) < 1e-6) {
-      EXPECT_NEAR(simulation.position(s) - length, expected[next].second, 6e-4) << simulation.time();
+      EXPECT_NEAR(simulation.position(s) - kThesisLineLength, expected[next].second, 6e-4) << simulation.time();
       ++next;
     }
   });

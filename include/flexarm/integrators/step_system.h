@@ -108,6 +108,7 @@ class StepSystem {
   bool has_reactions() const { return is_interpolated() && !state_->reactions.empty(); }
   NewmarkRule newmark() const { return newmark_rule(scheme_, step_); }
   bool is_on_line(const JointMap& joint, int j) const;
+  SlideTravel slide_travel(int joint) const;
   void fold_slide(int joint, bool with_tangent);
   MimicMap mimic_map(int coordinate) const;
   bool is_interpolated() const { return scheme_.hht != HhtForm::None && !static_; }

@@ -19,6 +19,13 @@ struct OptionConflict {
 /// Empty if all options that are set suit the scheme.
 std::vector<OptionConflict> option_conflicts(const IntegratorDescription& integrator);
 
+/// newmark, hht1 to hht3: joints by their exact variation at the end of the step, not by its increments.
+bool is_newmark_family(std::string_view scheme);
+
+/// Why <slide scheme="`slide`"> does not go with an integration scheme; empty if it does. The Newmark family folds
+/// sliders by their exact variation, whatever this says.
+std::string slide_scheme_conflict(const std::string& slide, const std::string& scheme);
+
 /// The same description with another scheme; options that this one does not take are forgotten.
 IntegratorDescription with_scheme(IntegratorDescription integrator, const std::string& scheme);
 

@@ -1,0 +1,75 @@
+// Whole steps of sliders by each of their algorithms, on lines of elements and smooth ones, within elements and across.
+#include "flexarm/integrators/stepper.h"
+#include "integrators/consistent_tangent.h"
+#include "integrators/mechanism.h"
+
+namespace flexarm {
+namespace {
+
+using namespace test;
+
+struct SlideCase {
+  const char *scheme, *slide;
+  bool smooth;
+  friend std::ostream& operator<<(std::ostream& out, const SlideCase& c) {
+    return out << c.scheme << "_" << c.slide << (c.smooth ? "_smooth" : "");
+  }
+};
+
+/// A line of six elements of two links, welded, on which an arm with a body slides.
+scene::SceneDescription sliding_arm(const SlideCase& c) {
+  using scene::JointKind;
+  SceneBuilder b;
+  b.beam("line", {{1.2, 0.1, 0.2}}, section(40, 20, 6, 8, 1.4, 0.2, 0.1), 3, 2);
+  b.beam("rest", {{1.1, 0.1 * 1.1 / 1.2, 0.2 * 1.1 / 1.2}}, section(40, 20, 6, 8, 1.4, 0.2, 0.1), 2, 3);
+  b.beam("arm", {{0.1, 0.6, 0.2}}, section(40, 20, 6, 8, 1.4, 0.2, 0.1), 1, 2);
+  b.body("hand", 0.8, {0.1, 0, 0.2}, Matrix3::Identity() * 0.2);
+  b.joint("base", JointKind::Floating, "world", "line");
+  b.joint("weld", JointKind::Fixed, "line", "rest", {1.2, 0.1, 0.2});
+  scene::JointDescription& run = b.joint("run", JointKind::Slide, "line", "arm", Vector3::Zero(), {0.6, 0, 0.8});
+  run.slide = scene::SlideDescription{1.0, JointKind::Revolute};
+  run.slide->scheme = c.slide;
+  run.slide->smooth = c.smooth;
+  b.joint("wrist", JointKind::Fixed, "arm", "hand", {0.1, 0.6, 0.2});
+  b.scene.integrator.scheme = c.scheme;
+  return b.scene;
+}
+
+class SlideStepOf : public ::testing::TestWithParam<SlideCase> {};
+
+TEST_P(SlideStepOf, TangentIsConsistent) {
+  const Model model = build_model(sliding_arm(GetParam()));
+  std::size_t s = 0;
+  while (model.joints[s].kind != JointMapKind::Slide) ++s;
+  ASSERT_EQ(model.slide_lines[0].pieces.size(), 5u);
+  RandomSource random(1);
+  // Elements are 0.41 m long, then 0.55 m; from 1.0 m: within, over the weld, over two borders, backwards.
+  for (const double travel : {0.1, 0.5, 0.95, -0.3}) {
+    StepSystem system(model, *find_scheme(GetParam().scheme));
+    State state = random_state(model, random, 0.1);
+    state.released[s].displacement[0] = 1.0;
+    system.initialise(state);
+    system.begin(state, 0.2, StepSystem::Guess::Unchanged);
+    Eigen::VectorXd update = random_update(system.assembler().unknowns(), random, 0.1);
+    const DegreesOfFreedom& dof = system.degrees_of_freedom();
+    update[dof.equation[dof.first[dof.variable_of_joint(static_cast<int>(s))]]] = travel;
+    system.update(update);
+    ASSERT_FALSE(system.is_off_line());
+    expect_consistent_tangent(system, 0.25);
+  }
+}
+
+std::vector<SlideCase> cases() {
+  std::vector<SlideCase> out;
+  for (const bool smooth : {false, true}) {
+    for (const char* scheme : {"em", "m1", "m2", "std", "newmark"}) out.push_back({scheme, "sm_em", smooth});
+    for (const char* slide : {"alg1", "alg3", "alg4"}) out.push_back({"m1", slide, smooth});
+    out.push_back({"m2", "alg2", smooth});
+    out.push_back({"std", "sme", smooth});
+  }
+  return out;
+}
+INSTANTIATE_TEST_SUITE_P(AllSchemes, SlideStepOf, ::testing::ValuesIn(cases()), ::testing::PrintToStringParamName());
+
+}  // namespace
+}  // namespace flexarm
