@@ -87,6 +87,7 @@ void StepSystem::accept(State& state) {
       applied_[index] +=
           assembler_.residual(dof_.variable_of_joint(coordinate.joint))[coordinate.component] / effort_weight();
   }
+  accept_friction(state);
   state.work += work();
   state.dissipated += dissipated_;
 

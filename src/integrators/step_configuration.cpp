@@ -87,7 +87,8 @@ void StepSystem::begin(const State& state, double step, Guess guess) {
     history_values_[i] = model_.histories[i](state.time + load_time() * step);
     if (!scheme_.is_incremental()) begin_history_values_[i] = model_.histories[i](state.time);
   }
-  if (!scheme_.is_incremental()) compute_begin_rates();
+  if (!scheme_.is_incremental() || !carriers_.empty()) compute_begin_rates();
+  begin_friction();
   if (guess == Guess::Extrapolated) extrapolate();
   set_prescribed(state.time + step);
   set_slaves();
@@ -207,6 +208,7 @@ void StepSystem::update(const Eigen::VectorXd& increment) {
     }
     released_[j] = updated(model_.joints[j], released_[j], part);
   }
+  place_held_coordinates();
   set_slaves();
   if (!static_) update_increments();
 }

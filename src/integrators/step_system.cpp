@@ -53,14 +53,18 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme)
       begin_history_values_(model.histories.size()),
       applied_(model.coordinates.size(), 0.0),
       slide_maps_(slide_node_count(model)),
+      friction_slide_maps_(slide_node_count(model)),
       mimic_maps_(dof_.mimics.size()),
       begin_velocities_(model.nodes.size()),
       begin_rates_(model.joints.size()),
+      carrier_of_(model.coordinates.size(), -1),
+      capacities_(model.coordinates.size(), 0.0),
       residual_(Eigen::VectorXd::Zero(dof_.unknowns)) {
   for_each_group(model.beams, [&](const auto& group) {
     constexpr int N = std::decay_t<decltype(group.elements)>::value_type::kNodes;
     std::get<GroupFunctions<N>>(mid_functions_).resize(group.elements.size());
   });
+  find_friction();
 }
 
 NodeStep StepSystem::node_step(std::size_t node) const {
@@ -135,6 +139,18 @@ double StepSystem::effort_at(const Coordinate& coordinate, std::size_t index) co
   return load_factor_ * effort;
 }
 
+CoordinateStep StepSystem::coordinate_step(std::size_t index, double increment) const {
+  const Coordinate& coordinate = model_.coordinates[index];
+  const int j = coordinate.joint, k = coordinate.component;
+  CoordinateStep step;
+  step.begin = state_->released[j].displacement[k % 3];
+  step.end = released_[j].displacement[k % 3];
+  step.increment = increment;
+  step.step = step_;
+  if (!scheme_.is_incremental()) step.gamma = scheme_.gamma, step.begin_rate = static_ ? 0.0 : begin_rates_[j][k];
+  return step;
+}
+
 void StepSystem::add_joint_efforts(int j, bool with_tangent) {
   const JointMap& joint = model_.joints[j];
   const int count = released_count(joint.kind), variable = dof_.variable_of_joint(j);
@@ -143,21 +159,15 @@ void StepSystem::add_joint_efforts(int j, bool with_tangent) {
   Eigen::Map<ReleasedSquare> tangent(assembler_.diagonal_block(variable), count, count);
   ReleasedVector change = ReleasedVector::Zero(count);
   if (!static_) change = released_increment(joint, state_->released[j], released_[j]);
-  const bool incremental = scheme_.is_incremental();
   for (int k = 0; k < count; ++k) {
     const std::size_t index = model_.first_coordinate[j] + k;
     const Coordinate& coordinate = model_.coordinates[index];
-    CoordinateStep step;
-    step.begin = state_->released[j].displacement[k % 3];
-    step.end = released_[j].displacement[k % 3];
-    step.increment = change[k];
-    step.step = step_;
-    if (!incremental) step.gamma = scheme_.gamma, step.begin_rate = static_ ? 0.0 : begin_rates_[j][k];
-    const PassiveEffort passive = passive_effort(coordinate, step);
+    const PassiveEffort passive = passive_effort(coordinate, coordinate_step(index, change[k]));
     dissipated_ += passive.dissipated;
     applied_[index] = effort_at(coordinate, index);
     const double weight = effort_weight();
     residual[k] -= weight * (applied_[index] + passive.effort);
+    if (carrier_of_[index] >= 0) add_constant_friction(static_cast<int>(index), change[k], residual[k]);
     const double slope = weight * passive.slope;
     if (!with_tangent || slope == 0) continue;
     if (coordinate.is_angle) {  // the increment varies as S^{-1} spin
@@ -169,20 +179,36 @@ void StepSystem::add_joint_efforts(int j, bool with_tangent) {
   }
 }
 
-void StepSystem::fold_slide(int j, bool with_tangent) {
-  const Vector6 g = assembler_.slave_residual(model_.joints[j].slave);
+void StepSystem::slide_maps(int j, const Vector6& g, SlideMaps& maps, bool with_tangent) const {
   const SlideTravel travel = slide_travel(j);
   if (!static_ && scheme_.is_incremental())
-    slide_incremental_maps(travel, g, slide_maps_, with_tangent);
+    slide_incremental_maps(travel, g, maps, with_tangent);
   else
-    slide_variational_maps(travel.line, end_, travel.to, g, slide_maps_, with_tangent);
+    slide_variational_maps(travel.line, end_, travel.to, g, maps, with_tangent);
+}
+
+void StepSystem::fold_slide(int j, bool with_tangent) {
+  const Vector6 g = assembler_.slave_residual(model_.joints[j].slave);
+  slide_maps(j, g, slide_maps_, with_tangent);
+  add_normal_friction(j, g, slide_maps_, with_tangent);
   assembler_.fold(j, slide_maps_, with_tangent);
   add_joint_efforts(j, with_tangent);
 }
 
-void StepSystem::fold_joints(bool with_tangent) {
+void StepSystem::joint_maps(int j, const Vector6& g, FoldMaps& maps, bool with_tangent) const {
   const NodePose world;
+  const JointMap& joint = model_.joints[j];
+  const NodePose& end = joint.master < 0 ? world : end_[joint.master];
+  if (!static_ && scheme_.is_incremental())
+    incremental_maps(joint, joint.master < 0 ? world : begin_[joint.master], end, state_->released[j], released_[j], g,
+                     maps, with_tangent, scheme_.arm_weight());
+  else
+    variational_maps(joint, end, released_[j], g, maps);
+}
+
+void StepSystem::fold_joints(bool with_tangent) {
   FoldMaps maps;
+  std::fill(capacities_.begin(), capacities_.end(), 0.0);
   for (int j = static_cast<int>(model_.joints.size()) - 1; j >= 0; --j) {
     const JointMap& joint = model_.joints[j];
     if (joint.kind == JointMapKind::Slide) {
@@ -190,12 +216,8 @@ void StepSystem::fold_joints(bool with_tangent) {
       continue;
     }
     const Vector6 g = assembler_.slave_residual(joint.slave);
-    const NodePose& end = joint.master < 0 ? world : end_[joint.master];
-    if (!static_ && scheme_.is_incremental())
-      incremental_maps(joint, joint.master < 0 ? world : begin_[joint.master], end, state_->released[j], released_[j],
-                       g, maps, with_tangent, scheme_.arm_weight());
-    else
-      variational_maps(joint, end, released_[j], g, maps);
+    joint_maps(j, g, maps, with_tangent);
+    add_normal_friction(j, g, maps, with_tangent);
     assembler_.fold(j, maps, with_tangent);
     add_joint_efforts(j, with_tangent);
   }
@@ -252,8 +274,12 @@ bool StepSystem::evaluate(bool with_tangent) {
   }
   if (is_interpolated()) shift_reactions();
   fold_joints(with_tangent);
+  hold_friction();
   assembler_.gather(residual_);
-  if (with_tangent) assembler_.gather_tangent();
+  if (with_tangent) {
+    assembler_.gather_tangent();
+    hold_friction_tangent();
+  }
   return residual_.allFinite();
 }
 

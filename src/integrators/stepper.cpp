@@ -77,9 +77,16 @@ bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
   const auto not_evaluated = [&] { return system_.is_off_line() ? Reason::OffTheLine : Reason::NotFinite; };
   if (system_.assembler().unknowns() == 0) return system_.evaluate(false) || fail(not_evaluated());
 
-  bool factorise = !reuse || !kept_factors_contract_ || factorised_step_ != system_.step();
+  bool factorise =
+      !reuse || !kept_factors_contract_ || factorised_step_ != system_.step() || !system_.tangent_holds();
+  int since_revision = 0;  // updates
   for (int iteration = 0; iteration < settings_.max_iterations; ++iteration) {
     if (!system_.evaluate(factorise)) return fail(not_evaluated());
+    if (since_revision > 0 && system_.revise_friction()) {
+      since_revision = 0;
+      factorise = true;
+      if (!system_.evaluate(true)) return fail(not_evaluated());
+    }
     ++result.iterations;
     if (factorise) {
       ++result.factorisations;
@@ -93,12 +100,13 @@ bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
     const double norm = system_.scaled_norm(update_);
     if (!std::isfinite(norm)) return fail(Reason::NotFinite);
     const double contraction =
-        update_norms_.empty() ? 1.0 : norm / std::max(update_norms_.back(), std::numeric_limits<double>::min());
+        since_revision == 0 ? 1.0 : norm / std::max(update_norms_.back(), std::numeric_limits<double>::min());
     update_norms_.push_back(norm);
     if (norm > kDivergence * std::max(update_norms_.front(), 1e-3)) return fail(Reason::NoConvergence);
     // A steep law (friction near sticking, the touch of a stop) makes full updates jump to and fro; statics has none.
-    if (system_.step() != 0 && iteration >= kPatience && contraction > kStalled) update_ *= 0.5;
+    if (system_.step() != 0 && since_revision >= kPatience && contraction > kStalled) update_ *= 0.5;
     system_.update(update_);
+    ++since_revision;
     // What remains after this update, by the rate of the last two: new factors square the error, kept ones contract it.
     const double rate = std::min(contraction, 1.0);
     // Symmetric middle functions are not in the tangent: they leave linear convergence with new factors, too.
@@ -106,8 +114,14 @@ bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
     const double remains = norm * (squares ? rate * rate : rate);
     const bool converged =
         reuse ? remains <= std::max(settings_.tolerance * settings_.tolerance, kRoundOff) : norm <= settings_.tolerance;
-    if (converged) return system_.evaluate(false) || fail(not_evaluated());
-    const bool is_slow = iteration > 0 && contraction > kSlowContraction;
+    if (converged) {
+      if (!system_.evaluate(false)) return fail(not_evaluated());
+      if (!system_.revise_friction()) return true;
+      since_revision = 0;
+      factorise = true;
+      continue;
+    }
+    const bool is_slow = since_revision > 1 && contraction > kSlowContraction;
     if (iteration == 1) kept_factors_contract_ = !is_slow;
     factorise = !reuse || is_slow;
   }

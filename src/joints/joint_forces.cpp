@@ -36,16 +36,32 @@ PassiveEffort stop_effort(const LimitStop& stop, double gap_begin, double gap_en
   return out;
 }
 
+/// Of the coordinate, and its derivative with respect to the increment.
+struct Rate {
+  double value, slope;
+};
+Rate rate_of(const CoordinateStep& change) {
+  return {(change.increment / change.step - (1 - change.gamma) * change.begin_rate) / change.gamma,
+          1 / (change.gamma * change.step)};
+}
+
 }  // namespace
+
+SmoothDirection smooth_direction(const CoordinateStep& change) {
+  if (change.step == 0) return {};
+  const Rate rate = rate_of(change);
+  const double t = std::tanh(rate.value / kFrictionSpeed);
+  return {t, (1 - t * t) / kFrictionSpeed * rate.slope};
+}
 
 PassiveEffort passive_effort(const Coordinate& coordinate, const CoordinateStep& change) {
   PassiveEffort out;
-  if (change.step != 0 && (coordinate.damping > 0 || coordinate.friction > 0)) {
-    const double rate = (change.increment / change.step - (1 - change.gamma) * change.begin_rate) / change.gamma;
-    const double rate_slope = 1 / (change.gamma * change.step);
-    const double t = std::tanh(rate / kFrictionSpeed);
-    out.effort = -coordinate.damping * rate - coordinate.friction * t;
-    out.slope = -(coordinate.damping + coordinate.friction * (1 - t * t) / kFrictionSpeed) * rate_slope;
+  const double friction = coordinate.sticks ? 0 : coordinate.friction;
+  if (change.step != 0 && (coordinate.damping > 0 || friction > 0)) {
+    const Rate rate = rate_of(change);
+    const SmoothDirection direction = smooth_direction(change);
+    out.effort = -coordinate.damping * rate.value - friction * direction.value;
+    out.slope = -(coordinate.damping * rate.slope + friction * direction.slope);
     out.dissipated = -out.effort * change.increment;
   }
   if (coordinate.limit) {

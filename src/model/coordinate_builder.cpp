@@ -41,6 +41,10 @@ void MechanismBuilder::add_coordinates(const scene::JointDescription& joint, con
     coordinate.is_angle = kind == JointMapKind::Spherical || (kind == JointMapKind::Free && c >= 3);
     coordinate.damping = joint.damping;
     coordinate.friction = joint.friction;
+    coordinate.sticks = joint.friction_law.law == scene::FrictionDescription::Law::Coulomb;
+    if (kind == JointMapKind::Scalar || kind == JointMapKind::Slide)
+      coordinate.friction_coefficient =
+          joint.friction_law.coefficient * (model.joints[map].rotation.isZero(0) ? 1.0 : joint.friction_law.radius);
     coordinate.effort_limit = joint.effort_limit;
     if (joint.limits) coordinate.limit = LimitStop{joint.limits->lower, joint.limits->upper, 0, 0};
     model.coordinates.push_back(coordinate);

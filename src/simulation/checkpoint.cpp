@@ -41,6 +41,7 @@ void for_each_number(AnyState& state, const Visit& visit) {
   for (auto& rate : state.strain_rates) vector(rate);
   for (auto& command : state.commands) visit(command, true);  // nan: none holds
   for (auto& effort : state.efforts) visit(effort, false);
+  for (auto& rest : state.rests) visit(rest, false);
   for (auto& increment : state.last_increment) visit(increment, false);
   visit(state.last_step, false);
   visit(state.work, false);

@@ -116,6 +116,7 @@ State initial_state(const Model& model) {
   state.strain_rates.assign(model.stiffness_point_count, Vector6::Zero());
   state.commands.assign(model.coordinates.size(), std::numeric_limits<double>::quiet_NaN());
   state.efforts.assign(model.coordinates.size(), 0.0);
+  state.rests.assign(model.coordinates.size(), 0.0);
   for_each_element(model.beams, [&](const auto& element) {
     constexpr int N = std::decay_t<decltype(element)>::kNodes;
     const ElementConfiguration<N> nodes(element, state);

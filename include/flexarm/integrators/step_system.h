@@ -7,8 +7,10 @@
 #include "flexarm/elements/momentum_beam.h"
 #include "flexarm/elements/nodal_inertia.h"
 #include "flexarm/elements/rotary_inertia.h"
+#include "flexarm/integrators/friction_carrier.h"
 #include "flexarm/integrators/rotation_reference.h"
 #include "flexarm/integrators/scheme.h"
+#include "flexarm/joints/joint_forces.h"
 #include "flexarm/joints/joint_kinematics.h"
 #include "flexarm/model/degrees_of_freedom.h"
 #include "flexarm/model/model.h"
@@ -48,6 +50,11 @@ class StepSystem {
   bool evaluate(bool with_tangent);
   /// Applies a Newton update (one entry per unknown) on the group; slaves follow their joints.
   void update(const Eigen::VectorXd& increment);
+  /// After an evaluation at an updated configuration: decides anew which coordinates stick. True if that changes the
+  /// equations.
+  bool revise_friction();
+  /// False if the tangent evaluated last had other coordinates stick.
+  bool tangent_holds() const;
   /// Writes the trial configuration, evaluated last without an update since, as the new state.
   void accept(State& state);
   /// The same for statics: at rest.
@@ -100,8 +107,27 @@ class StepSystem {
                                          bool with_derivative) const;
   void add_interpolated_forces(bool with_tangent);
   void shift_reactions();
+  void joint_maps(int joint, const Vector6& g, FoldMaps& maps, bool with_tangent) const;
+  void slide_maps(int joint, const Vector6& g, SlideMaps& maps, bool with_tangent) const;
   void fold_joints(bool with_tangent);
   void add_joint_efforts(int joint, bool with_tangent);
+  CoordinateStep coordinate_step(std::size_t index, double increment) const;
+  void find_friction();
+  void begin_friction();
+  void add_normal_friction(int joint, const Vector6& g, FoldMaps& maps, bool with_tangent);
+  void add_normal_friction(int joint, const Vector6& g, SlideMaps& maps, bool with_tangent);
+  template <class AddDerivative>
+  void turn_row(int joint, const Vector6& g, Eigen::Ref<Vector6> left, const AddDerivative& add_derivative,
+                bool with_tangent);
+  void add_constant_friction(int coordinate, double increment, double& row);
+  double friction_direction(int coordinate) const;
+  double travel_per_carrier(int coordinate) const;
+  double increment_of(const Coordinate& coordinate) const;
+  int equation_of(const Coordinate& coordinate) const;
+  void hold_friction();
+  void hold_friction_tangent();
+  void place_held_coordinates();
+  void accept_friction(State& state) const;
   void compute_begin_rates();
   NodeStep node_step(std::size_t node) const;
   double effort_weight() const { return has_reactions() ? 1 / (1 - scheme_.alpha) : 1; }
@@ -154,10 +180,15 @@ class StepSystem {
   std::vector<double> begin_history_values_;  // at the begin; work of the Newmark family
   std::vector<double> applied_;               // per coordinate: effort in this step
   bool is_off_line_ = false;
-  SlideMaps slide_maps_;
+  SlideMaps slide_maps_, friction_slide_maps_;
   std::vector<MimicMap> mimic_maps_;
-  std::vector<Vector6> begin_velocities_;    // per node, spatial; Newmark family
-  std::vector<ReleasedVector> begin_rates_;  // per joint; Newmark family
+  std::vector<Vector6> begin_velocities_;    // per node, spatial; Newmark family, sticking friction
+  std::vector<ReleasedVector> begin_rates_;  // per joint; Newmark family, sticking friction
+  std::vector<FrictionCarrier> carriers_;
+  std::vector<int> carrier_of_;                        // per coordinate: index into carriers_, or -1
+  std::vector<double> capacities_;                     // per coordinate: of its friction, from the force on the joint
+  std::vector<StickSlip::Branch> tangent_branches_;    // per carrier, in the last tangent
+  int revisions_ = 0;                                  // of friction in this solve
   bool points_valid_ = false;
   double dissipated_ = 0;
   Eigen::VectorXd residual_;

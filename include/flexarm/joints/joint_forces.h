@@ -17,11 +17,19 @@ struct CoordinateStep {
   double gamma = 1, begin_rate = 0;
 };
 
+/// Smooth friction acts by this part of its capacity, tanh(rate / v), against the increment.
+struct SmoothDirection {
+  double value = 0, slope = 0;  ///< and its derivative with respect to the increment
+};
+/// Zero in statics.
+SmoothDirection smooth_direction(const CoordinateStep& change);
+
 /// Effort on the coordinate, its derivative with respect to the increment, and the energy that it dissipates over the
 /// step.
 struct PassiveEffort {
   double effort = 0, slope = 0, dissipated = 0;
 };
+/// Of damping, stops and smooth friction of constant capacity.
 PassiveEffort passive_effort(const Coordinate& coordinate, const CoordinateStep& change);
 
 /// Elastic energy of the coordinate's stop at `position` [J].

@@ -61,6 +61,7 @@ struct State {
   std::vector<Vector3> momentum_rates;   ///< d(Lambda J W)/dt per mass point, then per node
   std::vector<double> commands;          ///< per coordinate: commanded effort, NaN where none holds
   std::vector<double> efforts;           ///< per coordinate: applied in the last step
+  std::vector<double> rests;             ///< per coordinate: 1 where dry friction stopped it in the last step, else 0
   std::vector<double> last_increment;    ///< of the unknowns over the last sub-step: the predictor
   double last_step = 0;                  ///< its length [s]; 0: none yet
   double work = 0, dissipated = 0;       ///< path integrals since the start [J]
