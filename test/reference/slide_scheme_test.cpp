@@ -154,6 +154,81 @@ TEST(SlideScheme, EnergyOfSmeIsExact) {
   }
 }
 
+// ---------------------------------------------------------------- smooth lines
+
+// 4 s: over most of the line and back from its stop.
+TEST_P(SlideSchemes, SmoothLinesConserveAcrossElements) {
+  SceneBuilder b = runner_on_a_free_beam(GetParam());
+  for (scene::JointDescription& joint : b.scene.joints)
+    if (joint.slide) joint.slide->smooth = true;
+  for (const char* scheme : {"em", "em_scaled", "std"}) {
+    Simulation simulation(b.scene, options(scheme, 0.01, 1e-10));
+    InvariantDrift drift(simulation);
+    const std::size_t s = *simulation.find_coordinate(first_coordinate(GetParam()));
+    double least = 4, most = 0;
+    run(simulation, 400, [&] {
+      drift.observe();
+      least = std::min(least, simulation.position(s));
+      most = std::max(most, simulation.position(s));
+    });
+    EXPECT_GT(most - least, 1.0) << "it must pass two elements";
+    EXPECT_LT(drift.energy(), 1e-10) << scheme;
+    EXPECT_LT(drift.momentum(), 1e-11) << scheme;
+    EXPECT_LT(drift.angular_momentum(), 1e-11) << scheme;
+  }
+}
+
+/// A bead hangs on a clamped cable that sags under its weight: it slides to the lowest place.
+SceneBuilder cable(bool smooth, int elements) {
+  SceneBuilder b;
+  b.beam("line", {{2, 0, 0}}, soft_section(), elements, 2);
+  b.body("bead", 3, Vector3::Zero(), 1e-2 * Matrix3::Identity());
+  b.joint("clamp", JointKind::Fixed, "world", "line", Vector3::Zero());
+  add_slide(b, "run", "line", "bead", 1.13, JointKind::Fixed).damping = 2;
+  b.scene.joints.back().slide->smooth = smooth;
+  b.scene.gravity = {0, 0, -5};
+  return b;
+}
+
+// Statics of a bead held at a place that is on a border: there both lines are one, and so are their deflections;
+// elsewhere they differ by the elements' error.
+TEST(SmoothLine, StaticsAgreesWithTheElementsAtNodes) {
+  const auto deflection = [](bool smooth, double place) {
+    SceneBuilder b = cable(smooth, 4);
+    b.scene.motions.push_back({"run", TimeFunction(place), {}});
+    Simulation simulation(b.scene, options("em", 0.01, 1e-12));
+    EXPECT_TRUE(simulation.solve_static(2).converged);
+    return simulation.link_pose(2).position;
+  };
+  EXPECT_LE((deflection(true, 1.0) - deflection(false, 1.0)).norm(), 1e-10);
+  const double difference = (deflection(true, 1.13) - deflection(false, 1.13)).norm();
+  EXPECT_GT(difference, 1e-9);
+  EXPECT_LT(difference, 1e-2);
+}
+
+// A load that grows gently makes the bead pass a border of the line: both families converge in second order, to one
+// path.
+TEST(SmoothLine, NewmarkAndM1ConvergeToOnePath) {
+  const auto place = [](const char* scheme, double step) {
+    SceneBuilder b = cable(true, 4);
+    b.scene.gravity.setZero();
+    b.load("bead", Vector3::Zero(), {-40, 0, -10}, Vector3::Zero(), "1-cos(2*t)");
+    Simulation simulation(b.scene, options(scheme, step, 1e-12));
+    run(simulation, static_cast<int>(std::lround(0.8 / step)));
+    EXPECT_LT(simulation.position(0), 0.99);
+    return simulation.position(0);
+  };
+  double fine[2];
+  for (const bool is_newmark : {false, true}) {
+    const char* scheme = is_newmark ? "newmark" : "m1";
+    const double a = place(scheme, 8e-3), b = place(scheme, 4e-3), c = place(scheme, 2e-3);
+    std::printf("%s: %.3e %.3e\n", scheme, a - b, b - c);
+    EXPECT_NEAR(std::log2(std::abs((a - b) / (b - c))), 2, 0.3);
+    fine[is_newmark] = c + (c - b) / 3;
+  }
+  EXPECT_NEAR(fine[0], fine[1], 1e-6);
+}
+
 // ---------------------------------------------------------------- the thesis's example 12.2
 
 struct Flight {
