@@ -90,7 +90,7 @@ bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
     ++result.iterations;
     if (factorise) {
       ++result.factorisations;
-      if (!solver_.factorise(system_.assembler().values())) return fail(Reason::SingularTangent);
+      if (!solver_.factorise(system_.assembler().values(), system_.assembler().pattern())) return fail(Reason::SingularTangent);
       factorised_step_ = system_.step();
     }
     update_ = -system_.residual();

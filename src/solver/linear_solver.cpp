@@ -17,14 +17,20 @@ LinearSolver::LinearSolver(int unknowns, const std::vector<int>& column_starts, 
       residual_(unknowns) {
   klu_defaults(&common_);
   common_.scale = 2;
-  if (unknowns_ > 0)
-    symbolic_ = klu_analyze(unknowns_, const_cast<int*>(column_starts_.data()), const_cast<int*>(row_indices_.data()),
-                            &common_);
+  analyse();
 }
 
 LinearSolver::~LinearSolver() {
   if (numeric_) klu_free_numeric(&numeric_, &common_);
   if (symbolic_) klu_free_symbolic(&symbolic_, &common_);
+}
+
+void LinearSolver::analyse() {
+  if (numeric_) klu_free_numeric(&numeric_, &common_);
+  if (symbolic_) klu_free_symbolic(&symbolic_, &common_);
+  if (unknowns_ > 0)
+    symbolic_ = klu_analyze(unknowns_, const_cast<int*>(column_starts_.data()), const_cast<int*>(row_indices_.data()),
+                            &common_);
 }
 
 bool LinearSolver::factorise_anew() {
@@ -36,9 +42,13 @@ bool LinearSolver::factorise_anew() {
   return numeric_ && common_.status == KLU_OK;
 }
 
-bool LinearSolver::factorise(const std::vector<double>& values) {
+bool LinearSolver::factorise(const std::vector<double>& values, int pattern) {
   values_ = &values;
   if (unknowns_ == 0) return true;
+  if (pattern != pattern_) {
+    pattern_ = pattern;
+    analyse();
+  }
   if (!symbolic_) return false;
   if (!numeric_) return factorise_anew();
   ++factorisations_;

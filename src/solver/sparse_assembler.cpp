@@ -148,7 +148,12 @@ class SparseAssembler::PatternBuilder {
 };
 
 SparseAssembler::SparseAssembler(const Model& model, const DegreesOfFreedom& dof)
-    : model_(model), dof_(dof), joint_folds_(model.joints.size()), slide_folds_(model.joints.size()) {
+    : model_(model),
+      dof_(dof),
+      joint_folds_(model.joints.size()),
+      slide_folds_(model.joints.size()),
+      column_blocks_(dof.size.size()),
+      active_(model.joints.size(), {0, 0}) {
   PatternBuilder pattern(*this);
   for (std::size_t v = 0; v < dof.size.size(); ++v)
     diagonal_.push_back(pattern.block(static_cast<int>(v), static_cast<int>(v)));
@@ -164,23 +169,109 @@ SparseAssembler::SparseAssembler(const Model& model, const DegreesOfFreedom& dof
       pattern.fold_joint(j);
   }
   for (const DegreesOfFreedom::Mimic& mimic : dof.mimics) pattern.fold_mimic(mimic);
-  for (const Block& block : blocks_) dead_.push_back(pattern.folded(block.row) || pattern.folded(block.column));
+  for (std::size_t b = 0; b < blocks_.size(); ++b)
+    if (!pattern.folded(blocks_[b].row) && !pattern.folded(blocks_[b].column))
+      column_blocks_[blocks_[b].column].push_back(static_cast<int>(b));
+  for (std::vector<int>& list : column_blocks_)
+    std::sort(list.begin(), list.end(), [&](int a, int b) { return blocks_[a].row < blocks_[b].row; });
   values_.assign(pattern.value_count(), 0.0);
   residual_.assign(dof.scalar_count, 0.0);
+  written_.reserve(blocks_.size());
+  live_.assign(blocks_.size(), true);
+  build_compressed_columns();  // the largest pattern: all later ones fit into its memory
+  copies_.reserve(row_indices_.size());
+  for (std::size_t j = 0; j < model.joints.size(); ++j) {
+    if (model.joints[j].kind != JointMapKind::Slide) continue;
+    const SlideLine& line = model.slide_lines[model.joints[j].line];
+    const int piece = line.piece_at(model.initial_released[j].displacement[0]);
+    active_[j] = line.support(piece, piece);
+  }
+  update_pattern();
+  pattern_ = 0;
+}
+
+void SparseAssembler::set_active(int j, int first, int count) {
+  if (active_[j].first <= first && first + count <= active_[j].end) return;
+  active_[j] = {first, first + count};
+  pattern_is_old_ = true;
+}
+
+void SparseAssembler::update_pattern() {
+  mark_live_blocks();
+  written_.clear();
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    if (!live_[b]) continue;
+    const Block& block = blocks_[b];
+    const std::size_t count = static_cast<std::size_t>(dof_.size[block.row]) * dof_.size[block.column];
+    if (!written_.empty() && written_.back().from + written_.back().count == block.offset)
+      written_.back().count += count;
+    else
+      written_.push_back({block.offset, count});
+  }
   build_compressed_columns();
+  pattern_is_old_ = false;
+  ++pattern_;
+}
+
+/// The folds once more, for the blocks that are not zero for good.
+void SparseAssembler::mark_live_blocks() {
+  std::fill(live_.begin(), live_.end(), false);
+  const auto mark = [&](int block) {
+    if (block >= 0) live_[block] = true;
+  };
+  for (const int block : element_blocks_) mark(block);
+  for (const int block : diagonal_) mark(block);
+  for (int j = static_cast<int>(model_.joints.size()) - 1; j >= 0; --j) {
+    if (model_.joints[j].kind == JointMapKind::Slide) {
+      mark_slide(j);
+      continue;
+    }
+    const JointFold& fold = joint_folds_[j];
+    const auto fold_operation = [&](const auto& op) {
+      if (live_[op.source]) mark(op.to_released), mark(op.to_master);
+    };
+    for (int f = fold.first_column_fold; f < fold.last_column_fold; ++f) fold_operation(column_folds_[f]);
+    for (int f = fold.first_row_fold; f < fold.last_row_fold; ++f) fold_operation(row_folds_[f]);
+    const Geometric& g = fold.geometric;
+    for (const int block : {g.released_released, g.released_master, g.master_released, g.master_master}) mark(block);
+  }
+  for (const MimicFold& fold : mimic_folds_) {
+    for (int f = fold.first_column_fold; f < fold.last_row_fold; ++f)
+      if (live_[mimic_additions_[f].source]) mark(mimic_additions_[f].target);
+    mark(fold.master);
+  }
+}
+
+void SparseAssembler::mark_slide(int j) {
+  const SlideFold& fold = slide_folds_[j];
+  const NodeRange active = active_[j];
+  const auto mark = [&](int first) {
+    for (int k = active.first; k < active.end; ++k)
+      if (slide_blocks_[first + k] >= 0) live_[slide_blocks_[first + k]] = true;
+  };
+  const auto fold_operation = [&](const SlideOperation& op) {
+    if (!live_[op.source]) return;
+    live_[op.to_released] = true;
+    mark(op.to_masters);
+  };
+  for (int f = fold.first_column_fold; f < fold.last_column_fold; ++f) fold_operation(slide_columns_[f]);
+  for (int f = fold.first_row_fold; f < fold.last_row_fold; ++f) fold_operation(slide_rows_[f]);
+  const int count = static_cast<int>(model_.slide_lines[model_.joints[j].line].nodes.size());
+  live_[fold.released_released] = true;
+  mark(fold.released_masters);
+  mark(fold.masters_released);
+  for (int k = active.first; k < active.end; ++k) mark(fold.masters_masters + k * count);
 }
 
 void SparseAssembler::build_compressed_columns() {
-  std::vector<std::vector<int>> blocks_of_column(dof_.size.size());
-  for (std::size_t b = 0; b < blocks_.size(); ++b)
-    if (!dead_[b]) blocks_of_column[blocks_[b].column].push_back(static_cast<int>(b));
   column_starts_.assign(1, 0);
+  row_indices_.clear();
+  copies_.clear();
   for (std::size_t column = 0; column < dof_.size.size(); ++column) {
-    std::vector<int>& list = blocks_of_column[column];
-    std::sort(list.begin(), list.end(), [&](int a, int b) { return blocks_[a].row < blocks_[b].row; });
     for (int c = 0; c < dof_.size[column]; ++c) {
       if (dof_.equation[dof_.first[column] + c] < 0) continue;
-      for (const int b : list) {
+      for (const int b : column_blocks_[column]) {
+        if (!live_[b]) continue;
         const Block& block = blocks_[b];
         const int rows = dof_.size[block.row];
         for (int r = 0; r < rows; ++r) {
@@ -203,7 +294,8 @@ void SparseAssembler::build_compressed_columns() {
 }
 
 void SparseAssembler::set_zero(bool with_tangent) {
-  if (with_tangent) std::fill(values_.begin(), values_.end(), 0.0);
+  if (with_tangent)
+    for (const Span& span : written_) std::fill_n(values_.begin() + span.from, span.count, 0.0);
   std::fill(residual_.begin(), residual_.end(), 0.0);
 }
 
@@ -233,6 +325,7 @@ void SparseAssembler::fold(int j, const SlideMaps& maps, bool with_tangent) {
   for (int k = 0; k < maps.count; ++k)
     Eigen::Map<Vector6>(residual(line.nodes[maps.first + k])) += maps.left[k].transpose() * g;
   if (!with_tangent) return;
+  set_active(j, maps.first, maps.count);
   const SlideFold& fold = slide_folds_[j];
   fold_slide_columns(fold, maps);
   fold_slide_rows(fold, maps);
@@ -351,6 +444,7 @@ void SparseAssembler::gather(Eigen::VectorXd& residual) const {
 }
 
 void SparseAssembler::gather_tangent() {
+  if (pattern_is_old_) update_pattern();
   for (const Copy& copy : copies_)
     std::copy_n(values_.data() + copy.from, copy.count, reduced_values_.data() + copy.to);
 }

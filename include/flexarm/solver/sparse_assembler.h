@@ -21,6 +21,10 @@ struct MimicMap {
 /// Every pair of coupled variables has a dense column-major block. Folding slave s with released variable u and master
 /// m: first the columns, (i,u) += (i,s) right and (i,m) += (i,s) L_right, then the rows, (u,j) += left^T (s,j) and
 /// (m,j) += L_left^T (s,j), then the geometric blocks. (joints.md 2)
+///
+/// A slider may come to couple any elements of its line, but at a time it does few. All blocks have their places for
+/// good, and the reduced matrix only those that the sliders' active nodes reach. When a slider enters other elements its
+/// pattern follows: a new number in pattern(), no allocation.
 class SparseAssembler {
  public:
   SparseAssembler(const Model& model, const DegreesOfFreedom& dof);
@@ -58,6 +62,8 @@ class SparseAssembler {
   const std::vector<int>& column_starts() const { return column_starts_; }
   const std::vector<int>& row_indices() const { return row_indices_; }
   const std::vector<double>& values() const { return reduced_values_; }
+  /// Changes with the pattern, in gather_tangent().
+  int pattern() const { return pattern_; }
 
  private:
   struct Block {
@@ -103,7 +109,11 @@ class SparseAssembler {
   void add_geometric(const Geometric& geometric, const FoldMaps& maps);
   void fold_slide_columns(const SlideFold& fold, const SlideMaps& maps);
   void fold_slide_rows(const SlideFold& fold, const SlideMaps& maps);
+  void set_active(int joint, int first, int count);
+  void mark_live_blocks();
+  void mark_slide(int joint);
   void build_compressed_columns();
+  void update_pattern();
   double* slide_block(int index) {
     const int block = slide_blocks_[index];
     return block < 0 ? nullptr : values_.data() + blocks_[block].offset;
@@ -121,9 +131,17 @@ class SparseAssembler {
   std::vector<int> slide_blocks_;
   std::vector<ScaledAddition> mimic_additions_;
   std::vector<MimicFold> mimic_folds_;
-  std::vector<bool> dead_;  // per block: consumed by a fold
+  std::vector<std::vector<int>> column_blocks_;  // per variable: blocks of the reduced matrix, by rows
+  std::vector<NodeRange> active_;                // per joint that slides: nodes of its line that the pattern couples
+  std::vector<char> live_;                       // per block: what a tangent may write
+  bool pattern_is_old_ = false;
+  int pattern_ = 0;
   std::vector<double> values_, residual_, reduced_values_;
   std::vector<Copy> copies_;
+  struct Span {
+    std::size_t from, count;
+  };
+  std::vector<Span> written_;  // of values_
   std::vector<int> column_starts_, row_indices_;
 };
 
