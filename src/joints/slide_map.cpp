@@ -1,344 +1,12 @@
 #include "flexarm/joints/slide_map.h"
 
 #include <algorithm>
-#include <cmath>
 
-#include "flexarm/joints/slide_variation.h"
-#include "flexarm/math/so3.h"
+#include "slide_step.h"
 
 namespace flexarm {
-namespace {
 
-using Complex = std::complex<double>;
-/// Of complex steps: no cancellation, so as small as it likes.
-constexpr double kStep = 1e-30;
-/// Relative to the element's length: below it the rotation over Delta X is taken from the curvature in the middle,
-/// which is accurate to its square.
-constexpr double kShort = 1e-5;
-/// Nodal increments that differ by less have nothing to redistribute [rad^2].
-constexpr double kUniform = 1e-24;
-
-template <typename S>
-double real(const S& value) {
-  return std::real(value);
-}
-
-/// The line's nodes with scalars of another kind; one of their scalars, or the arc length, may be perturbed.
-template <typename S>
-struct Configuration {
-  const SlideLine& line;
-  const std::vector<NodePose>& nodes;
-  int perturbed_node = -1, component = 0;  // into line.nodes; 0 to 2: position, 3 to 5: spin
-
-  PoseT<S> operator()(int i) const {
-    const NodePose& node = nodes[line.nodes[i]];
-    PoseT<S> pose{node.position.template cast<S>(), node.orientation.template cast<S>()};
-    if constexpr (std::is_same_v<S, Complex>) {
-      if (i == perturbed_node && component < 3) pose.position[component] += Complex(0, kStep);
-      if (i == perturbed_node && component >= 3) {
-        Vector3T<S> spin = Vector3T<S>::Zero();
-        spin[component - 3] = Complex(0, kStep);
-        pose.orientation = so3::exp_quaternion(spin) * pose.orientation;
-      }
-    }
-    return pose;
-  }
-};
-
-/// What the forms of the incremental maps differ in.
-struct ContactRule {
-  double weight = 0.5;        ///< c, of the end of the step in the nodes' weights
-  double arm_weight = 0.5;    ///< where `moves_arm`: of the end in moment arms
-  bool moves_arm = false;     ///< what the arms lack goes into the moments (SM-EM)
-  bool is_in_middle = false;  ///< the contact holds in the middle of the step only
-};
-
-ContactRule contact_rule(SlideStep step, double arm_weight) {
-  switch (step) {
-    case SlideStep::MidContact:
-      return {0.5, arm_weight, false, true};
-    case SlideStep::EndContact:
-      return {0.5, arm_weight, false, false};
-    case SlideStep::EnterMid:
-      return {1.0, arm_weight, false, true};
-    case SlideStep::EnterEnd:
-      return {1.0, arm_weight, false, false};
-    case SlideStep::BeginWeights:
-      return {0.0, arm_weight, false, false};
-    case SlideStep::SmEm:
-      break;
-  }
-  return {arm_weight, arm_weight, true, false};
-}
-
-/// What a step makes of the line, for rows with scalars S.
-template <typename S>
-struct Step {
-  const SlideLine& line;
-  Configuration<S> begin, end;
-  double from;
-  S to;
-  int piece_from, piece_to;
-  int first, count;  // active nodes
-  ContactRule rule;
-  /// Weight of node j in the contact.
-  S contact(const S& at_begin, const S& at_end) const {
-    return S(1 - rule.weight) * at_begin + S(rule.weight) * at_end;
-  }
-};
-
-template <typename S>
-using NodeRows = Eigen::Matrix<S, 6, 1>;
-
-/// Scratch of one kind of scalar; grows once.
-template <typename S>
-struct Scratch {
-  std::vector<S> begin, end, difference;
-  std::vector<Vector3T<S>> rotation;
-  std::vector<NodeRows<S>> rows;
-  void resize(std::size_t count) {
-    begin.assign(count, S(0));
-    end.assign(count, S(0));
-    difference.assign(count, S(0));
-    rotation.resize(count);
-    rows.resize(count);
-  }
-};
-
-template <typename S, typename W>
-void add_weights(const Step<S>& step, const slide::LineWeights<W>& weights, const S& factor, std::vector<S>& sum) {
-  for (int i = 0; i < weights.count; ++i) sum[weights.first + i - step.first] += factor * weights.values[i];
-}
-
-template <typename S>
-void set_weights(const Step<S>& step, Scratch<S>& scratch) {
-  const SlideLine& line = step.line;
-  const SlidePiece &p = line.pieces[step.piece_from], &q = line.pieces[step.piece_to];
-  add_weights(step, slide::line_weights(line, step.piece_from, step.from), S(1), scratch.begin);
-  add_weights(step, slide::line_weights(line, step.piece_to, step.to), S(1), scratch.end);
-  if (step.piece_from == step.piece_to) {
-    add_weights(step, slide::line_differences(line, step.piece_to, step.from, step.to), S(1), scratch.difference);
-    return;
-  }
-  // By way of the borders between both elements: each part is free of cancellation.
-  const bool forward = step.piece_to > step.piece_from;
-  const double leave = forward ? p.end : p.begin, enter = forward ? q.begin : q.end;
-  const S change = step.to - step.from;
-  add_weights(step, slide::line_differences(line, step.piece_from, step.from, leave), (leave - step.from) / change,
-              scratch.difference);
-  add_weights(step, slide::line_differences(line, step.piece_to, enter, step.to), (step.to - enter) / change,
-              scratch.difference);
-  scratch.difference[(forward ? p.end_node() - 1 : p.first_node) - step.first] -= S(1) / change;
-  scratch.difference[(forward ? q.first_node : q.end_node() - 1) - step.first] += S(1) / change;
-}
-
-/// Tangent-scaled increment from one rotation to another.
-template <typename S>
-Vector3T<S> increment(const Matrix3T<S>& from, const Matrix3T<S>& to) {
-  return cayley::increment(so3::quaternion_from_matrix(Matrix3T<S>(to * from.transpose())));
-}
-
-/// How the section's rotation increment splits: fixed + along * Delta X.
-template <typename S>
-struct RotationSplit {
-  Vector3T<S> fixed, along;
-};
-
-template <typename S>
-RotationSplit<S> split_rotation(const Step<S>& step) {
-  const S from(step.from), change = step.to - step.from;
-  const Matrix3T<S> at_00 = frame_at(step.line, step.piece_from, from, step.begin).rotation,
-                    at_01 = frame_at(step.line, step.piece_from, from, step.end).rotation,
-                    at_10 = frame_at(step.line, step.piece_to, step.to, step.begin).rotation,
-                    at_11 = frame_at(step.line, step.piece_to, step.to, step.end).rotation;
-  // Move, then slide; slide, then move.
-  const Vector3T<S> a1 = increment(at_00, at_01), b1 = increment(at_01, at_11), b2 = increment(at_00, at_10),
-                    a2 = increment(at_10, at_11);
-  const SlidePiece& piece = step.line.pieces[step.piece_from];
-  Vector3T<S> along1, along2;
-  const bool same = step.piece_from == step.piece_to;
-  if (std::abs(real(change)) < (same ? kShort : 1e-9) * piece.length()) {
-    const S middle = S(0.5) * (from + step.to);
-    const int at = step.line.piece_at(real(middle));
-    along1 = frame_at(step.line, at, middle, step.end).spatial_curvature;
-    along2 = frame_at(step.line, at, middle, step.begin).spatial_curvature;
-  } else {
-    along1 = b1 / change;
-    along2 = b2 / change;
-  }
-  const S c1 = S(1) / (S(1) - S(0.25) * so3::dot(a1, b1)), c2 = S(1) / (S(1) - S(0.25) * so3::dot(a2, b2));
-  RotationSplit<S> out;
-  const S end(step.rule.weight), begin(1 - step.rule.weight);
-  out.fixed = begin * a1 + end * a2;
-  out.along = begin * c1 * (cayley::inverse_tangent(a1) * along1) +
-              end * c2 * (cayley::inverse_tangent(a2).transpose() * along2);
-  return out;
-}
-
-/// Everything that the rows consist of, except g.
-template <typename S>
-struct IncrementalRows {
-  Vector3T<S> travel, turn;         // rho, kappa: the released row is travel . f + turn . m
-  Vector3T<S> arm, redistribution;  // e; delta over the sum of squares
-  Vector3T<S> mean_rotation;
-};
-
-template <typename S>
-IncrementalRows<S> incremental_rows(const Step<S>& step, Scratch<S>& scratch) {
-  scratch.resize(step.count);
-  set_weights(step, scratch);
-  const double c = step.rule.weight, a = step.rule.arm_weight;
-  IncrementalRows<S> out;
-  out.travel.setZero();
-  out.mean_rotation.setZero();
-  Vector3T<S> defect = Vector3T<S>::Zero(), interpolated = Vector3T<S>::Zero();  // e / Delta X, sum I_h w
-  for (int j = 0; j < step.count; ++j) {
-    const PoseT<S> begin = step.begin(step.first + j), end = step.end(step.first + j);
-    scratch.rotation[j] = cayley::increment(begin.orientation, end.orientation);
-    out.travel += scratch.difference[j] * (S(c) * begin.position + S(1 - c) * end.position);
-    if (step.rule.moves_arm) defect += S(a * (1 - a)) * scratch.difference[j] * (end.position - begin.position);
-    interpolated += step.contact(scratch.begin[j], scratch.end[j]) * scratch.rotation[j];
-    out.mean_rotation += S(1.0 / step.count) * scratch.rotation[j];
-  }
-  out.travel -= so3::cross(interpolated, defect);
-  out.arm = (step.to - step.from) * defect;
-  const RotationSplit<S> rotation = split_rotation(step);
-  out.turn = rotation.along;
-  S spread(0);
-  for (int j = 0; j < step.count; ++j) {
-    const Vector3T<S> d = scratch.rotation[j] - out.mean_rotation;
-    spread += so3::dot(d, d);
-  }
-  out.redistribution.setZero();
-  if (real(spread) > kUniform) out.redistribution = (rotation.fixed - interpolated) / spread;
-  return out;
-}
-
-/// The rows for a slave's residual g, into scratch.rows; returns the released one.
-template <typename S>
-S evaluate_incremental(const Step<S>& step, const Vector6& g, Scratch<S>& scratch) {
-  const IncrementalRows<S> r = incremental_rows(step, scratch);
-  const Vector3T<S> force = g.head<3>().template cast<S>(), moment = g.tail<3>().template cast<S>();
-  const S share = so3::dot(r.redistribution, moment);
-  const Vector3T<S> turned = moment + so3::cross(r.arm, force);
-  for (int j = 0; j < step.count; ++j) {
-    const S weight = step.contact(scratch.begin[j], scratch.end[j]);
-    scratch.rows[j].template head<3>() = weight * force;
-    scratch.rows[j].template tail<3>() = weight * turned + share * (scratch.rotation[j] - r.mean_rotation);
-  }
-  return so3::dot(r.travel, force) + so3::dot(r.turn, moment);
-}
-
-template <typename S>
-S evaluate_variational(const Step<S>& step, const Vector6& g, Scratch<S>& scratch) {
-  scratch.resize(step.count);
-  const Vector3T<S> force = g.head<3>().template cast<S>(), moment = g.tail<3>().template cast<S>();
-  const slide::LineWeights<S> w = slide::line_weights(step.line, step.piece_to, step.to);
-  for (int j = 0; j < step.count; ++j) {
-    scratch.rows[j].template head<3>() = w.values[j] * force;
-    scratch.rows[j].template tail<3>() = w.values[j] * moment;
-  }
-  const Section<S> section = section_at(step.line, step.piece_to, step.to, step.end);
-  return so3::dot(section.tangent, force) + so3::dot(section.spatial_curvature, moment);
-}
-
-enum class Form { Incremental, Variational };
-
-template <typename S>
-S evaluate(Form form, const Step<S>& step, const Vector6& g, Scratch<S>& scratch) {
-  return form == Form::Incremental ? evaluate_incremental(step, g, scratch) : evaluate_variational(step, g, scratch);
-}
-
-/// Columns of the slave at the end: dr = I^j dr_j + r' dX, spin = I_g^j spin_j + k dX; where the contact is in the
-/// middle, dr = d(2 I^j_c r_{j,1/2}).
-void set_right(const Step<double>& step, SlideMaps& maps) {
-  const slide::LineWeights<double> w = slide::line_weights(step.line, step.piece_to, step.to);
-  const FrameVariation frame(step.line, step.piece_to, step.to, step.end);
-  for (int j = 0; j < maps.count; ++j) maps.right[j].setZero();
-  Vector3 tangent = Vector3::Zero();
-  const double c = step.rule.weight;
-  for (int i = 0; i < w.count; ++i) {
-    Matrix6& right = maps.right[w.first + i - maps.first];
-    right.topLeftCorner<3, 3>().diagonal().setConstant(step.rule.is_in_middle ? c * w.values[i] : w.values[i]);
-    right.bottomRightCorner<3, 3>() = frame.values[i];
-    const Vector3 end = step.end(w.first + i).position;
-    if (step.rule.is_in_middle)
-      tangent += c * w.derivatives[i] * (step.begin(w.first + i).position + end);
-    else
-      tangent += w.derivatives[i] * end;
-  }
-  if (step.rule.is_in_middle && c < 1) {
-    const slide::LineWeights<double> begin = slide::line_weights(step.line, step.piece_from, step.from);
-    for (int i = 0; i < begin.count; ++i)
-      maps.right[begin.first + i - maps.first].topLeftCorner<3, 3>().diagonal().array() += (1 - c) * begin.values[i];
-  }
-  maps.released_right << tangent, frame.spatial_curvature;
-}
-
-/// Left maps from rows for unit residuals.
-void set_left(Form form, const Step<double>& step, Scratch<double>& scratch, SlideMaps& maps) {
-  if (form == Form::Variational) {
-    maps.released_left = maps.released_right;
-    for (int j = 0; j < maps.count; ++j) maps.left[j] = maps.right[j](0, 0) * Matrix6::Identity();
-    return;
-  }
-  const IncrementalRows<double> r = incremental_rows(step, scratch);
-  maps.released_left << r.travel, r.turn;
-  for (int j = 0; j < maps.count; ++j) {
-    const double weight = step.contact(scratch.begin[j], scratch.end[j]);
-    maps.left[j] = weight * Matrix6::Identity();
-    maps.left[j].topRightCorner<3, 3>() = -weight * so3::hat(r.arm);  // transposed: moment row weight e x f
-    maps.left[j].bottomRightCorner<3, 3>() += r.redistribution * (scratch.rotation[j] - r.mean_rotation).transpose();
-  }
-}
-
-/// d(rows) at constant g by complex steps, column by column.
-void set_geometric(Form form, const Step<double>& base, const Vector6& g, SlideMaps& maps) {
-  static thread_local Scratch<Complex> scratch;
-  Step<Complex> step{base.line,
-                     {base.line, base.begin.nodes},
-                     {base.line, base.end.nodes},
-                     base.from,
-                     base.to,
-                     base.piece_from,
-                     base.piece_to,
-                     base.first,
-                     base.count,
-                     base.rule};
-  step.to = Complex(base.to, kStep);
-  maps.released_released = evaluate(form, step, g, scratch).imag() / kStep;
-  for (int i = 0; i < maps.count; ++i) maps.master_released[i] = scratch.rows[i].imag() / kStep;
-  step.to = base.to;
-  for (int j = 0; j < maps.count; ++j)
-    for (int c = 0; c < 6; ++c) {
-      step.end.perturbed_node = base.first + j;
-      step.end.component = c;
-      maps.released_master[j][c] = evaluate(form, step, g, scratch).imag() / kStep;
-      for (int i = 0; i < maps.count; ++i)
-        maps.master_master[i * maps.count + j].col(c) = scratch.rows[i].imag() / kStep;
-    }
-}
-
-void set_maps(Form form, const Step<double>& step, const Vector6& g, SlideMaps& maps, bool with_tangent) {
-  static thread_local Scratch<double> scratch;
-  maps.first = step.first;
-  maps.count = step.count;
-  maps.left.resize(step.count);
-  maps.right.resize(step.count);
-  set_right(step, maps);
-  set_left(form, step, scratch, maps);
-  if (!with_tangent) return;
-  maps.released_master.resize(step.count);
-  maps.master_released.resize(step.count);
-  maps.master_master.resize(static_cast<std::size_t>(step.count) * step.count);
-  set_geometric(form, step, g, maps);
-}
-
-Configuration<double> configuration(const SlideLine& line, const std::vector<NodePose>& nodes) {
-  return {line, nodes};
-}
-
-}  // namespace
+using slide::Complex;
 
 SlideMaps::SlideMaps(std::size_t most_nodes) {
   left.reserve(most_nodes);
@@ -348,8 +16,22 @@ SlideMaps::SlideMaps(std::size_t most_nodes) {
   master_master.reserve(most_nodes * most_nodes);
 }
 
+void slide::set_active(const SlideLine& line, int piece, int other_piece, bool with_tangent, SlideMaps& maps) {
+  const NodeRange active = line.support(std::min(piece, other_piece), std::max(piece, other_piece));
+  maps.first = active.first;
+  maps.count = active.end - active.first;
+  maps.left.assign(maps.count, Matrix6::Zero());
+  maps.right.assign(maps.count, Matrix6::Zero());
+  if (!with_tangent) return;
+  maps.released_released = 0;
+  maps.released_master.assign(maps.count, Vector6::Zero());
+  maps.master_released.assign(maps.count, Vector6::Zero());
+  maps.master_master.assign(static_cast<std::size_t>(maps.count) * maps.count, Matrix6::Zero());
+}
+
 NodePose slide_pose(const SlideLine& line, const std::vector<NodePose>& nodes, double arc_length) {
-  const Section<double> section = section_at(line, line.piece_at(arc_length), arc_length, configuration(line, nodes));
+  const Section<double> section =
+      section_at(line, line.piece_at(arc_length), arc_length, slide::LineNodes{line, nodes});
   NodePose pose;
   pose.position = section.position;
   pose.orientation = Quaternion(section.rotation).normalized();
@@ -359,7 +41,7 @@ NodePose slide_pose(const SlideLine& line, const std::vector<NodePose>& nodes, d
 
 NodePose slide_pose(const SlideTravel& travel, const Vector3& begin_position) {
   NodePose pose = slide_pose(travel.line, travel.end, travel.to);
-  const ContactRule rule = contact_rule(travel.step(), travel.arm_weight);
+  const slide::ContactRule rule = slide::contact_rule(travel.step(), travel.arm_weight);
   if (!rule.is_in_middle) return pose;
   pose.position = -begin_position;
   const auto add = [&](double factor, double arc_length) {
@@ -377,35 +59,30 @@ NodePose slide_pose(const SlideTravel& travel, const Vector3& begin_position) {
 void slide_variational_maps(const SlideLine& line, const std::vector<NodePose>& nodes, double arc_length,
                             const Vector6& g, SlideMaps& maps, bool with_tangent) {
   const int piece = line.piece_at(arc_length);
-  const NodeRange active = line.support(piece, piece);
-  const Step<double> step{line,
-                          configuration(line, nodes),
-                          configuration(line, nodes),
-                          arc_length,
-                          arc_length,
-                          piece,
-                          piece,
-                          active.first,
-                          active.end - active.first,
-                          {}};
-  set_maps(Form::Variational, step, g, maps, with_tangent);
-}
-
-void slide_incremental_maps(const SlideTravel& travel, const Vector6& g, SlideMaps& maps, bool with_tangent) {
-  const SlideLine& line = travel.line;
-  const int from = line.piece_at(travel.from), to = line.piece_at(travel.to);
-  const NodeRange active = line.support(std::min(from, to), std::max(from, to));
-  const Step<double> step{line,
-                          configuration(line, travel.begin),
-                          configuration(line, travel.end),
-                          travel.from,
-                          travel.to,
-                          from,
-                          to,
-                          active.first,
-                          active.end - active.first,
-                          contact_rule(travel.step(), travel.arm_weight)};
-  set_maps(Form::Incremental, step, g, maps, with_tangent);
+  const slide::LineNodes poses{line, nodes};
+  slide::set_active(line, piece, piece, with_tangent, maps);
+  const slide::LineWeights<double> w = slide::line_weights(line, piece, arc_length);
+  const FrameVariation frame(line, piece, arc_length, poses);
+  const Vector3 &k = frame.spatial_curvature, force = g.head<3>(), moment = g.tail<3>();
+  Vector3 tangent = Vector3::Zero();
+  for (int j = 0; j < maps.count; ++j) {
+    tangent += w.derivatives[j] * poses(w.first + j).position;
+    maps.left[j].diagonal().setConstant(w.values[j]);
+    maps.right[j].topLeftCorner<3, 3>().diagonal().setConstant(w.values[j]);
+    maps.right[j].bottomRightCorner<3, 3>() = frame.values[j];
+  }
+  maps.released_left << tangent, k;
+  maps.released_right = maps.released_left;
+  if (!with_tangent) return;
+  for (int j = 0; j < maps.count; ++j) {  // d(k) = I_g' spin + (I_g spin) x k
+    maps.released_master[j] << w.derivatives[j] * force,
+        frame.derivatives[j].transpose() * moment + frame.values[j].transpose() * k.cross(moment);
+    maps.master_released[j] = w.derivatives[j] * g;
+  }
+  const Section<Complex> moved =
+      section_at(line, piece, Complex(arc_length, slide::kComplexStep), slide::ComplexLineNodes{line, nodes});
+  const Vector3 bend = moved.tangent.imag(), change = moved.spatial_curvature.imag();
+  maps.released_released = (bend.dot(force) + change.dot(moment)) / slide::kComplexStep;
 }
 
 }  // namespace flexarm

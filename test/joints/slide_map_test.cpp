@@ -239,7 +239,7 @@ TEST_P(SlideMapsOfLine, ColumnsAreTheDerivativeOfTheSection) {
       step.from = from;
       step.to = to;
       const Vector3 begin = random.vector();
-      const SlideMaps maps = step.maps(Vector6::Zero(), true, false);
+      const SlideMaps maps = step.maps(Vector6::Zero(), true);
       const NodePose pose = slide_pose(step.travel(), begin);
       for (int column = 0; column <= 6 * maps.count; ++column) {
         const int global = column == 0 ? 0 : column + 6 * maps.first;

@@ -15,6 +15,7 @@ struct FrameVariation {
     count = support.end - support.first;
     for (int i = 0; i < count; ++i) values[i].setZero(), derivatives[i].setZero();
     const ElementVariation plain = element_variation(line.pieces[index], arc_length, poses);
+    rotation = plain.rotation;
     spatial_curvature = plain.spatial_curvature;
     if (!line.smooth) {
       add(plain, Matrix3::Identity(), Matrix3::Zero());
@@ -22,11 +23,11 @@ struct FrameVariation {
     }
     const auto [turn, slope] = slide::frame_smoothing(line, index, arc_length, poses);
     const so3::ExponentialMap<double> map(turn);
-    const Matrix3 tangent = map.tangent(), rotation = map.rotation(),
-                  tangent_derivative = map.tangent_derivative(slope);
+    const Matrix3 tangent = map.tangent(), turned = map.rotation(), tangent_derivative = map.tangent_derivative(slope);
     const Vector3 slope_spin = tangent * slope;
-    add(plain, rotation, so3::hat(slope_spin) * rotation);
-    spatial_curvature = slope_spin + rotation * plain.spatial_curvature;
+    add(plain, turned, so3::hat(slope_spin) * turned);
+    rotation = turned * plain.rotation;
+    spatial_curvature = slope_spin + turned * plain.spatial_curvature;
     slide::for_each_smoothed_border(
         line, index, [&](int neighbour, double border, double share, const slide::Hermite& hermite) {
           const double value = hermite.value(arc_length), derivative = hermite.slope(arc_length);
@@ -37,9 +38,9 @@ struct FrameVariation {
             // The border's node of this piece: welded beams have one each.
             const SlidePiece& side = line.pieces[piece];
             const int node = (piece == std::max(index, neighbour) ? side.first_node : side.end_node() - 1) - first;
-            const Matrix3 turned = sign * so3::hat(at.spatial_curvature);
-            values[node] -= left * turned;
-            derivatives[node] -= left_derivative * turned;
+            const Matrix3 spun = sign * so3::hat(at.spatial_curvature);
+            values[node] -= left * spun;
+            derivatives[node] -= left_derivative * spun;
             for (int i = 0; i < at.count; ++i) {
               values[at.first + i - first] += sign * left * at.derivatives[i];
               derivatives[at.first + i - first] += sign * left_derivative * at.derivatives[i];
@@ -50,12 +51,14 @@ struct FrameVariation {
 
   int first = 0, count = 0;
   std::array<Matrix3, slide::kMostWeights> values, derivatives;
+  Matrix3 rotation;
   Vector3 spatial_curvature;
 
  private:
   struct ElementVariation {
     int first = 0, count = 0;
     std::array<Matrix3, slide::kMostNodes> values, derivatives;
+    Matrix3 rotation;
     Vector3 spatial_curvature;
   };
 
@@ -77,6 +80,7 @@ struct FrameVariation {
       GeneralisedShapeFunctions<N> functions;
       const InterpolatedRotation<double> section =
           LocalRotationVariation<N>(LocalRotations<N>(orientation)).evaluate(values, derivatives, functions);
+      out.rotation = section.rotation;
       out.spatial_curvature = section.rotation * section.curvature;
       for (int i = 0; i < N; ++i) {
         out.values[i] = functions.values[i];

@@ -23,8 +23,8 @@ struct MimicMap {
 /// (m,j) += L_left^T (s,j), then the geometric blocks. (joints.md 2)
 ///
 /// A slider may come to couple any elements of its line, but at a time it does few. All blocks have their places for
-/// good, and the reduced matrix only those that the sliders' active nodes reach. When a slider enters other elements its
-/// pattern follows: a new number in pattern(), no allocation.
+/// good, and the reduced matrix only those that the sliders' active nodes reach. When a slider enters other elements
+/// its pattern follows: a new number in pattern(), no allocation.
 class SparseAssembler {
  public:
   SparseAssembler(const Model& model, const DegreesOfFreedom& dof);

@@ -1,0 +1,362 @@
+// Maps of a slider's increments over a step, and their derivatives. (joints.md 4.3 to 4.5)
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "flexarm/math/so3.h"
+#include "slide_step.h"
+
+namespace flexarm {
+namespace {
+
+using slide::Complex;
+
+/// Relative to the element's length: below it the rotation over Delta X is taken from the curvature in the middle,
+/// which is accurate to its square; over a border, where the curvature jumps, only where nothing else is left.
+constexpr double kShort = 1e-5, kShortOverBorder = 1e-9;
+/// Nodal increments that differ by less have nothing to redistribute [rad^2].
+constexpr double kUniform = 1e-24;
+/// Nodes that are active in a step.
+constexpr int kMostActive = (SlideLine::kMostPieces + 2) * slide::kMostNodes;
+
+/// Of the active nodes: I_n, I_{n+1}, and the divided difference D.
+template <typename S>
+struct StepWeights {
+  std::array<S, kMostActive> begin, end, difference;
+
+  StepWeights(const SlideTravel& travel, const S& to, int first) {
+    const SlideLine& line = travel.line;
+    const int piece_from = line.piece_at(travel.from), piece_to = line.piece_at(travel.to);
+    const SlidePiece &p = line.pieces[piece_from], &q = line.pieces[piece_to];
+    begin.fill(S(0));
+    end.fill(S(0));
+    difference.fill(S(0));
+    const auto add = [&](const auto& weights, const S& factor, std::array<S, kMostActive>& sum) {
+      for (int i = 0; i < weights.count; ++i) sum[weights.first + i - first] += factor * weights.values[i];
+    };
+    add(slide::line_weights(line, piece_from, travel.from), S(1), begin);
+    add(slide::line_weights(line, piece_to, to), S(1), end);
+    if (piece_from == piece_to) {
+      add(slide::line_differences(line, piece_to, travel.from, to), S(1), difference);
+      return;
+    }
+    // By way of the borders between both elements: each part is free of cancellation.
+    const bool forward = piece_to > piece_from;
+    const double leave = forward ? p.end : p.begin, enter = forward ? q.begin : q.end;
+    const S change = to - travel.from;
+    add(slide::line_differences(line, piece_from, travel.from, leave), (leave - travel.from) / change, difference);
+    add(slide::line_differences(line, piece_to, enter, to), (to - enter) / change, difference);
+    difference[(forward ? p.end_node() - 1 : p.first_node) - first] -= S(1) / change;
+    difference[(forward ? q.first_node : q.end_node() - 1) - first] += S(1) / change;
+  }
+};
+
+Vector3 increment(const Matrix3& from, const Matrix3& to) {
+  return cayley::increment(so3::quaternion_from_matrix(Matrix3(to * from.transpose())));
+}
+
+/// Frames of the line before and after, at both places.
+struct Frames {
+  Matrix3 at_00, at_01, at_10, at_11;  ///< first index: place, second: time
+  Vector3 curvature_10, curvature_11;
+};
+
+/// The section's rotation increment = fixed + along Delta X: "move, then slide" (1) with the weight 1 - c and "slide,
+/// then move" (2) with c.
+class RotationSplit {
+ public:
+  RotationSplit(const Frames& frames, double c, double change, bool is_short, const Vector3& curvature_begin,
+                const Vector3& curvature_end)
+      : begin_(1 - c),
+        end_(c),
+        change_(change),
+        is_short_(is_short),
+        curvature_10_(frames.curvature_10),
+        curvature_11_(frames.curvature_11),
+        a1_(increment(frames.at_00, frames.at_01)),
+        b1_(increment(frames.at_01, frames.at_11)),
+        a2_(increment(frames.at_10, frames.at_11)),
+        b2_(increment(frames.at_00, frames.at_10)),
+        along1_(is_short ? curvature_end : Vector3(b1_ / change)),
+        along2_(is_short ? curvature_begin : Vector3(b2_ / change)),
+        c1_(1 / (1 - 0.25 * a1_.dot(b1_))),
+        c2_(1 / (1 - 0.25 * a2_.dot(b2_))),
+        turned1_(cayley::inverse_tangent(a1_) * along1_),
+        turned2_(cayley::inverse_tangent(a2_).transpose() * along2_) {}
+
+  Vector3 fixed() const { return begin_ * a1_ + end_ * a2_; }
+  Vector3 along() const { return begin_ * c1_ * turned1_ + end_ * c2_ * turned2_; }
+
+  /// Derivatives of a linear function of `fixed` or `along`: with respect to the spins of the frames 01 and 11, to the
+  /// curvature of the line at the end where the travel is short, and to the arc length at the end.
+  struct Gradient {
+    Vector3 at_01 = Vector3::Zero(), at_11 = Vector3::Zero(), curvature = Vector3::Zero();
+    double arc_length = 0;
+  };
+
+  Gradient of_fixed(const Vector3& moment) const {
+    Gradient out;
+    out.at_01 = begin_ * (cayley::inverse_tangent(a1_).transpose() * moment);
+    out.at_11 = end_ * (cayley::inverse_tangent(a2_).transpose() * moment);
+    out.arc_length = out.at_11.dot(curvature_11_) - end_ * moment.dot(slid_back(a2_));
+    return out;
+  }
+
+  /// `slope_begin`, `slope_end`: derivatives of the short travel's curvatures with respect to the arc length at the
+  /// end.
+  Gradient of_along(const Vector3& moment, const Vector3& slope_begin, const Vector3& slope_end) const {
+    const Matrix3 inverse1 = cayley::inverse_tangent(a1_), inverse2 = cayley::inverse_tangent(a2_);
+    const double work1 = begin_ * 0.25 * c1_ * c1_ * moment.dot(turned1_),
+                 work2 = end_ * 0.25 * c2_ * c2_ * moment.dot(turned2_);
+    const Vector3 along1 = begin_ * c1_ * (inverse1.transpose() * moment), along2 = end_ * c2_ * (inverse2 * moment);
+    const Vector3 a1 = begin_ * c1_ * (cayley::xi_inverse_tangent(a1_, along1_).transpose() * moment) + work1 * b1_;
+    // S^-T(a) = S^-1(-a)
+    const Vector3 a2 =
+        -end_ * c2_ * (cayley::xi_inverse_tangent(Vector3(-a2_), along2_).transpose() * moment) + work2 * b2_;
+    Vector3 b1 = work1 * a1_, b2 = work2 * a2_;
+    Gradient out;
+    if (is_short_) {
+      out.curvature = along1;
+      out.arc_length = along1.dot(slope_end) + along2.dot(slope_begin);
+    } else {
+      b1 += along1 / change_;
+      b2 += along2 / change_;
+      out.arc_length = -(along1.dot(along1_) + along2.dot(along2_)) / change_;
+    }
+    const Matrix3 inverse_b1 = cayley::inverse_tangent(b1_);
+    out.at_01 = inverse1.transpose() * a1 - inverse_b1 * b1;
+    out.at_11 = inverse_b1.transpose() * b1 + inverse2.transpose() * a2;
+    out.arc_length +=
+        out.at_11.dot(curvature_11_) - a2.dot(slid_back(a2_)) + b2.dot(cayley::inverse_tangent(b2_) * curvature_10_);
+    return out;
+  }
+
+ private:
+  /// By how much a2 lags behind where its first frame slides.
+  Vector3 slid_back(const Vector3& a2) const { return cayley::inverse_tangent(a2).transpose() * curvature_10_; }
+
+  double begin_, end_, change_;
+  bool is_short_;
+  Vector3 curvature_10_, curvature_11_;
+  Vector3 a1_, b1_, a2_, b2_, along1_, along2_;
+  double c1_, c2_;
+  Vector3 turned1_, turned2_;
+};
+
+/// One step's maps: rows first, then what varies in them.
+class IncrementalMaps {
+ public:
+  IncrementalMaps(const SlideTravel& travel, const Vector6& g, SlideMaps& maps, bool with_tangent)
+      : travel_(travel),
+        line_(travel.line),
+        begin_{travel.line, travel.begin},
+        end_{travel.line, travel.end},
+        piece_from_(line_.piece_at(travel.from)),
+        piece_to_(line_.piece_at(travel.to)),
+        change_(travel.to - travel.from),
+        rule_(slide::contact_rule(travel.step(), travel.arm_weight)),
+        force_(g.head<3>()),
+        moment_(g.tail<3>()),
+        maps_(maps),
+        weights_(travel, travel.to, first_active()) {
+    slide::set_active(line_, piece_from_, piece_to_, with_tangent, maps);
+    if (with_tangent) {
+      from_.emplace(line_, piece_from_, travel.from, end_);
+      to_.emplace(line_, piece_to_, travel.to, end_);
+    }
+    set_rows();
+    if (!with_tangent) return;
+    set_columns();
+    set_node_derivatives();
+    set_arc_length_derivatives();
+  }
+
+ private:
+  double contact(int j) const { return (1 - rule_.weight) * weights_.begin[j] + rule_.weight * weights_.end[j]; }
+
+  int first_active() const {
+    return line_.support(std::min(piece_from_, piece_to_), std::max(piece_from_, piece_to_)).first;
+  }
+  bool is_short() const {
+    const double limit = piece_from_ == piece_to_ ? kShort : kShortOverBorder;
+    return std::abs(change_) < limit * line_.pieces[piece_from_].length();
+  }
+  double middle() const { return 0.5 * (travel_.from + travel_.to); }
+
+  RotationSplit split_rotation() const {
+    const slide::Frame<double> at_00 = frame_at(line_, piece_from_, travel_.from, begin_),
+                               at_10 = frame_at(line_, piece_to_, travel_.to, begin_);
+    Frames frames{at_00.rotation, {}, at_10.rotation, {}, at_10.spatial_curvature, {}};
+    if (from_) {
+      frames.at_01 = from_->rotation;
+      frames.at_11 = to_->rotation;
+      frames.curvature_11 = to_->spatial_curvature;
+    } else {
+      frames.at_01 = frame_at(line_, piece_from_, travel_.from, end_).rotation;
+      frames.at_11 = frame_at(line_, piece_to_, travel_.to, end_).rotation;
+    }
+    if (!is_short()) return {frames, rule_.weight, change_, false, Vector3::Zero(), Vector3::Zero()};
+    const int piece = line_.piece_at(middle());
+    return {frames,
+            rule_.weight,
+            change_,
+            true,
+            frame_at(line_, piece, middle(), begin_).spatial_curvature,
+            frame_at(line_, piece, middle(), end_).spatial_curvature};
+  }
+
+  void set_rows() {
+    const double c = rule_.weight;
+    Vector3 travel = Vector3::Zero();
+    mean_rotation_.setZero();
+    for (int j = 0; j < maps_.count; ++j) {
+      const PoseT<double> begin = begin_(maps_.first + j), end = end_(maps_.first + j);
+      rotations_[j] = cayley::increment(begin.orientation, end.orientation);
+      displacements_[j] = end.position - begin.position;
+      travel += weights_.difference[j] * (c * begin.position + (1 - c) * end.position);
+      defect_ += rule_.arm_product * weights_.difference[j] * displacements_[j];
+      interpolated_ += contact(j) * rotations_[j];
+      mean_rotation_ += rotations_[j] / maps_.count;
+    }
+    travel -= interpolated_.cross(defect_);
+    const RotationSplit& rotation = split_.emplace(split_rotation());
+    for (int j = 0; j < maps_.count; ++j) spread_ += (rotations_[j] - mean_rotation_).squaredNorm();
+    Vector3 redistribution = Vector3::Zero();
+    if (spread_ > kUniform) redistribution = (rotation.fixed() - interpolated_) / spread_;
+    share_ = redistribution.dot(moment_);
+    maps_.released_left << travel, rotation.along();
+    const Matrix3 arm = so3::hat(Vector3(change_ * defect_));
+    for (int j = 0; j < maps_.count; ++j) {  // moment row: weight (m + arm x f) + (redistribution.m) (w_j - mean)
+      maps_.left[j].diagonal().setConstant(contact(j));
+      maps_.left[j].topRightCorner<3, 3>() = -contact(j) * arm;
+      maps_.left[j].bottomRightCorner<3, 3>() += redistribution * (rotations_[j] - mean_rotation_).transpose();
+    }
+  }
+
+  /// Columns of the slave at the end: dr = I^j dr_j + r' dX, spin = I_g^j spin_j + k dX; where the contact is in the
+  /// middle, dr = d(2 I^j_c r_{j,1/2}).
+  void set_columns() {
+    const slide::LineWeights<double> w = slide::line_weights(line_, piece_to_, travel_.to);
+    const double c = rule_.weight;
+    Vector3 tangent = Vector3::Zero();
+    for (int j = 0; j < maps_.count; ++j)
+      maps_.right[j].topLeftCorner<3, 3>().diagonal().setConstant(rule_.is_in_middle ? contact(j) : weights_.end[j]);
+    for (int i = 0; i < w.count; ++i) {
+      const int j = w.first + i - maps_.first;
+      maps_.right[j].bottomRightCorner<3, 3>() = to_->values[i];
+      const Vector3 end = end_(w.first + i).position;
+      tangent += w.derivatives[i] * (rule_.is_in_middle ? Vector3(c * (2 * end - displacements_[j])) : end);
+      slopes_[j] = c * w.derivatives[i];
+    }
+    maps_.released_right << tangent, to_->spatial_curvature;
+  }
+
+  /// Adds what a gradient with respect to the frames makes of the nodes' spins.
+  void add_frames(const RotationSplit::Gradient& gradient, std::array<Vector3, kMostActive>& rows) const {
+    for (int i = 0; i < from_->count; ++i)
+      rows[from_->first + i - maps_.first] += from_->values[i].transpose() * gradient.at_01;
+    for (int i = 0; i < to_->count; ++i)
+      rows[to_->first + i - maps_.first] += to_->values[i].transpose() * gradient.at_11;
+  }
+
+  void set_node_derivatives() {
+    const double c = rule_.weight;
+    std::array<Vector3, kMostActive> turn, shared;
+    std::fill_n(turn.begin(), maps_.count, Vector3::Zero());
+    std::fill_n(shared.begin(), maps_.count, Vector3::Zero());
+    slope_begin_.setZero();
+    slope_end_.setZero();
+    std::optional<FrameVariation> middle_frame;
+    if (is_short()) {
+      const int piece = line_.piece_at(middle());
+      middle_frame.emplace(line_, piece, middle(), end_);
+      const Complex at(middle(), 0.5 * slide::kComplexStep);
+      const auto slope = [&](const std::vector<NodePose>& nodes) {
+        return Vector3(frame_at(line_, piece, at, slide::ComplexLineNodes{line_, nodes}).spatial_curvature.imag() /
+                       slide::kComplexStep);
+      };
+      slope_begin_ = slope(travel_.begin);
+      slope_end_ = slope(travel_.end);
+    }
+    along_ = split_->of_along(moment_, slope_begin_, slope_end_);
+    add_frames(along_, turn);
+    if (middle_frame) {
+      const Vector3 lever = middle_frame->spatial_curvature.cross(along_.curvature);
+      for (int i = 0; i < middle_frame->count; ++i)
+        turn[middle_frame->first + i - maps_.first] +=
+            middle_frame->derivatives[i].transpose() * along_.curvature + middle_frame->values[i].transpose() * lever;
+    }
+    const bool redistributes = spread_ > kUniform;
+    if (redistributes) {
+      fixed_ = split_->of_fixed(moment_);
+      add_frames(fixed_, shared);
+    }
+    const Vector3 lever = defect_.cross(force_), turned = force_.cross(interpolated_);
+    for (int k = 0; k < maps_.count; ++k) {
+      const Matrix3 inverse = cayley::inverse_tangent(rotations_[k]);
+      const double D = weights_.difference[k];
+      maps_.released_master[k] << (1 - c) * D * force_ - rule_.arm_product * D * turned,
+          turn[k] - contact(k) * (inverse.transpose() * lever);
+      const Matrix3 moved = -rule_.arm_product * change_ * D * so3::hat(force_);
+      Vector3 row = Vector3::Zero();
+      if (redistributes)
+        row = (shared[k] -
+               inverse.transpose() * Vector3(contact(k) * moment_ + 2 * share_ * (rotations_[k] - mean_rotation_))) /
+              spread_;
+      for (int j = 0; j < maps_.count; ++j) {
+        Matrix6& block = maps_.master_master[j * maps_.count + k];
+        block.bottomLeftCorner<3, 3>() = contact(j) * moved;
+        if (!redistributes) continue;
+        block.bottomRightCorner<3, 3>() =
+            (rotations_[j] - mean_rotation_) * row.transpose() + share_ * ((j == k) - 1.0 / maps_.count) * inverse;
+      }
+    }
+  }
+
+  void set_arc_length_derivatives() {
+    const double c = rule_.weight;
+    const StepWeights<Complex> moved(travel_, Complex(travel_.to, slide::kComplexStep), maps_.first);
+    Vector3 travel = Vector3::Zero(), interpolated = Vector3::Zero(), defect = Vector3::Zero();
+    for (int j = 0; j < maps_.count; ++j) {
+      const double D = moved.difference[j].imag() / slide::kComplexStep;
+      travel += D * (end_(maps_.first + j).position - c * displacements_[j]);
+      interpolated += slopes_[j] * rotations_[j];
+      defect += rule_.arm_product * D * displacements_[j];
+    }
+    travel -= interpolated.cross(defect_) + interpolated_.cross(defect);
+    maps_.released_released = travel.dot(force_) + along_.arc_length;
+    const Vector3 turned = moment_ + change_ * defect_.cross(force_),
+                  change = (change_ * defect + defect_).cross(force_);
+    const double share = spread_ > kUniform ? (fixed_.arc_length - interpolated.dot(moment_)) / spread_ : 0.0;
+    for (int j = 0; j < maps_.count; ++j)
+      maps_.master_released[j] << slopes_[j] * force_,
+          slopes_[j] * turned + contact(j) * change + share * (rotations_[j] - mean_rotation_);
+  }
+
+  const SlideTravel& travel_;
+  const SlideLine& line_;
+  slide::LineNodes begin_, end_;
+  int piece_from_, piece_to_;
+  double change_;  // Delta X
+  slide::ContactRule rule_;
+  Vector3 force_, moment_;
+  SlideMaps& maps_;
+  StepWeights<double> weights_;
+  std::optional<FrameVariation> from_, to_;  // at both places at the end
+  std::optional<RotationSplit> split_;
+  RotationSplit::Gradient along_, fixed_;
+  Vector3 slope_begin_, slope_end_;
+  std::array<Vector3, kMostActive> rotations_, displacements_;  // increments of the active nodes
+  std::array<double, kMostActive> slopes_{};                    // of contact(j) over X
+  // Sums over the nodes: e / Delta X, I_c^j w_j, their mean; sum of the squares of w_j - mean; redistributed moment.
+  Vector3 defect_ = Vector3::Zero(), interpolated_ = Vector3::Zero(), mean_rotation_;
+  double spread_ = 0, share_ = 0;
+};
+
+}  // namespace
+
+void slide_incremental_maps(const SlideTravel& travel, const Vector6& g, SlideMaps& maps, bool with_tangent) {
+  IncrementalMaps(travel, g, maps, with_tangent);
+}
+
+}  // namespace flexarm

@@ -1,0 +1,63 @@
+#pragma once
+/// What both forms of a slider's maps are made of.
+
+#include "flexarm/joints/slide_map.h"
+#include "flexarm/joints/slide_variation.h"
+
+namespace flexarm::slide {
+
+using Complex = std::complex<double>;
+/// Of complex steps: no cancellation, so as small as it likes.
+constexpr double kComplexStep = 1e-30;
+
+/// A line's nodes in one configuration.
+struct LineNodes {
+  const SlideLine& line;
+  const std::vector<NodePose>& nodes;  ///< of the model
+
+  PoseT<double> operator()(int i) const {
+    const NodePose& node = nodes[line.nodes[i]];
+    return {node.position, node.orientation};
+  }
+};
+
+/// The same for sections at complex arc lengths.
+struct ComplexLineNodes {
+  const SlideLine& line;
+  const std::vector<NodePose>& nodes;
+
+  PoseT<Complex> operator()(int i) const {
+    const NodePose& node = nodes[line.nodes[i]];
+    return {node.position.cast<Complex>(), node.orientation.cast<Complex>()};
+  }
+};
+
+/// What the forms of the incremental maps differ in.
+struct ContactRule {
+  double weight = 0.5;        ///< c, of the end of the step in the nodes' weights
+  double arm_product = 0;     ///< a (1 - a), a: of the end in moment arms; where what the arms lack goes into moments
+  bool is_in_middle = false;  ///< the contact holds in the middle of the step only
+};
+
+inline ContactRule contact_rule(SlideStep step, double arm_weight) {
+  switch (step) {
+    case SlideStep::MidContact:
+      return {0.5, 0, true};
+    case SlideStep::EndContact:
+      return {0.5, 0, false};
+    case SlideStep::EnterMid:
+      return {1.0, 0, true};
+    case SlideStep::EnterEnd:
+      return {1.0, 0, false};
+    case SlideStep::BeginWeights:
+      return {0.0, 0, false};
+    case SlideStep::SmEm:
+      break;
+  }
+  return {arm_weight, arm_weight * (1 - arm_weight), false};
+}
+
+/// Sizes the maps for the nodes between two pieces and forgets what they were.
+void set_active(const SlideLine& line, int piece, int other_piece, bool with_tangent, SlideMaps& maps);
+
+}  // namespace flexarm::slide
