@@ -59,6 +59,49 @@ TEST_P(SlideStepOf, TangentIsConsistent) {
   }
 }
 
+// One system's pattern follows the slider: at every place its tangent is that of a system made there.
+TEST(SlidePattern, FollowsTheSlider) {
+  SceneBuilder b;
+  b.beam("line", {{4, 0, 0}}, section(40, 20, 6, 8, 1.4, 0.2, 0.1), 16, 2);
+  b.beam("arm", {{0.1, 0.6, 0.2}}, section(40, 20, 6, 8, 1.4, 0.2, 0.1), 1, 2);
+  b.joint("base", scene::JointKind::Fixed, "world", "line");
+  b.joint("run", scene::JointKind::Slide, "line", "arm").slide =
+      scene::SlideDescription{0.1, scene::JointKind::Spherical};
+  const Model model = build_model(b.scene);
+  std::size_t s = 0;
+  while (model.joints[s].kind != JointMapKind::Slide) ++s;
+  RandomSource random(2);
+  State state = random_state(model, random, 0.05);
+  const auto evaluate = [&](StepSystem& system, double from, double to) {
+    state.released[s].displacement[0] = from;
+    system.begin(state, 0.1, StepSystem::Guess::Unchanged);
+    Eigen::VectorXd update = Eigen::VectorXd::Zero(system.assembler().unknowns());
+    const DegreesOfFreedom& dof = system.degrees_of_freedom();
+    update[dof.equation[dof.first[dof.variable_of_joint(static_cast<int>(s))]]] = to - from;
+    system.update(update);
+    ASSERT_TRUE(system.evaluate(true));
+  };
+  StepSystem walking(model, schemes().front());
+  int patterns = 0;
+  for (double x = 0.1; x < 3.8; x += 0.06) {
+    StepSystem fresh(model, schemes().front());
+    evaluate(walking, x, x + 0.06);
+    evaluate(fresh, x, x + 0.06);
+    EXPECT_EQ(dense(walking.assembler()), dense(fresh.assembler())) << x;
+    // The elements, the arm's 12 unknowns with 1 + 3 of the joint, their coupling with the nodes of two elements, and
+    // the coupling of these: of 208 * 208.
+    EXPECT_LE(walking.assembler().values().size(), 16u * 18 * 18 - 15 * 36 + 16 * 16 + 2 * 16 * 30 + (30 * 30 - 612));
+    patterns = walking.assembler().pattern();
+  }
+  EXPECT_GE(patterns, 14);
+  EXPECT_LE(patterns, 16) << "once per border";
+  evaluate(walking, 3.7, 3.75);
+  evaluate(walking, 0.3, 0.35);  // far away
+  StepSystem fresh(model, schemes().front());
+  evaluate(fresh, 0.3, 0.35);
+  EXPECT_EQ(dense(walking.assembler()), dense(fresh.assembler()));
+}
+
 std::vector<SlideCase> cases() {
   std::vector<SlideCase> out;
   for (const bool smooth : {false, true}) {

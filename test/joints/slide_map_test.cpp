@@ -5,6 +5,7 @@
 
 #include "elements/differences.h"
 #include "elements/random_element.h"
+#include "joints/slide_rows.h"
 
 namespace flexarm {
 namespace {
@@ -294,6 +295,46 @@ TEST_P(SlideMapsOfLine, GeometricBlocksAreTheDerivativeOfTheRows) {
     step.set_step(SlideStep::SmEm);
     step.arm_weight = 0;
     check(step, true);
+  }
+}
+
+// Rows and all their derivatives against the same formulas in complex arithmetic: to round-off, at any travel.
+TEST_P(SlideMapsOfLine, RowsAndDerivativesAgreeWithComplexSteps) {
+  RandomSource random(8);
+  const auto check = [&](const Travel& step, bool incremental) {
+    const Vector6 g = random.vector6();
+    const SlideMaps maps = step.maps(g, incremental);
+    const SlideRows expected = slide_rows(step.travel(), g, incremental);
+    const int count = maps.count;
+    ASSERT_EQ(expected.rows.size(), 1 + 6 * count);
+    Eigen::VectorXd rows(1 + 6 * count);
+    Eigen::MatrixXd derivatives(1 + 6 * count, 1 + 6 * count);
+    rows[0] = maps.released_left.dot(g);
+    derivatives(0, 0) = maps.released_released;
+    for (int i = 0; i < count; ++i) {
+      rows.segment<6>(1 + 6 * i) = maps.left[i].transpose() * g;
+      derivatives.block<6, 1>(1 + 6 * i, 0) = maps.master_released[i];
+      derivatives.block<1, 6>(0, 1 + 6 * i) = maps.released_master[i].transpose();
+      for (int k = 0; k < count; ++k) derivatives.block<6, 6>(1 + 6 * i, 1 + 6 * k) = maps.master_master[i * count + k];
+    }
+    // Over a travel that is not short, the turn is the quotient of rotations by it, and its derivative by its square.
+    const double travel = std::abs(step.to - step.from), quotient = incremental && travel > 1e-6 ? 1 / travel : 0;
+    EXPECT_LE((rows - expected.rows).norm(), 1e-15 * (100 + quotient) * (1 + expected.rows.norm()));
+    const double tolerance = 1e-15 * (1000 + quotient * quotient);
+    EXPECT_LE((derivatives - expected.derivatives).norm(), tolerance * (1 + expected.derivatives.norm()))
+        << incremental << " " << static_cast<int>(step.algorithm.within) << ": " << step.from << " to " << step.to;
+  };
+  for (const auto& [from, to] : kTravels) {
+    Travel step(random, GetParam(), 0.4);
+    step.from = from;
+    step.to = to;
+    check(step, false);
+    for (const SlideStep form : kSteps)
+      for (const double arm_weight : {0.0, 0.5}) {
+        step.set_step(form);
+        step.arm_weight = arm_weight;
+        check(step, true);
+      }
   }
 }
 

@@ -1,0 +1,270 @@
+// The blocks of the tangent, the program of its reduction, and the pattern of the reduced matrix.
+#include <algorithm>
+#include <cstdint>
+#include <unordered_map>
+
+#include "flexarm/solver/sparse_assembler.h"
+
+namespace flexarm {
+
+/// Collects blocks and folds symbolically.
+class SparseAssembler::PatternBuilder {
+ public:
+  PatternBuilder(SparseAssembler& assembler)
+      : a_(assembler), rows_of_(a_.dof_.size.size()), columns_of_(a_.dof_.size.size()), folded_(a_.dof_.size.size()) {}
+
+  int block(int row, int column) {
+    const std::uint64_t key = (static_cast<std::uint64_t>(row) << 32) | static_cast<std::uint32_t>(column);
+    const auto [entry, is_new] = index_.try_emplace(key, static_cast<int>(a_.blocks_.size()));
+    if (is_new) {
+      a_.blocks_.push_back({row, column, offset_});
+      offset_ += static_cast<std::size_t>(a_.dof_.size[row]) * a_.dof_.size[column];
+      rows_of_[column].push_back(row);
+      columns_of_[row].push_back(column);
+    }
+    return entry->second;
+  }
+
+  void fold_joint(int j) {
+    const JointMap& joint = a_.model_.joints[j];
+    const int s = a_.dof_.variable_of_node(joint.slave), m = joint.master;
+    const int u = released_count(joint.kind) > 0 ? a_.dof_.variable_of_joint(j) : -1;
+    JointFold fold;
+    fold.first_column_fold = static_cast<int>(a_.column_folds_.size());
+    const std::vector<int> rows = rows_of_[s];
+    for (const int i : rows)
+      if (!folded_[i])
+        a_.column_folds_.push_back({block(i, s), u < 0 ? -1 : block(i, u), m < 0 ? -1 : block(i, m), a_.dof_.size[i]});
+    fold.last_column_fold = static_cast<int>(a_.column_folds_.size());
+    fold.first_row_fold = fold.last_row_fold = static_cast<int>(a_.row_folds_.size());
+    const std::vector<int> columns = columns_of_[s];
+    for (const int k : columns)
+      if (!folded_[k] && k != s)
+        a_.row_folds_.push_back({block(s, k), u < 0 ? -1 : block(u, k), m < 0 ? -1 : block(m, k), a_.dof_.size[k]});
+    fold.last_row_fold = static_cast<int>(a_.row_folds_.size());
+    fold.geometric = {u < 0 ? -1 : block(u, u), u < 0 || m < 0 ? -1 : block(u, m), u < 0 || m < 0 ? -1 : block(m, u),
+                      m < 0 ? -1 : block(m, m)};
+    folded_[s] = true;
+    a_.joint_folds_[j] = fold;
+  }
+
+  void fold_slide(int j) {
+    const JointMap& joint = a_.model_.joints[j];
+    const SlideLine& line = a_.model_.slide_lines[joint.line];
+    const int s = a_.dof_.variable_of_node(joint.slave), u = a_.dof_.variable_of_joint(j);
+    std::vector<int> place(a_.dof_.size.size(), -1);  // of a variable in the line
+    for (std::size_t k = 0; k < line.nodes.size(); ++k) place[line.nodes[k]] = static_cast<int>(k);
+    const int count = static_cast<int>(line.nodes.size()), pieces = static_cast<int>(line.pieces.size());
+    std::vector<int> partners_end(count);  // a node is active together with those between it and this one
+    for (int p = 0; p < pieces; ++p) {
+      const NodeRange active = line.support(p, std::min(p + SlideLine::kMostPieces, pieces) - 1);
+      for (int k = active.first; k < active.end; ++k) partners_end[k] = std::max(partners_end[k], active.end);
+    }
+    // Blocks of `other` with every node of the line with which it can be active.
+    const auto blocks = [&](int other, bool other_is_row) {
+      const int first = static_cast<int>(a_.slide_blocks_.size());
+      for (int k = 0; k < count; ++k) {
+        const int at = place[other];
+        const bool together = at < 0 || std::max(at, k) < partners_end[std::min(at, k)];
+        a_.slide_blocks_.push_back(!together      ? -1
+                                   : other_is_row ? block(other, line.nodes[k])
+                                                  : block(line.nodes[k], other));
+      }
+      return first;
+    };
+    SlideFold fold;
+    fold.first_column_fold = static_cast<int>(a_.slide_columns_.size());
+    const std::vector<int> rows = rows_of_[s];
+    for (const int i : rows)
+      if (!folded_[i]) a_.slide_columns_.push_back({block(i, s), block(i, u), blocks(i, true), a_.dof_.size[i]});
+    fold.last_column_fold = static_cast<int>(a_.slide_columns_.size());
+    fold.first_row_fold = static_cast<int>(a_.slide_rows_.size());
+    const std::vector<int> columns = columns_of_[s];
+    for (const int k : columns)
+      if (!folded_[k] && k != s)
+        a_.slide_rows_.push_back({block(s, k), block(u, k), blocks(k, false), a_.dof_.size[k]});
+    fold.last_row_fold = static_cast<int>(a_.slide_rows_.size());
+    fold.released_released = block(u, u);
+    fold.released_masters = blocks(u, true);
+    fold.masters_released = blocks(u, false);
+    fold.masters_masters = static_cast<int>(a_.slide_blocks_.size());
+    for (const int node : line.nodes) blocks(node, true);
+    folded_[s] = true;
+    a_.slide_folds_[j] = fold;
+  }
+
+  void fold_mimic(const DegreesOfFreedom::Mimic& mimic) {
+    const int s = mimic.slave_variable, m = mimic.master_variable;
+    MimicFold fold;
+    fold.first_column_fold = static_cast<int>(a_.mimic_additions_.size());
+    const std::vector<int> rows = rows_of_[s];
+    for (const int i : rows)
+      if (!folded_[i]) a_.mimic_additions_.push_back({block(i, s), block(i, m), a_.dof_.size[i]});
+    fold.first_row_fold = static_cast<int>(a_.mimic_additions_.size());
+    const std::vector<int> columns = columns_of_[s];
+    for (const int k : columns)
+      if (!folded_[k] && k != s) a_.mimic_additions_.push_back({block(s, k), block(m, k), a_.dof_.size[k]});
+    fold.last_row_fold = static_cast<int>(a_.mimic_additions_.size());
+    fold.master = block(m, m);
+    a_.mimic_folds_.push_back(fold);
+    folded_[s] = true;
+  }
+
+  std::size_t value_count() const { return offset_; }
+  bool folded(int variable) const { return folded_[variable]; }
+
+ private:
+  SparseAssembler& a_;
+  std::size_t offset_ = 0;
+  std::unordered_map<std::uint64_t, int> index_;
+  std::vector<std::vector<int>> rows_of_, columns_of_;
+  std::vector<bool> folded_;
+};
+
+SparseAssembler::SparseAssembler(const Model& model, const DegreesOfFreedom& dof)
+    : model_(model),
+      dof_(dof),
+      joint_folds_(model.joints.size()),
+      slide_folds_(model.joints.size()),
+      column_blocks_(dof.size.size()),
+      active_(model.joints.size(), {0, 0}) {
+  PatternBuilder pattern(*this);
+  for (std::size_t v = 0; v < dof.size.size(); ++v)
+    diagonal_.push_back(pattern.block(static_cast<int>(v), static_cast<int>(v)));
+  for_each_element(model.beams, [&](const auto& element) {
+    element_blocks_.resize(std::max<std::size_t>(element_blocks_.size(), element.first_block));
+    for (const int i : element.nodes)
+      for (const int j : element.nodes) element_blocks_.push_back(pattern.block(i, j));
+  });
+  for (int j = static_cast<int>(model.joints.size()) - 1; j >= 0; --j) {
+    if (model.joints[j].kind == JointMapKind::Slide)
+      pattern.fold_slide(j);
+    else
+      pattern.fold_joint(j);
+  }
+  for (const DegreesOfFreedom::Mimic& mimic : dof.mimics) pattern.fold_mimic(mimic);
+  for (std::size_t b = 0; b < blocks_.size(); ++b)
+    if (!pattern.folded(blocks_[b].row) && !pattern.folded(blocks_[b].column))
+      column_blocks_[blocks_[b].column].push_back(static_cast<int>(b));
+  for (std::vector<int>& list : column_blocks_)
+    std::sort(list.begin(), list.end(), [&](int a, int b) { return blocks_[a].row < blocks_[b].row; });
+  values_.assign(pattern.value_count(), 0.0);
+  residual_.assign(dof.scalar_count, 0.0);
+  written_.reserve(blocks_.size());
+  live_.assign(blocks_.size(), true);
+  build_compressed_columns();  // the largest pattern: all later ones fit into its memory
+  copies_.reserve(row_indices_.size());
+  for (std::size_t j = 0; j < model.joints.size(); ++j) {
+    if (model.joints[j].kind != JointMapKind::Slide) continue;
+    const SlideLine& line = model.slide_lines[model.joints[j].line];
+    const int piece = line.piece_at(model.initial_released[j].displacement[0]);
+    active_[j] = line.support(piece, piece);
+  }
+  update_pattern();
+  pattern_ = 0;
+}
+
+void SparseAssembler::set_active(int j, int first, int count) {
+  if (active_[j].first <= first && first + count <= active_[j].end) return;
+  active_[j] = {first, first + count};
+  pattern_is_old_ = true;
+}
+
+void SparseAssembler::update_pattern() {
+  mark_live_blocks();
+  written_.clear();
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    if (!live_[b]) continue;
+    const Block& block = blocks_[b];
+    const std::size_t count = static_cast<std::size_t>(dof_.size[block.row]) * dof_.size[block.column];
+    if (!written_.empty() && written_.back().from + written_.back().count == block.offset)
+      written_.back().count += count;
+    else
+      written_.push_back({block.offset, count});
+  }
+  build_compressed_columns();
+  pattern_is_old_ = false;
+  ++pattern_;
+}
+
+/// The folds once more, for the blocks that are not zero for good.
+void SparseAssembler::mark_live_blocks() {
+  std::fill(live_.begin(), live_.end(), false);
+  const auto mark = [&](int block) {
+    if (block >= 0) live_[block] = true;
+  };
+  for (const int block : element_blocks_) mark(block);
+  for (const int block : diagonal_) mark(block);
+  for (int j = static_cast<int>(model_.joints.size()) - 1; j >= 0; --j) {
+    if (model_.joints[j].kind == JointMapKind::Slide) {
+      mark_slide(j);
+      continue;
+    }
+    const JointFold& fold = joint_folds_[j];
+    const auto fold_operation = [&](const auto& op) {
+      if (live_[op.source]) mark(op.to_released), mark(op.to_master);
+    };
+    for (int f = fold.first_column_fold; f < fold.last_column_fold; ++f) fold_operation(column_folds_[f]);
+    for (int f = fold.first_row_fold; f < fold.last_row_fold; ++f) fold_operation(row_folds_[f]);
+    const Geometric& g = fold.geometric;
+    for (const int block : {g.released_released, g.released_master, g.master_released, g.master_master}) mark(block);
+  }
+  for (const MimicFold& fold : mimic_folds_) {
+    for (int f = fold.first_column_fold; f < fold.last_row_fold; ++f)
+      if (live_[mimic_additions_[f].source]) mark(mimic_additions_[f].target);
+    mark(fold.master);
+  }
+}
+
+void SparseAssembler::mark_slide(int j) {
+  const SlideFold& fold = slide_folds_[j];
+  const NodeRange active = active_[j];
+  const auto mark = [&](int first) {
+    for (int k = active.first; k < active.end; ++k)
+      if (slide_blocks_[first + k] >= 0) live_[slide_blocks_[first + k]] = true;
+  };
+  const auto fold_operation = [&](const SlideOperation& op) {
+    if (!live_[op.source]) return;
+    live_[op.to_released] = true;
+    mark(op.to_masters);
+  };
+  for (int f = fold.first_column_fold; f < fold.last_column_fold; ++f) fold_operation(slide_columns_[f]);
+  for (int f = fold.first_row_fold; f < fold.last_row_fold; ++f) fold_operation(slide_rows_[f]);
+  const int count = static_cast<int>(model_.slide_lines[model_.joints[j].line].nodes.size());
+  live_[fold.released_released] = true;
+  mark(fold.released_masters);
+  mark(fold.masters_released);
+  for (int k = active.first; k < active.end; ++k) mark(fold.masters_masters + k * count);
+}
+
+void SparseAssembler::build_compressed_columns() {
+  column_starts_.assign(1, 0);
+  row_indices_.clear();
+  copies_.clear();
+  for (std::size_t column = 0; column < dof_.size.size(); ++column) {
+    for (int c = 0; c < dof_.size[column]; ++c) {
+      if (dof_.equation[dof_.first[column] + c] < 0) continue;
+      for (const int b : column_blocks_[column]) {
+        if (!live_[b]) continue;
+        const Block& block = blocks_[b];
+        const int rows = dof_.size[block.row];
+        for (int r = 0; r < rows; ++r) {
+          const int equation = dof_.equation[dof_.first[block.row] + r];
+          if (equation < 0) continue;
+          const std::size_t from = block.offset + static_cast<std::size_t>(c) * rows + r;
+          const int to = static_cast<int>(row_indices_.size());
+          if (!copies_.empty() && copies_.back().from + copies_.back().count == from &&
+              copies_.back().to + copies_.back().count == to)
+            ++copies_.back().count;
+          else
+            copies_.push_back({from, to, 1});
+          row_indices_.push_back(equation);
+        }
+      }
+      column_starts_.push_back(static_cast<int>(row_indices_.size()));
+    }
+  }
+  reduced_values_.assign(row_indices_.size(), 0.0);
+}
+
+}  // namespace flexarm
