@@ -6,7 +6,11 @@ Parameters: ~period, the simulated time after which the simulation is reset and 
 
     {time: s, names: [joint, ...], efforts: [N m or N, ...], duration: s, repeat: times, every: s}
 
-where `repeat` (1) and `every` say how often a command comes again. The schedule follows the simulated time of
+where `repeat` (1) and `every` say how often a command comes again, or
+
+    {names: [joint, ...], table: [[s, N m or N, ...], ...], every: s}
+
+efforts that are linear between the times of a table; a command with the mean comes every `every`. The schedule follows the simulated time of
 flexarm/status, so that it pauses, slows down and starts again together with the simulation.
 """
 
@@ -18,16 +22,30 @@ from flexarm.msg import JointForceCommand, SimulatorStatus
 from std_srvs.srv import Empty
 
 
+def interpolated(table, time):
+    """Efforts at a time, constant outside of the table."""
+    before = [row for row in table if row[0] <= time] or table[:1]
+    after = [row for row in table if row[0] > time] or table[-1:]
+    (t0, *first), (t1, *second) = before[-1], after[0]
+    part = (time - t0) / (t1 - t0) if t1 > t0 else 0.0
+    return [a + part * (b - a) for a, b in zip(first, second)]
+
+
+def pulses(command):
+    """A command as pulses of constant effort: pairs (time, command)."""
+    every = command.get("every", 0.0)
+    if "table" not in command:
+        return [(command["time"] + k * every, command) for k in range(command.get("repeat", 1))]
+    begin, end = command["table"][0][0], command["table"][-1][0]
+    return [
+        (time, {**command, "efforts": interpolated(command["table"], time + 0.5 * every), "duration": every})
+        for time in (begin + k * every for k in range(round((end - begin) / every)))
+    ]
+
+
 def expand(commands):
-    """Every command with its repetitions, in order: a list of (time, command)."""
-    return sorted(
-        (
-            (command["time"] + k * command.get("every", 0.0), command)
-            for command in commands
-            for k in range(command.get("repeat", 1))
-        ),
-        key=lambda event: event[0],
-    )
+    """Every pulse in order."""
+    return sorted((event for command in commands for event in pulses(command)), key=lambda event: event[0])
 
 
 class Player:

@@ -1,10 +1,13 @@
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include <fmt/format.h>
 
 #include "bench/report.h"
+#include "bench/thesis.h"
 #include "cli/commands.h"
 #include "cli/progress_bar.h"
 
@@ -14,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Arguments {
-  std::string output = "docs/reports";
+  std::string output = "docs/reports", scenes;
   bool quick = false;
 };
 
@@ -25,13 +28,28 @@ void write_file(const fs::path& path, const std::string& text, std::ios::openmod
   if (!file) throw std::runtime_error("cannot write '" + path.string() + "'");
 }
 
-/// The script that draws; installed next to the program, or in the source tree that it was built from.
-std::optional<fs::path> plot_script() {
+fs::path program_folder() {
   std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  for (const fs::path& folder : {program.parent_path(), fs::path(FLEXARM_SCRIPTS_DIR)})
-    if (const fs::path script = folder / "plot_properties.py"; fs::exists(script, error)) return script;
+  return fs::read_symlink("/proc/self/exe", error).parent_path();
+}
+
+/// The first of these that is there.
+std::optional<fs::path> first_of(const std::vector<fs::path>& places) {
+  std::error_code error;
+  for (const fs::path& place : places)
+    if (fs::exists(place, error)) return place;
   return std::nullopt;
+}
+
+/// A script that draws; installed next to the program, or in the source tree that it was built from.
+std::optional<fs::path> plot_script(const std::string& name) {
+  return first_of({program_folder() / name, fs::path(FLEXARM_SOURCE_DIR) / "scripts" / name});
+}
+
+/// The thesis's scenes: installed in <prefix>/share/flexarm, the program being in <prefix>/lib/flexarm.
+std::optional<fs::path> thesis_scenes() {
+  const fs::path prefix = program_folder().parent_path().parent_path();
+  return first_of({prefix / "share/flexarm/config/thesis", fs::path(FLEXARM_SOURCE_DIR) / "config/thesis"});
 }
 
 std::string quoted(const fs::path& path) {
@@ -41,8 +59,8 @@ std::string quoted(const fs::path& path) {
 }
 
 /// False if this machine cannot draw.
-bool draw(const fs::path& data, const fs::path& picture) {
-  const std::optional<fs::path> script = plot_script();
+bool draw(const std::string& name, const fs::path& data, const fs::path& picture) {
+  const std::optional<fs::path> script = plot_script(name);
   if (!script) return false;
   const std::string command = "/usr/bin/python3 " + quoted(*script) + " " + quoted(data) + " " + quoted(picture);
   return std::system(command.c_str()) == 0;
@@ -60,9 +78,34 @@ int measure_properties(const Arguments& arguments) {
     report = bench::measure_properties(arguments.quick, [&](double part) { bar.show(part, "properties"); });
   }
   write_file(data, bench::decay_to_csv(report));
-  const bool is_drawn = draw(data, picture);
+  const bool is_drawn = draw("plot_properties.py", data, picture);
   if (!is_drawn) fmt::print(stderr, "flexarm: no picture: it needs python3-matplotlib\n");
   write_file(report_file, bench::to_markdown(report, is_drawn ? picture.filename().string() : ""));
+  fmt::print("{}\n", report_file.string());
+  return kDone;
+}
+
+int measure_thesis(const Arguments& arguments) {
+  const fs::path folder = arguments.output, report_file = folder / "thesis.md";
+  const std::optional<fs::path> scenes =
+      arguments.scenes.empty() ? thesis_scenes() : std::optional<fs::path>(arguments.scenes);
+  if (!scenes) throw std::runtime_error("the thesis's scenes are not installed; name their folder by --scenes");
+  fs::create_directories(folder);
+  write_file(report_file, "", std::ios::app);
+  bench::ThesisReport report;
+  {
+    ProgressBar bar(0, 1, true);
+    report = bench::measure_thesis(scenes->string(), arguments.quick, [&](double part) { bar.show(part, "thesis"); });
+  }
+  std::map<std::string, std::string> pictures;
+  for (std::size_t e = 0; e < report.examples.size(); ++e) {
+    const std::string stem = "thesis_" + report.examples[e].runs.front().scene.substr(0, 4);
+    const fs::path data = folder / (stem + ".csv"), picture = folder / (stem + ".png");
+    write_file(data, bench::histories_to_csv(report.examples[e], report.outcomes[e]));
+    if (draw("plot_thesis.py", data, picture)) pictures[report.examples[e].number] = picture.filename().string();
+  }
+  if (pictures.empty()) fmt::print(stderr, "flexarm: no pictures: they need python3-matplotlib\n");
+  write_file(report_file, bench::to_markdown(report, [&](const std::string& number) { return pictures[number]; }));
   fmt::print("{}\n", report_file.string());
   return kDone;
 }
@@ -78,6 +121,11 @@ void add_bench(CLI::App& app, int& status) {
   properties->add_option("--output", arguments->output, "folder for the report")->capture_default_str();
   properties->add_flag("--quick", arguments->quick, "short runs, to see that all of it works");
   properties->callback([arguments, &status] { status = measure_properties(*arguments); });
+  CLI::App* thesis = command->add_subcommand("thesis", "The five examples of Muñoz 2004, chapter 12, as a report");
+  thesis->add_option("--output", arguments->output, "folder for the report")->capture_default_str();
+  thesis->add_option("--scenes", arguments->scenes, "folder of the scenes (default: those that come with flexarm)");
+  thesis->add_flag("--quick", arguments->quick, "short runs, to see that all of it works");
+  thesis->callback([arguments, &status] { status = measure_thesis(*arguments); });
 }
 
 }  // namespace flexarm::cli

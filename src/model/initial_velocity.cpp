@@ -99,12 +99,17 @@ void InitialVelocity::set_beam(int link) {
 
 double InitialVelocity::given_rate(const Coordinate& coordinate, bool& is_given) const {
   if (coordinate.mimicked >= 0) {
-    const Coordinate& master = model_.coordinates[coordinate.mimicked];
     const auto from_field = field_rates_.find(coordinate.mimicked);
-    bool ignored = false;
-    is_given = true;
-    return coordinate.mimic.derivative(model_.initial_released[master.joint].displacement[0]) *
-           (from_field != field_rates_.end() ? from_field->second : given_rate(master, ignored));
+    if (from_field != field_rates_.end()) {
+      is_given = true;
+      return mimic_ratio(coordinate) * from_field->second;
+    }
+    // What follows a coordinate of another joint is given by that, whether it moves or not.
+    const bool is_own = coordinate.is_coupled;
+    bool is_master_given = false;
+    const double rate = mimic_ratio(coordinate) * given_rate(model_.coordinates[coordinate.mimicked], is_master_given);
+    is_given = is_given || is_master_given || !is_own;
+    return rate;
   }
   if (coordinate.motion >= 0) {
     is_given = true;
@@ -124,6 +129,11 @@ bool InitialVelocity::given_rates(const JointRecord& record, ReleasedVector& rat
   return is_given;
 }
 
+double InitialVelocity::mimic_ratio(const Coordinate& coordinate) const {
+  const int master = model_.coordinates[coordinate.mimicked].joint;
+  return coordinate.mimic.derivative(model_.initial_released[master].displacement[0]);
+}
+
 ReleasedVector InitialVelocity::field_rates(const JointRecord& record, const Vector6& target) {
   const int last = model_.joints[record.first_map + record.map_count - 1].slave;
   const Vector3 point = model_.nodes[last].position;
@@ -141,7 +151,15 @@ ReleasedVector InitialVelocity::field_rates(const JointRecord& record, const Vec
     }
   }
   const Vector6 relative = target - model_.initial_velocity[last];
-  return Eigen::MatrixXd(columns).colPivHouseholderQr().solve(relative);
+  // The travel of a slide that follows an angle, which comes right after it, is a part of the angle's motion.
+  const Coordinate& first = model_.coordinates[model_.first_coordinate[record.first_map]];
+  if (!first.is_coupled) return Eigen::MatrixXd(columns).colPivHouseholderQr().solve(relative);
+  const double ratio = mimic_ratio(first);
+  const Vector6 motion = columns.col(1) + ratio * columns.col(0);
+  const double rate = motion.dot(relative) / motion.squaredNorm();
+  ReleasedVector rates(2);
+  rates << ratio * rate, rate;
+  return rates;
 }
 
 Vector6 InitialVelocity::field_velocity(const scene::InitialLink& field, int link, const Vector3& point) const {

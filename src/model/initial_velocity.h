@@ -29,6 +29,7 @@ class InitialVelocity {
   void close_loops();
   /// Velocity of a joint's slave from its master's.
   void follow(int joint, const ReleasedVector& rates);
+  double mimic_ratio(const Coordinate& coordinate) const;
   /// Rates that the scene gives or implies (motion, mimic); false if none is given.
   bool given_rates(const JointRecord& record, ReleasedVector& rates) const;
   double given_rate(const Coordinate& coordinate, bool& is_given) const;

@@ -126,6 +126,7 @@ void MechanismBuilder::couple_slide(const scene::JointDescription& joint) {
   const int angle = static_cast<int>(model.coordinates.size()) - 1;
   Coordinate& travel = model.coordinates[angle - 1];
   travel.mimicked = angle;
+  travel.is_coupled = true;
   travel.mimic = {joint.kind == scene::JointKind::Cam ? 1.0 : joint.ratio, joint.slide->start, joint.profile};
   model.initial_released[travel.joint].displacement[0] =
       travel.mimic.value(model.initial_released[model.coordinates[angle].joint].displacement[0]);

@@ -6,7 +6,7 @@ namespace flexarm::cli {
 namespace {
 
 TEST(Bench, UsageErrors) {
-  for (const char* arguments : {"bench", "bench fly", "bench properties --fast"})
+  for (const char* arguments : {"bench", "bench fly", "bench properties --fast", "bench thesis --fast"})
     EXPECT_EQ(shell(std::string("flexarm ") + arguments).status, 2) << arguments;
 }
 
@@ -27,6 +27,22 @@ TEST(Bench, PropertiesReport) {
   // Only times differ from run to run.
   ASSERT_EQ(shell("flexarm bench properties --quick --output '" + folder + "/again'").status, 0);
   EXPECT_EQ(read_file(folder + "/again/properties_dissipation.csv"), data);
+}
+
+TEST(Bench, ThesisReport) {
+  const std::string folder = temporary("thesis");
+  const Outcome outcome = shell("flexarm bench thesis --quick --output '" + folder + "'");
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  const std::string report = read_file(folder + "/thesis.md");
+  for (const char* line : {"\n## 12.1 ", "\n## 12.5 ", "\n| H2, alg3 |", "\n| em, sm_em, smooth line |"})
+    EXPECT_NE(report.find(line), std::string::npos) << line;
+  const std::string data = read_file(folder + "/thesis_12_2.csv");
+  EXPECT_EQ(data.substr(0, data.find("travel")), "run,step,time,energy_defect,angular_momentum_defect,");
+  EXPECT_EQ(report.find("thesis_12_2.png") != std::string::npos, std::filesystem::exists(folder + "/thesis_12_2.png"));
+
+  const Outcome nowhere = shell("flexarm bench thesis --quick --output '" + folder + "' --scenes /nowhere");
+  EXPECT_EQ(nowhere.status, 1);
+  EXPECT_NE(nowhere.errors.find("/nowhere/12_1_screw_node_to_node.urdf"), std::string::npos) << nowhere.errors;
 }
 
 TEST(Bench, FolderThatCannotBeWritten) {

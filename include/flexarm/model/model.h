@@ -67,6 +67,7 @@ struct Coordinate {
   int effort = -1;    ///< history index of the scene's effort; -1: none
   int mimicked = -1;  ///< coordinate that this one follows; -1: none
   MimicLaw mimic;
+  bool is_coupled = false;  ///< it follows the coordinate right behind it, of the same joint
 };
 
 /// A frame fixed to a node.
