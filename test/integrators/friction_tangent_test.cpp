@@ -10,6 +10,9 @@ namespace {
 
 using namespace test;
 
+/// Over longer updates a slider comes to the border of its element, where the line's tangent has a kink.
+constexpr double kShort = 0.1;
+
 class FrictionTangent : public ::testing::TestWithParam<SchemeVariant> {
  protected:
   const Scheme& scheme() const { return GetParam().scheme; }
@@ -43,23 +46,23 @@ std::vector<SchemeVariant> with_consistent_tangent() {
 
 TEST_P(FrictionTangent, Slipping) {
   const Model model = rubbing_model(true);
-  RandomSource random(31);
+  RandomSource random(21);
   StepSystem system(model, scheme());
   const State state = prepared(random_state(model, random, 0.15), system, random);
   system.begin(state, 0.2, StepSystem::Guess::Extrapolated);
   system.update(random_update(system.assembler().unknowns(), random, 0.1));
-  expect_consistent_tangent(system, 0.25);
+  expect_consistent_tangent(system, kShort);
 }
 
 TEST_P(FrictionTangent, Held) {
   const Model model = rubbing_model(true);
-  RandomSource random(22);
+  RandomSource random(32);
   StepSystem system(model, scheme());
   State state = prepared(random_state(model, random, 0.15), system, random);
   for (std::size_t i = 0; i < state.rests.size(); ++i) state.rests[i] = i % 2;
   system.begin(state, 0.2, StepSystem::Guess::Unchanged);
   system.update(random_update(system.assembler().unknowns(), random, 0.1));
-  expect_consistent_tangent(system, 0.25);
+  expect_consistent_tangent(system, kShort);
 }
 
 // Slow enough that the smooth law is not saturated; the increment over which it changes is step * speed = 0.03.
