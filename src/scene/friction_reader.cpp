@@ -8,17 +8,13 @@ namespace {
 constexpr Choice<FrictionDescription::Law> kLaws[] = {{"smooth", FrictionDescription::Law::Smooth},
                                                       {"coulomb", FrictionDescription::Law::Coulomb}};
 
-/// Where the radius at which the friction of a rotation acts belongs.
-enum class Radius { Needed, Optional, None };
-Radius radius_of(JointKind kind) {
-  switch (kind) {
-    case JointKind::Prismatic:
-      return Radius::None;
-    case JointKind::Slide:
-      return Radius::Optional;
-    default:
-      return Radius::Needed;
-  }
+/// Whether a joint needs the radius at which the friction of its rotation acts.
+enum class Radius { Needed, Optional, Useless };
+Radius radius_of(const JointDescription& joint) {
+  if (joint.kind == JointKind::Prismatic) return Radius::Useless;
+  if (joint.kind != JointKind::Slide) return Radius::Needed;
+  const JointKind rotation = joint.slide->rotation;
+  return rotation == JointKind::Fixed || rotation == JointKind::Spherical ? Radius::Useless : Radius::Optional;
 }
 
 bool has_normal_force(JointKind kind) {
@@ -38,10 +34,11 @@ void read_friction(const XmlElement& friction, JointDescription& description) {
     friction.attribute_error("coefficient",
                              "fixed, floating, spherical and planar joints have no force that presses; leave this out, "
                              "and give a constant effort, <dynamics friction>");
-  const Radius radius = radius_of(description.kind);
-  if (friction.has("radius") && (radius == Radius::None || !friction.has("coefficient")))
-    friction.attribute_error("radius", radius == Radius::None ? "a prismatic joint does not turn; leave this out"
-                                                              : "it acts with a coefficient only; leave this out");
+  const Radius radius = radius_of(description);
+  if (friction.has("radius") && radius == Radius::Useless)
+    friction.attribute_error("radius", "nothing turns about an axis here; leave this out");
+  else if (friction.has("radius") && !friction.has("coefficient"))
+    friction.attribute_error("radius", "it acts with a coefficient only; leave this out");
   if (out.coefficient > 0 && radius == Radius::Needed && !friction.has("radius"))
     friction.error("a coefficient on a rotation needs the radius of the bearing, radius > 0");
   description.friction_law = out;
