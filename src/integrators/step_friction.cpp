@@ -209,22 +209,25 @@ bool StepSystem::revise_friction() {
 void StepSystem::place_held_coordinates() {
   if (static_) return;
   // The last digits of what the update has brought about.
-  int held_angles = 0;
+  const auto is_there = [&](const FrictionCarrier& carrier) {
+    const Coordinate& coordinate = model_.coordinates[carrier.coordinate];
+    const double scale = is_angle(model_, coordinate) ? 1.0 : model_.length_scale;
+    return coordinate.motion < 0 && carrier.law.is_held() &&
+           std::abs(increment_of(coordinate) - carrier.law.held_increment()) <= kAtRest * scale;
+  };
+  int resting_angles = 0;  // of the free rotation at hand; its components follow each other
   for (const FrictionCarrier& carrier : carriers_) {
     const Coordinate& coordinate = model_.coordinates[carrier.coordinate];
-    if (coordinate.motion >= 0 || !carrier.law.is_held()) continue;
+    const int component = coordinate.component % 3;
     Released& released = released_[coordinate.joint];
     const Released& begin = state_->released[coordinate.joint];
-    const double held = carrier.law.held_increment(), scale = is_angle(model_, coordinate) ? 1.0 : model_.length_scale;
-    const bool is_there = std::abs(increment_of(coordinate) - held) <= kAtRest * scale;
-    if (!coordinate.is_angle) {
-      if (is_there) released.displacement[coordinate.component] = begin.displacement[coordinate.component] + held;
-      continue;
+    if (coordinate.is_angle) {
+      if (component == 0) resting_angles = 0;
+      resting_angles += is_there(carrier) && carrier.law.held_increment() == 0;
+      if (component == 2 && resting_angles == 3) released.rotation = begin.rotation;
+    } else if (is_there(carrier)) {
+      released.displacement[component] = begin.displacement[component] + carrier.law.held_increment();
     }
-    // A free rotation stays exactly where it is if all of it sticks.
-    if (coordinate.component % 3 == 0) held_angles = 0;
-    held_angles += is_there && held == 0;
-    if (coordinate.component % 3 == 2 && held_angles == 3) released.rotation = begin.rotation;
   }
 }
 

@@ -295,6 +295,23 @@ TEST(SphericalFriction, HoldsARotationExactly) {
   EXPECT_GT(simulation.velocity(0), 0.3);
 }
 
+// Components of free rotations stick each for itself, beside others that do.
+TEST(SphericalFriction, SlipsAboutOneAxisOnly) {
+  SceneBuilder b;
+  b.body("ball", 1, {0, 0, 0}, Matrix3::Identity());
+  b.body("knob", 1, {0, 0, 0}, Matrix3::Identity());
+  b.joint("socket", JointKind::Spherical, "world", "ball");
+  b.joint("eye", JointKind::Spherical, "world", "knob");
+  for (scene::JointDescription& joint : b.scene.joints) joint.friction = 1, joint.friction_law.law = Law::Coulomb;
+  for (int slipping = 0; slipping < 6; ++slipping) {
+    Simulation simulation(b.scene, options("em", 0.01));
+    simulation.command_effort(slipping, 1.5);
+    run(simulation, 50);
+    for (int k = 0; k < 6; ++k)
+      EXPECT_NEAR(simulation.position(k), k == slipping ? 0.5 * 0.5 * 0.25 : 0, k == slipping ? 1e-5 : 1e-14) << k;
+  }
+}
+
 TEST(NoForceNoFriction, StaysFree) {
   SceneBuilder b = incline(0, 0.5, 1);
   b.scene.gravity.setZero();
