@@ -159,7 +159,8 @@ void StepSystem::hold_friction() {
     carrier.increment = increment_of(coordinate);
     carrier.reaction = -row / effort_weight();
     carrier.capacity = 0;
-    for (const int index : carrier.members) carrier.capacity += std::abs(travel_per_carrier(index)) * capacities_[index];
+    for (const int index : carrier.members)
+      carrier.capacity += std::abs(travel_per_carrier(index)) * capacities_[index];
     if (!carrier.law.is_held()) continue;
     dissipated_ += carrier.reaction * carrier.increment;
     row = carrier.increment - carrier.law.held_increment();
@@ -177,10 +178,9 @@ void StepSystem::hold_friction_tangent() {
     int component = 0;
     if (coordinate.is_angle) {  // the increment varies as S^{-1} spin
       component = coordinate.component % 3;
-      const Vector3 rotation =
-          released_increment(model_.joints[coordinate.joint], state_->released[coordinate.joint],
-                             released_[coordinate.joint])
-              .tail<3>();
+      const Vector3 rotation = released_increment(model_.joints[coordinate.joint], state_->released[coordinate.joint],
+                                                  released_[coordinate.joint])
+                                   .tail<3>();
       coefficients = cayley::inverse_tangent(rotation).row(component).transpose();
     }
     assembler_.set_row(carrier.row, equation_of(coordinate) - component, coefficients);
@@ -208,21 +208,26 @@ bool StepSystem::revise_friction() {
 
 void StepSystem::place_held_coordinates() {
   if (static_) return;
-  int held_angles = 0;
+  // The last digits of what the update has brought about.
+  const auto is_there = [&](const FrictionCarrier& carrier) {
+    const Coordinate& coordinate = model_.coordinates[carrier.coordinate];
+    const double scale = is_angle(model_, coordinate) ? 1.0 : model_.length_scale;
+    return coordinate.motion < 0 && carrier.law.is_held() &&
+           std::abs(increment_of(coordinate) - carrier.law.held_increment()) <= kAtRest * scale;
+  };
+  int resting_angles = 0;  // of the free rotation at hand; its components follow each other
   for (const FrictionCarrier& carrier : carriers_) {
     const Coordinate& coordinate = model_.coordinates[carrier.coordinate];
-    if (coordinate.motion >= 0 || !carrier.law.is_held()) continue;
+    const int component = coordinate.component % 3;
     Released& released = released_[coordinate.joint];
     const Released& begin = state_->released[coordinate.joint];
-    if (!coordinate.is_angle) {
-      released.displacement[coordinate.component] =
-          begin.displacement[coordinate.component] + carrier.law.held_increment();
-      continue;
+    if (coordinate.is_angle) {
+      if (component == 0) resting_angles = 0;
+      resting_angles += is_there(carrier) && carrier.law.held_increment() == 0;
+      if (component == 2 && resting_angles == 3) released.rotation = begin.rotation;
+    } else if (is_there(carrier)) {
+      released.displacement[component] = begin.displacement[component] + carrier.law.held_increment();
     }
-    // A free rotation stays exactly where it is if all of it sticks.
-    if (coordinate.component % 3 == 0) held_angles = 0;
-    held_angles += carrier.law.held_increment() == 0;
-    if (coordinate.component % 3 == 2 && held_angles == 3) released.rotation = begin.rotation;
   }
 }
 

@@ -77,8 +77,7 @@ bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
   const auto not_evaluated = [&] { return system_.is_off_line() ? Reason::OffTheLine : Reason::NotFinite; };
   if (system_.assembler().unknowns() == 0) return system_.evaluate(false) || fail(not_evaluated());
 
-  bool factorise =
-      !reuse || !kept_factors_contract_ || factorised_step_ != system_.step() || !system_.tangent_holds();
+  bool factorise = !reuse || !kept_factors_contract_ || factorised_step_ != system_.step() || !system_.tangent_holds();
   int since_revision = 0;  // updates
   for (int iteration = 0; iteration < settings_.max_iterations; ++iteration) {
     if (!system_.evaluate(factorise)) return fail(not_evaluated());

@@ -2,6 +2,7 @@
 
 #include "scene/choice.h"
 #include "scene/couple_reader.h"
+#include "scene/friction_reader.h"
 #include "scene/slide_reader.h"
 
 #include <fmt/format.h>
@@ -188,7 +189,7 @@ void read_limits(const XmlElement& joint, const urdf::Joint& read, JointDescript
 
 void check_joint_structure(const XmlElement& joint) {
   joint.expect_at_most_one({"origin", "parent", "child", "axis", "axis2", "limit", "dynamics", "mimic", "release",
-                            "couple", "child_origin", "safety_controller", "calibration"});
+                            "couple", "friction", "child_origin", "safety_controller", "calibration"});
   check_attributes(joint, kJointAttributes);
   const std::string type = joint.xml().Attribute("type") ? joint.xml().Attribute("type") : "";
   if ((type == "revolute" || type == "prismatic") && !joint.child("limit"))
@@ -259,6 +260,7 @@ JointDescription read_joint(const XmlElement& unnamed) {
       read_slide(joint, *slide, description);
     read_axes(joint, description);
     if (const std::optional<XmlElement> couple = joint.child("couple")) read_couple(joint, *couple, description);
+    if (const std::optional<XmlElement> friction = joint.child("friction")) read_friction(*friction, description);
   }
   if (joint.findings().error_count() > errors) return description;
 

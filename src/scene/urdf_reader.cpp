@@ -19,9 +19,9 @@ struct Place {
   const char* tag;
   const char* parent;
 };
-constexpr Place kPlaces[] = {{"beam", "link"},        {"release", "joint"},   {"axis2", "joint"},
-                             {"slide", "joint"},      {"couple", "joint"},    {"child_origin", "loop_joint"},
-                             {"simulation", "robot"}, {"loop_joint", "robot"}};
+constexpr Place kPlaces[] = {{"beam", "link"},      {"release", "joint"},    {"axis2", "joint"},
+                             {"slide", "joint"},    {"couple", "joint"},     {"child_origin", "loop_joint"},
+                             {"friction", "joint"}, {"simulation", "robot"}, {"loop_joint", "robot"}};
 
 /// Records our elements where they would be ignored like a stranger's.
 void check_places(const XmlElement& element) {

@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include "elements/differences.h"
 #include "flexarm/integrators/stepper.h"
 #include "flexarm/joints/joint_forces.h"
 #include "integrators/mechanism.h"
+#include "integrators/tangent_check.h"
 #include "support/scheme_variants.h"
 
 namespace flexarm {

@@ -52,6 +52,8 @@ TEST(GoodScene, StandardJoint) {
   EXPECT_EQ(shoulder.effort_limit, 30);
   EXPECT_EQ(shoulder.damping, 0.1);
   EXPECT_EQ(shoulder.friction, 0.2);
+  EXPECT_EQ(shoulder.friction_law.law, FrictionDescription::Law::Smooth);
+  EXPECT_EQ(shoulder.friction_law.coefficient, 0);
   EXPECT_FALSE(shoulder.mimic);
 }
 
@@ -73,6 +75,20 @@ TEST(GoodScene, JointDefaultsMimicAndRelease) {
   EXPECT_EQ(wrist.kind, JointKind::Universal);
   EXPECT_EQ(wrist.axis, Vector3::UnitY());
   EXPECT_EQ(wrist.axis2, Vector3::UnitZ());
+}
+
+TEST(GoodScene, Friction) {
+  const std::string dynamics = "<dynamics damping";
+  const auto friction_of_shoulder = [&](const std::string& element) {
+    return joint(read(good_scene_with(dynamics, element + dynamics)).scene.value(), "shoulder").friction_law;
+  };
+  const FrictionDescription coulomb =
+      friction_of_shoulder(R"(<friction law="coulomb" coefficient="0.2" radius="0.01"/>)");
+  EXPECT_EQ(coulomb.law, FrictionDescription::Law::Coulomb);
+  EXPECT_EQ(coulomb.coefficient, 0.2);
+  EXPECT_EQ(coulomb.radius, 0.01);
+  EXPECT_EQ(friction_of_shoulder("<friction/>").law, FrictionDescription::Law::Smooth);
+  EXPECT_EQ(friction_of_shoulder(R"(<friction law="coulomb"/>)").coefficient, 0);
 }
 
 TEST(GoodScene, RigidLink) {

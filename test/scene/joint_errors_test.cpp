@@ -88,6 +88,26 @@ TEST(JointErrors, Release) {
                "the type of the joint must be 'floating', got 'continuous'");
 }
 
+TEST(JointErrors, Friction) {
+  // The shoulder is revolute, the finger prismatic.
+  const auto expect_friction_error = [&](const std::string& friction, const std::string& fragment) {
+    expect_error(R"(<dynamics damping)", friction + R"(<dynamics damping)", 11, fragment);
+  };
+  expect_friction_error(R"(<friction law="dry"/>)",
+                        "<friction> of joint 'shoulder': law must be one of smooth, coulomb, got 'dry'");
+  expect_friction_error(R"(<friction coefficient="-0.1" radius="1"/>)", "coefficient must be >= 0, got '-0.1'");
+  expect_friction_error(R"(<friction coefficient="0.1"/>)", "needs the radius of the bearing, radius > 0");
+  expect_friction_error(R"(<friction coefficient="0.1" radius="0"/>)", "radius must be > 0, got '0'");
+  expect_friction_error(R"(<friction radius="0.1"/>)", "it acts with a coefficient only");
+  expect_friction_error(R"(<friction mu="0.1"/>)", "unknown attribute, expected law, coefficient, radius, got 'mu'");
+  expect_friction_error(R"(<friction/><friction/>)", "at most one <friction>");
+  expect_error(R"(<mimic joint="elbow")", R"(<friction coefficient="1" radius="1"/><mimic joint="elbow")", 50,
+               "nothing turns about an axis here");
+  expect_one_error(tree(joint("i", "w", "a", "floating", R"(<friction coefficient="1"/>)") + joint("j", "a", "b") +
+                        joint("k", "b", "c")),
+                   2, "spherical and planar joints have no force that presses");
+}
+
 TEST(JointErrors, Couple) {
   // The wrist: type floating, axis 0 1 0, a second axis.
   const std::string release = R"(<release kind="universal"/>)";

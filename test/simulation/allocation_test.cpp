@@ -111,6 +111,29 @@ INSTANTIATE_TEST_SUITE_P(
                        ::testing::Bool()),
     [](const auto& info) { return std::get<0>(info.param) + (std::get<1>(info.param) ? "_reuse" : "_full"); });
 
+TEST_F(Allocation, NoneWhereFrictionSticks) {
+  for (const std::string scheme : {"em", "edmc2", "m1", "std", "newmark"})
+    for (const bool reuse : {true, false}) {
+      SimulationOptions options;
+      options.scheme = scheme;
+      options.reuse_factorisation = reuse;
+      Simulation simulation(rubbing_scene().scene, options);
+      ASSERT_TRUE(simulation.step().converged);
+      int converged = 0;
+      double held = 0;
+      EXPECT_EQ(allocations_in([&] {
+                  for (int n = 0; n < 300; ++n) {
+                    converged += simulation.step().converged;
+                    for (const double rest : simulation.state().rests) held += rest;
+                  }
+                }),
+                0)
+          << scheme;
+      EXPECT_EQ(converged, 300) << scheme;
+      EXPECT_GT(held, 0) << scheme;
+    }
+}
+
 // Halving takes a path of its own.
 TEST_F(Allocation, NoneInHalvedOrFailedSteps) {
   SceneBuilder b;

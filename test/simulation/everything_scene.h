@@ -73,4 +73,18 @@ inline SceneBuilder everything_scene() {
   return b;
 }
 
+/// The same with dry friction that sticks and grows with the force on the joint.
+inline SceneBuilder rubbing_scene() {
+  using scene::JointKind;
+  SceneBuilder b = everything_scene();
+  for (scene::JointDescription& joint : b.scene.joints) {
+    joint.friction_law.law = scene::FrictionDescription::Law::Coulomb;
+    if (joint.kind == JointKind::Spherical || joint.kind == JointKind::Floating || joint.kind == JointKind::Planar)
+      continue;
+    joint.friction_law.coefficient = 0.3;
+    joint.friction_law.radius = 0.02;
+  }
+  return b;
+}
+
 }  // namespace flexarm::test

@@ -185,10 +185,10 @@ class StepSystem {
   std::vector<Vector6> begin_velocities_;    // per node, spatial; Newmark family, sticking friction
   std::vector<ReleasedVector> begin_rates_;  // per joint; Newmark family, sticking friction
   std::vector<FrictionCarrier> carriers_;
-  std::vector<int> carrier_of_;                        // per coordinate: index into carriers_, or -1
-  std::vector<double> capacities_;                     // per coordinate: of its friction, from the force on the joint
-  std::vector<StickSlip::Branch> tangent_branches_;    // per carrier, in the last tangent
-  int revisions_ = 0;                                  // of friction in this solve
+  std::vector<int> carrier_of_;                      // per coordinate: index into carriers_, or -1
+  std::vector<double> capacities_;                   // per coordinate: of its friction, from the force on the joint
+  std::vector<StickSlip::Branch> tangent_branches_;  // per carrier, in the last tangent
+  int revisions_ = 0;                                // of friction in this solve
   bool points_valid_ = false;
   double dissipated_ = 0;
   Eigen::VectorXd residual_;

@@ -5,14 +5,15 @@
 
 namespace flexarm {
 
-/// Coulomb's law for the increment x of one coordinate over a step: the effort against it is a staircase in x, a maximal
-/// monotone graph, so that there is one solution whatever else acts, and x times effort is never negative.
+/// Coulomb's law for the increment x of one coordinate over a step: the effort against it is a staircase in x, a
+/// maximal monotone graph, so that there is one solution whatever else acts, and x times effort is never negative.
 ///
 /// With the capacity F and the increment x_r with which the coordinate comes to rest at the end of the step, x_r > 0:
 ///   -F  for x < 0,    [-F, 0]  at x = 0,    0  for 0 < x < x_r,    [0, F]  at x = x_r,    F  for x > x_r;
 /// mirrored for x_r < 0, and the plain law F Sign(x) where the coordinate rests at the begin, x_r = 0. At x = 0 it
-/// sticks. At x = x_r it stops, with an effort that takes exactly the kinetic energy left. The law F Sign(x) alone would
-/// let conserving schemes come to a halt with x = 0, hence with all that energy, and velocities that ring for ever.
+/// sticks. At x = x_r it stops, with an effort that takes exactly the kinetic energy left. The law F Sign(x) alone
+/// would let conserving schemes come to a halt with x = 0, hence with all that energy, and velocities that ring for
+/// ever.
 ///
 /// The branch is revised between Newton's iterations; a branch is either an effort or an increment that is known.
 class StickSlip {
@@ -49,7 +50,7 @@ enum class Contact {
 
 /// The force that presses in a joint, and what its variation needs.
 struct NormalForce {
-  double magnitude = 0;                ///< [N]
+  double magnitude = 0;                 ///< [N]
   Vector3 direction = Vector3::Zero();  ///< its derivative with respect to the joint's force; zero without force
   /// d(magnitude) at constant force = along * d(column . arm), column being the coordinate's.
   double along = 0;

@@ -1,0 +1,11 @@
+#pragma once
+/// <friction> of a joint.
+
+#include "scene/xml_element.h"
+
+namespace flexarm::scene {
+
+/// Into `description`, whose kind is known.
+void read_friction(const XmlElement& friction, JointDescription& description);
+
+}  // namespace flexarm::scene
