@@ -20,15 +20,15 @@ FAR = 3.0
 
 
 def read(path):
-    """Runs by their name, each a list of rows, and the names of the observables."""
+    """Runs by their name, each a list of rows; the names of the observables and of the defects of invariants."""
     runs = {}
     with open(path, newline="", encoding="utf-8") as file:
         reader = csv.DictReader(file)
         for row in reader:
             key = f"{row['run']}, {row['step']} s"
             runs.setdefault(key, []).append({k: float(v) for k, v in row.items() if k not in ("run", "step")})
-        observables = reader.fieldnames[5:]
-    return runs, observables
+        names = [name for name in reader.fieldnames if name not in ("run", "step", "time")]
+    return runs, [n for n in names if not n.endswith("_defect")], [n for n in names if n.endswith("_defect")]
 
 
 def limits(runs, name):
@@ -48,35 +48,34 @@ def draw(axes, runs, name, styles):
 
 
 def main(data, picture):
-    runs, observables = read(data)
+    runs, observables, defects = read(data)
     colours = pyplot.get_cmap("tab20").colors
     lines = ["-", "--", ":"]
     styles = {
         key: {"color": colours[i % 20], "linestyle": lines[(i // 20 + i) % 3], "label": key}
         for i, key in enumerate(runs)
     }
-    shown = observables[:4] + (["theta_x"] if "theta_x" in observables else [])
-    columns = len(shown) + 2
-    rows = (columns + 1) // 2
-    figure, grid = pyplot.subplots(rows, 2, figsize=(13, 3.2 * rows), sharex=True)
+    rows = (len(observables) + len(defects) + 2) // 3
+    figure, grid = pyplot.subplots(rows, 3, figsize=(16, 3.0 * rows), sharex=True, squeeze=False)
     panels = list(grid.flat)
-    for name, axes in zip(shown, panels):
+    for name, axes in zip(observables, panels):
         draw(axes, runs, name, styles)
-    for name, axes in zip(("energy_defect", "angular_momentum_defect"), panels[len(shown):]):
+    for name, axes in zip(defects, panels[len(observables):]):
         for key, history in runs.items():
             axes.semilogy([row["time"] for row in history], [max(row[name], 1e-17) for row in history],
                           linewidth=0.9, **styles[key])
         axes.set_ylim(1e-17, FAR)
         axes.set_ylabel(name.replace("_", " "))
-    for axes in panels[columns:]:
+    for axes in panels[len(observables) + len(defects):]:
         axes.axis("off")
     for axes in grid[-1]:
         axes.set_xlabel("time [s]")
     handles, labels = panels[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="lower center", ncol=3, fontsize=7)
-    height = 0.16 * ((len(labels) + 2) // 3) + 0.5
-    figure.tight_layout(rect=(0, height / (3.2 * rows), 1, 1))
-    figure.savefig(picture, dpi=90)
+    height = 0.17 * ((len(labels) + 3) // 4) + 0.3
+    figure.set_size_inches(16, 3.0 * rows + height)
+    figure.legend(handles, labels, loc="lower center", ncol=4, fontsize=7)
+    figure.tight_layout(rect=(0, height / (3.0 * rows + height), 1, 1))
+    figure.savefig(picture, dpi=80)
 
 
 if __name__ == "__main__":

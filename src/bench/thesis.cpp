@@ -152,13 +152,16 @@ ThesisReport measure_thesis(const std::string& scene_folder, bool quick, const s
 }
 
 std::string histories_to_csv(const ThesisExample& example, const std::vector<ThesisOutcome>& outcomes) {
-  std::string text = "run,step,time,energy_defect,angular_momentum_defect";
+  const bool has_momentum = example.conserves_angular_momentum;
+  std::string text = "run,step,time,energy_defect";
+  if (has_momentum) text += ",angular_momentum_defect";
   for (const std::string& name : example.observables) text += "," + name;
   text += "\n";
   for (std::size_t i = 0; i < outcomes.size(); ++i)
     for (const std::vector<double>& row : outcomes[i].history) {
       text += fmt::format("\"{}\",{:g}", example.runs[i].label, example.runs[i].step);
-      for (const double value : row) text += fmt::format(",{:.6g}", value);
+      for (std::size_t k = 0; k < row.size(); ++k)
+        if (k != 2 || has_momentum) text += fmt::format(",{:.6g}", row[k]);
       text += "\n";
     }
   return text;

@@ -75,7 +75,7 @@ ThesisReport measure_thesis(const std::string& scene_folder, bool quick, const s
 
 /// `picture(number)`: file name of an example's picture; empty if there is none.
 std::string to_markdown(const ThesisReport& report, const std::function<std::string(const std::string&)>& picture);
-/// Columns run, step, time, energy_defect, angular_momentum_defect, then the observables.
+/// Columns run, step, time, energy_defect, angular_momentum_defect where that is conserved, then the observables.
 std::string histories_to_csv(const ThesisExample& example, const std::vector<ThesisOutcome>& outcomes);
 
 }  // namespace flexarm::bench

@@ -198,8 +198,7 @@ ThesisExample cylindrical_manipulator() {
   out.conserves_angular_momentum = false;
   out.cost = 3;
   out.travel = [](const Simulation& s) { return position(s, "r"); };
-  out.observables = {"r",      "z",      "theta",  "end1_x", "end1_y", "end1_z",
-                     "end2_x", "end2_y", "end2_z", "hub_x",  "hub_y",  "hub_z"};
+  out.observables = {"r", "z", "theta", "end1_x", "end1_y", "end1_z", "end2_x", "end2_y", "end2_z"};
   out.observe = [](const Simulation& s) {
     return joined({position(s, "r"), 0.5334 + position(s, "guide/1"), position(s, "guide/2")}, probes(s));
   };
@@ -296,7 +295,8 @@ ThesisExample back_and_forth() {
 }  // namespace
 
 std::vector<ThesisExample> thesis_examples() {
-  return {descending_arm(), free_sliding_mass(), aerial_runway(), cylindrical_manipulator(), driven_screw(), back_and_forth()};
+  return {descending_arm(),          free_sliding_mass(), aerial_runway(),
+          cylindrical_manipulator(), driven_screw(),      back_and_forth()};
 }
 
 }  // namespace flexarm::bench
