@@ -96,7 +96,10 @@ ThesisExample descending_arm() {
        run(ne, kNodeToElement, kAlg3, 0.05, "completes, four halvings"),
        run(ne, kNodeToElement, kAlg4, 0.05, "first border at 1.8; fails at 3.251"),
        run(ne, kNodeToElement, kSmEm, 0.05, ""),
+       run(ne, kNodeToElement, kSmooth, 0.05, ""),
+       run(ne, kNodeToElement, kSmEm, 0.08, "four times the step"),
        run(ne, kNodeToElement, kSmooth, 0.08, "four times the step"),
+       run(ne, kNodeToElement, kSmEm, 0.2, "four times the larger step"),
        run(ne, kNodeToElement, kSmooth, 0.2, "four times the larger step")};
   for (const double factor : {10.0, 1e2, 1e5})
     for (const auto& [scene, how, algorithm] :
@@ -145,8 +148,11 @@ ThesisExample free_sliding_mass() {
       run(scene, "", kAlg4, 0.004, "border at 0.086736, fails after 0.133857"),
       run(scene, "", kSme, 0.004, ""),
       run(scene, "", kSmEm, 0.004, ""),
+      run(scene, "", kSmooth, 0.004, ""),
       run(scene, "", kScaled, 0.004, ""),
+      run(scene, "", kSmEm, 0.008, "four times the step"),
       run(scene, "", kSmooth, 0.008, "four times the step"),
+      run(scene, "", kSmEm, 0.016, "four times the larger step"),
       run(scene, "", kSmooth, 0.016, "four times the larger step")};
   return out;
 }
@@ -175,6 +181,7 @@ ThesisExample aerial_runway() {
               run(scene, "H1", kAlg3, 1e-3, "two halvings; most stable", h1),
               run(scene, "H1", kAlg4, 1e-3, "as alg1", h1),
               run(scene, "H1", kSmEm, 1e-3, "", h1),
+              run(scene, "H1", kSmooth, 1e-3, "", h1),
               run(scene, "H1", kSmEm, 4e-3, "four times the step", h1),
               run(scene, "H2", kTrapezoidal, 5e-4, "fails at the first border", h2),
               run(scene, "H2", kAlg1, 5e-4, "passes one border, fails at the second", h2),
@@ -217,6 +224,7 @@ ThesisExample cylindrical_manipulator() {
               run(scene, "H1", kAlg3, 1e-3, "no halving", h1),
               run(scene, "H1", kAlg4, 1e-3, "as alg1", h1),
               run(scene, "H1", kSmEm, 1e-3, "", h1),
+              run(scene, "H1", kSmooth, 1e-3, "", h1),
               run(scene, "H2", kTrapezoidal, 1e-3, "no halving", h2),
               run(scene, "H2", kAlg1, 1e-3, "some halvings", h2),
               run(scene, "H2", kAlg2, 1e-3, "no halving, vibrations damped", h2),
@@ -224,6 +232,7 @@ ThesisExample cylindrical_manipulator() {
               run(scene, "H2", kAlg4, 1e-3, "fails", h2),
               run(scene, "H2", kSmEm, 1e-3, "", h2),
               run(scene, "H2", kSmooth, 1e-3, "", h2),
+              run(scene, "H2", kSmEm, 4e-3, "four times the step", h2),
               run(scene, "H1", kSmooth, 4e-3, "four times the step", h1),
               run(scene, "H2", kSmooth, 4e-3, "four times the step", h2)};
   return out;
@@ -270,6 +279,8 @@ ThesisExample driven_screw() {
               run(ne, kNodeToElement, kAlg3, 0.005, "no halving"),
               run(ne, kNodeToElement, kAlg4, 0.005, "fails"),
               run(ne, kNodeToElement, kSmEm, 0.005, ""),
+              run(ne, kNodeToElement, kSmooth, 0.005, ""),
+              run(ne, kNodeToElement, kSmEm, 0.04, "four times the step"),
               run(ne, kNodeToElement, kSmooth, 0.04, "four times the step")};
   return out;
 }

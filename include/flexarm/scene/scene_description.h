@@ -143,7 +143,7 @@ struct SlideDescription {
   JointKind rotation = JointKind::Spherical;
   End on_end = End::Stop;            ///< what the ends of the line are
   std::string scheme = "sm_em";      ///< how the contact is carried over a step (docs/schemes.md)
-  bool smooth = false;               ///< tangents of the line are continuous over the borders of elements
+  bool smooth = true;                ///< tangents of the line are continuous over the borders of elements
   Vector3 offset = Vector3::Zero();  ///< rigid segment from the line to the joint, in the joint's frame [m]
   SourceLocation location;
 };
