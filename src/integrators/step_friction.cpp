@@ -56,8 +56,6 @@ void StepSystem::find_friction() {
     if (c == static_cast<int>(carriers_.size())) {
       carriers_.emplace_back();
       carriers_[c].coordinate = base;
-      const int equation = equation_of(model_.coordinates[base]);
-      if (equation >= 0) carriers_[c].row = assembler_.row(equation);
     }
     carriers_[c].members.push_back(static_cast<int>(index));
     carrier_of_[index] = c;
@@ -188,7 +186,8 @@ void StepSystem::hold_friction_tangent() {
                                    .tail<3>();
       coefficients = cayley::inverse_tangent(rotation).row(component).transpose();
     }
-    assembler_.set_row(carrier.row, equation_of(coordinate) - component, coefficients);
+    const int equation = equation_of(coordinate);
+    assembler_.set_row(equation, equation - component, coefficients);
   }
 }
 

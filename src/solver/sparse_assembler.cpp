@@ -187,18 +187,14 @@ void SparseAssembler::gather_tangent() {
     std::copy_n(values_.data() + copy.from, copy.count, reduced_values_.data() + copy.to);
 }
 
-std::vector<SparseAssembler::RowEntry> SparseAssembler::row(int equation) const {
-  std::vector<RowEntry> entries;
-  for (int column = 0; column < unknowns(); ++column)
-    for (int p = column_starts_[column]; p < column_starts_[column + 1]; ++p)
-      if (row_indices_[p] == equation) entries.push_back({p, column});
-  return entries;
-}
-
-void SparseAssembler::set_row(const std::vector<RowEntry>& row, int first, const ReleasedVector& coefficients) {
-  for (const RowEntry& entry : row) {
-    const int k = entry.column - first;
-    reduced_values_[entry.index] = k >= 0 && k < coefficients.size() ? coefficients[k] : 0.0;
+void SparseAssembler::set_row(int equation, int first, const ReleasedVector& coefficients) {
+  for (int column = 0; column < unknowns(); ++column) {
+    const auto begin = row_indices_.begin() + column_starts_[column],
+               end = row_indices_.begin() + column_starts_[column + 1];
+    const auto found = std::lower_bound(begin, end, equation);  // rows of a column are in order
+    if (found == end || *found != equation) continue;
+    const int k = column - first;
+    reduced_values_[found - row_indices_.begin()] = k >= 0 && k < coefficients.size() ? coefficients[k] : 0.0;
   }
 }
 

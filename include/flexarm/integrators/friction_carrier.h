@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "flexarm/joints/dry_friction.h"
-#include "flexarm/solver/sparse_assembler.h"
 
 namespace flexarm {
 
@@ -14,7 +13,6 @@ struct FrictionCarrier {
   int coordinate = -1;
   StickSlip law;
   std::vector<int> members;                          ///< coordinates with friction, itself perhaps among them
-  std::vector<SparseAssembler::RowEntry> row;        ///< of the reduced matrix; empty where its motion is prescribed
   double increment = 0, reaction = 0, capacity = 0;  ///< at the last evaluation; the latter two against the increment
 };
 

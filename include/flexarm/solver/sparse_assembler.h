@@ -49,13 +49,8 @@ class SparseAssembler {
   /// Writes the reduced residual and, if asked, the compressed-column values.
   void gather(Eigen::VectorXd& residual) const;
   void gather_tangent();
-  /// An entry of the reduced matrix: index into its values, and its column.
-  struct RowEntry {
-    int index, column;
-  };
-  std::vector<RowEntry> row(int equation) const;
   /// Replaces a gathered row by `coefficients` in the columns from `first` on, and zeros.
-  void set_row(const std::vector<RowEntry>& row, int first, const ReleasedVector& coefficients);
+  void set_row(int equation, int first, const ReleasedVector& coefficients);
 
   // ---- reduced matrix, compressed columns
   int unknowns() const { return dof_.unknowns; }
