@@ -191,6 +191,7 @@ void StepSystem::update_increments() {
 }
 
 void StepSystem::update(const Eigen::VectorXd& increment) {
+  remember_smooth_rates();
   for (int i = 0; i < dof_.node_count; ++i) {
     if (dof_.slave_joint[i] >= 0) continue;
     const int equation = dof_.equation[dof_.first[i]];
@@ -209,6 +210,7 @@ void StepSystem::update(const Eigen::VectorXd& increment) {
     released_[j] = updated(model_.joints[j], released_[j], part);
   }
   place_held_coordinates();
+  stop_smooth_reversals();
   set_slaves();
   if (!static_) update_increments();
 }

@@ -40,7 +40,11 @@ bool is_angle(const Model& model, const Coordinate& coordinate) {
 void StepSystem::find_friction() {
   for (std::size_t index = 0; index < model_.coordinates.size(); ++index) {
     const Coordinate& coordinate = model_.coordinates[index];
-    if (!coordinate.sticks || (coordinate.friction <= 0 && coordinate.friction_coefficient <= 0)) continue;
+    if (coordinate.friction <= 0 && coordinate.friction_coefficient <= 0) continue;
+    if (!coordinate.sticks) {
+      if (equation_of(coordinate) >= 0 && !coordinate.is_angle) smooth_coordinates_.push_back(static_cast<int>(index));
+      continue;
+    }
     if (scheme_.is_composition)
       throw ModelError("<integrator>: scheme '" + std::string(scheme_.name) +
                        "' steps backwards, in which friction of the law 'coulomb' (coordinate '" + coordinate.name +
@@ -57,6 +61,7 @@ void StepSystem::find_friction() {
     carrier_of_[index] = c;
   }
   tangent_branches_.assign(carriers_.size(), StickSlip::Free);
+  smooth_rates_.resize(smooth_coordinates_.size());
 }
 
 int StepSystem::equation_of(const Coordinate& coordinate) const {
@@ -227,6 +232,30 @@ void StepSystem::place_held_coordinates() {
     } else if (is_there(carrier)) {
       released.displacement[component] = begin.displacement[component] + carrier.law.held_increment();
     }
+  }
+}
+
+double StepSystem::smooth_rate(int index) const {
+  return rate_of(coordinate_step(index, increment_of(model_.coordinates[index])));
+}
+
+void StepSystem::remember_smooth_rates() {
+  if (static_) return;
+  for (std::size_t i = 0; i < smooth_coordinates_.size(); ++i) smooth_rates_[i] = smooth_rate(smooth_coordinates_[i]);
+}
+
+// Newton's method for tanh jumps to and fro between both ends, where it has no slope. An update that would reverse the
+// rate stops at rate zero instead: from there, and from any smaller rate than the solution's, the method goes on to it
+// without passing it, because tanh is concave.
+void StepSystem::stop_smooth_reversals() {
+  if (static_) return;
+  for (std::size_t i = 0; i < smooth_coordinates_.size(); ++i) {
+    const Coordinate& coordinate = model_.coordinates[smooth_coordinates_[i]];
+    const double before = smooth_rates_[i], after = smooth_rate(smooth_coordinates_[i]);
+    if (before * after >= 0 || std::max(std::abs(before), std::abs(after)) <= kFrictionSpeed) continue;
+    const CoordinateStep step = coordinate_step(smooth_coordinates_[i], 0);
+    released_[coordinate.joint].displacement[coordinate.component] =
+        step.begin + (1 - step.gamma) * step.step * step.begin_rate;
   }
 }
 

@@ -36,32 +36,30 @@ PassiveEffort stop_effort(const LimitStop& stop, double gap_begin, double gap_en
   return out;
 }
 
-/// Of the coordinate, and its derivative with respect to the increment.
-struct Rate {
-  double value, slope;
-};
-Rate rate_of(const CoordinateStep& change) {
-  return {(change.increment / change.step - (1 - change.gamma) * change.begin_rate) / change.gamma,
-          1 / (change.gamma * change.step)};
+/// Derivative of the rate with respect to the increment.
+double rate_slope(const CoordinateStep& change) {
+  return 1 / (change.gamma * change.step);
 }
 
 }  // namespace
 
+double rate_of(const CoordinateStep& change) {
+  return (change.increment / change.step - (1 - change.gamma) * change.begin_rate) / change.gamma;
+}
+
 SmoothDirection smooth_direction(const CoordinateStep& change) {
   if (change.step == 0) return {};
-  const Rate rate = rate_of(change);
-  const double t = std::tanh(rate.value / kFrictionSpeed);
-  return {t, (1 - t * t) / kFrictionSpeed * rate.slope};
+  const double t = std::tanh(rate_of(change) / kFrictionSpeed);
+  return {t, (1 - t * t) / kFrictionSpeed * rate_slope(change)};
 }
 
 PassiveEffort passive_effort(const Coordinate& coordinate, const CoordinateStep& change) {
   PassiveEffort out;
   const double friction = coordinate.sticks ? 0 : coordinate.friction;
   if (change.step != 0 && (coordinate.damping > 0 || friction > 0)) {
-    const Rate rate = rate_of(change);
     const SmoothDirection direction = smooth_direction(change);
-    out.effort = -coordinate.damping * rate.value - friction * direction.value;
-    out.slope = -(coordinate.damping * rate.slope + friction * direction.slope);
+    out.effort = -coordinate.damping * rate_of(change) - friction * direction.value;
+    out.slope = -(coordinate.damping * rate_slope(change) + friction * direction.slope);
     out.dissipated = -out.effort * change.increment;
   }
   if (coordinate.limit) {

@@ -22,6 +22,16 @@ bool has_normal_force(JointKind kind) {
          kind != JointKind::Planar;
 }
 
+void check_radius(const XmlElement& friction, double coefficient, Radius radius) {
+  const bool has_radius = friction.has("radius");
+  if (has_radius && radius == Radius::Useless)
+    friction.attribute_error("radius", "nothing turns about an axis here; leave this out");
+  else if (has_radius && !friction.has("coefficient"))
+    friction.attribute_error("radius", "it acts with a coefficient only; leave this out");
+  else if (coefficient > 0 && radius == Radius::Needed && !has_radius)
+    friction.error("a coefficient on a rotation needs the radius of the bearing, radius > 0");
+}
+
 }  // namespace
 
 void read_friction(const XmlElement& friction, JointDescription& description) {
@@ -34,13 +44,8 @@ void read_friction(const XmlElement& friction, JointDescription& description) {
     friction.attribute_error("coefficient",
                              "fixed, floating, spherical and planar joints have no force that presses; leave this out, "
                              "and give a constant effort, <dynamics friction>");
-  const Radius radius = radius_of(description);
-  if (friction.has("radius") && radius == Radius::Useless)
-    friction.attribute_error("radius", "nothing turns about an axis here; leave this out");
-  else if (friction.has("radius") && !friction.has("coefficient"))
-    friction.attribute_error("radius", "it acts with a coefficient only; leave this out");
-  if (out.coefficient > 0 && radius == Radius::Needed && !friction.has("radius"))
-    friction.error("a coefficient on a rotation needs the radius of the bearing, radius > 0");
+  else
+    check_radius(friction, out.coefficient, radius_of(description));
   description.friction_law = out;
 }
 

@@ -1,8 +1,8 @@
 // The tangent of a step with friction that grows with the force on the joint: slipping, held, and in the smooth law.
 #include <gtest/gtest.h>
 
+#include "integrators/consistent_tangent.h"
 #include "integrators/mechanism.h"
-#include "integrators/tangent_check.h"
 #include "support/scheme_variants.h"
 
 namespace flexarm {

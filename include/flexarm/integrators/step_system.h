@@ -127,6 +127,9 @@ class StepSystem {
   void hold_friction();
   void hold_friction_tangent();
   void place_held_coordinates();
+  double smooth_rate(int coordinate) const;
+  void remember_smooth_rates();
+  void stop_smooth_reversals();
   void accept_friction(State& state) const;
   void compute_begin_rates();
   NodeStep node_step(std::size_t node) const;
@@ -188,6 +191,8 @@ class StepSystem {
   std::vector<int> carrier_of_;                      // per coordinate: index into carriers_, or -1
   std::vector<double> capacities_;                   // per coordinate: of its friction, from the force on the joint
   std::vector<StickSlip::Branch> tangent_branches_;  // per carrier, in the last tangent
+  std::vector<int> smooth_coordinates_;              // with an unknown of their own and smooth friction
+  std::vector<double> smooth_rates_;                 // theirs, before an update
   int revisions_ = 0;                                // of friction in this solve
   bool points_valid_ = false;
   double dissipated_ = 0;

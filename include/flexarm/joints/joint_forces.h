@@ -17,6 +17,9 @@ struct CoordinateStep {
   double gamma = 1, begin_rate = 0;
 };
 
+/// The rate that damping and smooth friction feel. Not in statics.
+double rate_of(const CoordinateStep& change);
+
 /// Smooth friction acts by this part of its capacity, tanh(rate / v), against the increment.
 struct SmoothDirection {
   double value = 0, slope = 0;  ///< and its derivative with respect to the increment
