@@ -93,10 +93,14 @@ TEST(BuildModel, CoordinatesAreNamedInTheOrderOfTheTree) {
 
 TEST(BuildModel, MastersComeBeforeTheirSlaves) {
   const Model model = build_model(every_joint_scene(false));
-  for (const JointMap& joint : model.joints) EXPECT_LT(joint.master, joint.slave);
-  std::vector<int> count(model.nodes.size(), 0);
+  std::vector<int> count(model.nodes.size(), 0), waiting;
   for (const JointMap& joint : model.joints) ++count[joint.slave];
   for (const int times : count) EXPECT_LE(times, 1);
+  waiting = count;
+  for (const JointMap& joint : model.joints) {
+    EXPECT_TRUE(joint.master < 0 || waiting[joint.master] == 0);
+    waiting[joint.slave] = 0;
+  }
 }
 
 TEST(BuildModel, MimicsOfMimicsAreResolved) {
@@ -242,6 +246,7 @@ void expect_velocities_of_coordinates(const scene::SceneDescription& scene) {
 
 TEST(InitialVelocity, OfEveryCoordinate) {
   scene::SceneDescription scene = every_joint_scene(true);
+  scene.loop_joints.clear();  // they hold at one position only
   scene.initial_joints = {{"shoulder", 0.3, 0.9, {}}, {"wrist/1", 0.4, -0.6, {}}, {"wrist/2", -0.8, 0.7, {}},
                           {"ball/ry", 0, 0.5, {}},    {"slider", 0.2, 0.4, {}},   {"roll/1", -0.1, 0.8, {}},
                           {"roll/2", 1.2, -0.9, {}},  {"flight/x", 0.3, 0.4, {}}, {"flight/rz", 0, 0.6, {}},
