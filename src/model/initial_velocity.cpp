@@ -123,9 +123,11 @@ double InitialVelocity::given_rate(const Coordinate& coordinate, bool& is_given)
 
 bool InitialVelocity::given_rates(const JointRecord& record, ReleasedVector& rates) const {
   bool is_given = false;
-  std::size_t index = model_.first_coordinate[record.first_map];
   rates.resize(static_cast<Eigen::Index>(scene::coordinate_suffixes(*record.joint).size()));
-  for (double& rate : rates) rate = given_rate(model_.coordinates[index++], is_given);
+  Eigen::Index used = 0;
+  for (int j = record.first_map; j < record.first_map + record.map_count; ++j)
+    for (int c = 0; c < released_count(model_.joints[j].kind); ++c)
+      rates[used++] = given_rate(model_.coordinates[model_.first_coordinate[j] + c], is_given);
   return is_given;
 }
 

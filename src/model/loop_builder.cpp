@@ -136,6 +136,13 @@ void MechanismBuilder::chain_loop(const scene::JointDescription& joint, const st
     add_coordinates(joint, {names.begin() + name, names.begin() + name + count});
     name += count;
   }
+  if (!names.empty() && names.front() != joint.name + scene::coordinate_suffixes(joint).front()) {
+    // The chain is turned round; coordinates are numbered as their names are.
+    const std::size_t first = model.coordinates.size() - names.size();
+    std::reverse(model.coordinates.begin() + static_cast<std::ptrdiff_t>(first), model.coordinates.end());
+    for (std::size_t i = first; i < model.coordinates.size(); ++i)
+      model.first_coordinate[model.coordinates[i].joint] = static_cast<int>(i);
+  }
   // The slave as it stands at the start: zero of the coordinates is the initial configuration.
   const Pose offset = pose_of(node).inverse() * pose_of(slave);
   JointMap rigid;
