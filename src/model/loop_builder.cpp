@@ -1,4 +1,4 @@
-// Joints that close loops: the slave is a beam's node that was free before. (joints.md 3)
+// Joints that close loops: where it can be, the slave is a beam's node that was free before. (joints.md 3)
 #include <algorithm>
 #include <cmath>
 
@@ -100,10 +100,10 @@ void MechanismBuilder::add_loop(const scene::JointDescription& joint) {
                      std::to_string(gap) + " m apart");
 
   const bool onto_child = can_become_slave(child.node, parent.node);
-  if (!onto_child && !can_become_slave(parent.node, child.node))
-    throw ModelError(where +
-                     "one of the joined places must be a free end of a flexible link, or fixed to one: cut the loop "
-                     "there, or give one of its links a <beam>");
+  if (!onto_child && !can_become_slave(parent.node, child.node)) {
+    add_closure(joint, parent, child, frame);
+    return;
+  }
   std::vector<std::string> names;
   for (const std::string& suffix : scene::coordinate_suffixes(joint)) names.push_back(joint.name + suffix);
   for (const std::string& name : names)
@@ -181,6 +181,8 @@ void MechanismBuilder::sort_joints() {
   permute(model.joints);
   permute(model.initial_released);
   permute(model.first_coordinate);
+  for (JointMap& joint : model.joints)
+    if (joint.leaving >= 0) joint.leaving = place[joint.leaving];
   for (Coordinate& coordinate : model.coordinates) coordinate.joint = place[coordinate.joint];
   // A chain stays together: nothing but its next joint hangs on a node inside it.
   for (JointRecord& record : records_)

@@ -229,7 +229,11 @@ std::vector<Mode> natural_modes(const Model& model, const State& state, int coun
   // The shift makes free mechanisms solvable. A first pass finds the scale of the wanted eigenvalues, a second one with
   // a shift far below them loses no digits.
   // More modes than asked for, so that the scale is that of elastic ones where there are rigid motions.
-  const int computed = std::min(count + kExtraModes, dof.unknowns);
+  // Every multiplier of a loop takes two: its own, which has no mass, and the motion that it holds.
+  int modes_of_motion = dof.unknowns;
+  for (const LoopClosure& closure : model.closures) modes_of_motion -= 2 * static_cast<int>(closure.constraints.size());
+  const int computed = std::min(count + kExtraModes, modes_of_motion);
+  if (computed <= 0) return {};
   const double stiffness_trace = trace(system.assembler());
   double shift = std::max(1e-8 * stiffness_trace / trace(mass), 1e-12);
   Eigenpairs pairs = lowest(system.assembler(), mass, shift, computed);
