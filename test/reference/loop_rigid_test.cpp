@@ -1,9 +1,10 @@
 // Loops of rigid links, closed by multipliers: closed-form motions, invariants, constraints.
 #include <cmath>
 
+#include "flexarm/joints/loop_closure.h"
 #include "reference/dynamics_runs.h"
 #include "reference/ode.h"
-#include "support/loops.h"
+#include "support/closed_ring.h"
 
 namespace flexarm::test {
 namespace {
@@ -37,15 +38,16 @@ SceneBuilder parallelogram(double start, JointKind closing = JointKind::Continuo
   return b;
 }
 
+const double kInertia = 2 * 0.05 + 1.2 * 0.16 + 0.7 * 0.16 + 2 * 0.64, kMoment = 1.2 * 0.4 + 0.7 * 0.4 + 2 * 0.8;
+
 double angle(const Simulation& s, const std::string& name) {
   return s.position(*s.find_coordinate(name));
 }
 
 /// Angle of the cranks from the vertical at time t.
 double pendulum(double start, double rate, double t) {
-  const double inertia = 2 * 0.05 + 1.2 * 0.16 + 0.7 * 0.16 + 2 * 0.64, weight = 9.81 * (1.2 * 0.4 + 0.7 * 0.4 + 2 * 0.8);
   const OdeFunction f = [&](double, const VectorXd& y) {
-    return VectorXd(Eigen::Vector2d(y[1], -weight / inertia * std::sin(y[0])));
+    return VectorXd(Eigen::Vector2d(y[1], -9.81 * kMoment / kInertia * std::sin(y[0])));
   };
   return solve_ode(f, 0, t, Eigen::Vector2d(start, rate))[0];
 }
@@ -63,9 +65,8 @@ TEST(RigidLoop, ParallelogramIsAPendulum) {
       error[refinement] = std::abs(start - angle(simulation, "left") - exact);
       EXPECT_NEAR(angle(simulation, "right"), angle(simulation, "left"), 1e-10) << scheme;
     }
-    printf("%s %g %g %g\n", scheme, error[0], error[1], error[2]);
-    const double order = std::string(scheme) == "hht1" || std::string(scheme) == "edmc2" ? 1.5 : 1.8;
-    EXPECT_GT(std::log2(error[1] / error[2]), order) << scheme;
+    const double order = std::log2(error[1] / error[2]), expected = std::string(scheme) == "em4" ? 4 : 2;
+    EXPECT_NEAR(order, expected, 0.1) << scheme;
     EXPECT_LT(error[2], 2e-3) << scheme;
   }
 }
@@ -78,9 +79,10 @@ double opening(const Simulation& s) {
   for (const LoopClosure& closure : s.model().closures)
     for (const auto* list : {&closure.constraints, &closure.implied})
       for (const ClosureConstraint& constraint : *list)
-        largest = std::max(largest, std::abs(closure_value(closure, constraint,
-                                                           {closure.parent < 0 ? NodePose() : poses[closure.parent],
-                                                            poses[closure.child]})));
+        largest = std::max(
+            largest,
+            std::abs(closure_value(closure, constraint,
+                                   {closure.parent < 0 ? NodePose() : poses[closure.parent], poses[closure.child]})));
   return largest;
 }
 
@@ -106,7 +108,6 @@ TEST(RigidLoop, FourBarKeepsEnergyAndConstraintsOverAThousandSteps) {
       least = std::min(least, angle(simulation, "foot"));
       most = std::max(most, angle(simulation, "foot"));
     });
-    printf("%s energy %g opening %g\n", scheme, drift.energy(), worst);
     EXPECT_LT(worst, 1e-10) << scheme;
     EXPECT_LT(drift.energy(), 1e-10) << scheme;
     EXPECT_GT(most - least, 0.5);
@@ -118,35 +119,55 @@ TEST(RigidLoop, WorkOfADriveAccountsForTheEnergy) {
   b.scene.motions.push_back({"right", TimeFunction::parse("0.6*(1-cos(3*t))"), {}});
   Simulation simulation(b.scene, options("em", 0.02, 1e-11));
   InvariantDrift drift(simulation);
-  run(simulation, 100, [&] { drift.observe(); });
+  run(simulation, 50, [&] { drift.observe(); });
   EXPECT_LT(drift.energy(), 1e-11);
   EXPECT_NEAR(angle(simulation, "left"), angle(simulation, "right"), 1e-10);
   EXPECT_GT(std::abs(simulation.energies().work), 0.1);
 }
 
-// ---------------------------------------------------------------- in space
-
-/// A floating trunk, two arms of two bodies in spherical and revolute joints, and a joint between their ends.
-SceneBuilder free_ring(JointKind kind) {
-  SceneBuilder b;
-  b.body("trunk", 1, {0.1, 0, 0.05}, Vector3(0.05, 0.06, 0.07).asDiagonal());
-  b.joint("flight", JointKind::Floating, "world", "trunk");
-  const auto arm = [&](const std::string& name, double side) {
-    b.body(name, 0.4, {0.2, 0.05 * side, 0.02}, Vector3(0.01, 0.02, 0.015).asDiagonal());
-    b.body(name + "_end", 0.3, {0.1, -0.1 * side, 0}, Vector3(0.01, 0.008, 0.012).asDiagonal());
-    b.joint(name, JointKind::Spherical, "trunk", name, {0, 0.2 * side, 0});
-    b.joint(name + "_end", JointKind::Spherical, name, name + "_end", {0.4, 0.2 * side, 0.1});
-  };
-  arm("left", 1);
-  arm("right", -1);
-  scene::JointDescription& loop =
-      close_loop(b, "loop", kind, "left_end", "right_end", {0.2, 0.3, 0.05}, {0.48, 0.6, 0.64});
-  loop.axis2 = Vector3::UnitX();
-  initial_joint(b, "left/rz", 0, 1.5);
-  initial_joint(b, "flight/rx", 0, 1);
-  initial_joint(b, "flight/ry", 0, -2);
-  return b;
+// Small swings about the lowest position: what the multipliers carry is part of the stiffness.
+TEST(RigidLoop, NaturalFrequencyOfTheParallelogram) {
+  const Simulation simulation(parallelogram(0).scene);
+  const std::vector<Mode> modes = simulation.natural_modes(5);
+  ASSERT_EQ(modes.size(), 1u);
+  const double expected = std::sqrt(9.81 * kMoment / kInertia) / (2 * 3.14159265358979323846);
+  EXPECT_NEAR(modes[0].frequency / expected, 1, 1e-9);
 }
+
+TEST(RigidLoop, EquilibriumOfTheParallelogram) {
+  Simulation simulation(parallelogram(0.3).scene);
+  ASSERT_TRUE(simulation.solve_static(1).converged);
+  EXPECT_NEAR(angle(simulation, "left"), 0.3, 1e-9);
+  EXPECT_NEAR(angle(simulation, "right"), 0.3, 1e-9);
+}
+
+// At rest on one line with its cranks the coupler may turn either way: the loop does not say which constraints hold.
+TEST(RigidLoop, SingularAtTheStart) {
+  Simulation simulation(parallelogram(0.5 * 3.14159265358979323846).scene, options("em", 0.01));
+  StepResult result;
+  for (int n = 0; n < 200 && (result = simulation.step()).converged; ++n) {
+  }
+  EXPECT_FALSE(result.converged);
+  EXPECT_EQ(result.reason, StepResult::Reason::OpenLoop) << to_string(result.reason);
+}
+
+TEST(RigidLoop, TwoDrivesOnOneFreedom) {
+  SceneBuilder b = parallelogram(0.4);
+  b.scene.motions.push_back({"left", TimeFunction::parse("sin(t)"), {}});
+  b.scene.motions.push_back({"right", TimeFunction::parse("sin(t)"), {}});
+  Simulation agreeing(b.scene, options("em", 0.01));
+  run(agreeing, 50);
+  b.scene.motions.back().position = TimeFunction::parse("1.1*sin(t)");
+  EXPECT_THROW(Simulation(b.scene), ModelError) << "the velocities at the start disagree";
+  b.scene.motions.back().position = TimeFunction::parse("sin(t)+t^3");
+  Simulation quarrelling(b.scene, options("em", 0.01));
+  StepResult result;
+  for (int n = 0; n < 50 && (result = quarrelling.step()).converged; ++n) {
+  }
+  EXPECT_EQ(result.reason, StepResult::Reason::OpenLoop) << to_string(result.reason);
+}
+
+// ---------------------------------------------------------------- in space
 
 class FreeRing : public ::testing::TestWithParam<JointKind> {};
 
@@ -159,8 +180,9 @@ TEST_P(FreeRing, ConservesEnergyAndMomenta) {
       drift.observe();
       worst = std::max(worst, opening(simulation));
     });
-    printf("%s %g %g %g %g\n", scheme, drift.energy(), drift.momentum(), drift.angular_momentum(), worst);
-    EXPECT_LT(drift.energy(), 1e-11) << scheme;
+    if (std::string(scheme) != "m1") {  // keeps momenta only
+      EXPECT_LT(drift.energy(), 1e-11) << scheme;
+    }
     EXPECT_LT(drift.momentum(), 1e-11) << scheme;
     EXPECT_LT(drift.angular_momentum(), 1e-11) << scheme;
     EXPECT_LT(worst, 1e-11) << scheme;
