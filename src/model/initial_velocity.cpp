@@ -72,9 +72,7 @@ void InitialVelocity::satisfy_closures() {
     rates_[j] = velocity.segment(dof.first[dof.variable_of_joint(static_cast<int>(j))], rates_[j].size()).eval();
   for (const DegreesOfFreedom::Mimic& mimic : dof.mimics) {
     const Coordinate& following = model_.coordinates[mimic.coordinate];
-    const int master = model_.coordinates[following.mimicked].joint;
-    rates_[following.joint][0] =
-        following.mimic.derivative(model_.initial_released[master].displacement[0]) * rates_[master][0];
+    rates_[following.joint][0] = mimic_ratio(following) * rates_[model_.coordinates[following.mimicked].joint][0];
   }
   for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) follow(j, ReleasedVector(rates_[j]));
 }
