@@ -107,6 +107,8 @@ void StepSystem::accept(State& state) {
       if (dof_.equation[first + k] >= 0) state.last_increment[dof_.equation[first + k]] = change[k];
   }
 
+  accept_multipliers(state);
+
   for (std::size_t i = 0; i < end_.size(); ++i)
     state.nodes[i] =
         advanced(scheme_, {begin_[i], end_[i], state.nodes[i], increments_[i], inverse_tangents_[i], step_, {}});

@@ -21,6 +21,7 @@ void StepSystem::load_begin_configuration(const State& state) {
   reference_.begin(state);
   std::copy(begin_.begin(), begin_.end(), end_.begin());
   std::copy(state.released.begin(), state.released.end(), released_.begin());
+  for (ReleasedVector& multipliers : multipliers_) multipliers.setZero();
 }
 
 void StepSystem::compute_begin_points() {
@@ -131,6 +132,7 @@ void StepSystem::extrapolate() {
     end_[i].rotation = end_[i].orientation.toRotationMatrix();
   }
   if (!has_last) return;  // the released coordinates of the first step start where they are
+  extrapolate_multipliers();
   for (std::size_t j = 0; j < model_.joints.size(); ++j) {
     const JointMap& joint = model_.joints[j];
     const int variable = dof_.variable_of_joint(static_cast<int>(j)), count = released_count(joint.kind);
@@ -209,6 +211,7 @@ void StepSystem::update(const Eigen::VectorXd& increment) {
     }
     released_[j] = updated(model_.joints[j], released_[j], part);
   }
+  update_multipliers(increment);
   place_held_coordinates();
   stop_smooth_reversals();
   set_slaves();

@@ -60,6 +60,8 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme)
       carrier_of_(model.coordinates.size(), -1),
       capacities_(model.coordinates.size(), 0.0),
       residual_(Eigen::VectorXd::Zero(dof_.unknowns)) {
+  for (const LoopClosure& closure : model.closures)
+    multipliers_.push_back(ReleasedVector::Zero(static_cast<Eigen::Index>(closure.constraints.size())));
   for_each_group(model.beams, [&](const auto& group) {
     constexpr int N = std::decay_t<decltype(group.elements)>::value_type::kNodes;
     std::get<GroupFunctions<N>>(mid_functions_).resize(group.elements.size());
@@ -273,6 +275,7 @@ bool StepSystem::evaluate(bool with_tangent) {
     add_newmark_inertia(with_tangent);
   }
   if (is_interpolated()) shift_reactions();
+  add_closures(with_tangent);
   fold_joints(with_tangent);
   hold_friction();
   assembler_.gather(residual_);

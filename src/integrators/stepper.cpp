@@ -11,6 +11,8 @@ namespace {
 constexpr double kLargestRotationUpdate = 1.0;
 /// A node must not turn by more than pi/2 in a step: |2 tan(angle/2)| = 2.
 constexpr double kLargestStepRotation = 2.0;
+/// Violation of what a loop's constraints imply: far above what Newton and the scene's rounded numbers leave.
+constexpr double kOpenLoop = 1e-4;
 /// Newton is given up when an update is this much larger than the first one.
 constexpr double kDivergence = 1e4;
 /// Contraction of the updates above which kept factors are renewed.
@@ -42,6 +44,8 @@ const char* to_string(StepResult::Reason reason) {
       return "a node turns by more than 90 degrees in one step";
     case StepResult::Reason::OffTheLine:
       return "a slider leaves its line, or passes too many elements in one step";
+    case StepResult::Reason::OpenLoop:
+      return "a loop joint opens: its loop was singular at the start, or more is prescribed than the loop allows";
     case StepResult::Reason::EnergyDefect:
       return "the step's energy defect is too large to be closed by scaling the velocities";
   }
@@ -161,6 +165,10 @@ bool Stepper::simple_step(State& state, double step, StepResult& result) {
     if (!iterate(Updates::Limited, attempt.reuse, result)) continue;
     if (system_.largest_node_rotation() > kLargestStepRotation) {
       result.reason = StepResult::Reason::RotationTooLarge;
+      return false;
+    }
+    if (system_.open_loop() > kOpenLoop) {
+      result.reason = StepResult::Reason::OpenLoop;
       return false;
     }
     system_.accept(state);

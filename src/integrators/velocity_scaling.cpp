@@ -32,6 +32,9 @@ VelocityScaling::VelocityScaling(const Model& model, const Scheme& scheme)
       throw ModelError(
           "<integrator>: scheme 'em_scaled' is not made for a slide with on_end=\"free\", whose trees change; scheme "
           "'em' closes the energy without scaling");
+  if (!model.closures.empty())
+    throw ModelError("<integrator>: scheme 'em_scaled' cannot scale the velocities of the rigid loop of '" +
+                     model.closures.front().name + "'; scheme 'em' closes the energy without scaling");
   for (const NodalInertia& inertia : model.inertias) mass_ += inertia.total_mass;
   std::vector<std::vector<int>> neighbours(model.nodes.size());  // in elements
   for_each_element(model.beams, [&](const auto& element) {

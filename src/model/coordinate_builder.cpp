@@ -54,6 +54,11 @@ void MechanismBuilder::add_coordinates(const scene::JointDescription& joint, con
 int MechanismBuilder::coordinate_index(const std::string& name, const std::string& where) const {
   for (std::size_t i = 0; i < model.coordinates.size(); ++i)
     if (model.coordinates[i].name == name) return static_cast<int>(i);
+  for (const LoopClosure& closure : model.closures)
+    if (name.substr(0, closure.name.size()) == closure.name)
+      throw ModelError(where + "joint '" + closure.name +
+                       "' closes a loop of rigid links and has no coordinate there: name another joint of the loop, or "
+                       "cut it there");
   throw ModelError(where + "there is no joint coordinate '" + name + "'");
 }
 

@@ -3,11 +3,14 @@
 namespace flexarm {
 
 DegreesOfFreedom::DegreesOfFreedom(const Model& model)
-    : node_count(static_cast<int>(model.nodes.size())), slave_joint(model.nodes.size(), -1) {
+    : node_count(static_cast<int>(model.nodes.size())),
+      joint_count(static_cast<int>(model.joints.size())),
+      slave_joint(model.nodes.size(), -1) {
   for (std::size_t j = 0; j < model.joints.size(); ++j) slave_joint[model.joints[j].slave] = static_cast<int>(j);
 
   for (int i = 0; i < node_count; ++i) size.push_back(6);
   for (const JointMap& joint : model.joints) size.push_back(released_count(joint.kind));
+  for (const LoopClosure& closure : model.closures) size.push_back(static_cast<int>(closure.constraints.size()));
   for (const int n : size) {
     first.push_back(scalar_count);
     scalar_count += n;

@@ -1,6 +1,14 @@
 #include "initial_velocity.h"
 
+#include "closure_builder.h"
+
 namespace flexarm {
+namespace {
+
+/// Initial velocities of a loop's joints agree if what is left is this part of the largest.
+constexpr double kAgrees = 1e-9;
+
+}  // namespace
 
 InitialVelocity::InitialVelocity(const scene::SceneDescription& scene, MechanismBuilder& mechanism)
     : scene_(scene), mechanism_(mechanism), model_(mechanism.model), joint_of_(model_.nodes.size(), -1) {
@@ -29,6 +37,44 @@ void InitialVelocity::set() {
   for (const int j : joint_of_)  // centres of mass
     if (j >= 0 && model_.joints[j].kind == JointMapKind::Rigid) follow(j, ReleasedVector(0));
   close_loops();
+  if (!model_.closures.empty()) satisfy_closures();
+}
+
+bool InitialVelocity::is_given(const Coordinate& coordinate) const {
+  return coordinate.motion >= 0 || initial_rates_.count(coordinate.name) > 0;
+}
+
+void InitialVelocity::satisfy_closures() {
+  const DegreesOfFreedom dof(model_);
+  const Eigen::VectorXd scales = scalar_scales(model_, dof);
+  const Eigen::MatrixXd jacobian =
+      constraint_scales(model_).cwiseInverse().asDiagonal() * closure_jacobian(model_, dof) * scales.asDiagonal();
+  Eigen::VectorXd velocity = Eigen::VectorXd::Zero(dof.scalar_count);
+  Eigen::MatrixXd adjustable = jacobian;
+  for (int i = 0; i < dof.node_count; ++i) velocity.segment<6>(dof.first[i]) = model_.initial_velocity[i];
+  for (std::size_t j = 0; j < rates_.size(); ++j)
+    velocity.segment(dof.first[dof.variable_of_joint(static_cast<int>(j))], rates_[j].size()) = rates_[j];
+  velocity.array() /= scales.array();
+  for (const Coordinate& coordinate : model_.coordinates)
+    if (is_given(coordinate))
+      adjustable.col(dof.first[dof.variable_of_joint(coordinate.joint)] + coordinate.component).setZero();
+  const Eigen::VectorXd opening = jacobian * velocity;
+  const double speed = velocity.lpNorm<Eigen::Infinity>();
+  if (opening.lpNorm<Eigen::Infinity>() <= kAgrees * speed) return;
+  const Eigen::VectorXd change = adjustable.completeOrthogonalDecomposition().solve(-opening);
+  if ((adjustable * change + opening).lpNorm<Eigen::Infinity>() > kAgrees * speed)
+    throw ModelError(scene_.file + ": the initial velocities of the joints do not agree with the loop that '" +
+                     model_.closures.front().name + "' closes: give fewer of them");
+  velocity = scales.cwiseProduct(velocity + change);
+  for (int i = 0; i < dof.node_count; ++i)
+    if (dof.slave_joint[i] < 0) model_.initial_velocity[i] = velocity.segment<6>(dof.first[i]);
+  for (std::size_t j = 0; j < rates_.size(); ++j)
+    rates_[j] = velocity.segment(dof.first[dof.variable_of_joint(static_cast<int>(j))], rates_[j].size()).eval();
+  for (const DegreesOfFreedom::Mimic& mimic : dof.mimics) {
+    const Coordinate& following = model_.coordinates[mimic.coordinate];
+    rates_[following.joint][0] = mimic_ratio(following) * rates_[model_.coordinates[following.mimicked].joint][0];
+  }
+  for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) follow(j, ReleasedVector(rates_[j]));
 }
 
 void InitialVelocity::close_loops() {
@@ -123,9 +169,11 @@ double InitialVelocity::given_rate(const Coordinate& coordinate, bool& is_given)
 
 bool InitialVelocity::given_rates(const JointRecord& record, ReleasedVector& rates) const {
   bool is_given = false;
-  std::size_t index = model_.first_coordinate[record.first_map];
   rates.resize(static_cast<Eigen::Index>(scene::coordinate_suffixes(*record.joint).size()));
-  for (double& rate : rates) rate = given_rate(model_.coordinates[index++], is_given);
+  Eigen::Index used = 0;
+  for (int j = record.first_map; j < record.first_map + record.map_count; ++j)
+    for (int c = 0; c < released_count(model_.joints[j].kind); ++c)
+      rates[used++] = given_rate(model_.coordinates[model_.first_coordinate[j] + c], is_given);
   return is_given;
 }
 

@@ -27,6 +27,9 @@ class InitialVelocity {
   void set_loop(const JointRecord& record);
   /// Lets every slave follow once more, those of closing joints included.
   void close_loops();
+  /// Gives rates about which the scene is silent the least values with which loops of rigid links stay closed.
+  void satisfy_closures();
+  bool is_given(const Coordinate& coordinate) const;
   /// Velocity of a joint's slave from its master's.
   void follow(int joint, const ReleasedVector& rates);
   double mimic_ratio(const Coordinate& coordinate) const;

@@ -1,4 +1,4 @@
-// Joints that close loops: the slave is a beam's node that was free before. (joints.md 3)
+// Joints that close loops: where it can be, the slave is a beam's node that was free before. (joints.md 3)
 #include <algorithm>
 #include <cmath>
 
@@ -100,10 +100,10 @@ void MechanismBuilder::add_loop(const scene::JointDescription& joint) {
                      std::to_string(gap) + " m apart");
 
   const bool onto_child = can_become_slave(child.node, parent.node);
-  if (!onto_child && !can_become_slave(parent.node, child.node))
-    throw ModelError(where +
-                     "one of the joined places must be a free end of a flexible link, or fixed to one: cut the loop "
-                     "there, or give one of its links a <beam>");
+  if (!onto_child && !can_become_slave(parent.node, child.node)) {
+    add_closure(joint, parent, child, frame);
+    return;
+  }
   std::vector<std::string> names;
   for (const std::string& suffix : scene::coordinate_suffixes(joint)) names.push_back(joint.name + suffix);
   for (const std::string& name : names)
@@ -135,6 +135,13 @@ void MechanismBuilder::chain_loop(const scene::JointDescription& joint, const st
     const std::size_t count = released_count(map.kind);
     add_coordinates(joint, {names.begin() + name, names.begin() + name + count});
     name += count;
+  }
+  if (!names.empty() && names.front() != joint.name + scene::coordinate_suffixes(joint).front()) {
+    // The chain is turned round; coordinates are numbered as their names are.
+    const std::size_t first = model.coordinates.size() - names.size();
+    std::reverse(model.coordinates.begin() + static_cast<std::ptrdiff_t>(first), model.coordinates.end());
+    for (std::size_t i = first; i < model.coordinates.size(); ++i)
+      model.first_coordinate[model.coordinates[i].joint] = static_cast<int>(i);
   }
   // The slave as it stands at the start: zero of the coordinates is the initial configuration.
   const Pose offset = pose_of(node).inverse() * pose_of(slave);
@@ -174,6 +181,8 @@ void MechanismBuilder::sort_joints() {
   permute(model.joints);
   permute(model.initial_released);
   permute(model.first_coordinate);
+  for (JointMap& joint : model.joints)
+    if (joint.leaving >= 0) joint.leaving = place[joint.leaving];
   for (Coordinate& coordinate : model.coordinates) coordinate.joint = place[coordinate.joint];
   // A chain stays together: nothing but its next joint hangs on a node inside it.
   for (JointRecord& record : records_)

@@ -105,6 +105,7 @@ void MechanismBuilder::build() {
   connect_mimics();
   close_loops();
   connect_coordinates();
+  choose_constraints();
   InitialVelocity(scene_, *this).set();
 }
 

@@ -92,6 +92,10 @@ class MechanismBuilder {
   /// From `master` through `maps`, the first at `frame` (world), to the existing node `slave`.
   void chain_loop(const scene::JointDescription& joint, const std::vector<JointMap>& maps,
                   const std::vector<std::string>& names, int master, int slave, const Pose& frame);
+  /// Where no node is free: constraints with multipliers, at `frame` (world).
+  void add_closure(const scene::JointDescription& joint, Attachment parent, Attachment child, const Pose& frame);
+  /// Of the closures' constraints those that are independent, by pivoting at the start; the others are implied.
+  void choose_constraints();
   void sort_joints();
   /// Per node: the joint of which it is the slave, or -1.
   std::vector<int> slave_joints() const;

@@ -285,7 +285,7 @@ JointDescription read_loop_joint(const XmlElement& unnamed) {
     if (const std::optional<XmlElement> child = joint.child(tag))
       child->error("a <loop_joint> cannot have a <" + std::string(tag) + ">");
   joint.expect_only({"name", "type"}, {"origin", "parent", "child", "axis", "axis2", "limit", "dynamics", "mimic",
-                                       "release", "couple", "slide", "child_origin"});
+                                       "release", "couple", "slide", "friction", "child_origin"});
   JointDescription description;
   if (joint.findings().error_count() == errors) description = read_joint(unnamed);
   description.name = unnamed.text("name").value_or("");

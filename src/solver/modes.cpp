@@ -214,6 +214,26 @@ std::vector<Vector6> expand(const Model& model, const DegreesOfFreedom& dof, con
   return motion;
 }
 
+/// Sets the multipliers of loops to what balances the residual: their forces stiffen the mechanism as loads do.
+void find_multipliers(const Model& model, StepSystem& system) {
+  const DegreesOfFreedom& dof = system.degrees_of_freedom();
+  const SparseAssembler& matrix = system.assembler();
+  std::vector<int> multipliers;
+  for (std::size_t k = 0; k < model.closures.size(); ++k)
+    for (std::size_t i = 0; i < model.closures[k].constraints.size(); ++i)
+      multipliers.push_back(dof.equation[dof.first[dof.variable_of_closure(static_cast<int>(k))] + i]);
+  if (multipliers.empty()) return;
+  Eigen::MatrixXd forces = Eigen::MatrixXd::Zero(dof.unknowns, static_cast<Eigen::Index>(multipliers.size()));
+  for (std::size_t m = 0; m < multipliers.size(); ++m)
+    for (int p = matrix.column_starts()[multipliers[m]]; p < matrix.column_starts()[multipliers[m] + 1]; ++p)
+      forces(matrix.row_indices()[p], static_cast<Eigen::Index>(m)) = matrix.values()[p];
+  const Eigen::VectorXd balancing = -forces.colPivHouseholderQr().solve(system.residual());
+  Eigen::VectorXd update = Eigen::VectorXd::Zero(dof.unknowns);
+  for (std::size_t m = 0; m < multipliers.size(); ++m) update[multipliers[m]] = balancing[static_cast<Eigen::Index>(m)];
+  system.update(update);
+  if (!system.evaluate(true)) throw std::runtime_error("the stiffness is not finite");
+}
+
 }  // namespace
 
 std::vector<Mode> natural_modes(const Model& model, const State& state, int count) {
@@ -221,6 +241,7 @@ std::vector<Mode> natural_modes(const Model& model, const State& state, int coun
   if (count <= 0 || system.assembler().unknowns() == 0) return {};
   system.begin_static(state, 1.0);
   if (!system.evaluate(true)) throw std::runtime_error("the stiffness is not finite");
+  find_multipliers(model, system);
   const DegreesOfFreedom& dof = system.degrees_of_freedom();
   const JointMaps maps = joint_maps(model, dof, state);
   SparseAssembler mass(model, dof);
@@ -229,7 +250,11 @@ std::vector<Mode> natural_modes(const Model& model, const State& state, int coun
   // The shift makes free mechanisms solvable. A first pass finds the scale of the wanted eigenvalues, a second one with
   // a shift far below them loses no digits.
   // More modes than asked for, so that the scale is that of elastic ones where there are rigid motions.
-  const int computed = std::min(count + kExtraModes, dof.unknowns);
+  // Every multiplier of a loop takes two: its own, which has no mass, and the motion that it holds.
+  int modes_of_motion = dof.unknowns;
+  for (const LoopClosure& closure : model.closures) modes_of_motion -= 2 * static_cast<int>(closure.constraints.size());
+  const int computed = std::min(count + kExtraModes, modes_of_motion);
+  if (computed <= 0) return {};
   const double stiffness_trace = trace(system.assembler());
   double shift = std::max(1e-8 * stiffness_trace / trace(mass), 1e-12);
   Eigenpairs pairs = lowest(system.assembler(), mass, shift, computed);

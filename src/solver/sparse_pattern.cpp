@@ -25,6 +25,17 @@ class SparseAssembler::PatternBuilder {
     return entry->second;
   }
 
+  void add_closure(int k) {
+    const int a = a_.model_.closures[k].parent, b = a_.model_.closures[k].child, u = a_.dof_.variable_of_closure(k);
+    ClosureBlocks blocks;
+    blocks.child_child = block(b, b), blocks.child_multiplier = block(b, u), blocks.multiplier_child = block(u, b);
+    if (a >= 0) {
+      blocks.parent_parent = block(a, a), blocks.parent_child = block(a, b), blocks.child_parent = block(b, a);
+      blocks.parent_multiplier = block(a, u), blocks.multiplier_parent = block(u, a);
+    }
+    a_.closure_blocks_.push_back(blocks);
+  }
+
   void fold_joint(int j) {
     const JointMap& joint = a_.model_.joints[j];
     const int s = a_.dof_.variable_of_node(joint.slave), m = joint.master;
@@ -136,6 +147,7 @@ SparseAssembler::SparseAssembler(const Model& model, const DegreesOfFreedom& dof
     for (const int i : element.nodes)
       for (const int j : element.nodes) element_blocks_.push_back(pattern.block(i, j));
   });
+  for (std::size_t k = 0; k < model.closures.size(); ++k) pattern.add_closure(static_cast<int>(k));
   for (int j = static_cast<int>(model.joints.size()) - 1; j >= 0; --j) {
     if (model.joints[j].kind == JointMapKind::Slide)
       pattern.fold_slide(j);
@@ -195,6 +207,10 @@ void SparseAssembler::mark_live_blocks() {
   };
   for (const int block : element_blocks_) mark(block);
   for (const int block : diagonal_) mark(block);
+  for (const ClosureBlocks& b : closure_blocks_)
+    for (const int block : {b.parent_parent, b.parent_child, b.child_parent, b.child_child, b.parent_multiplier,
+                            b.child_multiplier, b.multiplier_parent, b.multiplier_child})
+      mark(block);
   for (int j = static_cast<int>(model_.joints.size()) - 1; j >= 0; --j) {
     if (model_.joints[j].kind == JointMapKind::Slide) {
       mark_slide(j);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "flexarm/joints/joint_kinematics.h"
+#include "flexarm/joints/loop_closure.h"
 #include "flexarm/model/model_builder.h"
 #include "support/loops.h"
 
@@ -195,6 +196,97 @@ TEST(LoopBuilder, PinionNeedsTheChildsEnd) {
   loop.child_origin.position += 0.1 * loop.direction.cross(loop.axis);
   loop.origin.position -= 0.1 * loop.direction.cross(loop.axis);
   expect_error(b.scene, "exchange <parent> and <child>");
+}
+
+// ---------------------------------------------------------------- loops of rigid links
+
+/// The crank-rocker with a rigid coupler.
+SceneBuilder rigid_crank_rocker(JointKind closing = JointKind::Continuous) {
+  SceneBuilder b = crank_rocker();
+  b.scene.links[2].beam.reset();
+  b.scene.links[2].inertial = scene::RigidInertia{1, {0.5, 0, 0.1}, Matrix3::Identity()};
+  close_loop(b, "hip", closing, "rocker", "coupler", {1, 0, 0.2}, {0, 1, 0}).location = {"s.urdf", 17};
+  return b;
+}
+
+TEST(RigidLoopBuilder, KeepsIndependentConstraints) {
+  const std::tuple<JointKind, int, int> kinds[] = {
+      {JointKind::Continuous, 2, 5}, {JointKind::Spherical, 2, 3}, {JointKind::Universal, 2, 4}};
+  for (const auto& [kind, kept, all] : kinds) {
+    SceneBuilder b = rigid_crank_rocker(kind);
+    const Model model = build_model(b.scene);
+    ASSERT_EQ(model.closures.size(), 1u);
+    EXPECT_EQ(model.closures[0].constraints.size(), static_cast<std::size_t>(kept));
+    EXPECT_EQ(model.closures[0].implied.size(), static_cast<std::size_t>(all - kept));
+    EXPECT_EQ(model.coordinates.size(), 3u) << "the closing joint has none";
+    for (const auto* list : {&model.closures[0].constraints, &model.closures[0].implied})
+      for (const ClosureConstraint& constraint : *list)
+        EXPECT_NEAR(closure_value(model.closures[0], constraint,
+                                  {model.nodes[model.closures[0].parent], model.nodes[model.closures[0].child]}),
+                    0, 1e-15);
+  }
+}
+
+TEST(RigidLoopBuilder, RatesOfTheOtherJointsFollow) {
+  SceneBuilder b = rigid_crank_rocker();
+  b.scene.initial_joints.push_back({"ground", 0, 2, {}});
+  const Model model = build_model(b.scene);
+  // Crank's end at (0, 0.4), rocker's at (1, 0.6) from (1, 0), in the plane x, z: v = w x r about +y.
+  const LoopClosure& closure = model.closures[0];
+  const Vector6 &rocker = model.initial_velocity[closure.parent], &coupler = model.initial_velocity[closure.child];
+  EXPECT_NEAR((rocker.head<3>() + Vector3(rocker.tail<3>()).cross(Vector3(0, 0, 0.6)) -
+               (coupler.head<3>() + Vector3(coupler.tail<3>()).cross(Vector3(1, 0, 0.2))))
+                  .norm(),
+              0, 1e-12);
+  // v = (0.8, 0) + w (0.2, -1) = W (0.6, 0): the coupler turns with w = 0.
+  EXPECT_NEAR(coupler[4], 0, 1e-12);
+  EXPECT_NEAR(rocker[4], 0.8 / 0.6, 1e-12);
+  b.scene.initial_joints.push_back({"foot", 0, 1, {}});
+  expect_error(b.scene, "the initial velocities of the joints do not agree with the loop that 'hip' closes");
+}
+
+TEST(RigidLoopBuilder, WhatHasNoCoordinateIsRefused) {
+  const auto expect = [](const auto& change, const std::string& message) {
+    SceneBuilder b = rigid_crank_rocker();
+    change(b.scene);
+    expect_error(b.scene, message);
+  };
+  const std::string no_coordinate =
+      "s.urdf:17: <loop_joint> 'hip': closes a loop of rigid links, where it has no "
+      "coordinate that could have damping, friction or limits";
+  expect([](auto& scene) { scene.loop_joints[0].damping = 0.1; }, no_coordinate);
+  expect([](auto& scene) { scene.loop_joints[0].friction = 0.1; }, no_coordinate);
+  expect([](auto& scene) { scene.loop_joints[0].limits = scene::JointLimits{-1, 1}; }, no_coordinate);
+  expect(
+      [](auto& scene) {
+        scene.efforts.push_back({"hip", TimeFunction(1), {"s.urdf", 20}});
+      },
+      "s.urdf:20: <effort>: joint 'hip' closes a loop of rigid links and has no coordinate there");
+  expect(
+      [](auto& scene) {
+        scene.motions.push_back({"hip", TimeFunction::parse("t"), {"s.urdf", 20}});
+      },
+      "joint 'hip' closes a loop of rigid links and has no coordinate there");
+  expect(
+      [](auto& scene) {
+        scene.initial_joints.push_back({"hip", 0, 1, {"s.urdf", 20}});
+      },
+      "joint 'hip' closes a loop of rigid links and has no coordinate there");
+  expect(
+      [](auto& scene) {
+        scene.loop_joints[0].kind = JointKind::Screw;
+        scene.loop_joints[0].ratio = 1;
+      },
+      "a joint of this kind cannot close a loop of rigid links");
+  expect([](auto& scene) { scene.loop_joints[0].origin.position.z() += 0.01; }, "0.010000 m apart");
+  expect(
+      [](auto& scene) {
+        scene.loop_joints[0].parent = "coupler";
+        scene.loop_joints[0].origin = scene.loop_joints[0].child_origin;
+      },
+      "both places belong to the same rigid body");
+  expect([](auto& scene) { scene.loop_joints[0].kind = JointKind::Fixed; },
+         "the loop joints leave the mechanism no motion");
 }
 
 TEST(LoopBuilder, OutsideOfTheScene) {

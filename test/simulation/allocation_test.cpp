@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "simulation/everything_scene.h"
+#include "support/closed_ring.h"
 
 // Interposes the allocator of the whole program, libraries included; it only counts, glibc does the work.
 namespace {
@@ -132,6 +133,21 @@ TEST_F(Allocation, NoneWhereFrictionSticks) {
       EXPECT_EQ(converged, 300) << scheme;
       EXPECT_GT(held, 0) << scheme;
     }
+}
+
+TEST_F(Allocation, NoneInLoopsOfRigidLinks) {
+  for (const char* scheme : {"em", "edmc2", "m1", "std", "newmark", "hht1", "hht2", "hht3"}) {
+    SimulationOptions options;
+    options.scheme = scheme;
+    options.step = 0.002;
+    Simulation simulation(free_ring(scene::JointKind::Universal).scene, options);
+    ASSERT_TRUE(simulation.step().converged);
+    EXPECT_EQ(allocations_in([&] {
+                for (int n = 0; n < 200; ++n) simulation.step();
+              }),
+              0)
+        << scheme;
+  }
 }
 
 // Halving takes a path of its own.

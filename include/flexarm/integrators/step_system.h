@@ -68,6 +68,9 @@ class StepSystem {
   bool is_off_line() const { return is_off_line_; }
   /// Length of the step under way [s]; 0 in statics.
   double step() const { return step_; }
+  /// Largest violation of what the closures of loops imply, over the model's length scale and in rad: not zero where a
+  /// loop was singular at the start.
+  double open_loop() const;
   const Eigen::VectorXd& residual() const { return residual_; }
   const SparseAssembler& assembler() const { return assembler_; }
   const DegreesOfFreedom& degrees_of_freedom() const { return dof_; }
@@ -109,6 +112,11 @@ class StepSystem {
   void shift_reactions();
   void joint_maps(int joint, const Vector6& g, FoldMaps& maps, bool with_tangent) const;
   void slide_maps(int joint, const Vector6& g, SlideMaps& maps, bool with_tangent) const;
+  ClosurePoses closure_poses(const LoopClosure& closure, const std::vector<NodePose>& nodes) const;
+  void add_closures(bool with_tangent);
+  void extrapolate_multipliers();
+  void update_multipliers(const Eigen::VectorXd& increment);
+  void accept_multipliers(State& state) const;
   void fold_joints(bool with_tangent);
   void add_joint_efforts(int joint, bool with_tangent);
   CoordinateStep coordinate_step(std::size_t index, double increment) const;
@@ -163,6 +171,7 @@ class StepSystem {
   bool static_ = false;
   std::vector<NodePose> begin_, end_;
   std::vector<Released> released_;
+  std::vector<ReleasedVector> multipliers_;  // per closure
   std::vector<Vector3> increments_;  // per node, tangent-scaled
   std::vector<Matrix3> inverse_tangents_;
   RotationReference reference_;

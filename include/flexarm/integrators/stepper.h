@@ -11,7 +11,16 @@ namespace flexarm {
 
 /// Outcome of a step; a value, never an exception.
 struct StepResult {
-  enum class Reason { None, NoConvergence, SingularTangent, NotFinite, RotationTooLarge, EnergyDefect, OffTheLine };
+  enum class Reason {
+    None,
+    NoConvergence,
+    SingularTangent,
+    NotFinite,
+    RotationTooLarge,
+    EnergyDefect,
+    OffTheLine,
+    OpenLoop
+  };
   bool converged = false;
   int iterations = 0;  ///< Newton iterations of all sub-steps
   int halvings = 0;    ///< times that a sub-step had to be halved

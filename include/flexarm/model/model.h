@@ -9,6 +9,7 @@
 #include "flexarm/math/time_function.h"
 #include "flexarm/model/beam_element.h"
 #include "flexarm/model/joint.h"
+#include "flexarm/model/loop_closure.h"
 #include "flexarm/model/slide_line.h"
 #include "flexarm/scene/scene_description.h"
 
@@ -110,6 +111,7 @@ struct Model {
   int stiffness_point_count = 0, mass_point_count = 0;
   std::vector<JointMap> joints;  ///< root to leaf
   std::vector<SlideLine> slide_lines;
+  std::vector<LoopClosure> closures;  ///< loops that no joint closes by its slave
   std::vector<Released> initial_released;  ///< per joint
   std::vector<Vector6> initial_velocity;   ///< per node {v, w}, spatial
   std::vector<Coordinate> coordinates;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "flexarm/joints/joint_map.h"
+#include "flexarm/joints/loop_closure.h"
 #include "flexarm/joints/slide_map.h"
 #include "flexarm/model/degrees_of_freedom.h"
 
@@ -37,6 +38,9 @@ class SparseAssembler {
   double* diagonal_block(int variable) { return values_.data() + blocks_[diagonal_[variable]].offset; }
   /// Block (node i, node j) of an element, 6 x 6; `index` = element.first_block + i * Nodes + j.
   double* element_block(int index) { return values_.data() + blocks_[element_blocks_[index]].offset; }
+
+  /// Adds constraint `index` of a closure with its multiplier, before joints are folded.
+  void add_closure(int closure, int index, double multiplier, const ClosureMaps& maps, bool with_tangent);
 
   // ---- reduction
   /// Total residual of a slave node, complete once its own slaves have been folded.
@@ -87,6 +91,11 @@ class SparseAssembler {
     int first_column_fold = 0, last_column_fold = 0, first_row_fold = 0, last_row_fold = 0;
     int released_released = -1, released_masters = -1, masters_released = -1, masters_masters = -1;
   };
+  /// Blocks of a closure; -1 where the parent is the world.
+  struct ClosureBlocks {
+    int parent_parent = -1, parent_child = -1, child_parent = -1, child_child = -1;
+    int parent_multiplier = -1, child_multiplier = -1, multiplier_parent = -1, multiplier_child = -1;
+  };
   struct ScaledAddition {
     int source, target, count;
   };
@@ -124,6 +133,7 @@ class SparseAssembler {
   std::vector<SlideOperation> slide_columns_, slide_rows_;
   std::vector<SlideFold> slide_folds_;  // per joint
   std::vector<int> slide_blocks_;
+  std::vector<ClosureBlocks> closure_blocks_;  // per closure
   std::vector<ScaledAddition> mimic_additions_;
   std::vector<MimicFold> mimic_folds_;
   std::vector<std::vector<int>> column_blocks_;  // per variable: blocks of the reduced matrix, by rows

@@ -1,0 +1,19 @@
+#pragma once
+/// Loops of rigid links: their constraints as a matrix (internal to model/).
+
+#include "flexarm/model/degrees_of_freedom.h"
+#include "flexarm/model/model.h"
+
+namespace flexarm {
+
+/// Derivatives of the values of all closures' constraints, kept ones then implied ones, closure by closure, with
+/// respect to the scalars of `dof` at the model's start; columns of slaves and of following coordinates are folded into
+/// their masters' and zero.
+Eigen::MatrixXd closure_jacobian(const Model& model, const DegreesOfFreedom& dof);
+
+/// Per scalar of the nodes and joints: the model's length scale where it is a displacement, 1 where it is a rotation.
+Eigen::VectorXd scalar_scales(const Model& model, const DegreesOfFreedom& dof);
+/// Per row of closure_jacobian(): the length scale of a gap, 1 of a direction.
+Eigen::VectorXd constraint_scales(const Model& model);
+
+}  // namespace flexarm

@@ -1,0 +1,61 @@
+// Whole steps with loops that multipliers close.
+#include "integrators/consistent_tangent.h"
+#include "integrators/mechanism.h"
+#include "support/closed_ring.h"
+#include "support/scheme_variants.h"
+
+namespace flexarm {
+namespace {
+
+using namespace test;
+using scene::JointKind;
+
+/// A ring of rigid bodies with a beam fixed to one of them.
+Model ring_with_beam(JointKind kind) {
+  SceneBuilder builder = free_ring(kind);
+  builder.beam("flag", {Vector3(0.5, 0.1, 0)}, test::section(40, 20, 6, 8, 1.4, 0.2, 0.1), 1, 2);
+  builder.joint("flag", JointKind::Spherical, "left_end", "flag", Vector3(0.1, 0, 0));
+  return build_model(builder.scene);
+}
+
+class ClosedStep : public ::testing::TestWithParam<std::tuple<JointKind, const char*>> {};
+
+TEST_P(ClosedStep, TangentOfAStep) {
+  const auto [kind, name] = GetParam();
+  const Model model = ring_with_beam(kind);
+  ASSERT_FALSE(model.closures.at(0).constraints.empty());
+  RandomSource random(5);
+  StepSystem system(model, *find_scheme(name));
+  State state = random_state(model, random, 0.15);
+  system.initialise(state);
+  system.begin(state, 0.2, StepSystem::Guess::Extrapolated);
+  system.update(random_update(system.assembler().unknowns(), random, 0.1));
+  Eigen::VectorXd multipliers = Eigen::VectorXd::Zero(system.assembler().unknowns());
+  const DegreesOfFreedom& dof = system.degrees_of_freedom();
+  for (std::size_t i = 0; i < model.closures[0].constraints.size(); ++i)
+    multipliers[dof.equation[dof.first[dof.variable_of_closure(0)] + i]] = 20 * random.number();
+  system.update(multipliers);
+  expect_consistent_tangent(system, 0.25);
+}
+INSTANTIATE_TEST_SUITE_P(
+    KindsAndSchemes, ClosedStep,
+    ::testing::Combine(::testing::Values(JointKind::Fixed, JointKind::Continuous, JointKind::Prismatic,
+                                         JointKind::Spherical, JointKind::Universal, JointKind::Cylindrical,
+                                         JointKind::Planar),
+                       ::testing::Values("em", "edmc2", "m1", "std", "newmark", "hht1", "hht2", "hht3")));
+
+// A closure's numbers are in every scheme's convergence test but the multipliers.
+TEST(ClosedStep, MultipliersDoNotCountInNorms) {
+  const Model model = ring_with_beam(JointKind::Fixed);
+  StepSystem system(model, *find_scheme("em"));
+  const DegreesOfFreedom& dof = system.degrees_of_freedom();
+  const int first = dof.equation[dof.first[dof.variable_of_closure(0)]];
+  EXPECT_EQ(first, dof.unknowns - 6);
+  Eigen::VectorXd increment = Eigen::VectorXd::Zero(dof.unknowns);
+  increment.tail<6>().setConstant(1e6);
+  EXPECT_EQ(system.scaled_norm(increment), 0);
+  EXPECT_EQ(system.largest_rotation(increment), 0);
+}
+
+}  // namespace
+}  // namespace flexarm
