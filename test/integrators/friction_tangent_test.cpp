@@ -10,8 +10,9 @@ namespace {
 
 using namespace test;
 
-/// Over longer updates a slider comes to the border of its element, where the line's tangent has a kink.
-constexpr double kShort = 0.1;
+/// Over longer updates the magnitude of a force that nearly vanishes bends, and a slider comes to the border of its
+/// element, where the line's tangent has a kink.
+constexpr double kShort = 0.05;
 
 class FrictionTangent : public ::testing::TestWithParam<SchemeVariant> {
  protected:
