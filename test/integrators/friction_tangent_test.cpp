@@ -12,7 +12,7 @@ using namespace test;
 
 /// Over longer updates the magnitude of a force that nearly vanishes bends, and a slider comes to the border of its
 /// element, where the line's tangent has a kink.
-constexpr double kShort = 0.05;
+constexpr double kShort = 0.03;
 
 class FrictionTangent : public ::testing::TestWithParam<SchemeVariant> {
  protected:
