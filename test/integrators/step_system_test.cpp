@@ -6,7 +6,6 @@
 #include "flexarm/integrators/stepper.h"
 #include "flexarm/joints/joint_forces.h"
 #include "integrators/mechanism.h"
-#include "integrators/tangent_check.h"
 #include "support/scheme_variants.h"
 
 namespace flexarm {
