@@ -123,6 +123,18 @@ class RowFolder {
   std::vector<FoldMaps> maps_;
 };
 
+/// Pivoting takes independent constraints first: the columns of the transpose.
+Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factorised(const Eigen::MatrixXd& jacobian) {
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
+  qr.setThreshold(kIndependent);
+  qr.compute(jacobian.transpose());
+  return qr;
+}
+
+Eigen::Index rank_of(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr) {
+  return qr.maxPivot() > kIndependent ? qr.rank() : 0;
+}
+
 template <class Visit>
 void for_each_constraint(const Model& model, const Visit& visit) {
   for (const LoopClosure& closure : model.closures)
@@ -204,16 +216,21 @@ void MechanismBuilder::choose_constraints() {
     else
       ++unknowns;
   }
-  // Constraints are the columns of the transpose: pivoting takes independent ones first.
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
-  qr.setThreshold(kIndependent);
-  qr.compute(jacobian.transpose());
-  const Eigen::Index rank = qr.maxPivot() > kIndependent ? qr.rank() : 0;
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr = factorised(jacobian);
+  const Eigen::Index rank = rank_of(qr);
   bool is_driven = false;
   for (const Coordinate& coordinate : model.coordinates) is_driven = is_driven || coordinate.motion >= 0;
   if (rank == unknowns && !is_driven)
     throw ModelError(scene_.file + ": the loop joints leave the mechanism no motion ('" + model.closures.front().name +
                      "' and others): nothing is left to compute");
+  Eigen::MatrixXd without_sticking = jacobian;
+  for (const Coordinate& coordinate : model.coordinates)
+    if (coordinate.sticks)
+      without_sticking.col(dof.first[dof.variable_of_joint(coordinate.joint)] + coordinate.component).setZero();
+  if (rank_of(factorised(without_sticking)) < rank)
+    throw ModelError(scene_.file + ": more joints of the rigid loop that '" + model.closures.front().name +
+                     "' closes may stick (<friction law=\"coulomb\">) than it has freedoms, and the force that holds "
+                     "each would be undetermined: give some of them the law 'smooth'");
   std::vector<bool> is_kept(static_cast<std::size_t>(jacobian.rows()), false);
   for (Eigen::Index k = 0; k < rank; ++k) is_kept[qr.colsPermutation().indices()[k]] = true;
   std::size_t row = 0;

@@ -285,6 +285,16 @@ TEST(RigidLoopBuilder, WhatHasNoCoordinateIsRefused) {
         scene.loop_joints[0].origin = scene.loop_joints[0].child_origin;
       },
       "both places belong to the same rigid body");
+  const auto stick = [](auto& scene, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      scene.joints[i].friction = 1;
+      scene.joints[i].friction_law.law = scene::FrictionDescription::Law::Coulomb;
+    }
+  };
+  expect([&](auto& scene) { stick(scene, 2); }, "more joints of the rigid loop that 'hip' closes may stick");
+  SceneBuilder one = rigid_crank_rocker();
+  stick(one.scene, 1);
+  EXPECT_NO_THROW(build_model(one.scene));
   expect([](auto& scene) { scene.loop_joints[0].kind = JointKind::Fixed; },
          "the loop joints leave the mechanism no motion");
 }

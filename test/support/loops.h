@@ -7,8 +7,8 @@
 
 namespace flexarm::test {
 
-/// Lets a loop joint hold `point` of the child (undeformed link frame) where it is at the start. `axis`: in the parent's
-/// frame.
+/// Lets a loop joint hold `point` of the child (undeformed link frame) where it is at the start. `axis`: in the
+/// parent's frame.
 inline scene::JointDescription& close_loop(SceneBuilder& builder, const std::string& name, scene::JointKind kind,
                                            const std::string& parent, const std::string& child,
                                            const Vector3& point = Vector3::Zero(),
