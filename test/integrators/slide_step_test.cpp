@@ -1,6 +1,6 @@
 // Whole steps of sliders by each of their algorithms, on lines of elements and smooth ones, within elements and across.
 #include "flexarm/integrators/stepper.h"
-#include "integrators/consistent_tangent.h"
+#include "integrators/tangent_check.h"
 #include "integrators/mechanism.h"
 
 namespace flexarm {
