@@ -1,5 +1,5 @@
 // The residual and the reduced tangent of a whole step, for a mechanism with everything in it.
-#include "integrators/tangent_check.h"
+#include "integrators/consistent_tangent.h"
 
 #include <gtest/gtest.h>
 
