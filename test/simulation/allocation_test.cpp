@@ -150,6 +150,30 @@ TEST_F(Allocation, NoneInLoopsOfRigidLinks) {
   }
 }
 
+// A slider's pattern is analysed anew where it enters an element, at most once per border; elsewhere nothing allocates.
+TEST_F(Allocation, OfSlidersOnlyAtBordersOfElements) {
+  SceneBuilder b;
+  b.beam("line", {{4, 0, 0}}, section(2e3, 1e3, 80, 100, 1, 0.2, 0.1), 8, 2);
+  b.body("bead", 1, Vector3::Zero(), 0.1 * Matrix3::Identity());
+  b.joint("clamp", scene::JointKind::Fixed, "world", "line");
+  b.joint("run", scene::JointKind::Slide, "line", "bead").slide =
+      scene::SlideDescription{0.2, scene::JointKind::Fixed};
+  b.scene.initial_joints.push_back({"run", 0.2, 2.0, {}});
+  b.scene.integrator.step = 0.005;
+  Simulation simulation(b.scene);
+  ASSERT_TRUE(simulation.step().converged);
+  const SlideLine& line = simulation.model().slide_lines[0];
+  int borders = 0, allocating_steps = 0;
+  while (simulation.position(0) < 3.6 && simulation.time() < 3) {
+    const int before = line.piece_at(simulation.position(0));
+    const long allocations = allocations_in([&] { ASSERT_TRUE(simulation.step().converged); });
+    borders += std::abs(line.piece_at(simulation.position(0)) - before);
+    allocating_steps += allocations > 0;
+  }
+  EXPECT_EQ(borders, 7);
+  EXPECT_LE(allocating_steps, borders);
+}
+
 // Halving takes a path of its own.
 TEST_F(Allocation, NoneInHalvedOrFailedSteps) {
   SceneBuilder b;

@@ -40,7 +40,8 @@ struct StepSettings {
   bool reuse_factorisation = true;
 };
 
-/// Advances states of one model with one scheme. Allocates nothing after the first step.
+/// Advances states of one model with one scheme. Allocates nothing after the first step, but when a
+/// slider enters another element (see SparseAssembler).
 class Stepper {
  public:
   Stepper(const Model& model, const Scheme& scheme, const StepSettings& settings);

@@ -53,6 +53,7 @@ void slide_variational_maps(const SlideLine& line, const std::vector<NodePose>& 
 ///   Delta r_s = I^j_c Delta r_j + Delta X D^j (c r_{j,n} + (1-c) r_{j,n+1}),   D^j = Delta I^j / Delta X.
 /// c = 1/2 is SM1-NT, 1 SM1-T, 0 SM2-NT; SM-EM takes c = arm_weight and moves what the forces' arm then lacks into the
 /// moments, so that its momenta are exact, too. Rotations are split alike, and exactly, in all of them.
+/// Without `with_tangent` only the left maps are set.
 void slide_incremental_maps(const SlideTravel& travel, const Vector6& g, SlideMaps& maps, bool with_tangent = true);
 
 }  // namespace flexarm

@@ -37,7 +37,7 @@ class Simulation {
   const State& state() const;
 
   /// Advances by one step, in smaller sub-steps where Newton asks for it. On failure the state is that of the last good
-  /// sub-step. Allocates nothing after its first call.
+  /// sub-step. Allocates nothing after its first call, but when a slider enters another element of its line.
   StepResult step();
   /// Back to the scene's initial state; commands are forgotten.
   void reset();

@@ -9,8 +9,8 @@
 
 namespace flexarm {
 
-/// Solves A x = b for a sparsity pattern that seldom changes. After the first factorisation nothing allocates, unless the
-/// pattern is a new one, or the reused pivot order turns out to be inaccurate and a new one is chosen.
+/// Solves A x = b for a sparsity pattern that seldom changes. After the first factorisation nothing allocates, unless
+/// the pattern is a new one, or the reused pivot order turns out to be inaccurate and a new one is chosen.
 class LinearSolver {
  public:
   /// Pattern number 0 in compressed columns; both vectors must outlive the solver.

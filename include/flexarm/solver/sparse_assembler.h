@@ -25,7 +25,8 @@ struct MimicMap {
 ///
 /// A slider may come to couple any elements of its line, but at a time it does few. All blocks have their places for
 /// good, and the reduced matrix only those that the sliders' active nodes reach. When a slider enters other elements
-/// its pattern follows: a new number in pattern(), no allocation.
+/// its pattern follows: a new number in pattern(), no allocation here; but the solver analyses it anew, which allocates
+/// and takes the time of about three factorisations.
 class SparseAssembler {
  public:
   SparseAssembler(const Model& model, const DegreesOfFreedom& dof);
