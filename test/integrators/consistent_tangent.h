@@ -1,0 +1,47 @@
+#pragma once
+/// The tangent of a whole step against differences of its residual.
+
+#include <gtest/gtest.h>
+
+#include "elements/differences.h"
+#include "elements/random_element.h"
+#include "flexarm/integrators/step_system.h"
+
+namespace flexarm::test {
+
+inline Eigen::MatrixXd dense(const SparseAssembler& assembler) {
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(assembler.unknowns(), assembler.unknowns());
+  for (int column = 0; column < assembler.unknowns(); ++column)
+    for (int p = assembler.column_starts()[column]; p < assembler.column_starts()[column + 1]; ++p)
+      matrix(assembler.row_indices()[p], column) += assembler.values()[p];
+  return matrix;
+}
+
+/// Every column of the tangent against differences; `size`: over what update the residual changes its shape.
+inline void expect_consistent_tangent(StepSystem& system, double size) {
+  ASSERT_TRUE(system.evaluate(true));
+  const Eigen::MatrixXd tangent = dense(system.assembler());
+  const double scale = std::max(largest(tangent), largest(system.residual()));
+  for (int column = 0; column < tangent.cols(); ++column) {
+    const Eigen::VectorXd unit = Eigen::VectorXd::Unit(tangent.cols(), column);
+    const Eigen::VectorXd expected = difference(
+        [&](double h) {
+          system.update(h * unit);
+          system.evaluate(false);
+          const Eigen::VectorXd residual = system.residual();
+          system.update(-h * unit);
+          system.evaluate(false);  // all the way back: the iterative interpolation follows the path
+          return residual;
+        },
+        difference_step * size);
+    ASSERT_LE(largest(tangent.col(column) - expected), difference_tolerance / size * scale) << "unknown " << column;
+  }
+}
+
+inline Eigen::VectorXd random_update(int size, RandomSource& random, double scale) {
+  Eigen::VectorXd update(size);
+  for (int i = 0; i < size; ++i) update[i] = scale * random.number();
+  return update;
+}
+
+}  // namespace flexarm::test
