@@ -15,8 +15,6 @@ constexpr double kLargestStepRotation = 2.0;
 constexpr double kOpenLoop = 1e-4;
 /// Newton is given up when an update is this much larger than the first one.
 constexpr double kDivergence = 1e4;
-/// Contraction of the updates above which kept factors are renewed.
-constexpr double kSlowContraction = 0.03;
 /// Updates that after so many iterations still do not shrink below this contraction are halved.
 constexpr int kPatience = 5;
 constexpr double kStalled = 0.5;
@@ -67,7 +65,7 @@ Stepper::Stepper(const Model& model, const Scheme& scheme, const StepSettings& s
 void Stepper::invalidate() {
   system_.invalidate();
   factorised_step_ = 0;
-  kept_factors_contract_ = true;
+  factor_reuse_.reset();
 }
 
 bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
@@ -81,7 +79,7 @@ bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
   const auto not_evaluated = [&] { return system_.is_off_line() ? Reason::OffTheLine : Reason::NotFinite; };
   if (system_.assembler().unknowns() == 0) return system_.evaluate(false) || fail(not_evaluated());
 
-  bool factorise = !reuse || !kept_factors_contract_ || factorised_step_ != system_.step() || !system_.tangent_holds();
+  bool factorise = factor_reuse_.begin(factorised_step_ == system_.step() && system_.tangent_holds()) || !reuse;
   int since_revision = 0;  // updates
   for (int iteration = 0; iteration < settings_.max_iterations; ++iteration) {
     if (!system_.evaluate(factorise)) return fail(not_evaluated());
@@ -93,7 +91,8 @@ bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
     ++result.iterations;
     if (factorise) {
       ++result.factorisations;
-      if (!solver_.factorise(system_.assembler().values(), system_.assembler().pattern())) return fail(Reason::SingularTangent);
+      if (!solver_.factorise(system_.assembler().values(), system_.assembler().pattern()))
+        return fail(Reason::SingularTangent);
       factorised_step_ = system_.step();
     }
     update_ = -system_.residual();
@@ -106,6 +105,10 @@ bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
         since_revision == 0 ? 1.0 : norm / std::max(update_norms_.back(), std::numeric_limits<double>::min());
     update_norms_.push_back(norm);
     if (norm > kDivergence * std::max(update_norms_.front(), 1e-3)) return fail(Reason::NoConvergence);
+    const bool was_kept = !factorise;
+    factorise = factor_reuse_.renew(iteration, since_revision > 0, contraction) || !reuse;
+    // Kept factors that make updates grow lead astray; full Newton begins anew from the guess.
+    if (was_kept && since_revision > 0 && contraction > 1) return fail(Reason::NoConvergence);
     // A steep law (friction near sticking, the touch of a stop) makes full updates jump to and fro; statics has none.
     if (system_.step() != 0 && since_revision >= kPatience && contraction > kStalled) update_ *= 0.5;
     system_.update(update_);
@@ -113,7 +116,7 @@ bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
     // What remains after this update, by the rate of the last two: new factors square the error, kept ones contract it.
     const double rate = std::min(contraction, 1.0);
     // Symmetric middle functions are not in the tangent: they leave linear convergence with new factors, too.
-    const bool squares = factorise && scheme_.mid_functions == MidFunctions::Explicit;
+    const bool squares = !was_kept && scheme_.mid_functions == MidFunctions::Explicit;
     const double remains = norm * (squares ? rate * rate : rate);
     const bool converged =
         reuse ? remains <= std::max(settings_.tolerance * settings_.tolerance, kRoundOff) : norm <= settings_.tolerance;
@@ -122,11 +125,7 @@ bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
       if (!system_.revise_friction()) return true;
       since_revision = 0;
       factorise = true;
-      continue;
     }
-    const bool is_slow = since_revision > 1 && contraction > kSlowContraction;
-    if (iteration == 1) kept_factors_contract_ = !is_slow;
-    factorise = !reuse || is_slow;
   }
   return fail(Reason::NoConvergence);
 }
@@ -158,9 +157,11 @@ bool Stepper::simple_step(State& state, double step, StepResult& result) {
     StepSystem::Guess guess;
     bool reuse;
   };
-  const Attempt attempts[] = {{StepSystem::Guess::Extrapolated, settings_.reuse_factorisation},
+  const Attempt attempts[] = {{StepSystem::Guess::Extrapolated, true},
+                              {StepSystem::Guess::Extrapolated, false},
                               {StepSystem::Guess::Unchanged, false}};
   for (const Attempt& attempt : attempts) {
+    if (attempt.reuse && !settings_.reuse_factorisation) continue;
     system_.begin(state, step, attempt.guess);
     if (!iterate(Updates::Limited, attempt.reuse, result)) continue;
     if (system_.largest_node_rotation() > kLargestStepRotation) {

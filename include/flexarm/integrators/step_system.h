@@ -172,7 +172,7 @@ class StepSystem {
   std::vector<NodePose> begin_, end_;
   std::vector<Released> released_;
   std::vector<ReleasedVector> multipliers_;  // per closure
-  std::vector<Vector3> increments_;  // per node, tangent-scaled
+  std::vector<Vector3> increments_;          // per node, tangent-scaled
   std::vector<Matrix3> inverse_tangents_;
   RotationReference reference_;
   std::vector<PointKinematics> begin_points_, end_points_;

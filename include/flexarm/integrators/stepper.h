@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "flexarm/integrators/factor_reuse.h"
 #include "flexarm/integrators/step_system.h"
 #include "flexarm/integrators/velocity_scaling.h"
 #include "flexarm/solver/linear_solver.h"
@@ -80,9 +81,9 @@ class Stepper {
   LinearSolver solver_;
   Eigen::VectorXd update_;
   std::optional<VelocityScaling> scaling_;
-  State before_;                       // of a step that may have to be taken back
-  double factorised_step_ = 0;         ///< step size for which the factors hold; 0: none
-  bool kept_factors_contract_ = true;  ///< in the second iteration of the last solve
+  State before_;                // of a step that may have to be taken back
+  double factorised_step_ = 0;  ///< step size for which the factors hold; 0: none
+  FactorReuse factor_reuse_;
   std::vector<double> update_norms_;
 };
 
