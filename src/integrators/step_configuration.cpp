@@ -79,6 +79,7 @@ void StepSystem::compute_begin_rates() {
 
 void StepSystem::begin(const State& state, double step, Guess guess) {
   static_ = false;
+  updates_ = 0;
   step_ = step;
   load_factor_ = 1;
   load_begin_configuration(state);

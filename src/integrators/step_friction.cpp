@@ -19,6 +19,9 @@
 namespace flexarm {
 namespace {
 
+/// Newton updates of a step in which smooth friction may stop at rate zero.
+constexpr int kMostStoppedUpdates = 6;
+
 /// Increments over a step below which a coordinate is taken to be at rest, relative to the model's length or to 1 rad.
 constexpr double kAtRest = 1e-12;
 /// Part of the capacity by which efforts at rest may exceed it: round-off, and where branches do not settle.
@@ -246,9 +249,10 @@ void StepSystem::remember_smooth_rates() {
 
 // Newton's method for tanh jumps to and fro between both ends, where it has no slope. An update that would reverse the
 // rate stops at rate zero instead: from there, and from any smaller rate than the solution's, the method goes on to it
-// without passing it, because tanh is concave.
+// without passing it, because tanh is concave. Only a few times: joints of a loop, or in the Newmark family, whose
+// rates ring, can hold each other there in turns.
 void StepSystem::stop_smooth_reversals() {
-  if (static_) return;
+  if (static_ || ++updates_ > kMostStoppedUpdates) return;
   for (std::size_t i = 0; i < smooth_coordinates_.size(); ++i) {
     const Coordinate& coordinate = model_.coordinates[smooth_coordinates_[i]];
     const double before = smooth_rates_[i], after = smooth_rate(smooth_coordinates_[i]);

@@ -53,8 +53,9 @@ TEST(SlideLine, WeldedBeamsAreOneLine) {
       }
       for (std::size_t k = 1; k < runs.size(); ++k) {
         const double s = runs[k]->position(*runs[k]->find_coordinate("run/s")) + 2;
-        // Newton's tolerance, growing with the steps of a motion that is not chaotic in this time.
-        EXPECT_NEAR(s, runs[0]->position(*runs[0]->find_coordinate("run/s")), 1e-8);
+        // Newton leaves 1e-15 of the size in a step, 1e-12 m/s in velocities, which the motion amplifies; a weld that
+        // was felt would show as another mesh does, by 1e-3 m.
+        EXPECT_NEAR(s, runs[0]->position(*runs[0]->find_coordinate("run/s")), 1e-7);
       }
       least = std::min(least, expected);
       most = std::max(most, expected);

@@ -49,7 +49,7 @@ const double kThesisLineLength = std::sqrt(10.0);
 
 /// Thesis 12.2, a mass on a beam that slides on another one, in the reading of thesis_examples.md.
 inline Simulation thesis_free_sliding_mass(const std::string& scheme, double step,
-                                           const scene::SlideDescription& slide = {}) {
+                                           const scene::SlideDescription& slide) {
   using scene::JointKind;
   SceneBuilder b;
   const scene::DirectSection section{100, 100 / 2.6, 100 / 2.6, 20 / 1.3, 20, 20, 0.08, 0.032, 0.016, 0.016};

@@ -156,8 +156,7 @@ TEST_F(Allocation, OfSlidersOnlyAtBordersOfElements) {
   b.beam("line", {{4, 0, 0}}, section(2e3, 1e3, 80, 100, 1, 0.2, 0.1), 8, 2);
   b.body("bead", 1, Vector3::Zero(), 0.1 * Matrix3::Identity());
   b.joint("clamp", scene::JointKind::Fixed, "world", "line");
-  b.joint("run", scene::JointKind::Slide, "line", "bead").slide =
-      scene::SlideDescription{0.2, scene::JointKind::Fixed};
+  b.joint("run", scene::JointKind::Slide, "line", "bead").slide = scene::SlideDescription{0.2, scene::JointKind::Fixed};
   b.scene.initial_joints.push_back({"run", 0.2, 2.0, {}});
   b.scene.integrator.step = 0.005;
   Simulation simulation(b.scene);

@@ -201,6 +201,7 @@ class StepSystem {
   std::vector<double> capacities_;                   // per coordinate: of its friction, from the force on the joint
   std::vector<StickSlip::Branch> tangent_branches_;  // per carrier, in the last tangent
   std::vector<int> smooth_coordinates_;              // with an unknown of their own and smooth friction
+  int updates_ = 0;                                  // of this trial, by Newton's method
   std::vector<double> smooth_rates_;                 // theirs, before an update
   int revisions_ = 0;                                // of friction in this solve
   bool points_valid_ = false;

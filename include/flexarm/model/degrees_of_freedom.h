@@ -8,7 +8,8 @@
 namespace flexarm {
 
 /// Variables are blocks of scalars: first the nodes (6 scalars: displacement, spin), then the joints (their released
-/// coordinates), then the closures of loops (their multipliers). A slave node, a prescribed and a mimicking coordinate have no equation of their own.
+/// coordinates), then the closures of loops (their multipliers). A slave node, a prescribed and a mimicking coordinate
+/// have no equation of their own.
 struct DegreesOfFreedom {
   explicit DegreesOfFreedom(const Model& model);
 

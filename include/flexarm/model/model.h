@@ -111,7 +111,7 @@ struct Model {
   int stiffness_point_count = 0, mass_point_count = 0;
   std::vector<JointMap> joints;  ///< root to leaf
   std::vector<SlideLine> slide_lines;
-  std::vector<LoopClosure> closures;  ///< loops that no joint closes by its slave
+  std::vector<LoopClosure> closures;       ///< loops that no joint closes by its slave
   std::vector<Released> initial_released;  ///< per joint
   std::vector<Vector6> initial_velocity;   ///< per node {v, w}, spatial
   std::vector<Coordinate> coordinates;
