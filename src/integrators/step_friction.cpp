@@ -20,7 +20,7 @@ namespace flexarm {
 namespace {
 
 /// Newton updates of a step in which smooth friction may stop at rate zero.
-constexpr int kMostStoppedUpdates = 6;
+constexpr int kMostStoppedUpdates = 3;
 
 /// Increments over a step below which a coordinate is taken to be at rest, relative to the model's length or to 1 rad.
 constexpr double kAtRest = 1e-12;

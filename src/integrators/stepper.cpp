@@ -18,6 +18,10 @@ constexpr double kDivergence = 1e4;
 /// Updates that after so many iterations still do not shrink below this contraction are halved.
 constexpr int kPatience = 5;
 constexpr double kStalled = 0.5;
+/// Growth of updates by kept factors with which a solve begins anew.
+constexpr double kAstray = 10;
+/// Updates by new factors that no longer shrink below this are the round-off of a stiff system.
+constexpr double kStagnation = 1e-12;
 /// Scaled updates cannot be expected to become smaller than this.
 constexpr double kRoundOff = 1e-15;
 /// Suzuki's composition of order four: parts of a step, the middle one runs backwards.
@@ -107,8 +111,8 @@ bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
     if (norm > kDivergence * std::max(update_norms_.front(), 1e-3)) return fail(Reason::NoConvergence);
     const bool was_kept = !factorise;
     factorise = factor_reuse_.renew(iteration, since_revision > 0, contraction) || !reuse;
-    // Kept factors that make updates grow lead astray; full Newton begins anew from the guess.
-    if (was_kept && since_revision > 0 && contraction > 1) return fail(Reason::NoConvergence);
+    // Kept factors that make updates grow so lead astray; full Newton begins anew from the guess.
+    if (was_kept && since_revision > 0 && contraction > kAstray) return fail(Reason::NoConvergence);
     // A steep law (friction near sticking, the touch of a stop) makes full updates jump to and fro; statics has none.
     if (system_.step() != 0 && since_revision >= kPatience && contraction > kStalled) update_ *= 0.5;
     system_.update(update_);
@@ -118,8 +122,13 @@ bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
     // Symmetric middle functions are not in the tangent: they leave linear convergence with new factors, too.
     const bool squares = !was_kept && scheme_.mid_functions == MidFunctions::Explicit;
     const double remains = norm * (squares ? rate * rate : rate);
-    const bool converged =
-        reuse ? remains <= std::max(settings_.tolerance * settings_.tolerance, kRoundOff) : norm <= settings_.tolerance;
+    // Where factors may be kept, convergence is to round-off, also when a solve has begun anew without them.
+    const bool is_severe =
+        reuse || (settings_.reuse_factorisation && system_.step() != 0 && iteration + 1 < settings_.max_iterations);
+    const bool stagnates = !was_kept && norm <= kStagnation && contraction > kStalled && since_revision > 1;
+    const bool converged = is_severe
+                               ? stagnates || remains <= std::max(settings_.tolerance * settings_.tolerance, kRoundOff)
+                               : norm <= settings_.tolerance;
     if (converged) {
       if (!system_.evaluate(false)) return fail(not_evaluated());
       if (!system_.revise_friction()) return true;
