@@ -24,6 +24,14 @@ std::vector<double> joined(std::vector<double> a, const std::vector<double>& b) 
   return a;
 }
 
+/// Columns for the travel and for the places of the scene's probes, called so.
+void observe_travel_and_probes(ThesisExample& example, const std::vector<std::string>& names) {
+  example.observables = {"travel"};
+  for (const std::string& name : names)
+    for (const char* axis : {"_x", "_y", "_z"}) example.observables.push_back(name + axis);
+  example.observe = [travel = example.travel](const Simulation& s) { return joined({travel(s)}, probes(s)); };
+}
+
 /// Contact algorithms with the integrators that they belong to.
 struct Algorithm {
   const char *label, *scheme, *contact;
@@ -62,8 +70,7 @@ ThesisExample descending_arm() {
   out.travel = [is_slide](const Simulation& s) {
     return is_slide(s) ? position(s, "screw/s") : 1 + 0.02 * position(s, "screw");
   };
-  out.observables = {"travel", "slave_x", "slave_y", "slave_z", "tip_x", "tip_y", "tip_z"};
-  out.observe = [travel = out.travel](const Simulation& s) { return joined({travel(s)}, probes(s)); };
+  observe_travel_and_probes(out, {"slave", "tip"});
   out.notes = {
       "EI = 100 N m^2 is taken where the scan prints I = 1e-3 m^4 (EI = 10): only with it are the thesis's times met.",
       "Times of the thesis are the last computed ones, multiples of the step; ours are crossings between two steps.",
@@ -131,8 +138,7 @@ ThesisExample free_sliding_mass() {
   out.conserves_angular_momentum = true;
   out.cost = 0.05;
   out.travel = [](const Simulation& s) { return position(s, "slide/s"); };
-  out.observables = {"travel", "mass_x", "mass_y", "mass_z", "slave_x", "slave_y", "slave_z"};
-  out.observe = [travel = out.travel](const Simulation& s) { return joined({travel(s)}, probes(s)); };
+  observe_travel_and_probes(out, {"mass", "slave"});
   out.notes = {
       "Supports and the initial velocity of the beams are not in the text. The reading taken (no supports; all of BM "
       "but "
@@ -172,8 +178,7 @@ ThesisExample aerial_runway() {
   out.conserves_angular_momentum = false;
   out.cost = 0.05;
   out.travel = [](const Simulation& s) { return position(s, "slide/s"); };
-  out.observables = {"travel", "mass_x", "mass_y", "mass_z", "slave_x", "slave_y", "slave_z"};
-  out.observe = [travel = out.travel](const Simulation& s) { return joined({travel(s)}, probes(s)); };
+  observe_travel_and_probes(out, {"mass", "slave"});
   out.notes = {
       "The mass (1 kg) is not in the text; EI and rotary inertia are read as the fractions 1/12 and 2/3 that the scan "
       "has lost.",
@@ -306,8 +311,7 @@ ThesisExample back_and_forth() {
   out.conserves_angular_momentum = false;
   out.cost = 0.5;
   out.travel = [](const Simulation& s) { return position(s, "slide"); };
-  out.observables = {"travel", "tip_x", "tip_y", "tip_z", "line_x", "line_y", "line_z"};
-  out.observe = [travel = out.travel](const Simulation& s) { return joined({travel(s)}, probes(s)); };
+  observe_travel_and_probes(out, {"tip", "line"});
   out.notes = {"An arm that is fixed to the section is driven along a soft clamped line under gravity."};
   for (const double step : {0.01, 0.04})
     for (const Algorithm& algorithm : {kTrapezoidal, kAlg1, kAlg2, kAlg3, kAlg4, kSme, kSmEm, kSmooth})

@@ -1,42 +1,15 @@
 // The residual and the reduced tangent of a whole step, for a mechanism with everything in it.
-#include "integrators/consistent_tangent.h"
-
-#include <gtest/gtest.h>
-
 #include "flexarm/integrators/stepper.h"
 #include "flexarm/joints/joint_forces.h"
-#include "integrators/mechanism.h"
-#include "support/scheme_variants.h"
+#include "integrators/scheme_step.h"
 
 namespace flexarm {
 namespace {
 
 using namespace test;
 
-class StepSystemOf : public ::testing::TestWithParam<SchemeVariant> {
- protected:
-  const Scheme& scheme() const { return GetParam().scheme; }
-  /// The state with what the scheme keeps in it, random where it may be.
-  State prepared(State state, StepSystem& system, RandomSource& random) {
-    system.initialise(state);
-    for (StrainMemory& memory : state.strain_memory) memory = {0.1 * random.vector6(), random.vector6()};
-    for (Vector6& force : state.forces) force = random.vector6();
-    if (scheme().hht != HhtForm::None) state.reactions.resize(state.nodes.size());
-    for (Vector6& reaction : state.reactions) reaction = random.vector6();
-    for (Vector3& rate : state.momentum_rates) rate = random.vector();
-    for (Vector3& rotation : state.total_rotations) rotation = 0.1 * random.vector();
-    return state;
-  }
-};
-
-/// A step that is symmetric in time leaves the variation of its test functions out of the tangent.
-class ConsistentTangent : public StepSystemOf {};
-std::vector<SchemeVariant> with_consistent_tangent() {
-  std::vector<SchemeVariant> variants;
-  for (const SchemeVariant& variant : scheme_variants(0.2))
-    if (variant.scheme.mid_functions == MidFunctions::Explicit) variants.push_back(variant);
-  return variants;
-}
+class StepSystemOf : public SchemeStep {};
+class ConsistentTangent : public SchemeStep {};
 
 /// The mechanism without friction, which turns over increments too small for the differences.
 Model smooth_model() {
@@ -56,26 +29,8 @@ TEST_P(ConsistentTangent, TangentOfAStep) {
   expect_consistent_tangent(system, 0.15);
 }
 
-// Slow enough that smooth friction is not saturated: its slope counts. The increment over which it changes is
-// step * speed = 0.03.
 TEST_P(ConsistentTangent, TangentOfAStepWithStickingFriction) {
-  Model model = build_model(every_joint_scene(false));
-  RandomSource random(2);
-  StepSystem system(model, scheme());
-  State state = prepared(random_state(model, random, 0.05), system, random);
-  for (NodeState& node : state.nodes) {
-    node.velocity *= 1e-3;
-    node.angular_velocity *= 1e-3;
-    node.acceleration.setZero();
-    node.angular_acceleration.setZero();
-  }
-  system.begin(state, 30.0, StepSystem::Guess::Unchanged);
-  system.update(random_update(system.assembler().unknowns(), random, 0.01));
-  // A beta correction divides by a work of the increments, here 0.01: the residual changes its shape over a part of
-  // that.
-  const bool divides =
-      scheme().correction == EnergyCorrection::AxialBeta || scheme().correction == EnergyCorrection::FullBeta;
-  expect_consistent_tangent(system, divides ? 0.001 : 0.03);
+  expect_consistent_tangent_of_a_slow_step(build_model(every_joint_scene(false)), 2);
 }
 
 TEST_P(ConsistentTangent, TangentInsideAStop) {

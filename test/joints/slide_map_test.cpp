@@ -161,29 +161,36 @@ TEST_P(SlideMapsOfLine, ContactInTheMiddleDoesTheWorkOfItsDefect) {
     }
 }
 
+Vector3 mean_arm(const Travel& step, const Vector3& begin, const Vector3& end) {
+  return (1 - step.arm_weight) * begin + step.arm_weight * end;
+}
+
+/// Forces of the rows and their moments about the origin, with mean arms, sum up to those of the slave's residual g at
+/// `arm`.
+void expect_passed_on(const Travel& step, const Vector6& g, const Vector3& arm) {
+  const Eigen::VectorXd rows = step.rows(g, true);
+  Vector3 force = -g.head<3>(), moment = -g.tail<3>() - arm.cross(g.head<3>());
+  for (std::size_t j = 0; j < step.line.nodes.size(); ++j) {
+    const Vector3 f = rows.segment<3>(1 + 6 * j), m = rows.segment<3>(4 + 6 * j);
+    force += f;
+    moment += m + mean_arm(step, step.begin[j].position, step.end[j].position).cross(f);
+  }
+  EXPECT_LE(force.norm(), 1e-14);
+  EXPECT_LE(moment.norm(), 2e-14) << step.from << " to " << step.to;
+}
+
 // Sum of forces and of moments about the origin, with mean arms, are those of the slave.
 TEST_P(SlideMapsOfLine, MomentaArePassedOn) {
   RandomSource random(2);
   for (const auto& [from, to] : kTravels) {
     Travel step(random, GetParam(), 0.5);
     step.arm_weight = random.number() < 0 ? 0 : 0.5;
-    const auto arm_of = [&](const Vector3& begin, const Vector3& end) {
-      return Vector3((1 - step.arm_weight) * begin + step.arm_weight * end);
-    };
     step.from = from;
     step.to = to;
     const Vector6 g = random.vector6();
-    const Eigen::VectorXd rows = step.rows(g, true);
     const Vector3 arm =
-        arm_of(slide_pose(step.line, step.begin, from).position, slide_pose(step.line, step.end, to).position);
-    Vector3 force = -g.head<3>(), moment = -g.tail<3>() - arm.cross(g.head<3>());
-    for (std::size_t j = 0; j < step.line.nodes.size(); ++j) {
-      const Vector3 f = rows.segment<3>(1 + 6 * j), m = rows.segment<3>(4 + 6 * j);
-      force += f;
-      moment += m + arm_of(step.begin[j].position, step.end[j].position).cross(f);
-    }
-    EXPECT_LE(force.norm(), 1e-14);
-    EXPECT_LE(moment.norm(), 2e-14) << from << " to " << to;
+        mean_arm(step, slide_pose(step.line, step.begin, from).position, slide_pose(step.line, step.end, to).position);
+    expect_passed_on(step, g, arm);
   }
 }
 
@@ -214,20 +221,8 @@ TEST_P(SlideMapsOfLine, AlgorithmsPassOnMomentaAsTheirTablesSay) {
         lacking =
             0.25 * (place(step.end, to) - place(step.begin, to) - place(step.end, from) + place(step.begin, from));
       if (form == SlideStep::EnterEnd) lacking = -0.5 * (place(step.begin, to) - place(step.begin, from));
-      const auto arm_of = [&](const Vector3& a, const Vector3& b) {
-        return Vector3((1 - step.arm_weight) * a + step.arm_weight * b);
-      };
-      const Vector6 g = random.vector6();
-      const Eigen::VectorXd rows = step.rows(g, true);
-      const Vector3 arm = arm_of(r_begin, r_end) - lacking;
-      Vector3 force = -g.head<3>(), moment = -g.tail<3>() - arm.cross(g.head<3>());
-      for (std::size_t j = 0; j < step.line.nodes.size(); ++j) {
-        const Vector3 f = rows.segment<3>(1 + 6 * j), m = rows.segment<3>(4 + 6 * j);
-        force += f;
-        moment += m + arm_of(step.begin[j].position, step.end[j].position).cross(f);
-      }
-      EXPECT_LE(force.norm(), 1e-14);
-      EXPECT_LE(moment.norm(), 2e-14) << static_cast<int>(form) << ": " << from << " to " << to;
+      SCOPED_TRACE(static_cast<int>(form));
+      expect_passed_on(step, random.vector6(), mean_arm(step, r_begin, r_end) - lacking);
     }
 }
 

@@ -4,6 +4,7 @@
 #include "flexarm/joints/joint_kinematics.h"
 #include "flexarm/joints/loop_closure.h"
 #include "flexarm/model/model_builder.h"
+#include "model/expect_model_error.h"
 #include "support/loops.h"
 
 namespace flexarm::test {
@@ -28,15 +29,6 @@ SceneBuilder closed_crank_rocker() {
   SceneBuilder b = crank_rocker();
   close_loop(b, "hip", JointKind::Continuous, "rocker", "coupler", {1, 0, 0.2}, {0, 1, 0}).location = {"s.urdf", 17};
   return b;
-}
-
-void expect_error(const scene::SceneDescription& scene, const std::string& part) {
-  try {
-    build_model(scene);
-    ADD_FAILURE() << "no error about: " << part;
-  } catch (const ModelError& error) {
-    EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-  }
 }
 
 const Coordinate& coordinate(const Model& model, const std::string& name) {

@@ -3,6 +3,7 @@
 
 #include "elements/random_element.h"
 #include "flexarm/model/model_builder.h"
+#include "model/expect_model_error.h"
 #include "support/scene_builder.h"
 
 namespace flexarm {
@@ -17,15 +18,6 @@ SceneBuilder arm() {
   builder.body("arm", 1, Vector3(0.5, 0, 0), Matrix3::Identity());
   builder.joint("hinge", JointKind::Revolute, "world", "arm").location = {"s.urdf", 12};
   return builder;
-}
-
-void expect_error(const scene::SceneDescription& scene, const std::string& part) {
-  try {
-    build_model(scene);
-    ADD_FAILURE() << "no error about: " << part;
-  } catch (const ModelError& error) {
-    EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-  }
 }
 
 TEST(ModelErrors, TheArmItselfIsFine) {
