@@ -33,40 +33,50 @@ SceneBuilder welded(int links, double speed) {
   return b;
 }
 
-// The same mesh, in one link and in two and four: the welds must not be felt, in either direction.
+double place(const Simulation& simulation) {
+  return simulation.position(*simulation.find_coordinate("run/s")) - simulation.model().slide_lines[0].begin();
+}
+
+// The same mesh in one link, in two and in four; past welds in both directions. A plain line in two links, none of
+// whose nodes at the weld is active, is the same but for round-off, which grows with the square of the steps. Elsewhere
+// SM-EM spreads what the section turns beyond its nodes (joints.md 4.5) over one more node: that must be nothing
+// against the lines' own error, by which a smooth line differs from a plain one.
 TEST(SlideLine, WeldedBeamsAreOneLine) {
-  for (const double speed : {-2.0, 2.0}) {
-    std::vector<std::unique_ptr<Simulation>> runs;
-    std::vector<std::unique_ptr<InvariantDrift>> drifts;
-    for (const int links : {1, 2, 4}) {
-      runs.push_back(std::make_unique<Simulation>(welded(links, speed).scene, options("em", 0.01, 1e-12)));
-      drifts.push_back(std::make_unique<InvariantDrift>(*runs.back()));
-    }
-    EXPECT_NEAR(runs[2]->model().slide_lines[0].begin(), -2, 1e-15);
-    EXPECT_NEAR(runs[2]->model().slide_lines[0].end(), 2, 1e-15);
-    double least = 1e9, most = -1e9;
-    for (int i = 0; i < 150; ++i) {
-      const double expected = runs[0]->position(*runs[0]->find_coordinate("run/s"));
-      for (std::size_t k = 0; k < runs.size(); ++k) {
-        ASSERT_TRUE(runs[k]->step().converged);
-        drifts[k]->observe();
+  for (const bool smooth : {false, true})
+    for (const double speed : {-2.0, 2.0}) {
+      const auto simulation = [&](int links, bool is_smooth) {
+        SceneBuilder b = welded(links, speed);
+        for (scene::JointDescription& joint : b.scene.joints)
+          if (joint.slide) joint.slide->smooth = is_smooth;
+        return Simulation(b.scene, options("em", 0.01, 1e-12));
+      };
+      Simulation one = simulation(1, smooth), two = simulation(2, smooth), four = simulation(4, smooth),
+                 other = simulation(1, !smooth);
+      InvariantDrift drift_of_two(two), drift_of_four(four);
+      EXPECT_NEAR(four.model().slide_lines[0].begin(), -2, 1e-15);
+      EXPECT_NEAR(four.model().slide_lines[0].end(), 2, 1e-15);
+      double least = 1e9, most = -1e9, weld_of_two = 0, weld_of_four = 0, error = 0;
+      run(one, 150, [&] {
+        for (Simulation* other_one : {&two, &four, &other}) ASSERT_TRUE(other_one->step().converged);
+        drift_of_two.observe();
+        drift_of_four.observe();
+        const double s = place(one);
+        weld_of_two = std::max(weld_of_two, std::abs(place(two) - s));
+        weld_of_four = std::max(weld_of_four, std::abs(place(four) - s));
+        error = std::max(error, std::abs(place(other) - s));
+        least = std::min(least, s);
+        most = std::max(most, s);
+      });
+      EXPECT_GT(most - least, 1.0) << "it must pass welds";
+      const double bound = smooth ? 1e-3 * error : 1e-8;
+      EXPECT_LT(weld_of_two, !smooth && speed > 0 ? 150 * 150 * 2e-16 * 4 : bound);
+      EXPECT_LT(weld_of_four, bound);
+      for (const InvariantDrift* drift : {&drift_of_two, &drift_of_four}) {
+        EXPECT_LT(drift->energy(), 1e-10);
+        EXPECT_LT(drift->momentum(), 1e-11);
+        EXPECT_LT(drift->angular_momentum(), 1e-11);
       }
-      for (std::size_t k = 1; k < runs.size(); ++k) {
-        const double s = runs[k]->position(*runs[k]->find_coordinate("run/s")) + 2;
-        // Newton leaves 1e-15 of the size in a step, 1e-12 m/s in velocities, which the motion amplifies; a weld that
-        // was felt would show as another mesh does, by 1e-3 m.
-        EXPECT_NEAR(s, runs[0]->position(*runs[0]->find_coordinate("run/s")), 1e-7);
-      }
-      least = std::min(least, expected);
-      most = std::max(most, expected);
     }
-    EXPECT_GT(most - least, 1.0) << "it must pass welds";
-    for (const auto& drift : drifts) {
-      EXPECT_LT(drift->energy(), 1e-10);
-      EXPECT_LT(drift->momentum(), 1e-11);
-      EXPECT_LT(drift->angular_momentum(), 1e-11);
-    }
-  }
 }
 
 TEST(SlideLine, EndsAtKinksAndAtTurnedSections) {

@@ -156,28 +156,6 @@ TEST(SlideScheme, EnergyOfSmeIsExact) {
 
 // ---------------------------------------------------------------- smooth lines
 
-// 4 s: over most of the line and back from its stop.
-TEST_P(SlideSchemes, SmoothLinesConserveAcrossElements) {
-  SceneBuilder b = runner_on_a_free_beam(GetParam());
-  for (scene::JointDescription& joint : b.scene.joints)
-    if (joint.slide) joint.slide->smooth = true;
-  for (const char* scheme : {"em", "em_scaled", "std"}) {
-    Simulation simulation(b.scene, options(scheme, 0.01, 1e-10));
-    InvariantDrift drift(simulation);
-    const std::size_t s = *simulation.find_coordinate(first_coordinate(GetParam()));
-    double least = 4, most = 0;
-    run(simulation, 400, [&] {
-      drift.observe();
-      least = std::min(least, simulation.position(s));
-      most = std::max(most, simulation.position(s));
-    });
-    EXPECT_GT(most - least, 1.0) << "it must pass two elements";
-    EXPECT_LT(drift.energy(), 1e-10) << scheme;
-    EXPECT_LT(drift.momentum(), 1e-11) << scheme;
-    EXPECT_LT(drift.angular_momentum(), 1e-11) << scheme;
-  }
-}
-
 /// A bead hangs on a clamped cable that sags under its weight: it slides to the lowest place.
 SceneBuilder cable(bool smooth, int elements) {
   SceneBuilder b;
