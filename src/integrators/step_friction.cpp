@@ -190,7 +190,10 @@ void StepSystem::hold_friction_tangent() {
       coefficients = cayley::inverse_tangent(rotation).row(component).transpose();
     }
     const int equation = equation_of(coordinate);
-    assembler_.set_row(equation, equation - component, coefficients);
+    if (tree_)
+      tree_->hold_row(coordinate.joint, coordinate.component, coordinate.component - component, coefficients);
+    else
+      assembler_.set_row(equation, equation - component, coefficients);
   }
 }
 

@@ -30,6 +30,10 @@ const double kComposition[] = {kOuterPart, kOuterPart, 1 - 4 * kOuterPart, kOute
 /// Converged sub-steps after which the step is doubled again.
 constexpr int kGoodStepsToDouble = 2;
 
+StepSystem::Tangent tangent_for(const Model& model) {
+  return TreeSolver::suits(model, DegreesOfFreedom(model)) ? StepSystem::Tangent::Tree : StepSystem::Tangent::Matrix;
+}
+
 }  // namespace
 
 const char* to_string(StepResult::Reason reason) {
@@ -58,9 +62,10 @@ Stepper::Stepper(const Model& model, const Scheme& scheme, const StepSettings& s
     : model_(model),
       scheme_(scheme),
       settings_(settings),
-      system_(model, scheme),
-      solver_(system_.assembler().unknowns(), system_.assembler().column_starts(), system_.assembler().row_indices()),
+      system_(model, scheme, tangent_for(model)),
       update_(system_.assembler().unknowns()) {
+  const SparseAssembler& matrix = system_.assembler();
+  if (!system_.tree()) solver_.emplace(matrix.unknowns(), matrix.column_starts(), matrix.row_indices());
   update_norms_.reserve(settings.max_iterations + 1);
   before_.last_increment.reserve(system_.assembler().unknowns());
   if (scheme.scales_velocities) scaling_.emplace(model, scheme);
@@ -70,6 +75,15 @@ void Stepper::invalidate() {
   system_.invalidate();
   factorised_step_ = 0;
   factor_reuse_.reset();
+}
+
+bool Stepper::factorise_tangent() {
+  if (system_.tree()) return system_.tree()->factorise();
+  return solver_->factorise(system_.assembler().values(), system_.assembler().pattern());
+}
+
+bool Stepper::solve(Eigen::VectorXd& b) {
+  return system_.tree() ? system_.tree()->solve(b) : solver_->solve(b);
 }
 
 bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
@@ -95,12 +109,11 @@ bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
     ++result.iterations;
     if (factorise) {
       ++result.factorisations;
-      if (!solver_.factorise(system_.assembler().values(), system_.assembler().pattern()))
-        return fail(Reason::SingularTangent);
+      if (!factorise_tangent()) return fail(Reason::SingularTangent);
       factorised_step_ = system_.step();
     }
     update_ = -system_.residual();
-    if (!solver_.solve(update_)) return fail(Reason::SingularTangent);
+    if (!solve(update_)) return fail(Reason::SingularTangent);
     const double rotation = system_.largest_rotation(update_);
     if (updates == Updates::Limited && rotation > kLargestRotationUpdate) update_ *= kLargestRotationUpdate / rotation;
     const double norm = system_.scaled_norm(update_);

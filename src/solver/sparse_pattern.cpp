@@ -132,44 +132,46 @@ class SparseAssembler::PatternBuilder {
   std::vector<bool> folded_;
 };
 
-SparseAssembler::SparseAssembler(const Model& model, const DegreesOfFreedom& dof)
-    : model_(model),
-      dof_(dof),
-      joint_folds_(model.joints.size()),
-      slide_folds_(model.joints.size()),
-      column_blocks_(dof.size.size()),
-      active_(model.joints.size(), {0, 0}) {
+SparseAssembler::SparseAssembler(const Model& model, const DegreesOfFreedom& dof, Parts parts)
+    : model_(model), dof_(dof), residual_(dof.scalar_count, 0.0) {
+  if (parts == Parts::All) build_pattern();
+}
+
+void SparseAssembler::build_pattern() {
+  joint_folds_.resize(model_.joints.size());
+  slide_folds_.resize(model_.joints.size());
+  column_blocks_.resize(dof_.size.size());
+  active_.assign(model_.joints.size(), {0, 0});
   PatternBuilder pattern(*this);
-  for (std::size_t v = 0; v < dof.size.size(); ++v)
+  for (std::size_t v = 0; v < dof_.size.size(); ++v)
     diagonal_.push_back(pattern.block(static_cast<int>(v), static_cast<int>(v)));
-  for_each_element(model.beams, [&](const auto& element) {
+  for_each_element(model_.beams, [&](const auto& element) {
     element_blocks_.resize(std::max<std::size_t>(element_blocks_.size(), element.first_block));
     for (const int i : element.nodes)
       for (const int j : element.nodes) element_blocks_.push_back(pattern.block(i, j));
   });
-  for (std::size_t k = 0; k < model.closures.size(); ++k) pattern.add_closure(static_cast<int>(k));
-  for (int j = static_cast<int>(model.joints.size()) - 1; j >= 0; --j) {
-    if (model.joints[j].kind == JointMapKind::Slide)
+  for (std::size_t k = 0; k < model_.closures.size(); ++k) pattern.add_closure(static_cast<int>(k));
+  for (int j = static_cast<int>(model_.joints.size()) - 1; j >= 0; --j) {
+    if (model_.joints[j].kind == JointMapKind::Slide)
       pattern.fold_slide(j);
     else
       pattern.fold_joint(j);
   }
-  for (const DegreesOfFreedom::Mimic& mimic : dof.mimics) pattern.fold_mimic(mimic);
+  for (const DegreesOfFreedom::Mimic& mimic : dof_.mimics) pattern.fold_mimic(mimic);
   for (std::size_t b = 0; b < blocks_.size(); ++b)
     if (!pattern.folded(blocks_[b].row) && !pattern.folded(blocks_[b].column))
       column_blocks_[blocks_[b].column].push_back(static_cast<int>(b));
   for (std::vector<int>& list : column_blocks_)
     std::sort(list.begin(), list.end(), [&](int a, int b) { return blocks_[a].row < blocks_[b].row; });
   values_.assign(pattern.value_count(), 0.0);
-  residual_.assign(dof.scalar_count, 0.0);
   written_.reserve(blocks_.size());
   live_.assign(blocks_.size(), true);
   build_compressed_columns();  // the largest pattern: all later ones fit into its memory
   copies_.reserve(row_indices_.size());
-  for (std::size_t j = 0; j < model.joints.size(); ++j) {
-    if (model.joints[j].kind != JointMapKind::Slide) continue;
-    const SlideLine& line = model.slide_lines[model.joints[j].line];
-    const int piece = line.piece_at(model.initial_released[j].displacement[0]);
+  for (std::size_t j = 0; j < model_.joints.size(); ++j) {
+    if (model_.joints[j].kind != JointMapKind::Slide) continue;
+    const SlideLine& line = model_.slide_lines[model_.joints[j].line];
+    const int piece = line.piece_at(model_.initial_released[j].displacement[0]);
     active_[j] = line.support(piece, piece);
   }
   update_pattern();

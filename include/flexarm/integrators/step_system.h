@@ -1,6 +1,7 @@
 #pragma once
 /// Residual and tangent of one step (or of a static configuration) as a function of the trial end configuration.
 
+#include <optional>
 #include <tuple>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "flexarm/model/model.h"
 #include "flexarm/model/state.h"
 #include "flexarm/solver/sparse_assembler.h"
+#include "flexarm/solver/tree_solver.h"
 
 namespace flexarm {
 
@@ -31,7 +33,10 @@ struct InterpolatedMoment {
 /// Life of a step: begin(state, h), guess, then evaluate / update until converged, then accept(state).
 class StepSystem {
  public:
-  StepSystem(const Model& model, const Scheme& scheme);
+  /// What becomes of the tangent: a matrix in assembler(), or fronts along the tree, for solve() alone.
+  enum class Tangent { Matrix, Tree };
+  /// `Tangent::Tree` for models that suit a TreeSolver.
+  StepSystem(const Model& model, const Scheme& scheme, Tangent tangent = Tangent::Matrix);
 
   enum class Guess {
     Extrapolated,  ///< the last step's increments again; rigid continuation of the velocities in the first step
@@ -73,6 +78,8 @@ class StepSystem {
   double open_loop() const;
   const Eigen::VectorXd& residual() const { return residual_; }
   const SparseAssembler& assembler() const { return assembler_; }
+  /// The tangent along the tree; null if it is a matrix.
+  TreeSolver* tree() { return tree_ ? &*tree_ : nullptr; }
   const DegreesOfFreedom& degrees_of_freedom() const { return dof_; }
   /// Largest entry of an increment, displacements divided by the model's length scale [-, rad].
   double scaled_norm(const Eigen::VectorXd& increment) const;
@@ -87,6 +94,11 @@ class StepSystem {
   void add_momentum_beams(bool with_tangent);
   void add_endpoint_forces(bool with_tangent);
   void add_newmark_inertia(bool with_tangent);
+  double* diagonal_block(int variable) {
+    return tree_ ? tree_->diagonal_block(variable) : assembler_.diagonal_block(variable);
+  }
+  double* element_block(int index) { return tree_ ? tree_->element_block(index) : assembler_.element_block(index); }
+  void set_zero(bool with_tangent);
   template <int Nodes>
   void gather_nodes(const BeamElement<Nodes>& element, const std::vector<NodePose>& end,
                     ElementNodes<Nodes>& nodes) const;
@@ -165,6 +177,7 @@ class StepSystem {
   Scheme scheme_;
   DegreesOfFreedom dof_;
   SparseAssembler assembler_;
+  std::optional<TreeSolver> tree_;
 
   const State* state_ = nullptr;
   double step_ = 0, load_factor_ = 1;

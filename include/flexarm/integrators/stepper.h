@@ -69,6 +69,8 @@ class Stepper {
   /// Newton from the present trial configuration; leaves the system evaluated at the solution. With `reuse` it starts
   /// with the factors of an earlier solve and makes new ones only where the iteration is slow.
   bool iterate(Updates updates, bool reuse, StepResult& result);
+  bool factorise_tangent();
+  bool solve(Eigen::VectorXd& b);
   void initialise_accelerations(State& state);
   /// A step of a composed scheme is several simple ones; on failure the state is untouched.
   bool sub_step(State& state, double step, StepResult& result);
@@ -78,7 +80,7 @@ class Stepper {
   Scheme scheme_;
   StepSettings settings_;
   StepSystem system_;
-  LinearSolver solver_;
+  std::optional<LinearSolver> solver_;  // where the model is no tree
   Eigen::VectorXd update_;
   std::optional<VelocityScaling> scaling_;
   State before_;                // of a step that may have to be taken back

@@ -29,7 +29,9 @@ struct MimicMap {
 /// and takes the time of about three factorisations.
 class SparseAssembler {
  public:
-  SparseAssembler(const Model& model, const DegreesOfFreedom& dof);
+  enum class Parts { All, Residual };
+  /// `Parts::Residual`: without blocks and matrix, for a tangent that is kept elsewhere.
+  SparseAssembler(const Model& model, const DegreesOfFreedom& dof, Parts parts = Parts::All);
 
   // ---- accumulation
   void set_zero(bool with_tangent = true);
@@ -117,6 +119,7 @@ class SparseAssembler {
   void set_active(int joint, int first, int count);
   void mark_live_blocks();
   void mark_slide(int joint);
+  void build_pattern();
   void build_compressed_columns();
   void update_pattern();
   double* slide_block(int index) {

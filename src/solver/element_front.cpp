@@ -1,0 +1,176 @@
+#include "flexarm/solver/element_front.h"
+
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+// The loops below are compiled twice; the dynamic linker takes the one that the processor can run.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#define FLEXARM_VECTOR_CLONES __attribute__((target_clones("arch=x86-64-v3", "default")))
+#else
+#define FLEXARM_VECTOR_CLONES
+#endif
+#define FLEXARM_INLINE __attribute__((always_inline)) inline
+
+namespace flexarm {
+namespace {
+
+/// Four numbers; two instructions where the processor has vectors of two.
+using Lanes = double __attribute__((vector_size(32)));
+
+constexpr int lanes_for(int count) { return (count + 3) / 4; }
+
+/// Sizes of a front. Factors: columns of L and U in one square matrix (unit diagonal of L left out, reciprocal diagonal
+/// of U), then the columns of A01, then the columns of X.
+template <int Nodes>
+struct Sizes {
+  static constexpr int n = ElementFront<Nodes>::kEliminated;
+  static constexpr int pivot_lanes = lanes_for(n);       // of the columns of A11 in a row
+  static constexpr int row_lanes = pivot_lanes + 2;      // and six of A10
+  static constexpr int coupling = n * n, elimination = coupling + 6 * n;
+  static_assert(elimination + 6 * n <= ElementFront<Nodes>::kSize);
+};
+
+/// Rows of [A11 A10], and the multipliers of the elimination.
+template <int Nodes>
+struct Rows {
+  static constexpr int n = Sizes<Nodes>::n;
+  Lanes value[n][Sizes<Nodes>::row_lanes];
+  double lower[n][n];
+
+  FLEXARM_INLINE double* row(int i) { return reinterpret_cast<double*>(value[i]); }
+  FLEXARM_INLINE double* right(int i) { return reinterpret_cast<double*>(value[i] + Sizes<Nodes>::pivot_lanes); }
+};
+
+template <int Nodes>
+FLEXARM_INLINE void gather(const double* blocks, double* const* diagonals, Rows<Nodes>& rows) {
+  std::memset(rows.value, 0, sizeof(rows.value));
+  for (int i = 1; i < Nodes; ++i)
+    for (int j = 0; j < Nodes; ++j) {
+      const double* block = blocks + 36 * (i * Nodes + j);
+      for (int r = 0; r < 6; ++r) {
+        double* to = j == 0 ? rows.right(6 * (i - 1) + r) : rows.row(6 * (i - 1) + r) + 6 * (j - 1);
+        for (int c = 0; c < 6; ++c) to[c] = block[6 * c + r] + (i == j ? diagonals[i][6 * c + r] : 0.0);
+      }
+    }
+}
+
+/// LU with partial pivoting of A11, carried out on A10 as well.
+template <int Nodes>
+FLEXARM_INLINE bool factorise(Rows<Nodes>& rows, double* reciprocal, unsigned char* pivots) {
+  constexpr int n = Sizes<Nodes>::n, lanes = Sizes<Nodes>::row_lanes;
+  for (int i = 0; i < n; ++i) pivots[i] = static_cast<unsigned char>(i);
+#pragma GCC unroll 24
+  for (int k = 0; k < n; ++k) {
+    int pivot = k;
+    double largest = std::abs(rows.row(k)[k]);
+    for (int i = k + 1; i < n; ++i) {
+      const double size = std::abs(rows.row(i)[k]);
+      if (size > largest) largest = size, pivot = i;
+    }
+    if (!(largest > 0) || !std::isfinite(largest)) return false;
+    if (pivot != k) {
+      for (int v = 0; v < lanes; ++v) std::swap(rows.value[k][v], rows.value[pivot][v]);
+      for (int c = 0; c < k; ++c) std::swap(rows.lower[k][c], rows.lower[pivot][c]);
+      std::swap(pivots[k], pivots[pivot]);
+    }
+    reciprocal[k] = 1 / rows.row(k)[k];
+    for (int i = k + 1; i < n; ++i) {
+      const double multiplier = rows.row(i)[k] * reciprocal[k];
+      rows.lower[i][k] = multiplier;
+      for (int v = k / 4; v < lanes; ++v) rows.value[i][v] -= multiplier * rows.value[k][v];
+    }
+  }
+  return true;
+}
+
+template <int Nodes>
+FLEXARM_INLINE bool eliminate_front(double* blocks, double* const* diagonals, unsigned char* pivots) {
+  using S = Sizes<Nodes>;
+  constexpr int n = S::n, right = S::pivot_lanes;
+  Rows<Nodes> rows;
+  double reciprocal[n];
+  gather<Nodes>(blocks, diagonals, rows);
+  if (!factorise<Nodes>(rows, reciprocal, pivots)) return false;
+  for (int k = n - 1; k >= 0; --k) {  // X
+    Lanes first = rows.value[k][right], second = rows.value[k][right + 1];
+    for (int j = k + 1; j < n; ++j) {
+      const double upper = rows.row(k)[j];
+      first -= upper * rows.value[j][right];
+      second -= upper * rows.value[j][right + 1];
+    }
+    rows.value[k][right] = reciprocal[k] * first;
+    rows.value[k][right + 1] = reciprocal[k] * second;
+  }
+  for (int r = 0; r < 6; ++r) {  // S
+    Lanes sums[2] = {Lanes{}, Lanes{}};
+    for (int j = 0; j < n; ++j) {
+      const double coupling = blocks[36 * (1 + j / 6) + 6 * (j % 6) + r];
+      sums[0] += coupling * rows.value[j][right];
+      sums[1] += coupling * rows.value[j][right + 1];
+    }
+    for (int c = 0; c < 6; ++c) diagonals[0][6 * c + r] += blocks[6 * c + r] - sums[c / 4][c % 4];
+  }
+  double coupling[6 * n];
+  std::memcpy(coupling, blocks + 36, sizeof(coupling));  // the blocks (0, j) stand in a row
+  for (int c = 0; c < n; ++c)
+    for (int r = 0; r < n; ++r)
+      blocks[n * c + r] = r > c ? rows.lower[r][c] : r == c ? reciprocal[c] : rows.row(r)[c];
+  std::memcpy(blocks + S::coupling, coupling, sizeof(coupling));
+  for (int c = 0; c < 6; ++c)
+    for (int r = 0; r < n; ++r) blocks[S::elimination + n * c + r] = rows.right(r)[c];
+  return true;
+}
+
+template <int Nodes>
+FLEXARM_INLINE void forward_front(const double* factors, const unsigned char* pivots, double* const* r) {
+  constexpr int n = Sizes<Nodes>::n;
+  double y[n];
+  for (int i = 0; i < n; ++i) y[i] = r[1 + pivots[i] / 6][pivots[i] % 6];
+  for (int j = 0; j < n; ++j)
+    for (int i = j + 1; i < n; ++i) y[i] -= factors[n * j + i] * y[j];
+  for (int j = n - 1; j >= 0; --j) {
+    y[j] *= factors[n * j + j];
+    for (int i = 0; i < j; ++i) y[i] -= factors[n * j + i] * y[j];
+  }
+  double inboard[6] = {};
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < 6; ++i) inboard[i] += factors[Sizes<Nodes>::coupling + 6 * j + i] * y[j];
+  for (int i = 0; i < 6; ++i) r[0][i] -= inboard[i];
+  for (int i = 0; i < n; ++i) r[1 + i / 6][i % 6] = y[i];
+}
+
+template <int Nodes>
+FLEXARM_INLINE void backward_front(const double* factors, double* const* r) {
+  constexpr int n = Sizes<Nodes>::n;
+  double x[n];
+  for (int i = 0; i < n; ++i) x[i] = r[1 + i / 6][i % 6];
+  for (int j = 0; j < 6; ++j)
+    for (int i = 0; i < n; ++i) x[i] -= factors[Sizes<Nodes>::elimination + n * j + i] * r[0][j];
+  for (int i = 0; i < n; ++i) r[1 + i / 6][i % 6] = x[i];
+}
+
+}  // namespace
+
+#define FLEXARM_ELEMENT_FRONT(NODES)                                                                              \
+  template <>                                                                                                     \
+  FLEXARM_VECTOR_CLONES bool ElementFront<NODES>::eliminate(double* blocks, double* const* diagonals,             \
+                                                            unsigned char* rows) {                                \
+    return eliminate_front<NODES>(blocks, diagonals, rows);                                                       \
+  }                                                                                                               \
+  template <>                                                                                                     \
+  FLEXARM_VECTOR_CLONES void ElementFront<NODES>::forward(const double* factors, const unsigned char* rows,       \
+                                                          double* const* r) {                                     \
+    forward_front<NODES>(factors, rows, r);                                                                       \
+  }                                                                                                               \
+  template <>                                                                                                     \
+  FLEXARM_VECTOR_CLONES void ElementFront<NODES>::backward(const double* factors, double* const* r) {             \
+    backward_front<NODES>(factors, r);                                                                            \
+  }
+FLEXARM_ELEMENT_FRONT(2)
+FLEXARM_ELEMENT_FRONT(3)
+FLEXARM_ELEMENT_FRONT(4)
+FLEXARM_ELEMENT_FRONT(5)
+#undef FLEXARM_ELEMENT_FRONT
+
+}  // namespace flexarm
