@@ -18,15 +18,17 @@ namespace {
 /// Four numbers; two instructions where the processor has vectors of two.
 using Lanes = double __attribute__((vector_size(32)));
 
-constexpr int lanes_for(int count) { return (count + 3) / 4; }
+constexpr int lanes_for(int count) {
+  return (count + 3) / 4;
+}
 
 /// Sizes of a front. Factors: columns of L and U in one square matrix (unit diagonal of L left out, reciprocal diagonal
 /// of U), then the columns of A01, then the columns of X.
 template <int Nodes>
 struct Sizes {
   static constexpr int n = ElementFront<Nodes>::kEliminated;
-  static constexpr int pivot_lanes = lanes_for(n);       // of the columns of A11 in a row
-  static constexpr int row_lanes = pivot_lanes + 2;      // and six of A10
+  static constexpr int pivot_lanes = lanes_for(n);   // of the columns of A11 in a row
+  static constexpr int row_lanes = pivot_lanes + 2;  // and six of A10
   static constexpr int coupling = n * n, elimination = coupling + 6 * n;
   static_assert(elimination + 6 * n <= ElementFront<Nodes>::kSize);
 };
@@ -114,8 +116,7 @@ FLEXARM_INLINE bool eliminate_front(double* blocks, double* const* diagonals, un
   double coupling[6 * n];
   std::memcpy(coupling, blocks + 36, sizeof(coupling));  // the blocks (0, j) stand in a row
   for (int c = 0; c < n; ++c)
-    for (int r = 0; r < n; ++r)
-      blocks[n * c + r] = r > c ? rows.lower[r][c] : r == c ? reciprocal[c] : rows.row(r)[c];
+    for (int r = 0; r < n; ++r) blocks[n * c + r] = r > c ? rows.lower[r][c] : r == c ? reciprocal[c] : rows.row(r)[c];
   std::memcpy(blocks + S::coupling, coupling, sizeof(coupling));
   for (int c = 0; c < 6; ++c)
     for (int r = 0; r < n; ++r) blocks[S::elimination + n * c + r] = rows.right(r)[c];
@@ -152,20 +153,20 @@ FLEXARM_INLINE void backward_front(const double* factors, double* const* r) {
 
 }  // namespace
 
-#define FLEXARM_ELEMENT_FRONT(NODES)                                                                              \
-  template <>                                                                                                     \
-  FLEXARM_VECTOR_CLONES bool ElementFront<NODES>::eliminate(double* blocks, double* const* diagonals,             \
-                                                            unsigned char* rows) {                                \
-    return eliminate_front<NODES>(blocks, diagonals, rows);                                                       \
-  }                                                                                                               \
-  template <>                                                                                                     \
-  FLEXARM_VECTOR_CLONES void ElementFront<NODES>::forward(const double* factors, const unsigned char* rows,       \
-                                                          double* const* r) {                                     \
-    forward_front<NODES>(factors, rows, r);                                                                       \
-  }                                                                                                               \
-  template <>                                                                                                     \
-  FLEXARM_VECTOR_CLONES void ElementFront<NODES>::backward(const double* factors, double* const* r) {             \
-    backward_front<NODES>(factors, r);                                                                            \
+#define FLEXARM_ELEMENT_FRONT(NODES)                                                                        \
+  template <>                                                                                               \
+  FLEXARM_VECTOR_CLONES bool ElementFront<NODES>::eliminate(double* blocks, double* const* diagonals,       \
+                                                            unsigned char* rows) {                          \
+    return eliminate_front<NODES>(blocks, diagonals, rows);                                                 \
+  }                                                                                                         \
+  template <>                                                                                               \
+  FLEXARM_VECTOR_CLONES void ElementFront<NODES>::forward(const double* factors, const unsigned char* rows, \
+                                                          double* const* r) {                               \
+    forward_front<NODES>(factors, rows, r);                                                                 \
+  }                                                                                                         \
+  template <>                                                                                               \
+  FLEXARM_VECTOR_CLONES void ElementFront<NODES>::backward(const double* factors, double* const* r) {       \
+    backward_front<NODES>(factors, r);                                                                      \
   }
 FLEXARM_ELEMENT_FRONT(2)
 FLEXARM_ELEMENT_FRONT(3)

@@ -218,8 +218,7 @@ void TreeSolver::forward(const Part& part) {
 
 void TreeSolver::backward(const Part& part) {
   const std::array<double*, 5> r = node_blocks<double*>(part, right_hand_sides_, 6);
-  with_front(part.node_count,
-             [&](auto front) { front.backward(elements_.data() + 36 * part.first_block, r.data()); });
+  with_front(part.node_count, [&](auto front) { front.backward(elements_.data() + 36 * part.first_block, r.data()); });
 }
 
 void TreeSolver::forward(const JointFront& front, Eigen::VectorXd& b) {
@@ -250,9 +249,7 @@ void TreeSolver::backward(const JointFront& front, Eigen::VectorXd& b) {
 }
 
 bool TreeSolver::solve(Eigen::VectorXd& b) {
-  const auto node_values = [&](std::size_t i) {
-    return Eigen::Map<Vector6>(right_hand_sides_.data() + 6 * i);
-  };
+  const auto node_values = [&](std::size_t i) { return Eigen::Map<Vector6>(right_hand_sides_.data() + 6 * i); };
   for (std::size_t i = 0; i < first_equation_.size(); ++i)
     if (first_equation_[i] < 0)
       node_values(i).setZero();

@@ -74,8 +74,8 @@ class TreeSolver {
   template <class Pointer, class Values>
   std::array<Pointer, 5> node_blocks(const Part& part, Values& values, int size) const;
 
-  std::vector<Part> parts_;         // root to leaf
-  std::vector<JointFront> joints_;  // in the model's order
+  std::vector<Part> parts_;          // root to leaf
+  std::vector<JointFront> joints_;   // in the model's order
   std::vector<int> first_equation_;  // per node; -1: slave
   std::vector<double> diagonals_, elements_, right_hand_sides_;
   std::vector<unsigned char> pivots_;
