@@ -22,7 +22,7 @@ State reversed(State state) {
   }
   for (MassPointState& point : state.mass_points) point.angular_velocity *= -1;
   for (Vector6& rate : state.strain_rates) rate *= -1;
-  state.last_step = 0;
+  state.history.clear();
   return state;
 }
 

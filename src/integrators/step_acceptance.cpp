@@ -91,22 +91,22 @@ void StepSystem::accept(State& state) {
   state.work += work();
   state.dissipated += dissipated_;
 
-  state.last_increment.resize(dof_.unknowns);
-  state.last_step = step_;
+  std::vector<double>& made = state.history.push(step_, dof_.unknowns);
   for (int i = 0; i < dof_.node_count; ++i) {
     const int equation = dof_.equation[dof_.first[i]];
     for (int k = 0; k < 3 && equation >= 0; ++k) {
-      state.last_increment[equation + k] = end_[i].position[k] - begin_[i].position[k];
-      state.last_increment[equation + 3 + k] = increments_[i][k];
+      made[equation + k] = end_[i].position[k] - begin_[i].position[k];
+      made[equation + 3 + k] = increments_[i][k];
     }
   }
   for (std::size_t j = 0; j < model_.joints.size(); ++j) {
     const ReleasedVector change = released_increment(model_.joints[j], state.released[j], released_[j]);
     const int first = dof_.first[dof_.variable_of_joint(static_cast<int>(j))];
     for (int k = 0; k < change.size(); ++k)
-      if (dof_.equation[first + k] >= 0) state.last_increment[dof_.equation[first + k]] = change[k];
+      if (dof_.equation[first + k] >= 0) made[dof_.equation[first + k]] = change[k];
   }
 
+  choose_order(state.history);
   accept_multipliers(state);
 
   for (std::size_t i = 0; i < end_.size(); ++i)
@@ -131,6 +131,23 @@ void StepSystem::accept(State& state) {
   if (scheme_.hht == HhtForm::Kinematics) points_valid_ = false;  // those at hand belong to t_{n+1+alpha}
 }
 
+/// The next step is foreseen as this one would have been foreseen best.
+void StepSystem::choose_order(IncrementHistory& history) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (int order = 0; order <= IncrementHistory::kHighestOrder; ++order) {
+    const IncrementHistory::Weights weights = history.weights(order, 1, history.steps[0]);
+    if (weights[1] == 0) continue;
+    double error = 0;
+    for_each_unknown(model_, dof_, [&](int equation, bool is_rotation) {
+      double foreseen = 0;
+      for (int i = 1; i <= 1 + order; ++i) foreseen += weights[i] * history.increments[i][equation];
+      error = std::max(
+          error, std::abs(history.increments[0][equation] - foreseen) / (is_rotation ? 1.0 : model_.length_scale));
+    });
+    if (error < smallest) smallest = error, history.order = order;
+  }
+}
+
 void StepSystem::accept_static(State& state) {
   for (std::size_t i = 0; i < end_.size(); ++i) {
     state.nodes[i] = NodeState();
@@ -143,7 +160,7 @@ void StepSystem::accept_static(State& state) {
   std::fill(state.strain_rates.begin(), state.strain_rates.end(), Vector6::Zero());
   std::fill(state.strain_memory.begin(), state.strain_memory.end(), StrainMemory());
   reference_.accept(state);
-  state.last_step = 0;
+  state.history.clear();
   points_valid_ = false;
 }
 

@@ -38,7 +38,7 @@ void StepSystem::extrapolate_multipliers() {
   for (std::size_t k = 0; k < multipliers_.size(); ++k) {
     const int first = dof_.first[dof_.variable_of_closure(static_cast<int>(k))];
     for (int i = 0; i < multipliers_[k].size(); ++i)
-      multipliers_[k][i] = state_->last_increment[dof_.equation[first + i]];
+      multipliers_[k][i] = state_->history.increments[0][dof_.equation[first + i]];
   }
 }
 
@@ -53,7 +53,7 @@ void StepSystem::accept_multipliers(State& state) const {
   for (std::size_t k = 0; k < multipliers_.size(); ++k) {
     const int first = dof_.first[dof_.variable_of_closure(static_cast<int>(k))];
     for (int i = 0; i < multipliers_[k].size(); ++i)
-      state.last_increment[dof_.equation[first + i]] = multipliers_[k][i];
+      state.history.increments[0][dof_.equation[first + i]] = multipliers_[k][i];
   }
 }
 

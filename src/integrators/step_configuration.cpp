@@ -116,11 +116,16 @@ void StepSystem::set_prescribed(double time) {
 
 void StepSystem::extrapolate() {
   const State& state = *state_;
-  const bool has_last = state.last_step != 0 && state.last_increment.size() == static_cast<std::size_t>(dof_.unknowns);
-  const double ratio = has_last ? step_ / state.last_step : 0;
+  const IncrementHistory& history = state.history;
+  const bool has_last = history.count > 0;
+  IncrementHistory::Weights weights = history.weights(history.order, 0, step_);
+  if (weights[0] == 0) weights = history.weights(0, 0, step_);
   const auto entry = [&](int variable, int k) {
     const int equation = dof_.equation[dof_.first[variable] + k];
-    return equation >= 0 ? ratio * state.last_increment[equation] : 0.0;
+    double sum = 0;
+    for (int i = 0; i <= history.order && equation >= 0 && weights[i] != 0; ++i)
+      sum += weights[i] * history.increments[i][equation];
+    return sum;
   };
   for (int i = 0; i < dof_.node_count; ++i) {
     if (dof_.slave_joint[i] >= 0) continue;

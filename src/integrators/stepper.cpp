@@ -67,7 +67,7 @@ Stepper::Stepper(const Model& model, const Scheme& scheme, const StepSettings& s
   const SparseAssembler& matrix = system_.assembler();
   if (!system_.tree()) solver_.emplace(matrix.unknowns(), matrix.column_starts(), matrix.row_indices());
   update_norms_.reserve(settings.max_iterations + 1);
-  before_.last_increment.reserve(system_.assembler().unknowns());
+  for (std::vector<double>& increment : before_.history.increments) increment.reserve(matrix.unknowns());
   if (scheme.scales_velocities) scaling_.emplace(model, scheme);
 }
 

@@ -62,8 +62,7 @@ State state_after_release(const Model& model, State state, int slide) {
     if (!per_node->empty()) per_node->push_back(Vector6::Zero());
   for (auto* per_node : {&state.total_rotations, &state.momentum_rates})
     if (!per_node->empty()) per_node->push_back(Vector3::Zero());
-  state.last_increment.clear();
-  state.last_step = 0;
+  state.history.clear();
   state.left_lines.push_back(slide);
   return state;
 }

@@ -12,7 +12,7 @@
 namespace flexarm {
 namespace {
 
-constexpr const char* kHeader = "flexarm-checkpoint 3";
+constexpr const char* kHeader = "flexarm-checkpoint 4";
 
 /// Calls `visit(number, may_be_nan)` for every number of a state in a fixed order; the one place that knows its layout.
 template <class AnyState, class Visit>
@@ -42,8 +42,9 @@ void for_each_number(AnyState& state, const Visit& visit) {
   for (auto& command : state.commands) visit(command, true);  // nan: none holds
   for (auto& effort : state.efforts) visit(effort, false);
   for (auto& rest : state.rests) visit(rest, false);
-  for (auto& increment : state.last_increment) visit(increment, false);
-  visit(state.last_step, false);
+  for (auto& made : state.history.increments)
+    for (auto& increment : made) visit(increment, false);
+  for (auto& step : state.history.steps) visit(step, false);
   visit(state.work, false);
   visit(state.dissipated, false);
   visit(state.energy_defect, false);
@@ -108,10 +109,11 @@ std::string hexadecimal(double value) {
 
 void write_checkpoint(const Simulation& simulation, const std::string& path) {
   const State& state = simulation.state();
-  std::string text = fmt::format("{}\n{}\nsteps {} level {} good {} increments {} reactions {} left {} {}\n", kHeader,
-                                 signature(simulation), state.steps, state.halving_level, state.good_steps,
-                                 state.last_increment.size(), state.reactions.size(), state.left_lines.size(),
-                                 fmt::join(state.left_lines, " "));
+  std::string text =
+      fmt::format("{}\n{}\nsteps {} level {} good {} increments {} of {} order {} reactions {} left {} {}\n", kHeader,
+                  signature(simulation), state.steps, state.halving_level, state.good_steps,
+                  state.history.increments[0].size(), state.history.count, state.history.order, state.reactions.size(),
+                  state.left_lines.size(), fmt::join(state.left_lines, " "));
   for_each_number(state, [&](double value, bool) { text += hexadecimal(value) + "\n"; });
   text += "end\n";
   const std::string temporary = path + ".partial";
@@ -135,18 +137,21 @@ void read_checkpoint(Simulation& simulation, const std::string& path) {
                    model.substr(0, 120) + "'");
   State state = simulation.state();
   std::string word;
+  IncrementHistory& history = state.history;
   std::size_t increments = 0, reactions = 0, left = 0;
   in >> word >> state.steps >> word >> state.halving_level >> word >> state.good_steps >> word >> increments >> word >>
-      reactions >> word >> left;
+      history.count >> word >> history.order >> word >> reactions >> word >> left;
   const auto damaged = [&] { fail(path, "is damaged in line 3"); };
   if (!in || state.steps < 0 || state.halving_level < 0 || left > state.released.size()) damaged();
   resize_nodes(state, state.nodes.size() - state.left_lines.size() + left);
   state.left_lines.resize(left);
   for (int& joint : state.left_lines) in >> joint;
-  if (!in || increments > 6 * state.nodes.size() + 6 * state.released.size() || reactions > state.nodes.size())
+  if (!in || increments > 6 * state.nodes.size() + 6 * state.released.size() || reactions > state.nodes.size() ||
+      history.count < 0 || history.count > IncrementHistory::kLength || history.order < 0 ||
+      history.order > IncrementHistory::kHighestOrder)
     damaged();
   state.reactions.assign(reactions, Vector6::Zero());
-  state.last_increment.assign(increments, 0.0);
+  for (std::vector<double>& made : history.increments) made.assign(increments, 0.0);
   for_each_number(state, [&](double& value, bool may_be_nan) {
     if (!(in >> word)) fail(path, "ends too early");
     value = may_be_nan && word == "nan" ? std::nan("") : parse(word, path);

@@ -16,7 +16,7 @@ State reversed(State state, double factor = 1) {
     node.angular_velocity *= -factor;
   }
   for (MassPointState& point : state.mass_points) point.angular_velocity *= -factor;
-  state.last_step = 0;
+  state.history.clear();
   return state;
 }
 

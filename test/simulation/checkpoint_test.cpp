@@ -15,7 +15,7 @@ namespace {
 
 /// All numbers of a state, to be compared bit for bit.
 std::vector<double> numbers(const State& state) {
-  std::vector<double> out{state.time, state.last_step, state.work, state.dissipated, double(state.steps)};
+  std::vector<double> out{state.time, state.history.steps[0], state.work, state.dissipated, double(state.steps)};
   const auto add = [&](const auto& v) { out.insert(out.end(), v.data(), v.data() + v.size()); };
   for (const NodeState& node : state.nodes) {
     add(node.position);

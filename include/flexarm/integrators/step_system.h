@@ -168,6 +168,7 @@ class StepSystem {
   void compute_begin_points();
   void set_prescribed(double time);
   void extrapolate();
+  void choose_order(IncrementHistory& history);
   void set_slaves();
   void update_increments();
   double work() const;

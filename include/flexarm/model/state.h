@@ -5,6 +5,7 @@
 
 #include "flexarm/math/local_rotation.h"
 #include "flexarm/math/pose.h"
+#include "flexarm/model/increment_history.h"
 #include "flexarm/model/joint.h"
 
 namespace flexarm {
@@ -62,8 +63,7 @@ struct State {
   std::vector<double> commands;          ///< per coordinate: commanded effort, NaN where none holds
   std::vector<double> efforts;           ///< per coordinate: applied in the last step
   std::vector<double> rests;             ///< per coordinate: 1 where dry friction stopped it in the last step, else 0
-  std::vector<double> last_increment;    ///< of the unknowns over the last sub-step: the predictor
-  double last_step = 0;                  ///< its length [s]; 0: none yet
+  IncrementHistory history;              ///< of the last sub-steps, for the predictor
   double work = 0, dissipated = 0;       ///< path integrals since the start [J]
   double energy_defect = 0;              ///< energy that scaled velocities still owe [J]
   int halving_level = 0;                 ///< sub-steps are step / 2^level
