@@ -4,6 +4,10 @@
 #include <cstring>
 #include <utility>
 
+// Vectors are passed between functions that are always inlined only: that their passing differs between processors does
+// not matter.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
 // The loops below are compiled twice; the dynamic linker takes the one that the processor can run.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 #define FLEXARM_VECTOR_CLONES __attribute__((target_clones("arch=x86-64-v3", "default")))
@@ -18,18 +22,37 @@ namespace {
 /// Four numbers; two instructions where the processor has vectors of two.
 using Lanes = double __attribute__((vector_size(32)));
 
+using LaneMask = long long __attribute__((vector_size(32)));
+
+/// Of a lane j: those behind it, and those before it.
+constexpr LaneMask kBehind[] = {{0, -1, -1, -1}, {0, 0, -1, -1}, {0, 0, 0, -1}, {0, 0, 0, 0}};
+constexpr LaneMask kBefore[] = {{0, 0, 0, 0}, {-1, 0, 0, 0}, {-1, -1, 0, 0}, {-1, -1, -1, 0}};
+
+FLEXARM_INLINE Lanes load(const double* from) {
+  Lanes lanes;
+  std::memcpy(&lanes, from, sizeof(lanes));
+  return lanes;
+}
+FLEXARM_INLINE Lanes broadcast(double value) {
+  return Lanes{value, value, value, value};
+}
+FLEXARM_INLINE Lanes kept(const Lanes& lanes, const LaneMask& mask) {
+  return reinterpret_cast<Lanes>(reinterpret_cast<LaneMask>(lanes) & mask);
+}
+
 constexpr int lanes_for(int count) {
   return (count + 3) / 4;
 }
 
-/// Sizes of a front. Factors: columns of L and U in one square matrix (unit diagonal of L left out, reciprocal diagonal
-/// of U), then the columns of A01, then the columns of X.
+/// Sizes of a front. Factors: columns of L and U in one matrix (unit diagonal of L left out, reciprocal diagonal of U),
+/// padded to whole lanes, then the columns of A01, then the columns of X.
 template <int Nodes>
 struct Sizes {
   static constexpr int n = ElementFront<Nodes>::kEliminated;
   static constexpr int pivot_lanes = lanes_for(n);   // of the columns of A11 in a row
   static constexpr int row_lanes = pivot_lanes + 2;  // and six of A10
-  static constexpr int coupling = n * n, elimination = coupling + 6 * n;
+  static constexpr int stride = 4 * pivot_lanes;     // of the columns of L and U
+  static constexpr int coupling = stride * n, elimination = coupling + 6 * n;
   static_assert(elimination + 6 * n <= ElementFront<Nodes>::kSize);
 };
 
@@ -116,7 +139,8 @@ FLEXARM_INLINE bool eliminate_front(double* blocks, double* const* diagonals, un
   double coupling[6 * n];
   std::memcpy(coupling, blocks + 36, sizeof(coupling));  // the blocks (0, j) stand in a row
   for (int c = 0; c < n; ++c)
-    for (int r = 0; r < n; ++r) blocks[n * c + r] = r > c ? rows.lower[r][c] : r == c ? reciprocal[c] : rows.row(r)[c];
+    for (int r = 0; r < S::stride; ++r)
+      blocks[S::stride * c + r] = r >= n ? 0.0 : r > c ? rows.lower[r][c] : r == c ? reciprocal[c] : rows.row(r)[c];
   std::memcpy(blocks + S::coupling, coupling, sizeof(coupling));
   for (int c = 0; c < 6; ++c)
     for (int r = 0; r < n; ++r) blocks[S::elimination + n * c + r] = rows.right(r)[c];
@@ -126,13 +150,28 @@ FLEXARM_INLINE bool eliminate_front(double* blocks, double* const* diagonals, un
 template <int Nodes>
 FLEXARM_INLINE void forward_front(const double* factors, const unsigned char* pivots, double* const* r) {
   constexpr int n = Sizes<Nodes>::n;
-  double y[n];
+  constexpr int lanes = Sizes<Nodes>::pivot_lanes;
+  Lanes values[lanes] = {};
+  double* y = reinterpret_cast<double*>(values);
   for (int i = 0; i < n; ++i) y[i] = r[1 + pivots[i] / 6][pivots[i] % 6];
-  for (int j = 0; j < n; ++j)
-    for (int i = j + 1; i < n; ++i) y[i] -= factors[n * j + i] * y[j];
+#pragma GCC unroll 24
+  for (int j = 0; j < n; ++j) {
+    const Lanes pivot = broadcast(values[j / 4][j % 4]);
+    for (int v = j / 4; v < lanes; ++v) {
+      Lanes column = load(factors + Sizes<Nodes>::stride * j + 4 * v);
+      if (v == j / 4) column = kept(column, kBehind[j % 4]);
+      values[v] -= column * pivot;
+    }
+  }
+#pragma GCC unroll 24
   for (int j = n - 1; j >= 0; --j) {
-    y[j] *= factors[n * j + j];
-    for (int i = 0; i < j; ++i) y[i] -= factors[n * j + i] * y[j];
+    const double pivot = values[j / 4][j % 4] * factors[Sizes<Nodes>::stride * j + j];
+    for (int v = 0; v <= j / 4; ++v) {
+      Lanes column = load(factors + Sizes<Nodes>::stride * j + 4 * v);
+      if (v == j / 4) column = kept(column, kBefore[j % 4]);
+      values[v] -= column * broadcast(pivot);
+    }
+    values[j / 4][j % 4] = pivot;
   }
   double inboard[6] = {};
   for (int j = 0; j < n; ++j)
