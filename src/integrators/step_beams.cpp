@@ -108,28 +108,6 @@ void StepSystem::add_newmark_rotary(const BeamElement<Nodes>& element, const Ele
                       });
 }
 
-template <bool WithMultiplier>
-void StepSystem::add_conserving_beams(bool with_tangent) {
-  const bool is_damped = scheme_.dissipation.any();
-  for_each_group(model_.beams, [&](const auto& group) {
-    constexpr int N = std::decay_t<decltype(group.elements)>::value_type::kNodes;
-    const GroupFunctions<N>& functions = std::get<GroupFunctions<N>>(mid_functions_);
-    ElementNodes<N> nodes;
-    ElementSystem<N> system;
-    for (std::size_t e = 0; e < group.elements.size(); ++e) {
-      const BeamElement<N>& element = group.elements[e];
-      const int first = element.first_stiffness_point;
-      gather_nodes(element, end_, nodes);
-      conserving_beam<WithMultiplier, N>(element, nodes, scheme_, functions[e], &begin_points_[first],
-                                         is_damped ? &state_->strain_memory[first] : nullptr, step_, with_tangent,
-                                         &end_points_[first], is_damped ? &end_strain_memory_[first] : nullptr, system);
-      scatter(element, system, with_tangent);
-    }
-  });
-}
-template void StepSystem::add_conserving_beams<true>(bool);
-template void StepSystem::add_conserving_beams<false>(bool);
-
 void StepSystem::add_momentum_beams(bool with_tangent) {
   for_each_element(model_.beams, [&](const auto& element) {
     constexpr int N = std::decay_t<decltype(element)>::kNodes;

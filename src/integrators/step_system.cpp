@@ -39,6 +39,7 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme)
       reference_(model, scheme),
       begin_points_(model.stiffness_point_count),
       end_points_(model.stiffness_point_count),
+      conserving_beams_(model, scheme),
       begin_mass_rotations_(model.mass_point_count),
       end_mass_rotations_(model.mass_point_count),
       end_mass_points_(model.mass_point_count),
@@ -62,10 +63,6 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme)
       residual_(Eigen::VectorXd::Zero(dof_.unknowns)) {
   for (const LoopClosure& closure : model.closures)
     multipliers_.push_back(ReleasedVector::Zero(static_cast<Eigen::Index>(closure.constraints.size())));
-  for_each_group(model.beams, [&](const auto& group) {
-    constexpr int N = std::decay_t<decltype(group.elements)>::value_type::kNodes;
-    std::get<GroupFunctions<N>>(mid_functions_).resize(group.elements.size());
-  });
   find_friction();
 }
 
@@ -263,10 +260,8 @@ bool StepSystem::evaluate(bool with_tangent) {
     add_endpoint_forces(with_tangent);
   else if (scheme_.stress != StressRule::Conjugate)
     add_momentum_beams(with_tangent);
-  else if (scheme_.correction == EnergyCorrection::Multiplier)
-    add_conserving_beams<true>(with_tangent);
   else
-    add_conserving_beams<false>(with_tangent);
+    dissipated_ += conserving_beams_.add(beams_step(), with_tangent, assembler_, end_strain_memory_);
   add_nodal_forces(with_tangent);
   if (is_interpolated()) add_interpolated_forces(with_tangent);
   if (!static_) add_nodal_inertia(with_tangent);

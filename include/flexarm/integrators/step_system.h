@@ -1,12 +1,12 @@
 #pragma once
 /// Residual and tangent of one step (or of a static configuration) as a function of the trial end configuration.
 
-#include <tuple>
 #include <vector>
 
 #include "flexarm/elements/momentum_beam.h"
 #include "flexarm/elements/nodal_inertia.h"
 #include "flexarm/elements/rotary_inertia.h"
+#include "flexarm/integrators/conserving_beams.h"
 #include "flexarm/integrators/friction_carrier.h"
 #include "flexarm/integrators/rotation_reference.h"
 #include "flexarm/integrators/scheme.h"
@@ -82,8 +82,7 @@ class StepSystem {
   double largest_node_rotation() const;
 
  private:
-  template <bool WithMultiplier>
-  void add_conserving_beams(bool with_tangent);
+  BeamsStep beams_step() const { return {*state_, begin_, end_, increments_, step_}; }
   void add_momentum_beams(bool with_tangent);
   void add_endpoint_forces(bool with_tangent);
   void add_newmark_inertia(bool with_tangent);
@@ -152,7 +151,6 @@ class StepSystem {
   void initialise_strain_memory(State& state);
   void initialise_momentum_rates(State& state);
   void load_begin_configuration(const State& state);
-  void compute_mid_functions();
   void compute_begin_points();
   void set_prescribed(double time);
   void extrapolate();
@@ -175,10 +173,8 @@ class StepSystem {
   std::vector<Vector3> increments_;          // per node, tangent-scaled
   std::vector<Matrix3> inverse_tangents_;
   RotationReference reference_;
-  std::vector<PointKinematics> begin_points_, end_points_;
-  template <int Nodes>
-  using GroupFunctions = std::vector<ElementFunctions<Nodes>>;
-  std::tuple<GroupFunctions<2>, GroupFunctions<3>, GroupFunctions<4>, GroupFunctions<5>> mid_functions_;
+  std::vector<PointKinematics> begin_points_, end_points_;  // unless in conserving_beams_
+  ConservingBeams conserving_beams_;  // empty for schemes of other families
   std::vector<Matrix3> begin_mass_rotations_, end_mass_rotations_;
   std::vector<MassPointState> end_mass_points_;
   std::vector<Vector6> end_strain_rates_;
