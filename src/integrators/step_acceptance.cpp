@@ -127,6 +127,7 @@ void StepSystem::accept(State& state) {
   }
   state.time += step_;
   std::swap(begin_points_, end_points_);
+  conserving_beams_.accept();
   std::swap(begin_mass_rotations_, end_mass_rotations_);
   if (scheme_.hht == HhtForm::Kinematics) points_valid_ = false;  // those at hand belong to t_{n+1+alpha}
 }

@@ -28,7 +28,7 @@ void StepSystem::scatter(const BeamElement<Nodes>& element, const ElementSystem<
   for (int i = 0; i < Nodes; ++i) {
     Eigen::Map<Vector6>(assembler_.residual(element.nodes[i])) += system.residual.template segment<6>(6 * i);
     for (int j = 0; j < Nodes && with_tangent; ++j)
-      Eigen::Map<Matrix6>(element_block(element.first_block + i * Nodes + j)) +=
+      Eigen::Map<Matrix6>(assembler_.element_block(element.first_block + i * Nodes + j)) +=
           system.tangent.template block<6, 6>(6 * i, 6 * j);
   }
 }
@@ -107,28 +107,6 @@ void StepSystem::add_newmark_rotary(const BeamElement<Nodes>& element, const Ele
                           add_rotary_rate(element, k, rate, generalised, with_tangent, system);
                       });
 }
-
-template <bool WithMultiplier>
-void StepSystem::add_conserving_beams(bool with_tangent) {
-  const bool is_damped = scheme_.dissipation.any();
-  for_each_group(model_.beams, [&](const auto& group) {
-    constexpr int N = std::decay_t<decltype(group.elements)>::value_type::kNodes;
-    const GroupFunctions<N>& functions = std::get<GroupFunctions<N>>(mid_functions_);
-    ElementNodes<N> nodes;
-    ElementSystem<N> system;
-    for (std::size_t e = 0; e < group.elements.size(); ++e) {
-      const BeamElement<N>& element = group.elements[e];
-      const int first = element.first_stiffness_point;
-      gather_nodes(element, end_, nodes);
-      conserving_beam<WithMultiplier, N>(element, nodes, scheme_, functions[e], &begin_points_[first],
-                                         is_damped ? &state_->strain_memory[first] : nullptr, step_, with_tangent,
-                                         &end_points_[first], is_damped ? &end_strain_memory_[first] : nullptr, system);
-      scatter(element, system, with_tangent);
-    }
-  });
-}
-template void StepSystem::add_conserving_beams<true>(bool);
-template void StepSystem::add_conserving_beams<false>(bool);
 
 void StepSystem::add_momentum_beams(bool with_tangent) {
   for_each_element(model_.beams, [&](const auto& element) {

@@ -25,6 +25,9 @@ void StepSystem::load_begin_configuration(const State& state) {
 }
 
 void StepSystem::compute_begin_points() {
+  points_valid_ = true;
+  conserving_beams_.set_begin(begin_);
+  if (scheme_.stress == StressRule::Conjugate) return;
   for_each_element(model_.beams, [&](const auto& element) {
     using Element = std::decay_t<decltype(element)>;
     constexpr int N = Element::kNodes;
@@ -49,26 +52,6 @@ void StepSystem::compute_begin_points() {
                                                           : local.evaluate(point.shape, point.derivative).rotation;
     }
   });
-  points_valid_ = true;
-}
-
-void StepSystem::compute_mid_functions() {
-  // The middle as the velocities at the begin foresee it, to second order: explicit, so that the tangent stays simple.
-  // Where the functions are to be averaged with those of the end: the begin.
-  const double turned = scheme_.mid_functions == MidFunctions::Explicit ? 0.5 * step_ : 0.0;
-  for_each_group(model_.beams, [&](const auto& group) {
-    constexpr int N = std::decay_t<decltype(group.elements)>::value_type::kNodes;
-    GroupFunctions<N>& functions = std::get<GroupFunctions<N>>(mid_functions_);
-    for (std::size_t e = 0; e < group.elements.size(); ++e) {
-      std::array<Quaternion, N> orientation;
-      for (int i = 0; i < N; ++i) {
-        const int node = group.elements[e].nodes[i];
-        const Vector3 turn = turned * state_->nodes[node].angular_velocity;
-        orientation[i] = begin_[node].orientation * so3::exp_quaternion(turn);
-      }
-      element_functions<N>(group.elements[e], orientation, functions[e]);
-    }
-  });
 }
 
 void StepSystem::compute_begin_rates() {
@@ -84,7 +67,7 @@ void StepSystem::begin(const State& state, double step, Guess guess) {
   load_factor_ = 1;
   load_begin_configuration(state);
   if (!points_valid_) compute_begin_points();
-  if (scheme_.stress == StressRule::Conjugate) compute_mid_functions();
+  conserving_beams_.set_mid_functions(beams_step());
   for (std::size_t i = 0; i < model_.histories.size(); ++i) {
     history_values_[i] = model_.histories[i](state.time + load_time() * step);
     if (!scheme_.is_incremental()) begin_history_values_[i] = model_.histories[i](state.time);

@@ -63,7 +63,8 @@ void StepSystem::add_interpolated_forces(bool with_tangent) {
           interpolated_moment(node, begin.tail<3>(), end_forces_[i].tail<3>(), with_tangent);
       force.head<3>() = (1 + scheme_.alpha) * end_forces_[i].head<3>() - scheme_.alpha * begin.head<3>();
       force.tail<3>() = moment.value;
-      if (with_tangent) Eigen::Map<Matrix6>(diagonal_block(node)).bottomRightCorner<3, 3>() += moment.derivative;
+      if (with_tangent)
+        Eigen::Map<Matrix6>(assembler_.diagonal_block(node)).bottomRightCorner<3, 3>() += moment.derivative;
     }
     Eigen::Map<Vector6>(assembler_.residual(node)) += force;
   }

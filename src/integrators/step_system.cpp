@@ -30,8 +30,8 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme, Tangent tangent
     : model_(model),
       scheme_(scheme),
       dof_(model),
-      assembler_(model, dof_,
-                 tangent == Tangent::Tree ? SparseAssembler::Parts::Residual : SparseAssembler::Parts::All),
+      tree_(tangent == Tangent::Tree ? std::make_optional<TreeSolver>(model, dof_) : std::nullopt),
+      assembler_(model, dof_, tree()),
       begin_(model.nodes),
       end_(model.nodes),
       released_(model.initial_released),
@@ -40,6 +40,7 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme, Tangent tangent
       reference_(model, scheme),
       begin_points_(model.stiffness_point_count),
       end_points_(model.stiffness_point_count),
+      conserving_beams_(model, scheme),
       begin_mass_rotations_(model.mass_point_count),
       end_mass_rotations_(model.mass_point_count),
       end_mass_points_(model.mass_point_count),
@@ -61,13 +62,8 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme, Tangent tangent
       carrier_of_(model.coordinates.size(), -1),
       capacities_(model.coordinates.size(), 0.0),
       residual_(Eigen::VectorXd::Zero(dof_.unknowns)) {
-  if (tangent == Tangent::Tree) tree_.emplace(model, dof_);
   for (const LoopClosure& closure : model.closures)
     multipliers_.push_back(ReleasedVector::Zero(static_cast<Eigen::Index>(closure.constraints.size())));
-  for_each_group(model.beams, [&](const auto& group) {
-    constexpr int N = std::decay_t<decltype(group.elements)>::value_type::kNodes;
-    std::get<GroupFunctions<N>>(mid_functions_).resize(group.elements.size());
-  });
   find_friction();
 }
 
@@ -89,7 +85,7 @@ void StepSystem::add_nodal_force(int node, const Vector6& force, Eigen::Matrix<d
     rotational.bottomRows<3>() =
         (interpolated_moment(node, Vector3::Zero(), Vector3::Zero(), false).slope * rotational.bottomRows<3>()).eval();
   }
-  if (with_tangent) Eigen::Map<Matrix6>(diagonal_block(node)).rightCols<3>() += rotational;
+  if (with_tangent) Eigen::Map<Matrix6>(assembler_.diagonal_block(node)).rightCols<3>() += rotational;
 }
 
 void StepSystem::add_nodal_forces(bool with_tangent) {
@@ -126,7 +122,7 @@ void StepSystem::add_nodal_inertia(bool with_tangent) {
     Eigen::Map<Vector6>(assembler_.residual(static_cast<int>(i))) += action.residual;
     end_momentum_rates_[model_.mass_point_count + i] = action.residual.tail<3>();
     if (!with_tangent) continue;
-    Eigen::Map<Matrix6> tangent(diagonal_block(static_cast<int>(i)));
+    Eigen::Map<Matrix6> tangent(assembler_.diagonal_block(static_cast<int>(i)));
     tangent.topLeftCorner<3, 3>().diagonal().array() += action.translational;
     tangent.bottomRightCorner<3, 3>() += action.rotational;
   }
@@ -160,7 +156,7 @@ void StepSystem::add_joint_efforts(int j, bool with_tangent) {
   const int count = released_count(joint.kind), variable = dof_.variable_of_joint(j);
   if (count == 0) return;
   double* residual = assembler_.residual(variable);
-  Eigen::Map<ReleasedSquare> tangent(diagonal_block(variable), count, count);
+  Eigen::Map<ReleasedSquare> tangent(assembler_.diagonal_block(variable), count, count);
   ReleasedVector change = ReleasedVector::Zero(count);
   if (!static_) change = released_increment(joint, state_->released[j], released_[j]);
   for (int k = 0; k < count; ++k) {
@@ -211,7 +207,6 @@ void StepSystem::joint_maps(int j, const Vector6& g, FoldMaps& maps, bool with_t
 }
 
 void StepSystem::fold_joints(bool with_tangent) {
-  const bool with_matrix = with_tangent && !tree_;
   FoldMaps scratch;
   std::fill(capacities_.begin(), capacities_.end(), 0.0);
   for (int j = static_cast<int>(model_.joints.size()) - 1; j >= 0; --j) {
@@ -224,11 +219,11 @@ void StepSystem::fold_joints(bool with_tangent) {
     FoldMaps& maps = with_tangent && tree_ ? tree_->maps(j) : scratch;
     joint_maps(j, g, maps, with_tangent);
     add_normal_friction(j, g, maps, with_tangent);
-    assembler_.fold(j, maps, with_matrix);
+    assembler_.fold(j, maps, with_tangent);
     add_joint_efforts(j, with_tangent);
   }
   for (std::size_t i = 0; i < mimic_maps_.size(); ++i) mimic_maps_[i] = mimic_map(dof_.mimics[i].coordinate);
-  assembler_.fold_mimics(mimic_maps_, with_matrix);
+  assembler_.fold_mimics(mimic_maps_, with_tangent);
 }
 
 MimicMap StepSystem::mimic_map(int coordinate) const {
@@ -254,14 +249,9 @@ void StepSystem::initialise(State& state) {
   points_valid_ = false;
 }
 
-void StepSystem::set_zero(bool with_tangent) {
-  assembler_.set_zero(with_tangent && !tree_);
-  if (with_tangent && tree_) tree_->set_zero();
-}
-
 bool StepSystem::evaluate(bool with_tangent) {
   if (is_off_line_) return false;
-  set_zero(with_tangent);
+  assembler_.set_zero(with_tangent);
   dissipated_ = 0;
   if (with_tangent && !static_)
     for (std::size_t i = 0; i < increments_.size(); ++i) inverse_tangents_[i] = cayley::inverse_tangent(increments_[i]);
@@ -272,10 +262,8 @@ bool StepSystem::evaluate(bool with_tangent) {
     add_endpoint_forces(with_tangent);
   else if (scheme_.stress != StressRule::Conjugate)
     add_momentum_beams(with_tangent);
-  else if (scheme_.correction == EnergyCorrection::Multiplier)
-    add_conserving_beams<true>(with_tangent);
   else
-    add_conserving_beams<false>(with_tangent);
+    dissipated_ += conserving_beams_.add(beams_step(), with_tangent, assembler_, end_strain_memory_);
   add_nodal_forces(with_tangent);
   if (is_interpolated()) add_interpolated_forces(with_tangent);
   if (!static_) add_nodal_inertia(with_tangent);
@@ -288,8 +276,10 @@ bool StepSystem::evaluate(bool with_tangent) {
   fold_joints(with_tangent);
   hold_friction();
   assembler_.gather(residual_);
-  if (with_tangent && !tree_) assembler_.gather_tangent();
-  if (with_tangent) hold_friction_tangent();
+  if (with_tangent) {
+    assembler_.gather_tangent();
+    hold_friction_tangent();
+  }
   return residual_.allFinite();
 }
 

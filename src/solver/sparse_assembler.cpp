@@ -32,6 +32,7 @@ void fold_block_columns(const double* source, int rows, const FoldMaps& maps, do
 }  // namespace
 
 void SparseAssembler::set_zero(bool with_tangent) {
+  if (with_tangent && tree_) tree_->set_zero();
   if (with_tangent)
     for (const Span& span : written_) std::fill_n(values_.begin() + span.from, span.count, 0.0);
   std::fill(residual_.begin(), residual_.end(), 0.0);
@@ -48,7 +49,7 @@ void SparseAssembler::fold(int j, const FoldMaps& maps, bool with_tangent) {
     master += g;
     master.tail<3>() += maps.lever_left.cross(g.head<3>());
   }
-  if (!with_tangent) return;
+  if (!with_tangent || tree_) return;
   const JointFold& fold = joint_folds_[j];
   fold_columns(fold, maps);
   fold_rows(fold, maps);

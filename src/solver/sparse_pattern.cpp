@@ -132,9 +132,9 @@ class SparseAssembler::PatternBuilder {
   std::vector<bool> folded_;
 };
 
-SparseAssembler::SparseAssembler(const Model& model, const DegreesOfFreedom& dof, Parts parts)
-    : model_(model), dof_(dof), residual_(dof.scalar_count, 0.0) {
-  if (parts == Parts::All) build_pattern();
+SparseAssembler::SparseAssembler(const Model& model, const DegreesOfFreedom& dof, TreeSolver* tree)
+    : model_(model), dof_(dof), tree_(tree), residual_(dof.scalar_count, 0.0) {
+  if (!tree) build_pattern();
 }
 
 void SparseAssembler::build_pattern() {

@@ -1,6 +1,7 @@
 // Beams over a step in the conserving family: tangents, momenta, energy, damping.
 #include "flexarm/elements/conserving_beam.h"
 
+#include "elements/conserving_kernel.h"
 #include "elements/kernel_checks.h"
 
 namespace flexarm {

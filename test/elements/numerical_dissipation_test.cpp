@@ -1,6 +1,6 @@
 // Numerical dissipation of the energy-momentum family by the stress alone.
+#include "elements/conserving_kernel.h"
 #include "elements/kernel_checks.h"
-#include "flexarm/elements/conserving_beam.h"
 #include "flexarm/integrators/scheme.h"
 
 namespace flexarm {

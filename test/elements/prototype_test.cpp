@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "elements/average_rotary.h"
+#include "elements/conserving_kernel.h"
 #include "elements/differences.h"
-#include "flexarm/elements/conserving_beam.h"
 #include "flexarm/elements/endpoint_beam.h"
 #include "flexarm/elements/nodal_inertia.h"
 #include "flexarm/integrators/scheme.h"

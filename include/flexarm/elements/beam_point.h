@@ -4,6 +4,7 @@
 
 #include <array>
 #include <optional>
+#include <type_traits>
 
 #include "flexarm/math/local_rotation.h"
 #include "flexarm/math/referenced_rotation.h"
@@ -11,12 +12,17 @@
 
 namespace flexarm {
 
+template <typename S>
+using Vector6T = Eigen::Matrix<S, 6, 1>;
+
 /// Kinematics of a stiffness point at one instant.
-struct PointKinematics {
-  Matrix3 rotation;  ///< Lambda
-  Vector3 tangent;   ///< r' = dr/ds
-  Vector6 strain;    ///< {Gamma, K}
+template <typename S>
+struct PointKinematicsT {
+  Matrix3T<S> rotation;  ///< Lambda
+  Vector3T<S> tangent;   ///< r' = dr/ds
+  Vector6T<S> strain;    ///< {Gamma, K}
 };
+using PointKinematics = PointKinematicsT<double>;
 
 /// Nodal motion of an element over a step [t_n, t_{n+1}].
 template <int Nodes>
@@ -74,21 +80,23 @@ class ElementRotations {
   std::optional<ReferencedRotations<Nodes>> referenced_;
 };
 
-template <int Nodes>
-Vector3 interpolate(const NodalValues<Nodes>& weights, const std::array<Vector3, Nodes>& values) {
-  Vector3 sum = weights[0] * values[0];
+template <int Nodes, typename S = double>
+Vector3T<S> interpolate(const NodalValues<Nodes, S>& weights, const std::array<Vector3T<S>, Nodes>& values) {
+  Vector3T<S> sum = weights[0] * values[0];
   for (int i = 1; i < Nodes; ++i) sum += weights[i] * values[i];
   return sum;
 }
 
 /// Strains of a configuration (Muñoz 2004, eq. 2.1): Gamma = Lambda^T r' - reference, K = Upsilon - reference.
-inline PointKinematics point_kinematics(const InterpolatedRotation<double>& interpolated, const Vector3& tangent,
-                                        const Vector6& reference_strain) {
-  PointKinematics point;
+template <typename S>
+PointKinematicsT<S> point_kinematics(const InterpolatedRotation<S>& interpolated,
+                                     const Vector3T<std::decay_t<S>>& tangent,
+                                     const Vector6T<std::decay_t<S>>& reference_strain) {
+  PointKinematicsT<S> point;
   point.rotation = interpolated.rotation;
   point.tangent = tangent;
-  point.strain.head<3>() = interpolated.rotation.transpose() * tangent;
-  point.strain.tail<3>() = interpolated.curvature;
+  point.strain.template head<3>() = interpolated.rotation.transpose() * tangent;
+  point.strain.template tail<3>() = interpolated.curvature;
   point.strain -= reference_strain;
   return point;
 }
@@ -143,44 +151,34 @@ void add_point_residual(double weight, const NodalValues<Nodes>& derivative, con
   }
 }
 
-/// Columns of a point's linearisation: {dr', spin, spin'} and, for increments, {dw, dw'} of the interpolated
-/// tangent-scaled increment.
-constexpr int kInstantColumns = 9, kIncrementColumns = 15;
-
-/// How the columns of a point depend on the nodes' {dr_j, spin_j}: spin = sum spins.values[j] spin_j, and so on.
+/// How the columns {dr', spin, spin'} of a point depend on the nodes' {dr_j, spin_j}: spin = sum values[j] spin_j, ...
 template <int Nodes>
 struct PointVariation {
-  const NodalValues<Nodes>& derivative;                ///< dr' = sum derivative[j] dr_j
-  const GeneralisedShapeFunctions<Nodes>& spins;       ///< of spin, spin'
-  const GeneralisedShapeFunctions<Nodes>& increments;  ///< of dw, dw'; used with kIncrementColumns only
+  const NodalValues<Nodes>& derivative;           ///< dr' = sum derivative[j] dr_j
+  const GeneralisedShapeFunctions<Nodes>& spins;  ///< of spin, spin'
 };
 
 /// The linearisation of a point with respect to node j's {dr_j, spin_j}.
-template <int Nodes, int Rows, int Columns>
-Eigen::Matrix<double, Rows, 6> node_columns(const Eigen::Matrix<double, Rows, Columns>& point,
+template <int Nodes, int Rows>
+Eigen::Matrix<double, Rows, 6> node_columns(const Eigen::Matrix<double, Rows, 9>& point,
                                             const PointVariation<Nodes>& variation, int j) {
   Eigen::Matrix<double, Rows, 6> columns;
   columns.template leftCols<3>() = variation.derivative[j] * point.template leftCols<3>();
   auto spin = columns.template rightCols<3>();
   spin.noalias() = point.template middleCols<3>(3).lazyProduct(variation.spins.values[j]);
-  spin.noalias() += point.template middleCols<3>(6).lazyProduct(variation.spins.derivatives[j]);
-  if constexpr (Columns == kIncrementColumns) {
-    spin.noalias() += point.template middleCols<3>(9).lazyProduct(variation.increments.values[j]);
-    spin.noalias() += point.template middleCols<3>(12).lazyProduct(variation.increments.derivatives[j]);
-  }
+  spin.noalias() += point.template rightCols<3>().lazyProduct(variation.spins.derivatives[j]);
   return columns;
 }
 
-/// Adds the tangent of add_point_residual. `resultants` is d{n, m} (6 x Columns), `couple` d(arm x n) (3 x Columns).
-template <int Nodes, int Columns, class Tests>
+/// Adds the tangent of add_point_residual. `resultants` is d{n, m}, `couple` d(arm x n), columns {dr', spin, spin'}.
+template <int Nodes, class Tests>
 void add_point_tangent(double weight, const Tests& tests, const PointVariation<Nodes>& variation,
-                       const Eigen::Matrix<double, 6, Columns>& resultants,
-                       const Eigen::Matrix<double, 3, Columns>& couple,
+                       const Eigen::Matrix<double, 6, 9>& resultants, const Eigen::Matrix<double, 3, 9>& couple,
                        Eigen::Matrix<double, 6 * Nodes, 6 * Nodes>& tangent) {
-  Eigen::Matrix<double, 9, Columns> all;
+  Eigen::Matrix<double, 9, 9> all;
   all << weight * resultants, weight * couple;
   for (int j = 0; j < Nodes; ++j) {
-    const Eigen::Matrix<double, 9, 6> d = node_columns<Nodes, 9, Columns>(all, variation, j);
+    const Eigen::Matrix<double, 9, 6> d = node_columns<Nodes, 9>(all, variation, j);
     const Eigen::Matrix<double, 3, 6> moment = d.template middleRows<3>(3), cross = d.template bottomRows<3>();
     for (int i = 0; i < Nodes; ++i) {
       tangent.template block<3, 6>(6 * i, 6 * j) += variation.derivative[i] * d.template topRows<3>();

@@ -96,8 +96,8 @@ void endpoint_internal(const BeamElement<Nodes>& element, const ElementNodes<Nod
     add_point_residual<Nodes>(constants.weight, constants.derivative, tests, n, m, end[k].tangent, system.residual);
     if (!with_tangent) continue;
     const endpoint::PointTangent d = endpoint::point_tangent(end[k], element.stiffness, point.slope, n, m);
-    add_point_tangent<Nodes, kInstantColumns>(constants.weight, tests, {constants.derivative, generalised, generalised},
-                                              d.resultants, d.couple, system.tangent);
+    add_point_tangent<Nodes>(constants.weight, tests, {constants.derivative, generalised}, d.resultants, d.couple,
+                             system.tangent);
   }
 }
 

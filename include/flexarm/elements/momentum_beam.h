@@ -3,7 +3,13 @@
 /// Lagrange test functions, moments turned into space by A = T(omega) Lambda_n or S(w) Lambda_n, rotary inertia at the
 /// mass points.
 
-#include "flexarm/elements/conserving_beam.h"
+#include <cmath>
+
+#include "flexarm/elements/beam_point.h"
+#include "flexarm/elements/time_rule.h"
+#include "flexarm/math/cayley.h"
+#include "flexarm/math/so3.h"
+#include "flexarm/model/state.h"
 
 namespace flexarm {
 
@@ -15,6 +21,89 @@ struct ElementEnergy {
 };
 
 namespace momentum {
+
+/// A stiffness point over a step.
+template <int Nodes>
+struct Point {
+  PointKinematics end;
+  GeneralisedShapeFunctions<Nodes> generalised;
+  Matrix3 average_rotation;  // (Lambda_n + Lambda_{n+1}) / 2
+  Vector3 arm;               // r'_*: (r'_n + r'_{n+1}) / 2, or r'_n
+  double arm_weight;         // of the end in it
+};
+
+/// Stress resultants' material values at a point, the map of the moment to space, and their derivatives.
+struct StressState {
+  Vector6 stress;
+  Eigen::Matrix<double, 6, 9> stress_derivative;  // columns {dr', spin, spin'}
+  Matrix3 moment_map;                             // A
+  Matrix3 moment_derivative = Matrix3::Zero();    // d(A a) / d(spin) at constant material moment a
+};
+
+/// Adds a point's forces and their tangent.
+template <int Nodes, class Tests>
+void add_point(const typename BeamElement<Nodes>::StiffnessPoint& constants, const Tests& tests, const Point<Nodes>& p,
+               const StressState& state, bool with_tangent, ElementSystem<Nodes>& system) {
+  const Matrix3& average = p.average_rotation;
+  const Vector3 n = average * state.stress.template head<3>(), m = state.moment_map * state.stress.template tail<3>();
+  add_point_residual<Nodes>(constants.weight, constants.derivative, tests, n, m, p.arm, system.residual);
+  if (!with_tangent) return;
+  Eigen::Matrix<double, 6, 9> resultants;
+  resultants.template topRows<3>().noalias() = average.lazyProduct(state.stress_derivative.template topRows<3>());
+  resultants.template bottomRows<3>().noalias() =
+      state.moment_map.lazyProduct(state.stress_derivative.template bottomRows<3>());
+  resultants.template block<3, 3>(0, 3) -= 0.5 * so3::hat(Vector3(p.end.rotation * state.stress.template head<3>()));
+  resultants.template block<3, 3>(3, 3) += state.moment_derivative;
+  Eigen::Matrix<double, 3, 9> couple = so3::hat(p.arm) * resultants.template topRows<3>();
+  couple.template leftCols<3>() -= p.arm_weight * so3::hat(n);
+  add_point_tangent<Nodes>(constants.weight, tests, {constants.derivative, p.generalised}, resultants, couple,
+                           system.tangent);
+}
+
+/// The stiffness points of an element over a step; those at the end go to `end`.
+template <int Nodes>
+void evaluate_points(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const PointKinematics* begin,
+                     double arm_weight, bool with_variation,
+                     std::array<Point<Nodes>, BeamElement<Nodes>::kStiffnessPoints>& points, PointKinematics* end) {
+  const ElementRotations<Nodes> rotations(nodes, with_variation);
+  for (int k = 0; k < BeamElement<Nodes>::kStiffnessPoints; ++k) {
+    const auto& constants = element.stiffness_points[k];
+    Point<Nodes>& p = points[k];
+    const auto* reference = nodes.stiffness_reference ? nodes.stiffness_reference + k : nullptr;
+    const auto rotation = rotations.evaluate(constants.shape, constants.derivative, reference, p.generalised);
+    p.end = point_kinematics(rotation, interpolate<Nodes>(constants.derivative, nodes.end), constants.reference_strain);
+    p.average_rotation = 0.5 * (begin[k].rotation + p.end.rotation);
+    p.arm_weight = arm_weight;
+    p.arm = (1 - arm_weight) * begin[k].tangent + arm_weight * p.end.tangent;
+    end[k] = p.end;
+  }
+}
+
+/// Translational inertia (1/h) int I^i I^j mass (v_{n+1} - v_n), v_{n+1} = factor Delta r / h - (factor - 1) v_n.
+template <int Nodes>
+void add_translational_inertia(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, double factor,
+                               double step, bool with_tangent, ElementSystem<Nodes>& system) {
+  std::array<Vector3, Nodes> force;
+  for (int i = 0; i < Nodes; ++i)
+    force[i] = (factor / step) * ((nodes.end[i] - nodes.begin[i]) / step - nodes.velocity[i]);
+  add_translational<Nodes>(element.mass, force, factor / (step * step), with_tangent, system);
+}
+
+/// Mass-proportional damping by the mean velocity Delta r / h.
+template <int Nodes>
+void add_mass_damping(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, double step,
+                      bool with_tangent, ElementSystem<Nodes>& system) {
+  if (element.mass_damping == 0) return;
+  std::array<Vector3, Nodes> mean, force;
+  for (int i = 0; i < Nodes; ++i) {
+    mean[i] = (nodes.end[i] - nodes.begin[i]) / step;
+    force[i] = element.mass_damping * mean[i];
+  }
+  add_translational<Nodes>(element.mass, force, element.mass_damping / step, with_tangent, system);
+  for (int i = 0; i < Nodes; ++i)
+    for (int j = 0; j < Nodes; ++j)
+      system.dissipated += element.mass_damping * step * element.mass(i, j) * mean[i].dot(mean[j]);
+}
 
 /// Moment map A and d(A a) = derivative(a) * spin for constant a; spin: of the section at the end.
 class MomentMap {
@@ -47,12 +136,12 @@ struct StressWeights {
 /// Adds the internal forces of a stress.
 template <int Nodes>
 void add_stress(const BeamElement<Nodes>& element, StressRule rule, const StressWeights& weights,
-                const std::array<conserving::Point<Nodes>, BeamElement<Nodes>::kStiffnessPoints>& points,
+                const std::array<Point<Nodes>, BeamElement<Nodes>::kStiffnessPoints>& points,
                 const PointKinematics* begin, bool with_tangent, ElementSystem<Nodes>& system) {
   for (int k = 0; k < BeamElement<Nodes>::kStiffnessPoints; ++k) {
     const auto& constants = element.stiffness_points[k];
-    const conserving::Point<Nodes>& p = points[k];
-    conserving::StressState<kInstantColumns> state;
+    const Point<Nodes>& p = points[k];
+    StressState state;
     state.stress = element.stiffness * (weights.begin * begin[k].strain + weights.end * p.end.strain);
     if (weights.forces_only) state.stress.template tail<3>().setZero();
     const MomentMap map(rule, begin[k].rotation, p.end.rotation);
@@ -62,20 +151,21 @@ void add_stress(const BeamElement<Nodes>& element, StressRule rule, const Stress
       if (weights.forces_only) state.stress_derivative.template bottomRows<3>().setZero();
       state.moment_derivative = map.derivative(state.stress.template tail<3>());
     }
-    conserving::add_point<Nodes>(constants, LagrangeTests<Nodes>{constants.shape, constants.derivative}, p, state,
-                                 with_tangent, system);
+    add_point<Nodes>(constants, LagrangeTests<Nodes>{constants.shape, constants.derivative}, p, state, with_tangent,
+                     system);
   }
 }
 
 /// Adds the change of strain energy and, with a tangent, its gradient: the internal forces at the end.
 template <int Nodes>
 void add_strain_energy(const BeamElement<Nodes>& element,
-                       const std::array<conserving::Point<Nodes>, BeamElement<Nodes>::kStiffnessPoints>& points,
+                       const std::array<Point<Nodes>, BeamElement<Nodes>::kStiffnessPoints>& points,
                        const PointKinematics* begin, ElementEnergy<Nodes>& energy) {
   for (int k = 0; k < BeamElement<Nodes>::kStiffnessPoints; ++k) {
     const auto& constants = element.stiffness_points[k];
     const PointKinematics& end = points[k].end;
-    energy.change += constants.weight * points[k].stress.dot(end.strain - begin[k].strain);
+    const Vector6 average = element.stiffness * (0.5 * (begin[k].strain + end.strain));
+    energy.change += constants.weight * average.dot(end.strain - begin[k].strain);
     const Vector6 stress = element.stiffness * end.strain;
     add_point_residual<Nodes>(constants.weight, constants.derivative, GeneralisedTests<Nodes>{points[k].generalised},
                               end.rotation * stress.template head<3>(), end.rotation * stress.template tail<3>(),
@@ -142,11 +232,10 @@ void momentum_beam(const BeamElement<Nodes>& element, const ElementNodes<Nodes>&
                    PointKinematics* end, ElementSystem<Nodes>& system) {
   const bool is_corrected = rule.correction != EnergyCorrection::None;
   system.set_zero();
-  std::array<conserving::Point<Nodes>, BeamElement<Nodes>::kStiffnessPoints> points;
-  conserving::evaluate_points<Nodes>(element, nodes, begin, rule.arm_weight(), with_tangent || is_corrected, points,
-                                     end);
+  std::array<momentum::Point<Nodes>, BeamElement<Nodes>::kStiffnessPoints> points;
+  momentum::evaluate_points<Nodes>(element, nodes, begin, rule.arm_weight(), with_tangent || is_corrected, points, end);
   momentum::add_stress<Nodes>(element, rule.stress, {0.5, 0.5}, points, begin, with_tangent, system);
-  conserving::add_translational_inertia<Nodes>(element, nodes, rule.velocity_factor(), step, with_tangent, system);
+  momentum::add_translational_inertia<Nodes>(element, nodes, rule.velocity_factor(), step, with_tangent, system);
   ElementEnergy<Nodes> energy;
   rotary(with_tangent, is_corrected ? &energy : nullptr, system);
   if (is_corrected) {
@@ -168,7 +257,7 @@ void momentum_beam(const BeamElement<Nodes>& element, const ElementNodes<Nodes>&
     // The work on the nodes, not eta C (change of strain)^2 / h, which it is up to the order of the scheme.
     system.dissipated += momentum::nodal_increments(nodes).dot(viscous.residual);
   }
-  conserving::add_mass_damping<Nodes>(element, nodes, step, with_tangent, system);
+  momentum::add_mass_damping<Nodes>(element, nodes, step, with_tangent, system);
 }
 
 }  // namespace flexarm

@@ -2,12 +2,12 @@
 /// Residual and tangent of one step (or of a static configuration) as a function of the trial end configuration.
 
 #include <optional>
-#include <tuple>
 #include <vector>
 
 #include "flexarm/elements/momentum_beam.h"
 #include "flexarm/elements/nodal_inertia.h"
 #include "flexarm/elements/rotary_inertia.h"
+#include "flexarm/integrators/conserving_beams.h"
 #include "flexarm/integrators/friction_carrier.h"
 #include "flexarm/integrators/rotation_reference.h"
 #include "flexarm/integrators/scheme.h"
@@ -89,16 +89,10 @@ class StepSystem {
   double largest_node_rotation() const;
 
  private:
-  template <bool WithMultiplier>
-  void add_conserving_beams(bool with_tangent);
+  BeamsStep beams_step() const { return {*state_, begin_, end_, increments_, step_}; }
   void add_momentum_beams(bool with_tangent);
   void add_endpoint_forces(bool with_tangent);
   void add_newmark_inertia(bool with_tangent);
-  double* diagonal_block(int variable) {
-    return tree_ ? tree_->diagonal_block(variable) : assembler_.diagonal_block(variable);
-  }
-  double* element_block(int index) { return tree_ ? tree_->element_block(index) : assembler_.element_block(index); }
-  void set_zero(bool with_tangent);
   template <int Nodes>
   void gather_nodes(const BeamElement<Nodes>& element, const std::vector<NodePose>& end,
                     ElementNodes<Nodes>& nodes) const;
@@ -164,7 +158,6 @@ class StepSystem {
   void initialise_strain_memory(State& state);
   void initialise_momentum_rates(State& state);
   void load_begin_configuration(const State& state);
-  void compute_mid_functions();
   void compute_begin_points();
   void set_prescribed(double time);
   void extrapolate();
@@ -177,8 +170,8 @@ class StepSystem {
   const Model& model_;
   Scheme scheme_;
   DegreesOfFreedom dof_;
-  SparseAssembler assembler_;
   std::optional<TreeSolver> tree_;
+  SparseAssembler assembler_;
 
   const State* state_ = nullptr;
   double step_ = 0, load_factor_ = 1;
@@ -189,10 +182,8 @@ class StepSystem {
   std::vector<Vector3> increments_;          // per node, tangent-scaled
   std::vector<Matrix3> inverse_tangents_;
   RotationReference reference_;
-  std::vector<PointKinematics> begin_points_, end_points_;
-  template <int Nodes>
-  using GroupFunctions = std::vector<ElementFunctions<Nodes>>;
-  std::tuple<GroupFunctions<2>, GroupFunctions<3>, GroupFunctions<4>, GroupFunctions<5>> mid_functions_;
+  std::vector<PointKinematics> begin_points_, end_points_;  // unless in conserving_beams_
+  ConservingBeams conserving_beams_;                        // empty for schemes of other families
   std::vector<Matrix3> begin_mass_rotations_, end_mass_rotations_;
   std::vector<MassPointState> end_mass_points_;
   std::vector<Vector6> end_strain_rates_;

@@ -78,14 +78,17 @@ class LocalRotations {
   const Vector3T<S>& quarter_tangent() const { return quarter_tangent_; }
 
   /// theta = sum_i weights_i theta_i.
-  Vector3T<S> interpolate(const NodalValues<Nodes>& weights) const {
+  template <typename W>
+  Vector3T<S> interpolate(const NodalValues<Nodes, W>& weights) const {
     Vector3T<S> sum = S(weights[0]) * local_[0];
     for (int i = 1; i < Nodes; ++i) sum += S(weights[i]) * local_[i];
     return sum;
   }
 
   /// Rotation and curvature only, given the shape functions and their derivatives (with respect to any coordinate).
-  InterpolatedRotation<S> evaluate(const NodalValues<Nodes>& shape, const NodalValues<Nodes>& shape_derivative) const {
+  template <typename W>
+  InterpolatedRotation<S> evaluate(const NodalValues<Nodes, W>& shape,
+                                   const NodalValues<Nodes, W>& shape_derivative) const {
     return evaluate(so3::ExponentialMap<S>(interpolate(shape)), interpolate(shape_derivative));
   }
 
@@ -100,9 +103,9 @@ class LocalRotations {
  private:
   /// to from^-1 with q0 >= 0.
   static QuaternionT<S> relative(const QuaternionT<S>& to, const QuaternionT<S>& from) {
-    QuaternionT<S> q = to * QuaternionT<S>(from.w(), -from.x(), -from.y(), -from.z());
-    if (std::real(q.w()) < 0) q.coeffs() = -q.coeffs();
-    return q;
+    const QuaternionT<S> q = to * QuaternionT<S>(from.w(), -from.x(), -from.y(), -from.z());
+    const auto sign = sign_of(q.w());
+    return QuaternionT<S>(sign * q.w(), sign * q.x(), sign * q.y(), sign * q.z());
   }
 
   /// Local vectors of the reference pair; returns the rotation half-way. Half the rotation of a quaternion q is
@@ -147,7 +150,8 @@ class LocalRotationVariation {
   const LocalRotations<Nodes, S>& local_rotations() const { return local_; }
 
   /// Rotation, curvature and generalised shape functions I_g, I_g', given the shape functions and their derivatives.
-  InterpolatedRotation<S> evaluate(const NodalValues<Nodes>& shape, const NodalValues<Nodes>& shape_derivative,
+  template <typename W>
+  InterpolatedRotation<S> evaluate(const NodalValues<Nodes, W>& shape, const NodalValues<Nodes, W>& shape_derivative,
                                    GeneralisedShapeFunctions<Nodes, S>& generalised) const {
     const so3::ExponentialMap<S> map(local_.interpolate(shape));
     const Vector3T<S> derivative = local_.interpolate(shape_derivative);

@@ -10,8 +10,8 @@
 namespace flexarm {
 
 /// One number per node of an element, e.g. the shape functions at a point.
-template <int Nodes>
-using NodalValues = Eigen::Matrix<double, Nodes, 1>;
+template <int Nodes, typename S = double>
+using NodalValues = Eigen::Matrix<S, Nodes, 1>;
 
 /// Shape functions and their derivatives at one point. [-], and per unit of whatever coordinate they were scaled to.
 template <int Nodes>

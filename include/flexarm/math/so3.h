@@ -3,8 +3,8 @@
 ///
 /// Conventions: spatial spin, d(exp theta) = hat(dvartheta) exp theta with dvartheta = T(theta) dtheta. Angles in rad.
 /// Everything is a template on the scalar, so that tests run it in long double and with complex steps: products are
-/// bilinear (never conjugating) and branches look at real parts only. Nothing allocates or throws; non-finite input
-/// gives non-finite output. (Muñoz 2004, eq. 2.14-2.21)
+/// bilinear (never conjugating) and branches look at real parts only. What elements call runs on a Pack, too. Nothing
+/// allocates or throws; non-finite input gives non-finite output. (Muñoz 2004, eq. 2.14-2.21)
 
 #include <array>
 #include <cmath>
@@ -12,6 +12,8 @@
 #include <limits>
 
 #include <Eigen/Geometry>
+
+#include <flexarm/math/pack.h>
 
 namespace flexarm {
 
@@ -81,22 +83,55 @@ template <int k, int terms, typename S>
   return sum;
 }
 
-/// arctan(sqrt(x)) / sqrt(x) for x >= 0; a series (to round-off) where the quotient is 0/0 or slow.
+/// arctan(sqrt(x)) / sqrt(x), to round-off for 0 <= x < arctangent_series_limit.
+inline constexpr double arctangent_series_limit = 0.0625;
+template <typename S>
+[[gnu::always_inline]] inline S arctangent_series(const S& x) {
+  using Real = RealOf<S>;
+  constexpr int terms = 13 + 2 * extra_terms<S>;
+  S sum(Real(1) / Real(2 * terms - 1));
+#pragma GCC unroll 20
+  for (int j = terms - 2; j >= 0; --j) sum = Real(1) / Real(2 * j + 1) - x * sum;
+  return sum;
+}
+
+/// arctan(sqrt(x)) / sqrt(x) for x >= 0; a series where the quotient is 0/0 or slow.
 template <typename S>
 [[gnu::always_inline]] inline S arctangent_ratio(const S& x) {
   using std::atan;
   using std::sqrt;
-  using Real = RealOf<S>;
-  if (std::real(x) < Real(0.0625)) {
-    constexpr int terms = 13 + 2 * extra_terms<S>;
-    S sum(Real(1) / Real(2 * terms - 1));
-#pragma GCC unroll 20
-    for (int j = terms - 2; j >= 0; --j) sum = Real(1) / Real(2 * j + 1) - x * sum;
-    return sum;
-  }
+  if (std::real(x) < RealOf<S>(arctangent_series_limit)) return arctangent_series(x);
   const S root = sqrt(x);
   return atan(root) / root;
 }
+
+/// theta / sin(theta/2) for a quaternion of any norm with q0 = cos(theta/2) >= 0 and |q|^2 = sin^2(theta/2).
+template <typename S>
+[[gnu::always_inline]] inline S angle_per_sine(const S& q0, const S& square) {
+  using std::atan;
+  using std::sqrt;
+  using Real = RealOf<S>;
+  if (std::real(square) < Real(3) * std::real(q0) * std::real(q0))  // |theta| < 2 pi / 3
+    return Real(2) * arctangent_ratio<S>(square / (q0 * q0)) / q0;
+  constexpr Real pi(3.141592653589793238462643383279502884L);
+  const S sine = sqrt(square);
+  return (pi - Real(2) * atan(q0 / sine)) / sine;
+}
+
+/// Kept out of line: what few lanes of a pack need.
+[[gnu::noinline, gnu::cold]] inline double far_angle_per_sine(double q0, double square) {
+  return angle_per_sine(q0, square);
+}
+[[gnu::always_inline]] inline Pack angle_per_sine(const Pack& q0, const Pack& square) {
+  const Pack q00 = q0 * q0;
+  Pack result = Pack(2) * arctangent_series(Pack(square / q00)) / q0;
+  for_lanes_beyond(square, arctangent_series_limit * q00,
+                   [&](int lane) { result.set(lane, far_angle_per_sine(q0[lane], square[lane])); });
+  return result;
+}
+
+template <int kmax>
+std::array<double, kmax + 1> far_series_coefficients(double theta_squared);
 
 /// I + c1 hat(v) + c2 hat(v)^2.
 template <typename S>
@@ -139,10 +174,22 @@ template <int kmax, typename S>
   using std::sin;
   using std::sqrt;
   using Real = RealOf<S>;
-  constexpr int extra = detail::extra_terms<S>;
   const S& x = theta_squared;
   std::array<S, kmax + 1> a;
-  if (std::real(x) < Real(4)) {
+  const auto fill_downwards = [&] {
+#pragma GCC unroll 8
+    for (int k = kmax; k >= 2; --k) a[k - 2] = static_cast<Real>(detail::reciprocal_factorials[k - 1]) - x * a[k];
+  };
+  if constexpr (is_pack<S>) {
+    a[kmax] = detail::power_series<kmax, 9>(x);
+    a[kmax - 1] = detail::power_series<kmax - 1, 9>(x);
+    fill_downwards();
+    for_lanes_beyond(x, S(1), [&](int lane) {
+      const std::array<double, kmax + 1> b = detail::far_series_coefficients<kmax>(x[lane]);
+      for (int k = 0; k <= kmax; ++k) a[k].set(lane, b[k]);
+    });
+  } else if (std::real(x) < Real(4)) {
+    constexpr int extra = detail::extra_terms<S>;
     if (std::real(x) < Real(1)) {
       a[kmax] = detail::power_series<kmax, 9 + extra>(x);
       a[kmax - 1] = detail::power_series<kmax - 1, 9 + extra>(x);
@@ -150,8 +197,7 @@ template <int kmax, typename S>
       a[kmax] = detail::power_series<kmax, 12 + extra>(x);
       a[kmax - 1] = detail::power_series<kmax - 1, 12 + extra>(x);
     }
-#pragma GCC unroll 8
-    for (int k = kmax; k >= 2; --k) a[k - 2] = static_cast<Real>(detail::reciprocal_factorials[k - 1]) - x * a[k];
+    fill_downwards();
   } else {
     const S theta = sqrt(x);
     const S sine = sin(Real(0.5) * theta), cosine = cos(Real(0.5) * theta);
@@ -161,6 +207,12 @@ template <int kmax, typename S>
     for (int k = 2; k <= kmax; ++k) a[k] = (static_cast<Real>(detail::reciprocal_factorials[k - 1]) - a[k - 2]) / x;
   }
   return a;
+}
+
+/// Kept out of line: what few lanes of a pack need.
+template <int kmax>
+[[gnu::noinline, gnu::cold]] std::array<double, kmax + 1> detail::far_series_coefficients(double theta_squared) {
+  return series_coefficients<kmax>(theta_squared);
 }
 
 /// All operators of one rotation vector theta from a single evaluation of the coefficients.
@@ -255,7 +307,7 @@ inline Matrix3T<typename V::Scalar> exp(const Eigen::MatrixBase<V>& theta) {
 template <typename V>
 inline QuaternionT<typename V::Scalar> exp_quaternion(const Eigen::MatrixBase<V>& theta) {
   using S = typename V::Scalar;
-  const Vector3T<S> half = RealOf<S>(0.5) * theta;
+  const Vector3T<S> half = S(0.5) * theta;
   const S x = dot(half, half);
   const std::array<S, 2> a = series_coefficients<1>(x);
   return QuaternionT<S>(S(1) - x * a[1], a[0] * half[0], a[0] * half[1], a[0] * half[2]);
@@ -293,20 +345,12 @@ inline QuaternionT<typename M::Scalar> quaternion_from_matrix(const Eigen::Matri
 /// the sign of theta at exactly pi), and so does any multiple of q: normalisation errors do not matter.
 template <typename Q>
 inline Vector3T<typename Q::Scalar> log(const Eigen::QuaternionBase<Q>& quaternion) {
-  using std::atan;
-  using std::sqrt;
   using S = typename Q::Scalar;
-  using Real = RealOf<S>;
-  const Real sign(std::real(quaternion.w()) < Real(0) ? -1 : 1);
+  const auto sign = sign_of(quaternion.w());
   const S q0 = sign * quaternion.w();
   const Vector3T<S> q(sign * quaternion.x(), sign * quaternion.y(), sign * quaternion.z());
   const S square = dot(q, q);
-  if (std::real(square) < Real(3) * std::real(q0) * std::real(q0)) {  // |theta| < 2 pi / 3
-    return (Real(2) * detail::arctangent_ratio<S>(square / (q0 * q0)) / q0) * q;
-  }
-  constexpr Real pi(3.141592653589793238462643383279502884L);
-  const S sine = sqrt(square);
-  return ((pi - Real(2) * atan(q0 / sine)) / sine) * q;
+  return detail::angle_per_sine(q0, square) * q;
 }
 
 /// Rotation vector, |theta| <= pi, of a rotation matrix; accurate from 0 through pi.

@@ -8,6 +8,7 @@
 #include "flexarm/joints/loop_closure.h"
 #include "flexarm/joints/slide_map.h"
 #include "flexarm/model/degrees_of_freedom.h"
+#include "flexarm/solver/tree_solver.h"
 
 namespace flexarm {
 
@@ -29,18 +30,24 @@ struct MimicMap {
 /// and takes the time of about three factorisations.
 class SparseAssembler {
  public:
-  enum class Parts { All, Residual };
-  /// `Parts::Residual`: without blocks and matrix, for a tangent that is kept elsewhere.
-  SparseAssembler(const Model& model, const DegreesOfFreedom& dof, Parts parts = Parts::All);
+  /// With a `tree` the blocks of the tangent are the tree's, and there is no matrix: folding is left to its
+  /// elimination.
+  SparseAssembler(const Model& model, const DegreesOfFreedom& dof, TreeSolver* tree = nullptr);
 
   // ---- accumulation
   void set_zero(bool with_tangent = true);
   double* residual(int variable) { return residual_.data() + dof_.first[variable]; }
   const double* residual(int variable) const { return residual_.data() + dof_.first[variable]; }
   /// Column-major block on the diagonal of a variable, size x size.
-  double* diagonal_block(int variable) { return values_.data() + blocks_[diagonal_[variable]].offset; }
+  double* diagonal_block(int variable) {
+    if (tree_) return tree_->diagonal_block(variable);
+    return values_.data() + blocks_[diagonal_[variable]].offset;
+  }
   /// Block (node i, node j) of an element, 6 x 6; `index` = element.first_block + i * Nodes + j.
-  double* element_block(int index) { return values_.data() + blocks_[element_blocks_[index]].offset; }
+  double* element_block(int index) {
+    if (tree_) return tree_->element_block(index);
+    return values_.data() + blocks_[element_blocks_[index]].offset;
+  }
 
   /// Adds constraint `index` of a closure with its multiplier, before joints are folded.
   void add_closure(int closure, int index, double multiplier, const ClosureMaps& maps, bool with_tangent);
@@ -129,6 +136,7 @@ class SparseAssembler {
 
   const Model& model_;
   const DegreesOfFreedom& dof_;
+  TreeSolver* tree_;
   std::vector<Block> blocks_;
   std::vector<int> element_blocks_, diagonal_;
   std::vector<ColumnFold> column_folds_;

@@ -1,0 +1,183 @@
+#include "flexarm/integrators/conserving_beams.h"
+
+#include <algorithm>
+
+#include "flexarm/math/simd.h"
+
+namespace flexarm {
+namespace {
+
+/// One number of each lane.
+template <class Get>
+[[gnu::always_inline]] inline Pack gathered(const Get& get) {
+  static_assert(Pack::kLanes == 4);
+  return {get(0), get(1), get(2), get(3)};
+}
+/// One vector of each lane: get(lane) is a Vector3.
+template <class Get>
+[[gnu::always_inline]] inline Vector3T<Pack> gathered_vector(const Get& get) {
+  Vector3T<Pack> out;
+  for (int c = 0; c < 3; ++c) out[c] = gathered([&](int lane) { return get(lane)[c]; });
+  return out;
+}
+template <class Get>
+[[gnu::always_inline]] inline QuaternionT<Pack> gathered_quaternion(const Get& get) {
+  QuaternionT<Pack> out;
+  for (int c = 0; c < 4; ++c) out.coeffs()[c] = gathered([&](int lane) { return get(lane).coeffs()[c]; });
+  return out;
+}
+
+template <class Elements, class Packs>
+void fill_packs(const Elements& elements, Packs& packs) {
+  constexpr int lanes = Pack::kLanes;
+  const int count = static_cast<int>(elements.size());
+  packs.resize((count + lanes - 1) / lanes);
+  // Which terms there are is the same for a whole group, so that an element does not feel its neighbours.
+  bool is_coupled = false, has_mass_damping = false;
+  for (std::size_t p = 0; p < packs.size(); ++p) {
+    auto& pack = packs[p];
+    const int first = static_cast<int>(p) * lanes;
+    pack.lanes = std::min(lanes, count - first);
+    for (int lane = 0; lane < lanes; ++lane) {
+      const auto& element = elements[std::min(first + lane, count - 1)];
+      pack.nodes[lane] = element.nodes;
+      pack.first_block[lane] = element.first_block;
+      pack.first_stiffness_point[lane] = element.first_stiffness_point;
+      set_lane(pack.element, lane, element);
+    }
+    is_coupled = is_coupled || pack.element.stiffness.is_coupled;
+    has_mass_damping = has_mass_damping || pack.element.has_mass_damping;
+  }
+  for (auto& pack : packs) {
+    pack.element.stiffness.is_coupled = is_coupled;
+    pack.element.has_mass_damping = has_mass_damping;
+  }
+}
+
+}  // namespace
+
+ConservingBeams::ConservingBeams(const Model& model, const TimeRule& rule) : rule_(rule) {
+  if (rule.stress != StressRule::Conjugate) return;
+  for_each_group(model.beams, [&](const auto& group) {
+    constexpr int N = std::decay_t<decltype(group.elements)>::value_type::kNodes;
+    fill_packs(group.elements, std::get<PackGroup<N>>(groups_));
+  });
+}
+
+template <int Nodes>
+BeamNodes<Nodes, Pack> ConservingBeams::gather(const ElementPack<Nodes>& pack, const BeamsStep& step) {
+  BeamNodes<Nodes, Pack> nodes;
+  for (int i = 0; i < Nodes; ++i) {
+    const auto node = [&](int lane) { return pack.nodes[lane][i]; };
+    nodes.begin[i] = gathered_vector([&](int lane) -> const Vector3& { return step.begin[node(lane)].position; });
+    nodes.end[i] = gathered_vector([&](int lane) -> const Vector3& { return step.end[node(lane)].position; });
+    nodes.orientation[i] =
+        gathered_quaternion([&](int lane) -> const Quaternion& { return step.end[node(lane)].orientation; });
+    nodes.increment[i] = gathered_vector([&](int lane) -> const Vector3& { return step.increments[node(lane)]; });
+    nodes.velocity[i] =
+        gathered_vector([&](int lane) -> const Vector3& { return step.state.nodes[node(lane)].velocity; });
+  }
+  return nodes;
+}
+
+template <int Nodes>
+void ConservingBeams::gather(const ElementPack<Nodes>& pack, const std::vector<StrainMemory>& memory,
+                             std::array<StrainMemoryT<Pack>, Nodes - 1>& points) {
+  for (int k = 0; k < Nodes - 1; ++k)
+    for (int lane = 0; lane < Pack::kLanes; ++lane) {
+      const StrainMemory& from = memory[pack.first_stiffness_point[lane] + k];
+      set_lane(points[k].average, lane, from.average);
+      set_lane(points[k].rate, lane, from.rate);
+    }
+}
+
+template <int Nodes>
+void ConservingBeams::scatter(const ElementPack<Nodes>& pack, const std::array<StrainMemoryT<Pack>, Nodes - 1>& points,
+                              std::vector<StrainMemory>& memory) {
+  for (int k = 0; k < Nodes - 1; ++k)
+    for (int lane = 0; lane < pack.lanes; ++lane)
+      memory[pack.first_stiffness_point[lane] + k] = {get_lane(points[k].average, lane),
+                                                      get_lane(points[k].rate, lane)};
+}
+
+template <int Nodes>
+void ConservingBeams::scatter(const ElementPack<Nodes>& pack, const BlockSystem<Nodes, Pack>& system, bool with_tangent,
+                              SparseAssembler& assembler) {
+  std::array<double*, Pack::kLanes> targets;
+  for (int i = 0; i < Nodes; ++i) {
+    for (int lane = 0; lane < pack.lanes; ++lane) targets[lane] = assembler.residual(pack.nodes[lane][i]);
+    add_lanes<6>(system.residual[i].data(), pack.lanes, targets.data());
+    for (int j = 0; j < Nodes && with_tangent; ++j) {
+      for (int lane = 0; lane < pack.lanes; ++lane)
+        targets[lane] = assembler.element_block(pack.first_block[lane] + i * Nodes + j);
+      add_lanes<36>(system.tangent[i][j].data(), pack.lanes, targets.data());
+    }
+  }
+}
+
+void ConservingBeams::set_begin(const std::vector<NodePose>& begin) {
+  for_each_group(groups_, [&](auto& packs) {
+    constexpr int N = std::decay_t<decltype(packs)>::value_type::kNodes;
+    simd::run([&] {
+      for (auto& pack : packs) {
+        std::array<Vector3T<Pack>, N> position;
+        std::array<QuaternionT<Pack>, N> orientation;
+        for (int i = 0; i < N; ++i) {
+          const auto pose = [&](int lane) -> const NodePose& { return begin[pack.nodes[lane][i]]; };
+          position[i] = gathered_vector([&](int lane) -> const Vector3& { return pose(lane).position; });
+          orientation[i] = gathered_quaternion([&](int lane) -> const Quaternion& { return pose(lane).orientation; });
+        }
+        element_points<N, Pack>(pack.element, position, orientation, pack.points[begin_].data());
+      }
+    });
+  });
+}
+
+void ConservingBeams::set_mid_functions(const BeamsStep& step) {
+  // To second order: explicit, so that the tangent stays simple. Where the functions are to be averaged with those of
+  // the end: the begin.
+  const Pack turned(rule_.mid_functions == MidFunctions::Explicit ? 0.5 * step.step : 0.0);
+  for_each_group(groups_, [&](auto& packs) {
+    constexpr int N = std::decay_t<decltype(packs)>::value_type::kNodes;
+    simd::run([&] {
+      for (auto& pack : packs) {
+        std::array<QuaternionT<Pack>, N> orientation;
+        for (int i = 0; i < N; ++i) {
+          const auto node = [&](int lane) { return pack.nodes[lane][i]; };
+          const Vector3T<Pack> spin = gathered_vector(
+              [&](int lane) -> const Vector3& { return step.state.nodes[node(lane)].angular_velocity; });
+          orientation[i] =
+              gathered_quaternion([&](int lane) -> const Quaternion& { return step.begin[node(lane)].orientation; }) *
+              so3::exp_quaternion(Vector3T<Pack>(turned * spin));
+        }
+        element_functions<N, Pack>(pack.element, orientation, pack.mid_functions);
+      }
+    });
+  });
+}
+
+double ConservingBeams::add(const BeamsStep& step, bool with_tangent, SparseAssembler& assembler,
+                            std::vector<StrainMemory>& end_memory) {
+  double dissipated = 0;
+  const bool has_memory = rule_.dissipation.any();
+  for_each_group(groups_, [&](auto& packs) {
+    constexpr int N = std::decay_t<decltype(packs)>::value_type::kNodes;
+    simd::run([&] {
+      std::array<StrainMemoryT<Pack>, N - 1> memory, new_memory;
+      BlockSystem<N, Pack> system;
+      for (auto& pack : packs) {
+        if (has_memory) gather<N>(pack, step.state.strain_memory, memory);
+        conserving_beam<N, Pack>(pack.element, gather<N>(pack, step), rule_, pack.mid_functions,
+                                 pack.points[begin_].data(), has_memory ? memory.data() : nullptr, step.step,
+                                 with_tangent, pack.points[1 - begin_].data(), has_memory ? new_memory.data() : nullptr,
+                                 system);
+        if (has_memory) scatter<N>(pack, new_memory, end_memory);
+        scatter<N>(pack, system, with_tangent, assembler);
+        for (int lane = 0; lane < pack.lanes; ++lane) dissipated += system.dissipated[lane];
+      }
+    });
+  });
+  return dissipated;
+}
+
+}  // namespace flexarm

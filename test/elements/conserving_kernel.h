@@ -1,0 +1,96 @@
+#pragma once
+/// The kernel of the energy-momentum family as tests call it: elements in and systems out, lane by lane.
+
+#include "elements/random_element.h"
+#include "flexarm/elements/conserving_beam.h"
+
+namespace flexarm::test {
+
+/// What the kernel reads of one element.
+template <int Nodes>
+struct LaneInput {
+  const BeamElement<Nodes>& element;
+  const ElementNodes<Nodes>& nodes;
+  const ElementFunctions<Nodes>& functions;
+  const PointKinematics* begin;
+  const StrainMemory* memory;  // may be null
+};
+
+/// The same of one or several elements.
+template <int Nodes, typename S>
+struct KernelData {
+  ConservingElement<Nodes, S> element;
+  BeamNodes<Nodes, S> nodes;
+  ElementFunctions<Nodes, S> functions;
+  std::array<PointKinematicsT<S>, Nodes - 1> begin, end;
+  std::array<StrainMemoryT<S>, Nodes - 1> memory, end_memory;
+  BlockSystem<Nodes, S> system;
+
+  void set(int lane, const LaneInput<Nodes>& input) {
+    set_lane(element, lane, input.element);
+    for (int i = 0; i < Nodes; ++i) {
+      set_lane(nodes.begin[i], lane, input.nodes.begin[i]);
+      set_lane(nodes.end[i], lane, input.nodes.end[i]);
+      set_lane(nodes.orientation[i].coeffs(), lane, input.nodes.orientation[i].coeffs());
+      set_lane(nodes.increment[i], lane, input.nodes.increment[i]);
+      set_lane(nodes.velocity[i], lane, input.nodes.velocity[i]);
+    }
+    for (int k = 0; k < Nodes - 1; ++k) {
+      for (int i = 0; i < Nodes; ++i) {
+        set_lane(functions[k].values[i], lane, input.functions[k].values[i]);
+        set_lane(functions[k].derivatives[i], lane, input.functions[k].derivatives[i]);
+      }
+      set_lane(begin[k].rotation, lane, input.begin[k].rotation);
+      set_lane(begin[k].tangent, lane, input.begin[k].tangent);
+      set_lane(begin[k].strain, lane, input.begin[k].strain);
+      const StrainMemory none;
+      const StrainMemory& from = input.memory ? input.memory[k] : none;
+      set_lane(memory[k].average, lane, from.average);
+      set_lane(memory[k].rate, lane, from.rate);
+    }
+  }
+  void evaluate(const TimeRule& rule, double step, bool with_tangent) {
+    conserving_beam<Nodes, S>(element, nodes, rule, functions, begin.data(), memory.data(), step, with_tangent,
+                              end.data(), end_memory.data(), system);
+  }
+  void get(int lane, bool with_tangent, ElementSystem<Nodes>& out) const {
+    out.set_zero();
+    out.dissipated = get_lane(system.dissipated, lane);
+    for (int i = 0; i < Nodes; ++i) {
+      out.residual.template segment<6>(6 * i) = get_lane(system.residual[i], lane);
+      for (int j = 0; j < Nodes && with_tangent; ++j)
+        out.tangent.template block<6, 6>(6 * i, 6 * j) = get_lane(system.tangent[i][j], lane);
+    }
+  }
+  void get_end(int lane, PointKinematics* points, StrainMemory* memories) const {
+    for (int k = 0; k < Nodes - 1; ++k) {
+      points[k] = {get_lane(end[k].rotation, lane), get_lane(end[k].tangent, lane), get_lane(end[k].strain, lane)};
+      if (memories) memories[k] = {get_lane(end_memory[k].average, lane), get_lane(end_memory[k].rate, lane)};
+    }
+  }
+};
+
+/// One element, as a pack of copies: what ships runs on packs.
+template <bool WithMultiplier, int Nodes>
+void conserving_beam(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, TimeRule rule,
+                     const ElementFunctions<Nodes>& functions, const PointKinematics* begin, const StrainMemory* memory,
+                     double step, bool with_tangent, PointKinematics* end, StrainMemory* end_memory,
+                     ElementSystem<Nodes>& system) {
+  rule.correction = WithMultiplier ? EnergyCorrection::Multiplier : EnergyCorrection::None;
+  KernelData<Nodes, Pack> data;
+  for (int lane = 0; lane < Pack::kLanes; ++lane) data.set(lane, {element, nodes, functions, begin, memory});
+  data.evaluate(rule, step, with_tangent);
+  data.get(0, with_tangent, system);
+  data.get_end(0, end, end_memory);
+}
+
+/// Generalised shape functions of an element of the model.
+template <int Nodes>
+void element_functions(const BeamElement<Nodes>& element, const std::array<Quaternion, Nodes>& orientation,
+                       ElementFunctions<Nodes>& functions) {
+  ConservingElement<Nodes> constants;
+  set_lane(constants, 0, element);
+  flexarm::element_functions<Nodes, double>(constants, orientation, functions);
+}
+
+}  // namespace flexarm::test
