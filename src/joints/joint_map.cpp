@@ -10,12 +10,6 @@ namespace {
 
 using so3::hat;
 
-/// Orientation of the joint frame and the slave's lever arm from the master node, world axes.
-struct JointFrame {
-  Matrix3 rotation;  // B
-  Vector3 lever;     // Lambda_m b + B (displacement)
-};
-
 Vector3 displacement(const JointMap& joint, const Released& released) {
   if (joint.kind != JointMapKind::Scalar) return released.displacement;
   const double u = released.displacement[0];
@@ -33,11 +27,15 @@ TravelRate travel_rate(const JointMap& joint, double begin, double end) {
   return {f.derivative(end), f.second_derivative(end), f.secant(begin, end), f.secant_derivative(begin, end)};
 }
 
-JointFrame joint_frame(const JointMap& joint, const NodePose& master, const Released& released) {
-  JointFrame frame;
-  frame.rotation = master.rotation * joint.origin.orientation.toRotationMatrix();
-  frame.lever = master.rotation * joint.origin.position + frame.rotation * displacement(joint, released);
-  return frame;
+/// B, the orientation of the joint frame.
+Matrix3 joint_rotation(const JointMap& joint, const NodePose& master) {
+  return master.rotation * joint.origin.orientation.toRotationMatrix();
+}
+
+/// The slave's lever arm from the master node, Lambda_m b + B (displacement), world axes.
+Vector3 lever_arm(const JointMap& joint, const NodePose& master, const Released& released) {
+  if (joint.kind == JointMapKind::Rigid) return master.rotation * joint.origin.position;
+  return master.rotation * (joint.origin.position + joint.origin.orientation * displacement(joint, released));
 }
 
 void set_sizes(int count, FoldMaps& maps) {
@@ -66,16 +64,15 @@ ScaledRate scaled_rate(double x) {
 }  // namespace
 
 NodePose slave_pose(const JointMap& joint, const NodePose& master, const Released& released) {
-  const Quaternion frame = master.orientation * joint.origin.orientation;
-  Quaternion turned = frame;
+  Quaternion turned = master.orientation * joint.origin.orientation;
   if (joint.kind == JointMapKind::Scalar)
-    turned = frame * so3::exp_quaternion(released.displacement[0] * joint.rotation);
+    turned = turned * so3::exp_quaternion(released.displacement[0] * joint.rotation);
   else if (joint.kind != JointMapKind::Rigid)
-    turned = frame * released.rotation;
+    turned = turned * released.rotation;
   NodePose slave;
   slave.orientation = (turned * joint.slave_orientation).normalized();
   slave.rotation = slave.orientation.toRotationMatrix();
-  slave.position = master.position + joint_frame(joint, master, released).lever;
+  slave.position = master.position + lever_arm(joint, master, released);
   return slave;
 }
 
@@ -105,11 +102,12 @@ ReleasedVector released_increment(const JointMap& joint, const Released& from, c
 void variational_maps(const JointMap& joint, const NodePose& master, const Released& released, const Vector6& g,
                       FoldMaps& maps) {
   const int count = released_count(joint.kind);
-  const JointFrame frame = joint_frame(joint, master, released);
+  const Matrix3 rotation = joint_rotation(joint, master);
+  const Vector3 lever = lever_arm(joint, master, released);
   const Vector3 force = g.head<3>(), moment = g.tail<3>();
   set_sizes(count, maps);
-  maps.lever_left = maps.lever_right = frame.lever;
-  maps.master_master.bottomRightCorner<3, 3>() = hat(force) * hat(frame.lever);
+  maps.lever_left = maps.lever_right = lever;
+  maps.master_master.bottomRightCorner<3, 3>() = hat(force) * hat(lever);
 
   switch (joint.kind) {
     case JointMapKind::Rigid:
@@ -118,7 +116,7 @@ void variational_maps(const JointMap& joint, const NodePose& master, const Relea
     case JointMapKind::Scalar: {
       const double u = released.displacement[0];
       const TravelRate rate = travel_rate(joint, u, u);
-      const Vector3 direction = frame.rotation * joint.translation, turn = frame.rotation * joint.rotation;
+      const Vector3 direction = rotation * joint.translation, turn = rotation * joint.rotation;
       const Vector3 travel = rate.slope * direction;
       maps.right.col(0) << travel, turn;
       maps.released_released(0, 0) = rate.curvature * force.dot(direction);
@@ -127,13 +125,13 @@ void variational_maps(const JointMap& joint, const NodePose& master, const Relea
       break;
     }
     case JointMapKind::Free:
-      maps.right.topLeftCorner<3, 3>() = frame.rotation;
-      maps.released_master.topRightCorner<3, 3>() = frame.rotation.transpose() * hat(force);
-      maps.master_released.bottomLeftCorner<3, 3>() = -hat(force) * frame.rotation;
+      maps.right.topLeftCorner<3, 3>() = rotation;
+      maps.released_master.topRightCorner<3, 3>() = rotation.transpose() * hat(force);
+      maps.master_released.bottomLeftCorner<3, 3>() = -hat(force) * rotation;
       [[fallthrough]];
     case JointMapKind::Spherical:
-      maps.right.bottomRightCorner<3, 3>() = frame.rotation;
-      maps.released_master.bottomRightCorner<3, 3>() = frame.rotation.transpose() * hat(moment);
+      maps.right.bottomRightCorner<3, 3>() = rotation;
+      maps.released_master.bottomRightCorner<3, 3>() = rotation.transpose() * hat(moment);
       break;
   }
   maps.left = maps.right;
@@ -143,20 +141,20 @@ void incremental_maps(const JointMap& joint, const NodePose& master_begin, const
                       const Released& begin, const Released& end, const Vector6& g, FoldMaps& maps, bool with_tangent,
                       double arm_weight) {
   const int count = released_count(joint.kind);
-  const JointFrame frame_begin = joint_frame(joint, master_begin, begin), frame = joint_frame(joint, master_end, end);
-  maps.lever_left = (1 - arm_weight) * frame_begin.lever + arm_weight * frame.lever;
-  maps.lever_right = frame.lever;
+  const Vector3 lever = lever_arm(joint, master_end, end);
+  maps.lever_left = (1 - arm_weight) * lever_arm(joint, master_begin, begin) + arm_weight * lever;
+  maps.lever_right = lever;
   if (with_tangent)
     set_sizes(count, maps);
   else
     maps.left.setZero(6, count);
   const Vector3 force = g.head<3>(), moment = g.tail<3>();
-  if (with_tangent) maps.master_master.bottomRightCorner<3, 3>() = arm_weight * hat(force) * hat(frame.lever);
+  if (with_tangent) maps.master_master.bottomRightCorner<3, 3>() = arm_weight * hat(force) * hat(lever);
   if (joint.kind == JointMapKind::Rigid) return;
 
   // Rows conjugate to the relative translation and to the tangent-scaled relative rotation, joint frame.
   const bool scalar = joint.kind == JointMapKind::Scalar;
-  const Matrix3& B0 = frame_begin.rotation;
+  const Matrix3 B0 = joint_rotation(joint, master_begin);
   const Vector3 w = cayley::increment(master_begin.orientation, master_end.orientation);
   const Matrix3 S_inverse = cayley::inverse_tangent(w);
   const Matrix3 N11 = B0 + 0.5 * hat(w) * B0;
@@ -175,6 +173,7 @@ void incremental_maps(const JointMap& joint, const NodePose& master_begin, const
   }
   if (!with_tangent) return;
 
+  const Matrix3 rotation = joint_rotation(joint, master_end);
   const Matrix3 row_r_master = 0.5 * B0.transpose() * hat(force) * S_inverse;
   const Vector3 row_phi = N22.transpose() * moment;
   const Matrix3 row_phi_master =
@@ -182,8 +181,8 @@ void incremental_maps(const JointMap& joint, const NodePose& master_begin, const
       S_inverse;
   const Vector3 w_joint = B0.transpose() * w;
   if (scalar) {
-    const Vector3 travel = travel_of.slope * (frame.rotation * joint.translation);
-    maps.right.col(0) << travel, frame.rotation * joint.rotation;
+    const Vector3 travel = travel_of.slope * (rotation * joint.translation);
+    maps.right.col(0) << travel, rotation * joint.rotation;
     const double axis_moment = joint.rotation.dot(row_phi);
     // d(rate)/du at constant row_phi, and row_phi through c: d(turn)/du = (1 + |turn|^2/4) rotation.
     maps.released_released(0, 0) =
@@ -196,11 +195,11 @@ void incremental_maps(const JointMap& joint, const NodePose& master_begin, const
     return;
   }
   if (joint.kind == JointMapKind::Free) {
-    maps.right.topLeftCorner<3, 3>() = frame.rotation;
+    maps.right.topLeftCorner<3, 3>() = rotation;
     maps.released_master.topRightCorner<3, 3>() = row_r_master;
-    maps.master_released.bottomLeftCorner<3, 3>() = -arm_weight * hat(force) * frame.rotation;
+    maps.master_released.bottomLeftCorner<3, 3>() = -arm_weight * hat(force) * rotation;
   }
-  maps.right.bottomRightCorner<3, 3>() = frame.rotation;
+  maps.right.bottomRightCorner<3, 3>() = rotation;
   maps.released_released.bottomRightCorner<3, 3>() =
       0.25 * c * row_phi * w_joint.transpose() * cayley::inverse_tangent(turn);
   maps.released_master.bottomRightCorner<3, 3>() = row_phi_master;
