@@ -63,6 +63,7 @@ Trajectory compute_reference(const std::string& folder, SpeedMeasurement& out, c
   reference.trajectory.clear();
   out.mesh_error = trajectory_error(complete(with_half_the_elements(d)).trajectory, trajectory);
   out.step_error = trajectory_error(complete(with_twice_the_step(d)).trajectory, trajectory);
+  out.largest_displacement = largest_displacement(trajectory);
   out.reference = {d, std::move(reference), 1, 0};
   return trajectory;
 }
@@ -124,11 +125,27 @@ SpeedRun measure_demo(const std::string& folder, SpeedProblem problem, bool quic
 
 }  // namespace
 
+const SpeedOutcome* SpeedMeasurement::next_finer(const SpeedOutcome& outcome) const {
+  const Discretisation& d = outcome.discretisation;
+  const SpeedOutcome* found = nullptr;
+  for (const SpeedOutcome& other : outcomes) {
+    const Discretisation& o = other.discretisation;
+    const bool is_alike =
+        o.scheme == d.scheme && o.order == d.order && o.elements == d.elements && o.tolerance == d.tolerance;
+    if (is_alike && o.step < d.step && (!found || o.step > found->discretisation.step)) found = &other;
+  }
+  return found;
+}
+
 const SpeedOutcome* SpeedMeasurement::fastest(double error, const std::string& scheme) const {
+  const auto attains = [&](const SpeedOutcome& outcome) {
+    return !outcome.run.failure && error_bound(outcome.error) <= error;
+  };
   const SpeedOutcome* best = nullptr;
   for (const SpeedOutcome& outcome : outcomes) {
-    if (outcome.run.failure || error_bound(outcome.error) > error) continue;
-    if (!scheme.empty() && outcome.discretisation.scheme != scheme) continue;
+    if (!attains(outcome) || (!scheme.empty() && outcome.discretisation.scheme != scheme)) continue;
+    const SpeedOutcome* finer = next_finer(outcome);
+    if (finer && !attains(*finer)) continue;
     if (!best || outcome.run.seconds < best->run.seconds) best = &outcome;
   }
   return best;

@@ -50,8 +50,11 @@ SpeedProblem shortened(SpeedProblem problem);
 /// Positions of a probe at equal intervals, the first at the start [m].
 using Trajectory = std::vector<Vector3>;
 
+/// Largest distance from the start [m].
+double largest_displacement(const Trajectory& trajectory);
+
 /// Root mean square (over time, trapezoidal rule) of the distance from a reference, relative to the reference's largest
-/// distance from its start.
+/// displacement.
 /// @throws std::invalid_argument unless both have the same number of points, two or more, and the reference moves.
 double trajectory_error(const Trajectory& trajectory, const Trajectory& reference);
 
@@ -94,6 +97,7 @@ struct PeerOutcome {
 struct SpeedMeasurement {
   SpeedProblem problem;
   SpeedOutcome reference;
+  double largest_displacement = 0;  ///< of the probe in the reference [m]: an error of 1
   /// Distance between the reference and the same with half of its elements; with twice its step.
   double mesh_error = 0, step_error = 0;
   std::vector<SpeedOutcome> outcomes;
@@ -104,7 +108,10 @@ struct SpeedMeasurement {
   double error_bound(double error) const { return error + reference_error(); }
   /// False where the error of the reference hides that of the run.
   bool resolves(double error) const { return error >= 2 * reference_error(); }
-  /// The fastest run whose error surely is at most so large, by this scheme (empty: any); null if there is none.
+  /// The run with the next smaller step, all else equal; null if there is none.
+  const SpeedOutcome* next_finer(const SpeedOutcome& outcome) const;
+  /// The fastest run whose error surely is at most so large, by this scheme (empty: any); null if there is none. That
+  /// of the next finer run must be, too: else errors of mesh and step happened to cancel.
   const SpeedOutcome* fastest(double error, const std::string& scheme = {}) const;
 };
 

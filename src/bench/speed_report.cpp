@@ -118,8 +118,10 @@ std::string section(const SpeedMeasurement& m) {
   const SpeedProblem& p = m.problem;
   const long failed = std::count_if(m.outcomes.begin(), m.outcomes.end(),
                                     [](const SpeedOutcome& outcome) { return outcome.run.failure.has_value(); });
-  std::string text = fmt::format("\n## {}\n\n`{}`: `config/{}`, {:g} s, the probe `{}` compared every {:g} s.\n\n",
-                                 p.title, p.name, p.scene, p.until, p.probe, p.interval);
+  std::string text = fmt::format(
+      "\n## {}\n\n`{}`: `config/{}`, {:g} s, the probe `{}` compared every {:g} s. It moves by {:.3g} m at most: an "
+      "error of 1.\n\n",
+      p.title, p.name, p.scene, p.until, p.probe, p.interval, m.largest_displacement);
   text += fmt::format(
       "Reference: {}; {:.3g} s of computing. Its error is estimated as {:.1e}: {:.1e} (half its elements) + {:.1e} "
       "(twice its step).\n{} runs, of which {} did not come to their end.\n\n",
@@ -197,7 +199,8 @@ const char* const kLegend = R"(
 - **error**: root mean square over time of the probe's distance from the reference, relative to the largest distance of
   the reference from its start. The reference is computed by flexarm itself, finer than every run; its own error is
   estimated by a run with half its elements and one with twice its step. A run counts for an error if its own and the
-  reference's together are at most so large. †: less than twice the reference's error, so not resolved.
+  reference's together are at most so large, and those of the run with the next smaller step, too: otherwise errors of
+  mesh and step happened to cancel. †: less than twice the reference's error, so not resolved.
 - **time**: of stepping, all steps; building the model from the scene is told apart. One thread, median of three runs
   (of one where it takes half a second or more), all runs of a problem in turns. It is the time of the processor, which
   is the wall time of a machine that has nothing else to do.
