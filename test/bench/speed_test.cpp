@@ -58,7 +58,7 @@ TEST(SpeedRuns, ErrorsFallWithTheStepByTheOrderOfTheScheme) {
   const auto run = [&](const std::string& scheme, double step) {
     return run_speed(kConfig, problem, {scheme, 2, 1, step}).trajectory;
   };
-  const Trajectory reference = run("em4", 0.0125);
+  const Trajectory reference = run("em4", 0.00625);
   for (const auto& [scheme, order] : {std::pair{"em", 2}, {"em0", 2}, {"newmark", 2}, {"em4", 4}}) {
     const double coarse = trajectory_error(run(scheme, 0.2), reference),
                  fine = trajectory_error(run(scheme, 0.1), reference);
