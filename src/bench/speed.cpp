@@ -2,6 +2,9 @@
 #include "bench/speed.h"
 
 #include <algorithm>
+#include <map>
+
+#include "bench/mujoco.h"
 
 namespace flexarm::bench {
 namespace {
@@ -89,8 +92,19 @@ void measure_runs(const std::string& folder, SpeedMeasurement& out, const Trajec
 }
 
 /// Runs of the same problem by other programs, where they are built in.
-std::vector<PeerOutcome> measure_peers(const SpeedProblem&, const Trajectory&, bool) {
-  return {};
+std::vector<PeerOutcome> measure_peers(const SpeedProblem& problem, const Trajectory& reference, bool quick,
+                                       const std::function<void()>& advance) {
+  const std::map<std::string, PeerProblem> known = {{"spin_up", PeerProblem::SpinUp},
+                                                    {"double_pendulum", PeerProblem::DoublePendulum}};
+  const auto found = known.find(problem.name);
+  if (found == known.end()) return {};
+  std::vector<double> times;
+  for (std::size_t i = 0; i < reference.size(); ++i) times.push_back(static_cast<double>(i) * problem.interval);
+  std::vector<PeerOutcome> outcomes;
+  for (const PeerRun& run : mujoco_runs(found->second, times, quick, advance))
+    outcomes.push_back({run.program, run.variant, run.segments, run.step, run.seconds, run.completed,
+                        run.completed ? trajectory_error(run.probe, reference) : 0});
+  return outcomes;
 }
 
 std::vector<IterationCost> measure_iterations(const std::string& folder, bool quick) {
@@ -169,7 +183,8 @@ SpeedReport measure_speed(const std::string& folder, const std::vector<SpeedProb
     measurement.problem = problem;
     const Trajectory reference = compute_reference(folder, measurement, [&] { advance(reference_cost(problem)); });
     measure_runs(folder, measurement, reference, quick, [&](const Discretisation& d) { advance(cost_of(problem, d)); });
-    measurement.peers = measure_peers(problem, reference, quick);
+    measurement.peers =
+        measure_peers(problem, reference, quick, [&] { progress(done / whole, problem.name + ", other programs"); });
     if (problem.name == "right_angle_cantilever") report.iteration_costs = measure_iterations(folder, quick);
     if (problem.name == "demo_arm") report.demo = measure_demo(folder, problem, quick);
     report.measurements.push_back(std::move(measurement));

@@ -88,8 +88,8 @@ struct SpeedOutcome {
 /// A run by another program.
 struct PeerOutcome {
   std::string program, variant;
-  int segments;
-  double step, seconds;  ///< [s]
+  int segments;          ///< per beam
+  double step, seconds;  ///< step; of the processor, for stepping [s]
   bool completed;
   double error;  ///< undefined unless completed
 };

@@ -77,13 +77,13 @@ SpeedProblem double_pendulum() {
                  "",
                  "tip",
                  3,
-                 0.02,
-                 {"em4", 4, 16, 0.002},
+                 0.06,
+                 {"em4", 4, 16, 0.0015},
                  {}};
-  add_product(p, {"em", "em0"}, {{4, 1}, {8, 1}, {4, 2}, {8, 2}, {4, 3}, {2, 4}}, {1, 2, 3, 4, 8},
+  add_product(p, {"em", "em0"}, {{2, 1}, {4, 1}, {8, 1}, {2, 2}, {4, 2}, {8, 2}, {4, 3}}, {1, 2, 3, 6, 12, 24},
               {kTight, kLoose, kLoosest});
-  add_product(p, kOthers, {{8, 1}, {4, 2}, {4, 3}}, {1, 2, 4, 8}, {kTight, kLoose});
-  add_product(p, {"em4"}, {{4, 2}, {8, 2}, {4, 3}, {8, 3}, {4, 4}}, {1, 2, 4}, {kTight, kLoose});
+  add_product(p, kOthers, {{4, 1}, {4, 2}, {4, 3}}, {2, 6, 12, 24}, {kTight, kLoose});
+  add_product(p, {"em4"}, {{4, 2}, {8, 2}, {4, 3}, {4, 4}}, {2, 6, 12}, {kTight, kLoose});
   return p;
 }
 

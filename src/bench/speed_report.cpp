@@ -98,18 +98,35 @@ std::string scheme_table(const SpeedMeasurement& m) {
   return text;
 }
 
-std::string peer_table(const SpeedMeasurement& m) {
-  std::string text = head({"program", "variant", "segments", "step [s]", "error", "time [ms]",
-                           "flexarm at that error [ms]", "how many times faster"});
+/// Runs of other programs than which none of the same program is both faster and more accurate, by error.
+std::vector<PeerOutcome> peer_front(const SpeedMeasurement& m) {
+  std::vector<PeerOutcome> front;
   for (const PeerOutcome& peer : m.peers) {
-    std::vector<std::string> cells = {peer.program, peer.variant, fmt::format("{}", peer.segments),
-                                      fmt::format("{:g}", peer.step)};
-    const SpeedOutcome* best = peer.completed ? m.fastest(peer.error) : nullptr;
-    cells.push_back(peer.completed ? error_text(m, peer.error) : "fails");
-    cells.push_back(milliseconds(peer.seconds));
-    cells.push_back(best ? milliseconds(best->run.seconds) : "–");
-    cells.push_back(best ? fmt::format("{:.3g}", peer.seconds / best->run.seconds) : "–");
-    text += row(cells);
+    const auto is_better = [&](const PeerOutcome& other) {
+      return other.completed && other.program == peer.program && other.error < peer.error &&
+             other.seconds < peer.seconds;
+    };
+    if (peer.completed && std::none_of(m.peers.begin(), m.peers.end(), is_better)) front.push_back(peer);
+  }
+  std::sort(front.begin(), front.end(), [](const PeerOutcome& a, const PeerOutcome& b) { return a.error > b.error; });
+  return front;
+}
+
+std::string peer_table(const SpeedMeasurement& m) {
+  const long failed =
+      std::count_if(m.peers.begin(), m.peers.end(), [](const PeerOutcome& peer) { return !peer.completed; });
+  std::string text = fmt::format(
+      "Other programs (`src/bench/mujoco.h`): chains of rigid segments with hinges, which have neither stretch nor "
+      "shear, so that their error tends to that of this model. Of {} runs, of which {} did not come to their end, "
+      "those than which none is both faster and more accurate:\n\n",
+      m.peers.size(), failed);
+  text += head({"program", "variant", "segments per beam", "step [s]", "error", "time [ms]",
+                "flexarm at that error [ms]", "how many times faster"});
+  for (const PeerOutcome& peer : peer_front(m)) {
+    const SpeedOutcome* best = m.fastest(peer.error);
+    text += row({peer.program, peer.variant, fmt::format("{}", peer.segments), fmt::format("{:g}", peer.step),
+                 error_text(m, peer.error), milliseconds(peer.seconds), best ? milliseconds(best->run.seconds) : "–",
+                 best ? fmt::format("{:.2g}", peer.seconds / best->run.seconds) : "–"});
   }
   return text;
 }
@@ -128,7 +145,7 @@ std::string section(const SpeedMeasurement& m) {
       discretisation_text(p.reference), m.reference.run.seconds, m.reference_error(), m.mesh_error, m.step_error,
       m.outcomes.size(), failed);
   text += front_table(m) + "\nThe fastest of each scheme, by error [ms]:\n\n" + scheme_table(m);
-  if (!m.peers.empty()) text += "\nOther programs:\n\n" + peer_table(m);
+  if (!m.peers.empty()) text += "\n" + peer_table(m);
   return text;
 }
 
@@ -246,7 +263,7 @@ std::string runs_to_csv(const SpeedReport& report) {
       add(m, "flexarm", outcome, outcome.run.failure ? "" : fmt::format("{:.6g}", outcome.error));
     add(m, "reference", m.reference, fmt::format("{:.6g}", m.reference_error()));
     for (const PeerOutcome& peer : m.peers)
-      text += fmt::format("{},{},{},,{},{:g},,{:d},{},{:.6g},,,,,,,\n", m.problem.name, peer.program, peer.variant,
+      text += fmt::format("{},{},\"{}\",,{},{:g},,{:d},{},{:.6g},,,,,,,\n", m.problem.name, peer.program, peer.variant,
                           peer.segments, peer.step, peer.completed,
                           peer.completed ? fmt::format("{:.6g}", peer.error) : "", peer.seconds);
     for (const SpeedTarget& target : speed_targets()) {

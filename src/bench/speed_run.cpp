@@ -2,12 +2,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <ctime>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
 #include "bench/effort_schedule.h"
+#include "bench/processor_time.h"
 #include "bench/speed.h"
 #include "flexarm/scene/integrator_options.h"
 #include "flexarm/scene/urdf_reader.h"
@@ -16,12 +16,6 @@ namespace flexarm::bench {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double processor_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 /// How often `part` goes into `whole`.
 int quotient(double whole, double part, const char* what) {
