@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "bench/report.h"
+#include "bench/speed.h"
 #include "bench/thesis.h"
 #include "cli/commands.h"
 #include "cli/progress_bar.h"
@@ -18,6 +19,7 @@ namespace fs = std::filesystem;
 
 struct Arguments {
   std::string output = "docs/reports", scenes;
+  std::vector<std::string> problems;
   bool quick = false;
 };
 
@@ -46,10 +48,11 @@ std::optional<fs::path> plot_script(const std::string& name) {
   return first_of({program_folder() / name, fs::path(FLEXARM_SOURCE_DIR) / "scripts" / name});
 }
 
-/// The thesis's scenes: installed in <prefix>/share/flexarm, the program being in <prefix>/lib/flexarm.
-std::optional<fs::path> thesis_scenes() {
+/// The scenes that come with flexarm, or a folder of them: installed in <prefix>/share/flexarm, the program being in
+/// <prefix>/lib/flexarm.
+std::optional<fs::path> own_scenes(const std::string& folder = {}) {
   const fs::path prefix = program_folder().parent_path().parent_path();
-  return first_of({prefix / "share/flexarm/config/thesis", fs::path(FLEXARM_SOURCE_DIR) / "config/thesis"});
+  return first_of({prefix / "share/flexarm/config" / folder, fs::path(FLEXARM_SOURCE_DIR) / "config" / folder});
 }
 
 std::string quoted(const fs::path& path) {
@@ -88,7 +91,7 @@ int measure_properties(const Arguments& arguments) {
 int measure_thesis(const Arguments& arguments) {
   const fs::path folder = arguments.output, report_file = folder / "thesis.md";
   const std::optional<fs::path> scenes =
-      arguments.scenes.empty() ? thesis_scenes() : std::optional<fs::path>(arguments.scenes);
+      arguments.scenes.empty() ? own_scenes("thesis") : std::optional<fs::path>(arguments.scenes);
   if (!scenes) throw std::runtime_error("the thesis's scenes are not installed; name their folder by --scenes");
   fs::create_directories(folder);
   write_file(report_file, "", std::ios::app);
@@ -110,6 +113,43 @@ int measure_thesis(const Arguments& arguments) {
   return kDone;
 }
 
+std::vector<bench::SpeedProblem> named_problems(const std::vector<std::string>& names) {
+  std::vector<bench::SpeedProblem> problems = bench::speed_problems();
+  const auto is_unwanted = [&](const bench::SpeedProblem& problem) {
+    return !names.empty() && std::find(names.begin(), names.end(), problem.name) == names.end();
+  };
+  problems.erase(std::remove_if(problems.begin(), problems.end(), is_unwanted), problems.end());
+  return problems;
+}
+
+int measure_speed(const Arguments& arguments) {
+  const fs::path folder = arguments.output, report_file = folder / "speed.md", data = folder / "speed.csv",
+                 picture = folder / "speed.png";
+  const std::optional<fs::path> scenes =
+      arguments.scenes.empty() ? own_scenes() : std::optional<fs::path>(arguments.scenes);
+  if (!scenes) throw std::runtime_error("flexarm's scenes are not installed; name their folder by --scenes");
+  fs::create_directories(folder);
+  write_file(report_file, "", std::ios::app);
+  bench::SpeedReport report;
+  {
+    ProgressBar bar(0, 1, true);
+    report = bench::measure_speed(scenes->string(), named_problems(arguments.problems), arguments.quick,
+                                  [&](double part, const std::string& problem) { bar.show(part, problem); });
+  }
+  write_file(data, bench::runs_to_csv(report));
+  const bool is_drawn = draw("plot_speed.py", data, picture);
+  if (!is_drawn) fmt::print(stderr, "flexarm: no picture: it needs python3-matplotlib\n");
+  write_file(report_file, bench::to_markdown(report, is_drawn ? picture.filename().string() : ""));
+  fmt::print("{}\n", report_file.string());
+  return kDone;
+}
+
+std::vector<std::string> problem_names() {
+  std::vector<std::string> names;
+  for (const bench::SpeedProblem& problem : bench::speed_problems()) names.push_back(problem.name);
+  return names;
+}
+
 }  // namespace
 
 void add_bench(CLI::App& app, int& status) {
@@ -126,6 +166,13 @@ void add_bench(CLI::App& app, int& status) {
   thesis->add_option("--scenes", arguments->scenes, "folder of the scenes (default: those that come with flexarm)");
   thesis->add_flag("--quick", arguments->quick, "short runs, to see that all of it works");
   thesis->callback([arguments, &status] { status = measure_thesis(*arguments); });
+  CLI::App* speed = command->add_subcommand("speed", "Speed against error of known problems, as a report");
+  speed->add_option("--problem", arguments->problems, "only this one; may be given more than once (default: all)")
+      ->check(CLI::IsMember(problem_names()));
+  speed->add_option("--output", arguments->output, "folder for the report")->capture_default_str();
+  speed->add_option("--scenes", arguments->scenes, "folder of the scenes (default: config, which comes with flexarm)");
+  speed->add_flag("--quick", arguments->quick, "short runs, few of them, to see that all of it works");
+  speed->callback([arguments, &status] { status = measure_speed(*arguments); });
 }
 
 }  // namespace flexarm::cli

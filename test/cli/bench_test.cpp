@@ -6,7 +6,8 @@ namespace flexarm::cli {
 namespace {
 
 TEST(Bench, UsageErrors) {
-  for (const char* arguments : {"bench", "bench fly", "bench properties --fast", "bench thesis --fast"})
+  for (const char* arguments :
+       {"bench", "bench fly", "bench properties --fast", "bench thesis --fast", "bench speed --fast"})
     EXPECT_EQ(shell(std::string("flexarm ") + arguments).status, 2) << arguments;
 }
 
@@ -43,6 +44,27 @@ TEST(Bench, ThesisReport) {
   const Outcome nowhere = shell("flexarm bench thesis --quick --output '" + folder + "' --scenes /nowhere");
   EXPECT_EQ(nowhere.status, 1);
   EXPECT_NE(nowhere.errors.find("/nowhere/12_1_screw_node_to_node.urdf"), std::string::npos) << nowhere.errors;
+}
+
+TEST(Bench, SpeedReport) {
+  const std::string folder = temporary("speed");
+  const Outcome outcome =
+      shell("flexarm bench speed --quick --problem spin_up --problem double_pendulum --output '" + folder + "'");
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  const std::string report = read_file(folder + "/speed.md");
+  for (const char* line : {"\n## Targets\n", "\n## Spin-up of a flexible beam\n", "\n## Flexible double pendulum\n"})
+    EXPECT_NE(report.find(line), std::string::npos) << line;
+  EXPECT_EQ(report.find("\n## Right-angle"), std::string::npos);
+  const std::string data = read_file(folder + "/speed.csv");
+  EXPECT_EQ(data.substr(0, data.find("order")), "problem,program,scheme,");
+  EXPECT_EQ(report.find("speed.png") != std::string::npos, std::filesystem::exists(folder + "/speed.png"));
+}
+
+TEST(Bench, SpeedOfAProblemThatIsNone) {
+  const Outcome outcome = shell("flexarm bench speed --quick --problem spaghetti");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.errors.find("spaghetti"), std::string::npos) << outcome.errors;
+  EXPECT_NE(outcome.errors.find("flying_spaghetti"), std::string::npos) << outcome.errors;
 }
 
 TEST(Bench, FolderThatCannotBeWritten) {

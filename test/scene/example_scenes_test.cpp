@@ -10,8 +10,9 @@ namespace {
 
 std::vector<std::string> example_scenes() {
   std::vector<std::string> paths;
-  for (const auto& entry : std::filesystem::directory_iterator(FLEXARM_SOURCE_DIR "/config/examples"))
-    if (entry.path().extension() == ".urdf") paths.push_back(entry.path());
+  for (const char* folder : {FLEXARM_SOURCE_DIR "/config/examples", FLEXARM_SOURCE_DIR "/config/speed"})
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+      if (entry.path().extension() == ".urdf") paths.push_back(entry.path());
   return paths;
 }
 

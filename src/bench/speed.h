@@ -1,0 +1,142 @@
+#pragma once
+/// Speed against error: runs of known problems with many schemes, meshes, steps and tolerances.
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/run.h"
+
+namespace flexarm::bench {
+
+// ---------------------------------------------------------------- problems
+
+/// How a run discretises its problem.
+struct Discretisation {
+  std::string scheme;
+  int order;     ///< of all beam elements; 0: the scene file's
+  int elements;  ///< in all beams together, in proportion to those of the scene file; 0: those
+  double step;   ///< [s]
+  double tolerance = scene::IntegratorDescription().tolerance;  ///< of Newton's method
+
+  std::string mesh() const;  ///< "8 x 2": elements and their order
+};
+
+struct SpeedProblem {
+  std::string name, title;
+  std::string scene, commands;  ///< files below the folder of configuration; no commands: empty
+  std::string probe;            ///< its positions are compared
+  double until;                 ///< [s]
+  double interval;              ///< of comparison, a multiple of all steps [s]
+  Discretisation reference;     ///< finer than all runs
+  std::vector<Discretisation> runs;
+};
+
+/// A figure that flexarm shall reach, and the best published one.
+struct SpeedTarget {
+  std::string problem;
+  double error;                           ///< trajectory_error
+  double public_seconds, target_seconds;  ///< for the whole problem
+};
+
+std::vector<SpeedProblem> speed_problems();
+std::vector<SpeedTarget> speed_targets();
+/// Short runs, few of them: a test of the command, not a measurement.
+SpeedProblem shortened(SpeedProblem problem);
+
+// ---------------------------------------------------------------- runs
+
+/// Positions of a probe at equal intervals, the first at the start [m].
+using Trajectory = std::vector<Vector3>;
+
+/// Largest distance from the start [m].
+double largest_displacement(const Trajectory& trajectory);
+
+/// Root mean square (over time, trapezoidal rule) of the distance from a reference, relative to the reference's largest
+/// displacement.
+/// @throws std::invalid_argument unless both have the same number of points, two or more, and the reference moves.
+double trajectory_error(const Trajectory& trajectory, const Trajectory& reference);
+
+/// What one run of a discretisation gave.
+struct SpeedRun {
+  std::optional<Failure> failure;
+  Trajectory trajectory;
+  double build_seconds = 0;  ///< processor time of building the model from a scene that has been read
+  double seconds = 0;        ///< processor time of stepping, all steps: the wall time of an idle machine
+  double wall_seconds = 0;   ///< wall time of the same
+  long steps = 0;
+  long iterations = 0, factorisations = 0, halvings = 0;  ///< sums of StepResult's
+};
+
+/// `reuse_factorisation`: see StepSettings.
+/// @throws std::runtime_error if a file cannot be read, std::invalid_argument if a beam cannot have its share of the
+/// elements or the step does not divide the interval.
+SpeedRun run_speed(const std::string& folder, const SpeedProblem& problem, const Discretisation& discretisation,
+                   bool reuse_factorisation = true);
+
+// ---------------------------------------------------------------- measurements
+
+/// All runs of a discretisation: medians of their times, the counts of the first.
+struct SpeedOutcome {
+  Discretisation discretisation;
+  SpeedRun run;  ///< without its trajectory
+  int repetitions = 0;
+  double error = 0;  ///< undefined after a failure
+};
+
+/// A run by another program.
+struct PeerOutcome {
+  std::string program, variant;
+  int segments;          ///< per beam
+  double step, seconds;  ///< step; of the processor, for stepping [s]
+  bool completed;
+  double error;  ///< undefined unless completed
+};
+
+struct SpeedMeasurement {
+  SpeedProblem problem;
+  SpeedOutcome reference;
+  double largest_displacement = 0;  ///< of the probe in the reference [m]: an error of 1
+  /// Distance between the reference and the same with half of its elements; with twice its step.
+  double mesh_error = 0, step_error = 0;
+  std::vector<SpeedOutcome> outcomes;
+  std::vector<PeerOutcome> peers;
+
+  double reference_error() const { return mesh_error + step_error; }
+  /// A run's own error is at most so large.
+  double error_bound(double error) const { return error + reference_error(); }
+  /// False where the error of the reference hides that of the run.
+  bool resolves(double error) const { return error >= 2 * reference_error(); }
+  /// The run with the next smaller step, all else equal; null if there is none.
+  const SpeedOutcome* next_finer(const SpeedOutcome& outcome) const;
+  /// The fastest run whose error surely is at most so large, by this scheme (empty: any); null if there is none. That
+  /// of the next finer run must be, too: else errors of mesh and step happened to cancel.
+  const SpeedOutcome* fastest(double error, const std::string& scheme = {}) const;
+};
+
+/// Time per element and full Newton iteration, all included: steps of 0.05 s of the right-angle cantilever.
+struct IterationCost {
+  std::string scheme;
+  int order, elements;
+  double seconds;  ///< of the processor
+};
+
+struct SpeedReport {
+  std::vector<SpeedMeasurement> measurements;
+  std::vector<IterationCost> iteration_costs;
+  std::optional<SpeedRun> demo;  ///< with the scene's own mesh, scheme and step, 1 ms
+  bool quick = false;
+};
+
+/// Measures problems one after another; `folder`: of configuration, config/ in the sources. Runs of a problem take
+/// turns, so that a change of the machine's speed meets all. `progress(part, label)`: part done, in [0, 1].
+SpeedReport measure_speed(const std::string& folder, const std::vector<SpeedProblem>& problems, bool quick,
+                          const std::function<void(double, const std::string&)>& progress);
+
+/// The tables. `picture`: file name of the picture next to them; empty if there is none.
+std::string to_markdown(const SpeedReport& report, const std::string& picture);
+/// One row per discretisation, then those of other programs, the references and the targets: see the header line.
+std::string runs_to_csv(const SpeedReport& report);
+
+}  // namespace flexarm::bench

@@ -1,0 +1,148 @@
+// The problems of the speed report: references, grids of runs, targets.
+#include "bench/speed.h"
+
+#include <algorithm>
+
+namespace flexarm::bench {
+namespace {
+
+/// Newton's tolerance: the default, and two that save iterations.
+constexpr double kTight = 1e-8, kLoose = 1e-4, kLoosest = 1e-3;
+
+struct Mesh {
+  int elements, order;
+};
+
+/// Every scheme with every mesh, tolerance and step; steps are parts of the interval of comparison.
+void add_product(SpeedProblem& problem, const std::vector<const char*>& schemes, const std::vector<Mesh>& meshes,
+                 const std::vector<int>& parts, const std::vector<double>& tolerances) {
+  for (const char* scheme : schemes)
+    for (const Mesh& mesh : meshes)
+      for (const double tolerance : tolerances)
+        for (const int part : parts)
+          problem.runs.push_back({scheme, mesh.order, mesh.elements, problem.interval / part, tolerance});
+}
+
+/// The schemes of second order that are compared with em and its base, which have more runs.
+const std::vector<const char*> kOthers = {"em_symmetric", "edmc2", "m1", "newmark", "hht2"};
+
+SpeedProblem spin_up() {
+  SpeedProblem p{
+      "spin_up", "Spin-up of a flexible beam", "speed/spin_up.urdf", "", "tip", 20, 0.2, {"em4", 3, 4, 0.005}, {}};
+  add_product(p, {"em", "em0"}, {{1, 2}, {2, 1}, {2, 2}, {4, 1}, {1, 3}, {2, 3}}, {2, 3, 4, 6, 8, 16},
+              {kTight, kLoose, kLoosest});
+  add_product(p, kOthers, {{2, 1}, {1, 3}, {2, 2}}, {2, 4, 8, 16}, {kTight, kLoosest});
+  add_product(p, {"em4"}, {{2, 1}, {2, 2}, {1, 3}, {2, 3}}, {2, 4, 8}, {kTight, kLoosest});
+  return p;
+}
+
+SpeedProblem right_angle_cantilever() {
+  SpeedProblem p{"right_angle_cantilever",
+                 "Right-angle cantilever",
+                 "speed/right_angle_cantilever.urdf",
+                 "",
+                 "tip",
+                 30,
+                 0.2,
+                 {"em4", 4, 16, 0.025},
+                 {}};
+  add_product(p, {"em", "em0"}, {{8, 1}, {16, 1}, {4, 2}, {8, 2}, {4, 3}, {2, 4}}, {1, 2, 3, 4, 6, 8},
+              {kTight, kLoose, kLoosest});
+  add_product(p, kOthers, {{16, 1}, {4, 2}, {4, 3}}, {1, 2, 4, 8}, {kTight, kLoose});
+  add_product(p, {"em4"}, {{8, 1}, {4, 2}, {8, 2}, {4, 3}, {8, 3}, {4, 4}}, {1, 2, 4}, {kTight, kLoose});
+  return p;
+}
+
+SpeedProblem flying_spaghetti() {
+  SpeedProblem p{"flying_spaghetti",
+                 "Flying spaghetti",
+                 "speed/flying_spaghetti.urdf",
+                 "",
+                 "loaded_end",
+                 15,
+                 0.2,
+                 {"em4", 4, 16, 0.0125},
+                 {}};
+  add_product(p, {"em", "em0"}, {{4, 1}, {8, 1}, {16, 1}, {4, 2}, {4, 3}, {2, 4}}, {1, 2, 3, 4, 6, 8},
+              {kTight, kLoose, kLoosest});
+  add_product(p, kOthers, {{8, 1}, {4, 2}, {4, 3}}, {1, 2, 4, 8}, {kTight, kLoosest});
+  add_product(p, {"em4"}, {{8, 1}, {4, 2}, {8, 2}, {4, 3}, {2, 4}, {4, 4}}, {1, 2, 4, 8}, {kTight, kLoose});
+  return p;
+}
+
+SpeedProblem double_pendulum() {
+  SpeedProblem p{"double_pendulum",
+                 "Flexible double pendulum",
+                 "speed/double_pendulum.urdf",
+                 "",
+                 "tip",
+                 3,
+                 0.06,
+                 {"em4", 4, 16, 0.0015},
+                 {}};
+  add_product(p, {"em", "em0"}, {{2, 1}, {4, 1}, {8, 1}, {2, 2}, {4, 2}, {8, 2}, {4, 3}}, {1, 2, 3, 6, 12, 24},
+              {kTight, kLoose, kLoosest});
+  add_product(p, kOthers, {{4, 1}, {4, 2}, {4, 3}}, {2, 6, 12, 24}, {kTight, kLoose});
+  add_product(p, {"em4"}, {{4, 2}, {8, 2}, {4, 3}, {4, 4}}, {2, 6, 12}, {kTight, kLoose});
+  return p;
+}
+
+SpeedProblem demo_arm() {
+  SpeedProblem p{
+      "demo_arm", "The demo's arm", "demo_arm.urdf", "demo_commands.yaml", "payload", 10, 0.1, {"em4", 3, 8, 0.0025},
+      {}};
+  // The demo's torques change at multiples of 5 ms.
+  add_product(p, {"em", "em0"}, {{2, 2}, {4, 2}, {6, 2}, {2, 3}, {4, 3}}, {2, 5, 10, 20}, {kTight, kLoose, kLoosest});
+  add_product(p, {"em", "em0"}, {{4, 2}, {4, 3}}, {40, 100}, {kTight});
+  add_product(p, kOthers, {{2, 2}, {4, 2}}, {2, 5, 10, 20}, {kTight, kLoose});
+  add_product(p, {"em4"}, {{2, 2}, {4, 2}, {2, 3}}, {1, 5, 20}, {kTight, kLoose});
+  return p;
+}
+
+SpeedProblem sliding_mass() {
+  // The start has a jump of velocity at the slider, so that errors fall slowly with the mesh, whatever its order.
+  SpeedProblem p{"sliding_mass",
+                 "Free sliding mass",
+                 "thesis/12_2_free_sliding_mass.urdf",
+                 "",
+                 "mass",
+                 0.2,
+                 0.008,
+                 {"em", 3, 160, 0.0005},
+                 {}};
+  add_product(p, {"em", "em0"}, {{5, 1}, {10, 1}, {20, 1}, {40, 1}, {5, 2}, {10, 2}, {20, 2}, {40, 2}, {20, 3}},
+              {1, 2, 4}, {kTight, kLoose, kLoosest});
+  add_product(p, kOthers, {{10, 1}, {40, 1}, {10, 2}, {20, 2}}, {1, 2, 4}, {kTight, kLoosest});
+  add_product(p, {"em4"}, {{10, 1}, {40, 1}, {10, 2}, {20, 2}}, {1, 2}, {kTight, kLoosest});
+  return p;
+}
+
+}  // namespace
+
+std::vector<SpeedProblem> speed_problems() {
+  return {spin_up(), right_angle_cantilever(), flying_spaghetti(), double_pendulum(), demo_arm(), sliding_mass()};
+}
+
+std::vector<SpeedTarget> speed_targets() {
+  return {{"spin_up", 1e-3, 0.37, 0.02},
+          {"right_angle_cantilever", 2.5e-3, 0.50, 0.025},
+          {"right_angle_cantilever", 2.5e-4, 4.5, 0.1},
+          {"flying_spaghetti", 5e-3, 0.21, 0.01}};
+}
+
+SpeedProblem shortened(SpeedProblem problem) {
+  constexpr int kIntervals = 3;
+  problem.until = kIntervals * problem.interval;
+  // The coarsest run of each scheme, and the same with half the step.
+  std::vector<Discretisation> few;
+  for (const Discretisation& run : problem.runs) {
+    if (std::any_of(few.begin(), few.end(), [&](const Discretisation& d) { return d.scheme == run.scheme; })) continue;
+    few.push_back(run);
+    few.push_back(run);
+    few.back().step /= 2;
+  }
+  problem.runs = few;
+  return problem;
+}
+
+}  // namespace flexarm::bench

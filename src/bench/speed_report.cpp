@@ -1,0 +1,278 @@
+// The speed report as text.
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "bench/speed.h"
+
+namespace flexarm::bench {
+namespace {
+
+const double kDefaultTolerance = scene::IntegratorDescription().tolerance;
+
+std::string row(const std::vector<std::string>& cells) {
+  return fmt::format("| {} |\n", fmt::join(cells, " | "));
+}
+
+std::string head(const std::vector<std::string>& columns) {
+  std::string rule = "|---|";
+  for (std::size_t i = 1; i < columns.size(); ++i) rule += "--:|";
+  return row(columns) + rule + "\n";
+}
+
+std::string milliseconds(double seconds) {
+  return fmt::format("{:.3g}", 1e3 * seconds);
+}
+
+std::string tolerance_text(double tolerance) {
+  return tolerance == kDefaultTolerance ? "" : fmt::format(", tolerance {:g}", tolerance);
+}
+
+std::string discretisation_text(const Discretisation& d) {
+  return fmt::format("{}, {}, {:g} s{}", d.scheme, d.mesh(), d.step, tolerance_text(d.tolerance));
+}
+
+/// Errors for which the fastest runs are sought, largest first.
+std::vector<double> error_levels(const SpeedProblem& problem) {
+  std::vector<double> levels = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5};
+  for (const SpeedTarget& target : speed_targets())
+    if (target.problem == problem.name) levels.push_back(target.error);
+  std::sort(levels.begin(), levels.end(), std::greater<>());
+  levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
+  return levels;
+}
+
+std::vector<std::string> schemes_of(const SpeedProblem& problem) {
+  std::vector<std::string> names;
+  for (const Discretisation& d : problem.runs)
+    if (std::find(names.begin(), names.end(), d.scheme) == names.end()) names.push_back(d.scheme);
+  return names;
+}
+
+std::string error_text(const SpeedMeasurement& m, double error) {
+  return fmt::format("{:.2e}{}", error, m.resolves(error) ? "" : " †");
+}
+
+std::string front_table(const SpeedMeasurement& m) {
+  std::string text = head({"error at most", "scheme", "elements x order", "step [s]", "tolerance", "error", "time [ms]",
+                           "wall time [ms]", "µs per step", "iterations per step", "factorisations per step",
+                           "halvings", "building [ms]"});
+  for (const double level : error_levels(m.problem)) {
+    const SpeedOutcome* best = m.fastest(level);
+    if (!best) {
+      text += row({fmt::format("{:g}", level), "–", "–", "–", "–", "–", "–", "–", "–", "–", "–", "–", "–"});
+      continue;
+    }
+    const Discretisation& d = best->discretisation;
+    const SpeedRun& run = best->run;
+    const double steps = static_cast<double>(run.steps);
+    text += row({fmt::format("{:g}", level), d.scheme, d.mesh(), fmt::format("{:g}", d.step),
+                 fmt::format("{:g}", d.tolerance), error_text(m, best->error), milliseconds(run.seconds),
+                 milliseconds(run.wall_seconds), fmt::format("{:.3g}", 1e6 * run.seconds / steps),
+                 fmt::format("{:.2f}", static_cast<double>(run.iterations) / steps),
+                 fmt::format("{:.2f}", static_cast<double>(run.factorisations) / steps),
+                 fmt::format("{}", run.halvings), milliseconds(run.build_seconds)});
+  }
+  return text;
+}
+
+std::string scheme_table(const SpeedMeasurement& m) {
+  const std::vector<double> levels = error_levels(m.problem);
+  std::vector<std::string> columns = {"scheme"};
+  for (const double level : levels) columns.push_back(fmt::format("{:g}", level));
+  std::string text = head(columns);
+  for (const std::string& scheme : schemes_of(m.problem)) {
+    std::vector<std::string> cells = {scheme};
+    for (const double level : levels) {
+      const SpeedOutcome* best = m.fastest(level, scheme);
+      if (!best) {
+        cells.push_back("–");
+        continue;
+      }
+      const Discretisation& d = best->discretisation;
+      cells.push_back(fmt::format("**{}** ({}, {:g} s{})", milliseconds(best->run.seconds), d.mesh(), d.step,
+                                  tolerance_text(d.tolerance)));
+    }
+    text += row(cells);
+  }
+  return text;
+}
+
+/// Runs of other programs than which none of the same program is both faster and more accurate, by error.
+std::vector<PeerOutcome> peer_front(const SpeedMeasurement& m) {
+  std::vector<PeerOutcome> front;
+  for (const PeerOutcome& peer : m.peers) {
+    const auto is_better = [&](const PeerOutcome& other) {
+      return other.completed && other.program == peer.program && other.error < peer.error &&
+             other.seconds < peer.seconds;
+    };
+    if (peer.completed && std::none_of(m.peers.begin(), m.peers.end(), is_better)) front.push_back(peer);
+  }
+  std::sort(front.begin(), front.end(), [](const PeerOutcome& a, const PeerOutcome& b) { return a.error > b.error; });
+  return front;
+}
+
+std::string peer_table(const SpeedMeasurement& m) {
+  const long failed =
+      std::count_if(m.peers.begin(), m.peers.end(), [](const PeerOutcome& peer) { return !peer.completed; });
+  std::string text = fmt::format(
+      "Other programs (`src/bench/mujoco.h`): chains of rigid segments with hinges, which have neither stretch nor "
+      "shear, so that their error tends to that of this model. Of {} runs, of which {} did not come to their end, "
+      "those than which none is both faster and more accurate:\n\n",
+      m.peers.size(), failed);
+  text += head({"program", "variant", "segments per beam", "step [s]", "error", "time [ms]",
+                "flexarm at that error [ms]", "how many times faster"});
+  for (const PeerOutcome& peer : peer_front(m)) {
+    const SpeedOutcome* best = m.fastest(peer.error);
+    text += row({peer.program, peer.variant, fmt::format("{}", peer.segments), fmt::format("{:g}", peer.step),
+                 error_text(m, peer.error), milliseconds(peer.seconds), best ? milliseconds(best->run.seconds) : "–",
+                 best ? fmt::format("{:.2g}", peer.seconds / best->run.seconds) : "–"});
+  }
+  return text;
+}
+
+std::string section(const SpeedMeasurement& m) {
+  const SpeedProblem& p = m.problem;
+  const long failed = std::count_if(m.outcomes.begin(), m.outcomes.end(),
+                                    [](const SpeedOutcome& outcome) { return outcome.run.failure.has_value(); });
+  std::string text = fmt::format(
+      "\n## {}\n\n`{}`: `config/{}`, {:g} s, the probe `{}` compared every {:g} s. It moves by {:.3g} m at most: an "
+      "error of 1.\n\n",
+      p.title, p.name, p.scene, p.until, p.probe, p.interval, m.largest_displacement);
+  text += fmt::format(
+      "Reference: {}; {:.3g} s of computing. Its error is estimated as {:.1e}: {:.1e} (half its elements) + {:.1e} "
+      "(twice its step).\n{} runs, of which {} did not come to their end.\n\n",
+      discretisation_text(p.reference), m.reference.run.seconds, m.reference_error(), m.mesh_error, m.step_error,
+      m.outcomes.size(), failed);
+  text += front_table(m) + "\nThe fastest of each scheme, by error [ms]:\n\n" + scheme_table(m);
+  if (!m.peers.empty()) text += "\n" + peer_table(m);
+  return text;
+}
+
+std::string verdict(double measured_over_target) {
+  return measured_over_target <= 1 ? "met" : fmt::format("missed by a factor of {:.2g}", measured_over_target);
+}
+
+std::string target_row(const SpeedMeasurement& m, const SpeedTarget& target) {
+  const SpeedOutcome* best = m.fastest(target.error);
+  std::vector<std::string> cells = {fmt::format("{}, {:g} s [s]", target.problem, m.problem.until),
+                                    fmt::format("{:g}", target.error), fmt::format("{:g}", target.public_seconds),
+                                    fmt::format("{:g}", target.target_seconds)};
+  if (!best) {
+    cells.insert(cells.end(), {"–", "–", "–", "missed: no run is so accurate"});
+    return row(cells);
+  }
+  const double ratio = best->run.seconds / target.target_seconds;
+  cells.insert(cells.end(), {fmt::format("{:.3g}", best->run.seconds), fmt::format("{:.2g}", ratio),
+                             fmt::format("{:.2g}", target.public_seconds / best->run.seconds),
+                             verdict(ratio) + ": " + discretisation_text(best->discretisation)});
+  return row(cells);
+}
+
+std::string target_table(const SpeedReport& report) {
+  std::string text = head({"what", "error", "best public figure", "target", "measured", "measured / target",
+                           "times faster than public", "verdict"});
+  for (const SpeedTarget& target : speed_targets())
+    for (const SpeedMeasurement& m : report.measurements)
+      if (m.problem.name == target.problem) text += target_row(m, target);
+  constexpr double kPublicIteration = 13e-6;  // two-node elements
+  for (const IterationCost& cost : report.iteration_costs) {
+    if (cost.scheme != "em" || cost.order > 2) continue;
+    const double target = cost.order == 1 ? 1e-6 : 2.5e-6, ratio = cost.seconds / target;
+    text += row({fmt::format("element and full Newton iteration, order {} [µs]", cost.order), "–",
+                 cost.order == 1 ? fmt::format("{:g}", 1e6 * kPublicIteration) : "–", fmt::format("{:g}", 1e6 * target),
+                 fmt::format("{:.3g}", 1e6 * cost.seconds), fmt::format("{:.2g}", ratio),
+                 cost.order == 1 ? fmt::format("{:.2g}", kPublicIteration / cost.seconds) : "–", verdict(ratio)});
+  }
+  if (report.demo) {
+    constexpr double kTargetFactor = 20, kDemoStep = 1e-3;
+    const double factor = kDemoStep * static_cast<double>(report.demo->steps) / report.demo->seconds;
+    text += row({"demo arm at 1 kHz [times real time]", "–", "–", fmt::format("{:g}", kTargetFactor),
+                 fmt::format("{:.3g}", factor), fmt::format("{:.2g}", factor / kTargetFactor), "–",
+                 verdict(kTargetFactor / factor)});
+  }
+  return text;
+}
+
+std::string iteration_table(const SpeedReport& report) {
+  std::string text = head({"scheme", "order", "µs per element and iteration"});
+  for (const IterationCost& cost : report.iteration_costs)
+    text += row({cost.scheme, fmt::format("{}", cost.order), fmt::format("{:.3g}", 1e6 * cost.seconds)});
+  return text;
+}
+
+/// How much longer than the processor's time the wall time was.
+double load(const SpeedReport& report) {
+  double wall = 0, processor = 0;
+  for (const SpeedMeasurement& m : report.measurements)
+    for (const SpeedOutcome& outcome : m.outcomes) {
+      wall += outcome.run.wall_seconds;
+      processor += outcome.run.seconds;
+    }
+  return processor > 0 ? wall / processor : 1;
+}
+
+const char* const kLegend = R"(
+- **error**: root mean square over time of the probe's distance from the reference, relative to the largest distance of
+  the reference from its start. The reference is computed by flexarm itself, finer than every run; its own error is
+  estimated by a run with half its elements and one with twice its step. A run counts for an error if its own and the
+  reference's together are at most so large, and those of the run with the next smaller step, too: otherwise errors of
+  mesh and step happened to cancel. †: less than twice the reference's error, so not resolved.
+- **time**: of stepping, all steps; building the model from the scene is told apart. One thread, median of three runs
+  (of one where it takes half a second or more), all runs of a problem in turns. It is the time of the processor, which
+  is the wall time of a machine that has nothing else to do.
+- **elements**: of all beams together. **tolerance**: of Newton's method. While factors may be kept, which is the
+  default, updates go on until what remains is at most the *square* of the tolerance: round-off for the default, 1e-8.
+- **iterations** of Newton's method, **factorisations** of its tangent, **halvings** of steps that did not converge.
+)";
+
+}  // namespace
+
+std::string to_markdown(const SpeedReport& report, const std::string& picture) {
+  std::string text = "# Speed against error\n\n";
+  text += report.quick ? "Written by `flexarm bench speed --quick`: a test of the command, not a measurement.\n"
+                       : "Written by `flexarm bench speed`; all runs are in `speed.csv`, which it writes, too.\n";
+  text += kLegend;
+  text += fmt::format("\nThe wall time was {:.2f} times the processor's, all in all.\n", load(report));
+  text += "\n## Targets\n\n" + target_table(report);
+  if (!picture.empty()) text += fmt::format("\n![Time over error, problem by problem]({})\n", picture);
+  for (const SpeedMeasurement& m : report.measurements) text += section(m);
+  if (!report.iteration_costs.empty())
+    text +=
+        "\n## Cost of an iteration\n\nRight-angle cantilever, 32 elements, steps of 0.05 s, a factorisation in every "
+        "iteration; all that stepping does, over elements and iterations.\n\n" +
+        iteration_table(report);
+  return text;
+}
+
+std::string runs_to_csv(const SpeedReport& report) {
+  std::string text =
+      "problem,program,scheme,order,elements,step,tolerance,completed,error,seconds,wall_seconds,build_seconds,steps,"
+      "iterations,factorisations,halvings,repetitions\n";
+  const auto add = [&](const SpeedMeasurement& m, const char* program, const SpeedOutcome& outcome,
+                       const std::string& error) {
+    const Discretisation& d = outcome.discretisation;
+    const SpeedRun& run = outcome.run;
+    text += fmt::format("{},{},{},{},{},{:g},{:g},{:d},{},{:.6g},{:.6g},{:.6g},{},{},{},{},{}\n", m.problem.name,
+                        program, d.scheme, d.order, d.elements, d.step, d.tolerance, !run.failure, error, run.seconds,
+                        run.wall_seconds, run.build_seconds, run.steps, run.iterations, run.factorisations,
+                        run.halvings, outcome.repetitions);
+  };
+  for (const SpeedMeasurement& m : report.measurements) {
+    for (const SpeedOutcome& outcome : m.outcomes)
+      add(m, "flexarm", outcome, outcome.run.failure ? "" : fmt::format("{:.6g}", outcome.error));
+    add(m, "reference", m.reference, fmt::format("{:.6g}", m.reference_error()));
+    for (const PeerOutcome& peer : m.peers)
+      text += fmt::format("{},{},\"{}\",,{},{:g},,{:d},{},{:.6g},,,,,,,\n", m.problem.name, peer.program, peer.variant,
+                          peer.segments, peer.step, peer.completed,
+                          peer.completed ? fmt::format("{:.6g}", peer.error) : "", peer.seconds);
+    for (const SpeedTarget& target : speed_targets()) {
+      if (target.problem != m.problem.name) continue;
+      text += fmt::format("{},target,,,,,,1,{:g},{:g},,,,,,,\n", m.problem.name, target.error, target.target_seconds);
+      text += fmt::format("{},public,,,,,,1,{:g},{:g},,,,,,,\n", m.problem.name, target.error, target.public_seconds);
+    }
+  }
+  return text;
+}
+
+}  // namespace flexarm::bench

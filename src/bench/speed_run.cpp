@@ -1,0 +1,128 @@
+// One run of a problem, and how far it is from the reference.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "bench/effort_schedule.h"
+#include "bench/processor_time.h"
+#include "bench/speed.h"
+#include "flexarm/scene/integrator_options.h"
+#include "flexarm/scene/urdf_reader.h"
+
+namespace flexarm::bench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// How often `part` goes into `whole`.
+int quotient(double whole, double part, const char* what) {
+  const double ratio = whole / part;
+  const int rounded = static_cast<int>(std::lround(ratio));
+  if (rounded < 1 || std::abs(ratio - rounded) > 1e-9 * ratio)
+    throw std::invalid_argument(fmt::format("{}: {:g} s is no multiple of {:g} s", what, whole, part));
+  return rounded;
+}
+
+/// Gives all beams together `elements` elements, each as many times more of them than it has.
+void refine(scene::SceneDescription& scene, int elements, int order) {
+  int total = 0;
+  for (const scene::LinkDescription& link : scene.links)
+    if (link.beam) total += link.beam->elements.value_or(0);
+  for (scene::LinkDescription& link : scene.links) {
+    if (!link.beam) continue;
+    if (order > 0) link.beam->order = order;
+    if (elements == 0) continue;
+    const int share = link.beam->elements.value_or(0) * elements;
+    if (total == 0 || share == 0 || share % total != 0)
+      throw std::invalid_argument(
+          fmt::format("{}: {} elements cannot be shared among the beams as in the scene", scene.file, elements));
+    link.beam->elements = share / total;
+  }
+}
+
+scene::SceneDescription scene_of(const std::string& folder, const SpeedProblem& problem,
+                                 const Discretisation& discretisation) {
+  const std::string path = folder + "/" + problem.scene;
+  scene::ReadResult read = scene::read_scene_file(path);
+  if (!read.scene)
+    throw std::runtime_error(read.diagnostics.empty() ? "cannot read '" + path + "'" : read.diagnostics[0].text());
+  scene::SceneDescription scene = std::move(*read.scene);
+  refine(scene, discretisation.elements, discretisation.order);
+  scene.integrator = scene::with_scheme(scene.integrator, discretisation.scheme);
+  scene.integrator.step = discretisation.step;
+  scene.integrator.tolerance = discretisation.tolerance;
+  return scene;
+}
+
+std::size_t probe_of(const scene::SceneDescription& scene, const std::string& name) {
+  for (std::size_t i = 0; i < scene.probes.size(); ++i)
+    if (scene.probes[i].name == name) return i;
+  throw std::runtime_error(fmt::format("{}: expected a probe '{}'", scene.file, name));
+}
+
+}  // namespace
+
+std::string Discretisation::mesh() const {
+  return fmt::format("{} x {}", elements, order);
+}
+
+double largest_displacement(const Trajectory& trajectory) {
+  double largest = 0;
+  for (const Vector3& point : trajectory) largest = std::max(largest, (point - trajectory.front()).norm());
+  return largest;
+}
+
+double trajectory_error(const Trajectory& trajectory, const Trajectory& reference) {
+  if (reference.size() < 2 || trajectory.size() != reference.size())
+    throw std::invalid_argument(fmt::format("a trajectory of {} points cannot be compared with a reference of {}",
+                                            trajectory.size(), reference.size()));
+  const double scale = largest_displacement(reference);
+  if (!(scale > 0)) throw std::invalid_argument("the reference does not move");
+  const std::size_t last = reference.size() - 1;
+  double sum = 0;
+  for (std::size_t i = 0; i <= last; ++i) {
+    const double weight = i == 0 || i == last ? 0.5 : 1.0;
+    sum += weight * (trajectory[i] - reference[i]).squaredNorm();
+  }
+  return std::sqrt(sum / static_cast<double>(last)) / scale;
+}
+
+SpeedRun run_speed(const std::string& folder, const SpeedProblem& problem, const Discretisation& discretisation,
+                   bool reuse_factorisation) {
+  scene::SceneDescription scene = scene_of(folder, problem, discretisation);
+  const std::size_t probe = probe_of(scene, problem.probe);
+  const int stride = quotient(problem.interval, discretisation.step, "interval");
+  const int intervals = quotient(problem.until, problem.interval, "end");
+  const std::vector<EffortPulse> pulses =
+      problem.commands.empty() ? std::vector<EffortPulse>() : read_effort_schedule(folder + "/" + problem.commands);
+  SimulationOptions options;
+  options.reuse_factorisation = reuse_factorisation;
+  SpeedRun out;
+  const double building = processor_seconds();
+  Simulation simulation(std::move(scene), options);
+  out.build_seconds = processor_seconds() - building;
+  const EffortPlayer player(pulses, simulation);
+  out.trajectory.reserve(intervals + 1);
+  out.trajectory.push_back(simulation.probe(probe).pose.position);
+
+  const double processor = processor_seconds();
+  const Clock::time_point start = Clock::now();
+  for (int n = 1; n <= intervals * stride && !out.failure; ++n) {
+    player.command(simulation);
+    const StepResult result = simulation.step();
+    ++out.steps;
+    out.iterations += result.iterations;
+    out.factorisations += result.factorisations;
+    out.halvings += result.halvings;
+    if (!result.converged) out.failure = Failure{simulation.time(), result.reason};
+    if (n % stride == 0) out.trajectory.push_back(simulation.probe(probe).pose.position);
+  }
+  out.seconds = processor_seconds() - processor;
+  out.wall_seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  return out;
+}
+
+}  // namespace flexarm::bench

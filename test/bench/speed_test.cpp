@@ -1,0 +1,213 @@
+// The speed report measures what it says: its error, its runs, its choice of the fastest.
+#include "bench/speed.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "bench/effort_schedule.h"
+#include "flexarm/scene/urdf_reader.h"
+
+namespace flexarm::bench {
+namespace {
+
+const std::string kConfig = std::string(FLEXARM_SOURCE_DIR) + "/config";
+
+SpeedProblem problem_named(const std::string& name) {
+  for (const SpeedProblem& problem : speed_problems())
+    if (problem.name == name) return problem;
+  throw std::invalid_argument(name);
+}
+
+/// `intervals` + 1 points on a straight line of 8 m.
+Trajectory line(int intervals) {
+  Trajectory points;
+  for (int i = 0; i <= intervals; ++i) points.emplace_back(1 + 8.0 * i / intervals, 2, 3);
+  return points;
+}
+
+TEST(TrajectoryError, OfAnOffsetIsTheOffset) {
+  const Trajectory reference = line(10);
+  EXPECT_EQ(trajectory_error(reference, reference), 0);
+  Trajectory moved = reference;
+  for (Vector3& point : moved) point += Vector3(0, 0.3, -0.4);
+  EXPECT_NEAR(trajectory_error(moved, reference), 0.5 / 8, 1e-15);
+}
+
+TEST(TrajectoryError, OfADriftIsItsRootMeanSquare) {
+  for (const int n : {1, 2, 10, 100}) {
+    const Trajectory reference = line(n);
+    Trajectory drifting = reference;
+    for (int i = 0; i <= n; ++i) drifting[i].z() += 0.8 * i / n;
+    // The trapezoidal rule of x^2 on [0, 1] is 1/3 + 1/(6 n^2).
+    EXPECT_NEAR(trajectory_error(drifting, reference), 0.1 * std::sqrt(1.0 / 3 + 1.0 / (6.0 * n * n)), 1e-15) << n;
+  }
+}
+
+TEST(TrajectoryError, RefusesWhatCannotBeCompared) {
+  EXPECT_THROW(trajectory_error(line(9), line(10)), std::invalid_argument);
+  EXPECT_THROW(trajectory_error({{0, 0, 0}}, {{0, 0, 0}}), std::invalid_argument);
+  EXPECT_THROW(trajectory_error(line(1), {{1, 1, 1}, {1, 1, 1}}), std::invalid_argument);
+}
+
+TEST(SpeedRuns, ErrorsFallWithTheStepByTheOrderOfTheScheme) {
+  // The only problem without sudden loads, whose fast waves no step here resolves.
+  SpeedProblem problem = problem_named("spin_up");
+  problem.until = 4;
+  const auto run = [&](const std::string& scheme, double step) {
+    return run_speed(kConfig, problem, {scheme, 2, 1, step}).trajectory;
+  };
+  const Trajectory reference = run("em4", 0.00625);
+  for (const auto& [scheme, order] : {std::pair{"em", 2}, {"em0", 2}, {"newmark", 2}, {"em4", 4}}) {
+    const double coarse = trajectory_error(run(scheme, 0.2), reference),
+                 fine = trajectory_error(run(scheme, 0.1), reference);
+    EXPECT_NEAR(std::log2(coarse / fine), order, 0.2) << scheme << ": " << coarse << ", " << fine;
+  }
+}
+
+TEST(SpeedRuns, CountWhatTheyDid) {
+  SpeedProblem problem = problem_named("double_pendulum");
+  problem.until = 0.12;
+  const Discretisation discretisation{"em", 2, 4, 0.01};
+  const SpeedRun run = run_speed(kConfig, problem, discretisation);
+  EXPECT_FALSE(run.failure);
+  EXPECT_EQ(run.steps, 12);
+  EXPECT_EQ(run.trajectory.size(), 3u);
+  EXPECT_EQ(run.trajectory[0], Vector3(2, 0, 0));
+  EXPECT_GT(run.seconds, 0);
+  const SpeedRun full = run_speed(kConfig, problem, discretisation, false);
+  EXPECT_EQ(full.factorisations, full.iterations);
+  EXPECT_LT(trajectory_error(full.trajectory, run.trajectory), discretisation.tolerance);
+}
+
+TEST(SpeedRuns, RefuseWhatDoesNotFit) {
+  const SpeedProblem pendulum = problem_named("double_pendulum");
+  EXPECT_THROW(run_speed(kConfig, pendulum, {"em", 2, 3, 0.01}), std::invalid_argument);   // two equal beams
+  EXPECT_THROW(run_speed(kConfig, pendulum, {"em", 2, 4, 0.025}), std::invalid_argument);  // interval 0.06 s
+  EXPECT_THROW(run_speed("/nowhere", pendulum, {"em", 2, 4, 0.01}), std::runtime_error);
+}
+
+TEST(SpeedProblems, EveryRunCanBeMade) {
+  for (const SpeedProblem& problem : speed_problems()) {
+    const scene::ReadResult read = scene::read_scene_file(kConfig + "/" + problem.scene);
+    EXPECT_TRUE(read.scene && read.diagnostics.empty()) << to_text(read.diagnostics);
+    SpeedProblem start = problem;
+    start.until = start.interval;
+    std::set<std::string> seen;
+    for (const Discretisation& run : problem.runs) {
+      if (seen.insert(run.scheme + run.mesh()).second) {
+        EXPECT_NO_THROW(run_speed(kConfig, start, run)) << problem.name << " " << run.scheme << " " << run.mesh();
+      }
+      const double steps = problem.interval / run.step;
+      EXPECT_NEAR(steps, std::round(steps), 1e-9 * steps) << problem.name << " " << run.step;
+    }
+  }
+}
+
+SpeedOutcome outcome(const std::string& scheme, double step, double seconds, double error) {
+  SpeedOutcome out;
+  out.discretisation = {scheme, 2, 4, step};
+  out.run.seconds = seconds;
+  out.error = error;
+  return out;
+}
+
+TEST(Fastest, IsAccurateSurelyAndNotByChance) {
+  SpeedMeasurement m;
+  m.mesh_error = 1e-4;
+  m.step_error = 1e-4;
+  m.outcomes = {outcome("em", 0.4, 1, 1e-2), outcome("em", 0.2, 2, 4e-3), outcome("em", 0.1, 4, 1e-3),
+                outcome("m1", 0.4, 0.5, 1e-3), outcome("m1", 0.2, 3, 2e-2)};
+  EXPECT_EQ(m.fastest(5e-3), &m.outcomes[1]) << "m1 met 1e-3 by chance";
+  EXPECT_EQ(m.fastest(4.1e-3), &m.outcomes[2]) << "the reference may be wrong by 2e-4";
+  EXPECT_EQ(m.fastest(3e-2, "m1"), &m.outcomes[3]);
+  EXPECT_EQ(m.fastest(1e-3), nullptr);
+  EXPECT_TRUE(m.resolves(4e-4));
+  EXPECT_FALSE(m.resolves(3.9e-4));
+  m.outcomes[2].run.failure = Failure{1, StepResult::Reason::NoConvergence};
+  EXPECT_EQ(m.fastest(4.5e-3), nullptr) << "the next finer run fails";
+}
+
+TEST(SpeedReport, HasEveryProblemAndFiniteNumbers) {
+  double last = 0;
+  const SpeedReport report = measure_speed(kConfig, speed_problems(), true, [&](double part, const std::string&) {
+    EXPECT_GE(part, last);
+    last = part;
+  });
+  EXPECT_NEAR(last, 1, 1e-9);
+  const std::string text = to_markdown(report, "speed.png"), data = runs_to_csv(report);
+  for (const SpeedProblem& problem : speed_problems()) {
+    EXPECT_NE(text.find("\n## " + problem.title + "\n"), std::string::npos) << problem.name;
+    EXPECT_NE(data.find("\n" + problem.name + ",reference,"), std::string::npos) << problem.name;
+  }
+  for (const SpeedTarget& target : speed_targets())
+    EXPECT_NE(text.find("\n| " + target.problem + ", "), std::string::npos) << target.problem;
+  EXPECT_NE(text.find("\n| demo arm at 1 kHz "), std::string::npos);
+  EXPECT_NE(text.find("](speed.png)"), std::string::npos);
+  for (const std::string& output : {text, data})
+    for (const char* word : {"nan", "inf"}) EXPECT_EQ(output.find(word), std::string::npos) << word;
+  for (const SpeedMeasurement& m : report.measurements) {
+    EXPECT_TRUE(std::isfinite(m.reference_error())) << m.problem.name;
+    for (const SpeedOutcome& run : m.outcomes) EXPECT_TRUE(std::isfinite(run.error)) << m.problem.name;
+  }
+}
+
+// ---------------------------------------------------------------- efforts
+
+TEST(EffortSchedule, OfTheDemoIsRead) {
+  const std::vector<EffortPulse> pulses = read_effort_schedule(kConfig + "/demo_commands.yaml");
+  ASSERT_EQ(pulses.size(), 2u * (1 + 8 + 7 + 1 + 1 + 1));
+  EXPECT_EQ(pulses[0].joint, "shoulder_yaw");
+  EXPECT_EQ(pulses[0].effort, 1000);
+  EXPECT_EQ(pulses.back().joint, "elbow_pitch");
+  EXPECT_EQ(pulses.back().begin, 14);
+  EXPECT_EQ(pulses.back().end, 16);
+}
+
+TEST(EffortSchedule, SaysWhatItDoesNotUnderstand) {
+  const std::string path = testing::TempDir() + "flexarm_speed_schedule.yaml";
+  const auto error_of = [&](const char* text) -> std::string {
+    std::FILE* file = std::fopen(path.c_str(), "w");
+    std::fputs(text, file);
+    std::fclose(file);
+    try {
+      read_effort_schedule(path);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const char* const good = "- {time: 1, names: [a, b], efforts: [1, -2.5], duration: 0.5}\n";
+  EXPECT_EQ(error_of(good), "");
+  for (const char* bad : {"- {time: 1, names: [a, b], efforts: [1], duration: 0.5}\n",
+                          "- {time: 1, names: [a], efforts: [one], duration: 0.5}\n",
+                          "- {names: [a], efforts: [1], duration: 0.5}\n", "- {time: 1, names: [a], efforts: [1]}\n"})
+    EXPECT_NE(error_of((std::string("# two\n") + bad).c_str()).find(path + ":2: expected {time: s, "),
+              std::string::npos)
+        << bad;
+  EXPECT_NE(error_of("period: 3\n").find("at least one command"), std::string::npos);
+}
+
+TEST(EffortPlayer, KeepsTheImpulseWhateverTheStep) {
+  scene::SceneDescription scene = *scene::read_scene_file(kConfig + "/demo_arm.urdf").scene;
+  const std::vector<EffortPulse> pulses = {{"wrist_roll", 0.1, 0.25, 2}, {"wrist_roll", 0.25, 0.3, -1}};
+  for (const double step : {0.01, 0.05, 0.07, 0.4}) {
+    scene.integrator.step = step;
+    Simulation simulation(scene);
+    const EffortPlayer player(pulses, simulation);
+    const std::size_t roll = simulation.find_coordinate("wrist_roll").value();
+    double impulse = 0;
+    while (simulation.time() < 0.4) {
+      player.command(simulation);
+      ASSERT_TRUE(simulation.step().converged);
+      // `effort` is that of the motor alone: the joint's damper is not in it.
+      impulse += simulation.effort(roll) * step;
+    }
+    EXPECT_NEAR(impulse, 2 * 0.15 - 0.05, 1e-12) << step;
+  }
+  EXPECT_THROW(EffortPlayer({{"knee", 0, 1, 1}}, Simulation(scene)), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace flexarm::bench
