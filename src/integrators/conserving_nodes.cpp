@@ -5,6 +5,23 @@
 #include "integrators/gathered.h"
 
 namespace flexarm {
+namespace {
+
+template <class NodePack>
+void scatter(const NodePack& pack, const ConservingNode<Pack>& node, bool with_tangent, SparseAssembler& assembler) {
+  std::array<double*, Pack::kLanes> targets;
+  for (int lane = 0; lane < pack.lanes; ++lane) targets[lane] = assembler.residual(pack.nodes[lane]);
+  add_lanes<6>(node.residual.data(), pack.lanes, targets.data());
+  for (int lane = 0; lane < pack.lanes && with_tangent; ++lane) {
+    Eigen::Map<Matrix6> tangent(assembler.diagonal_block(pack.nodes[lane]));
+    for (int c = 0; c < 3; ++c) {
+      tangent(c, c) += node.translational[lane];
+      for (int r = 0; r < 3; ++r) tangent(3 + r, 3 + c) += node.rotational(r, c)[lane];
+    }
+  }
+}
+
+}  // namespace
 
 ConservingNodes::ConservingNodes(const Model& model, const TimeRule& rule) : velocity_factor_(rule.velocity_factor()) {
   if (rule.stress != StressRule::Conjugate) return;
@@ -23,20 +40,6 @@ ConservingNodes::ConservingNodes(const Model& model, const TimeRule& rule) : vel
     }
     pack.lanes = lane + 1;
     lane = (lane + 1) % Pack::kLanes;
-  }
-}
-
-void ConservingNodes::scatter(const NodePack& pack, const ConservingNode<Pack>& node, bool with_tangent,
-                              SparseAssembler& assembler) const {
-  std::array<double*, Pack::kLanes> targets;
-  for (int lane = 0; lane < pack.lanes; ++lane) targets[lane] = assembler.residual(pack.nodes[lane]);
-  add_lanes<6>(node.residual.data(), pack.lanes, targets.data());
-  for (int lane = 0; lane < pack.lanes && with_tangent; ++lane) {
-    Eigen::Map<Matrix6> tangent(assembler.diagonal_block(pack.nodes[lane]));
-    for (int c = 0; c < 3; ++c) {
-      tangent(c, c) += node.translational[lane];
-      for (int r = 0; r < 3; ++r) tangent(3 + r, 3 + c) += node.rotational(r, c)[lane];
-    }
   }
 }
 

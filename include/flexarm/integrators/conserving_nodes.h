@@ -26,8 +26,6 @@ class ConservingNodes {
     std::array<int, Pack::kLanes> nodes;
     LumpedInertia<Pack> inertia;
   };
-  void scatter(const NodePack& pack, const ConservingNode<Pack>& node, bool with_tangent,
-               SparseAssembler& assembler) const;
 
   double velocity_factor_;
   std::vector<NodePack> packs_;
