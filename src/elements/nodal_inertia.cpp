@@ -1,5 +1,6 @@
 #include "flexarm/elements/nodal_inertia.h"
 
+#include "flexarm/elements/conserving_node.h"
 #include "flexarm/elements/rotary_inertia.h"
 
 namespace flexarm {
@@ -36,23 +37,25 @@ NodalAction nodal_inertia_action(const NodalInertia& inertia, const TimeRule& ru
   Matrix3 J = inertia.rotary;
   if (rule.nodal_rotary_inertia) J += inertia.beam_rotary;
   const MassPointState spin = spin_state(node.state);
-  RotaryRate rate;
   if (rule.is_incremental()) {
-    const double factor = rule.velocity_factor();
-    action.residual.head<3>() = inertia.mass * (factor / h) * (displacement / h - node.state.velocity);
-    action.translational = inertia.mass * factor / (h * h);
-    if (J.isZero(0)) return action;
     const RotationIncrement increment = rotation_increment(rule, node);
-    rate = average_rotary_rate(J, begin, end, increment.value, increment.inverse_tangent, spin, h, with_tangent);
-  } else {
-    const NewmarkRule newmark = newmark_rule(rule, h);
-    action.residual.head<3>() =
-        inertia.mass * newmark.acceleration(displacement, node.state.velocity, node.state.acceleration);
-    action.translational = inertia.mass * newmark.acceleration_slope();
-    if (J.isZero(0)) return action;
-    rate = rule.hht == HhtForm::None ? newmark_rotary_rate(J, begin, end, spin, newmark)
-                                     : momentum_rotary_rate(J, begin, end, spin, node.momentum_rate, newmark);
+    const ConservingNode<double> conserving({inertia.mass, J},
+                                            {begin, end, displacement, increment.value, increment.inverse_tangent,
+                                             node.state.velocity, spin.angular_velocity},
+                                            rule.velocity_factor(), h, with_tangent);
+    action.residual = conserving.residual;
+    action.translational = conserving.translational;
+    if (with_tangent) action.rotational = conserving.rotational;
+    return action;
   }
+  const NewmarkRule newmark = newmark_rule(rule, h);
+  action.residual.head<3>() =
+      inertia.mass * newmark.acceleration(displacement, node.state.velocity, node.state.acceleration);
+  action.translational = inertia.mass * newmark.acceleration_slope();
+  if (J.isZero(0)) return action;
+  const RotaryRate rate = rule.hht == HhtForm::None
+                              ? newmark_rotary_rate(J, begin, end, spin, newmark)
+                              : momentum_rotary_rate(J, begin, end, spin, node.momentum_rate, newmark);
   action.residual.tail<3>() = rate.moment;
   if (with_tangent) action.rotational = rate.derivative;
   return action;

@@ -3,29 +3,10 @@
 #include <algorithm>
 
 #include "flexarm/math/simd.h"
+#include "integrators/gathered.h"
 
 namespace flexarm {
 namespace {
-
-/// One number of each lane.
-template <class Get>
-[[gnu::always_inline]] inline Pack gathered(const Get& get) {
-  static_assert(Pack::kLanes == 4);
-  return {get(0), get(1), get(2), get(3)};
-}
-/// One vector of each lane: get(lane) is a Vector3.
-template <class Get>
-[[gnu::always_inline]] inline Vector3T<Pack> gathered_vector(const Get& get) {
-  Vector3T<Pack> out;
-  for (int c = 0; c < 3; ++c) out[c] = gathered([&](int lane) { return get(lane)[c]; });
-  return out;
-}
-template <class Get>
-[[gnu::always_inline]] inline QuaternionT<Pack> gathered_quaternion(const Get& get) {
-  QuaternionT<Pack> out;
-  for (int c = 0; c < 4; ++c) out.coeffs()[c] = gathered([&](int lane) { return get(lane).coeffs()[c]; });
-  return out;
-}
 
 template <class Elements, class Packs>
 void fill_packs(const Elements& elements, Packs& packs) {
@@ -65,7 +46,7 @@ ConservingBeams::ConservingBeams(const Model& model, const TimeRule& rule) : rul
 }
 
 template <int Nodes>
-BeamNodes<Nodes, Pack> ConservingBeams::gather(const ElementPack<Nodes>& pack, const BeamsStep& step) {
+BeamNodes<Nodes, Pack> ConservingBeams::gather(const ElementPack<Nodes>& pack, const StepMotion& step) {
   BeamNodes<Nodes, Pack> nodes;
   for (int i = 0; i < Nodes; ++i) {
     const auto node = [&](int lane) { return pack.nodes[lane][i]; };
@@ -133,7 +114,7 @@ void ConservingBeams::set_begin(const std::vector<NodePose>& begin) {
   });
 }
 
-void ConservingBeams::set_mid_functions(const BeamsStep& step) {
+void ConservingBeams::set_mid_functions(const StepMotion& step) {
   // To second order: explicit, so that the tangent stays simple. Where the functions are to be averaged with those of
   // the end: the begin.
   const Pack turned(rule_.mid_functions == MidFunctions::Explicit ? 0.5 * step.step : 0.0);
@@ -156,7 +137,7 @@ void ConservingBeams::set_mid_functions(const BeamsStep& step) {
   });
 }
 
-double ConservingBeams::add(const BeamsStep& step, bool with_tangent, SparseAssembler& assembler,
+double ConservingBeams::add(const StepMotion& step, bool with_tangent, SparseAssembler& assembler,
                             std::vector<StrainMemory>& end_memory) {
   double dissipated = 0;
   const bool has_memory = rule_.dissipation.any();

@@ -67,7 +67,7 @@ void StepSystem::begin(const State& state, double step, Guess guess) {
   load_factor_ = 1;
   load_begin_configuration(state);
   if (!points_valid_) compute_begin_points();
-  conserving_beams_.set_mid_functions(beams_step());
+  conserving_beams_.set_mid_functions(motion());
   for (std::size_t i = 0; i < model_.histories.size(); ++i) {
     history_values_[i] = model_.histories[i](state.time + load_time() * step);
     if (!scheme_.is_incremental()) begin_history_values_[i] = model_.histories[i](state.time);

@@ -41,6 +41,7 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme, Tangent tangent
       begin_points_(model.stiffness_point_count),
       end_points_(model.stiffness_point_count),
       conserving_beams_(model, scheme),
+      conserving_nodes_(model, scheme),
       begin_mass_rotations_(model.mass_point_count),
       end_mass_rotations_(model.mass_point_count),
       end_mass_points_(model.mass_point_count),
@@ -100,6 +101,7 @@ void StepSystem::add_nodal_forces(bool with_tangent) {
       add_nodal_force(node, weight, none, true, false);
     }
     if (static_ || inertia.rotary_damping.isZero(0)) continue;
+    if (with_tangent) inverse_tangents_[i] = cayley::inverse_tangent(increments_[i]);
     const NodalAction damping = nodal_damping_action(inertia, scheme_, node_step(i));
     Eigen::Matrix<double, 6, 3> rotational = none;
     rotational.bottomRows<3>() = damping.rotational;
@@ -115,6 +117,10 @@ void StepSystem::add_nodal_forces(bool with_tangent) {
 }
 
 void StepSystem::add_nodal_inertia(bool with_tangent) {
+  if (scheme_.stress == StressRule::Conjugate) {
+    conserving_nodes_.add(motion(), with_tangent, assembler_);
+    return;
+  }
   for (std::size_t i = 0; i < end_.size(); ++i) {
     const NodalInertia& inertia = model_.inertias[i];
     if (inertia.empty()) continue;
@@ -253,7 +259,7 @@ bool StepSystem::evaluate(bool with_tangent) {
   if (is_off_line_) return false;
   assembler_.set_zero(with_tangent);
   dissipated_ = 0;
-  if (with_tangent && !static_)
+  if (with_tangent && !static_ && scheme_.stress != StressRule::Conjugate)
     for (std::size_t i = 0; i < increments_.size(); ++i) inverse_tangents_[i] = cayley::inverse_tangent(increments_[i]);
   if (scheme_.hht != HhtForm::None) std::fill(end_forces_.begin(), end_forces_.end(), Vector6::Zero());
   if (is_interpolated()) interpolate_configuration();
@@ -263,7 +269,7 @@ bool StepSystem::evaluate(bool with_tangent) {
   else if (scheme_.stress != StressRule::Conjugate)
     add_momentum_beams(with_tangent);
   else
-    dissipated_ += conserving_beams_.add(beams_step(), with_tangent, assembler_, end_strain_memory_);
+    dissipated_ += conserving_beams_.add(motion(), with_tangent, assembler_, end_strain_memory_);
   add_nodal_forces(with_tangent);
   if (is_interpolated()) add_interpolated_forces(with_tangent);
   if (!static_) add_nodal_inertia(with_tangent);

@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include "flexarm/math/local_rotation.h"
 #include "flexarm/math/lanes.h"
+#include "flexarm/math/local_rotation.h"
 #include "flexarm/model/beam_element.h"
 #include "flexarm/model/state.h"
 

@@ -20,18 +20,39 @@ struct RotaryRate {
 
 /// Average rule: (Lambda_1 J W_1 - Lambda_0 J W_0) / h with (W_0 + W_1) / 2 = Omega / h. `increment` is the spatial
 /// rotation increment (unscaled or tangent-scaled), `inverse_tangent` maps a spin to its variation (T^{-1} or S^{-1}),
-/// and is used for the derivative only.
+/// and is used for the derivative only. On a scalar or on packs.
+template <typename S>
+struct AverageRate {
+  Vector3T<S> angular_velocity;  ///< at the end, material
+  Vector3T<S> moment;            ///< world axes
+  Matrix3T<S> derivative;        ///< d(moment)/d(spin)
+  Matrix3T<S> to_momentum;       ///< J d(Omega)/d(spin)
+
+  AverageRate(const Matrix3T<S>& inertia, const Matrix3T<S>& begin, const Matrix3T<S>& end,
+              const Vector3T<S>& increment, const Matrix3T<S>& inverse_tangent,
+              const Vector3T<S>& begin_angular_velocity, double step, bool with_derivative) {
+    angular_velocity = S(2 / step) * (begin.transpose() * increment) - begin_angular_velocity;
+    const Vector3T<S> begin_momentum = inertia * begin_angular_velocity, end_momentum = inertia * angular_velocity;
+    const Vector3T<S> momentum = end * end_momentum;
+    moment = S(1 / step) * (momentum - begin * begin_momentum);
+    if (!with_derivative) return;
+    to_momentum.noalias() = inertia.lazyProduct(Matrix3T<S>(begin.transpose().lazyProduct(inverse_tangent)));
+    derivative = S(2 / (step * step)) * end.lazyProduct(to_momentum);
+    derivative -= so3::hat(Vector3T<S>(S(1 / step) * momentum));
+  }
+};
+
 inline RotaryRate average_rotary_rate(const Matrix3& inertia, const Matrix3& begin, const Matrix3& end,
                                       const Vector3& increment, const Matrix3& inverse_tangent,
                                       const MassPointState& state, double step, bool with_derivative = true) {
+  const AverageRate<double> average(inertia, begin, end, increment, inverse_tangent, state.angular_velocity, step,
+                                    with_derivative);
   RotaryRate rate;
-  rate.end.angular_velocity = (2 / step) * (begin.transpose() * increment) - state.angular_velocity;
-  const Vector3 momentum = end * (inertia * rate.end.angular_velocity);
-  rate.moment = (momentum - begin * (inertia * state.angular_velocity)) / step;
+  rate.end.angular_velocity = average.angular_velocity;
+  rate.moment = average.moment;
   if (!with_derivative) return rate;
-  const Matrix3 to_material = begin.transpose() * inverse_tangent, to_momentum = inertia * to_material;
-  rate.derivative = (2 / (step * step)) * (end * to_momentum) - so3::hat(Vector3(momentum / step));
-  rate.energy_gradient = (2 / step) * (to_momentum.transpose() * rate.end.angular_velocity);
+  rate.derivative = average.derivative;
+  rate.energy_gradient = (2 / step) * (average.to_momentum.transpose() * average.angular_velocity);
   return rate;
 }
 

@@ -6,19 +6,10 @@
 #include <vector>
 
 #include "flexarm/elements/conserving_beam.h"
-#include "flexarm/model/model.h"
-#include "flexarm/model/state.h"
+#include "flexarm/integrators/step_motion.h"
 #include "flexarm/solver/sparse_assembler.h"
 
 namespace flexarm {
-
-/// A step of the whole model.
-struct BeamsStep {
-  const State& state;  ///< at the begin
-  const std::vector<NodePose>&begin, &end;
-  const std::vector<Vector3>& increments;  ///< tangent-scaled
-  double step;                             ///< [s]
-};
 
 /// Life of a step: begin points (kept from the last step by accept()), middle functions, then add() until converged.
 class ConservingBeams {
@@ -29,10 +20,10 @@ class ConservingBeams {
   /// Stiffness points of a configuration at the begin.
   void set_begin(const std::vector<NodePose>& begin);
   /// Test functions for the middle of the step, as the velocities at the begin foresee it.
-  void set_mid_functions(const BeamsStep& step);
+  void set_mid_functions(const StepMotion& step);
   /// Adds forces, damping and translational inertia. `end_memory`: per stiffness point, schemes with numerical
   /// dissipation. Returns what is dissipated over the step [J].
-  double add(const BeamsStep& step, bool with_tangent, SparseAssembler& assembler,
+  double add(const StepMotion& step, bool with_tangent, SparseAssembler& assembler,
              std::vector<StrainMemory>& end_memory);
   /// The points of the last add() are those at the begin of the next step.
   void accept() { begin_ = 1 - begin_; }
@@ -53,7 +44,7 @@ class ConservingBeams {
   using PackGroup = std::vector<ElementPack<Nodes>>;
 
   template <int Nodes>
-  static BeamNodes<Nodes, Pack> gather(const ElementPack<Nodes>& pack, const BeamsStep& step);
+  static BeamNodes<Nodes, Pack> gather(const ElementPack<Nodes>& pack, const StepMotion& step);
   template <int Nodes>
   static void gather(const ElementPack<Nodes>& pack, const std::vector<StrainMemory>& memory,
                      std::array<StrainMemoryT<Pack>, Nodes - 1>& points);

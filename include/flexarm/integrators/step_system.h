@@ -8,6 +8,7 @@
 #include "flexarm/elements/nodal_inertia.h"
 #include "flexarm/elements/rotary_inertia.h"
 #include "flexarm/integrators/conserving_beams.h"
+#include "flexarm/integrators/conserving_nodes.h"
 #include "flexarm/integrators/friction_carrier.h"
 #include "flexarm/integrators/rotation_reference.h"
 #include "flexarm/integrators/scheme.h"
@@ -89,7 +90,7 @@ class StepSystem {
   double largest_node_rotation() const;
 
  private:
-  BeamsStep beams_step() const { return {*state_, begin_, end_, increments_, step_}; }
+  StepMotion motion() const { return {*state_, begin_, end_, increments_, step_}; }
   void add_momentum_beams(bool with_tangent);
   void add_endpoint_forces(bool with_tangent);
   void add_newmark_inertia(bool with_tangent);
@@ -184,6 +185,7 @@ class StepSystem {
   RotationReference reference_;
   std::vector<PointKinematics> begin_points_, end_points_;  // unless in conserving_beams_
   ConservingBeams conserving_beams_;                        // empty for schemes of other families
+  ConservingNodes conserving_nodes_;                        // the same
   std::vector<Matrix3> begin_mass_rotations_, end_mass_rotations_;
   std::vector<MassPointState> end_mass_points_;
   std::vector<Vector6> end_strain_rates_;

@@ -9,14 +9,18 @@ namespace flexarm::simd {
 // inlines one level of calls. Without optimisation nothing is inlined.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__)
 inline constexpr bool has_wide_version = true;
-inline bool is_wide() { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"); }
+inline bool is_wide() {
+  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+}
 template <class Work>
 [[gnu::target("avx2,fma"), gnu::flatten, gnu::noinline]] void run_wide(const Work& work) {
   work();
 }
 #else
 inline constexpr bool has_wide_version = false;
-inline bool is_wide() { return false; }
+inline bool is_wide() {
+  return false;
+}
 template <class Work>
 void run_wide(const Work& work) {
   work();

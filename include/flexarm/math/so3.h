@@ -6,14 +6,9 @@
 /// bilinear (never conjugating) and branches look at real parts only. What elements call runs on a Pack, too. Nothing
 /// allocates or throws; non-finite input gives non-finite output. (Muñoz 2004, eq. 2.14-2.21)
 
-#include <array>
-#include <cmath>
-#include <complex>
-#include <limits>
-
 #include <Eigen/Geometry>
 
-#include <flexarm/math/pack.h>
+#include <flexarm/math/rotation_series.h>
 
 namespace flexarm {
 
@@ -25,9 +20,6 @@ template <typename S>
 using QuaternionT = Eigen::Quaternion<S>;
 
 namespace so3 {
-
-template <typename S>
-using RealOf = typename Eigen::NumTraits<S>::Real;
 
 /// a . b without conjugation (Eigen's dot() conjugates, which breaks complex steps).
 template <typename A, typename B>
@@ -59,80 +51,6 @@ inline Vector3T<typename M::Scalar> vee(const Eigen::MatrixBase<M>& m) {
 
 namespace detail {
 
-/// 1 / n!, n <= 40.
-inline constexpr std::array<long double, 41> reciprocal_factorials = [] {
-  std::array<long double, 41> table{};
-  long double factorial = 1;
-  for (int n = 0; n <= 40; ++n) {
-    factorial *= n > 0 ? n : 1;
-    table[n] = 1 / factorial;
-  }
-  return table;
-}();
-
-template <typename S>
-inline constexpr int extra_terms = std::numeric_limits<RealOf<S>>::digits > 53 ? 2 : 0;
-
-/// a_k by its power series in x = theta^2, in Horner form.
-template <int k, int terms, typename S>
-[[gnu::always_inline]] inline S power_series(const S& x) {
-  using Real = RealOf<S>;
-  S sum(static_cast<Real>(reciprocal_factorials[2 * terms + k - 1]));
-#pragma GCC unroll 16
-  for (int j = terms - 2; j >= 0; --j) sum = static_cast<Real>(reciprocal_factorials[2 * j + k + 1]) - x * sum;
-  return sum;
-}
-
-/// arctan(sqrt(x)) / sqrt(x), to round-off for 0 <= x < arctangent_series_limit.
-inline constexpr double arctangent_series_limit = 0.0625;
-template <typename S>
-[[gnu::always_inline]] inline S arctangent_series(const S& x) {
-  using Real = RealOf<S>;
-  constexpr int terms = 13 + 2 * extra_terms<S>;
-  S sum(Real(1) / Real(2 * terms - 1));
-#pragma GCC unroll 20
-  for (int j = terms - 2; j >= 0; --j) sum = Real(1) / Real(2 * j + 1) - x * sum;
-  return sum;
-}
-
-/// arctan(sqrt(x)) / sqrt(x) for x >= 0; a series where the quotient is 0/0 or slow.
-template <typename S>
-[[gnu::always_inline]] inline S arctangent_ratio(const S& x) {
-  using std::atan;
-  using std::sqrt;
-  if (std::real(x) < RealOf<S>(arctangent_series_limit)) return arctangent_series(x);
-  const S root = sqrt(x);
-  return atan(root) / root;
-}
-
-/// theta / sin(theta/2) for a quaternion of any norm with q0 = cos(theta/2) >= 0 and |q|^2 = sin^2(theta/2).
-template <typename S>
-[[gnu::always_inline]] inline S angle_per_sine(const S& q0, const S& square) {
-  using std::atan;
-  using std::sqrt;
-  using Real = RealOf<S>;
-  if (std::real(square) < Real(3) * std::real(q0) * std::real(q0))  // |theta| < 2 pi / 3
-    return Real(2) * arctangent_ratio<S>(square / (q0 * q0)) / q0;
-  constexpr Real pi(3.141592653589793238462643383279502884L);
-  const S sine = sqrt(square);
-  return (pi - Real(2) * atan(q0 / sine)) / sine;
-}
-
-/// Kept out of line: what few lanes of a pack need.
-[[gnu::noinline, gnu::cold]] inline double far_angle_per_sine(double q0, double square) {
-  return angle_per_sine(q0, square);
-}
-[[gnu::always_inline]] inline Pack angle_per_sine(const Pack& q0, const Pack& square) {
-  const Pack q00 = q0 * q0;
-  Pack result = Pack(2) * arctangent_series(Pack(square / q00)) / q0;
-  for_lanes_beyond(square, arctangent_series_limit * q00,
-                   [&](int lane) { result.set(lane, far_angle_per_sine(q0[lane], square[lane])); });
-  return result;
-}
-
-template <int kmax>
-std::array<double, kmax + 1> far_series_coefficients(double theta_squared);
-
 /// I + c1 hat(v) + c2 hat(v)^2.
 template <typename S>
 [[gnu::always_inline]] inline Matrix3T<S> identity_plus(const S& c1, const S& c2, const Vector3T<S>& v) {
@@ -161,59 +79,6 @@ template <typename S>
 }
 
 }  // namespace detail
-
-/// a_0 .. a_kmax with a_k(theta) = sum_j (-1)^j theta^(2j) / (2j+k+1)!: a_0 = sin(theta)/theta,
-/// a_1 = (1-cos(theta))/theta^2, a_2 = (theta-sin(theta))/theta^3, ..., to round-off for 0 <= theta^2 <= (2 pi)^2.
-/// Below theta = 2 the two highest are summed and the others follow downwards, a_{k-2} = 1/(k-1)! - theta^2 a_k, which
-/// damps errors; above, the recurrence is stable upwards. Closed forms in the half angle keep a_1 accurate at 2 pi.
-/// @note 1 / theta d(a_k)/d(theta) = (k+1) a_{k+2} - a_{k+1}.
-template <int kmax, typename S>
-[[gnu::always_inline]] inline std::array<S, kmax + 1> series_coefficients(const S& theta_squared) {
-  static_assert(kmax >= 1 && kmax <= 8, "the recurrences start from two coefficients");
-  using std::cos;
-  using std::sin;
-  using std::sqrt;
-  using Real = RealOf<S>;
-  const S& x = theta_squared;
-  std::array<S, kmax + 1> a;
-  const auto fill_downwards = [&] {
-#pragma GCC unroll 8
-    for (int k = kmax; k >= 2; --k) a[k - 2] = static_cast<Real>(detail::reciprocal_factorials[k - 1]) - x * a[k];
-  };
-  if constexpr (is_pack<S>) {
-    a[kmax] = detail::power_series<kmax, 9>(x);
-    a[kmax - 1] = detail::power_series<kmax - 1, 9>(x);
-    fill_downwards();
-    for_lanes_beyond(x, S(1), [&](int lane) {
-      const std::array<double, kmax + 1> b = detail::far_series_coefficients<kmax>(x[lane]);
-      for (int k = 0; k <= kmax; ++k) a[k].set(lane, b[k]);
-    });
-  } else if (std::real(x) < Real(4)) {
-    constexpr int extra = detail::extra_terms<S>;
-    if (std::real(x) < Real(1)) {
-      a[kmax] = detail::power_series<kmax, 9 + extra>(x);
-      a[kmax - 1] = detail::power_series<kmax - 1, 9 + extra>(x);
-    } else {
-      a[kmax] = detail::power_series<kmax, 12 + extra>(x);
-      a[kmax - 1] = detail::power_series<kmax - 1, 12 + extra>(x);
-    }
-    fill_downwards();
-  } else {
-    const S theta = sqrt(x);
-    const S sine = sin(Real(0.5) * theta), cosine = cos(Real(0.5) * theta);
-    a[0] = Real(2) * sine * cosine / theta;
-    a[1] = Real(2) * sine * sine / x;
-#pragma GCC unroll 8
-    for (int k = 2; k <= kmax; ++k) a[k] = (static_cast<Real>(detail::reciprocal_factorials[k - 1]) - a[k - 2]) / x;
-  }
-  return a;
-}
-
-/// Kept out of line: what few lanes of a pack need.
-template <int kmax>
-[[gnu::noinline, gnu::cold]] std::array<double, kmax + 1> detail::far_series_coefficients(double theta_squared) {
-  return series_coefficients<kmax>(theta_squared);
-}
 
 /// All operators of one rotation vector theta from a single evaluation of the coefficients.
 /// Keep one of these where several of exp, T, T^-1 and their derivatives are needed at the same theta.

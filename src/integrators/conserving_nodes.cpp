@@ -1,0 +1,70 @@
+#include "flexarm/integrators/conserving_nodes.h"
+
+#include "flexarm/math/lanes.h"
+#include "flexarm/math/simd.h"
+#include "integrators/gathered.h"
+
+namespace flexarm {
+namespace {
+
+template <class NodePack>
+void scatter(const NodePack& pack, const ConservingNode<Pack>& node, bool with_tangent, SparseAssembler& assembler) {
+  std::array<double*, Pack::kLanes> targets;
+  for (int lane = 0; lane < pack.lanes; ++lane) targets[lane] = assembler.residual(pack.nodes[lane]);
+  add_lanes<6>(node.residual.data(), pack.lanes, targets.data());
+  for (int lane = 0; lane < pack.lanes && with_tangent; ++lane) {
+    Eigen::Map<Matrix6> tangent(assembler.diagonal_block(pack.nodes[lane]));
+    for (int c = 0; c < 3; ++c) {
+      tangent(c, c) += node.translational[lane];
+      for (int r = 0; r < 3; ++r) tangent(3 + r, 3 + c) += node.rotational(r, c)[lane];
+    }
+  }
+}
+
+}  // namespace
+
+ConservingNodes::ConservingNodes(const Model& model, const TimeRule& rule) : velocity_factor_(rule.velocity_factor()) {
+  if (rule.stress != StressRule::Conjugate) return;
+  int lane = 0;
+  for (std::size_t i = 0; i < model.inertias.size(); ++i) {
+    const NodalInertia& inertia = model.inertias[i];
+    Matrix3 rotary = inertia.rotary;
+    if (rule.nodal_rotary_inertia) rotary += inertia.beam_rotary;
+    if (inertia.mass == 0 && rotary.isZero(0)) continue;
+    if (lane == 0) packs_.emplace_back();
+    NodePack& pack = packs_.back();
+    for (int l = lane; l < Pack::kLanes; ++l) {
+      pack.nodes[l] = static_cast<int>(i);
+      set_lane(pack.inertia.mass, l, inertia.mass);
+      set_lane(pack.inertia.rotary, l, rotary);
+    }
+    pack.lanes = lane + 1;
+    lane = (lane + 1) % Pack::kLanes;
+  }
+}
+
+void ConservingNodes::add(const StepMotion& step, bool with_tangent, SparseAssembler& assembler) const {
+  simd::run([&] {
+    for (const NodePack& pack : packs_) {
+      const auto begin = [&](int lane) -> const NodePose& { return step.begin[pack.nodes[lane]]; };
+      const auto end = [&](int lane) -> const NodePose& { return step.end[pack.nodes[lane]]; };
+      const auto state = [&](int lane) -> const NodeState& { return step.state.nodes[pack.nodes[lane]]; };
+      NodeMotion<Pack> node;
+      node.begin = gathered_quaternion([&](int lane) -> const Quaternion& {
+                     return begin(lane).orientation;
+                   }).toRotationMatrix();
+      node.end =
+          gathered_quaternion([&](int lane) -> const Quaternion& { return end(lane).orientation; }).toRotationMatrix();
+      node.displacement = gathered_vector([&](int lane) -> const Vector3& { return end(lane).position; }) -
+                          gathered_vector([&](int lane) -> const Vector3& { return begin(lane).position; });
+      node.increment = gathered_vector([&](int lane) -> const Vector3& { return step.increments[pack.nodes[lane]]; });
+      node.velocity = gathered_vector([&](int lane) -> const Vector3& { return state(lane).velocity; });
+      node.angular_velocity = gathered_vector([&](int lane) -> const Vector3& { return state(lane).angular_velocity; });
+      node.inverse_tangent = cayley::inverse_tangent(node.increment);
+      scatter(pack, ConservingNode<Pack>(pack.inertia, node, velocity_factor_, step.step, with_tangent), with_tangent,
+              assembler);
+    }
+  });
+}
+
+}  // namespace flexarm

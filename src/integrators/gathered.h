@@ -1,0 +1,31 @@
+#pragma once
+/// From nodes and elements that lie one behind the other to packs.
+
+#include "flexarm/math/pack.h"
+#include "flexarm/math/so3.h"
+#include "flexarm/model/joint.h"
+
+namespace flexarm {
+
+/// One number of each lane: get(lane).
+template <class Get>
+[[gnu::always_inline]] inline Pack gathered(const Get& get) {
+  static_assert(Pack::kLanes == 4);
+  return {get(0), get(1), get(2), get(3)};
+}
+/// One vector of each lane; get(lane) is a const Vector3&.
+template <class Get>
+[[gnu::always_inline]] inline Vector3T<Pack> gathered_vector(const Get& get) {
+  Vector3T<Pack> out;
+  for (int c = 0; c < 3; ++c) out[c] = gathered([&](int lane) { return get(lane)[c]; });
+  return out;
+}
+/// get(lane) is a const Quaternion&.
+template <class Get>
+[[gnu::always_inline]] inline QuaternionT<Pack> gathered_quaternion(const Get& get) {
+  QuaternionT<Pack> out;
+  for (int c = 0; c < 4; ++c) out.coeffs()[c] = gathered([&](int lane) { return get(lane).coeffs()[c]; });
+  return out;
+}
+
+}  // namespace flexarm

@@ -1,0 +1,220 @@
+// Kernels of the energy-momentum family on packs: every lane has what its element has alone.
+#include <limits>
+#include <memory>
+
+#include "elements/conserving_kernel.h"
+#include "elements/kernel_checks.h"
+#include "flexarm/elements/conserving_node.h"
+#include "flexarm/integrators/scheme.h"
+#include "flexarm/math/simd.h"
+
+namespace flexarm {
+namespace {
+
+using namespace test;
+
+constexpr double kStep = 0.3;
+/// Sums of some hundred terms of order one to a hundred: round-off.
+constexpr double kRoundOff = 1e-12;
+
+struct Options {
+  bool is_corrected, is_damped, is_coupled;
+  MidFunctions mid = MidFunctions::Explicit;
+  int dissipation_order = 0;
+
+  TimeRule rule() const {
+    TimeRule rule;
+    rule.mid_functions = mid;
+    rule.correction = is_corrected ? EnergyCorrection::Multiplier : EnergyCorrection::None;
+    if (dissipation_order > 0) rule.dissipation = numerical_dissipation(dissipation_order, 0.5, kStep);
+    return rule;
+  }
+};
+
+const Options kOptions[] = {
+    {true, false, true},
+    {true, true, false},
+    {false, true, true},
+    {true, false, true, MidFunctions::Symmetric},
+    {true, true, true, MidFunctions::Explicit, 2},
+};
+
+/// Four elements: a large step, a tiny one, rest, and nodes that turn far from each other.
+template <int Nodes>
+class Lanes {
+ public:
+  explicit Lanes(const Options& options) : options_(options) {
+    RandomSource random(3);
+    for (int lane = 0; lane < Pack::kLanes; ++lane) {
+      steps_[lane] = std::make_unique<RandomStep<Nodes>>(random, lane == 0 ? 0.5 : lane == 1 ? 1e-7 : 0.1);
+      RandomStep<Nodes>& step = *steps_[lane];
+      if (lane == 2) stop(step);
+      if (lane == 3) turn_far(step);
+      step.set_begin_points();
+      if (options.is_damped) step.element.stiffness_damping = step.element.mass_damping = 0.1 * (lane + 1);
+      if (!options.is_coupled) {
+        step.element.stiffness.template topRightCorner<3, 3>().setZero();
+        step.element.stiffness.template bottomLeftCorner<3, 3>().setZero();
+      }
+      test::element_functions<Nodes>(step.element, step.begin_orientation, functions_[lane]);
+      for (StrainMemory& memory : memory_[lane]) memory = {0.1 * random.vector6(), 0.1 * random.vector6()};
+    }
+  }
+  LaneInput<Nodes> input(int lane) const {
+    const RandomStep<Nodes>& step = *steps_[lane];
+    return {step.element, step.nodes, functions_[lane], step.begin_points.data(), memory_[lane].data()};
+  }
+  /// Lane l of the pack is element (l + shift) % 4.
+  void fill(int shift, KernelData<Nodes, Pack>& data) const {
+    for (int lane = 0; lane < Pack::kLanes; ++lane) data.set(lane, input((lane + shift) % Pack::kLanes));
+  }
+  TimeRule rule() const { return options_.rule(); }
+
+ private:
+  static void stop(RandomStep<Nodes>& step) {
+    step.nodes.end = step.nodes.begin;
+    for (int i = 0; i < Nodes; ++i) step.set_orientation(i, step.begin_orientation[i]);
+  }
+  static void turn_far(RandomStep<Nodes>& step) {
+    for (int i = 0; i < Nodes; ++i) {
+      const Vector3 bend = 2.6 * i / (Nodes - 1) * Vector3(0.6, 0, 0.8);
+      step.begin_orientation[i] = so3::exp_quaternion(bend) * step.begin_orientation[0];
+      const Vector3 turn = 0.2 * Vector3(1, -1, i);
+      step.set_orientation(i, so3::exp_quaternion(turn) * step.begin_orientation[i]);
+    }
+  }
+
+  Options options_;
+  std::array<std::unique_ptr<RandomStep<Nodes>>, Pack::kLanes> steps_;
+  std::array<ElementFunctions<Nodes>, Pack::kLanes> functions_;
+  std::array<std::array<StrainMemory, Nodes - 1>, Pack::kLanes> memory_;
+};
+
+/// What comes out for one element.
+template <int Nodes>
+struct Output {
+  ElementSystem<Nodes> system;
+  std::array<PointKinematics, Nodes - 1> points;
+  std::array<StrainMemory, Nodes - 1> memory;
+
+  template <typename S>
+  Output(const KernelData<Nodes, S>& data, int lane) {
+    data.get(lane, true, system);
+    data.get_end(lane, points.data(), memory.data());
+  }
+  bool operator==(const Output& other) const {
+    bool equal = system.residual == other.system.residual && system.tangent == other.system.tangent &&
+                 system.dissipated == other.system.dissipated;
+    for (int k = 0; k < Nodes - 1; ++k) equal = equal && points[k].strain == other.points[k].strain;
+    return equal;
+  }
+};
+
+enum class Version { Baseline, Wide };
+
+template <int Nodes>
+void evaluate(KernelData<Nodes, Pack>& data, const TimeRule& rule, Version version) {
+  const auto work = [&] { data.evaluate(rule, kStep, true); };
+  if (version == Version::Baseline)
+    simd::run_baseline(work);
+  else
+    simd::run_wide(work);
+}
+
+std::vector<Version> versions() {
+  std::vector<Version> out = {Version::Baseline};
+  if (simd::is_wide()) out.push_back(Version::Wide);
+  return out;
+}
+
+template <class Count>
+class PackBeam : public ::testing::Test {};
+TYPED_TEST_SUITE(PackBeam, NodeCounts);
+
+TYPED_TEST(PackBeam, LanesAreSingleElements) {
+  constexpr int N = TypeParam::value;
+  for (const Options& options : kOptions) {
+    const Lanes<N> lanes(options);
+    for (const Version version : versions()) {
+      KernelData<N, Pack> pack;
+      lanes.fill(0, pack);
+      evaluate(pack, lanes.rule(), version);
+      for (int lane = 0; lane < Pack::kLanes; ++lane) {
+        KernelData<N, double> single;
+        single.set(0, lanes.input(lane));
+        single.evaluate(lanes.rule(), kStep, true);
+        const Output<N> expected(single, 0), actual(pack, lane);
+        EXPECT_LE(largest(actual.system.residual - expected.system.residual),
+                  kRoundOff * largest(expected.system.residual))
+            << "lane " << lane;
+        EXPECT_LE(largest(actual.system.tangent - expected.system.tangent),
+                  kRoundOff * largest(expected.system.tangent))
+            << "lane " << lane;
+        EXPECT_NEAR(actual.system.dissipated, expected.system.dissipated, kRoundOff);
+        for (int k = 0; k < N - 1; ++k) {
+          EXPECT_LE(largest(actual.points[k].strain - expected.points[k].strain), kRoundOff);
+          if (options.dissipation_order == 0) continue;
+          EXPECT_LE(largest(actual.memory[k].average - expected.memory[k].average), kRoundOff);
+          EXPECT_LE(largest(actual.memory[k].rate - expected.memory[k].rate), kRoundOff);
+        }
+      }
+    }
+  }
+}
+
+// Bit by bit: neither its lane nor its neighbours matter to an element, not even one that is not a number.
+TYPED_TEST(PackBeam, LanesDoNotFeelEachOther) {
+  constexpr int N = TypeParam::value;
+  for (const Options& options : kOptions) {
+    const Lanes<N> lanes(options);
+    for (const Version version : versions()) {
+      KernelData<N, Pack> pack, shifted;
+      lanes.fill(0, pack);
+      evaluate(pack, lanes.rule(), version);
+      lanes.fill(1, shifted);
+      shifted.nodes.end[0][0].set(3, std::numeric_limits<double>::quiet_NaN());
+      shifted.nodes.orientation[0].w().set(3, std::numeric_limits<double>::quiet_NaN());
+      evaluate(shifted, lanes.rule(), version);
+      for (int lane = 1; lane < Pack::kLanes; ++lane)
+        EXPECT_TRUE(Output<N>(pack, lane) == Output<N>(shifted, lane - 1)) << "lane " << lane;
+    }
+  }
+}
+
+TEST(PackNode, LanesAreSingleNodes) {
+  RandomSource random(5);
+  LumpedInertia<Pack> inertias;
+  NodeMotion<Pack> motions;
+  std::array<LumpedInertia<double>, Pack::kLanes> inertia;
+  std::array<NodeMotion<double>, Pack::kLanes> motion;
+  for (int lane = 0; lane < Pack::kLanes; ++lane) {
+    const Quaternion begin = random.rotation(3);
+    const Vector3 turn = (lane == 1 ? 0.0 : 0.5) * random.vector();
+    const Quaternion end = so3::exp_quaternion(turn) * begin;
+    const Vector3 increment = cayley::increment(begin, end);
+    inertia[lane] = {1.0 + lane, random.positive_definite<3>()};
+    motion[lane] = {begin.toRotationMatrix(),           end.toRotationMatrix(), random.vector(), increment,
+                    cayley::inverse_tangent(increment), random.vector(),        random.vector()};
+    set_lane(inertias.mass, lane, inertia[lane].mass);
+    set_lane(inertias.rotary, lane, inertia[lane].rotary);
+    set_lane(motions.begin, lane, motion[lane].begin);
+    set_lane(motions.end, lane, motion[lane].end);
+    set_lane(motions.displacement, lane, motion[lane].displacement);
+    set_lane(motions.increment, lane, motion[lane].increment);
+    set_lane(motions.inverse_tangent, lane, motion[lane].inverse_tangent);
+    set_lane(motions.velocity, lane, motion[lane].velocity);
+    set_lane(motions.angular_velocity, lane, motion[lane].angular_velocity);
+  }
+  simd::run([&] {
+    const ConservingNode<Pack> pack(inertias, motions, 2, kStep, true);
+    for (int lane = 0; lane < Pack::kLanes; ++lane) {
+      const ConservingNode<double> single(inertia[lane], motion[lane], 2, kStep, true);
+      EXPECT_LE(largest(get_lane(pack.residual, lane) - single.residual), kRoundOff * largest(single.residual));
+      EXPECT_LE(largest(get_lane(pack.rotational, lane) - single.rotational), kRoundOff * largest(single.rotational));
+      EXPECT_NEAR(pack.translational[lane], single.translational, kRoundOff * single.translational);
+    }
+  });
+}
+
+}  // namespace
+}  // namespace flexarm
