@@ -74,7 +74,7 @@ void StepSystem::begin(const State& state, double step, Guess guess) {
   }
   if (!scheme_.is_incremental() || !carriers_.empty()) compute_begin_rates();
   begin_friction();
-  if (guess == Guess::Extrapolated) extrapolate();
+  if (guess != Guess::Unchanged) extrapolate(guess == Guess::Extrapolated ? state.history.order : 0);
   set_prescribed(state.time + step);
   set_slaves();
   update_increments();
@@ -97,16 +97,16 @@ void StepSystem::set_prescribed(double time) {
       released_[coordinate.joint].displacement[coordinate.component] = model_.histories[coordinate.motion](time);
 }
 
-void StepSystem::extrapolate() {
+void StepSystem::extrapolate(int order) {
   const State& state = *state_;
   const IncrementHistory& history = state.history;
   const bool has_last = history.count > 0;
-  IncrementHistory::Weights weights = history.weights(history.order, 0, step_);
+  IncrementHistory::Weights weights = history.weights(order, 0, step_);
   if (weights[0] == 0) weights = history.weights(0, 0, step_);
   const auto entry = [&](int variable, int k) {
     const int equation = dof_.equation[dof_.first[variable] + k];
     double sum = 0;
-    for (int i = 0; i <= history.order && equation >= 0 && weights[i] != 0; ++i)
+    for (int i = 0; i <= order && equation >= 0 && weights[i] != 0; ++i)
       sum += weights[i] * history.increments[i][equation];
     return sum;
   };

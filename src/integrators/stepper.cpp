@@ -184,7 +184,7 @@ bool Stepper::simple_step(State& state, double step, StepResult& result) {
     bool reuse;
   };
   const Attempt attempts[] = {{StepSystem::Guess::Extrapolated, true},
-                              {StepSystem::Guess::Extrapolated, false},
+                              {StepSystem::Guess::Repeated, false},
                               {StepSystem::Guess::Unchanged, false}};
   for (const Attempt& attempt : attempts) {
     if (attempt.reuse && !settings_.reuse_factorisation) continue;

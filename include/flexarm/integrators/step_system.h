@@ -40,7 +40,8 @@ class StepSystem {
   StepSystem(const Model& model, const Scheme& scheme, Tangent tangent = Tangent::Matrix);
 
   enum class Guess {
-    Extrapolated,  ///< the last step's increments again; rigid continuation of the velocities in the first step
+    Extrapolated,  ///< from the last increments, see IncrementHistory; continuing the velocities in the first step
+    Repeated,      ///< the last increments again
     Unchanged      ///< the configuration at the begin
   };
 
@@ -161,7 +162,7 @@ class StepSystem {
   void load_begin_configuration(const State& state);
   void compute_begin_points();
   void set_prescribed(double time);
-  void extrapolate();
+  void extrapolate(int order);
   void choose_order(IncrementHistory& history);
   void set_slaves();
   void update_increments();
