@@ -144,6 +144,7 @@ std::string section(const SpeedMeasurement& m) {
       "(twice its step).\n{} runs, of which {} did not come to their end.\n\n",
       discretisation_text(p.reference), m.reference.run.seconds, m.reference_error(), m.mesh_error, m.step_error,
       m.outcomes.size(), failed);
+  if (!p.note.empty()) text += p.note + "\n\n";
   text += front_table(m) + "\nThe fastest of each scheme, by error [ms]:\n\n" + scheme_table(m);
   if (!m.peers.empty()) text += "\n" + peer_table(m);
   return text;
