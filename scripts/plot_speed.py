@@ -51,10 +51,19 @@ def series(rows):
     return found
 
 
+def colour_of(name, is_peer, colours):
+    """A colour for each name, the same in all panels; those of other programs from another palette."""
+    palette = pyplot.get_cmap("Dark2" if is_peer else "tab10").colors
+    known = colours.setdefault(is_peer, [])
+    if name not in known:
+        known.append(name)
+    return palette[known.index(name) % len(palette)]
+
+
 def draw(axes, rows, colours):
     for name, group in series(rows).items():
-        colour = colours.setdefault(name, f"C{len(colours) % 10}")
         is_peer = group[0]["program"] != "flexarm"
+        colour = colour_of(name, is_peer, colours)
         axes.plot(*zip(*((row["error"], row["seconds"]) for row in group)), ".", color=colour, markersize=2, alpha=0.3)
         points = front(group)
         if points:

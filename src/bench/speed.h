@@ -31,6 +31,7 @@ struct SpeedProblem {
   double interval;              ///< of comparison, a multiple of all steps [s]
   Discretisation reference;     ///< finer than all runs
   std::vector<Discretisation> runs;
+  std::string note = {};  ///< what the reader of the report should know
 };
 
 /// A figure that flexarm shall reach, and the best published one.

@@ -144,6 +144,7 @@ std::string section(const SpeedMeasurement& m) {
       "(twice its step).\n{} runs, of which {} did not come to their end.\n\n",
       discretisation_text(p.reference), m.reference.run.seconds, m.reference_error(), m.mesh_error, m.step_error,
       m.outcomes.size(), failed);
+  if (!p.note.empty()) text += p.note + "\n\n";
   text += front_table(m) + "\nThe fastest of each scheme, by error [ms]:\n\n" + scheme_table(m);
   if (!m.peers.empty()) text += "\n" + peer_table(m);
   return text;
@@ -235,7 +236,11 @@ std::string to_markdown(const SpeedReport& report, const std::string& picture) {
   text += kLegend;
   text += fmt::format("\nThe wall time was {:.2f} times the processor's, all in all.\n", load(report));
   text += "\n## Targets\n\n" + target_table(report);
-  if (!picture.empty()) text += fmt::format("\n![Time over error, problem by problem]({})\n", picture);
+  if (!picture.empty())
+    text += fmt::format(
+        "\n![Time over error, problem by problem]({})\n\nEvery run that came to its end, and lines through those than "
+        "which none of the same scheme is both faster and more accurate, be it by chance.\n",
+        picture);
   for (const SpeedMeasurement& m : report.measurements) text += section(m);
   if (!report.iteration_costs.empty())
     text +=
