@@ -1,19 +1,9 @@
 #include "bench/cost.h"
 
-#include <ctime>
-
+#include "bench/processor_time.h"
 #include "bench/scenes.h"
 
 namespace flexarm::bench {
-namespace {
-
-double processor_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-}  // namespace
 
 Measured<Cost> cost_of_run(const Variant& variant, bool quick) {
   const int steps = quick ? 5 : 150;

@@ -1,0 +1,239 @@
+#include "bench/mujoco.h"
+
+#ifndef FLEXARM_HAS_MUJOCO
+
+namespace flexarm::bench {
+
+std::vector<PeerRun> mujoco_runs(PeerProblem, const std::vector<double>&, bool, const std::function<void()>&) {
+  return {};
+}
+
+}  // namespace flexarm::bench
+
+#else
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <mujoco/mujoco.h>
+
+#include "bench/processor_time.h"
+
+namespace flexarm::bench {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+/// Of the hub, over the beam's inertia about it.
+constexpr double kHubRatio = 1e6;
+/// Angle between segments with which a motion counts as blown up [rad].
+constexpr double kLargestBend = kPi / 2;
+/// Simulated time after which that is looked at [s].
+constexpr double kCheckInterval = 1e-2;
+
+struct PlaneProblem {
+  int beams;
+  double length;                          ///< [m]
+  double mass;                            ///< [kg/m]
+  double polar_inertia, bending_inertia;  ///< [kg m]
+  double bending;                         ///< EI [N m^2]
+  const char *axis, *gravity;             ///< of all hinges; MJCF
+  bool is_driven;                         ///< the first hinge is the hub
+};
+
+PlaneProblem plane_problem(PeerProblem problem) {
+  if (problem == PeerProblem::SpinUp) return {1, 10, 1.2, 1.2e-3, 6e-4, 1.4e4, "0 0 1", "0 0 0", true};
+  return {2, 1, 1, 2e-4, 1e-4, 20, "0 1 0", "0 0 -9.81", false};
+}
+
+/// Inertia about the hub [kg m^2].
+double hub_inertia(const PlaneProblem& problem) {
+  return kHubRatio * problem.mass * std::pow(problem.length, 3) / 3;
+}
+
+double hub_angle(double t) {
+  if (t >= 15) return 6 * t - 45;
+  const double w = 2 * kPi / 15;
+  return 0.4 * (0.5 * t * t + (std::cos(w * t) - 1) / (w * w));
+}
+double hub_speed(double t) {
+  const double w = 2 * kPi / 15;
+  return t >= 15 ? 6 : 0.4 * (t - std::sin(w * t) / w);
+}
+double hub_acceleration(double t) {
+  return t >= 15 ? 0 : 0.4 * (1 - std::cos(2 * kPi * t / 15));
+}
+
+struct Variant {
+  int segments;
+  const char* integrator;
+  double step;
+  double damping;  ///< over stiffness [s]
+};
+
+/// A rigid segment from its hinge on, without the end of its element.
+std::string body(const PlaneProblem& problem, double at, double length, const std::string& hinge) {
+  const double mass = problem.mass * length;
+  const double across = mass * length * length / 12 + problem.bending_inertia * length;
+  return fmt::format(
+      "<body pos=\"{:.17g} 0 0\"><joint type=\"hinge\" axis=\"{}\" {}/>"
+      "<inertial pos=\"{:.17g} 0 0\" mass=\"{:.17g}\" diaginertia=\"{:.17g} {:.17g} {:.17g}\"/>",
+      at, problem.axis, hinge, 0.5 * length, mass, problem.polar_inertia * length, across, across);
+}
+
+std::string mjcf(const PlaneProblem& problem, const Variant& variant) {
+  const double part = problem.length / variant.segments, stiffness = problem.bending / part;
+  std::string text = fmt::format(
+      "<mujoco><compiler angle=\"radian\"/><option timestep=\"{:.17g}\" integrator=\"{}\" gravity=\"{}\">"
+      "<flag constraint=\"disable\" contact=\"disable\"/></option><worldbody>",
+      variant.step, variant.integrator, problem.gravity);
+  const std::string spring =
+      fmt::format("stiffness=\"{:.17g}\" damping=\"{:.17g}\"", stiffness, variant.damping * stiffness);
+  const std::string root = problem.is_driven ? fmt::format("armature=\"{:.17g}\"", hub_inertia(problem)) : "";
+  double at = 0;
+  for (int beam = 0; beam < problem.beams; ++beam)
+    for (int i = 0; i <= variant.segments; ++i) {
+      const double length = i == 0 || i == variant.segments ? 0.5 * part : part;
+      text += body(problem, at, length, i == 0 ? root : spring);
+      at = length;
+    }
+  for (int i = 0; i < problem.beams * (variant.segments + 1); ++i) text += "</body>";
+  return text + "</worldbody></mujoco>";
+}
+
+struct ModelDeleter {
+  void operator()(mjModel* model) const { mj_deleteModel(model); }
+};
+struct DataDeleter {
+  void operator()(mjData* data) const { mj_deleteData(data); }
+};
+
+std::unique_ptr<mjModel, ModelDeleter> compiled(const std::string& text) {
+  const auto files = std::make_unique<mjVFS>();  // of megabytes
+  mj_defaultVFS(files.get());
+  const int place = mj_makeEmptyFileVFS(files.get(), "chain.xml", static_cast<int>(text.size()));
+  if (place < 0) throw std::runtime_error("MuJoCo: no file in memory");
+  std::memcpy(files->filedata[place], text.data(), text.size());
+  char error[1000] = "";
+  std::unique_ptr<mjModel, ModelDeleter> model(mj_loadXML("chain.xml", files.get(), error, sizeof error));
+  mj_deleteVFS(files.get());
+  if (!model) throw std::runtime_error(std::string("MuJoCo: ") + error);
+  return model;
+}
+
+/// MuJoCo's global callbacks while runs go on: the hub's torque, and no log file in the working directory.
+class Callbacks {
+ public:
+  Callbacks() : control_(mjcb_control), warning_(mju_user_warning) {
+    mju_user_warning = [](const char*) {};
+  }
+  ~Callbacks() { mjcb_control = control_, mju_user_warning = warning_; }
+  Callbacks(const Callbacks&) = delete;
+  Callbacks& operator=(const Callbacks&) = delete;
+
+  void drive_hub() {
+    mjcb_control = [](const mjModel* model, mjData* data) {
+      data->qfrc_applied[0] = model->dof_armature[0] * hub_acceleration(data->time);
+    };
+  }
+
+ private:
+  mjfGeneric control_;
+  void (*warning_)(const char*);
+};
+
+class Chain {
+ public:
+  Chain(const PlaneProblem& problem, const Variant& variant)
+      : problem_(problem),
+        segments_(variant.segments),
+        model_(compiled(mjcf(problem, variant))),
+        data_(mj_makeData(model_.get())) {
+    if (!data_) throw std::runtime_error("MuJoCo: out of memory");
+  }
+
+  void advance(long steps) {
+    for (long i = 0; i < steps; ++i) {
+      if (problem_.is_driven) {
+        data_->qpos[0] = hub_angle(data_->time);
+        data_->qvel[0] = hub_speed(data_->time);
+      }
+      mj_step(model_.get(), data_.get());
+    }
+  }
+
+  /// MuJoCo starts from the beginning where a number is not finite, and counts that as a warning.
+  bool is_sound() const {
+    for (const int kind : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC})
+      if (data_->warning[kind].number > 0) return false;
+    for (int i = 0; i < model_->nq; ++i)
+      if (i % (segments_ + 1) != 0 && !(std::abs(data_->qpos[i]) < kLargestBend)) return false;
+    return true;
+  }
+
+  Vector3 tip() {
+    if (problem_.is_driven) data_->qpos[0] = hub_angle(data_->time);
+    mj_kinematics(model_.get(), data_.get());  // a step ends with new coordinates, but poses of its beginning
+    const int last = model_->nbody - 1;
+    const mjtNum *origin = data_->xpos + 3 * last, *frame = data_->xmat + 9 * last;
+    const double length = 0.5 * problem_.length / segments_;
+    return {origin[0] + length * frame[0], origin[1] + length * frame[3], origin[2] + length * frame[6]};
+  }
+
+ private:
+  const PlaneProblem& problem_;
+  int segments_;
+  std::unique_ptr<mjModel, ModelDeleter> model_;
+  std::unique_ptr<mjData, DataDeleter> data_;
+};
+
+PeerRun run(const PlaneProblem& problem, const Variant& variant, const std::vector<double>& times) {
+  PeerRun out{
+      std::string("MuJoCo ") + mj_versionString(), variant.integrator, variant.segments, variant.step, 0, false, {}};
+  if (variant.damping > 0) out.variant += ", damping h/2 EI/l";
+  Chain chain(problem, variant);
+  const long stride = std::max(1L, std::lround(kCheckInterval / variant.step));
+  long done = 0;
+  for (const double time : times) {
+    for (const long goal = std::lround(time / variant.step); done < goal;) {
+      const long steps = std::min(stride, goal - done);
+      const double begin = processor_seconds();
+      chain.advance(steps);
+      out.seconds += processor_seconds() - begin;
+      done += steps;
+      if (!chain.is_sound()) return out;
+    }
+    out.probe.push_back(chain.tip());
+  }
+  out.completed = true;
+  return out;
+}
+
+}  // namespace
+
+std::vector<PeerRun> mujoco_runs(PeerProblem problem, const std::vector<double>& times, bool quick,
+                                 const std::function<void()>& advance_progress) {
+  const PlaneProblem plane = plane_problem(problem);
+  Callbacks callbacks;
+  if (plane.is_driven) callbacks.drive_hub();
+  const std::vector<int> meshes = quick ? std::vector<int>{4} : std::vector<int>{4, 8, 16, 32};
+  const std::vector<double> steps =
+      quick ? std::vector<double>{1e-2, 1e-3} : std::vector<double>{1e-2, 2e-3, 5e-4, 1e-4};
+  std::vector<PeerRun> runs;
+  for (const int segments : meshes)
+    for (const char* integrator : {"Euler", "implicit", "RK4"})
+      for (const double step : steps) {
+        runs.push_back(run(plane, {segments, integrator, step, 0}, times));
+        if (!runs.back().completed && std::strcmp(integrator, "RK4") != 0)
+          runs.push_back(run(plane, {segments, integrator, step, 0.5 * step}, times));
+        advance_progress();
+      }
+  return runs;
+}
+
+}  // namespace flexarm::bench
+
+#endif
