@@ -113,6 +113,18 @@ scene::SceneDescription loaded_cantilever() {
   return scene;
 }
 
+scene::SceneDescription right_angle_cantilever(int elements, int order) {
+  scene::SceneDescription scene = empty_scene("right_angle_cantilever");
+  add_beam(scene, "arm", {10, 0, 0}, scene::DirectSection{1e6, 1e6, 1e6, 1e3, 1e3, 1e3, 1, 20, 10, 10}, elements,
+           order);
+  scene::CentrelinePiece up;
+  up.to = Vector3(10, 10, 0);
+  scene.links.back().beam->centreline.push_back(up);
+  add_joint(scene, "clamp", JointKind::Fixed, "world", "arm");
+  add_load(scene, "arm", {10, 0, 0}, {0, 0, 50}, Vector3::Zero(), "0:0 1:1 2:0");
+  return scene;
+}
+
 scene::SceneDescription free_bar() {
   scene::SceneDescription scene = empty_scene("bar");
   add_beam(scene, "beam", {1, 0, 0}, scene::DirectSection{100, 100, 100, 1, 1, 1, 1, 1, 1, 1}, 1, 1);

@@ -17,6 +17,8 @@ scene::SceneDescription loaded_tree();
 scene::SceneDescription cantilever(int elements, int order);
 /// The same with a dead force and moment in space at its tip, which has a probe.
 scene::SceneDescription loaded_cantilever();
+/// The right-angle cantilever of Simo and Vu-Quoc (1988), 2 x 10 m, whose elbow is pulled out of the plane for 2 s.
+scene::SceneDescription right_angle_cantilever(int elements, int order);
 /// A free straight beam of one two-node element along x.
 scene::SceneDescription free_bar();
 /// One clamped two-node element along x, 1 m long: an exactly linear oscillator of angular frequency omega [rad/s].

@@ -1,0 +1,196 @@
+// What the parts of a step cost, with Google Benchmark: `bench_kernels --benchmark_filter=evaluate/em`.
+//
+// The beam is the right-angle cantilever of Simo and Vu-Quoc (1988) in motion. The counter "us/element" is the time of
+// the processor over the number of elements.
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <array>
+#include <memory>
+
+#include "bench/scenes.h"
+#include "flexarm/integrators/step_system.h"
+#include "flexarm/joints/joint_map.h"
+#include "flexarm/math/local_rotation.h"
+#include "flexarm/math/quadrature.h"
+#include "flexarm/math/so3.h"
+#include "flexarm/simulation/simulation.h"
+#include "flexarm/solver/linear_solver.h"
+
+namespace flexarm {
+namespace {
+
+constexpr int kElements = 32;
+constexpr double kStep = 0.05;
+constexpr int kStepsBefore = 10;
+
+/// Of the time per iteration.
+void count_elements(benchmark::State& state, int elements) {
+  using benchmark::Counter;
+  state.counters["us/element"] =
+      Counter(1e-6 * elements, Counter::kIsIterationInvariantRate | Counter::kInvert, Counter::kIs1000);
+}
+
+Simulation cantilever_in_motion(const std::string& scheme, int elements, int order, bool reuse = false) {
+  SimulationOptions options;
+  options.scheme = scheme;
+  options.step = kStep;
+  options.reuse_factorisation = reuse;
+  Simulation simulation(bench::right_angle_cantilever(elements, order), options);
+  for (int n = 0; n < kStepsBefore; ++n)
+    if (!simulation.step().converged) throw std::runtime_error("the cantilever failed");
+  return simulation;
+}
+
+/// The equations of a step that begins in the midst of the motion.
+struct StepUnderWay {
+  Simulation simulation;
+  StepSystem system;
+
+  StepUnderWay(const std::string& scheme, int elements, int order)
+      : simulation(cantilever_in_motion(scheme, elements, order)),
+        system(simulation.model(), find_scheme(scheme).value()) {
+    system.begin(simulation.state(), kStep, StepSystem::Guess::Extrapolated);
+  }
+};
+
+void evaluate(benchmark::State& state, const std::string& scheme, int elements, int order, bool with_tangent) {
+  StepUnderWay step(scheme, elements, order);
+  for (auto _ : state) benchmark::DoNotOptimize(step.system.evaluate(with_tangent));
+  count_elements(state, elements);
+}
+
+void begin_step(benchmark::State& state, int order) {
+  StepUnderWay step("em", kElements, order);
+  for (auto _ : state) step.system.begin(step.simulation.state(), kStep, StepSystem::Guess::Extrapolated);
+  count_elements(state, kElements);
+}
+
+void gather(benchmark::State& state, int order) {
+  const Simulation simulation = cantilever_in_motion("em", kElements, order);
+  const DegreesOfFreedom dof(simulation.model());
+  SparseAssembler assembler(simulation.model(), dof);
+  Eigen::VectorXd residual(dof.unknowns);
+  for (auto _ : state) {
+    assembler.set_zero();
+    assembler.gather(residual);
+    assembler.gather_tangent();
+    benchmark::ClobberMemory();
+  }
+  count_elements(state, kElements);
+}
+
+void factorise(benchmark::State& state, int order) {
+  StepUnderWay step("em", kElements, order);
+  step.system.evaluate(true);
+  const SparseAssembler& assembler = step.system.assembler();
+  LinearSolver solver(assembler.unknowns(), assembler.column_starts(), assembler.row_indices());
+  solver.factorise(assembler.values(), assembler.pattern());  // chooses pivots; later ones keep them
+  for (auto _ : state) benchmark::DoNotOptimize(solver.factorise(assembler.values(), assembler.pattern()));
+  count_elements(state, kElements);
+}
+
+void solve(benchmark::State& state, int order) {
+  StepUnderWay step("em", kElements, order);
+  step.system.evaluate(true);
+  const SparseAssembler& assembler = step.system.assembler();
+  LinearSolver solver(assembler.unknowns(), assembler.column_starts(), assembler.row_indices());
+  solver.factorise(assembler.values(), assembler.pattern());
+  Eigen::VectorXd x(assembler.unknowns());
+  for (auto _ : state) {
+    x = step.system.residual();
+    benchmark::DoNotOptimize(solver.solve(x));
+  }
+  count_elements(state, kElements);
+}
+
+void whole_step(benchmark::State& state, const std::string& scheme, int order, bool reuse) {
+  Simulation simulation = cantilever_in_motion(scheme, kElements, order, reuse);
+  long iterations = 0;
+  for (auto _ : state) {
+    const StepResult result = simulation.step();
+    if (!result.converged) return state.SkipWithError(to_string(result.reason));
+    iterations += result.iterations;
+  }
+  count_elements(state, kElements);
+  state.counters["newton"] = static_cast<double>(iterations) / static_cast<double>(state.iterations());
+}
+
+/// Rotation, curvature and generalised shape functions at all stiffness points of one element.
+template <int Nodes>
+void interpolate_rotations(benchmark::State& state) {
+  std::array<Quaternion, Nodes> rotations;
+  for (int i = 0; i < Nodes; ++i) rotations[i] = so3::exp_quaternion(Vector3(0.1 * i, 0.2 - 0.05 * i, 0.07 * i * i));
+  std::array<ShapeFunctions<Nodes>, Nodes - 1> functions;
+  for (int k = 0; k < Nodes - 1; ++k) functions[k] = lagrange<Nodes>(GaussLegendre<Nodes - 1>::points[k]);
+  GeneralisedShapeFunctions<Nodes> generalised;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(rotations);
+    const LocalRotationVariation<Nodes> variation{LocalRotations<Nodes>(rotations)};
+    for (const ShapeFunctions<Nodes>& f : functions) {
+      benchmark::DoNotOptimize(variation.evaluate(f.values, f.derivatives, generalised));
+      benchmark::DoNotOptimize(generalised);
+    }
+  }
+  count_elements(state, 1);
+}
+
+/// Maps of a revolute joint over a step.
+void fold_maps(benchmark::State& state, bool with_tangent) {
+  JointMap joint;
+  joint.kind = JointMapKind::Scalar;
+  joint.rotation = Vector3::UnitZ();
+  joint.origin.position = Vector3(0.3, -0.2, 0.5);
+  const auto pose = [](const Vector3& position, const Vector3& turn) {
+    const Quaternion orientation = so3::exp_quaternion(turn);
+    return NodePose{position, orientation, orientation.toRotationMatrix()};
+  };
+  NodePose from = pose({0, 0, 0}, {0.1, 0.2, 0.3}), to = pose({0.01, 0.02, -0.01}, {0.12, 0.19, 0.33});
+  Released released_from, released_to;
+  released_to.displacement[0] = 0.02;
+  Vector6 force;
+  force << 1, 2, 3, 4, 5, 6;
+  FoldMaps maps;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(to);
+    incremental_maps(joint, from, to, released_from, released_to, force, maps, with_tangent);
+    benchmark::DoNotOptimize(maps);
+  }
+}
+
+template <class... Arguments>
+void add(const std::string& name, void (*run)(benchmark::State&, Arguments...), Arguments... arguments) {
+  benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
+    run(state, arguments...);
+  })->Unit(benchmark::kMicrosecond);
+}
+
+const bool registered = [] {
+  for (const char* scheme : {"em", "em0", "m1", "newmark"})
+    for (int order = 1; order <= 4; ++order)
+      for (const int elements : {1, kElements})
+        for (const bool with_tangent : {false, true})
+          add<const std::string&, int, int, bool>(fmt::format("evaluate/{}/order:{}/elements:{}/{}", scheme, order,
+                                                              elements, with_tangent ? "tangent" : "residual"),
+                                                  evaluate, scheme, elements, order, with_tangent);
+  add("interpolate_rotations/order:1", interpolate_rotations<2>);
+  add("interpolate_rotations/order:2", interpolate_rotations<3>);
+  add("interpolate_rotations/order:3", interpolate_rotations<4>);
+  add("interpolate_rotations/order:4", interpolate_rotations<5>);
+  add("fold_maps/revolute/residual", fold_maps, false);
+  add("fold_maps/revolute/tangent", fold_maps, true);
+  for (int order = 1; order <= 4; ++order) {
+    add(fmt::format("begin/em/order:{}", order), begin_step, order);
+    add(fmt::format("gather/order:{}", order), gather, order);
+    add(fmt::format("factorise/order:{}", order), factorise, order);
+    add(fmt::format("solve/order:{}", order), solve, order);
+    for (const bool reuse : {false, true})
+      add<const std::string&, int, bool>(
+          fmt::format("step/em/order:{}/{}", order, reuse ? "kept_factors" : "full_newton"), whole_step, "em", order,
+          reuse);
+  }
+  return true;
+}();
+
+}  // namespace
+}  // namespace flexarm
