@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "bench/report.h"
+#include "bench/scaling.h"
 #include "bench/thesis.h"
 #include "cli/commands.h"
 #include "cli/progress_bar.h"
@@ -110,6 +111,24 @@ int measure_thesis(const Arguments& arguments) {
   return kDone;
 }
 
+int measure_scaling(const Arguments& arguments) {
+  const fs::path folder = arguments.output, report_file = folder / "scaling.md", data = folder / "scaling.csv",
+                 picture = folder / "scaling.png";
+  fs::create_directories(folder);
+  write_file(report_file, "", std::ios::app);
+  bench::ScalingReport report;
+  {
+    ProgressBar bar(0, 1, true);
+    report = bench::measure_scaling(arguments.quick, [&](double part) { bar.show(part, "scaling"); });
+  }
+  write_file(data, bench::scaling_to_csv(report));
+  const bool is_drawn = draw("plot_scaling.py", data, picture);
+  if (!is_drawn) fmt::print(stderr, "flexarm: no picture: it needs python3-matplotlib\n");
+  write_file(report_file, bench::to_markdown(report, is_drawn ? picture.filename().string() : ""));
+  fmt::print("{}\n", report_file.string());
+  return kDone;
+}
+
 }  // namespace
 
 void add_bench(CLI::App& app, int& status) {
@@ -126,6 +145,10 @@ void add_bench(CLI::App& app, int& status) {
   thesis->add_option("--scenes", arguments->scenes, "folder of the scenes (default: those that come with flexarm)");
   thesis->add_flag("--quick", arguments->quick, "short runs, to see that all of it works");
   thesis->callback([arguments, &status] { status = measure_thesis(*arguments); });
+  CLI::App* scaling = command->add_subcommand("scaling", "Time and memory over the size of a mechanism, as a report");
+  scaling->add_option("--output", arguments->output, "folder for the report")->capture_default_str();
+  scaling->add_flag("--quick", arguments->quick, "small mechanisms, to see that all of it works");
+  scaling->callback([arguments, &status] { status = measure_scaling(*arguments); });
 }
 
 }  // namespace flexarm::cli

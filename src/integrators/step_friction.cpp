@@ -41,6 +41,7 @@ bool is_angle(const Model& model, const Coordinate& coordinate) {
 }  // namespace
 
 void StepSystem::find_friction() {
+  std::vector<int> carrier_at(model_.coordinates.size(), -1);  // per coordinate that none mimics
   for (std::size_t index = 0; index < model_.coordinates.size(); ++index) {
     const Coordinate& coordinate = model_.coordinates[index];
     if (coordinate.friction <= 0 && coordinate.friction_coefficient <= 0) continue;
@@ -54,9 +55,9 @@ void StepSystem::find_friction() {
                        "') would drive; take another scheme or the law 'smooth'");
     int base = static_cast<int>(index);
     while (model_.coordinates[base].mimicked >= 0) base = model_.coordinates[base].mimicked;
-    int c = 0;
-    while (c < static_cast<int>(carriers_.size()) && carriers_[c].coordinate != base) ++c;
-    if (c == static_cast<int>(carriers_.size())) {
+    int& c = carrier_at[base];
+    if (c < 0) {
+      c = static_cast<int>(carriers_.size());
       carriers_.emplace_back();
       carriers_[c].coordinate = base;
     }

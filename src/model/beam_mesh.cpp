@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <queue>
 
 #include "flexarm/elements/beam_point.h"
 #include "flexarm/math/quadrature.h"
@@ -24,27 +25,37 @@ double at_node(double from, double to, int order, int i) {
 /// Element borders: both ends, piece borders exactly where they are (a kink is looked for there), and attachments that
 /// do not coincide with one of them.
 std::vector<double> borders(const Centreline& centreline, const std::vector<double>& attachments) {
-  std::vector<double> all = centreline.piece_ends();
-  all.push_back(0);
+  std::vector<double> fixed = centreline.piece_ends(), sorted = attachments, all;
+  fixed.push_back(0);
+  std::sort(fixed.begin(), fixed.end());
+  std::sort(sorted.begin(), sorted.end());
   const double tolerance = 1e-9 * centreline.length();
-  for (const double s : attachments) {
-    const auto coincides = [&](double border) { return std::abs(s - border) <= tolerance; };
-    if (std::none_of(all.begin(), all.end(), coincides)) all.push_back(s);
-  }
-  std::sort(all.begin(), all.end());
+  const auto is_fixed = [&](double s) {
+    const auto next = std::lower_bound(fixed.begin(), fixed.end(), s - tolerance);
+    return next != fixed.end() && *next <= s + tolerance;
+  };
+  for (const double s : sorted)
+    if (!is_fixed(s) && (all.empty() || s > all.back() + tolerance)) all.push_back(s);
+  const auto middle = all.insert(all.end(), fixed.begin(), fixed.end());
+  std::inplace_merge(all.begin(), middle, all.end());
   return all;
 }
 
 /// Distributes `count` elements over intervals in proportion to `demand`, at least one each (largest remainder).
 std::vector<int> distribute(int count, const std::vector<double>& demand) {
-  const double total = std::accumulate(demand.begin(), demand.end(), 0.0);
   std::vector<int> elements(demand.size(), 1);
+  if (!(std::accumulate(demand.begin(), demand.end(), 0.0) > 0)) return elements;
+  const auto is_less_needy = [&](std::size_t a, std::size_t b) {
+    const double of_a = demand[a] / elements[a], of_b = demand[b] / elements[b];
+    return of_a < of_b || (of_a == of_b && a > b);
+  };
+  std::priority_queue<std::size_t, std::vector<std::size_t>, decltype(is_less_needy)> intervals(is_less_needy);
+  for (std::size_t i = 0; i < demand.size(); ++i) intervals.push(i);
   for (int rest = count - static_cast<int>(demand.size()); rest > 0; --rest) {
-    std::size_t neediest = 0;
-    for (std::size_t i = 1; i < demand.size(); ++i)
-      if (demand[i] / elements[i] > demand[neediest] / elements[neediest]) neediest = i;
-    if (!(total > 0)) break;
+    const std::size_t neediest = intervals.top();
+    intervals.pop();
     ++elements[neediest];
+    intervals.push(neediest);
   }
   return elements;
 }
@@ -56,11 +67,18 @@ int automatic_element_count(int order, double turning) {
 }
 
 int BeamMesh::node_at(double arc_length) const {
-  int best = 0;
-  for (std::size_t i = 0; i < nodes.size(); ++i)
-    if (std::abs(nodes[i].arc_length - arc_length) < std::abs(nodes[best].arc_length - arc_length) * (1 - 1e-12))
-      best = static_cast<int>(i);
-  return best;
+  // Arc lengths ascend; of the two nodes of a kink the first is meant, and of two that are equally near.
+  const auto first_from = [&](double s) {
+    return std::lower_bound(nodes.begin(), nodes.end(), s,
+                            [](const MeshNode& node, double value) { return node.arc_length < value; });
+  };
+  auto best = first_from(arc_length);
+  if (best != nodes.begin()) {
+    const auto before = first_from(std::prev(best)->arc_length);
+    const double distance = arc_length - before->arc_length;
+    if (best == nodes.end() || !(best->arc_length - arc_length < distance * (1 - 1e-12))) best = before;
+  }
+  return static_cast<int>(best - nodes.begin());
 }
 
 BeamMesh mesh_beam(const scene::BeamDescription& beam, const Centreline& centreline,

@@ -1,5 +1,6 @@
 // Released coordinates and their initial values.
 #include <cmath>
+#include <unordered_set>
 
 #include "flexarm/joints/joint_kinematics.h"
 #include "flexarm/math/so3.h"
@@ -8,12 +9,8 @@
 namespace flexarm {
 
 double MechanismBuilder::initial_position(const std::string& coordinate, double otherwise) const {
-  double position = otherwise;
-  for (const scene::InitialJoint& initial : scene_.initial_joints)
-    if (initial.coordinate == coordinate) position = initial.position;
-  for (const scene::PrescribedMotion& motion : scene_.motions)
-    if (motion.coordinate == coordinate) position = motion.position(0.0);
-  return position;
+  const auto found = initial_positions_.find(coordinate);
+  return found == initial_positions_.end() ? otherwise : found->second;
 }
 
 Released MechanismBuilder::initial_released(const JointMap& map, const std::vector<std::string>& names) const {
@@ -51,9 +48,14 @@ void MechanismBuilder::add_coordinates(const scene::JointDescription& joint, con
   }
 }
 
-int MechanismBuilder::coordinate_index(const std::string& name, const std::string& where) const {
+void MechanismBuilder::index_coordinates() {
+  coordinate_indices_.clear();
   for (std::size_t i = 0; i < model.coordinates.size(); ++i)
-    if (model.coordinates[i].name == name) return static_cast<int>(i);
+    coordinate_indices_.emplace(model.coordinates[i].name, static_cast<int>(i));
+}
+
+int MechanismBuilder::coordinate_index(const std::string& name, const std::string& where) const {
+  if (const auto found = coordinate_indices_.find(name); found != coordinate_indices_.end()) return found->second;
   for (const LoopClosure& closure : model.closures)
     if (name.substr(0, closure.name.size()) == closure.name)
       throw ModelError(where + "joint '" + closure.name +
@@ -63,6 +65,12 @@ int MechanismBuilder::coordinate_index(const std::string& name, const std::strin
 }
 
 void MechanismBuilder::connect_mimics() {
+  index_coordinates();
+  std::unordered_map<std::string, const scene::Mimic*> mimics;  // by joint
+  for (const JointRecord& record : records_)
+    if (record.joint->mimic) mimics[record.joint->name] = &*record.joint->mimic;
+  std::unordered_set<std::string> prescribed;
+  for (const scene::PrescribedMotion& motion : scene_.motions) prescribed.insert(motion.coordinate);
   // Chains of mimics are followed to the coordinate that none of them mimics.
   for (const JointRecord& record : records_) {
     if (!record.joint->mimic) continue;
@@ -76,15 +84,12 @@ void MechanismBuilder::connect_mimics() {
       offset += multiplier * mimic->offset;
       multiplier *= mimic->multiplier;
       master = mimic->joint;
-      const scene::Mimic* next = nullptr;
-      for (const JointRecord& other : records_)
-        if (other.joint->name == master && other.joint->mimic) next = &*other.joint->mimic;
-      if (!next) break;
-      mimic = next;
+      const auto next = mimics.find(master);
+      if (next == mimics.end()) break;
+      mimic = next->second;
     }
-    for (const scene::PrescribedMotion& motion : scene_.motions)
-      if (motion.coordinate == coordinate.name)
-        throw ModelError(where + "the motion of the joint is prescribed as well");
+    if (prescribed.count(coordinate.name) > 0)
+      throw ModelError(where + "the motion of the joint is prescribed as well");
     coordinate.mimicked = coordinate_index(master, where);
     coordinate.mimic.multiplier = multiplier;
     coordinate.mimic.offset = offset;
@@ -99,6 +104,7 @@ void MechanismBuilder::connect_mimics() {
 }
 
 void MechanismBuilder::connect_coordinates() {
+  index_coordinates();
   for (const scene::InitialJoint& initial : scene_.initial_joints)
     coordinate_index(initial.coordinate, at(initial.location, "<initial>"));
   for (const scene::PrescribedMotion& motion : scene_.motions) {
@@ -118,11 +124,9 @@ void MechanismBuilder::update_initial_poses() {
   // Mimicking coordinates got their values after the nodes had been placed.
   std::vector<Pose> before;
   for (std::size_t i = 0; i < model.nodes.size(); ++i) before.push_back(pose_of(static_cast<int>(i)));
-  std::vector<int> joint_of(model.nodes.size(), -1);
-  for (std::size_t j = 0; j < model.joints.size(); ++j) joint_of[model.joints[j].slave] = static_cast<int>(j);
   for (std::size_t i = 0; i < model.nodes.size(); ++i) {
-    if (joint_of[i] >= 0) {
-      model.nodes[i] = slave_pose(model, joint_of[i], model.nodes, model.initial_released[joint_of[i]]);
+    if (const int joint = slave_joint_[i]; joint >= 0) {
+      model.nodes[i] = slave_pose(model, joint, model.nodes, model.initial_released[joint]);
     } else {
       const int parent = node_parents[i];
       const Pose pose = pose_of(parent) * (before[parent].inverse() * before[i]);

@@ -1,6 +1,7 @@
 // Joints that close loops: where it can be, the slave is a beam's node that was free before. (joints.md 3)
 #include <algorithm>
 #include <cmath>
+#include <unordered_set>
 
 #include "flexarm/joints/joint_kinematics.h"
 #include "mechanism_builder.h"
@@ -41,16 +42,9 @@ double MechanismBuilder::extent() const {
   return extent > 0 ? extent : 1.0;
 }
 
-std::vector<int> MechanismBuilder::slave_joints() const {
-  std::vector<int> joint_of(model.nodes.size(), -1);
-  for (std::size_t j = 0; j < model.joints.size(); ++j) joint_of[model.joints[j].slave] = static_cast<int>(j);
-  return joint_of;
-}
-
 Attachment MechanismBuilder::carrier(Attachment frame) const {
-  const std::vector<int> joint_of = slave_joints();
-  while (frame.node >= 0 && joint_of[frame.node] >= 0) {
-    const JointMap& map = model.joints[joint_of[frame.node]];
+  while (frame.node >= 0 && slave_joint_[frame.node] >= 0) {
+    const JointMap& map = model.joints[slave_joint_[frame.node]];
     if (map.kind != JointMapKind::Rigid) break;
     frame.offset = map.origin * Pose{Vector3::Zero(), map.slave_orientation} * frame.offset;
     frame.node = map.master;
@@ -59,29 +53,27 @@ Attachment MechanismBuilder::carrier(Attachment frame) const {
 }
 
 bool MechanismBuilder::can_become_slave(int node, int master) const {
-  const std::vector<int> joint_of = slave_joints();
-  if (node < 0 || joint_of[node] >= 0) return false;
-  std::vector<bool> seen(model.nodes.size(), false);
+  if (node < 0 || slave_joint_[node] >= 0) return false;
+  std::unordered_set<int> seen;
   std::vector<int> stack(master < 0 ? 0 : 1, master);  // nodes whose poses the master's depends on
   while (!stack.empty()) {
     const int above = stack.back();
     stack.pop_back();
     if (above == node) return false;
-    if (seen[above]) continue;
-    seen[above] = true;
-    if (joint_of[above] < 0) continue;
-    const std::vector<int> next = masters(model, model.joints[joint_of[above]]);
+    if (!seen.insert(above).second || slave_joint_[above] < 0) continue;
+    const std::vector<int> next = masters(model, model.joints[slave_joint_[above]]);
     stack.insert(stack.end(), next.begin(), next.end());
   }
   return true;
 }
 
 void MechanismBuilder::close_loops() {
-  for (const scene::JointDescription& joint : scene_.loop_joints) add_loop(joint);
+  const double largest_gap = kLargestGap * extent();
+  for (const scene::JointDescription& joint : scene_.loop_joints) add_loop(joint, largest_gap);
   if (!scene_.loop_joints.empty()) sort_joints();
 }
 
-void MechanismBuilder::add_loop(const scene::JointDescription& joint) {
+void MechanismBuilder::add_loop(const scene::JointDescription& joint, double largest_gap) {
   const std::string where = at(joint.location, "<loop_joint> '" + joint.name + "'");
   if (joint.kind == scene::JointKind::Slide || joint.kind == scene::JointKind::Floating || joint.mimic)
     throw ModelError(where + "a loop cannot be closed by a slide, a free or a mimicking joint");
@@ -95,7 +87,7 @@ void MechanismBuilder::add_loop(const scene::JointDescription& joint) {
   for (const JointMap& map : maps) meeting = slave_pose(map, meeting, Released());
   const Pose child_frame = pose_of(child.node) * child.offset * joint.child_origin;
   const double gap = (meeting.position - child_frame.position).norm();
-  if (!(gap <= kLargestGap * extent()))
+  if (!(gap <= largest_gap))
     throw ModelError(where + "the loop is open at the start: the joint's frames in parent and child are " +
                      std::to_string(gap) + " m apart");
 
@@ -150,6 +142,7 @@ void MechanismBuilder::chain_loop(const scene::JointDescription& joint, const st
   rigid.slave = slave;
   rigid.origin.position = offset.position;
   rigid.slave_orientation = offset.orientation;
+  slave_joint_[slave] = static_cast<int>(model.joints.size());
   model.joints.push_back(rigid);
   model.initial_released.push_back(Released());
   model.first_coordinate.push_back(static_cast<int>(model.coordinates.size()));
@@ -157,7 +150,6 @@ void MechanismBuilder::chain_loop(const scene::JointDescription& joint, const st
 }
 
 void MechanismBuilder::sort_joints() {
-  const std::vector<int> joint_of = slave_joints();
   std::vector<int> order, place(model.joints.size(), -1);
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
     std::vector<int> stack = {static_cast<int>(j)};
@@ -166,7 +158,7 @@ void MechanismBuilder::sort_joints() {
       const std::size_t waiting = stack.size();
       if (place[next] < 0)
         for (const int master : masters(model, model.joints[next]))
-          if (joint_of[master] >= 0 && place[joint_of[master]] < 0) stack.push_back(joint_of[master]);
+          if (slave_joint_[master] >= 0 && place[slave_joint_[master]] < 0) stack.push_back(slave_joint_[master]);
       if (stack.size() > waiting) continue;
       stack.pop_back();
       if (place[next] >= 0) continue;
@@ -178,6 +170,8 @@ void MechanismBuilder::sort_joints() {
     const auto before = values;
     for (std::size_t k = 0; k < order.size(); ++k) values[k] = before[order[k]];
   };
+  for (int& joint : slave_joint_)
+    if (joint >= 0) joint = place[joint];
   permute(model.joints);
   permute(model.initial_released);
   permute(model.first_coordinate);

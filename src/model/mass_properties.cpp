@@ -1,6 +1,7 @@
 #include "mass_properties.h"
 
 #include <cmath>
+#include <unordered_set>
 
 #include "flexarm/math/so3.h"
 #include "flexarm/model/model_builder.h"
@@ -36,10 +37,10 @@ struct Composite {
 
 /// The innermost node that a loop's slave, but not its master, hangs on.
 int start_of_loop(const std::vector<int>& parents, const JointMap& joint) {
-  std::vector<bool> carries_master(parents.size(), false);
-  for (int node = joint.master; node >= 0; node = parents[node]) carries_master[node] = true;
+  std::unordered_set<int> carriers;  // of the master
+  for (int node = joint.master; node >= 0; node = parents[node]) carriers.insert(node);
   int start = joint.slave;
-  while (parents[start] >= 0 && !carries_master[parents[start]]) start = parents[start];
+  while (parents[start] >= 0 && carriers.count(parents[start]) == 0) start = parents[start];
   return start;
 }
 

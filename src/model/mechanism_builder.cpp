@@ -18,6 +18,10 @@ MechanismBuilder::MechanismBuilder(const scene::SceneDescription& scene)
   for (std::size_t i = 0; i < scene.links.size(); ++i)
     if (!link_indices_.emplace(scene.links[i].name, static_cast<int>(i)).second)
       throw ModelError(scene.file + ": two links are named '" + scene.links[i].name + "'");
+  for (const scene::InitialJoint& initial : scene.initial_joints)
+    initial_positions_[initial.coordinate] = initial.position;
+  for (const scene::PrescribedMotion& motion : scene.motions)
+    initial_positions_[motion.coordinate] = motion.position(0.0);
 }
 
 int MechanismBuilder::link_index(const std::string& name) const {
@@ -32,19 +36,19 @@ int MechanismBuilder::add_history(const TimeFunction& function) {
 }
 
 void MechanismBuilder::order_joints() {
-  std::vector<std::vector<const scene::JointDescription*>> children(scene_.links.size());
-  std::vector<bool> has_parent(scene_.links.size(), false);
+  joints_below_.resize(scene_.links.size());
+  joints_above_.resize(scene_.links.size(), nullptr);
   for (const scene::JointDescription& joint : scene_.joints) {
     const int child = link_index(joint.child);
-    if (has_parent[child])
+    if (joints_above_[child])
       throw ModelError(at(joint.location, "<joint>") + "link '" + joint.child + "' has two parents");
-    has_parent[child] = true;
-    children[link_index(joint.parent)].push_back(&joint);
+    joints_above_[child] = &joint;
+    joints_below_[link_index(joint.parent)].push_back(&joint);
   }
   // Depth first: nodes of a branch stand together, which keeps the matrix banded.
   std::vector<const scene::JointDescription*> stack;
   const auto push_children = [&](const std::string& link) {
-    auto& list = children[link_index(link)];
+    auto& list = joints_below_[link_index(link)];
     // What slides comes after the beams that are welded to the line.
     std::stable_partition(list.begin(), list.end(),
                           [](const scene::JointDescription* joint) { return joint->kind != scene::JointKind::Slide; });
@@ -119,6 +123,7 @@ int MechanismBuilder::add_node(const Pose& pose, int parent) {
   model.nodes.push_back(node);
   model.inertias.emplace_back();
   node_parents.push_back(parent);
+  slave_joint_.push_back(-1);
   return static_cast<int>(model.nodes.size()) - 1;
 }
 
@@ -133,6 +138,7 @@ int MechanismBuilder::add_map(JointMap map, const Released& released) {
   map.slave = model.joints[joint].slave = add_node({slave.position, slave.orientation}, map.master);
   model.initial_released.push_back(released);
   model.first_coordinate.push_back(static_cast<int>(model.coordinates.size()));
+  slave_joint_[map.slave] = joint;
   return map.slave;
 }
 

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "flexarm/model/beam_mesh.h"
@@ -88,7 +89,8 @@ class MechanismBuilder {
 
   /// Adds the joints that close loops of the tree, which stands as it starts, and sorts all of them root to leaf.
   void close_loops();
-  void add_loop(const scene::JointDescription& joint);
+  /// `largest_gap`: between the joint's frames at the start [m].
+  void add_loop(const scene::JointDescription& joint, double largest_gap);
   /// From `master` through `maps`, the first at `frame` (world), to the existing node `slave`.
   void chain_loop(const scene::JointDescription& joint, const std::vector<JointMap>& maps,
                   const std::vector<std::string>& names, int master, int slave, const Pose& frame);
@@ -97,8 +99,6 @@ class MechanismBuilder {
   /// Of the closures' constraints those that are independent, by pivoting at the start; the others are implied.
   void choose_constraints();
   void sort_joints();
-  /// Per node: the joint of which it is the slave, or -1.
-  std::vector<int> slave_joints() const;
   /// The same frame, seen from the node at the root of the rigid body to which it is fixed.
   Attachment carrier(Attachment frame) const;
   /// The node is free, and `master` does not follow from it.
@@ -108,6 +108,8 @@ class MechanismBuilder {
   Released initial_released(const JointMap& map, const std::vector<std::string>& names) const;
   /// What the scene gives, else `otherwise`.
   double initial_position(const std::string& coordinate, double otherwise = 0) const;
+  /// Lets coordinates be found by name; to be called when others have been added.
+  void index_coordinates();
   int coordinate_index(const std::string& name, const std::string& where) const;
   void connect_mimics();
   void connect_coordinates();
@@ -115,10 +117,15 @@ class MechanismBuilder {
 
   const scene::SceneDescription& scene_;
   std::map<std::string, int> link_indices_;
+  std::vector<int> slave_joint_;                                // per node: the joint of which it is the slave, or -1
+  std::unordered_map<std::string, double> initial_positions_;   // by coordinate, where the scene gives them
+  std::unordered_map<std::string, int> coordinate_indices_;     // by name
   std::vector<const scene::JointDescription*> ordered_joints_;  // root to leaf
-  std::vector<std::vector<double>> attachments_;                // per link: arc lengths of element borders
-  std::vector<JointRecord> records_;                            // root to leaf
-  std::map<int, Body> bodies_;                                  // by node
+  std::vector<const scene::JointDescription*> joints_above_;    // per link; null above the root
+  std::vector<std::vector<const scene::JointDescription*>> joints_below_;  // per link, in the order of building
+  std::vector<std::vector<double>> attachments_;                           // per link: arc lengths of element borders
+  std::vector<JointRecord> records_;                                       // root to leaf
+  std::map<int, Body> bodies_;                                             // by node
 };
 
 }  // namespace flexarm

@@ -1,5 +1,7 @@
 #include "flexarm/model/model_builder.h"
 
+#include <algorithm>
+
 #include "mass_properties.h"
 #include "mechanism_builder.h"
 
@@ -67,16 +69,11 @@ class LoadPlacer {
     }
     const auto& mesh = *mechanism_.meshes[out.link];
     const double s = mesh.centreline.nearest(probe.at);
-    double begin = 0;
-    for (std::size_t e = 0; e < link.beam->element_ends.size(); ++e) {
-      const double end = link.beam->element_ends[e];
-      if (s <= end + 1e-12 * link.beam->length) {
-        out.element = static_cast<int>(e);
-        out.xi = 2 * (s - begin) / (end - begin) - 1;
-        break;
-      }
-      begin = end;
-    }
+    const std::vector<double>& ends = link.beam->element_ends;
+    const auto found = std::lower_bound(ends.begin(), std::prev(ends.end()), s - 1e-12 * link.beam->length);
+    const double begin = found == ends.begin() ? 0.0 : *std::prev(found);
+    out.element = static_cast<int>(found - ends.begin());
+    out.xi = 2 * (s - begin) / (*found - begin) - 1;
     Pose section = mesh.centreline.at(s);
     section.position += section.orientation * mesh.mesh.centroid;
     out.offset = section.inverse() * at;

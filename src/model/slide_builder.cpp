@@ -1,6 +1,8 @@
 // Lines on which something slides, and the sections that slide on them.
 #include "mechanism_builder.h"
 
+#include <algorithm>
+
 #include "flexarm/scene/integrator_options.h"
 
 namespace flexarm {
@@ -29,24 +31,21 @@ bool MechanismBuilder::continues(int before, int after) const {
 }
 
 std::vector<int> MechanismBuilder::welded_beams(int link) const {
-  std::vector<int> chain = {link};
-  const auto extend = [&](bool forward) {
-    for (bool grows = true; grows && chain.size() < meshes.size();) {
-      grows = false;
-      for (const scene::JointDescription* joint : ordered_joints_) {
-        const int parent = link_index(joint->parent), child = link_index(joint->child);
-        if (joint->kind != scene::JointKind::Fixed || (forward ? parent : child) != (forward ? chain.back() : chain[0]))
-          continue;
-        const bool are_placed = meshes[parent] && meshes[child] && meshes[child]->first_node >= 0;
-        if (!are_placed || !continues(last_node(parent), meshes[child]->first_node)) continue;
-        chain.insert(forward ? chain.end() : chain.begin(), forward ? child : parent);
-        grows = true;
-        break;
-      }
-    }
+  const auto is_weld = [&](const scene::JointDescription* joint) {
+    if (!joint || joint->kind != scene::JointKind::Fixed) return false;
+    const int parent = link_index(joint->parent), child = link_index(joint->child);
+    const bool are_placed = meshes[parent] && meshes[child] && meshes[child]->first_node >= 0;
+    return are_placed && continues(last_node(parent), meshes[child]->first_node);
   };
-  extend(false);
-  extend(true);
+  std::vector<int> chain = {link};
+  while (is_weld(joints_above_[chain.back()])) chain.push_back(link_index(joints_above_[chain.back()]->parent));
+  std::reverse(chain.begin(), chain.end());
+  for (bool grows = true; grows;) {
+    const auto& below = joints_below_[chain.back()];
+    const auto weld = std::find_if(below.begin(), below.end(), is_weld);
+    grows = weld != below.end();
+    if (grows) chain.push_back(link_index((*weld)->child));
+  }
   return chain;
 }
 

@@ -127,9 +127,12 @@ std::optional<SceneDescription> read_scene(const std::string& text, Findings& fi
 /// The file's bytes, but not many more than a scene may have; nothing if it cannot be read.
 std::optional<std::string> read_bytes(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  std::string text(kLargestFile + 1, '\0');
-  if (!file || !(file.read(text.data(), text.size()) || file.eof())) return std::nullopt;
-  text.resize(file.gcount());
+  if (!file) return std::nullopt;
+  std::string text;
+  char part[1 << 14];
+  while (text.size() <= kLargestFile && file.read(part, sizeof part).gcount() > 0)
+    text.append(part, static_cast<std::size_t>(file.gcount()));
+  if (!file && !file.eof()) return std::nullopt;
   return text;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "flexarm/joints/joint_kinematics.h"
@@ -48,7 +49,8 @@ struct Simulation::Implementation {
   std::unique_ptr<Stepper> stepper;
   State initial, state;
   std::vector<std::string> coordinate_names, link_names;
-  mutable std::vector<NodePose> poses;  // scratch of velocity()
+  std::map<std::string, std::size_t, std::less<>> coordinate_indices;  ///< by name
+  mutable std::vector<NodePose> poses;                                 // scratch of velocity()
   mutable std::vector<Vector6> velocities;
 
   Implementation(scene::SceneDescription description, const SimulationOptions& options)
@@ -58,7 +60,10 @@ struct Simulation::Implementation {
         model(build_model(scene)),
         stepper(std::make_unique<Stepper>(model, scheme, settings)),
         initial(initial_state(model)) {
-    for (const Coordinate& coordinate : model.coordinates) coordinate_names.push_back(coordinate.name);
+    for (const Coordinate& coordinate : model.coordinates) {
+      coordinate_indices.emplace(coordinate.name, coordinate_names.size());
+      coordinate_names.push_back(coordinate.name);
+    }
     for (const LinkFrame& link : model.links) link_names.push_back(link.name);
     stepper->initialise(initial);
     state = initial;
@@ -160,10 +165,8 @@ const std::vector<std::string>& Simulation::coordinate_names() const {
 }
 
 std::optional<std::size_t> Simulation::find_coordinate(std::string_view name) const {
-  const std::vector<std::string>& names = implementation_->coordinate_names;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if (names[i] == name) return i;
-  return std::nullopt;
+  const auto found = implementation_->coordinate_indices.find(name);
+  return found == implementation_->coordinate_indices.end() ? std::nullopt : std::optional(found->second);
 }
 
 double Simulation::position(std::size_t index) const {

@@ -6,7 +6,8 @@ namespace flexarm::cli {
 namespace {
 
 TEST(Bench, UsageErrors) {
-  for (const char* arguments : {"bench", "bench fly", "bench properties --fast", "bench thesis --fast"})
+  for (const char* arguments :
+       {"bench", "bench fly", "bench properties --fast", "bench thesis --fast", "bench scaling --fast"})
     EXPECT_EQ(shell(std::string("flexarm ") + arguments).status, 2) << arguments;
 }
 
@@ -43,6 +44,19 @@ TEST(Bench, ThesisReport) {
   const Outcome nowhere = shell("flexarm bench thesis --quick --output '" + folder + "' --scenes /nowhere");
   EXPECT_EQ(nowhere.status, 1);
   EXPECT_NE(nowhere.errors.find("/nowhere/12_1_screw_node_to_node.urdf"), std::string::npos) << nowhere.errors;
+}
+
+TEST(Bench, ScalingReport) {
+  const std::string folder = temporary("scaling");
+  const Outcome outcome = shell("flexarm bench scaling --quick --output '" + folder + "'");
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  const std::string report = read_file(folder + "/scaling.md");
+  for (const char* line : {"\n| cantilever, order 1 | 10 elements |", "\n| rigid chain | 10 links |", "\n## tree\n"})
+    EXPECT_NE(report.find(line), std::string::npos) << line;
+  for (const char* word : {"nan", "inf", "fails"}) EXPECT_EQ(report.find(word), std::string::npos) << word;
+  const std::string data = read_file(folder + "/scaling.csv");
+  EXPECT_EQ(data.substr(0, data.find('\n')), "family,unit,size,unknowns,read,build,step,bytes,iterations");
+  EXPECT_EQ(report.find("scaling.png") != std::string::npos, std::filesystem::exists(folder + "/scaling.png"));
 }
 
 TEST(Bench, FolderThatCannotBeWritten) {

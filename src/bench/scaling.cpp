@@ -1,0 +1,190 @@
+#include "bench/scaling.h"
+
+#include <malloc.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "bench/processor_time.h"
+#include "flexarm/scene/urdf_reader.h"
+#include "flexarm/simulation/simulation.h"
+
+namespace flexarm::bench {
+namespace {
+
+/// Steps are timed for at least so long [s], and at least so many of them.
+constexpr double kTimedSeconds = 0.05;
+constexpr int kTimedSteps = 5;
+/// Steps before that: the first have no increment to continue.
+constexpr int kStepsBefore = 2;
+
+/// Bytes that malloc has given out.
+double allocated_bytes() {
+  const struct mallinfo2 info = mallinfo2();
+  return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
+}
+
+/// 1, 3, 10, ... up to `largest`.
+std::vector<int> half_decades(int first, int largest) {
+  std::vector<int> sizes;
+  for (int decade = 1; decade <= largest; decade *= 10)
+    for (const int size : {decade, 3 * decade})
+      if (size >= first && size <= largest) sizes.push_back(size);
+  return sizes;
+}
+
+std::string beam_link(const std::string& name, const std::string& to, int elements, int order) {
+  return fmt::format(
+      "<link name=\"{}\"><beam elements=\"{}\" order=\"{}\"><centerline><line to=\"{}\"/></centerline>"
+      "<section ea=\"1e5\" ga2=\"5e4\" ga3=\"5e4\" gj=\"20\" ei2=\"20\" ei3=\"20\" mass=\"1\" j1=\"2e-4\" j2=\"1e-4\" "
+      "j3=\"1e-4\"/></beam></link>\n",
+      name, elements, order, to);
+}
+
+std::string joint(const std::string& name, const std::string& type, const std::string& parent, const std::string& child,
+                  const std::string& at, const std::string& inside = "") {
+  return fmt::format(
+      "<joint name=\"{}\" type=\"{}\"><parent link=\"{}\"/><child link=\"{}\"/><origin xyz=\"{}\"/>{}</joint>\n", name,
+      type, parent, child, at, inside);
+}
+
+std::string scene(const std::string& name, const std::string& body, const std::string& simulation) {
+  return fmt::format(
+      "<robot name=\"{}\"><link name=\"world\"/>\n{}<simulation><gravity xyz=\"0 0 -9.81\"/>"
+      "<integrator scheme=\"em\" step=\"1e-3\"/>\n{}</simulation></robot>\n",
+      name, body, simulation);
+}
+
+/// Elements of 0.1 m that start to fall from the horizontal.
+std::string cantilever(int elements, int order) {
+  const double length = 0.1 * elements;
+  return scene("cantilever",
+               joint("clamp", "fixed", "world", "beam", "0 0 0") +
+                   beam_link("beam", fmt::format("{:g} 0 0", length), elements, order),
+               fmt::format("<load link=\"beam\" at=\"{:g} 0 0\" force=\"0 1 0\"/>", length));
+}
+
+/// A trunk with an element of 1 m from branch to branch, and branches of 1 to 10 elements, every other one hinged.
+std::string tree(int branches) {
+  std::string body = joint("clamp", "fixed", "world", "trunk", "0 0 0") +
+                     beam_link("trunk", fmt::format("{} 0 0", branches), branches, 2);
+  for (int i = 0; i < branches; ++i) {
+    const int elements = 1 + i % 10;
+    const std::string name = fmt::format("branch{}", i), at = fmt::format("{} 0 0", i + 1);
+    body += beam_link(name, fmt::format("0 {:g} 0", 0.1 * elements), elements, 2) +
+            (i % 2 == 0 ? joint("fork" + name, "fixed", "trunk", name, at)
+                        : joint("fork" + name, "continuous", "trunk", name, at,
+                                "<axis xyz=\"1 0 0\"/><dynamics damping=\"0.1\"/>"));
+  }
+  return scene("tree", body, "");
+}
+
+/// Rods of 0.1 m from the world's origin on, with revolute joints about y and z in turn, each with an initial angle and
+/// a motor.
+std::string rigid_chain(int links) {
+  std::string body, simulation, parent = "world";
+  for (int i = 0; i < links; ++i) {
+    const std::string name = fmt::format("link{}", i), hinge = fmt::format("joint{}", i);
+    body += joint(hinge, "revolute", parent, name, i == 0 ? "0 0 0" : "0 0 -0.1",
+                  fmt::format("<axis xyz=\"{}\"/><limit lower=\"-3\" upper=\"3\" effort=\"10\" velocity=\"10\"/>"
+                              "<dynamics damping=\"0.01\"/>",
+                              i % 2 == 0 ? "0 1 0" : "1 0 0")) +
+            fmt::format(
+                "<link name=\"{}\"><inertial><origin xyz=\"0 0 -0.05\"/><mass value=\"0.1\"/>"
+                "<inertia ixx=\"1e-4\" ixy=\"0\" ixz=\"0\" iyy=\"1e-4\" iyz=\"0\" izz=\"1e-5\"/></inertial></link>\n",
+                name);
+    simulation += fmt::format("<initial joint=\"{}\" position=\"{}\"/><effort joint=\"{}\" history=\"1e-4\"/>\n", hinge,
+                              i % 4 < 2 ? 0.01 : -0.01, hinge);
+    parent = name;
+  }
+  return scene("rigid_chain", body, simulation);
+}
+
+}  // namespace
+
+std::vector<ScalingFamily> scaling_families(bool quick) {
+  const auto sizes = [&](int largest) { return half_decades(1, quick ? std::min(largest, 10) : largest); };
+  return {{"cantilever, order 1", "elements", "One beam under gravity, elements of two nodes and 0.1 m.", sizes(100000),
+           [](int n) { return cantilever(n, 1); }},
+          {"cantilever, order 2", "elements", "The same, elements of three nodes.", sizes(100000),
+           [](int n) { return cantilever(n, 2); }},
+          {"tree", "branches",
+           "A trunk with an element from branch to branch, and branches of 1 to 10 elements (5.5 in the mean), every "
+           "other one on a hinge; three-node elements.",
+           sizes(1000), tree},
+          {"rigid chain", "links", "Rigid links hanging on revolute joints, each with a damper, stops and a motor.",
+           sizes(1000), rigid_chain}};
+}
+
+ScalingPoint measure_scaling_point(const ScalingFamily& family, int size) {
+  ScalingPoint point;
+  point.size = size;
+  const std::string text = family.urdf(size);
+  double begin = processor_seconds();
+  std::optional<scene::SceneDescription> scene = [&] {
+    scene::ReadResult read = scene::read_scene_text(text, family.name);
+    if (!read.scene) throw std::runtime_error(scene::to_text(read.diagnostics));
+    return std::move(read.scene);
+  }();
+  point.read_seconds = processor_seconds() - begin;
+  const double before = allocated_bytes();
+  begin = processor_seconds();
+  SimulationOptions options;
+  options.reuse_factorisation = false;  // an iteration is an iteration
+  Simulation simulation(*scene, options);
+  point.build_seconds = processor_seconds() - begin;
+  point.unknowns = simulation.degrees_of_freedom();
+  for (int n = 0; n < kStepsBefore; ++n)
+    if (!simulation.step().converged) return point;
+  int steps = 0;
+  begin = processor_seconds();
+  do {
+    const StepResult result = simulation.step();
+    if (!result.converged) return point;
+    point.iterations += result.iterations;
+    ++steps;
+    point.step_seconds = processor_seconds() - begin;
+  } while (steps < kTimedSteps || point.step_seconds < kTimedSeconds);
+  point.step_seconds /= steps;
+  point.iterations /= steps;
+  point.bytes = allocated_bytes() - before;
+  point.completed = true;
+  return point;
+}
+
+ScalingReport measure_scaling(bool quick, const std::function<void(double)>& progress) {
+  ScalingReport report;
+  report.quick = quick;
+  const std::vector<ScalingFamily> families = scaling_families(quick);
+  double done = 0, whole = 0;  // in units of what a size costs
+  for (const ScalingFamily& family : families)
+    for (const int size : family.sizes) whole += size;
+  for (const ScalingFamily& family : families) {
+    ScalingSeries series{family, {}};
+    for (const int size : family.sizes) {
+      series.points.push_back(measure_scaling_point(family, size));
+      progress((done += size) / whole);
+    }
+    report.series.push_back(std::move(series));
+  }
+  return report;
+}
+
+double log_slope(const std::vector<double>& x, const std::vector<double>& y, double part) {
+  const double from = part * *std::max_element(x.begin(), x.end());
+  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (x[i] < from * (1 - 1e-12)) continue;
+    const double u = std::log(x[i]), v = std::log(y[i]);
+    n += 1, sx += u, sy += v, sxx += u * u, sxy += u * v;
+  }
+  if (n < 2) return std::numeric_limits<double>::quiet_NaN();
+  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+}  // namespace flexarm::bench

@@ -1,0 +1,99 @@
+// The scaling measurements as text.
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "bench/scaling.h"
+
+namespace flexarm::bench {
+namespace {
+
+/// Fixed costs hide in smaller sizes than this part of the largest.
+constexpr double kUpperPart = 0.01;
+/// What is linear may come out as this by the machine's caches.
+constexpr double kLinear = 1.05;
+
+struct Quantity {
+  const char* name;
+  double ScalingPoint::*value;
+  double scale;  ///< from the table's unit to SI
+};
+constexpr Quantity kQuantities[] = {{"read [ms]", &ScalingPoint::read_seconds, 1e3},
+                                    {"build [ms]", &ScalingPoint::build_seconds, 1e3},
+                                    {"step [ms]", &ScalingPoint::step_seconds, 1e3},
+                                    {"memory [MB]", &ScalingPoint::bytes, 1e-6}};
+
+double slope_of(const ScalingSeries& series, double ScalingPoint::*value) {
+  std::vector<double> sizes, values;
+  for (const ScalingPoint& point : series.points) {
+    if (!point.completed) continue;
+    sizes.push_back(point.size);
+    values.push_back(point.*value);
+  }
+  return log_slope(sizes, values, kUpperPart);
+}
+
+std::string slope_cell(double slope) {
+  if (!std::isfinite(slope)) return "–";
+  return fmt::format(slope <= kLinear ? "{:.2f}" : "**{:.2f}**", slope);
+}
+
+std::string slope_table(const ScalingReport& report) {
+  std::string text = "| scenes | up to | read | build | step | memory |\n|---|---|---|---|---|---|\n";
+  for (const ScalingSeries& series : report.series) {
+    text += fmt::format("| {} | {} {} |", series.family.name, series.points.back().size, series.family.unit);
+    for (const Quantity& quantity : kQuantities) text += " " + slope_cell(slope_of(series, quantity.value)) + " |";
+    text += "\n";
+  }
+  return text;
+}
+
+std::string point_table(const ScalingSeries& series) {
+  std::string text = fmt::format("| {} | unknowns |", series.family.unit);
+  for (const Quantity& quantity : kQuantities) text += fmt::format(" {} |", quantity.name);
+  text += " Newton iterations per step | us per iteration and unknown |\n|---|---|---|---|---|---|---|---|\n";
+  for (const ScalingPoint& point : series.points) {
+    text += fmt::format("| {} | {} |", point.size, point.unknowns);
+    if (!point.completed) {
+      text += " – | – | fails | – | – | – |\n";
+      continue;
+    }
+    for (const Quantity& quantity : kQuantities)
+      text += fmt::format(" {:.3g} |", quantity.scale * (point.*quantity.value));
+    const double work = point.iterations * static_cast<double>(point.unknowns);
+    text += fmt::format(" {:.1f} | {:.2f} |\n", point.iterations, 1e6 * point.step_seconds / work);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string to_markdown(const ScalingReport& report, const std::string& picture) {
+  std::string text =
+      "# How time and memory grow with the size of a mechanism\n\n"
+      "Written by `flexarm bench scaling`. Scheme `em`, steps of 1 ms, full Newton; times are of the processor, in one "
+      "thread.\n\n"
+      "- *read*: from URDF text to a scene description; *build*: from there to a simulation; *step*: the mean of at "
+      "least five steps.\n"
+      "- *memory*: what malloc has given to the simulation after these steps.\n"
+      "- *slopes*: of the logarithms, by least squares over the two upper decades of sizes; 1 is linear. Bold: above "
+      "1.05. A table of two points only, or of times below a millisecond, says little.\n\n" +
+      slope_table(report);
+  if (!picture.empty()) text += fmt::format("\n![Time per step, time to build and memory over size]({})\n", picture);
+  for (const ScalingSeries& series : report.series)
+    text += fmt::format("\n## {}\n\n{}\n\n{}", series.family.name, series.family.description, point_table(series));
+  return text;
+}
+
+std::string scaling_to_csv(const ScalingReport& report) {
+  std::string text = "family,unit,size,unknowns,read,build,step,bytes,iterations\n";
+  for (const ScalingSeries& series : report.series)
+    for (const ScalingPoint& point : series.points)
+      if (point.completed)
+        text += fmt::format("\"{}\",{},{},{},{:.6g},{:.6g},{:.6g},{:.0f},{:g}\n", series.family.name,
+                            series.family.unit, point.size, point.unknowns, point.read_seconds, point.build_seconds,
+                            point.step_seconds, point.bytes, point.iterations);
+  return text;
+}
+
+}  // namespace flexarm::bench
