@@ -66,9 +66,9 @@ int MechanismBuilder::coordinate_index(const std::string& name, const std::strin
 
 void MechanismBuilder::connect_mimics() {
   index_coordinates();
-  std::unordered_map<std::string, const scene::Mimic*> mimics;  // by joint
+  std::unordered_map<std::string, scene::Mimic> mimics;  // by joint; where known, of the coordinate at the chain's end
   for (const JointRecord& record : records_)
-    if (record.joint->mimic) mimics[record.joint->name] = &*record.joint->mimic;
+    if (record.joint->mimic) mimics[record.joint->name] = *record.joint->mimic;
   std::unordered_set<std::string> prescribed;
   for (const scene::PrescribedMotion& motion : scene_.motions) prescribed.insert(motion.coordinate);
   // Chains of mimics are followed to the coordinate that none of them mimics.
@@ -76,23 +76,20 @@ void MechanismBuilder::connect_mimics() {
     if (!record.joint->mimic) continue;
     const std::string where = at(record.joint->location, "<mimic> of joint '" + record.joint->name + "'");
     Coordinate& coordinate = model.coordinates[coordinate_index(record.joint->name, where)];
-    const scene::Mimic* mimic = &*record.joint->mimic;
-    double multiplier = 1, offset = 0;
-    std::string master;
-    for (std::size_t depth = 0;; ++depth) {
-      if (depth > records_.size()) throw ModelError(where + "the mimicked joints form a circle");
-      offset += multiplier * mimic->offset;
-      multiplier *= mimic->multiplier;
-      master = mimic->joint;
-      const auto next = mimics.find(master);
-      if (next == mimics.end()) break;
-      mimic = next->second;
+    scene::Mimic& mimic = mimics.at(record.joint->name);
+    std::size_t depth = 0;
+    for (auto next = mimics.find(mimic.joint); next != mimics.end(); next = mimics.find(mimic.joint)) {
+      if (++depth > records_.size()) throw ModelError(where + "the mimicked joints form a circle");
+      const scene::Mimic above = next->second;  // it may be the same one
+      mimic.offset += mimic.multiplier * above.offset;
+      mimic.multiplier *= above.multiplier;
+      mimic.joint = above.joint;
     }
     if (prescribed.count(coordinate.name) > 0)
       throw ModelError(where + "the motion of the joint is prescribed as well");
-    coordinate.mimicked = coordinate_index(master, where);
-    coordinate.mimic.multiplier = multiplier;
-    coordinate.mimic.offset = offset;
+    coordinate.mimicked = coordinate_index(mimic.joint, where);
+    coordinate.mimic.multiplier = mimic.multiplier;
+    coordinate.mimic.offset = mimic.offset;
     coordinate.limit.reset();
     if (model.joints[model.coordinates[coordinate.mimicked].joint].kind != JointMapKind::Scalar)
       throw ModelError(where + "only a joint with one coordinate can be mimicked");
