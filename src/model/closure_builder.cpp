@@ -1,6 +1,11 @@
 // Loops that no free node of a beam can close: constraints with multipliers. (joints.md 3)
 #include "closure_builder.h"
 
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <set>
+
 #include "flexarm/joints/joint_kinematics.h"
 #include "flexarm/joints/loop_closure.h"
 #include "mechanism_builder.h"
@@ -62,10 +67,32 @@ bool add_constraints(const scene::JointDescription& joint, const Quaternion& fra
   }
 }
 
+/// A row that is zero nearly everywhere.
+class SparseRow {
+ public:
+  double& operator[](int scalar) { return entries_[scalar]; }
+  void add(int first, const Vector6& values) {
+    for (int k = 0; k < 6; ++k) entries_[first + k] += values[k];
+  }
+  /// Six entries, which become zero.
+  Vector6 take(int first) {
+    Vector6 values = Vector6::Zero();
+    const auto begin = entries_.lower_bound(first), end = entries_.lower_bound(first + 6);
+    for (auto entry = begin; entry != end; ++entry) values[entry->first - first] = entry->second;
+    entries_.erase(begin, end);
+    return values;
+  }
+  const std::map<int, double>& entries() const { return entries_; }
+
+ private:
+  std::map<int, double> entries_;
+};
+
 /// One row, from the leaves to the root.
 class RowFolder {
  public:
-  RowFolder(const Model& model, const DegreesOfFreedom& dof) : model_(model), dof_(dof), maps_(model.joints.size()) {
+  RowFolder(const Model& model, const DegreesOfFreedom& dof)
+      : model_(model), dof_(dof), maps_(model.joints.size()), velocities_(model.nodes.size(), Vector6::Zero()) {
     for (std::size_t j = 0; j < model.joints.size(); ++j) {
       const JointMap& joint = model.joints[j];
       if (joint.kind != JointMapKind::Slide)
@@ -74,53 +101,62 @@ class RowFolder {
     }
   }
 
-  void fold(Eigen::Ref<Eigen::RowVectorXd> row) const {
-    for (std::size_t j = model_.joints.size(); j-- > 0;) {
+  /// `nodes`: those that the row has entries of.
+  void fold(const std::vector<int>& nodes, SparseRow& row) {
+    std::set<int> pending;  // joints, which are numbered from the root to the leaves
+    const auto add_node = [&](int node) {
+      if (node >= 0 && dof_.slave_joint[node] >= 0) pending.insert(dof_.slave_joint[node]);
+    };
+    for (const int node : nodes) add_node(node);
+    while (!pending.empty()) {
+      const int j = *pending.rbegin();
+      pending.erase(j);
       const JointMap& joint = model_.joints[j];
-      Eigen::Ref<Eigen::RowVectorXd> slave = row.segment(dof_.first[joint.slave], 6);
-      const Vector6 g = slave.transpose();
-      slave.setZero();
+      const Vector6 g = row.take(dof_.first[joint.slave]);
       if (g.isZero(0)) continue;
-      const int released = dof_.first[dof_.variable_of_joint(static_cast<int>(j))];
+      const int released = dof_.first[dof_.variable_of_joint(j)];
       if (joint.kind == JointMapKind::Slide) {
-        fold_slide(static_cast<int>(j), g, released, row);
+        fold_slide(j, g, released, row);
+        for (const int node : model_.slide_lines[joint.line].nodes) add_node(node);
         continue;
       }
       const FoldMaps& map = maps_[j];
       for (int k = 0; k < map.right.cols(); ++k) row[released + k] += map.right.col(k).dot(g);
       if (joint.master < 0) continue;
-      Eigen::Ref<Eigen::RowVectorXd> master = row.segment(dof_.first[joint.master], 6);
-      master += g.transpose();
-      master.tail<3>() += map.lever_right.cross(g.head<3>()).transpose();
+      Vector6 of_master = g;
+      of_master.tail<3>() += map.lever_right.cross(g.head<3>());
+      row.add(dof_.first[joint.master], of_master);
+      add_node(joint.master);
     }
     for (const DegreesOfFreedom::Mimic& mimic : dof_.mimics) {
       const Coordinate& following = model_.coordinates[mimic.coordinate];
       const int master = model_.coordinates[following.mimicked].joint;
-      double& entry = row[dof_.first[mimic.slave_variable]];
+      const int slave = dof_.first[mimic.slave_variable];
+      if (row.entries().count(slave) == 0) continue;
       row[dof_.first[mimic.master_variable]] +=
-          following.mimic.derivative(model_.initial_released[master].displacement[0]) * entry;
-      entry = 0;
+          following.mimic.derivative(model_.initial_released[master].displacement[0]) * row[slave];
+      row[slave] = 0;
     }
   }
 
  private:
-  void fold_slide(int j, const Vector6& g, int released, Eigen::Ref<Eigen::RowVectorXd> row) const {
+  void fold_slide(int j, const Vector6& g, int released, SparseRow& row) {
     // Velocities of the line's nodes one by one: a slide has no other maps of velocity.
     const SlideLine& line = model_.slide_lines[model_.joints[j].line];
-    std::vector<Vector6> velocities(model_.nodes.size(), Vector6::Zero());
     for (const int node : line.nodes)
       for (int k = 0; k < 6; ++k) {
-        velocities[node] = Vector6::Unit(k);
-        const SlaveVelocity slave = slave_velocity(model_, j, model_.nodes, model_.initial_released[j], velocities);
+        velocities_[node] = Vector6::Unit(k);
+        const SlaveVelocity slave = slave_velocity(model_, j, model_.nodes, model_.initial_released[j], velocities_);
         row[dof_.first[node] + k] += slave.carried.dot(g);
         row[released] = slave.columns.col(0).dot(g);
-        velocities[node].setZero();
+        velocities_[node].setZero();
       }
   }
 
   const Model& model_;
   const DegreesOfFreedom& dof_;
   std::vector<FoldMaps> maps_;
+  std::vector<Vector6> velocities_;  // per node; zero between calls
 };
 
 /// Pivoting takes independent constraints first: the columns of the transpose.
@@ -133,6 +169,19 @@ Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factorised(const Eigen::MatrixXd& ja
 
 Eigen::Index rank_of(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr) {
   return qr.maxPivot() > kIndependent ? qr.rank() : 0;
+}
+
+Eigen::Index rank_of(const ConstraintRows& jacobian) {
+  Eigen::Index rank = 0;
+  for (const ConstraintGroup& group : independent_groups(jacobian)) rank += rank_of(factorised(group.block));
+  return rank;
+}
+
+/// Without the columns for which is_kept(column) is false.
+template <class IsKept>
+ConstraintRows with_columns(ConstraintRows jacobian, const IsKept& is_kept) {
+  jacobian.prune([&](Eigen::Index, Eigen::Index column, double) { return is_kept(static_cast<int>(column)); });
+  return jacobian;
 }
 
 template <class Visit>
@@ -161,21 +210,65 @@ Eigen::VectorXd constraint_scales(const Model& model) {
   return Eigen::VectorXd::Map(scales.data(), static_cast<Eigen::Index>(scales.size()));
 }
 
-Eigen::MatrixXd closure_jacobian(const Model& model, const DegreesOfFreedom& dof) {
-  const RowFolder folder(model, dof);
-  std::vector<Eigen::RowVectorXd> rows;
+ConstraintRows closure_jacobian(const Model& model, const DegreesOfFreedom& dof) {
+  RowFolder folder(model, dof);
+  std::vector<Eigen::Triplet<double>> entries;
+  int rows = 0;
   for_each_constraint(model, [&](const LoopClosure& closure, const ClosureConstraint& constraint) {
     const NodePose parent = closure.parent < 0 ? NodePose() : model.nodes[closure.parent];
     const ClosureRows own = closure_rows(closure, constraint, {parent, model.nodes[closure.child]});
-    Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(dof.scalar_count);
-    row.segment<6>(dof.first[closure.child]) += own.child.transpose();
-    if (closure.parent >= 0) row.segment<6>(dof.first[closure.parent]) += own.parent.transpose();
-    folder.fold(row);
-    rows.push_back(row);
+    SparseRow row;
+    row.add(dof.first[closure.child], own.child);
+    if (closure.parent >= 0) row.add(dof.first[closure.parent], own.parent);
+    folder.fold({closure.child, closure.parent}, row);
+    for (const auto& [scalar, value] : row.entries())
+      if (value != 0) entries.emplace_back(rows, scalar, value);
+    ++rows;
   });
-  Eigen::MatrixXd out(static_cast<Eigen::Index>(rows.size()), dof.scalar_count);
-  for (std::size_t i = 0; i < rows.size(); ++i) out.row(static_cast<Eigen::Index>(i)) = rows[i];
+  ConstraintRows out(rows, dof.scalar_count);
+  out.setFromTriplets(entries.begin(), entries.end());
   return out;
+}
+
+std::vector<ConstraintGroup> independent_groups(const ConstraintRows& jacobian) {
+  // Sets of rows, each named by one of them (union by column).
+  std::vector<int> above(static_cast<std::size_t>(jacobian.rows())), of_column(jacobian.cols(), -1);
+  std::iota(above.begin(), above.end(), 0);
+  const auto name_of = [&](int row) {
+    while (above[row] != row) row = above[row] = above[above[row]];
+    return row;
+  };
+  using Entry = ConstraintRows::InnerIterator;
+  for (int row = 0; row < jacobian.rows(); ++row)
+    for (Entry entry(jacobian, row); entry; ++entry) {
+      int& first = of_column[entry.col()];
+      if (first < 0) first = row;
+      above[name_of(row)] = name_of(first);
+    }
+  std::vector<ConstraintGroup> groups;
+  std::vector<int> group_of(above.size(), -1);
+  for (int row = 0; row < jacobian.rows(); ++row) {
+    int& group = group_of[name_of(row)];
+    if (group < 0) {
+      group = static_cast<int>(groups.size());
+      groups.emplace_back();
+    }
+    groups[group].rows.push_back(row);
+  }
+  std::vector<int> place(jacobian.cols(), -1);  // of a column in its group
+  for (ConstraintGroup& group : groups) {
+    for (const int row : group.rows)
+      for (Entry entry(jacobian, row); entry; ++entry)
+        if (int& at = place[entry.col()]; at < 0) {
+          at = static_cast<int>(group.columns.size());
+          group.columns.push_back(static_cast<int>(entry.col()));
+        }
+    group.block.setZero(static_cast<Eigen::Index>(group.rows.size()), static_cast<Eigen::Index>(group.columns.size()));
+    for (std::size_t i = 0; i < group.rows.size(); ++i)
+      for (Entry entry(jacobian, group.rows[i]); entry; ++entry)
+        group.block(static_cast<Eigen::Index>(i), place[entry.col()]) = entry.value();
+  }
+  return groups;
 }
 
 void MechanismBuilder::add_closure(const scene::JointDescription& joint, Attachment parent, Attachment child,
@@ -206,33 +299,31 @@ void MechanismBuilder::choose_constraints() {
   model.length_scale = extent();
   const DegreesOfFreedom dof(model);
   const Eigen::VectorXd scales = scalar_scales(model, dof);
-  Eigen::MatrixXd jacobian =
+  const ConstraintRows all_columns =
       constraint_scales(model).cwiseInverse().asDiagonal() * closure_jacobian(model, dof) * scales.asDiagonal();
-  const int multipliers = dof.first[dof.variable_of_closure(0)];
-  int unknowns = 0;
-  for (int scalar = 0; scalar < multipliers; ++scalar) {
-    if (dof.equation[scalar] < 0)
-      jacobian.col(scalar).setZero();
-    else
-      ++unknowns;
+  const ConstraintRows jacobian = with_columns(all_columns, [&](int scalar) { return dof.equation[scalar] >= 0; });
+  const auto multipliers = dof.equation.begin() + dof.first[dof.variable_of_closure(0)];
+  const auto unknowns = std::count_if(dof.equation.begin(), multipliers, [](int equation) { return equation >= 0; });
+  std::vector<bool> is_kept(static_cast<std::size_t>(jacobian.rows()), false);
+  Eigen::Index rank = 0;
+  for (const ConstraintGroup& group : independent_groups(jacobian)) {
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr = factorised(group.block);
+    const Eigen::Index independent = rank_of(qr);
+    for (Eigen::Index k = 0; k < independent; ++k) is_kept[group.rows[qr.colsPermutation().indices()[k]]] = true;
+    rank += independent;
   }
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr = factorised(jacobian);
-  const Eigen::Index rank = rank_of(qr);
   bool is_driven = false;
   for (const Coordinate& coordinate : model.coordinates) is_driven = is_driven || coordinate.motion >= 0;
   if (rank == unknowns && !is_driven)
     throw ModelError(scene_.file + ": the loop joints leave the mechanism no motion ('" + model.closures.front().name +
                      "' and others): nothing is left to compute");
-  Eigen::MatrixXd without_sticking = jacobian;
+  std::vector<bool> sticks(static_cast<std::size_t>(dof.scalar_count), false);
   for (const Coordinate& coordinate : model.coordinates)
-    if (coordinate.sticks)
-      without_sticking.col(dof.first[dof.variable_of_joint(coordinate.joint)] + coordinate.component).setZero();
-  if (rank_of(factorised(without_sticking)) < rank)
+    if (coordinate.sticks) sticks[dof.first[dof.variable_of_joint(coordinate.joint)] + coordinate.component] = true;
+  if (rank_of(with_columns(jacobian, [&](int scalar) { return !sticks[scalar]; })) < rank)
     throw ModelError(scene_.file + ": more joints of the rigid loop that '" + model.closures.front().name +
                      "' closes may stick (<friction law=\"coulomb\">) than it has freedoms, and the force that holds "
                      "each would be undetermined: give some of them the law 'smooth'");
-  std::vector<bool> is_kept(static_cast<std::size_t>(jacobian.rows()), false);
-  for (Eigen::Index k = 0; k < rank; ++k) is_kept[qr.colsPermutation().indices()[k]] = true;
   std::size_t row = 0;
   for (LoopClosure& closure : model.closures) {
     std::vector<ClosureConstraint> all;

@@ -1,6 +1,10 @@
 #pragma once
 /// Loops of rigid links: their constraints as a matrix (internal to model/).
 
+#include <vector>
+
+#include <Eigen/SparseCore>
+
 #include "flexarm/model/degrees_of_freedom.h"
 #include "flexarm/model/model.h"
 
@@ -9,7 +13,16 @@ namespace flexarm {
 /// Derivatives of the values of all closures' constraints, kept ones then implied ones, closure by closure, with
 /// respect to the scalars of `dof` at the model's start; columns of slaves and of following coordinates are folded into
 /// their masters' and zero.
-Eigen::MatrixXd closure_jacobian(const Model& model, const DegreesOfFreedom& dof);
+using ConstraintRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+ConstraintRows closure_jacobian(const Model& model, const DegreesOfFreedom& dof);
+
+/// Rows that share columns, directly or through others, and what is not zero of them. A mechanism of many loops has as
+/// many small groups, unless they hang together.
+struct ConstraintGroup {
+  std::vector<int> rows, columns;
+  Eigen::MatrixXd block;
+};
+std::vector<ConstraintGroup> independent_groups(const ConstraintRows& jacobian);
 
 /// Per scalar of the nodes and joints: the model's length scale where it is a displacement, 1 where it is a rotation.
 Eigen::VectorXd scalar_scales(const Model& model, const DegreesOfFreedom& dof);

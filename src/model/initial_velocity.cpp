@@ -47,21 +47,30 @@ bool InitialVelocity::is_given(const Coordinate& coordinate) const {
 void InitialVelocity::satisfy_closures() {
   const DegreesOfFreedom dof(model_);
   const Eigen::VectorXd scales = scalar_scales(model_, dof);
-  const Eigen::MatrixXd jacobian =
+  const ConstraintRows jacobian =
       constraint_scales(model_).cwiseInverse().asDiagonal() * closure_jacobian(model_, dof) * scales.asDiagonal();
   Eigen::VectorXd velocity = Eigen::VectorXd::Zero(dof.scalar_count);
-  Eigen::MatrixXd adjustable = jacobian;
   for (int i = 0; i < dof.node_count; ++i) velocity.segment<6>(dof.first[i]) = model_.initial_velocity[i];
   for (std::size_t j = 0; j < rates_.size(); ++j)
     velocity.segment(dof.first[dof.variable_of_joint(static_cast<int>(j))], rates_[j].size()) = rates_[j];
   velocity.array() /= scales.array();
+  std::vector<bool> given(static_cast<std::size_t>(dof.scalar_count), false);
   for (const Coordinate& coordinate : model_.coordinates)
-    if (is_given(coordinate))
-      adjustable.col(dof.first[dof.variable_of_joint(coordinate.joint)] + coordinate.component).setZero();
+    if (is_given(coordinate)) given[dof.first[dof.variable_of_joint(coordinate.joint)] + coordinate.component] = true;
+  ConstraintRows adjustable = jacobian;
+  adjustable.prune([&](Eigen::Index, Eigen::Index column, double) { return !given[column]; });
   const Eigen::VectorXd opening = jacobian * velocity;
   const double speed = velocity.lpNorm<Eigen::Infinity>();
   if (opening.lpNorm<Eigen::Infinity>() <= kAgrees * speed) return;
-  const Eigen::VectorXd change = adjustable.completeOrthogonalDecomposition().solve(-opening);
+  Eigen::VectorXd change = Eigen::VectorXd::Zero(dof.scalar_count);
+  for (const ConstraintGroup& group : independent_groups(adjustable)) {
+    if (group.columns.empty()) continue;
+    const auto size = static_cast<Eigen::Index>(group.rows.size());
+    Eigen::VectorXd closing(size);
+    for (Eigen::Index i = 0; i < size; ++i) closing[i] = -opening[group.rows[i]];
+    const Eigen::VectorXd part = group.block.completeOrthogonalDecomposition().solve(closing);
+    for (Eigen::Index k = 0; k < part.size(); ++k) change[group.columns[k]] = part[k];
+  }
   if ((adjustable * change + opening).lpNorm<Eigen::Infinity>() > kAgrees * speed)
     throw ModelError(scene_.file + ": the initial velocities of the joints do not agree with the loop that '" +
                      model_.closures.front().name + "' closes: give fewer of them");

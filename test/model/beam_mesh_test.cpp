@@ -71,6 +71,20 @@ TEST(BeamMesh, BordersAtAttachmentsAndPieces) {
   for (const double length : lengths) EXPECT_LE(length, 0.5 + 1e-12);
 }
 
+TEST(BeamMesh, NodeAtIsTheNearestAndTheFirstOfTwo) {
+  const BeamMesh mesh = mesh_of(beam_along({{1, 0, 0}, {1, 2, 0}}, 6, 2), {0.3, 2.2});
+  const auto distance = [&](std::size_t i, double s) { return std::abs(mesh.nodes[i].arc_length - s); };
+  for (double s = -0.5; s < 3.5; s += 0.01) {
+    std::size_t nearest = 0;
+    for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
+      if (distance(i, s) < distance(nearest, s) - 1e-12) nearest = i;
+    EXPECT_EQ(mesh.node_at(s), static_cast<int>(nearest)) << s;
+  }
+  const int kink = mesh.node_at(1);
+  EXPECT_EQ(mesh.nodes[kink + 1].welded_to, kink) << "a kink has two nodes";
+  EXPECT_EQ(mesh.node_at(1 + 1e-15), kink);
+}
+
 TEST(BeamMesh, FewerElementsThanIntervalsGivesOneEach) {
   EXPECT_EQ(mesh_of(beam_along({{1, 0, 0}}, 1, 2), {0.2, 0.7}).elements.size(), 3u);
 }

@@ -237,6 +237,37 @@ TEST(RigidLoopBuilder, RatesOfTheOtherJointsFollow) {
   expect_error(b.scene, "the initial velocities of the joints do not agree with the loop that 'hip' closes");
 }
 
+TEST(RigidLoopBuilder, EachOfSeveralLoopsIsClosedAsIfAlone) {
+  // A second linkage beside the first: on the world, where the loops have nothing in common, and on the first coupler.
+  for (const char* base : {"world", "coupler"}) {
+    SceneBuilder b = rigid_crank_rocker();
+    const scene::SceneDescription one = b.scene;
+    const auto second = [&](const std::string& link) { return link == "world" ? std::string(base) : link + "2"; };
+    for (scene::LinkDescription link : one.links)
+      if (link.name != one.root_link) link.name += "2", b.scene.links.push_back(link);
+    for (const auto& [from, to] : {std::pair(&one.joints, &b.scene.joints), {&one.loop_joints, &b.scene.loop_joints}})
+      for (scene::JointDescription joint : *from) {
+        joint.name += "2";
+        joint.parent = second(joint.parent), joint.child = second(joint.child);
+        to->push_back(joint);
+      }
+    b.scene.initial_joints = {{"ground", 0, 2, {}}, {"ground2", 0, -1, {}}};
+    const Model model = build_model(b.scene);
+    ASSERT_EQ(model.closures.size(), 2u) << base;
+    for (std::size_t k = 0; k < 2; ++k) {
+      EXPECT_EQ(model.closures[k].constraints.size(), 2u) << base << k;
+      EXPECT_EQ(model.closures[k].implied.size(), 3u) << base << k;
+    }
+    // As of one: v = (0.8, 0) + w (0.2, -1) = W (0.6, 0) for a crank that turns with 2; the coupler does not turn.
+    for (const auto& [closure, rate] : {std::pair(model.closures[0], 2.0), {model.closures[1], -1.0}}) {
+      EXPECT_NEAR(model.initial_velocity[closure.child][4], 0, 1e-12) << base;
+      EXPECT_NEAR(model.initial_velocity[closure.parent][4], rate * 0.4 / 0.6, 1e-12) << base;
+    }
+    b.scene.initial_joints.push_back({"foot2", 0, 1, {}});
+    expect_error(b.scene, "the initial velocities of the joints do not agree with the loop that 'hip' closes");
+  }
+}
+
 TEST(RigidLoopBuilder, WhatHasNoCoordinateIsRefused) {
   const auto expect = [](const auto& change, const std::string& message) {
     SceneBuilder b = rigid_crank_rocker();
