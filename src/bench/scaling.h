@@ -19,7 +19,7 @@ struct ScalingPoint {
   int size = 0;
   std::size_t unknowns = 0;
   double read_seconds = 0;   ///< of the processor: from text to scene description
-  double build_seconds = 0;  ///< from there to a simulation that can step
+  double build_seconds = 0;  ///< from there to a simulation that can step; both: the shortest of some tries
   double step_seconds = 0;   ///< per step, by full Newton
   double bytes = 0;          ///< held by the simulation after some steps
   double iterations = 0;     ///< of Newton's method per step

@@ -73,8 +73,8 @@ std::string to_markdown(const ScalingReport& report, const std::string& picture)
       "# How time and memory grow with the size of a mechanism\n\n"
       "Written by `flexarm bench scaling`. Scheme `em`, steps of 1 ms, full Newton; times are of the processor, in one "
       "thread.\n\n"
-      "- *read*: from URDF text to a scene description; *build*: from there to a simulation; *step*: the mean of at "
-      "least five steps.\n"
+      "- *read*: from URDF text to a scene description; *build*: from there to a simulation, both the shortest of "
+      "three tries; *step*: the fastest of five batches.\n"
       "- *memory*: what malloc has given to the simulation after these steps.\n"
       "- *slopes*: of the logarithms, by least squares over the two upper decades of sizes; 1 is linear. Bold: above "
       "1.05. A table of two points only, or of times below a millisecond, says little.\n\n" +
