@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <memory>
+#include <chrono>
 
 #include "bench/scenes.h"
 #include "flexarm/integrators/step_system.h"
@@ -46,9 +46,10 @@ struct StepUnderWay {
   Simulation simulation;
   StepSystem system;
 
-  StepUnderWay(const std::string& scheme, int elements, int order)
+  StepUnderWay(const std::string& scheme, int elements, int order,
+               StepSystem::Tangent tangent = StepSystem::Tangent::Tree)
       : simulation(cantilever_in_motion(scheme, elements, order)),
-        system(simulation.model(), find_scheme(scheme).value()) {
+        system(simulation.model(), find_scheme(scheme).value(), tangent) {
     system.begin(simulation.state(), kStep, StepSystem::Guess::Extrapolated);
   }
 };
@@ -79,8 +80,31 @@ void gather(benchmark::State& state, int order) {
   count_elements(state, kElements);
 }
 
-void factorise(benchmark::State& state, int order) {
+void factorise_tree(benchmark::State& state, int order) {
   StepUnderWay step("em", kElements, order);
+  for (auto _ : state) {
+    step.system.evaluate(true);  // factors take the place of what they are made of
+    const auto begin = std::chrono::steady_clock::now();
+    benchmark::DoNotOptimize(step.system.tree()->factorise());
+    state.SetIterationTime(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  }
+  count_elements(state, kElements);
+}
+
+void solve_tree(benchmark::State& state, int order) {
+  StepUnderWay step("em", kElements, order);
+  step.system.evaluate(true);
+  step.system.tree()->factorise();
+  Eigen::VectorXd x(step.system.residual().size());
+  for (auto _ : state) {
+    x = step.system.residual();
+    benchmark::DoNotOptimize(step.system.tree()->solve(x));
+  }
+  count_elements(state, kElements);
+}
+
+void factorise_matrix(benchmark::State& state, int order) {
+  StepUnderWay step("em", kElements, order, StepSystem::Tangent::Matrix);
   step.system.evaluate(true);
   const SparseAssembler& assembler = step.system.assembler();
   LinearSolver solver(assembler.unknowns(), assembler.column_starts(), assembler.row_indices());
@@ -89,8 +113,8 @@ void factorise(benchmark::State& state, int order) {
   count_elements(state, kElements);
 }
 
-void solve(benchmark::State& state, int order) {
-  StepUnderWay step("em", kElements, order);
+void solve_matrix(benchmark::State& state, int order) {
+  StepUnderWay step("em", kElements, order, StepSystem::Tangent::Matrix);
   step.system.evaluate(true);
   const SparseAssembler& assembler = step.system.assembler();
   LinearSolver solver(assembler.unknowns(), assembler.column_starts(), assembler.row_indices());
@@ -158,10 +182,10 @@ void fold_maps(benchmark::State& state, bool with_tangent) {
 }
 
 template <class... Arguments>
-void add(const std::string& name, void (*run)(benchmark::State&, Arguments...), Arguments... arguments) {
-  benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
-    run(state, arguments...);
-  })->Unit(benchmark::kMicrosecond);
+benchmark::internal::Benchmark* add(const std::string& name, void (*run)(benchmark::State&, Arguments...),
+                                    Arguments... arguments) {
+  auto* added = benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) { run(state, arguments...); });
+  return added->Unit(benchmark::kMicrosecond);
 }
 
 const bool registered = [] {
@@ -181,8 +205,10 @@ const bool registered = [] {
   for (int order = 1; order <= 4; ++order) {
     add(fmt::format("begin/em/order:{}", order), begin_step, order);
     add(fmt::format("gather/order:{}", order), gather, order);
-    add(fmt::format("factorise/order:{}", order), factorise, order);
-    add(fmt::format("solve/order:{}", order), solve, order);
+    add(fmt::format("factorise/tree/order:{}", order), factorise_tree, order)->UseManualTime();
+    add(fmt::format("factorise/matrix/order:{}", order), factorise_matrix, order);
+    add(fmt::format("solve/tree/order:{}", order), solve_tree, order);
+    add(fmt::format("solve/matrix/order:{}", order), solve_matrix, order);
     for (const bool reuse : {false, true})
       add<const std::string&, int, bool>(
           fmt::format("step/em/order:{}/{}", order, reuse ? "kept_factors" : "full_newton"), whole_step, "em", order,

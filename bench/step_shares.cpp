@@ -3,6 +3,7 @@
 
 #include <array>
 #include <chrono>
+#include <optional>
 
 #include "bench/scenes.h"
 #include "flexarm/integrators/factor_reuse.h"
@@ -41,9 +42,11 @@ class TimedStepper {
       : state_(simulation.state()),
         step_(simulation.step_size()),
         tolerance_(simulation.scene().integrator.tolerance),
-        system_(simulation.model(), make_scheme(simulation.scene().integrator)),
-        solver_(system_.assembler().unknowns(), system_.assembler().column_starts(), system_.assembler().row_indices()),
-        update_(system_.assembler().unknowns()) {}
+        system_(simulation.model(), make_scheme(simulation.scene().integrator), tangent_of(simulation.model())),
+        update_(system_.assembler().unknowns()) {
+    const SparseAssembler& matrix = system_.assembler();
+    if (!system_.tree()) solver_.emplace(matrix.unknowns(), matrix.column_starts(), matrix.row_indices());
+  }
 
   /// One step by Newton's method with kept factors, as Stepper tries first; false if that does not converge.
   bool advance() {
@@ -55,11 +58,11 @@ class TimedStepper {
     for (int iteration = 0; iteration < 20; ++iteration) {
       if (!system_.evaluate(factorise)) return false;
       clock_.charge(factorise ? kTangent : kResidual);
-      if (factorise && !solver_.factorise(system_.assembler().values(), system_.assembler().pattern())) return false;
+      if (factorise && !factorise_tangent()) return false;
       has_factors_ = true;
       clock_.charge(kFactorise);
       update_ = -system_.residual();
-      if (!solver_.solve(update_)) return false;
+      if (!(system_.tree() ? system_.tree()->solve(update_) : solver_->solve(update_))) return false;
       clock_.charge(kSolve);
       const double norm = system_.scaled_norm(update_), rate = iteration > 0 ? norm / last : 1.0;
       const bool squares = factorise;
@@ -82,10 +85,18 @@ class TimedStepper {
   long iterations() const { return iterations_; }
 
  private:
+  static StepSystem::Tangent tangent_of(const Model& model) {
+    return TreeSolver::suits(model, DegreesOfFreedom(model)) ? StepSystem::Tangent::Tree : StepSystem::Tangent::Matrix;
+  }
+  bool factorise_tangent() {
+    if (system_.tree()) return system_.tree()->factorise();
+    return solver_->factorise(system_.assembler().values(), system_.assembler().pattern());
+  }
+
   State state_;
   double step_, tolerance_;
   StepSystem system_;
-  LinearSolver solver_;
+  std::optional<LinearSolver> solver_;  // where the model is no tree
   Eigen::VectorXd update_;
   FactorReuse reuse_;
   bool has_factors_ = false;

@@ -34,9 +34,9 @@ def read(path):
 
 
 def draw_linear(axes, families, quantity):
-    """A dashed line of slope one through the largest point of all."""
+    """A dashed line of slope one through the highest point of all."""
     rows = [row for family in families.values() for row in family]
-    last = max(rows, key=lambda row: row["size"])
+    last = max(rows, key=lambda row: row[quantity])
     first = min(row["size"] for row in rows)
     axes.loglog([first, last["size"]], [last[quantity] * first / last["size"], last[quantity]],
                 color="0.6", linestyle="--", linewidth=0.9, label="linear")

@@ -17,9 +17,9 @@
 namespace flexarm::bench {
 namespace {
 
-/// Steps are timed for at least so long [s], and at least so many of them.
-constexpr double kTimedSeconds = 0.05;
-constexpr int kTimedSteps = 5;
+/// Steps are timed in batches of at least so long [s]; the fastest batch counts.
+constexpr double kBatchSeconds = 0.01;
+constexpr int kBatches = 5;
 /// Steps before that: the first have no increment to continue.
 constexpr int kStepsBefore = 2;
 /// Times that a scene is read and built.
@@ -68,11 +68,12 @@ std::string joint(const std::string& name, const std::string& type, const std::s
       type, parent, child, at, inside);
 }
 
-std::string scene(const std::string& name, const std::string& body, const std::string& simulation) {
+std::string scene(const std::string& name, const std::string& body, const std::string& simulation,
+                  const std::string& gravity = "0 0 -9.81") {
   return fmt::format(
-      "<robot name=\"{}\"><link name=\"world\"/>\n{}<simulation><gravity xyz=\"0 0 -9.81\"/>"
+      "<robot name=\"{}\"><link name=\"world\"/>\n{}<simulation><gravity xyz=\"{}\"/>"
       "<integrator scheme=\"em\" step=\"1e-3\"/>\n{}</simulation></robot>\n",
-      name, body, simulation);
+      name, body, gravity, simulation);
 }
 
 /// Elements of 0.1 m that start to fall from the horizontal.
@@ -99,7 +100,7 @@ std::string tree(int branches) {
   return scene("tree", body, "");
 }
 
-/// Rods of 0.1 m from the world's origin on, with revolute joints about y and z in turn, each with an initial angle and
+/// Rods of 0.1 m from the world's origin on, with revolute joints about y and x in turn, each with an initial angle and
 /// a motor.
 std::string rigid_chain(int links) {
   std::string body, simulation, parent = "world";
@@ -113,11 +114,12 @@ std::string rigid_chain(int links) {
                 "<link name=\"{}\"><inertial><origin xyz=\"0 0 -0.05\"/><mass value=\"0.1\"/>"
                 "<inertia ixx=\"1e-4\" ixy=\"0\" ixz=\"0\" iyy=\"1e-4\" iyz=\"0\" izz=\"1e-5\"/></inertial></link>\n",
                 name);
-    simulation += fmt::format("<initial joint=\"{}\" position=\"{}\"/><effort joint=\"{}\" history=\"1e-4\"/>\n", hinge,
-                              i % 4 < 2 ? 0.01 : -0.01, hinge);
+    simulation +=
+        fmt::format("<initial joint=\"{}\" position=\"{}\"/><effort joint=\"{}\" history=\"0.1*sin(30*t)\"/>\n", hinge,
+                    i % 4 < 2 ? 0.01 : -0.01, hinge);
     parent = name;
   }
-  return scene("rigid_chain", body, simulation);
+  return scene("rigid_chain", body, simulation, "0 0 0");
 }
 
 }  // namespace
@@ -155,15 +157,20 @@ ScalingPoint measure_scaling_point(const ScalingFamily& family, int size) {
   for (int n = 0; n < kStepsBefore; ++n)
     if (!simulation->step().converged) return point;
   int steps = 0;
-  const double begin = processor_seconds();
-  do {
-    const StepResult result = simulation->step();
-    if (!result.converged) return point;
-    point.iterations += result.iterations;
-    ++steps;
-    point.step_seconds = processor_seconds() - begin;
-  } while (steps < kTimedSteps || point.step_seconds < kTimedSeconds);
-  point.step_seconds /= steps;
+  point.step_seconds = std::numeric_limits<double>::infinity();
+  for (int batch = 0; batch < kBatches; ++batch) {
+    const double begin = processor_seconds();
+    const int before_batch = steps;
+    double seconds = 0;
+    while (seconds < kBatchSeconds) {
+      const StepResult result = simulation->step();
+      if (!result.converged) return point;
+      point.iterations += result.iterations;
+      ++steps;
+      seconds = processor_seconds() - begin;
+    }
+    point.step_seconds = std::min(point.step_seconds, seconds / (steps - before_batch));
+  }
   point.iterations /= steps;
   point.bytes = allocated_bytes() - before;
   point.completed = true;

@@ -74,10 +74,12 @@ std::string to_markdown(const ScalingReport& report, const std::string& picture)
       "Written by `flexarm bench scaling`. Scheme `em`, steps of 1 ms, full Newton; times are of the processor, in one "
       "thread.\n\n"
       "- *read*: from URDF text to a scene description; *build*: from there to a simulation, both the shortest of "
-      "three tries; *step*: the mean of at least five steps.\n"
+      "three tries; *step*: the fastest of five batches.\n"
       "- *memory*: what malloc has given to the simulation after these steps.\n"
       "- *slopes*: of the logarithms, by least squares over the two upper decades of sizes; 1 is linear. Bold: above "
-      "1.05. A table of two points only, or of times below a millisecond, says little.\n\n" +
+      "1.05. A table of two points only, or of times below a millisecond, says little.\n"
+      "- Where memory outgrows the processor's caches, and from where on the system hands out fresh pages for each "
+      "simulation, the same work takes longer, which bends the curves upwards in the middle.\n\n" +
       slope_table(report);
   if (!picture.empty()) text += fmt::format("\n![Time per step, time to build and memory over size]({})\n", picture);
   for (const ScalingSeries& series : report.series)
