@@ -28,18 +28,18 @@ void run_wide(const Work& work) {
 #endif
 
 template <class Work>
-[[gnu::flatten, gnu::noinline]] void run_baseline(const Work& work) {
+[[gnu::noinline]] void run_baseline(const Work& work) {
   work();
 }
 
 /// Calls work(), a function object that may be compiled twice.
 template <class Work>
 void run(const Work& work) {
-  static const bool wide = is_wide();
-  if (wide)
-    run_wide(work);
-  else
-    run_baseline(work);
+  if constexpr (has_wide_version) {
+    static const bool wide = is_wide();
+    if (wide) return run_wide(work);
+  }
+  run_baseline(work);
 }
 
 }  // namespace flexarm::simd
