@@ -175,8 +175,8 @@ class StepSystem {
   std::vector<Matrix3> inverse_tangents_;
   RotationReference reference_;
   std::vector<PointKinematics> begin_points_, end_points_;  // unless in conserving_beams_
-  ConservingBeams conserving_beams_;  // empty for schemes of other families
-  ConservingNodes conserving_nodes_;  // the same
+  ConservingBeams conserving_beams_;                        // empty for schemes of other families
+  ConservingNodes conserving_nodes_;                        // the same
   std::vector<Matrix3> begin_mass_rotations_, end_mass_rotations_;
   std::vector<MassPointState> end_mass_points_;
   std::vector<Vector6> end_strain_rates_;
