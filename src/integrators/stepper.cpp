@@ -183,11 +183,10 @@ bool Stepper::simple_step(State& state, double step, StepResult& result) {
     StepSystem::Guess guess;
     bool reuse;
   };
-  const Attempt attempts[] = {{StepSystem::Guess::Extrapolated, true},
+  const Attempt attempts[] = {{StepSystem::Guess::Extrapolated, settings_.reuse_factorisation},
                               {StepSystem::Guess::Repeated, false},
                               {StepSystem::Guess::Unchanged, false}};
   for (const Attempt& attempt : attempts) {
-    if (attempt.reuse && !settings_.reuse_factorisation) continue;
     system_.begin(state, step, attempt.guess);
     if (!iterate(Updates::Limited, attempt.reuse, result)) continue;
     if (system_.largest_node_rotation() > kLargestStepRotation) {

@@ -130,7 +130,11 @@ TEST_P(Checkpoint, FileKeepsWhatSticks) {
 TEST_P(Checkpoint, ContinuesToRoundOffWithKeptFactors) {
   SimulationOptions options;
   options.scheme = GetParam();
-  Simulation simulation(everything_scene().scene, options);
+  // Without friction: near rest the Newmark family rings on its steep law, and blows up what differs by round-off.
+  SceneBuilder builder = everything_scene();
+  for (auto* joints : {&builder.scene.joints, &builder.scene.loop_joints})
+    for (scene::JointDescription& joint : *joints) joint.friction = 0, joint.friction_law = {};
+  Simulation simulation(builder.scene, options);
   run(simulation, 40);
   const State snapshot = simulation.state();
   run(simulation, 40);
