@@ -42,8 +42,10 @@ class TimedStepper {
       : state_(simulation.state()),
         step_(simulation.step_size()),
         tolerance_(simulation.scene().integrator.tolerance),
-        system_(simulation.model(), make_scheme(simulation.scene().integrator), tangent_of(simulation.model())),
-        update_(system_.assembler().unknowns()) {
+        system_(simulation.model(), make_scheme(simulation.scene().integrator),
+                StepSystem::tangent_for(simulation.model())),
+        update_(system_.assembler().unknowns()),
+        reuse_(system_.tree() ? FactorReuse::kTree : FactorReuse::kMatrix) {
     const SparseAssembler& matrix = system_.assembler();
     if (!system_.tree()) solver_.emplace(matrix.unknowns(), matrix.column_starts(), matrix.row_indices());
   }
@@ -67,7 +69,7 @@ class TimedStepper {
       const double norm = system_.scaled_norm(update_), rate = iteration > 0 ? norm / last : 1.0;
       const bool squares = factorise;
       last = norm;
-      factorise = reuse_.renew(iteration, iteration > 0, rate);
+      factorise = reuse_.renew(iteration, !squares, iteration > 0, rate);
       system_.update(update_);
       clock_.charge(kUpdate);
       ++iterations_;
@@ -85,9 +87,6 @@ class TimedStepper {
   long iterations() const { return iterations_; }
 
  private:
-  static StepSystem::Tangent tangent_of(const Model& model) {
-    return TreeSolver::suits(model, DegreesOfFreedom(model)) ? StepSystem::Tangent::Tree : StepSystem::Tangent::Matrix;
-  }
   bool factorise_tangent() {
     if (system_.tree()) return system_.tree()->factorise();
     return solver_->factorise(system_.assembler().values(), system_.assembler().pattern());

@@ -36,6 +36,8 @@ def read(path):
 def draw_linear(axes, families, quantity):
     """A dashed line of slope one through the highest point of all."""
     rows = [row for family in families.values() for row in family]
+    if not rows:
+        raise SystemExit("plot_scaling.py: no point to draw")
     last = max(rows, key=lambda row: row[quantity])
     first = min(row["size"] for row in rows)
     axes.loglog([first, last["size"]], [last[quantity] * first / last["size"], last[quantity]],

@@ -123,7 +123,8 @@ std::vector<IterationCost> measure_iterations(const std::string& folder, bool qu
         const SpeedRun run = run_speed(folder, part, {costs[i].scheme, costs[i].order, kElements, 0.05}, false);
         if (run.iterations > 0) times[i].push_back(run.seconds / static_cast<double>(run.iterations * kElements));
       }
-    for (std::size_t i = 0; i < costs.size(); ++i) costs[i].seconds = median(times[i]);
+    for (std::size_t i = 0; i < costs.size(); ++i)
+      if (!times[i].empty()) costs[i].seconds = median(times[i]);
   }
   return costs;
 }

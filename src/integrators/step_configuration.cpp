@@ -100,7 +100,7 @@ void StepSystem::set_prescribed(double time) {
 void StepSystem::extrapolate(int order) {
   const State& state = *state_;
   const IncrementHistory& history = state.history;
-  const bool has_last = history.count > 0;
+  const bool has_last = history.holds_for(dof_.unknowns);
   IncrementHistory::Weights weights = history.weights(order, 0, step_);
   if (weights[0] == 0) weights = history.weights(0, 0, step_);
   const auto entry = [&](int variable, int k) {

@@ -26,6 +26,10 @@ std::size_t slide_node_count(const Model& model) {
 
 }  // namespace
 
+StepSystem::Tangent StepSystem::tangent_for(const Model& model) {
+  return TreeSolver::suits(model, DegreesOfFreedom(model)) ? Tangent::Tree : Tangent::Matrix;
+}
+
 StepSystem::StepSystem(const Model& model, const Scheme& scheme, Tangent tangent)
     : model_(model),
       scheme_(scheme),

@@ -30,13 +30,6 @@ const double kComposition[] = {kOuterPart, kOuterPart, 1 - 4 * kOuterPart, kOute
 /// Converged sub-steps after which the step is doubled again.
 constexpr int kGoodStepsToDouble = 2;
 
-/// Costs of an iteration with new factors, measured (bench_kernels), over one with kept ones.
-constexpr double kTreeFactorCost = 2.2, kMatrixFactorCost = 5;
-
-StepSystem::Tangent tangent_for(const Model& model) {
-  return TreeSolver::suits(model, DegreesOfFreedom(model)) ? StepSystem::Tangent::Tree : StepSystem::Tangent::Matrix;
-}
-
 }  // namespace
 
 const char* to_string(StepResult::Reason reason) {
@@ -65,9 +58,9 @@ Stepper::Stepper(const Model& model, const Scheme& scheme, const StepSettings& s
     : model_(model),
       scheme_(scheme),
       settings_(settings),
-      system_(model, scheme, tangent_for(model)),
+      system_(model, scheme, StepSystem::tangent_for(model)),
       update_(system_.assembler().unknowns()),
-      factor_reuse_(system_.tree() ? kTreeFactorCost : kMatrixFactorCost) {
+      factor_reuse_(system_.tree() ? FactorReuse::kTree : FactorReuse::kMatrix) {
   const SparseAssembler& matrix = system_.assembler();
   if (!system_.tree()) solver_.emplace(matrix.unknowns(), matrix.column_starts(), matrix.row_indices());
   update_norms_.reserve(settings.max_iterations + 1);
@@ -127,8 +120,9 @@ bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
     update_norms_.push_back(norm);
     if (norm > kDivergence * std::max(update_norms_.front(), 1e-3)) return fail(Reason::NoConvergence);
     const bool was_kept = !factorise;
-    factorise = factor_reuse_.renew(iteration, since_revision > 0 && norm > kStagnation, contraction) || !reuse;
-    // Kept factors that make updates grow so lead astray; full Newton begins anew from the guess.
+    factorise =
+        factor_reuse_.renew(iteration, was_kept, since_revision > 0 && norm > kStagnation, contraction) || !reuse;
+    // Kept factors that make updates grow so lead astray; full Newton begins anew.
     if (was_kept && since_revision > 0 && contraction > kAstray) return fail(Reason::NoConvergence);
     // A steep law (friction near sticking, the touch of a stop) makes full updates jump to and fro; statics has none.
     if (system_.step() != 0 && since_revision >= kPatience && contraction > kStalled) update_ *= 0.5;
@@ -187,6 +181,8 @@ bool Stepper::simple_step(State& state, double step, StepResult& result) {
                               {StepSystem::Guess::Repeated, false},
                               {StepSystem::Guess::Unchanged, false}};
   for (const Attempt& attempt : attempts) {
+    const bool is_the_same = !settings_.reuse_factorisation && state.history.order == 0;
+    if (attempt.guess == StepSystem::Guess::Repeated && is_the_same) continue;
     system_.begin(state, step, attempt.guess);
     if (!iterate(Updates::Limited, attempt.reuse, result)) continue;
     if (system_.largest_node_rotation() > kLargestStepRotation) {

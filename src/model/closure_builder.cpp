@@ -15,7 +15,7 @@ namespace {
 
 using Kind = ClosureConstraint::Kind;
 
-/// Scaled constraints are independent if a pivot is larger than this part of the largest one.
+/// Scaled constraints are independent if a pivot is larger than this part of the largest one of its group.
 constexpr double kIndependent = 1e-6;
 
 /// Makes constraints from vectors in the world, at the start.

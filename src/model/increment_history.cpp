@@ -9,7 +9,13 @@ namespace {
 constexpr double kLargestSum = 7.5;
 }  // namespace
 
+bool IncrementHistory::holds_for(std::size_t unknowns) const {
+  return count > 0 && std::all_of(increments.begin(), increments.begin() + count,
+                                  [&](const std::vector<double>& made) { return made.size() == unknowns; });
+}
+
 std::vector<double>& IncrementHistory::push(double step, std::size_t unknowns) {
+  if (!holds_for(unknowns)) clear();
   for (std::vector<double>& increment : increments) increment.resize(unknowns);
   std::rotate(increments.begin(), increments.end() - 1, increments.end());
   std::rotate(steps.begin(), steps.end() - 1, steps.end());
@@ -21,21 +27,19 @@ std::vector<double>& IncrementHistory::push(double step, std::size_t unknowns) {
 IncrementHistory::Weights IncrementHistory::weights(int order, int first, double step) const {
   Weights out{};
   if (first + order >= count) return out;
-  std::array<double, kLength> middles{};
-  double time = 0;
-  for (int i = first; i <= first + order; ++i) {
-    middles[i] = time - 0.5 * steps[i];
-    time -= steps[i];
-  }
+  // Times of the ends, and the begin of the oldest step; the increment to come is the polynomial's from 0 to `step`.
+  std::array<double, kLength + 1> times{};
+  for (int i = 0; i <= order; ++i) times[i + 1] = times[i] - steps[first + i];
   double sum = 0;
-  for (int i = first; i <= first + order; ++i) {
-    double value = step / steps[i];
-    for (int k = first; k <= first + order; ++k)
-      if (k != i) value *= (0.5 * step - middles[k]) / (middles[i] - middles[k]);
-    out[i] = value;
-    sum += std::abs(value);
+  for (int j = order + 1; j > 0; --j) {
+    double lagrange = 1;
+    for (int k = 0; k <= order + 1; ++k)
+      if (k != j) lagrange *= (step - times[k]) / (times[j] - times[k]);
+    // The place at times[j] is minus the sum of the increments since.
+    for (int i = 0; i < j; ++i) out[first + i] -= lagrange;
   }
-  return order == 0 || sum <= kLargestSum ? out : Weights{};
+  for (const double weight : out) sum += std::abs(weight);
+  return std::isfinite(sum) && (order == 0 || sum <= kLargestSum) ? out : Weights{};
 }
 
 }  // namespace flexarm

@@ -74,7 +74,8 @@ std::vector<TreeSolver::Part> TreeSolver::parts_of(const Model& model, const Deg
       }
     }
   }
-  return parts.size() == parts_in_all ? parts : std::vector<Part>();
+  const bool all_reached = std::all_of(reached.begin(), reached.end(), [](char is_reached) { return is_reached; });
+  return all_reached && parts.size() == parts_in_all ? parts : std::vector<Part>();
 }
 
 bool TreeSolver::suits(const Model& model, const DegreesOfFreedom& dof) {

@@ -12,7 +12,7 @@ int solve(FactorReuse& reuse, double rate, int iterations = 5) {
   bool factorise = reuse.begin(true);
   for (int i = 0; i < iterations; ++i) {
     made += factorise;
-    factorise = reuse.renew(i, i > 0, factorise ? rate * rate : rate);
+    factorise = reuse.renew(i, !factorise, i > 0, factorise ? rate * rate : rate);
   }
   return made;
 }

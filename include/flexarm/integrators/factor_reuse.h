@@ -14,6 +14,8 @@ class FactorReuse {
   ///
   /// New factors square the error, kept ones contract it by a rate 10^-L. In a typical solve an iteration more with new
   /// ones saves kept ones for about 7.5 digits, one less costs kept ones for 15 digits at the rate L.
+  /// Elimination along trees costs kTree times, factorisation of a matrix kMatrix times; measured (bench_kernels).
+  static constexpr double kTree = 2.2, kMatrix = 5;
   explicit FactorReuse(double cost) : slow_(std::pow(10.0, -7.5 / cost)), fast_(std::pow(10.0, -15.0 / cost)) {}
 
   void reset() { fresh_ = unjudged_ = 0; }
@@ -25,12 +27,13 @@ class FactorReuse {
     return planned_ > 0;
   }
 
-  /// After the update of an iteration (counted from 0), whose ratio to the one before is `contraction`: whether the
-  /// next iteration makes new factors. `compares`: there is one before, of the same equations, and the update is more
-  /// than round-off.
-  bool renew(int iteration, bool compares, double contraction) {
+  /// After the update of an iteration (counted from 0), by kept factors or new ones, whose ratio to the one before is
+  /// `contraction`: whether the next iteration makes new factors. `compares`: there is one before, of the same
+  /// equations, and the update is more than round-off.
+  bool renew(int iteration, bool was_kept, bool compares, double contraction) {
     const bool is_slow = compares && contraction > slow_;
-    if (compares && iteration == std::max(planned_, 1)) {  // the first that shows what kept factors are worth
+    // The first that shows what kept factors are worth.
+    if (compares && was_kept && iteration == std::max(planned_, 1)) {
       if (is_slow) fresh_ = std::min(planned_ + 1, kMost);
       if (contraction < fast_) fresh_ = std::max(planned_ - 1, 0);
       unjudged_ = 0;

@@ -36,7 +36,8 @@ class StepSystem {
  public:
   /// What becomes of the tangent: a matrix in assembler(), or fronts along the tree, for solve() alone.
   enum class Tangent { Matrix, Tree };
-  /// `Tangent::Tree` for models that suit a TreeSolver.
+  /// The fronts for models that suit a TreeSolver.
+  static Tangent tangent_for(const Model& model);
   StepSystem(const Model& model, const Scheme& scheme, Tangent tangent = Tangent::Matrix);
 
   enum class Guess {

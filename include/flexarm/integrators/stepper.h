@@ -67,7 +67,7 @@ class Stepper {
  private:
   enum class Updates { Full, Limited };
   /// Newton from the present trial configuration; leaves the system evaluated at the solution. With `reuse` it starts
-  /// with the factors of an earlier solve and makes new ones only where the iteration is slow.
+  /// with the factors of an earlier solve where these have shown to do, and makes new ones where the iteration is slow.
   bool iterate(Updates updates, bool reuse, StepResult& result);
   bool factorise_tangent();
   bool solve(Eigen::VectorXd& b);

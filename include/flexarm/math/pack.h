@@ -2,8 +2,8 @@
 /// Four numbers of type double that go through the same operations side by side: one SIMD register with AVX, two of
 /// SSE2. A scalar for the templates on one (Eigen's too): a kernel written once runs for one element or for four.
 ///
-/// Lanes never mix: what a lane gives does not depend on its place or on its neighbours. Branches become select(), or
-/// piecewise_lanes() where the far branch is rare.
+/// Lanes never mix: what a lane gives does not depend on its place or on its neighbours. Branches become
+/// sign_of(), or for_lanes_beyond() where the far branch is rare.
 
 #include <cmath>
 #include <type_traits>
