@@ -4,17 +4,12 @@
 #include <cstring>
 #include <utility>
 
+#include "flexarm/math/pack.h"
+#include "flexarm/math/simd.h"
+
 // Vectors are passed between functions that are always inlined only: that their passing differs between processors does
 // not matter.
 #pragma GCC diagnostic ignored "-Wpsabi"
-
-// The loops below are compiled twice; the dynamic linker takes the one that the processor can run.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define FLEXARM_VECTOR_CLONES __attribute__((target_clones("arch=x86-64-v3", "default")))
-#else
-#define FLEXARM_VECTOR_CLONES
-#endif
-#define FLEXARM_INLINE __attribute__((always_inline)) inline
 
 namespace flexarm {
 namespace {
@@ -28,15 +23,15 @@ using LaneMask = long long __attribute__((vector_size(32)));
 constexpr LaneMask kBehind[] = {{0, -1, -1, -1}, {0, 0, -1, -1}, {0, 0, 0, -1}, {0, 0, 0, 0}};
 constexpr LaneMask kBefore[] = {{0, 0, 0, 0}, {-1, 0, 0, 0}, {-1, -1, 0, 0}, {-1, -1, -1, 0}};
 
-FLEXARM_INLINE Lanes load(const double* from) {
+[[gnu::always_inline]] inline Lanes load(const double* from) {
   Lanes lanes;
   std::memcpy(&lanes, from, sizeof(lanes));
   return lanes;
 }
-FLEXARM_INLINE Lanes broadcast(double value) {
+[[gnu::always_inline]] inline Lanes broadcast(double value) {
   return Lanes{value, value, value, value};
 }
-FLEXARM_INLINE Lanes kept(const Lanes& lanes, const LaneMask& mask) {
+[[gnu::always_inline]] inline Lanes kept(const Lanes& lanes, const LaneMask& mask) {
   return reinterpret_cast<Lanes>(reinterpret_cast<LaneMask>(lanes) & mask);
 }
 
@@ -63,12 +58,14 @@ struct Rows {
   Lanes value[n][Sizes<Nodes>::row_lanes];
   double lower[n][n];
 
-  FLEXARM_INLINE double* row(int i) { return reinterpret_cast<double*>(value[i]); }
-  FLEXARM_INLINE double* right(int i) { return reinterpret_cast<double*>(value[i] + Sizes<Nodes>::pivot_lanes); }
+  [[gnu::always_inline]] inline double* row(int i) { return reinterpret_cast<double*>(value[i]); }
+  [[gnu::always_inline]] inline double* right(int i) {
+    return reinterpret_cast<double*>(value[i] + Sizes<Nodes>::pivot_lanes);
+  }
 };
 
 template <int Nodes>
-FLEXARM_INLINE void gather(const double* blocks, double* const* diagonals, Rows<Nodes>& rows) {
+[[gnu::always_inline]] inline void gather(const double* blocks, double* const* diagonals, Rows<Nodes>& rows) {
   std::memset(rows.value, 0, sizeof(rows.value));
   for (int i = 1; i < Nodes; ++i)
     for (int j = 0; j < Nodes; ++j) {
@@ -82,7 +79,7 @@ FLEXARM_INLINE void gather(const double* blocks, double* const* diagonals, Rows<
 
 /// LU with partial pivoting of A11, carried out on A10 as well.
 template <int Nodes>
-FLEXARM_INLINE bool factorise(Rows<Nodes>& rows, double* reciprocal, unsigned char* pivots) {
+[[gnu::always_inline]] inline bool factorise(Rows<Nodes>& rows, double* reciprocal, unsigned char* pivots) {
   constexpr int n = Sizes<Nodes>::n, lanes = Sizes<Nodes>::row_lanes;
   for (int i = 0; i < n; ++i) pivots[i] = static_cast<unsigned char>(i);
 #pragma GCC unroll 24
@@ -110,7 +107,7 @@ FLEXARM_INLINE bool factorise(Rows<Nodes>& rows, double* reciprocal, unsigned ch
 }
 
 template <int Nodes>
-FLEXARM_INLINE bool eliminate_front(double* blocks, double* const* diagonals, unsigned char* pivots) {
+[[gnu::always_inline]] inline bool eliminate_front(double* blocks, double* const* diagonals, unsigned char* pivots) {
   using S = Sizes<Nodes>;
   constexpr int n = S::n, right = S::pivot_lanes;
   Rows<Nodes> rows;
@@ -148,7 +145,7 @@ FLEXARM_INLINE bool eliminate_front(double* blocks, double* const* diagonals, un
 }
 
 template <int Nodes>
-FLEXARM_INLINE void forward_front(const double* factors, const unsigned char* pivots, double* const* r) {
+[[gnu::always_inline]] inline void forward_front(const double* factors, const unsigned char* pivots, double* const* r) {
   constexpr int n = Sizes<Nodes>::n;
   constexpr int lanes = Sizes<Nodes>::pivot_lanes;
   Lanes values[lanes] = {};
@@ -181,7 +178,7 @@ FLEXARM_INLINE void forward_front(const double* factors, const unsigned char* pi
 }
 
 template <int Nodes>
-FLEXARM_INLINE void backward_front(const double* factors, double* const* r) {
+[[gnu::always_inline]] inline void backward_front(const double* factors, double* const* r) {
   constexpr int n = Sizes<Nodes>::n;
   double x[n];
   for (int i = 0; i < n; ++i) x[i] = r[1 + i / 6][i % 6];
@@ -192,25 +189,26 @@ FLEXARM_INLINE void backward_front(const double* factors, double* const* r) {
 
 }  // namespace
 
-#define FLEXARM_ELEMENT_FRONT(NODES)                                                                        \
-  template <>                                                                                               \
-  FLEXARM_VECTOR_CLONES bool ElementFront<NODES>::eliminate(double* blocks, double* const* diagonals,       \
-                                                            unsigned char* rows) {                          \
-    return eliminate_front<NODES>(blocks, diagonals, rows);                                                 \
-  }                                                                                                         \
-  template <>                                                                                               \
-  FLEXARM_VECTOR_CLONES void ElementFront<NODES>::forward(const double* factors, const unsigned char* rows, \
-                                                          double* const* r) {                               \
-    forward_front<NODES>(factors, rows, r);                                                                 \
-  }                                                                                                         \
-  template <>                                                                                               \
-  FLEXARM_VECTOR_CLONES void ElementFront<NODES>::backward(const double* factors, double* const* r) {       \
-    backward_front<NODES>(factors, r);                                                                      \
-  }
-FLEXARM_ELEMENT_FRONT(2)
-FLEXARM_ELEMENT_FRONT(3)
-FLEXARM_ELEMENT_FRONT(4)
-FLEXARM_ELEMENT_FRONT(5)
-#undef FLEXARM_ELEMENT_FRONT
+template <int Nodes>
+bool ElementFront<Nodes>::eliminate(double* blocks, double* const* diagonals, unsigned char* rows) {
+  bool done = false;
+  simd::run([&] { done = eliminate_front<Nodes>(blocks, diagonals, rows); });
+  return done;
+}
+
+template <int Nodes>
+void ElementFront<Nodes>::forward(const double* factors, const unsigned char* rows, double* const* r) {
+  simd::run([&] { forward_front<Nodes>(factors, rows, r); });
+}
+
+template <int Nodes>
+void ElementFront<Nodes>::backward(const double* factors, double* const* r) {
+  simd::run([&] { backward_front<Nodes>(factors, r); });
+}
+
+template struct ElementFront<2>;
+template struct ElementFront<3>;
+template struct ElementFront<4>;
+template struct ElementFront<5>;
 
 }  // namespace flexarm

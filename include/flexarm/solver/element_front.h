@@ -6,7 +6,7 @@ namespace flexarm {
 /// Dense block elimination of the nodes 1 ... Nodes - 1 of an element with 6 unknowns per node. With A11 the rows and
 /// columns of these nodes, A00 those of node 0 and A01, A10 the couplings:
 ///   X = A11^-1 A10,  S = A00 - A01 X.
-/// A11 is factorised with partial pivoting. All functions use the widest vector instructions of the processor at hand.
+/// A11 is factorised with partial pivoting. The loops run through simd::run().
 template <int Nodes>
 struct ElementFront {
   static constexpr int kEliminated = 6 * (Nodes - 1);
