@@ -80,13 +80,30 @@ TEST_P(TreeTangent, SolvesWhereFrictionHolds) {
 INSTANTIATE_TEST_SUITE_P(Schemes, TreeTangent, ::testing::ValuesIn(scheme_variants(0.2)),
                          [](const auto& info) { return info.param.name; });
 
+scene::SceneDescription example(const std::string& name) {
+  return *scene::read_scene_file(FLEXARM_SOURCE_DIR "/config/examples/" + name + ".urdf").scene;
+}
+
+// Without inertia, which helps dynamics, and with forces that stiffen.
+TEST(TreeSolver, SolvesWithTheTangentOfStatics) {
+  for (const char* name : {"cantilever", "curved_and_twisted"}) {
+    const Model model = build_model(example(name));
+    StepSystem matrix(model, schemes().front()), tree(model, schemes().front(), StepSystem::Tangent::Tree);
+    const State state = initial_state(model);
+    RandomSource random(3);
+    const Eigen::VectorXd update = random_update(matrix.assembler().unknowns(), random, 0.05);
+    for (StepSystem* system : {&matrix, &tree}) {
+      system->begin_static(state, 0.7);
+      system->update(update);
+    }
+    expect_equal_solutions(matrix, tree);
+  }
+}
+
 TEST(TreeSolver, SuitsTreesOnly) {
   const auto suits = [](const scene::SceneDescription& scene) {
     const Model model = build_model(scene);
     return TreeSolver::suits(model, DegreesOfFreedom(model));
-  };
-  const auto example = [](const std::string& name) {
-    return *scene::read_scene_file(FLEXARM_SOURCE_DIR "/config/examples/" + name + ".urdf").scene;
   };
   EXPECT_TRUE(suits(tree_scene(false)));
   EXPECT_TRUE(suits(example("cantilever")));
