@@ -29,10 +29,27 @@ void for_each_unknown(const Model& model, const DegreesOfFreedom& dof, const Vis
 
 double StepSystem::scaled_norm(const Eigen::VectorXd& increment) const {
   double norm = 0;
+  const auto count = [&](double value) {
+    norm = std::max(norm, std::isfinite(value) ? std::abs(value) : std::numeric_limits<double>::infinity());
+  };
   for_each_unknown(model_, dof_, [&](int equation, bool is_rotation) {
-    const double value = std::abs(increment[equation]) / (is_rotation ? 1.0 : model_.length_scale);
-    norm = std::max(norm, std::isfinite(value) ? value : std::numeric_limits<double>::infinity());
+    count(increment[equation] / (is_rotation ? 1.0 : model_.length_scale));
   });
+  if (model_.closures.empty() || static_) return norm;
+  // Where motions and loops leave nothing free, the multipliers are all that Newton's method has to find. A force
+  // counts as the way by which it moves the mechanism in a step.
+  double mass = 0;
+  for (const NodalInertia& inertia : model_.inertias) mass += inertia.total_mass;
+  if (mass == 0) return norm;
+  const double way = step_ * step_ / (mass * model_.length_scale);
+  for (std::size_t k = 0; k < model_.closures.size(); ++k) {
+    const int first = dof_.first[dof_.variable_of_closure(static_cast<int>(k))];
+    const std::vector<ClosureConstraint>& constraints = model_.closures[k].constraints;
+    for (std::size_t i = 0; i < constraints.size(); ++i) {
+      const double arm = constraints[i].kind == ClosureConstraint::Kind::Gap ? 1.0 : model_.length_scale;
+      count(way / arm * increment[dof_.equation[first + i]]);
+    }
+  }
   return norm;
 }
 
