@@ -23,14 +23,15 @@ constexpr Quantity kQuantities[] = {{"read [ms]", &ScalingPoint::read_seconds, 1
                                     {"step [ms]", &ScalingPoint::step_seconds, 1e3},
                                     {"memory [MB]", &ScalingPoint::bytes, 1e-6}};
 
-double slope_of(const ScalingSeries& series, double ScalingPoint::*value) {
+/// Over the sizes from `part` of the largest one on.
+double slope_of(const ScalingSeries& series, double ScalingPoint::*value, double part) {
   std::vector<double> sizes, values;
   for (const ScalingPoint& point : series.points) {
     if (!point.completed) continue;
     sizes.push_back(point.size);
     values.push_back(point.*value);
   }
-  return log_slope(sizes, values, kUpperPart);
+  return log_slope(sizes, values, part);
 }
 
 std::string slope_cell(double slope) {
@@ -42,7 +43,9 @@ std::string slope_table(const ScalingReport& report) {
   std::string text = "| scenes | up to | read | build | step | memory |\n|---|---|---|---|---|---|\n";
   for (const ScalingSeries& series : report.series) {
     text += fmt::format("| {} | {} {} |", series.family.name, series.points.back().size, series.family.unit);
-    for (const Quantity& quantity : kQuantities) text += " " + slope_cell(slope_of(series, quantity.value)) + " |";
+    for (const Quantity& quantity : kQuantities)
+      text += fmt::format(" {}, {} |", slope_cell(slope_of(series, quantity.value, 0)),
+                          slope_cell(slope_of(series, quantity.value, kUpperPart)));
     text += "\n";
   }
   return text;
@@ -76,8 +79,10 @@ std::string to_markdown(const ScalingReport& report, const std::string& picture)
       "- *read*: from URDF text to a scene description; *build*: from there to a simulation, both the shortest of "
       "three tries; *step*: the fastest of five batches.\n"
       "- *memory*: what malloc has given to the simulation after these steps.\n"
-      "- *slopes*: of the logarithms, by least squares over the two upper decades of sizes; 1 is linear. Bold: above "
-      "1.05. A table of two points only, or of times below a millisecond, says little.\n"
+      "- *slopes*: of the logarithms, by least squares: over all sizes, where the fixed cost of small ones flattens "
+      "them, and "
+      "over the two upper decades; 1 is linear. Bold: above 1.05. A table of two points only, or of times below a "
+      "millisecond, says little.\n"
       "- Where memory outgrows the processor's caches, and from where on the system hands out fresh pages for each "
       "simulation, the same work takes longer, which bends the curves upwards in the middle.\n\n" +
       slope_table(report);
