@@ -77,7 +77,9 @@ TEST(Scaling, ReportSaysWhatFailed) {
     report.series[0].points.push_back(point);
   }
   const std::string text = to_markdown(report, "");
-  EXPECT_NE(text.find("| chain | 100 links | 1.00, 1.00 | 1.00, 1.00 | 1.00, 1.00 | **2.00**, **2.00** |"), std::string::npos) << text;
+  EXPECT_NE(text.find("| chain | 100 links | 1.00, 1.00 | 1.00, 1.00 | 1.00, 1.00 | **2.00**, **2.00** |"),
+            std::string::npos)
+      << text;
   EXPECT_NE(text.find("| 100 | 100 | – | – | fails |"), std::string::npos) << text;
   EXPECT_EQ(text.find("nan"), std::string::npos);
   const std::string data = scaling_to_csv(report);
