@@ -7,12 +7,15 @@
 
 #include <array>
 #include <chrono>
+#include <vector>
 
 #include "bench/scenes.h"
 #include "flexarm/integrators/step_system.h"
 #include "flexarm/joints/joint_map.h"
+#include "flexarm/math/lanes.h"
 #include "flexarm/math/local_rotation.h"
 #include "flexarm/math/quadrature.h"
+#include "flexarm/math/simd.h"
 #include "flexarm/math/so3.h"
 #include "flexarm/simulation/simulation.h"
 #include "flexarm/solver/linear_solver.h"
@@ -78,6 +81,25 @@ void gather(benchmark::State& state, int order) {
     benchmark::ClobberMemory();
   }
   count_elements(state, kElements);
+}
+
+/// Tangents of four elements from packs to the elements' blocks.
+template <int Nodes>
+void scatter(benchmark::State& state) {
+  constexpr int kBlocks = Nodes * Nodes;
+  std::vector<Pack> tangent(36 * kBlocks, Pack(1.0));
+  std::vector<double> blocks(Pack::kLanes * tangent.size());
+  std::array<double*, Pack::kLanes> targets;
+  for (auto _ : state) {
+    simd::run([&] {
+      for (int b = 0; b < kBlocks; ++b) {
+        for (int lane = 0; lane < Pack::kLanes; ++lane) targets[lane] = blocks.data() + 36 * (kBlocks * lane + b);
+        add_lanes<36>(tangent.data() + 36 * b, Pack::kLanes, targets.data());
+      }
+    });
+    benchmark::ClobberMemory();
+  }
+  count_elements(state, Pack::kLanes);
 }
 
 void factorise_tree(benchmark::State& state, int order) {
@@ -200,6 +222,10 @@ const bool registered = [] {
   add("interpolate_rotations/order:2", interpolate_rotations<3>);
   add("interpolate_rotations/order:3", interpolate_rotations<4>);
   add("interpolate_rotations/order:4", interpolate_rotations<5>);
+  add("scatter/order:1", scatter<2>);
+  add("scatter/order:2", scatter<3>);
+  add("scatter/order:3", scatter<4>);
+  add("scatter/order:4", scatter<5>);
   add("fold_maps/revolute/residual", fold_maps, false);
   add("fold_maps/revolute/tangent", fold_maps, true);
   for (int order = 1; order <= 4; ++order) {

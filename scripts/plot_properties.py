@@ -7,13 +7,7 @@ plot_properties.py DATA.csv PICTURE
 import csv
 import sys
 
-try:
-    import matplotlib
-except ImportError:
-    sys.exit("plot_properties.py: python3-matplotlib is not installed")
-
-matplotlib.use("Agg")
-from matplotlib import pyplot  # noqa: E402
+from headless_pyplot import pyplot
 
 
 def read(path):

@@ -7,13 +7,7 @@ plot_scaling.py DATA.csv PICTURE
 import csv
 import sys
 
-try:
-    import matplotlib
-except ImportError:
-    sys.exit("plot_scaling.py: python3-matplotlib is not installed")
-
-matplotlib.use("Agg")
-from matplotlib import pyplot  # noqa: E402
+from headless_pyplot import pyplot
 
 PANELS = (
     ("step", "time per step [s]"),

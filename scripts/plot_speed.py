@@ -7,13 +7,7 @@ plot_speed.py DATA.csv PICTURE
 import csv
 import sys
 
-try:
-    import matplotlib
-except ImportError:
-    sys.exit("plot_speed.py: python3-matplotlib is not installed")
-
-matplotlib.use("Agg")
-from matplotlib import pyplot  # noqa: E402
+from headless_pyplot import pyplot
 
 # Errors of motions that have nothing to do with each other any more; their runs say nothing.
 LARGEST_ERROR = 1.0

@@ -7,13 +7,7 @@ plot_thesis.py DATA.csv PICTURE
 import csv
 import sys
 
-try:
-    import matplotlib
-except ImportError:
-    sys.exit("plot_thesis.py: python3-matplotlib is not installed")
-
-matplotlib.use("Agg")
-from matplotlib import pyplot  # noqa: E402
+from headless_pyplot import pyplot
 
 # A run that has blown up must not spoil the scale of the others.
 FAR = 3.0

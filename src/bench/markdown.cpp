@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/markdown_table.h"
 #include "bench/report.h"
 
 namespace flexarm::bench {
@@ -79,16 +80,6 @@ std::vector<std::string> property_cells(const Properties& p, double newmark_seco
           plain_cell(p.at_high_frequency, fmt::format("{:.2f}", p.at_high_frequency.value.spectral_radius)),
           plain_cell(p.cost, fmt::format("{:.2g}", p.cost.value.seconds / newmark_seconds)),
           plain_cell(p.cost, fmt::format("{:.1f}", p.cost.value.iterations))};
-}
-
-std::string row(const std::vector<std::string>& cells) {
-  return fmt::format("| {} |\n", fmt::join(cells, " | "));
-}
-
-std::string head(const std::vector<std::string>& columns) {
-  std::string rule = "|---|";
-  for (std::size_t i = 1; i < columns.size(); ++i) rule += "--:|";
-  return row(columns) + rule + "\n";
 }
 
 std::string property_table(const Report& report) {

@@ -3,22 +3,13 @@
 
 #include <fmt/format.h>
 
+#include "bench/markdown_table.h"
 #include "bench/speed.h"
 
 namespace flexarm::bench {
 namespace {
 
 const double kDefaultTolerance = scene::IntegratorDescription().tolerance;
-
-std::string row(const std::vector<std::string>& cells) {
-  return fmt::format("| {} |\n", fmt::join(cells, " | "));
-}
-
-std::string head(const std::vector<std::string>& columns) {
-  std::string rule = "|---|";
-  for (std::size_t i = 1; i < columns.size(); ++i) rule += "--:|";
-  return row(columns) + rule + "\n";
-}
 
 std::string milliseconds(double seconds) {
   return fmt::format("{:.3g}", 1e3 * seconds);

@@ -70,36 +70,58 @@ bool draw(const std::string& name, const fs::path& data, const fs::path& picture
   return std::system(command.c_str()) == 0;
 }
 
-int measure_properties(const Arguments& arguments) {
-  const fs::path folder = arguments.output, report_file = folder / "properties.md",
-                 data = folder / "properties_dissipation.csv", picture = folder / "properties_dissipation.png";
-  fs::create_directories(folder);
-  // Minutes later would be a bad time to find out that this fails; what is there stays until then.
-  write_file(report_file, "", std::ios::app);
-  bench::Report report;
-  {
+/// The file of a report, in a folder that is made. Minutes later would be a bad time to find out that it cannot be
+/// written; what is there stays until then.
+fs::path report_file(const Arguments& arguments, const std::string& name) {
+  fs::create_directories(arguments.output);
+  const fs::path file = fs::path(arguments.output) / (name + ".md");
+  write_file(file, "", std::ios::app);
+  return file;
+}
+
+/// The folder of scenes that was named, or flexarm's own.
+fs::path scene_folder(const Arguments& arguments, const std::string& own) {
+  const std::optional<fs::path> scenes =
+      arguments.scenes.empty() ? own_scenes(own) : std::optional<fs::path>(arguments.scenes);
+  if (!scenes) throw std::runtime_error("flexarm's scenes are not installed; name their folder by --scenes");
+  return *scenes;
+}
+
+/// Writes report NAME.md, its data, and the picture that plot_NAME.py draws of them. measure(progress) calls
+/// progress(part done, what is measured).
+template <class Measure, class ToData>
+int write_report(const Arguments& arguments, const std::string& name, const std::string& data_name,
+                 const Measure& measure, const ToData& to_data) {
+  const fs::path file = report_file(arguments, name), folder = arguments.output, data = folder / (data_name + ".csv"),
+                 picture = folder / (data_name + ".png");
+  const auto report = [&] {
     ProgressBar bar(0, 1, true);
-    report = bench::measure_properties(arguments.quick, [&](double part) { bar.show(part, "properties"); });
-  }
-  write_file(data, bench::decay_to_csv(report));
-  const bool is_drawn = draw("plot_properties.py", data, picture);
+    return measure([&](double part, const std::string& what) { bar.show(part, what); });
+  }();
+  write_file(data, to_data(report));
+  const bool is_drawn = draw("plot_" + name + ".py", data, picture);
   if (!is_drawn) fmt::print(stderr, "flexarm: no picture: it needs python3-matplotlib\n");
-  write_file(report_file, bench::to_markdown(report, is_drawn ? picture.filename().string() : ""));
-  fmt::print("{}\n", report_file.string());
+  write_file(file, bench::to_markdown(report, is_drawn ? picture.filename().string() : ""));
+  fmt::print("{}\n", file.string());
   return kDone;
 }
 
+int measure_properties(const Arguments& arguments) {
+  return write_report(
+      arguments, "properties", "properties_dissipation",
+      [&](const auto& progress) {
+        return bench::measure_properties(arguments.quick, [&](double part) { progress(part, "properties"); });
+      },
+      bench::decay_to_csv);
+}
+
 int measure_thesis(const Arguments& arguments) {
-  const fs::path folder = arguments.output, report_file = folder / "thesis.md";
-  const std::optional<fs::path> scenes =
-      arguments.scenes.empty() ? own_scenes("thesis") : std::optional<fs::path>(arguments.scenes);
-  if (!scenes) throw std::runtime_error("the thesis's scenes are not installed; name their folder by --scenes");
-  fs::create_directories(folder);
-  write_file(report_file, "", std::ios::app);
+  const fs::path scenes = scene_folder(arguments, "thesis"), file = report_file(arguments, "thesis"),
+                 folder = arguments.output;
   bench::ThesisReport report;
   {
     ProgressBar bar(0, 1, true);
-    report = bench::measure_thesis(scenes->string(), arguments.quick, [&](double part) { bar.show(part, "thesis"); });
+    report = bench::measure_thesis(scenes.string(), arguments.quick, [&](double part) { bar.show(part, "thesis"); });
   }
   std::map<std::string, std::string> pictures;
   for (std::size_t e = 0; e < report.examples.size(); ++e) {
@@ -109,27 +131,18 @@ int measure_thesis(const Arguments& arguments) {
     if (draw("plot_thesis.py", data, picture)) pictures[report.examples[e].number] = picture.filename().string();
   }
   if (pictures.empty()) fmt::print(stderr, "flexarm: no pictures: they need python3-matplotlib\n");
-  write_file(report_file, bench::to_markdown(report, [&](const std::string& number) { return pictures[number]; }));
-  fmt::print("{}\n", report_file.string());
+  write_file(file, bench::to_markdown(report, [&](const std::string& number) { return pictures[number]; }));
+  fmt::print("{}\n", file.string());
   return kDone;
 }
 
 int measure_scaling(const Arguments& arguments) {
-  const fs::path folder = arguments.output, report_file = folder / "scaling.md", data = folder / "scaling.csv",
-                 picture = folder / "scaling.png";
-  fs::create_directories(folder);
-  write_file(report_file, "", std::ios::app);
-  bench::ScalingReport report;
-  {
-    ProgressBar bar(0, 1, true);
-    report = bench::measure_scaling(arguments.quick, [&](double part) { bar.show(part, "scaling"); });
-  }
-  write_file(data, bench::scaling_to_csv(report));
-  const bool is_drawn = draw("plot_scaling.py", data, picture);
-  if (!is_drawn) fmt::print(stderr, "flexarm: no picture: it needs python3-matplotlib\n");
-  write_file(report_file, bench::to_markdown(report, is_drawn ? picture.filename().string() : ""));
-  fmt::print("{}\n", report_file.string());
-  return kDone;
+  return write_report(
+      arguments, "scaling", "scaling",
+      [&](const auto& progress) {
+        return bench::measure_scaling(arguments.quick, [&](double part) { progress(part, "scaling"); });
+      },
+      bench::scaling_to_csv);
 }
 
 std::vector<bench::SpeedProblem> named_problems(const std::vector<std::string>& names) {
@@ -142,25 +155,13 @@ std::vector<bench::SpeedProblem> named_problems(const std::vector<std::string>& 
 }
 
 int measure_speed(const Arguments& arguments) {
-  const fs::path folder = arguments.output, report_file = folder / "speed.md", data = folder / "speed.csv",
-                 picture = folder / "speed.png";
-  const std::optional<fs::path> scenes =
-      arguments.scenes.empty() ? own_scenes() : std::optional<fs::path>(arguments.scenes);
-  if (!scenes) throw std::runtime_error("flexarm's scenes are not installed; name their folder by --scenes");
-  fs::create_directories(folder);
-  write_file(report_file, "", std::ios::app);
-  bench::SpeedReport report;
-  {
-    ProgressBar bar(0, 1, true);
-    report = bench::measure_speed(scenes->string(), named_problems(arguments.problems), arguments.quick,
-                                  [&](double part, const std::string& problem) { bar.show(part, problem); });
-  }
-  write_file(data, bench::runs_to_csv(report));
-  const bool is_drawn = draw("plot_speed.py", data, picture);
-  if (!is_drawn) fmt::print(stderr, "flexarm: no picture: it needs python3-matplotlib\n");
-  write_file(report_file, bench::to_markdown(report, is_drawn ? picture.filename().string() : ""));
-  fmt::print("{}\n", report_file.string());
-  return kDone;
+  const fs::path scenes = scene_folder(arguments, "");
+  return write_report(
+      arguments, "speed", "speed",
+      [&](const auto& progress) {
+        return bench::measure_speed(scenes.string(), named_problems(arguments.problems), arguments.quick, progress);
+      },
+      bench::runs_to_csv);
 }
 
 std::vector<std::string> problem_names() {

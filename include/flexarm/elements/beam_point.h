@@ -12,9 +12,6 @@
 
 namespace flexarm {
 
-template <typename S>
-using Vector6T = Eigen::Matrix<S, 6, 1>;
-
 /// Kinematics of a stiffness point at one instant.
 template <typename S>
 struct PointKinematicsT {

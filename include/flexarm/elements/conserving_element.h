@@ -11,11 +11,6 @@
 namespace flexarm {
 
 template <typename S>
-using Vector6T = Eigen::Matrix<S, 6, 1>;
-template <typename S>
-using Matrix6T = Eigen::Matrix<S, 6, 6>;
-
-template <typename S>
 inline S dot6(const Vector6T<S>& a, const Vector6T<S>& b) {
   return (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) + (a[3] * b[3] + a[4] * b[4] + a[5] * b[5]);
 }
@@ -82,12 +77,6 @@ struct BeamNodes {
   std::array<QuaternionT<S>, Nodes> orientation;  ///< at the end
   std::array<Vector3T<S>, Nodes> increment;       ///< tangent-scaled, Lambda_{n+1} = cay(w) Lambda_n
   std::array<Vector3T<S>, Nodes> velocity;        ///< at the begin [m/s]
-};
-
-/// As StrainMemory.
-template <typename S>
-struct StrainMemoryT {
-  Vector6T<S> average, rate;
 };
 
 /// Block (i, j): derivative of node i's {f, phi} with respect to node j's {dr, spin}.

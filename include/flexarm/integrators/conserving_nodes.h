@@ -13,7 +13,7 @@ namespace flexarm {
 
 class ConservingNodes {
  public:
-  /// Empty unless the rule is one of the family.
+  /// Empty unless the rule is one of the family, all of which turn bodies by tangent-scaled increments.
   ConservingNodes(const Model& model, const TimeRule& rule);
 
   /// Adds the rates of momentum.

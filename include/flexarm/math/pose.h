@@ -7,8 +7,12 @@ namespace flexarm {
 
 using Vector3 = Eigen::Vector3d;
 using Matrix3 = Eigen::Matrix3d;
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
+template <typename S>
+using Vector6T = Eigen::Matrix<S, 6, 1>;
+template <typename S>
+using Matrix6T = Eigen::Matrix<S, 6, 6>;
+using Vector6 = Vector6T<double>;
+using Matrix6 = Matrix6T<double>;
 using Quaternion = Eigen::Quaterniond;
 
 /// Placement of a frame B in a frame A: x_A = position + orientation * x_B. [m], unit quaternion.

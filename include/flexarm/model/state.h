@@ -38,10 +38,12 @@ struct MassPointState {
 };
 
 /// What numerical dissipation remembers at a stiffness point (NumericalDissipation).
-struct StrainMemory {
-  Vector6 average = Vector6::Zero();  ///< of past strain increments [-, 1/m]
-  Vector6 rate = Vector6::Zero();     ///< of strain [1/s, 1/(m s)]
+template <typename S>
+struct StrainMemoryT {
+  Vector6T<S> average = Vector6T<S>::Zero();  ///< of past strain increments [-, 1/m]
+  Vector6T<S> rate = Vector6T<S>::Zero();     ///< of strain [1/s, 1/(m s)]
 };
+using StrainMemory = StrainMemoryT<double>;
 
 /// Rotation and curvature of a point of a beam; schemes whose interpolation depends on the past.
 using PointRotation = InterpolatedRotation<double>;

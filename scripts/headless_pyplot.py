@@ -1,0 +1,12 @@
+"""matplotlib's pyplot for scripts that draw into files: no display, and a message where it is not installed."""
+
+import os
+import sys
+
+try:
+    import matplotlib
+except ImportError:
+    sys.exit(f"{os.path.basename(sys.argv[0])}: python3-matplotlib is not installed")
+
+matplotlib.use("Agg")
+from matplotlib import pyplot  # noqa: E402, F401
