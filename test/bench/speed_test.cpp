@@ -8,11 +8,12 @@
 
 #include "bench/effort_schedule.h"
 #include "flexarm/scene/urdf_reader.h"
+#include "support/source_path.h"
 
 namespace flexarm::bench {
 namespace {
 
-const std::string kConfig = std::string(FLEXARM_SOURCE_DIR) + "/config";
+const std::string kConfig = test::source_path("config");
 
 SpeedProblem problem_named(const std::string& name) {
   for (const SpeedProblem& problem : speed_problems())

@@ -1,5 +1,6 @@
 // The thesis's examples by flexarm's default contact, against what the text states of them.
 #include "bench/thesis.h"
+#include "support/source_path.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +9,7 @@
 namespace flexarm::bench {
 namespace {
 
-const std::string kScenes = std::string(FLEXARM_SOURCE_DIR) + "/config/thesis";
+const std::string kScenes = test::source_path("config/thesis");
 
 ThesisOutcome outcome_of(const std::string& number, const std::string& label, double step) {
   for (const ThesisExample& example : thesis_examples())

@@ -73,7 +73,7 @@ TEST(Check, DescribesTheModel) {
 }
 
 TEST(Check, TakesEveryExample) {
-  for (const auto& entry : std::filesystem::directory_iterator(FLEXARM_SOURCE_DIR "/config/examples"))
+  for (const auto& entry : std::filesystem::directory_iterator(test::source_path("config/examples")))
     EXPECT_EQ(shell("flexarm check " + entry.path().string()).status, 0) << entry.path();
 }
 
@@ -153,7 +153,7 @@ TEST(Simulate, FailureKeepsAndNamesTheLastGoodState) {
 
 TEST(Simulate, InterruptionLeavesACompleteTable) {
   const std::string csv = temporary("out.csv");
-  const Outcome outcome = shell("'" FLEXARM_PROGRAM "' simulate " + example("rigid_double_pendulum") +
+  const Outcome outcome = shell("'" + program() + "' simulate " + example("rigid_double_pendulum") +
                                 " --until 1e9 --every 1000 --output " + csv + " & sleep 1; kill -INT $!; wait $!");
   EXPECT_EQ(outcome.status, 0);
   expect_contains(outcome.errors, "interrupted at t = ");

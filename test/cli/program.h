@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "support/source_path.h"
+
 namespace flexarm::cli {
 
 struct Outcome {
@@ -31,14 +33,17 @@ inline std::string temporary(const std::string& name) {
 }
 
 inline std::string example(const std::string& name) {
-  return FLEXARM_SOURCE_DIR "/config/examples/" + name + ".urdf";
+  return test::source_path("config/examples/" + name + ".urdf");
 }
+
+/// The path of the program.
+std::string program();
 
 /// Runs a shell command in which "flexarm" stands for the program.
 inline Outcome shell(const std::string& command) {
   const std::string output = temporary("stdout"), errors = temporary("stderr");
   const std::string script =
-      "flexarm() { '" FLEXARM_PROGRAM "' \"$@\"; }\n{ " + command + "\n} > '" + output + "' 2> '" + errors + "'";
+      "flexarm() { '" + program() + "' \"$@\"; }\n{ " + command + "\n} > '" + output + "' 2> '" + errors + "'";
   const int status = std::system(script.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(output), read_file(errors)};
 }

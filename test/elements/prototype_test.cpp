@@ -13,6 +13,7 @@
 #include "flexarm/elements/nodal_inertia.h"
 #include "flexarm/integrators/scheme.h"
 #include "flexarm/model/beam_mesh.h"
+#include "support/source_path.h"
 
 namespace flexarm {
 namespace {
@@ -23,7 +24,7 @@ using namespace test;
 class PrototypeStep {
  public:
   explicit PrototypeStep(int nodes) {
-    std::ifstream file(FLEXARM_SOURCE_DIR "/test/elements/prototype_steps.csv");
+    std::ifstream file(source_path("test/elements/prototype_steps.csv"));
     for (std::string line; std::getline(file, line);) {
       if (line.empty() || line.front() == '#') continue;
       std::istringstream cells(line);

@@ -4,6 +4,7 @@
 #include "flexarm/integrators/stepper.h"
 #include "flexarm/scene/urdf_reader.h"
 #include "integrators/scheme_step.h"
+#include "support/source_path.h"
 
 namespace flexarm {
 namespace {
@@ -81,7 +82,7 @@ INSTANTIATE_TEST_SUITE_P(Schemes, TreeTangent, ::testing::ValuesIn(scheme_varian
                          [](const auto& info) { return info.param.name; });
 
 scene::SceneDescription example(const std::string& name) {
-  return *scene::read_scene_file(FLEXARM_SOURCE_DIR "/config/examples/" + name + ".urdf").scene;
+  return *scene::read_scene_file(source_path("config/examples/" + name + ".urdf")).scene;
 }
 
 // Without inertia, which helps dynamics, and with forces that stiffen.

@@ -4,14 +4,15 @@
 #include <sstream>
 
 #include "scene/scene_text.h"
+#include "support/source_path.h"
 
 namespace flexarm::scene {
 namespace {
 
 std::vector<std::string> example_scenes() {
   std::vector<std::string> paths;
-  for (const char* folder : {FLEXARM_SOURCE_DIR "/config/examples", FLEXARM_SOURCE_DIR "/config/speed"})
-    for (const auto& entry : std::filesystem::directory_iterator(folder))
+  for (const char* folder : {"config/examples", "config/speed"})
+    for (const auto& entry : std::filesystem::directory_iterator(test::source_path(folder)))
       if (entry.path().extension() == ".urdf") paths.push_back(entry.path());
   return paths;
 }
@@ -37,10 +38,10 @@ TEST(ExampleScenes, AreValidUrdfForOtherTools) {
 TEST(ExampleScenes, TheGuideShowsTheCantilever) {
   const auto text = [](const std::string& path) {
     std::stringstream stream;
-    stream << std::ifstream(std::string(FLEXARM_SOURCE_DIR) + path).rdbuf();
+    stream << std::ifstream(test::source_path(path)).rdbuf();
     return stream.str();
   };
-  EXPECT_NE(text("/docs/scene_format.md").find(text("/config/examples/cantilever.urdf")), std::string::npos);
+  EXPECT_NE(text("docs/scene_format.md").find(text("config/examples/cantilever.urdf")), std::string::npos);
 }
 
 }  // namespace flexarm::scene

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "scene/scene_text.h"
+#include "support/source_path.h"
 
 namespace flexarm::scene {
 namespace {
@@ -168,7 +169,7 @@ void mutate(std::string& text, Random& random) {
 
 std::vector<std::string> good_scenes() {
   std::vector<std::string> scenes = {kGoodScene};
-  for (const auto& entry : std::filesystem::directory_iterator(FLEXARM_SOURCE_DIR "/config/examples")) {
+  for (const auto& entry : std::filesystem::directory_iterator(test::source_path("config/examples"))) {
     std::stringstream text;
     text << std::ifstream(entry.path()).rdbuf();
     scenes.push_back(text.str());

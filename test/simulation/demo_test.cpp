@@ -11,6 +11,7 @@
 
 #include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/simulation.h"
+#include "support/source_path.h"
 
 namespace flexarm::test {
 namespace {
@@ -55,7 +56,7 @@ void append_pulses(const std::string& line, std::vector<Pulse>& pulses) {
 /// Reads as much YAML as the file uses: the period, and one command on each line that begins with `-`.
 Schedule read_schedule() {
   Schedule schedule;
-  std::ifstream file(FLEXARM_SOURCE_DIR "/config/demo_commands.yaml");
+  std::ifstream file(source_path("config/demo_commands.yaml"));
   for (std::string line; std::getline(file, line);) {
     if (line.rfind("period:", 0) == 0) schedule.period = std::stod(value_of(line, "period"));
     if (line.find_first_not_of(' ') == line.find("- {")) append_pulses(line, schedule.pulses);
@@ -72,7 +73,7 @@ double deflection(const Simulation& simulation, std::size_t boom) {
 
 class Demo : public ::testing::Test {
  protected:
-  Demo() : scene_(scene::read_scene_file(FLEXARM_SOURCE_DIR "/config/demo_arm.urdf")), schedule_(read_schedule()) {}
+  Demo() : scene_(scene::read_scene_file(source_path("config/demo_arm.urdf"))), schedule_(read_schedule()) {}
 
   /// The schedule's efforts for the next step. Every pulse begins and ends with a step: the middle of a step tells.
   void command(Simulation& simulation) const {

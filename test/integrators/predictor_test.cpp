@@ -1,0 +1,46 @@
+// Which extrapolation a step starts from.
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "support/scene_builder.h"
+
+namespace flexarm::test {
+namespace {
+
+constexpr double kStep = 0.01;
+
+Simulation after_some_steps(const SceneBuilder& builder) {
+  SimulationOptions options;
+  options.scheme = "em";
+  options.step = kStep;
+  Simulation simulation(builder.scene, options);
+  for (int n = 0; n < 10; ++n) EXPECT_TRUE(simulation.step().converged);
+  return simulation;
+}
+
+// A parabola is foreseen to round-off: the first update has nothing to do.
+TEST(Predictor, ForeseesFreeFall) {
+  SceneBuilder builder;
+  builder.body("ball", 2, Vector3::Zero(), Matrix3::Identity());
+  builder.joint("flight", scene::JointKind::Floating, "world", "ball", Vector3::Zero());
+  builder.scene.gravity = {0, 0, -9.81};
+  builder.scene.initial_links.push_back({"ball", {1, 2, 3}, Vector3::Zero(), {}});
+  const Simulation simulation = after_some_steps(builder);
+  EXPECT_GE(simulation.state().history.order, 1);
+  // A place of one metre to 64 roundings; the last velocity repeated would miss by g h^2 = 1e-3.
+  EXPECT_LT(simulation.update_norms().front(), 64 * std::numeric_limits<double>::epsilon());
+}
+
+// A mode that is far too fast for the step changes its sign from step to step: extrapolation would blow that up.
+TEST(Predictor, RepeatsWhatIsRough) {
+  SceneBuilder builder;
+  builder.beam("bar", {{1, 0, 0}}, section(1e8, 1e8, 1e2, 1e2, 1, 0.01, 0.01), 1, 1);
+  builder.joint("clamp", scene::JointKind::Fixed, "world", "bar", Vector3::Zero());
+  builder.scene.gravity.setZero();
+  builder.scene.initial_links.push_back({"bar", {1, 0, 0}, Vector3::Zero(), {}});
+  EXPECT_EQ(after_some_steps(builder).state().history.order, 0);
+}
+
+}  // namespace
+}  // namespace flexarm::test
