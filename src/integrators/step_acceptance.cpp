@@ -100,9 +100,12 @@ void StepSystem::accept(State& state) {
   // A prescribed coordinate's row is the effort that drives it.
   for (std::size_t index = 0; index < model_.coordinates.size(); ++index) {
     const Coordinate& coordinate = model_.coordinates[index];
-    if (coordinate.motion >= 0)
-      applied_[index] +=
-          assembler_.residual(dof_.variable_of_joint(coordinate.joint))[coordinate.component] / effort_weight();
+    if (coordinate.motion < 0) continue;
+    applied_[index] +=
+        assembler_.residual(dof_.variable_of_joint(coordinate.joint))[coordinate.component] / effort_weight();
+    // Over the step; the Newmark family has that at its end, and none at the start of a simulation.
+    const bool is_mean = scheme_.is_incremental() || state.history.count == 0;
+    state.drives.impulse[index] += step_ * (is_mean ? applied_[index] : 0.5 * (state.efforts[index] + applied_[index]));
   }
   accept_friction(state);
   state.work += work();
@@ -178,6 +181,7 @@ void StepSystem::accept_static(State& state) {
   std::fill(state.strain_rates.begin(), state.strain_rates.end(), Vector6::Zero());
   std::fill(state.strain_memory.begin(), state.strain_memory.end(), StrainMemory());
   reference_.accept(state);
+  state.drives.restart(applied_);
   state.history.clear();
   points_valid_ = false;
 }

@@ -207,6 +207,7 @@ StepResult Stepper::advance(State& state) {
   long done = 0;  // in units of step / 2^finest
   const long whole = 1L << finest;
   state.halving_level = std::clamp(state.halving_level, 0, finest);
+  state.drives.begin();
   while (done < whole) {
     const int level = state.halving_level;
     if (sub_step(state, std::ldexp(settings_.step, -level), result)) {
@@ -227,6 +228,7 @@ StepResult Stepper::advance(State& state) {
     ++result.halvings;
   }
   state.time = begin + settings_.step;
+  state.drives.end(settings_.step);
   ++state.steps;
   result.converged = true;
   return result;

@@ -75,14 +75,15 @@ Pose attached_pose(const State& state, const Attachment& attachment) {
   return Pose{node.position, node.orientation} * attachment.offset;
 }
 
-ProbeState probe_state(const Model& model, const State& state, const ProbePoint& probe) {
+ProbeState probe_state(const Model& model, const State& state, const std::vector<Vector6>& velocities,
+                       const ProbePoint& probe) {
   ProbeState out;
   if (probe.element < 0) {
     out.pose = attached_pose(state, probe.attachment);
     if (probe.attachment.node < 0) return out;
-    const NodeState& node = state.nodes[probe.attachment.node];
-    const Vector3 spin = node.orientation * node.angular_velocity;
-    out.velocity = node.velocity + spin.cross(out.pose.position - node.position);
+    const Vector6& node = velocities[probe.attachment.node];
+    const Vector3 arm = out.pose.position - state.nodes[probe.attachment.node].position;
+    out.velocity = node.head<3>() + node.tail<3>().cross(arm);
     return out;
   }
   visit_element(model, *model.links[probe.link].beam, probe.element, [&](const auto& element) {
@@ -94,9 +95,14 @@ ProbeState probe_state(const Model& model, const State& state, const ProbePoint&
     GeneralisedShapeFunctions<N> generalised;
     LocalRotationVariation<N>(LocalRotations<N>(nodes.orientation))
         .evaluate(functions.values, functions.derivatives, generalised);
+    out.velocity.setZero();
     Vector3 spin = Vector3::Zero();
-    for (int i = 0; i < N; ++i) spin += generalised.values[i] * nodes.spin[i];
-    out.velocity = interpolate<N>(functions.values, nodes.velocity) + spin.cross(out.pose.position - section.position);
+    for (int i = 0; i < N; ++i) {
+      const Vector6& node = velocities[element.nodes[i]];
+      out.velocity += functions.values[i] * node.head<3>();
+      spin += generalised.values[i] * node.tail<3>();
+    }
+    out.velocity += spin.cross(out.pose.position - section.position);
   });
   return out;
 }
@@ -116,6 +122,7 @@ State initial_state(const Model& model) {
   state.strain_rates.assign(model.stiffness_point_count, Vector6::Zero());
   state.commands.assign(model.coordinates.size(), std::numeric_limits<double>::quiet_NaN());
   state.efforts.assign(model.coordinates.size(), 0.0);
+  state.drives.resize(model.coordinates.size());
   state.rests.assign(model.coordinates.size(), 0.0);
   for_each_element(model.beams, [&](const auto& element) {
     constexpr int N = std::decay_t<decltype(element)>::kNodes;

@@ -6,10 +6,10 @@
 #include <map>
 #include <set>
 
-#include "flexarm/joints/joint_kinematics.h"
 #include "flexarm/math/so3.h"
 #include "flexarm/model/line_release.h"
 #include "flexarm/scene/integrator_options.h"
+#include "flexarm/simulation/output_velocities.h"
 
 namespace flexarm {
 namespace {
@@ -50,8 +50,8 @@ struct Simulation::Implementation {
   State initial, state;
   std::vector<std::string> coordinate_names, link_names;
   std::map<std::string, std::size_t, std::less<>> coordinate_indices;  ///< by name
-  mutable std::vector<NodePose> poses;                                 // scratch of velocity()
-  mutable std::vector<Vector6> velocities;
+  mutable OutputVelocities output_velocities;
+  mutable bool velocities_hold = false;  // output_velocities are those of `state`
 
   Implementation(scene::SceneDescription description, const SimulationOptions& options)
       : scene(with_options(std::move(description), options)),
@@ -67,12 +67,14 @@ struct Simulation::Implementation {
     for (const LinkFrame& link : model.links) link_names.push_back(link.name);
     stepper->initialise(initial);
     state = initial;
-    fit_to_model();
+    velocities();  // their memory is there from the start
   }
 
-  void fit_to_model() {
-    poses.resize(model.nodes.size());
-    velocities.resize(model.nodes.size());
+  /// Made where somebody asks for them.
+  const OutputVelocities& velocities() const {
+    if (!velocities_hold) output_velocities.update(model, stepper->degrees_of_freedom(), scheme, state);
+    velocities_hold = true;
+    return output_velocities;
   }
 
   void release_from_lines() {
@@ -87,7 +89,6 @@ struct Simulation::Implementation {
   void set_model(Model changed) {
     model = std::move(changed);
     stepper = std::make_unique<Stepper>(model, scheme, settings);
-    fit_to_model();
   }
 
   /// The model in which these slides have left their lines.
@@ -132,12 +133,14 @@ const State& Simulation::state() const {
 StepResult Simulation::step() {
   const StepResult result = implementation_->stepper->advance(implementation_->state);
   implementation_->release_from_lines();
+  implementation_->velocities_hold = false;
   return result;
 }
 
 void Simulation::reset() {
   implementation_->fit_to_state(implementation_->initial);
   implementation_->state = implementation_->initial;
+  implementation_->velocities_hold = false;
   implementation_->stepper->invalidate();
 }
 
@@ -145,6 +148,7 @@ void Simulation::restore(const State& state) {
   if (!implementation_->fits(state)) throw std::invalid_argument("the state belongs to another model");
   implementation_->fit_to_state(state);
   implementation_->state = state;
+  implementation_->velocities_hold = false;
   implementation_->stepper->invalidate();
 }
 
@@ -177,27 +181,13 @@ double Simulation::position(std::size_t index) const {
 }
 
 double Simulation::velocity(std::size_t index) const {
-  const Model& model = implementation_->model;
-  const Coordinate& coordinate = model.coordinates.at(index);
-  const JointMap& joint = model.joints[coordinate.joint];
-  const State& state = implementation_->state;
-  std::vector<NodePose>& nodes = implementation_->poses;
-  std::vector<Vector6>& velocities = implementation_->velocities;
-  const auto load = [&](int node) {
-    if (node < 0) return;
-    nodes[node] = node_pose(state.nodes[node]);
-    velocities[node] = spatial_velocity(state.nodes[node]);
-  };
-  load(joint.slave);
-  load(joint.master);
-  if (joint.kind == JointMapKind::Slide)
-    for (const int node : model.slide_lines[joint.line].nodes) load(node);
-  return released_rates(model, coordinate.joint, nodes, state.released[coordinate.joint],
-                        velocities)[coordinate.component];
+  return implementation_->velocities().rate(implementation_->model.coordinates.at(index));
 }
 
 double Simulation::effort(std::size_t index) const {
-  return implementation_->state.efforts.at(index);
+  const State& state = implementation_->state;
+  const bool is_driven = implementation_->model.coordinates.at(index).motion >= 0;
+  return is_driven ? state.drives.at_end(index) : state.efforts[index];
 }
 
 void Simulation::command_effort(std::size_t index, double effort) {
@@ -257,11 +247,13 @@ Vector3 Simulation::angular_momentum() const {
   return momenta(implementation_->model, implementation_->scheme, implementation_->state).angular;
 }
 ProbeState Simulation::probe(std::size_t index) const {
-  return probe_state(implementation_->model, implementation_->state, implementation_->model.probes.at(index));
+  return probe_state(implementation_->model, implementation_->state, implementation_->velocities().nodes(),
+                     implementation_->model.probes.at(index));
 }
 
 StepResult Simulation::solve_static(int load_steps) {
   if (load_steps < 1) throw std::invalid_argument("the number of load steps must be >= 1");
+  implementation_->velocities_hold = false;
   return implementation_->stepper->solve_static(implementation_->state, load_steps);
 }
 

@@ -5,6 +5,7 @@
 
 #include "flexarm/math/local_rotation.h"
 #include "flexarm/math/pose.h"
+#include "flexarm/model/drive_efforts.h"
 #include "flexarm/model/increment_history.h"
 #include "flexarm/model/joint.h"
 
@@ -66,6 +67,7 @@ struct State {
   std::vector<double> efforts;           ///< per coordinate: applied in the last step
   std::vector<double> rests;             ///< per coordinate: 1 where dry friction stopped it in the last step, else 0
   IncrementHistory history;              ///< of the last sub-steps, for the predictor
+  DriveEfforts drives;                   ///< what drove prescribed coordinates, for output
   double work = 0, dissipated = 0;       ///< path integrals since the start [J]
   double energy_defect = 0;              ///< energy that scaled velocities still owe [J]
   int halving_level = 0;                 ///< sub-steps are step / 2^level

@@ -23,9 +23,11 @@ void beam_points(const Model& model, const State& state, const BeamLink& beam, i
 /// Pose and velocity of a named point.
 struct ProbeState {
   Pose pose;
-  Vector3 velocity = Vector3::Zero();  ///< world axes [m/s]
+  Vector3 velocity = Vector3::Zero();  ///< of second order, see Simulation::velocity; world axes [m/s]
 };
-ProbeState probe_state(const Model& model, const State& state, const ProbePoint& probe);
+/// `velocities`: {v, w} per node, world axes.
+ProbeState probe_state(const Model& model, const State& state, const std::vector<Vector6>& velocities,
+                       const ProbePoint& probe);
 
 /// Pose of a frame fixed to a node (or to the world).
 Pose attached_pose(const State& state, const Attachment& attachment);

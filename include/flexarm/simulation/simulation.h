@@ -52,9 +52,12 @@ class Simulation {
   const std::vector<std::string>& coordinate_names() const;
   std::optional<std::size_t> find_coordinate(std::string_view name) const;
   double position(std::size_t coordinate) const;  ///< [rad or m]
-  double velocity(std::size_t coordinate) const;  ///< [rad/s or m/s]
-  double effort(
-      std::size_t coordinate) const;  ///< effort applied in the last step (motor, or drive of a motion) [N or N m]
+  /// Rate at time(), of second order and without what rings in the scheme's own velocities (theory.md, "Published
+  /// velocities and efforts") [rad/s or m/s].
+  double velocity(std::size_t coordinate) const;
+  /// Effort applied in the last step; where a motion is prescribed, what drives it at time(), of second order [N or N
+  /// m].
+  double effort(std::size_t coordinate) const;
   /// Commands an effort from the next step on, in place of the scene's <effort>; saturates at the joint's effort limit.
   void command_effort(std::size_t coordinate, double effort);
   /// Back to the scene's <effort> history (zero where there is none).

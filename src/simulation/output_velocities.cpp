@@ -1,0 +1,133 @@
+#include "flexarm/simulation/output_velocities.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "flexarm/joints/joint_kinematics.h"
+#include "flexarm/math/cayley.h"
+
+namespace flexarm {
+namespace {
+
+/// Changes of the mean rate from step to step that differ by less than this part of their sum belong to a smooth
+/// motion: one is at most twice the other.
+constexpr double kSmooth = 1.0 / 3;
+/// Turns that are larger have no tangent-scaled increment to speak of [rad].
+constexpr double kLargestTurn = 0.5 * M_PI;
+
+/// The rotation of a step as the scheme's rule for angular velocities counts it, from the tangent-scaled one.
+Vector3 counted_rotation(const TimeRule& rule, const Vector3& tangent_scaled) {
+  return rule.body_rotation == RotationRule::TangentScaled ? tangent_scaled
+                                                           : cayley::to_rotation_vector(tangent_scaled);
+}
+
+/// The same for the increment of a scalar coordinate. A motion is what its function says.
+double counted_increment(const TimeRule& rule, const JointMap& joint, const Coordinate& coordinate, double increment) {
+  const double rotation = joint.kind == JointMapKind::Scalar ? joint.rotation.norm() : 0, turn = rotation * increment;
+  const bool counts = rule.body_rotation == RotationRule::TangentScaled && coordinate.motion < 0 && rotation > 0 &&
+                      std::abs(turn) < kLargestTurn;
+  return counts ? 2 * std::tan(0.5 * turn) / rotation : increment;
+}
+
+}  // namespace
+
+template <int Size>
+Eigen::Matrix<double, Size, 1> LastSteps::rate_at_end(const MeanRates<Size>& mean) const {
+  using Rate = Eigen::Matrix<double, Size, 1>;
+  if (count < 2) return mean[0];
+  const auto& [h0, h1, h2] = length;
+  // From the mean of the newest step to its end, by the change of the mean since the step before, and the same by the
+  // change before that.
+  const Rate last = h0 / (h0 + h1) * (mean[0] - mean[1]);
+  if (count < 3) return mean[0] + last;
+  const Rate before = h0 / (h1 + h2) * (mean[1] - mean[2]);
+  if ((last - before).norm() <= kSmooth * (last + before).norm())
+    return mean[0] + last + (h0 + h1) / (h0 + h1 + h2) * (last - before);
+  return mean[0] + std::clamp(last.dot(before) / last.squaredNorm(), 0.0, 1.0) * last;
+}
+template Eigen::Matrix<double, 1, 1> LastSteps::rate_at_end<1>(const MeanRates<1>&) const;
+template Eigen::Matrix<double, 3, 1> LastSteps::rate_at_end<3>(const MeanRates<3>&) const;
+
+void OutputVelocities::update(const Model& model, const DegreesOfFreedom& dof, const TimeRule& rule,
+                              const State& state) {
+  poses_.resize(state.nodes.size());
+  nodes_.resize(state.nodes.size());
+  rates_.resize(model.joints.size());
+  for (std::size_t i = 0; i < state.nodes.size(); ++i) poses_[i] = node_pose(state.nodes[i]);
+  const IncrementHistory& history = state.history;
+  if (!history.holds_for(dof.unknowns)) return take_scheme_velocities(model, state);
+  steps_.count = std::min(history.count, LastSteps::kMost);
+  std::copy_n(history.steps.begin(), LastSteps::kMost, steps_.length.begin());
+  set_free_nodes(dof, rule, state);
+  set_rates(model, dof, rule, state);
+  set_slaves(model, state);
+}
+
+void OutputVelocities::take_scheme_velocities(const Model& model, const State& state) {
+  for (std::size_t i = 0; i < state.nodes.size(); ++i) nodes_[i] = spatial_velocity(state.nodes[i]);
+  for (std::size_t j = 0; j < model.joints.size(); ++j)
+    rates_[j] = released_rates(model, static_cast<int>(j), poses_, state.released[j], nodes_);
+}
+
+void OutputVelocities::set_free_nodes(const DegreesOfFreedom& dof, const TimeRule& rule, const State& state) {
+  for (int i = 0; i < dof.node_count; ++i) {
+    if (dof.slave_joint[i] >= 0) continue;
+    LastSteps::MeanRates<3> velocity, spin;
+    for (int k = 0; k < steps_.count; ++k) {
+      const double* increment = state.history.increments[k].data() + dof.equation[dof.first[i]];
+      velocity[k] = Vector3(increment[0], increment[1], increment[2]) / steps_.length[k];
+      spin[k] = counted_rotation(rule, Vector3(increment[3], increment[4], increment[5])) / steps_.length[k];
+    }
+    nodes_[i] << steps_.rate_at_end<3>(velocity), steps_.rate_at_end<3>(spin);
+  }
+}
+
+void OutputVelocities::set_rates(const Model& model, const DegreesOfFreedom& dof, const TimeRule& rule,
+                                 const State& state) {
+  // What a coordinate made of a step that ended at `end`; a prescribed one is no unknown, but its motion is known.
+  const auto increment = [&](const Coordinate& coordinate, int k, double end) {
+    const int equation = dof.equation[dof.first[dof.variable_of_joint(coordinate.joint)] + coordinate.component];
+    if (equation >= 0) return state.history.increments[k][equation];
+    if (coordinate.motion < 0) return 0.0;
+    const TimeFunction& motion = model.histories[coordinate.motion];
+    return motion(end) - motion(end - steps_.length[k]);
+  };
+  for (std::size_t j = 0; j < model.joints.size(); ++j) {
+    const JointMap& joint = model.joints[j];
+    const Coordinate* coordinates = model.coordinates.data() + model.first_coordinate[j];
+    ReleasedVector& rates = rates_[j];
+    rates.resize(released_count(joint.kind));
+    LastSteps::MeanRates<1> scalar;
+    std::array<LastSteps::MeanRates<3>, 2> vectors;  // a translation, a rotation, or both
+    double end = state.time;
+    for (int k = 0; k < steps_.count; ++k) {
+      const double length = steps_.length[k];
+      if (rates.size() == 1)
+        scalar[k][0] = counted_increment(rule, joint, coordinates[0], increment(coordinates[0], k, end)) / length;
+      for (int c = 0; c + 3 <= rates.size(); c += 3) {
+        Vector3& mean = vectors[c / 3][k];
+        for (int i = 0; i < 3; ++i) mean[i] = increment(coordinates[c + i], k, end);
+        mean = (coordinates[c].is_angle ? counted_rotation(rule, mean) : mean) / length;
+      }
+      end -= length;
+    }
+    if (rates.size() == 1) rates = steps_.rate_at_end<1>(scalar);
+    for (int c = 0; c + 3 <= rates.size(); c += 3) rates.segment<3>(c) = steps_.rate_at_end<3>(vectors[c / 3]);
+  }
+  // No entry's master is the slave of an earlier one.
+  for (auto mimic = dof.mimics.rbegin(); mimic != dof.mimics.rend(); ++mimic) {
+    const Coordinate& following = model.coordinates[mimic->coordinate];
+    const Coordinate& followed = model.coordinates[following.mimicked];
+    rates_[following.joint][0] =
+        following.mimic.derivative(state.released[followed.joint].displacement[0]) * rates_[followed.joint][0];
+  }
+}
+
+void OutputVelocities::set_slaves(const Model& model, const State& state) {
+  for (std::size_t j = 0; j < model.joints.size(); ++j) {
+    const SlaveVelocity slave = slave_velocity(model, static_cast<int>(j), poses_, state.released[j], nodes_);
+    nodes_[model.joints[j].slave] = slave.carried + slave.columns * rates_[j];
+  }
+}
+
+}  // namespace flexarm

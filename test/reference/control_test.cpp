@@ -1,0 +1,61 @@
+// A controller closed on what is put out holds an arm as it would hold a real one.
+#include <cstdio>
+#include <ostream>
+
+#include "reference/documented_arms.h"
+#include "reference/dynamics_runs.h"
+
+namespace flexarm::test {
+namespace {
+
+struct Loop {
+  std::string name;
+  scene::SceneDescription (*arm)();
+  double stiffness, damping;  ///< of every joint [N m/rad, N m s/rad]
+  double offset;              ///< of the set points from where the arm starts [rad]
+  double period;              ///< of the controller [s]
+  friend std::ostream& operator<<(std::ostream& out, const Loop& loop) { return out << loop.name; }
+};
+
+class Control : public ::testing::TestWithParam<Loop> {};
+
+// A damper and a spring between arm and world can only take energy out. The controller's are these but for its sample
+// and hold, which gives back kp T/2 of kd, far less than kd. Hence what arm and springs hold together falls.
+TEST_P(Control, HoldsTheArm) {
+  const Loop& loop = GetParam();
+  scene::SceneDescription scene = loop.arm();
+  scene.efforts.clear();
+  Simulation simulation(scene, options("auto", 1e-3));
+  const std::size_t joints = simulation.coordinate_names().size();
+  std::vector<double> set_points(joints);
+  for (std::size_t i = 0; i < joints; ++i) set_points[i] = simulation.position(i) + loop.offset;
+  const auto stored = [&] {
+    double energy = simulation.energies().total();
+    for (std::size_t i = 0; i < joints; ++i)
+      energy += 0.5 * loop.stiffness * std::pow(simulation.position(i) - set_points[i], 2);
+    return energy;
+  };
+  const int steps_per_period = static_cast<int>(std::lround(loop.period / simulation.step_size()));
+  const double at_start = stored();
+  double largest = 0;
+  for (int n = 0; n < std::lround(10 / loop.period); ++n) {
+    for (std::size_t i = 0; i < joints; ++i)
+      simulation.command_effort(
+          i, loop.stiffness * (set_points[i] - simulation.position(i)) - loop.damping * simulation.velocity(i));
+    run(simulation, steps_per_period);
+    largest = std::max(largest, stored());
+  }
+  std::printf("stored: %.4g J at the start, %.4g J at most, %.4g J after 10 s\n", at_start, largest, stored());
+  EXPECT_LT(largest, at_start * (1 + 0.5 * loop.stiffness * loop.period / loop.damping));
+  EXPECT_LT(stored(), at_start);
+}
+
+INSTANTIATE_TEST_SUITE_P(Arms, Control,
+                         ::testing::Values(Loop{"guide_1000_Hz", guide_arm, 20, 4, 0.4, 1e-3},
+                                           Loop{"guide_100_Hz", guide_arm, 20, 2, 0.4, 1e-2},
+                                           Loop{"demo_1000_Hz", demo_arm, 2000, 500, 0.03, 1e-3},
+                                           Loop{"demo_100_Hz", demo_arm, 2000, 500, 0.03, 1e-2}),
+                         [](const auto& info) { return info.param.name; });
+
+}  // namespace
+}  // namespace flexarm::test

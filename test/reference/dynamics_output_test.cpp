@@ -1,0 +1,183 @@
+// What is put out of velocities and efforts: of second order at its time stamp, and nothing rings in it.
+#include <cstdio>
+#include <vector>
+
+#include "reference/documented_arms.h"
+#include "reference/dynamics_joint_chain.h"
+
+namespace flexarm::test {
+namespace {
+
+constexpr double kCoarsestStep = 0.02, kUntil = 1;
+
+/// A flexible arm with two joints and a body that is fixed to it beside its end; so much rotary inertia that the steps
+/// resolve its fastest modes.
+SceneBuilder arm() {
+  using scene::JointKind;
+  const scene::DirectSection slow{2e3, 1e3, 1e3, 80, 100, 120, 4, 4, 4, 4};
+  SceneBuilder b;
+  b.beam("upper", {{1, 0, 0}, {1.5, 0.3, 0}}, slow, 1, 2);
+  b.beam("fore", {{0, 1, 0.2}}, slow, 1, 2);
+  b.body("gripper", 0.8, {0.1, 0.05, -0.1}, 0.2 * body_inertia());
+  b.joint("shoulder", JointKind::Revolute, "world", "upper", {0, 0, 0}, Vector3(1, 2, 2) / 3);
+  b.joint("elbow", JointKind::Spherical, "upper", "fore", {1.5, 0.3, 0});
+  b.joint("wrist", JointKind::Fixed, "fore", "gripper", {0, 1, 0.2});
+  b.scene.gravity = {0, 0, -2};
+  initial_joint(b, "elbow/rx", 0.2, -1);
+  b.probe("hand", "gripper", {0.2, 0, 0});
+  b.probe("span", "upper", {0.4, 0.1, 0});
+  return b;
+}
+
+/// The torque jumps in the middle of the run, between two steps.
+SceneBuilder pushed_arm() {
+  SceneBuilder b = arm();
+  initial_joint(b, "shoulder", 0.3, 1.5);
+  b.scene.efforts.push_back({"shoulder", TimeFunction::parse("t < 0.4999999 ? 3 : -3"), {}});
+  return b;
+}
+
+SceneBuilder driven_arm() {
+  SceneBuilder b = arm();
+  b.scene.motions.push_back({"shoulder", TimeFunction::parse("0.3*sin(4*t)"), {}});
+  return b;
+}
+
+/// Every kCoarsestStep, so that no stamp is within three steps behind the start or the jump.
+struct Output {
+  std::vector<double> rates, points, efforts;
+};
+
+Output output(const SceneBuilder& builder, const Scheme& scheme, int refinement) {
+  Simulation simulation(builder.scene, options(std::string(scheme.name), kCoarsestStep / refinement, 1e-11));
+  Output out;
+  for (int n = 0; n < std::lround(kUntil / kCoarsestStep); ++n) {
+    run(simulation, refinement);
+    for (std::size_t i = 0; i < simulation.coordinate_names().size(); ++i) {
+      out.rates.push_back(simulation.velocity(i));
+      out.efforts.push_back(simulation.effort(i));
+    }
+    for (int i = 0; i < 2; ++i) {
+      const ProbeState probe = simulation.probe(i);
+      for (int k = 0; k < 3; ++k) out.points.push_back(probe.velocity[k]);
+    }
+  }
+  return out;
+}
+
+double distance(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+/// The slope of the error over the step, from three runs and what the two finest of four extrapolate to.
+double slope(const std::vector<Output>& runs, std::vector<double> Output::*quantity, int order) {
+  const std::vector<double>&fine = runs[runs.size() - 1].*quantity, &coarser = runs[runs.size() - 2].*quantity;
+  std::vector<double> reference = fine;
+  const double factor = 1 / (std::pow(2.0, order) - 1);
+  for (std::size_t i = 0; i < fine.size(); ++i) reference[i] += factor * (fine[i] - coarser[i]);
+  const double error = distance(runs[0].*quantity, reference), finer = distance(runs[1].*quantity, reference);
+  std::printf("  errors %.2e, %.2e, slope %.2f\n", error, finer, std::log2(error / finer));
+  return std::log2(error / finer);
+}
+
+class PublishedOrder : public ::testing::TestWithParam<Scheme> {
+ protected:
+  std::vector<Output> runs(const SceneBuilder& builder) const {
+    // Terms of second order hide those of first order longer than the next ones hide theirs.
+    const int coarsest = GetParam().order == 1 ? 64 : 16;
+    std::vector<Output> out;
+    for (const int finer : {1, 2, 8, 16}) out.push_back(output(builder, GetParam(), coarsest * finer));
+    return out;
+  }
+};
+
+/// Forces at the ends of steps: the step that ends with a jump has the mean of both sides, an impulse that is off by
+/// half a step. Motions, not only what is put out, are then of first order.
+int order_behind_a_jump(const Scheme& scheme) {
+  return scheme.is_incremental() ? std::min(scheme.order, 2) : 1;
+}
+
+TEST_P(PublishedOrder, VelocitiesUnderAJumpingTorque) {
+  const int order = order_behind_a_jump(GetParam());
+  const std::vector<Output> results = runs(pushed_arm());
+  EXPECT_GT(slope(results, &Output::rates, order), 0.9 * order);
+  EXPECT_GT(slope(results, &Output::points, order), 0.9 * order);
+}
+
+TEST_P(PublishedOrder, VelocitiesAndEffortsOfAMotion) {
+  if (GetParam().scales_velocities) GTEST_SKIP() << "refuses motions";
+  const int order = std::min(GetParam().order, 2);
+  const std::vector<Output> results = runs(driven_arm());
+  EXPECT_GT(slope(results, &Output::rates, order), 0.9 * order);
+  EXPECT_GT(slope(results, &Output::points, order), 0.9 * order);
+  EXPECT_GT(slope(results, &Output::efforts, order), 0.9 * order);
+}
+
+INSTANTIATE_TEST_SUITE_P(Schemes, PublishedOrder, ::testing::ValuesIn(schemes()),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+/// The effort that drives I = 1 along sin 3t is -9 sin 3t.
+TEST(PublishedEffort, OfAnInertiaThatAMotionDrives) {
+  SceneBuilder b;
+  b.body("wheel", 1, Vector3::Zero(), Matrix3::Identity());
+  b.joint("axle", scene::JointKind::Revolute, "world", "wheel");
+  b.scene.motions.push_back({"axle", TimeFunction::parse("sin(3*t)"), {}});
+  for (const Scheme& scheme : schemes()) {
+    if (scheme.scales_velocities) continue;
+    double error[2] = {};
+    for (const int k : {0, 1}) {
+      const double step = k == 0 ? 0.01 : 0.005;
+      Simulation simulation(b.scene, options(std::string(scheme.name), step, 1e-11));
+      // A mean of two steps and its change need three. Where the root is not -1, its error has to decay.
+      run(simulation, scheme.hht == HhtForm::None ? 3 : static_cast<int>(std::lround(1 / step)));
+      run(simulation, static_cast<int>(std::lround(2 / step)),
+          [&] { error[k] = std::max(error[k], std::abs(simulation.effort(0) + 9 * std::sin(3 * simulation.time()))); });
+    }
+    EXPECT_GT(std::log2(error[0] / error[1]), 1.8) << scheme.name << ": " << error[0] << ", " << error[1];
+  }
+}
+
+// ---------------------------------------------------------------- the guide's second arm
+
+/// Shoulder velocity every millisecond; beside it the increments of the position over the millisecond.
+struct Velocities {
+  std::vector<double> published, increments;
+};
+Velocities velocities(const std::string& scheme, int steps_per_millisecond) {
+  Simulation simulation(guide_arm(), options(scheme, 1e-3 / steps_per_millisecond));
+  Velocities out;
+  for (int n = 0; n < 1200; ++n) {
+    const double before = simulation.position(0);
+    run(simulation, steps_per_millisecond);
+    out.published.push_back(simulation.velocity(0));
+    out.increments.push_back((simulation.position(0) - before) / 1e-3);
+  }
+  return out;
+}
+
+/// Root mean square of a difference over stamps, from 10 ms behind the start and the jump at 1 s.
+double difference(const std::vector<double>& a, const std::vector<double>& b, std::size_t from, std::size_t to) {
+  double sum = 0;
+  for (std::size_t n = from; n < to; ++n) sum += (a[n] - b[n]) * (a[n] - b[n]);
+  return std::sqrt(sum / static_cast<double>(to - from));
+}
+
+// The jump leaves energy in modes that no step resolves, and the scheme's own velocities keep it for ever. Plain
+// increments are what a user would take instead: they do not ring, but lag by half a step.
+TEST(PublishedVelocity, DoesNotRingAfterAJumpOfTorque) {
+  const Velocities fine = velocities("em", 50);
+  for (const std::string scheme : {"em", "edmc2"}) {
+    const Velocities coarse = velocities(scheme, 1);
+    for (const auto& [from, to] : {std::pair<std::size_t, std::size_t>{10, 999}, {1010, 1200}}) {
+      const double published = difference(coarse.published, fine.published, from, to),
+                   increments = difference(coarse.increments, fine.published, from, to);
+      std::printf("%s from %zu ms: published %.2e, increments %.2e\n", scheme.c_str(), from, published, increments);
+      EXPECT_LT(published, increments) << scheme << " from " << from << " ms";
+    }
+  }
+}
+
+}  // namespace
+}  // namespace flexarm::test

@@ -1,0 +1,90 @@
+// The rule that turns increments over steps into rates at their end.
+#include "flexarm/simulation/output_velocities.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "flexarm/math/so3.h"
+
+namespace flexarm {
+namespace {
+
+constexpr double kRoundOff = 64 * std::numeric_limits<double>::epsilon();
+
+/// Of a scalar position x(t), over steps of these lengths that end at `end`.
+template <class Position>
+double rate(const Position& x, double end, const std::array<double, 3>& lengths, int count = 3) {
+  LastSteps steps;
+  steps.count = count;
+  steps.length = lengths;
+  LastSteps::MeanRates<1> mean;
+  for (int k = 0; k < 3; ++k) {
+    mean[k][0] = (x(end) - x(end - lengths[k])) / lengths[k];
+    end -= lengths[k];
+  }
+  return steps.rate_at_end<1>(mean)[0];
+}
+
+double cubic(double t) {
+  return 1 + t * (2 + t * (3 + 0.5 * t));
+}
+double cubic_rate(double t) {
+  return 2 + t * (6 + 1.5 * t);
+}
+
+TEST(RateAtEnd, IsExactForCubicsOverAnySteps) {
+  for (const std::array<double, 3>& lengths : {std::array<double, 3>{0.1, 0.1, 0.1}, {0.1, 0.2, 0.05}, {0.2, 0.1, 0.1}})
+    EXPECT_NEAR(rate(cubic, 2, lengths), cubic_rate(2), kRoundOff * cubic(2) / 0.05);
+  // As the parts of a composed step: the third one ran backwards.
+  EXPECT_NEAR(rate(cubic, 2, {0.0414, 0.0414, -0.0658}), cubic_rate(2), 4 * kRoundOff * cubic(2) / 0.0171);
+}
+
+TEST(RateAtEnd, IsExactForParabolasAfterTwoSteps) {
+  const auto parabola = [](double t) { return 1 + t * (2 + 3 * t); };
+  EXPECT_NEAR(rate(parabola, 2, {0.1, 0.2, 0.1}, 2), 14, kRoundOff * parabola(2) / 0.1);
+}
+
+TEST(RateAtEnd, IsTheMeanAfterOneStepAndAfterAJump) {
+  EXPECT_EQ(rate([](double t) { return 3 * t * t; }, 0.5, {0.5, 1, 1}, 1), 1.5);
+  // A body at rest that is thrown: nothing but the last mean is known.
+  const auto thrown = [](double t) { return t < 0 ? 0 : 2 * t; };
+  EXPECT_NEAR(rate(thrown, 0.1, {0.1, 0.1, 0.1}), 2, kRoundOff * 2);
+}
+
+/// What rings with amplitude 1 in the mean rates rings no more in the result.
+TEST(RateAtEnd, DoesNotAmplifyWhatRings) {
+  const auto ringing = [](double t) { return 0.05 * std::cos(M_PI * t / 0.1); };  // mean rates +-1
+  for (const double end : {1.0, 1.1}) EXPECT_NEAR(std::abs(rate(ringing, end, {0.1, 0.1, 0.1})), 1, kRoundOff / 0.1);
+}
+
+/// Of third order where the motion is smooth, of second order around extrema of the velocity.
+TEST(RateAtEnd, Order) {
+  const auto worst = [](double step, double from, double to) {
+    double error = 0;
+    for (double t = from; t < to; t += 0.37 * step)
+      error =
+          std::max(error, std::abs(rate([](double s) { return std::sin(s); }, t, {step, step, step}) - std::cos(t)));
+    return error;
+  };
+  EXPECT_NEAR(std::log2(worst(0.02, 0.5, 2.5) / worst(0.01, 0.5, 2.5)), 3, 0.1);
+  EXPECT_NEAR(std::log2(worst(0.02, -0.5, 0.5) / worst(0.01, -0.5, 0.5)), 2, 0.1);
+}
+
+TEST(RateAtEnd, TurnsWithTheAxes) {
+  const Matrix3 turn = so3::exp(Vector3(0.3, -1.1, 0.7));
+  LastSteps steps;
+  steps.count = 3;
+  steps.length = {0.1, 0.2, 0.1};
+  LastSteps::MeanRates<3> smooth{Vector3(1, 2, 3), Vector3(1.1, 1.5, 2.4), Vector3(1.2, 1.1, 2.0)},
+      rough{Vector3(1, 2, 3), Vector3(0.4, 3, -1), Vector3(0.1, 3.5, 1)};
+  for (const LastSteps::MeanRates<3>& mean : {smooth, rough}) {
+    LastSteps::MeanRates<3> turned;
+    for (int k = 0; k < 3; ++k) turned[k] = turn * mean[k];
+    EXPECT_LT((steps.rate_at_end<3>(turned) - turn * steps.rate_at_end<3>(mean)).norm(), kRoundOff * 10);
+  }
+}
+
+}  // namespace
+}  // namespace flexarm
