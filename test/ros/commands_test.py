@@ -114,6 +114,18 @@ class Commands(unittest.TestCase):
         time.sleep(0.2)
         self.force.send(force_command(["left_shoulder"], [3.0]))
         self.wait_for_effort("left_shoulder", 3.0)
+        self.assertEqual(self.arm.joint("right_shoulder").effort, 0.0)  # its command is forgotten
+
+    def test_emergency_stop_holds_back_the_scenes_efforts_and_gives_them_back(self):
+        stop = CommandTopic("/flexarm/emergency_stop", Bool)
+        self.wait_for_effort("winch", 0.5)
+        stop.send(True)
+        self.wait_for_effort("winch", 0.0)
+        self.arm.reset()
+        self.assertTrue(self.arm.step(1).success)
+        self.assertEqual(self.arm.joint("winch").effort, 0.0)
+        stop.send(False)
+        self.wait_for_effort("winch", 0.5)
 
     # ---- bad commands
 
@@ -161,37 +173,6 @@ class Commands(unittest.TestCase):
         time.sleep(0.3)
         self.assertEqual(len(warnings), 1)
         self.assertIn("nose", warnings[0])
-
-
-class Failure(unittest.TestCase):
-    def test_failed_step_keeps_the_state_until_a_reset(self):
-        arm = SimulatedArm()
-        force = CommandTopic("joint_force_command", JointForceCommand)
-        arm.reset()
-        self.assertTrue(arm.step(5).success)
-        before = arm.joint_states()
-        force.send(force_command(["left_shoulder"], [1e250]))
-
-        answers = []
-
-        def failed():
-            answers.append(arm.step(1))
-            return not answers[-1].success
-
-        wait_until(failed, "a step to fail")
-        self.assertIn("failed", answers[-1].message)
-        status = arm.status()
-        self.assertTrue(status.failed and status.paused)
-        for position in arm.joint_states().position:
-            self.assertTrue(math.isfinite(position))
-        self.assertEqual(len(before.position), len(arm.joint_states().position))
-        with self.assertRaises(rospy.ServiceException):
-            arm.resume()
-        self.assertFalse(arm.step(1).success)
-
-        arm.reset()
-        self.assertFalse(arm.status().failed)
-        self.assertTrue(arm.step(5).success)
 
 
 if __name__ == "__main__":
