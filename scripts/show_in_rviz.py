@@ -21,7 +21,9 @@ import yaml
 
 TEMPLATE = "config/flexarm.rviz"
 PATIENCE = 30.0  # s, wall time
-DISTANCE = 2.8  # of the camera, in radii of the scene: rviz sees 45 degrees
+# In radii of the scene:
+DISTANCE = 2.8  # of the camera, which sees 45 degrees
+LEGEND = 0.25  # by which the camera looks past the centre, towards the legend
 
 
 def wait_for_view():
@@ -51,7 +53,8 @@ def fit(config, view, prefix):
     manager["Global Options"]["Fixed Frame"] = view["frame"]
     camera = manager["Views"]["Current"]
     camera["Distance"] = DISTANCE * radius
-    camera["Focal Point"] = dict(zip("XYZ", view["center"]))
+    x, y, z = view["center"]
+    camera["Focal Point"] = {"X": x - LEGEND * radius, "Y": y, "Z": z}
     camera["Near Clip Distance"] = 1e-3 * radius
     displays = {display["Class"]: display for display in manager["Displays"]}
     displays["rviz/Grid"]["Cell Size"] = 10.0 ** round(math.log10(radius / 3))

@@ -84,6 +84,8 @@ void override_integrator(const ros::NodeHandle& private_node, scene::IntegratorD
     reader.read("rho_infinity", rho_infinity, true);
     if (rho_infinity > 1) reader.complain("rho_infinity", "must lie in [0, 1]", std::to_string(rho_infinity));
     integrator.rho_infinity = rho_infinity;
+    for (const scene::OptionConflict& conflict : scene::option_conflicts(integrator))
+      reader.complain("rho_infinity", conflict.message, std::to_string(rho_infinity));
   }
   reader.throw_if_any();
 }

@@ -33,13 +33,17 @@ class Tube {
 
  private:
   static constexpr int kSides = 12;
+  struct Corner {
+    geometry_msgs::Point point;
+    std_msgs::ColorRGBA color;
+  };
   struct Section {
-    geometry_msgs::Point center;
-    std::array<geometry_msgs::Point, kSides> corners;
+    Pose pose;
+    std::array<Corner, kSides> corners;
     std_msgs::ColorRGBA color;
   };
 
-  void add_corner(const geometry_msgs::Point& point, const std_msgs::ColorRGBA& color);
+  void add_triangle(const Corner& a, const Corner& b, const Corner& c);
   void add_wall(const Section& first, const Section& second);
   /// `forwards`: the outside looks along the tangent.
   void add_cap(const Section& section, bool forwards);
