@@ -12,6 +12,7 @@ from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import JointState
 from simulated_arm import PATIENCE, CommandTopic, SimulatedArm, force_command, wait_until
 from std_msgs.msg import Bool, Float64
+from visualization_msgs.msg import MarkerArray
 
 ROUND_OFF = 1e-12  # rad and m: the joints compared are not coupled at all
 
@@ -126,6 +127,18 @@ class Commands(unittest.TestCase):
         self.assertEqual(self.arm.joint("winch").effort, 0.0)
         stop.send(False)
         self.wait_for_effort("winch", 0.5)
+
+    def test_reset_begins_the_scale_of_the_colours_anew(self):
+        def largest_strain():
+            markers = rospy.wait_for_message("/beam_markers", MarkerArray, PATIENCE).markers
+            return max(float(marker.text.split()[0]) for marker in markers if marker.text.endswith("%"))
+
+        self.force.send(force_command(["left_shoulder"], [1.0]))
+        self.wait_for_effort("left_shoulder", 1.0)
+        self.assertTrue(self.arm.step(20).success)
+        self.assertGreater(largest_strain(), 0)
+        self.arm.reset()
+        self.assertEqual(largest_strain(), 0)
 
     # ---- bad commands
 

@@ -60,6 +60,12 @@ class TwoArms(unittest.TestCase):
             self.assertEqual(names, {side + "/world"})
             self.assertEqual(rospy.get_param("/%s/flexarm/view/frame" % side), side + "/world")
 
+    def test_arguments_of_the_launch_file_reach_both(self):
+        for arm in (self.left, self.right):
+            status = arm.status()
+            self.assertEqual((status.scheme, status.step), ("m2", 0.002))
+            self.assertEqual(rospy.get_param(arm.namespace + "/flexarm/status_rate"), 20)
+
     def test_a_command_reaches_one_arm_only(self):
         for arm in (self.left, self.right):
             arm.reset()
@@ -75,7 +81,7 @@ class TwoArms(unittest.TestCase):
 
     def test_the_left_arm_is_the_clock_of_both(self):
         self.assertTrue(rospy.get_param("/use_sim_time"))
-        self.assertTrue(self.left.step(1000).success)
+        self.assertTrue(self.left.step(500).success)
         stamp = self.left.joint_states().header.stamp
         self.assertGreaterEqual(stamp.to_sec(), 1)
 

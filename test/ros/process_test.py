@@ -66,6 +66,13 @@ class Process(unittest.TestCase):
             self.assertEqual(node.status.step, 0.003)
             self.assertEqual(node.status.scheme, "newmark")
 
+    def test_counts_the_steps_that_it_cannot_make(self):
+        with RunningNode("_real_time_factor:=1e6"):
+            statuses = []
+            rospy.Subscriber("/flexarm/status", SimulatorStatus, statuses.append)
+            wait_until(lambda: statuses and statuses[-1].overruns > 0, "an overrun")
+            self.assertGreater(statuses[-1].real_time_factor, 0)
+
     def test_warns_once_of_another_publisher_of_its_frames(self):
         publisher = rospy.Publisher("/tf", TFMessage, queue_size=10)
         message = TFMessage([TransformStamped()])
