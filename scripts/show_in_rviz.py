@@ -65,8 +65,10 @@ def fit(config, view, prefix):
 
 def main():
     view = wait_for_view()
-    description = rospy.get_param(rospy.search_param("robot_description"))
-    rospy.set_param("rigid_links_description", rigid_links(description))
+    description = rospy.search_param("robot_description")
+    if description is None:
+        sys.exit("no parameter robot_description: it takes the text of the scene file")
+    rospy.set_param("rigid_links_description", rigid_links(rospy.get_param(description)))
     with open(os.path.join(rospkg.RosPack().get_path("flexarm"), TEMPLATE), encoding="utf-8") as file:
         config = fit(yaml.safe_load(file), view, rospy.get_param("flexarm/frame_prefix", ""))
     # Kept, because rviz takes this process's place, and under one name for each arm, so that they do not pile up.

@@ -55,6 +55,7 @@ void Node::tick() {
     }
   }
   diagnostics_.publish(false);
+  clock_publisher_.warn_if_missing();
 }
 
 bool Node::advance() {

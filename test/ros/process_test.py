@@ -21,8 +21,9 @@ SCENE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "two_arms.urdf"
 class RunningNode:
     """The node as a process of its own, its output in a file; ends with the `with` block."""
 
-    def __init__(self, *arguments):
+    def __init__(self, *arguments, is_silent=False):
         self.arguments = arguments
+        self.is_silent = is_silent
 
     def __enter__(self):
         if rospy.has_param("/flexarm"):  # private parameters outlive their node
@@ -33,7 +34,8 @@ class RunningNode:
             stdout=open(self.log.name, "w", encoding="utf-8"),
             stderr=subprocess.STDOUT,
         )
-        self.status = rospy.wait_for_message("/flexarm/status", SimulatorStatus, PATIENCE)
+        if not self.is_silent:
+            self.status = rospy.wait_for_message("/flexarm/status", SimulatorStatus, PATIENCE)
         return self
 
     def __exit__(self, *_):
@@ -72,6 +74,14 @@ class Process(unittest.TestCase):
             rospy.Subscriber("/flexarm/status", SimulatorStatus, statuses.append)
             wait_until(lambda: statuses and statuses[-1].overruns > 0, "an overrun")
             self.assertGreater(statuses[-1].real_time_factor, 0)
+
+    def test_warns_of_a_clock_that_does_not_come(self):
+        rospy.set_param("/use_sim_time", True)
+        try:
+            with RunningNode(is_silent=True) as node:
+                wait_until(lambda: "nobody publishes /clock" in node.output(), "the warning")
+        finally:
+            rospy.set_param("/use_sim_time", False)
 
     def test_warns_once_of_another_publisher_of_its_frames(self):
         publisher = rospy.Publisher("/tf", TFMessage, queue_size=10)
