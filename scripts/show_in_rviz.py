@@ -5,7 +5,8 @@ show_in_rviz.py [RVIZ-ARGUMENT...]
 
 Fixed frame, camera and grid follow the simulator's parameters flexarm/view/..., the displays those of
 config/flexarm.rviz. What rviz draws of the URDF are the rigid links only: the <visual> of a flexible link would stay
-straight beside the bent beam. Their description is the parameter rigid_links_description.
+straight beside the bent beam. Their description is the parameter rigid_links_description. Where nothing has a shape,
+the frames are shown.
 """
 
 import math
@@ -46,7 +47,13 @@ def rigid_links(description):
     return xml.etree.ElementTree.tostring(robot, encoding="unicode")
 
 
-def fit(config, view, prefix):
+def has_shape(description):
+    """Whether rviz can draw anything of it but its frames."""
+    robot = xml.etree.ElementTree.fromstring(description)
+    return any(robot.find("link/" + shape) is not None for shape in ("visual", "beam"))
+
+
+def fit(config, view, prefix, description):
     """Fills the scene's frame, place and size into a configuration of rviz."""
     radius = view["radius"]
     manager = config["Visualization Manager"]
@@ -59,6 +66,7 @@ def fit(config, view, prefix):
     displays = {display["Class"]: display for display in manager["Displays"]}
     displays["rviz/Grid"]["Cell Size"] = 10.0 ** round(math.log10(radius / 3))
     displays["rviz/TF"]["Marker Scale"] = radius
+    displays["rviz/TF"]["Enabled"] = not has_shape(description)
     displays["rviz/RobotModel"]["TF Prefix"] = prefix.rstrip("/")
     return config
 
@@ -68,9 +76,10 @@ def main():
     description = rospy.search_param("robot_description")
     if description is None:
         sys.exit("no parameter robot_description: it takes the text of the scene file")
-    rospy.set_param("rigid_links_description", rigid_links(rospy.get_param(description)))
+    description = rigid_links(rospy.get_param(description))
+    rospy.set_param("rigid_links_description", description)
     with open(os.path.join(rospkg.RosPack().get_path("flexarm"), TEMPLATE), encoding="utf-8") as file:
-        config = fit(yaml.safe_load(file), view, rospy.get_param("flexarm/frame_prefix", ""))
+        config = fit(yaml.safe_load(file), view, rospy.get_param("flexarm/frame_prefix", ""), description)
     # Kept, because rviz takes this process's place, and under one name for each arm, so that they do not pile up.
     name = "flexarm" + rosgraph.names.get_ros_namespace().replace("/", "_").rstrip("_") + ".rviz"
     path = os.path.join(rospkg.get_ros_home(), name)

@@ -49,6 +49,12 @@ class Rviz(unittest.TestCase):
         robot = xml.etree.ElementTree.fromstring(rospy.get_param(model["Robot Description"]))
         self.assertEqual({link.get("name") for link in robot.findall("link")}, {"world", "upper_arm", "forearm", "payload"})
 
+    def test_shows_the_frames_of_what_has_no_shape(self):
+        displays = {display["Class"]: display for display in self.manager["Displays"]}
+        self.assertFalse(displays["rviz/TF"]["Enabled"])
+        self.assertFalse(show_in_rviz.has_shape("<robot name='r'><link name='a'/></robot>"))
+        self.assertTrue(show_in_rviz.has_shape("<robot name='r'><link name='a'><visual/></link></robot>"))
+
     def test_leaves_out_the_shapes_of_flexible_links_only(self):
         shapes = "<visual><geometry><sphere radius='1'/></geometry></visual><collision/>"
         text = show_in_rviz.rigid_links(
