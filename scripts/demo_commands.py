@@ -37,9 +37,18 @@ def pulses(command):
     if "table" not in command:
         return [(command["time"] + k * every, command) for k in range(command.get("repeat", 1))]
     begin, end = command["table"][0][0], command["table"][-1][0]
+    times = [begin + k * every for k in range(round((end - begin) / every))]
+    # Each holds until the next one comes: where that is late, no effort is lost.
     return [
-        (time, {**command, "efforts": interpolated(command["table"], time + 0.5 * every), "duration": every})
-        for time in (begin + k * every for k in range(round((end - begin) / every)))
+        (
+            time,
+            {
+                **command,
+                "efforts": interpolated(command["table"], time + 0.5 * every),
+                "duration": every if time == times[-1] else 0.0,
+            },
+        )
+        for time in times
     ]
 
 

@@ -6,8 +6,8 @@
 namespace flexarm::node {
 
 BeamStatePublisher::BeamStatePublisher(ros::NodeHandle& node, const Simulation& simulation, const RunState& run,
-                                       double rate)
-    : simulation_(simulation), schedule_(rate) {
+                                       double rate, const std::string& root_frame)
+    : simulation_(simulation), schedule_(rate), root_frame_(root_frame) {
   publisher_ = advertise<BeamStateArray>(node, "beam_states", 10, run, [this] { return make_message(stamp_); });
 }
 
@@ -20,7 +20,7 @@ void BeamStatePublisher::publish(const ros::Time& stamp, bool force) {
 BeamStateArray BeamStatePublisher::make_message(const ros::Time& stamp) {
   BeamStateArray message;
   message.header.stamp = stamp;
-  message.header.frame_id = simulation_.scene().root_link;
+  message.header.frame_id = root_frame_;
   for (std::size_t link = 0; link < simulation_.link_names().size(); ++link) {
     if (!simulation_.is_flexible(link)) continue;
     points_.clear();

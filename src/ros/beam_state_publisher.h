@@ -5,6 +5,7 @@
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
 
+#include <string>
 #include <vector>
 
 #include "flexarm/simulation/simulation.h"
@@ -16,7 +17,8 @@ namespace flexarm::node {
 /// Computes and publishes only while somebody subscribes.
 class BeamStatePublisher {
  public:
-  BeamStatePublisher(ros::NodeHandle& node, const Simulation& simulation, const RunState& run, double rate);
+  BeamStatePublisher(ros::NodeHandle& node, const Simulation& simulation, const RunState& run, double rate,
+                     const std::string& root_frame);
   BeamStatePublisher(const BeamStatePublisher&) = delete;
   BeamStatePublisher& operator=(const BeamStatePublisher&) = delete;
 
@@ -27,6 +29,7 @@ class BeamStatePublisher {
 
   const Simulation& simulation_;
   PublicationSchedule schedule_;
+  std::string root_frame_;
   ros::Time stamp_;                ///< of the current state
   std::vector<BeamPoint> points_;  ///< scratch
   ros::Publisher publisher_;

@@ -5,6 +5,11 @@
 #include "advertise.h"
 
 namespace flexarm::node {
+namespace {
+
+constexpr std::chrono::seconds kPatience(3);
+
+}  // namespace
 
 ClockPublisher::ClockPublisher(ros::NodeHandle& node, const RunState& run, bool publish, double rate, double step)
     : is_clock_(publish), step_(step), schedule_(rate) {
@@ -38,6 +43,12 @@ std::optional<ros::Time> ClockPublisher::stamp() const {
   const ros::Time now = is_clock_ ? simulated_time() : ros::Time::now();
   if (now.isZero()) return std::nullopt;
   return now;
+}
+
+void ClockPublisher::warn_if_missing() {
+  if (warned_ || stamp() || std::chrono::steady_clock::now() - start_ < kPatience) return;
+  warned_ = true;
+  ROS_WARN("/use_sim_time is set, but nobody publishes /clock: nothing is published until somebody does");
 }
 
 }  // namespace flexarm::node

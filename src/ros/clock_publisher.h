@@ -5,6 +5,7 @@
 #include <ros/publisher.h>
 #include <rosgraph_msgs/Clock.h>
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 
@@ -30,6 +31,8 @@ class ClockPublisher {
   void publish_now();
   /// Stamp of the current state; empty as long as ROS has no time.
   std::optional<ros::Time> stamp() const;
+  /// Warns once of a clock that does not come: without it, nothing is published.
+  void warn_if_missing();
 
  private:
   void publish(bool force);
@@ -40,6 +43,8 @@ class ClockPublisher {
   double step_;
   std::uint64_t ticks_ = 1;  ///< steps, counted as an integer so that no rounding accumulates
   PublicationSchedule schedule_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  bool warned_ = false;
   ros::Publisher publisher_;
 };
 

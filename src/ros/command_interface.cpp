@@ -77,12 +77,13 @@ void CommandInterface::receive_joint_state(const sensor_msgs::JointState& messag
 void CommandInterface::receive_emergency_stop(const std_msgs::Bool& message) {
   if (message.data == static_cast<unsigned char>(stopped_)) return;
   stopped_ = message.data;
-  if (!stopped_) {
-    ROS_INFO("emergency stop released: commands are accepted again");
-    return;
+  if (stopped_) {
+    ROS_WARN("emergency stop: all efforts are zero, commands are refused until it is released");
+    forget_commands();
+  } else {
+    ROS_INFO("emergency stop released: the scene's efforts act again, commands are accepted");
+    release_efforts();
   }
-  ROS_WARN("emergency stop: all efforts are zero, commands are refused until it is released");
-  forget_commands();
 }
 
 void CommandInterface::command(const std::string& topic, const std::vector<std::string>& names,
@@ -137,6 +138,10 @@ void CommandInterface::zero_efforts() {
   for (std::size_t coordinate = 0; coordinate < expiry_.size(); ++coordinate) {
     if (simulation_.is_commandable(coordinate)) simulation_.command_effort(coordinate, 0);
   }
+}
+
+void CommandInterface::release_efforts() {
+  for (std::size_t coordinate = 0; coordinate < expiry_.size(); ++coordinate) simulation_.release_command(coordinate);
 }
 
 }  // namespace flexarm::node

@@ -43,7 +43,9 @@ class CommandInterface {
   /// What is wrong with a command, empty if nothing is; on success the coordinates are in `commanded_`.
   std::string find_fault(const std::vector<std::string>& names, const std::vector<double>& efforts, double duration);
   void warn(const std::string& topic, const std::string& fault);
+  /// While the emergency stop is on, no effort acts, be it commanded or the scene's own.
   void zero_efforts();
+  void release_efforts();
 
   Simulation& simulation_;
   double timeout_;

@@ -2,12 +2,15 @@
 
 #include <ros/ros.h>
 
+#include <csignal>
 #include <exception>
 
 #include "node.h"
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "flexarm");
+  // As ROS does with SIGINT: otherwise the node would stay registered with the master for ever.
+  std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
   ros::NodeHandle keeps_ros_alive;  // beyond a failed construction: its message is to go out
   try {
     flexarm::node::Node node;

@@ -3,6 +3,10 @@
 #include <ros/console.h>
 #include <ros/init.h>
 
+#include <vector>
+
+#include "scene_extent.h"
+
 namespace flexarm::node {
 namespace {
 
@@ -20,18 +24,20 @@ Node::Node()
       pacer_(simulation_.step_size(), parameters_.real_time_factor, parameters_.max_catch_up),
       last_tick_(SteadyClock::now()),
       clock_publisher_(node_, run_, parameters_.publish_clock, parameters_.clock_rate, simulation_.step_size()),
-      state_publisher_(node_, simulation_, run_, parameters_.publish_rate),
-      beam_state_publisher_(node_, simulation_, run_, parameters_.publish_rate),
-      marker_publisher_(node_, simulation_, run_, parameters_.marker_rate),
-      status_publisher_(private_node_, simulation_, run_, parameters_.status_rate),
+      state_publisher_(node_, simulation_, run_, parameters_.publish_rate, parameters_.frame_prefix),
+      beam_state_publisher_(node_, simulation_, run_, parameters_.publish_rate, root_frame()),
+      marker_publisher_(node_, simulation_, run_, parameters_.marker_rate, root_frame()),
+      status_publisher_(private_node_, simulation_, run_, parameters_.status_rate, root_frame()),
       diagnostics_(node_, private_node_, simulation_, run_),
       command_interface_(node_, private_node_, simulation_, parameters_.command_timeout),
+      frame_watch_(node_, state_publisher_.frames()),
       services_(private_node_, *this) {
   run_.paused = parameters_.paused;
   ROS_INFO("scene '%s': %zu links, %zu joint coordinates, %zu degrees of freedom; scheme %s, step %g s%s",
            simulation_.scene().name.c_str(), simulation_.link_names().size(), simulation_.coordinate_names().size(),
            simulation_.degrees_of_freedom(), simulation_.scheme().c_str(), simulation_.step_size(),
            run_.paused ? "; paused" : "");
+  describe_view();
   publish(true);
   timer_ = node_.createSteadyTimer(kTickPeriod, [this](const ros::SteadyTimerEvent&) { tick(); });
 }
@@ -49,18 +55,20 @@ void Node::tick() {
     }
   }
   diagnostics_.publish(false);
+  clock_publisher_.warn_if_missing();
 }
 
 bool Node::advance() {
   command_interface_.expire(run_.simulated_time);
   const StepResult result = simulation_.step();
   run_.last_step = result;
+  run_.halvings += static_cast<std::uint64_t>(result.halvings);
   if (!result.converged) {
     fail(result);
     return false;
   }
+  run_.failure.clear();
   ++run_.steps;
-  run_.halvings += static_cast<std::uint64_t>(result.halvings);
   run_.simulated_time = static_cast<double>(run_.steps) * simulation_.step_size();
   clock_publisher_.advance();
   publish(false);
@@ -72,10 +80,18 @@ void Node::fail(const StepResult& result) {
   run_.failure = "step from t = " + std::to_string(simulation_.time()) + " s failed: " + to_string(result.reason) +
                  " after " + std::to_string(result.iterations) + " iterations and " + std::to_string(result.halvings) +
                  " halvings";
-  ROS_ERROR_STREAM(run_.failure << "; paused, the last good state is kept; " << private_node_.resolveName("reset")
-                                << " starts again");
+  ROS_ERROR_STREAM(run_.failure << "; paused at the last good state: " << private_node_.resolveName("resume")
+                                << " goes on from it, " << private_node_.resolveName("reset") << " starts again");
+  clock_publisher_.advance();  // the last good sub-step may be news, and news need a stamp of their own
   publish(true);
   diagnostics_.publish(true);
+}
+
+void Node::describe_view() const {
+  const SceneExtent extent = scene_extent(simulation_);
+  private_node_.setParam("view/frame", root_frame());
+  private_node_.setParam("view/center", std::vector<double>{extent.center.x(), extent.center.y(), extent.center.z()});
+  private_node_.setParam("view/radius", extent.radius);
 }
 
 void Node::publish(bool force) {
@@ -96,11 +112,9 @@ void Node::pause() {
 }
 
 bool Node::resume() {
-  if (run_.failed()) {
-    ROS_WARN_STREAM("not resumed: " << run_.failure << "; call " << private_node_.resolveName("reset") << " first");
-    return false;
-  }
   if (!run_.paused) return true;
+  // Who resumes after a failure is told whether the step works now.
+  if (run_.failed() && !advance()) return false;
   run_.paused = false;
   pacer_.clear_backlog();
   ROS_INFO("resumed at t = %g s", simulation_.time());
@@ -111,16 +125,16 @@ bool Node::resume() {
 void Node::reset() {
   simulation_.reset();
   command_interface_.forget_commands();
+  marker_publisher_.forget_largest_strain();
   run_.failure.clear();
   run_.last_step = {};
   pacer_.clear_backlog();
   ROS_INFO("reset");
-  clock_publisher_.advance();  // the initial state is news, and news need a stamp of their own
+  clock_publisher_.advance();  // the initial state is news, too
   publish(true);
 }
 
 bool Node::step(std::uint32_t steps) {
-  if (run_.failed()) return false;
   for (std::uint32_t made = 0; made < steps && ros::ok(); ++made) {
     if (!advance()) return false;
   }

@@ -6,12 +6,14 @@
 
 #include <chrono>
 #include <cstdint>
+#include <string>
 
 #include "beam_state_publisher.h"
 #include "clock_publisher.h"
 #include "command_interface.h"
 #include "diagnostics.h"
 #include "flexarm/simulation/simulation.h"
+#include "frame_watch.h"
 #include "marker_publisher.h"
 #include "pacer.h"
 #include "parameters.h"
@@ -32,11 +34,12 @@ class Node {
   Node& operator=(const Node&) = delete;
 
   void pause();
-  /// @returns false, and stays paused, after a failed step: only a reset recovers from that
+  /// After a failed step, goes on from the last good state, with what was commanded since.
+  /// @returns false, and stays paused, if the step fails again; run().failure says why
   bool resume();
   /// Back to the scene's initial state; time of the stamps goes on, and paused stays paused.
   void reset();
-  /// Makes steps whatever the wall clock says. @returns false if one failed, or there was a failure before
+  /// Makes steps whatever the wall clock says. @returns false if one failed; run().failure says why
   bool step(std::uint32_t steps);
 
   const RunState& run() const { return run_; }
@@ -48,6 +51,9 @@ class Node {
   /// One step and what has to happen around it. @returns false, and pauses, if it failed [real-time loop]
   bool advance();
   void publish(bool force);
+  /// Sets ~view, which tells displays where to look.
+  void describe_view() const;
+  std::string root_frame() const { return parameters_.frame_prefix + simulation_.scene().root_link; }
   void fail(const StepResult& result);
 
   ros::NodeHandle node_, private_node_{"~"};
@@ -63,6 +69,7 @@ class Node {
   StatusPublisher status_publisher_;
   Diagnostics diagnostics_;
   CommandInterface command_interface_;
+  FrameWatch frame_watch_;
   Services services_;
   ros::SteadyTimer timer_;
 };

@@ -62,6 +62,14 @@ class ParameterReader {
   std::string errors_;
 };
 
+/// As tf_prefix, for the sake of rviz, which joins the two by a slash: "left" and "left/" make "left/boom" of "boom".
+void read_frame_prefix(ParameterReader& reader, std::string& prefix) {
+  reader.read("frame_prefix", prefix);
+  if (prefix.empty()) return;
+  if (prefix.front() == '/') reader.complain("frame_prefix", "must not begin with a slash", "'" + prefix + "'");
+  if (prefix.back() != '/') prefix += '/';
+}
+
 void override_integrator(const ros::NodeHandle& private_node, scene::IntegratorDescription& integrator) {
   ParameterReader reader(private_node);
   std::string scheme = integrator.scheme;
@@ -76,6 +84,8 @@ void override_integrator(const ros::NodeHandle& private_node, scene::IntegratorD
     reader.read("rho_infinity", rho_infinity, true);
     if (rho_infinity > 1) reader.complain("rho_infinity", "must lie in [0, 1]", std::to_string(rho_infinity));
     integrator.rho_infinity = rho_infinity;
+    for (const scene::OptionConflict& conflict : scene::option_conflicts(integrator))
+      reader.complain("rho_infinity", conflict.message, std::to_string(rho_infinity));
   }
   reader.throw_if_any();
 }
@@ -109,6 +119,7 @@ Parameters read_parameters(const ros::NodeHandle& private_node) {
   reader.read("publish_clock", parameters.publish_clock);
   reader.read("clock_rate", parameters.clock_rate);
   reader.read("command_timeout", parameters.command_timeout, true);
+  read_frame_prefix(reader, parameters.frame_prefix);
   reader.throw_if_any();
   return parameters;
 }

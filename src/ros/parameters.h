@@ -4,6 +4,7 @@
 #include <ros/node_handle.h>
 
 #include <stdexcept>
+#include <string>
 
 #include "flexarm/scene/scene_description.h"
 
@@ -24,6 +25,7 @@ struct Parameters {
   double status_rate = 10;      ///< ~status [Hz]
   bool publish_clock = false;
   double clock_rate = 100;     ///< [Hz]
+  std::string frame_prefix;    ///< of all names of frames: empty, or with a slash at its end
   double command_timeout = 0;  ///< efforts return to zero this long after the last command [s]; 0: never
 };
 

@@ -1,5 +1,7 @@
 #include "services.h"
 
+#include <stdexcept>
+
 #include "node.h"
 
 namespace flexarm::node {
@@ -19,7 +21,9 @@ bool Services::pause(std_srvs::Empty::Request&, std_srvs::Empty::Response&) {
 }
 
 bool Services::resume(std_srvs::Empty::Request&, std_srvs::Empty::Response&) {
-  return simulator_.resume();
+  // An exception's text reaches the caller, an answer without fields has no place for it.
+  if (!simulator_.resume()) throw std::runtime_error("not resumed: " + simulator_.run().failure);
+  return true;
 }
 
 bool Services::reset(std_srvs::Empty::Request&, std_srvs::Empty::Response&) {
@@ -34,7 +38,7 @@ bool Services::step(Step::Request& request, Step::Response& response) {
     response.message = "more than " + std::to_string(kMostSteps) + " steps at once";
   } else {
     response.success = simulator_.step(request.steps);
-    response.message = simulator_.run().failure;
+    if (!response.success) response.message = simulator_.run().failure;
   }
   response.time = simulator_.simulation().time();
   return true;

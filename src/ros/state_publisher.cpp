@@ -18,7 +18,8 @@ geometry_msgs::TransformStamped make_transform(const std::string& parent, const 
 
 }  // namespace
 
-StatePublisher::StatePublisher(ros::NodeHandle& node, const Simulation& simulation, const RunState& run, double rate)
+StatePublisher::StatePublisher(ros::NodeHandle& node, const Simulation& simulation, const RunState& run, double rate,
+                               const std::string& frame_prefix)
     : simulation_(simulation), schedule_(rate) {
   joint_states_.name = simulation.coordinate_names();
   joint_states_.position.resize(joint_states_.name.size());
@@ -29,10 +30,10 @@ StatePublisher::StatePublisher(ros::NodeHandle& node, const Simulation& simulati
       advertise<sensor_msgs::JointState>(node, "joint_states", 10, run, [this] { return joint_states_; });
   transform_publisher_ = advertise<tf2_msgs::TFMessage>(node, "/tf", 100, run, [this] { return transforms_; });
   static_transform_publisher_ = node.advertise<tf2_msgs::TFMessage>("/tf_static", 100, true);
-  collect_frames(simulation.scene());
+  collect_frames(simulation.scene(), frame_prefix);
 }
 
-void StatePublisher::collect_frames(const scene::SceneDescription& scene) {
+void StatePublisher::collect_frames(const scene::SceneDescription& scene, const std::string& prefix) {
   const std::vector<std::string>& links = simulation_.link_names();
   std::unordered_map<std::string, std::size_t> index_of;
   for (std::size_t link = 0; link < links.size(); ++link) index_of[links[link]] = link;
@@ -40,7 +41,7 @@ void StatePublisher::collect_frames(const scene::SceneDescription& scene) {
   tf2_msgs::TFMessage static_transforms;
   for (const scene::JointDescription& joint : scene.joints) {
     const Frame frame{index_of.at(joint.parent), index_of.at(joint.child)};
-    geometry_msgs::TransformStamped transform = make_transform(joint.parent, joint.child);
+    geometry_msgs::TransformStamped transform = make_transform(prefix + joint.parent, prefix + joint.child);
     const bool rigid = !simulation_.is_flexible(frame.parent) && !simulation_.is_flexible(frame.child);
     if (joint.kind == scene::JointKind::Fixed && rigid) {
       transform.header.stamp = ros::Time::now();
@@ -54,8 +55,10 @@ void StatePublisher::collect_frames(const scene::SceneDescription& scene) {
   for (std::size_t link = 0; link < links.size(); ++link) {
     if (!simulation_.is_flexible(link)) continue;
     flexible_links_.push_back(link);
-    transforms_.transforms.push_back(make_transform(links[link], links[link] + "/tip"));
+    transforms_.transforms.push_back(make_transform(prefix + links[link], prefix + links[link] + "/tip"));
   }
+  for (const auto* message : {&transforms_, &static_transforms})
+    for (const auto& transform : message->transforms) frame_names_.insert(transform.child_frame_id);
   static_transform_publisher_.publish(static_transforms);
 }
 

@@ -8,8 +8,8 @@
 namespace flexarm::node {
 
 StatusPublisher::StatusPublisher(ros::NodeHandle& private_node, const Simulation& simulation, const RunState& run,
-                                 double rate)
-    : simulation_(simulation), run_(run), schedule_(rate) {
+                                 double rate, const std::string& root_frame)
+    : simulation_(simulation), run_(run), schedule_(rate), root_frame_(root_frame) {
   publisher_ = advertise<SimulatorStatus>(private_node, "status", 10, run, [this] { return last_message_; });
 }
 
@@ -24,14 +24,14 @@ SimulatorStatus StatusPublisher::make_message(const ros::Time& stamp) {
   const Energies energies = simulation_.energies();
   SimulatorStatus message;
   message.header.stamp = stamp;
-  message.header.frame_id = simulation_.scene().root_link;
+  message.header.frame_id = root_frame_;
   message.time = simulation_.time();
   message.step = simulation_.step_size();
   message.steps = run_.steps;
   message.paused = run_.paused;
   message.failed = run_.failed();
   message.message = run_.failure;
-  message.real_time_factor = measure_real_time_factor();
+  message.real_time_factor = real_time_factor_.measure(run_.simulated_time, RealTimeFactor::Clock::now(), run_.paused);
   message.overruns = run_.overruns;
   message.scheme = simulation_.scheme();
   message.iterations = run_.last_step.iterations;
@@ -45,15 +45,6 @@ SimulatorStatus StatusPublisher::make_message(const ros::Time& stamp) {
   message.momentum = to_vector3(simulation_.momentum());
   message.angular_momentum = to_vector3(simulation_.angular_momentum());
   return message;
-}
-
-double StatusPublisher::measure_real_time_factor() {
-  const auto wall_time = std::chrono::steady_clock::now();
-  const double elapsed = std::chrono::duration<double>(wall_time - last_wall_time_).count();
-  const double simulated = run_.simulated_time - last_simulated_time_;
-  last_wall_time_ = wall_time;
-  last_simulated_time_ = run_.simulated_time;
-  return elapsed > 0 ? simulated / elapsed : 0;
 }
 
 }  // namespace flexarm::node

@@ -5,17 +5,19 @@
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
 
-#include <chrono>
+#include <string>
 
 #include "flexarm/simulation/simulation.h"
 #include "publication_schedule.h"
+#include "real_time_factor.h"
 #include "run_state.h"
 
 namespace flexarm::node {
 
 class StatusPublisher {
  public:
-  StatusPublisher(ros::NodeHandle& private_node, const Simulation& simulation, const RunState& run, double rate);
+  StatusPublisher(ros::NodeHandle& private_node, const Simulation& simulation, const RunState& run, double rate,
+                  const std::string& root_frame);
   StatusPublisher(const StatusPublisher&) = delete;
   StatusPublisher& operator=(const StatusPublisher&) = delete;
 
@@ -25,13 +27,12 @@ class StatusPublisher {
 
  private:
   SimulatorStatus make_message(const ros::Time& stamp);
-  double measure_real_time_factor();
 
   const Simulation& simulation_;
   const RunState& run_;
   PublicationSchedule schedule_;
-  std::chrono::steady_clock::time_point last_wall_time_ = std::chrono::steady_clock::now();
-  double last_simulated_time_ = 0;
+  std::string root_frame_;
+  RealTimeFactor real_time_factor_{RealTimeFactor::Clock::now()};
   SimulatorStatus last_message_;
   ros::Publisher publisher_;
 };

@@ -67,6 +67,12 @@ class BadScenes(unittest.TestCase):
     def test_every_bad_parameter_of_the_integrator_is_reported(self):
         self.assert_refused(["_scene:=" + GOOD_SCENE, "_step:=0", "_tolerance:=x"], "step", "tolerance")
 
+    def test_an_option_that_the_scheme_does_not_have(self):
+        self.assert_refused(["_scene:=" + GOOD_SCENE, "_scheme:=newmark", "_rho_infinity:=0.5"], "rho_infinity", "edmc1")
+
+    def test_a_frame_prefix_with_a_leading_slash(self):
+        self.assert_refused(["_scene:=" + GOOD_SCENE, "_frame_prefix:=/left"], "frame_prefix", "/left")
+
 
 if __name__ == "__main__":
     rospy.init_node("bad_scenes_test")

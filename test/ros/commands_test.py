@@ -12,6 +12,7 @@ from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import JointState
 from simulated_arm import PATIENCE, CommandTopic, SimulatedArm, force_command, wait_until
 from std_msgs.msg import Bool, Float64
+from visualization_msgs.msg import MarkerArray
 
 ROUND_OFF = 1e-12  # rad and m: the joints compared are not coupled at all
 
@@ -114,6 +115,30 @@ class Commands(unittest.TestCase):
         time.sleep(0.2)
         self.force.send(force_command(["left_shoulder"], [3.0]))
         self.wait_for_effort("left_shoulder", 3.0)
+        self.assertEqual(self.arm.joint("right_shoulder").effort, 0.0)  # its command is forgotten
+
+    def test_emergency_stop_holds_back_the_scenes_efforts_and_gives_them_back(self):
+        stop = CommandTopic("/flexarm/emergency_stop", Bool)
+        self.wait_for_effort("winch", 0.5)
+        stop.send(True)
+        self.wait_for_effort("winch", 0.0)
+        self.arm.reset()
+        self.assertTrue(self.arm.step(1).success)
+        self.assertEqual(self.arm.joint("winch").effort, 0.0)
+        stop.send(False)
+        self.wait_for_effort("winch", 0.5)
+
+    def test_reset_begins_the_scale_of_the_colours_anew(self):
+        def largest_strain():
+            markers = rospy.wait_for_message("/beam_markers", MarkerArray, PATIENCE).markers
+            return max(float(marker.text.split()[0]) for marker in markers if marker.text.endswith("%"))
+
+        self.force.send(force_command(["left_shoulder"], [1.0]))
+        self.wait_for_effort("left_shoulder", 1.0)
+        self.assertTrue(self.arm.step(20).success)
+        self.assertGreater(largest_strain(), 0)
+        self.arm.reset()
+        self.assertEqual(largest_strain(), 0)
 
     # ---- bad commands
 
@@ -161,37 +186,6 @@ class Commands(unittest.TestCase):
         time.sleep(0.3)
         self.assertEqual(len(warnings), 1)
         self.assertIn("nose", warnings[0])
-
-
-class Failure(unittest.TestCase):
-    def test_failed_step_keeps_the_state_until_a_reset(self):
-        arm = SimulatedArm()
-        force = CommandTopic("joint_force_command", JointForceCommand)
-        arm.reset()
-        self.assertTrue(arm.step(5).success)
-        before = arm.joint_states()
-        force.send(force_command(["left_shoulder"], [1e250]))
-
-        answers = []
-
-        def failed():
-            answers.append(arm.step(1))
-            return not answers[-1].success
-
-        wait_until(failed, "a step to fail")
-        self.assertIn("failed", answers[-1].message)
-        status = arm.status()
-        self.assertTrue(status.failed and status.paused)
-        for position in arm.joint_states().position:
-            self.assertTrue(math.isfinite(position))
-        self.assertEqual(len(before.position), len(arm.joint_states().position))
-        with self.assertRaises(rospy.ServiceException):
-            arm.resume()
-        self.assertFalse(arm.step(1).success)
-
-        arm.reset()
-        self.assertFalse(arm.status().failed)
-        self.assertTrue(arm.step(5).success)
 
 
 if __name__ == "__main__":

@@ -1,15 +1,16 @@
 #!/usr/bin/python3
-"""Pause, step, resume and reset of a simulation that is the clock of everybody; time never runs backwards."""
+"""Pause, step, resume, reset and failure of a simulation that is the clock of everybody; time never runs backwards."""
 
+import math
 import time
 import unittest
 
 import rospy
 import rostest
-from flexarm.msg import SimulatorStatus
+from flexarm.msg import JointForceCommand, SimulatorStatus
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
-from simulated_arm import SimulatedArm, wait_until
+from simulated_arm import CommandTopic, SimulatedArm, force_command, wait_until
 from tf2_msgs.msg import TFMessage
 
 
@@ -39,17 +40,20 @@ class StampLog:
         return sum(len(stamps) for stamps in self.stamps.values())
 
 
-class Services(unittest.TestCase):
+class ClockedArm(unittest.TestCase):
     """Messages arrive when they arrive: hence the waiting for what a service brought about."""
 
     @classmethod
     def setUpClass(cls):
         cls.arm = SimulatedArm()
         cls.log = StampLog()
+        cls.arm.reset()
+        cls.arm.resume()
         wait_until(lambda: all(cls.log.stamps.values()), "every topic")
         cls.step_size = cls.log.last["/flexarm/status"].step
 
     def setUp(self):
+        self.arm.reset()
         self.arm.resume()
 
     def tearDown(self):
@@ -65,6 +69,8 @@ class Services(unittest.TestCase):
         self.arm.pause()
         time.sleep(0.2)  # what was sent before arrives
 
+
+class Services(ClockedArm):
     def test_runs_at_the_pace_of_the_wall_clock(self):
         first, first_wall = self.status(), time.monotonic()
         time.sleep(1.0)
@@ -72,6 +78,9 @@ class Services(unittest.TestCase):
         made = (last.steps + last.overruns - first.steps - first.overruns) * self.step_size
         # Each status is up to a period (0.1 s) old, and the catch-up may hold another 0.1 s back.
         self.assertLess(abs(made - wall_time), 0.5)
+        # A measurement takes 50 ms at least, and up to 100 ms of backlog may be made up in it.
+        self.assertGreater(last.real_time_factor, 0)
+        self.assertLessEqual(last.real_time_factor, (50 + 100) / 50)
 
     def test_pause_stops_time_and_messages(self):
         self.pause_and_wait()
@@ -135,6 +144,57 @@ class Services(unittest.TestCase):
         wait_until(lambda: not self.status().paused, "the resumption")
         for _ in range(3):
             self.arm.reset()
+
+
+class Failure(ClockedArm):
+    def setUp(self):
+        super().setUp()
+        self.force = CommandTopic("joint_force_command", JointForceCommand)
+        self.pause_and_wait()
+        self.before = self.status()
+        self.force.send(force_command(["left_shoulder"], [1e250]))
+        answers = []
+
+        def failed():
+            answers.append(self.arm.step(1))
+            return not answers[-1].success
+
+        wait_until(failed, "a step to fail")
+        self.answer = answers[-1]
+        wait_until(lambda: self.status().failed, "the status of the failure")
+
+    def test_last_good_state_and_reason_are_published(self):
+        self.assertIn("step from t = ", self.answer.message)
+        status = self.status()
+        self.assertTrue(status.paused)
+        self.assertEqual(status.message, self.answer.message)
+        self.assertEqual(status.time, self.answer.time)
+        self.assertEqual(status.halvings - self.before.halvings, 5)  # max_halvings of the failed step
+        wait_until(lambda: self.log.last["/joint_states"].header.stamp == status.header.stamp, "the last good state")
+        states = self.log.last["/joint_states"]
+        for number in (*states.position, *states.velocity):
+            self.assertTrue(math.isfinite(number))
+
+    def test_who_tries_again_is_told_the_reason(self):
+        self.assertIn("step from t = ", self.arm.step(1).message)
+        with self.assertRaisesRegex(rospy.ServiceException, "step from t = "):
+            self.arm.resume()
+        self.assertTrue(self.status().paused)
+
+    def test_goes_on_from_the_last_good_state_with_a_new_command(self):
+        self.force.send(force_command(["left_shoulder"], [0.0]))
+        time.sleep(0.2)  # until the command is there
+        failed_at = self.status()
+        self.arm.resume()
+        wait_until(lambda: self.status().time > failed_at.time, "the simulation to go on")
+        self.assertFalse(self.status().failed or self.status().paused)
+        self.assertEqual(self.status().message, "")
+        self.assertGreaterEqual(self.status().steps, failed_at.steps)
+
+    def test_reset_starts_again(self):
+        self.arm.reset()
+        wait_until(lambda: not self.status().failed, "the status after the reset")
+        self.assertTrue(self.arm.step(5).success)
 
 
 if __name__ == "__main__":

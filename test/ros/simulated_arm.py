@@ -29,22 +29,21 @@ class Joint:
 
 
 class SimulatedArm:
-    def __init__(self):
+    def __init__(self, namespace=""):
+        self.namespace = namespace
         for service in ("pause", "resume", "reset", "step"):
-            rospy.wait_for_service("/flexarm/" + service, PATIENCE)
-        self.pause = rospy.ServiceProxy("/flexarm/pause", Empty)
-        self.resume = rospy.ServiceProxy("/flexarm/resume", Empty)
-        self.reset = rospy.ServiceProxy("/flexarm/reset", Empty)
-        self.step = rospy.ServiceProxy("/flexarm/step", Step)
+            rospy.wait_for_service(namespace + "/flexarm/" + service, PATIENCE)
+        self.pause = rospy.ServiceProxy(namespace + "/flexarm/pause", Empty)
+        self.resume = rospy.ServiceProxy(namespace + "/flexarm/resume", Empty)
+        self.reset = rospy.ServiceProxy(namespace + "/flexarm/reset", Empty)
+        self.step = rospy.ServiceProxy(namespace + "/flexarm/step", Step)
 
     # While the simulation is paused, a new subscriber gets what was sent before the last service answered.
-    @staticmethod
-    def status():
-        return rospy.wait_for_message("/flexarm/status", SimulatorStatus, PATIENCE)
+    def status(self):
+        return rospy.wait_for_message(self.namespace + "/flexarm/status", SimulatorStatus, PATIENCE)
 
-    @staticmethod
-    def joint_states():
-        return rospy.wait_for_message("/joint_states", JointState, PATIENCE)
+    def joint_states(self):
+        return rospy.wait_for_message(self.namespace + "/joint_states", JointState, PATIENCE)
 
     def joint(self, name):
         return Joint(self.joint_states(), name)

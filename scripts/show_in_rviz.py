@@ -1,0 +1,92 @@
+#!/usr/bin/python3
+"""Starts rviz with a view that fits the scene of a running simulator.
+
+show_in_rviz.py [RVIZ-ARGUMENT...]
+
+Fixed frame, camera and grid follow the simulator's parameters flexarm/view/..., the displays those of
+config/flexarm.rviz. What rviz draws of the URDF are the rigid links only: the <visual> of a flexible link would stay
+straight beside the bent beam. Their description is the parameter rigid_links_description. Where nothing has a shape,
+the frames are shown.
+"""
+
+import math
+import os
+import sys
+import time
+import xml.etree.ElementTree
+
+import rosgraph
+import rospkg
+import rospy
+import yaml
+
+TEMPLATE = "config/flexarm.rviz"
+PATIENCE = 30.0  # s, wall time
+# In radii of the scene:
+DISTANCE = 2.8  # of the camera, which sees 45 degrees
+LEGEND = 0.25  # by which the camera looks past the centre, towards the legend
+
+
+def wait_for_view():
+    """What the simulator says about the scene: frame, center [m], radius [m]."""
+    end = time.monotonic() + PATIENCE
+    while not rospy.has_param("flexarm/view/radius"):  # set last
+        if time.monotonic() > end:
+            sys.exit("no parameter %s: is the simulator running?" % rospy.resolve_name("flexarm/view/radius"))
+        time.sleep(0.1)
+    return rospy.get_param("flexarm/view")
+
+
+def rigid_links(description):
+    """The URDF without the shapes of flexible links."""
+    robot = xml.etree.ElementTree.fromstring(description)
+    for link in robot.findall("link"):
+        if link.find("beam") is not None:
+            for shape in link.findall("visual") + link.findall("collision"):
+                link.remove(shape)
+    return xml.etree.ElementTree.tostring(robot, encoding="unicode")
+
+
+def has_shape(description):
+    """Whether rviz can draw anything of it but its frames."""
+    robot = xml.etree.ElementTree.fromstring(description)
+    return any(robot.find("link/" + shape) is not None for shape in ("visual", "beam"))
+
+
+def fit(config, view, prefix, description):
+    """Fills the scene's frame, place and size into a configuration of rviz."""
+    radius = view["radius"]
+    manager = config["Visualization Manager"]
+    manager["Global Options"]["Fixed Frame"] = view["frame"]
+    camera = manager["Views"]["Current"]
+    camera["Distance"] = DISTANCE * radius
+    x, y, z = view["center"]
+    camera["Focal Point"] = {"X": x - LEGEND * radius, "Y": y, "Z": z}
+    camera["Near Clip Distance"] = 1e-3 * radius
+    displays = {display["Class"]: display for display in manager["Displays"]}
+    displays["rviz/Grid"]["Cell Size"] = 10.0 ** round(math.log10(radius / 3))
+    displays["rviz/TF"]["Marker Scale"] = radius
+    displays["rviz/TF"]["Enabled"] = not has_shape(description)
+    displays["rviz/RobotModel"]["TF Prefix"] = prefix.rstrip("/")
+    return config
+
+
+def main():
+    view = wait_for_view()
+    description = rospy.search_param("robot_description")
+    if description is None:
+        sys.exit("no parameter robot_description: it takes the text of the scene file")
+    description = rigid_links(rospy.get_param(description))
+    rospy.set_param("rigid_links_description", description)
+    with open(os.path.join(rospkg.RosPack().get_path("flexarm"), TEMPLATE), encoding="utf-8") as file:
+        config = fit(yaml.safe_load(file), view, rospy.get_param("flexarm/frame_prefix", ""), description)
+    # Kept, because rviz takes this process's place, and under one name for each arm, so that they do not pile up.
+    name = "flexarm" + rosgraph.names.get_ros_namespace().replace("/", "_").rstrip("_") + ".rviz"
+    path = os.path.join(rospkg.get_ros_home(), name)
+    with open(path, "w", encoding="utf-8") as file:
+        yaml.safe_dump(config, file)
+    os.execvp("rviz", ["rviz", "-d", path, *sys.argv[1:]])
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,108 @@
+#!/usr/bin/python3
+"""A node as a guest of the ROS graph: it heeds its parameters, minds its frames, and takes its leave."""
+
+import os
+import signal
+import subprocess
+import tempfile
+import unittest
+
+import rosgraph
+import rospy
+import rostest
+from flexarm.msg import SimulatorStatus
+from geometry_msgs.msg import TransformStamped
+from simulated_arm import PATIENCE, wait_until
+from tf2_msgs.msg import TFMessage
+
+SCENE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "two_arms.urdf")
+
+
+class RunningNode:
+    """The node as a process of its own, its output in a file; ends with the `with` block."""
+
+    def __init__(self, *arguments, is_silent=False):
+        self.arguments = arguments
+        self.is_silent = is_silent
+
+    def __enter__(self):
+        if rospy.has_param("/flexarm"):  # private parameters outlive their node
+            rospy.delete_param("/flexarm")
+        self.log = tempfile.NamedTemporaryFile("r", suffix=".log")
+        self.process = subprocess.Popen(
+            ["rosrun", "flexarm", "flexarm_node", "_scene:=" + SCENE, *self.arguments],
+            stdout=open(self.log.name, "w", encoding="utf-8"),
+            stderr=subprocess.STDOUT,
+        )
+        if not self.is_silent:
+            self.status = rospy.wait_for_message("/flexarm/status", SimulatorStatus, PATIENCE)
+        return self
+
+    def __exit__(self, *_):
+        if self.process.poll() is None:
+            self.process.kill()
+        self.process.wait()
+        self.log.close()
+
+    def output(self):
+        self.log.seek(0)
+        return self.log.read()
+
+
+def registered_nodes():
+    publishers, subscribers, services = rosgraph.Master("/process_test").getSystemState()
+    return {name for group in (publishers, subscribers, services) for _, names in group for name in names}
+
+
+class Process(unittest.TestCase):
+    def test_unregisters_on_signals(self):
+        for number in (signal.SIGTERM, signal.SIGINT):
+            with RunningNode() as node:
+                self.assertIn("/flexarm", registered_nodes())
+                node.process.send_signal(number)
+                self.assertEqual(node.process.wait(PATIENCE), 0)
+                self.assertNotIn("/flexarm", registered_nodes())
+
+    def test_private_parameters_override_the_integrator(self):
+        with RunningNode("_step:=0.003", "_scheme:=newmark") as node:
+            self.assertEqual(node.status.step, 0.003)
+            self.assertEqual(node.status.scheme, "newmark")
+
+    def test_counts_the_steps_that_it_cannot_make(self):
+        with RunningNode("_real_time_factor:=1e6"):
+            statuses = []
+            rospy.Subscriber("/flexarm/status", SimulatorStatus, statuses.append)
+            wait_until(lambda: statuses and statuses[-1].overruns > 0, "an overrun")
+            self.assertGreater(statuses[-1].real_time_factor, 0)
+
+    def test_warns_of_a_clock_that_does_not_come(self):
+        rospy.set_param("/use_sim_time", True)
+        try:
+            with RunningNode(is_silent=True) as node:
+                wait_until(lambda: "nobody publishes /clock" in node.output(), "the warning")
+        finally:
+            rospy.set_param("/use_sim_time", False)
+
+    def test_warns_once_of_another_publisher_of_its_frames(self):
+        publisher = rospy.Publisher("/tf", TFMessage, queue_size=10)
+        message = TFMessage([TransformStamped()])
+        message.transforms[0].transform.rotation.w = 1
+        with RunningNode() as node:
+            wait_until(lambda: publisher.get_num_connections() > 0, "the node to listen")
+            message.transforms[0].child_frame_id = "foreign"
+            publisher.publish(message)
+            message.transforms[0].child_frame_id = "right_hand"
+            wait_until(lambda: publisher.publish(message) or "right_hand" in node.output(), "the warning")
+            for _ in range(20):
+                publisher.publish(message)
+            node.process.send_signal(signal.SIGINT)
+            node.process.wait(PATIENCE)
+            warnings = [line for line in node.output().splitlines() if "WARN" in line]
+            self.assertEqual(len(warnings), 1, node.output())
+            self.assertIn(rospy.get_name(), warnings[0])
+            self.assertNotIn("foreign", warnings[0])
+
+
+if __name__ == "__main__":
+    rospy.init_node("process_test")
+    rostest.rosrun("flexarm", "process", __name__)

@@ -1,0 +1,70 @@
+#!/usr/bin/python3
+"""What show_in_rviz.py hands to rviz fits the scene of the simulator in its namespace."""
+
+import math
+import os
+import sys
+import unittest
+import xml.etree.ElementTree
+from unittest import mock
+
+import rospy
+import rostest
+import yaml
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../scripts"))
+import show_in_rviz  # noqa: E402
+
+ROUND_OFF = 1e-12
+
+
+class Rviz(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        with mock.patch("os.execvp") as execute, mock.patch("sys.argv", ["show_in_rviz.py", "__name:=rviz"]):
+            show_in_rviz.main()
+        (cls.program, cls.arguments), _ = execute.call_args
+        with open(cls.arguments[2], encoding="utf-8") as file:
+            cls.manager = yaml.safe_load(file)["Visualization Manager"]
+
+    def test_starts_rviz_with_the_arguments_of_roslaunch(self):
+        self.assertEqual(self.program, "rviz")
+        self.assertEqual(self.arguments[:2] + self.arguments[3:], ["rviz", "-d", "__name:=rviz"])
+
+    def test_view_fits_the_scene(self):
+        """Two links of 1 m in the plane, with an angle of 0.5 between them."""
+        x, y = 1 + math.cos(0.5), math.sin(0.5)  # of the arm's end
+        radius = 0.5 * math.hypot(x, y)
+        self.assertEqual(self.manager["Global Options"]["Fixed Frame"], "left/world")
+        camera = self.manager["Views"]["Current"]
+        self.assertAlmostEqual(camera["Distance"], show_in_rviz.DISTANCE * radius, delta=ROUND_OFF)
+        self.assertAlmostEqual(camera["Focal Point"]["X"], 0.5 * x - show_in_rviz.LEGEND * radius, delta=ROUND_OFF)
+        self.assertAlmostEqual(camera["Focal Point"]["Y"], 0.5 * y, delta=ROUND_OFF)
+
+    def test_draws_rigid_links_and_beams(self):
+        displays = {display["Class"]: display for display in self.manager["Displays"]}
+        self.assertEqual(displays["rviz/MarkerArray"]["Marker Topic"], "beam_markers")
+        model = displays["rviz/RobotModel"]
+        self.assertEqual(model["TF Prefix"], "left")
+        robot = xml.etree.ElementTree.fromstring(rospy.get_param(model["Robot Description"]))
+        self.assertEqual({link.get("name") for link in robot.findall("link")}, {"world", "upper_arm", "forearm", "payload"})
+
+    def test_shows_the_frames_of_what_has_no_shape(self):
+        displays = {display["Class"]: display for display in self.manager["Displays"]}
+        self.assertFalse(displays["rviz/TF"]["Enabled"])
+        self.assertFalse(show_in_rviz.has_shape("<robot name='r'><link name='a'/></robot>"))
+        self.assertTrue(show_in_rviz.has_shape("<robot name='r'><link name='a'><visual/></link></robot>"))
+
+    def test_leaves_out_the_shapes_of_flexible_links_only(self):
+        shapes = "<visual><geometry><sphere radius='1'/></geometry></visual><collision/>"
+        text = show_in_rviz.rigid_links(
+            "<robot name='r'><link name='a'>%s</link><link name='b'><beam/>%s</link></robot>" % (shapes, shapes)
+        )
+        rigid, flexible = xml.etree.ElementTree.fromstring(text).findall("link")
+        self.assertEqual([child.tag for child in rigid], ["visual", "collision"])
+        self.assertEqual([child.tag for child in flexible], ["beam"])
+
+
+if __name__ == "__main__":
+    rospy.init_node("rviz_test")
+    rostest.rosrun("flexarm", "rviz", __name__)
