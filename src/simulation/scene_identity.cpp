@@ -99,6 +99,7 @@ class SceneFingerprint {
                  effort_limit, damping, friction, friction_law, mimic, child_origin, location] = joint;
     all(name, kind, parent, child, origin, axis, axis2, ratio, offset, direction, slide, limits, effort_limit, damping,
         friction, friction_law, mimic, child_origin);
+    if (profile) add(profile->numbers());
   }
 
   // ---- simulation

@@ -52,6 +52,11 @@ scene::DirectSection& section_of(scene::SceneDescription& scene) {
 
 const double kAUnit = 1 + std::numeric_limits<double>::epsilon();  // the least change of a number
 
+void change_cam(scene::SceneDescription& scene) {
+  for (scene::JointDescription& joint : scene.joints)
+    if (joint.profile) joint.profile = std::make_shared<CamProfile>(CamProfile::eccentric(0.05, 0.01 * kAUnit));
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Changes, CheckpointOfAChangedScene,
     ::testing::Values(
@@ -65,6 +70,7 @@ INSTANTIATE_TEST_SUITE_P(
         Change{"axis", "joint 'elbow'", [](auto& scene) { scene.joints[3].axis = Vector3(0, 0.6, 0.8); }},
         Change{"limit", "joint 'hinge'", [](auto& scene) { scene.joints[1].limits->upper *= kAUnit; }},
         Change{"friction_law", "joint 'elbow'", [](auto& scene) { scene.joints[3].friction_law.coefficient = 0.1; }},
+        Change{"cam", "joint 'cam'", change_cam},
         Change{"loop", "loop_joint 'loop'", [](auto& scene) { scene.loop_joints[0].damping *= kAUnit; }},
         Change{"gravity", "gravity", [](auto& scene) { scene.gravity.z() *= kAUnit; }},
         Change{"initial", "initial", [](auto& scene) { scene.initial_joints[0].velocity *= kAUnit; }},
