@@ -107,11 +107,10 @@ TEST_F(BentArm, TransformsAgreeWithTheSimulation) {
 TEST_F(BentArm, TransformsAgreeWithTheJointStates) {
   const sensor_msgs::JointState joints = joint_states();
   const auto tip_to_forearm = buffer_.lookupTransform("boom/tip", "forearm", joints.header.stamp, kPatience);
-  for (std::size_t i = 0; i < joints.name.size(); ++i) {
-    if (joints.name[i] != "elbow") continue;
-    const Quaternion expected(Eigen::AngleAxisd(joints.position[i], Vector3::UnitY()));
-    expect_equal(to_pose(tip_to_forearm.transform), {Vector3::Zero(), expected}, "forearm on the boom's tip");
-  }
+  const auto elbow = std::find(joints.name.begin(), joints.name.end(), "elbow");
+  ASSERT_NE(elbow, joints.name.end());
+  const Quaternion expected(Eigen::AngleAxisd(joints.position[elbow - joints.name.begin()], Vector3::UnitY()));
+  expect_equal(to_pose(tip_to_forearm.transform), {Vector3::Zero(), expected}, "forearm on the boom's tip");
 }
 
 TEST_F(BentArm, JointStatesAreTheSimulations) {
