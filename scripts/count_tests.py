@@ -2,8 +2,10 @@
 """Adds up the results of all test runners: `count_tests.py CTEST-REPORT DIRECTORY`.
 
 ctest knows every program that ran; a gtest or rostest left its single tests in DIRECTORY as JUnit XML (the test-name of
-test/ros/NAME.test is NAME, so that its file can be found). A program without such a file, or that failed although each of its tests passed, counts as one test. The last line is `N passed, N failed`;
-the exit status is 1 if a test failed, or if none ran.
+test/ros/NAME.test is NAME, so that its file can be found). A program without such a file, or that failed although each
+of its tests passed, counts as one test. Skipped are the tests that say so themselves, and disabled ones; a program that
+could not be started has failed. The last line is `N passed, N failed, N skipped`; the exit status is 1 if a test failed,
+or if none passed.
 """
 
 import os
@@ -12,13 +14,28 @@ import sys
 import xml.etree.ElementTree
 
 
+PASSED, FAILED, SKIPPED = "passed", "failed", "skipped"
+
+
 def single_tests(path):
-    """(name, passed) of every test in a JUnit file; skipped ones are left out. Raises ParseError."""
+    """(name, outcome) of every test in a JUnit file. Raises ParseError."""
     for case in xml.etree.ElementTree.parse(path).getroot().iter("testcase"):
-        if case.get("status") == "notrun" or case.find("skipped") is not None:
-            continue
-        failed = case.find("failure") is not None or case.find("error") is not None
-        yield "%s.%s" % (case.get("classname"), case.get("name")), not failed
+        outcome = PASSED
+        if case.find("failure") is not None or case.find("error") is not None:
+            outcome = FAILED
+        elif case.get("status") == "notrun" or case.find("skipped") is not None:
+            outcome = SKIPPED
+        yield "%s.%s" % (case.get("classname"), case.get("name")), outcome
+
+
+def outcome_of_program(case):
+    """What ctest says of a program."""
+    skipped = case.find("skipped")
+    if case.get("status") == "disabled" or (
+        skipped is not None and skipped.get("message", "").startswith("SKIP_")
+    ):
+        return SKIPPED
+    return PASSED if case.get("status") == "run" else FAILED
 
 
 def result_file(directory, program):
@@ -33,17 +50,17 @@ def result_file(directory, program):
     return None
 
 
-def results_of(program, passed, directory):
-    """(name, passed) of everything that a program tested."""
+def results_of(program, outcome, directory):
+    """(name, outcome) of everything that a program tested."""
     path = result_file(directory, program)
     results = []
     if path and os.path.exists(path):
         try:
             results = list(single_tests(path))
         except xml.etree.ElementTree.ParseError:
-            passed = False
-    if not results or (not passed and all(single_passed for _, single_passed in results)):
-        results.append((program, passed))
+            outcome = FAILED
+    if not results or (outcome == FAILED and all(single != FAILED for _, single in results)):
+        results.append((program, outcome))
     return results
 
 
@@ -52,13 +69,14 @@ def main():
     results = []
     if os.path.exists(report):
         for case in xml.etree.ElementTree.parse(report).getroot().iter("testcase"):
-            if case.get("status") in ("run", "fail"):
-                results += results_of(case.get("name"), case.get("status") == "run", directory)
-    failed = [name for name, passed in results if not passed]
-    for name in failed:
-        print("failed: " + name)
-    print("%d passed, %d failed" % (len(results) - len(failed), len(failed)))
-    return 1 if failed or not results else 0
+            results += results_of(case.get("name"), outcome_of_program(case), directory)
+    counts = {PASSED: 0, FAILED: 0, SKIPPED: 0}
+    for name, outcome in results:
+        counts[outcome] += 1
+        if outcome != PASSED:
+            print("%s: %s" % (outcome, name))
+    print(", ".join("%d %s" % (count, outcome) for outcome, count in counts.items()))
+    return 1 if counts[FAILED] or not counts[PASSED] else 0
 
 
 if __name__ == "__main__":

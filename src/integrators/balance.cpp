@@ -6,13 +6,6 @@
 namespace flexarm {
 namespace {
 
-/// Rotation of a point from what the state keeps, or by the local interpolation.
-template <int Nodes, class Point>
-PointRotation point_rotation(const ElementConfiguration<Nodes>& nodes, const Point& point,
-                             const std::vector<PointRotation>& kept, int index) {
-  return kept.empty() ? LocalRotations<Nodes>(nodes.orientation).evaluate(point.shape, point.derivative) : kept[index];
-}
-
 Matrix3 lumped_rotary(const NodalInertia& inertia, const Scheme& scheme) {
   return scheme.nodal_rotary_inertia ? Matrix3(inertia.rotary + inertia.beam_rotary) : inertia.rotary;
 }
@@ -33,15 +26,14 @@ Energies energies(const Model& model, const Scheme& scheme, const State& state) 
   for_each_element(model.beams, [&](const auto& element) {
     constexpr int N = std::decay_t<decltype(element)>::kNodes;
     const ElementConfiguration<N> nodes(element, state);
+    const LocalRotations<N> local(nodes.orientation);
     for (int k = 0; k < N - 1; ++k) {
-      const auto& point = element.stiffness_points[k];
-      const int index = element.first_stiffness_point + k;
-      const Vector6 strain = point_kinematics(point_rotation<N>(nodes, point, state.stiffness_rotations, index),
-                                              interpolate<N>(point.derivative, nodes.position), point.reference_strain)
-                                 .strain;
-      out.strain += 0.5 * point.weight * strain.dot(element.stiffness * strain);
+      const double weight = element.stiffness_points[k].weight;
+      const Vector6 strain = centroid_strain(element, nodes, local, state, k);
+      out.strain += 0.5 * weight * strain.dot(element.stiffness * strain);
       if (!state.strain_memory.empty())
-        out.strain += point.weight * stored(scheme.dissipation, state.strain_memory[index], element.stiffness);
+        out.strain += weight * stored(scheme.dissipation, state.strain_memory[element.first_stiffness_point + k],
+                                      element.stiffness);
     }
     for (int i = 0; i < N; ++i)
       for (int j = 0; j < N; ++j) out.kinetic += 0.5 * element.mass(i, j) * nodes.velocity[i].dot(nodes.velocity[j]);
@@ -73,12 +65,13 @@ Momenta momenta(const Model& model, const Scheme& scheme, const State& state) {
         out.angular += element.mass(i, j) * nodes.position[i].cross(nodes.velocity[j]);
       }
     if (scheme.nodal_rotary_inertia) return;
+    const LocalRotations<N> local(nodes.orientation);
     for (int k = 0; k < N; ++k) {
       const auto& point = element.mass_points[k];
       const int index = element.first_mass_point + k;
       const Vector3& W = state.mass_points[index].angular_velocity;
-      out.angular += point.weight *
-                     (point_rotation<N>(nodes, point, state.mass_rotations, index).rotation * (element.inertia * W));
+      out.angular +=
+          point.weight * (point_rotation(local, point, state.mass_rotations, index).rotation * (element.inertia * W));
     }
   });
   for (std::size_t i = 0; i < model.nodes.size(); ++i) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 
 #include <Eigen/SparseLU>
@@ -124,6 +125,15 @@ double CamProfile::secant_derivative(double from, double to) const {
   const double change = to - from;
   if (std::abs(change) < 1e-5) return 0.5 * second_derivative(0.5 * (from + to));
   return (derivative(to) - secant(from, to)) / change;
+}
+
+std::vector<double> CamProfile::numbers() const {
+  std::vector<double> numbers{radius_, offset_};
+  for (const Piece& piece : pieces_) {
+    numbers.push_back(piece.begin);
+    numbers.insert(numbers.end(), std::begin(piece.c), std::end(piece.c));
+  }
+  return numbers;
 }
 
 }  // namespace flexarm

@@ -38,16 +38,31 @@ struct Table {
   }
 };
 
-/// A compiled expression of t. Neither copied nor moved, since the parser points to `t`.
-struct Expression {
-  mutable double t = 0;
-  mu::Parser parser;
+/// A compiled expression of t. The parser points to `t`, and its evaluation writes to it: a copy compiles its own.
+class Expression {
+ public:
+  /// @throws mu::Parser::exception_type
+  explicit Expression(std::string text) : text_(std::move(text)) {
+    parser_.DefineVar("t", &t_);
+    parser_.SetExpr(text_);
+    (*this)(0);  // compiles, so that unknown names are found here and nothing allocates later
+  }
+  Expression(const Expression& other) : Expression(other.text_) {}
+  Expression& operator=(const Expression&) = delete;
 
   double operator()(double time) const {
-    t = time;
-    return parser.Eval();
+    t_ = time;
+    return parser_.Eval();
   }
+  int value_count() const { return parser_.GetNumResults(); }
+
+ private:
+  std::string text_;
+  mutable double t_ = 0;
+  mu::Parser parser_;
 };
+
+using Function = std::variant<double, Table, Expression>;
 
 Table parse_table(std::string_view text) {
   if (text.size() > kLongestTable)
@@ -90,38 +105,26 @@ std::invalid_argument expression_error(std::string_view text, std::size_t positi
                                reason + "; expected an expression of t, or a table TIME:VALUE TIME:VALUE ...");
 }
 
-std::unique_ptr<const Expression> parse_expression(std::string_view text) {
+void compile(std::string_view text, Function& function) {
   if (text.size() > kLongestExpression)
     throw std::invalid_argument("expression of " + std::to_string(text.size()) + " characters, expected at most " +
                                 std::to_string(kLongestExpression));
   const std::size_t assignment = find_assignment(text);
   if (assignment != std::string_view::npos) throw expression_error(text, assignment, "assignment (== compares)");
-  auto expression = std::make_unique<Expression>();
   try {
-    expression->parser.DefineVar("t", &expression->t);
-    expression->parser.SetExpr(std::string(text));
-    (*expression)(0);  // compiles, so that unknown names are found here and nothing allocates later
+    if (function.emplace<Expression>(std::string(text)).value_count() == 1) return;
   } catch (const mu::Parser::exception_type& error) {
     const std::size_t position = error.GetPos() < 0 ? 0 : static_cast<std::size_t>(error.GetPos());
     throw expression_error(text, std::min(position, text.size()), error.GetMsg().substr(0, kLongestReason));
   }
-  if (expression->parser.GetNumResults() != 1)
-    throw expression_error(text, text.find(','), "several values separated by commas");
-  return expression;
+  throw expression_error(text, text.find(','), "several values separated by commas");
 }
 
 }  // namespace
 
-class TimeFunction::Implementation {
- public:
+struct TimeFunction::Implementation {
   std::string text;
-  std::variant<double, Table, std::unique_ptr<const Expression>> function;
-
-  double operator()(double t) const {
-    if (const double* constant = std::get_if<double>(&function)) return *constant;
-    if (const Table* table = std::get_if<Table>(&function)) return (*table)(t);
-    return (*std::get<std::unique_ptr<const Expression>>(function))(t);
-  }
+  Function function;
 };
 
 TimeFunction::TimeFunction() : TimeFunction(1.0) {}
@@ -129,11 +132,21 @@ TimeFunction::TimeFunction() : TimeFunction(1.0) {}
 TimeFunction::TimeFunction(double constant) {
   char text[32];
   const std::to_chars_result result = std::to_chars(text, text + sizeof text, constant);
-  implementation_ = std::make_shared<const Implementation>(Implementation{std::string(text, result.ptr), constant});
+  implementation_ = std::make_unique<const Implementation>(Implementation{std::string(text, result.ptr), constant});
 }
 
-TimeFunction::TimeFunction(std::shared_ptr<const Implementation> implementation)
+TimeFunction::TimeFunction(std::unique_ptr<const Implementation> implementation)
     : implementation_(std::move(implementation)) {}
+
+TimeFunction::TimeFunction(const TimeFunction& other)
+    : implementation_(std::make_unique<const Implementation>(*other.implementation_)) {}
+TimeFunction::TimeFunction(TimeFunction&&) noexcept = default;
+TimeFunction::~TimeFunction() = default;
+
+TimeFunction& TimeFunction::operator=(TimeFunction other) noexcept {
+  implementation_.swap(other.implementation_);
+  return *this;
+}
 
 TimeFunction TimeFunction::parse(std::string_view text) {
   std::string_view rest = text;
@@ -142,21 +155,24 @@ TimeFunction TimeFunction::parse(std::string_view text) {
   if (text.find('\0') != std::string_view::npos)
     throw std::invalid_argument("a zero byte, expected an expression of t or a table TIME:VALUE ...");
 
-  Implementation implementation{std::string(), 0.0};
+  auto implementation = std::make_unique<Implementation>();
   const std::optional<double> constant = next_word(rest).empty() ? parse_number(first) : std::nullopt;
   if (constant) {
-    implementation.function = *constant;
+    implementation->function = *constant;
   } else if (text.find(':') != std::string_view::npos && text.find('?') == std::string_view::npos) {
-    implementation.function = parse_table(text);
+    implementation->function = parse_table(text);
   } else {
-    implementation.function = parse_expression(text);
+    compile(text, implementation->function);
   }
-  implementation.text = text;
-  return TimeFunction(std::make_shared<const Implementation>(std::move(implementation)));
+  implementation->text = text;
+  return TimeFunction(std::unique_ptr<const Implementation>(std::move(implementation)));
 }
 
 double TimeFunction::operator()(double t) const {
-  return (*implementation_)(t);
+  const Function& function = implementation_->function;
+  if (const double* constant = std::get_if<double>(&function)) return *constant;
+  if (const Table* table = std::get_if<Table>(&function)) return (*table)(t);
+  return std::get<Expression>(function)(t);
 }
 
 double TimeFunction::derivative(double t) const {

@@ -1,76 +1,39 @@
 #include "flexarm/simulation/checkpoint.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
+#include "simulation/fingerprint.h"
+#include "simulation/scene_identity.h"
+#include "simulation/state_numbers.h"
+
 namespace flexarm {
 namespace {
 
-constexpr const char* kHeader = "flexarm-checkpoint 4";
+constexpr const char* kHeader = "flexarm-checkpoint 5";
+constexpr std::size_t kShown = 120;  // characters of a line in messages
 
-/// Calls `visit(number, may_be_nan)` for every number of a state in a fixed order; the one place that knows its layout.
-template <class AnyState, class Visit>
-void for_each_number(AnyState& state, const Visit& visit) {
-  const auto vector = [&](auto& v) {
-    for (int k = 0; k < v.size(); ++k) visit(v[k], false);
-  };
-  const auto quaternion = [&](auto& q) { vector(q.coeffs()); };
-  visit(state.time, false);
-  for (auto& node : state.nodes) {
-    vector(node.position);
-    quaternion(node.orientation);
-    vector(node.velocity);
-    vector(node.angular_velocity);
-    vector(node.acceleration);
-    vector(node.angular_acceleration);
-  }
-  for (auto& released : state.released) {
-    vector(released.displacement);
-    quaternion(released.rotation);
-  }
-  for (auto& point : state.mass_points) {
-    vector(point.angular_velocity);
-    vector(point.angular_acceleration);
-  }
-  for (auto& rate : state.strain_rates) vector(rate);
-  for (auto& command : state.commands) visit(command, true);  // nan: none holds
-  for (auto& effort : state.efforts) visit(effort, false);
-  for (auto& rest : state.rests) visit(rest, false);
-  for (auto& made : state.history.increments)
-    for (auto& increment : made) visit(increment, false);
-  for (auto& step : state.history.steps) visit(step, false);
-  visit(state.work, false);
-  visit(state.dissipated, false);
-  visit(state.energy_defect, false);
-  for (auto& memory : state.strain_memory) {
-    vector(memory.average);
-    vector(memory.rate);
-  }
-  for (auto* points : {&state.stiffness_rotations, &state.mass_rotations})
-    for (auto& point : *points) {
-      for (int k = 0; k < 9; ++k) visit(point.rotation(k / 3, k % 3), false);
-      vector(point.curvature);
-    }
-  for (auto& rotation : state.total_rotations) vector(rotation);
-  for (auto& force : state.forces) vector(force);
-  for (auto& reaction : state.reactions) vector(reaction);
-  for (auto& rate : state.momentum_rates) vector(rate);
+/// The last line of a file whose other lines are `text`.
+std::string checksum_line(const std::string& text) {
+  Fingerprint fingerprint;
+  fingerprint.add(text);
+  return "checksum " + fingerprint.text() + "\n";
 }
 
-/// What must agree for a state to fit a simulation.
-std::string signature(const Simulation& simulation) {
+/// What must agree for a state to fit a simulation, one thing per line.
+std::string identity(const Simulation& simulation) {
   const State& state = simulation.state();
-  const std::size_t kept = state.strain_memory.size() + state.stiffness_rotations.size() + state.mass_rotations.size() +
-                           state.total_rotations.size();
-  return fmt::format("{} nodes {} joints {} mass_points {} coordinates {} kept {}", simulation.scheme(),
-                     state.nodes.size() - state.left_lines.size(), state.released.size(), state.mass_points.size(),
-                     state.commands.size(), kept);
+  return scene_identity(simulation.scene()) +
+         fmt::format("nodes {} joints {} mass_points {} coordinates {}\n", state.nodes.size() - state.left_lines.size(),
+                     state.released.size(), state.mass_points.size(), state.commands.size());
 }
 
 /// What is kept per node, for another number of nodes.
@@ -82,21 +45,6 @@ void resize_nodes(State& state, std::size_t count) {
   state.nodes.resize(count);
 }
 
-[[noreturn]] void fail(const std::string& path, const std::string& what) {
-  throw std::runtime_error("checkpoint '" + path + "': " + what);
-}
-
-double parse(const std::string& token, const std::string& path) {
-  const bool negative = token[0] == '-';
-  const char* begin = token.data() + (negative ? 1 : 0);
-  const char* end = token.data() + token.size();
-  double value = 0;
-  const auto result = std::from_chars(begin, end, value, std::chars_format::hex);
-  if (result.ec != std::errc() || result.ptr != end || !std::isfinite(value))
-    fail(path, "'" + token + "' is not a finite hexadecimal number");
-  return negative ? -value : value;
-}
-
 /// std::to_chars in hexadecimal has no "0x", as std::from_chars expects.
 std::string hexadecimal(double value) {
   if (std::isnan(value)) return "nan";
@@ -105,59 +53,121 @@ std::string hexadecimal(double value) {
   return {buffer, result.ptr};
 }
 
-}  // namespace
+/// A checkpoint's lines, one after the other; errors name the file and the line.
+class Reader {
+ public:
+  explicit Reader(const std::string& path) : path_(path) {
+    std::ifstream in(path, std::ios::binary);
+    if (!in) fail("cannot be opened");
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    lines_.str(text);
+    if (const std::string header = next(); header != kHeader)
+      fail_line(header, "'" + std::string(kHeader) + "': another format, or no checkpoint");
+    // An unfinished or damaged file would give a wrong state, or one that is another scene's.
+    const std::size_t end = text.rfind("checksum ");
+    if (end == std::string::npos) fail("is damaged: it does not end with its checksum");
+    const std::string expected = checksum_line(text.substr(0, end)), found = text.substr(end);
+    if (found != expected)
+      fail(fmt::format("is damaged: it ends with '{}', its content with '{}'", shown(found), shown(expected)));
+  }
 
-void write_checkpoint(const Simulation& simulation, const std::string& path) {
-  const State& state = simulation.state();
-  std::string text =
-      fmt::format("{}\n{}\nsteps {} level {} good {} increments {} of {} order {} reactions {} left {} {}\n", kHeader,
-                  signature(simulation), state.steps, state.halving_level, state.good_steps,
-                  state.history.increments[0].size(), state.history.count, state.history.order, state.reactions.size(),
-                  state.left_lines.size(), fmt::join(state.left_lines, " "));
-  for_each_number(state, [&](double value, bool) { text += hexadecimal(value) + "\n"; });
-  text += "end\n";
-  const std::string temporary = path + ".partial";
-  std::ofstream out(temporary, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) fail(path, "cannot be written");
-  if (std::rename(temporary.c_str(), path.c_str()) != 0) fail(path, "cannot be renamed from '" + temporary + "'");
+  std::string next() {
+    std::string line;
+    std::getline(lines_, line);
+    ++number_;
+    return line;
+  }
+  [[noreturn]] void fail(const std::string& what) const {
+    throw std::runtime_error("checkpoint '" + path_ + "': " + what);
+  }
+  [[noreturn]] void fail_line(const std::string& got, const std::string& expected) const {
+    fail(fmt::format("line {} is '{}', expected {}", number_, shown(got), expected));
+  }
+
+  /// Takes the lines of `expected`.
+  void require_identity(const std::string& expected) {
+    std::istringstream wanted(expected);
+    for (std::string line; std::getline(wanted, line);)
+      if (const std::string got = next(); got != line)
+        fail_line(got, "'" + shown(line) + "': it belongs to another scene, scheme or step");
+  }
+  double number(const char* what) {
+    const std::string token = next();
+    if (what == kCommand && token == "nan") return std::nan("");
+    const bool negative = !token.empty() && token[0] == '-';
+    const char *begin = token.data() + (negative ? 1 : 0), *end = token.data() + token.size();
+    double value = 0;
+    const auto result = std::from_chars(begin, end, value, std::chars_format::hex);
+    if (result.ec != std::errc() || result.ptr != end || !std::isfinite(value))
+      fail_line(token, std::string(what) + " as a finite hexadecimal number");
+    return negative ? -value : value;
+  }
+
+ private:
+  /// Without the line's end, shortened.
+  static std::string shown(const std::string& line) { return line.substr(0, std::min(line.find('\n'), kShown)); }
+
+  std::string path_;
+  std::istringstream lines_;
+  int number_ = 0;
+};
+
+std::string counts_line(const State& state) {
+  return fmt::format("steps {} level {} good {} increments {} of {} order {} drives {} reactions {} left {} {}\n", state.steps,
+                     state.halving_level, state.good_steps, state.history.increments[0].size(), state.history.count,
+                     state.history.order, state.drives.count, state.reactions.size(), state.left_lines.size(),
+                     fmt::join(state.left_lines, " "));
 }
 
-void read_checkpoint(Simulation& simulation, const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) fail(path, "cannot be opened");
-  std::string header, model;
-  std::getline(in, header);
-  std::getline(in, model);
-  if (header != kHeader)
-    fail(path, "expected the first line '" + std::string(kHeader) + "', got '" + header.substr(0, 60) + "'");
-  if (model != signature(simulation))
-    fail(path, "belongs to another model or scheme: expected '" + signature(simulation) + "', got '" +
-                   model.substr(0, 120) + "'");
-  State state = simulation.state();
+/// The whole numbers, and room for the others.
+void read_counts(Reader& reader, State& state) {
+  const std::string line = reader.next();
+  std::istringstream in(line);
   std::string word;
   IncrementHistory& history = state.history;
   std::size_t increments = 0, reactions = 0, left = 0;
   in >> word >> state.steps >> word >> state.halving_level >> word >> state.good_steps >> word >> increments >> word >>
-      history.count >> word >> history.order >> word >> reactions >> word >> left;
-  const auto damaged = [&] { fail(path, "is damaged in line 3"); };
-  if (!in || state.steps < 0 || state.halving_level < 0 || left > state.released.size()) damaged();
+      history.count >> word >> history.order >> word >> state.drives.count >> word >> reactions >> word >> left;
+  const auto require = [&](bool ok) {
+    if (!ok)
+      reader.fail_line(line, "the numbers of steps, increments, reactions and joints that have left their lines");
+  };
+  require(in && left <= state.released.size());
   resize_nodes(state, state.nodes.size() - state.left_lines.size() + left);
   state.left_lines.resize(left);
   for (int& joint : state.left_lines) in >> joint;
-  if (!in || increments > 6 * state.nodes.size() + 6 * state.released.size() || reactions > state.nodes.size() ||
-      history.count < 0 || history.count > IncrementHistory::kLength || history.order < 0 ||
-      history.order > IncrementHistory::kHighestOrder)
-    damaged();
+  require(in && increments <= 6 * state.nodes.size() + 6 * state.released.size() && reactions <= state.nodes.size());
   state.reactions.assign(reactions, Vector6::Zero());
   for (std::vector<double>& made : history.increments) made.assign(increments, 0.0);
-  for_each_number(state, [&](double& value, bool may_be_nan) {
-    if (!(in >> word)) fail(path, "ends too early");
-    value = may_be_nan && word == "nan" ? std::nan("") : parse(word, path);
-  });
-  if (!(in >> word) || word != "end") fail(path, "is damaged at its end");
-  simulation.restore(state);
+}
+
+}  // namespace
+
+void write_checkpoint(const Simulation& simulation, const std::string& path) {
+  std::string text = fmt::format("{}\n{}{}", kHeader, identity(simulation), counts_line(simulation.state()));
+  for_each_number(simulation.state(), [&](const char*, double value) { text += hexadecimal(value) + "\n"; });
+  text += checksum_line(text);
+  const auto fail = [&](const std::string& what) { throw std::runtime_error("checkpoint '" + path + "': " + what); };
+  const std::string temporary = path + ".partial";
+  std::ofstream out(temporary, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) fail("cannot be written");
+  if (std::rename(temporary.c_str(), path.c_str()) != 0) fail("cannot be renamed from '" + temporary + "'");
+}
+
+void read_checkpoint(Simulation& simulation, const std::string& path) {
+  Reader reader(path);
+  reader.require_identity(identity(simulation));
+  State state = simulation.state();
+  read_counts(reader, state);
+  for_each_number(state, [&](const char* what, double& value) { value = reader.number(what); });
+  if (const std::string line = reader.next(); line.rfind("checksum ", 0) != 0) reader.fail_line(line, "the checksum");
+  try {
+    simulation.restore(state);
+  } catch (const std::invalid_argument& error) {
+    reader.fail(error.what());
+  }
 }
 
 }  // namespace flexarm

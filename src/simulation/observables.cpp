@@ -21,11 +21,33 @@ void visit_element(const Model& model, const BeamLink& beam, int index, const Vi
 
 /// Section pose at the parent coordinate xi, nodes on the mass centroid.
 template <int Nodes>
-Pose section_pose(const ElementConfiguration<Nodes>& nodes, double xi) {
+Pose section_pose(const std::array<Vector3, Nodes>& positions, const LocalRotations<Nodes>& local, double xi) {
   const ShapeFunctions<Nodes> functions = lagrange<Nodes>(xi);
-  const Matrix3 rotation =
-      LocalRotations<Nodes>(nodes.orientation).evaluate(functions.values, functions.derivatives).rotation;
-  return {interpolate<Nodes>(functions.values, nodes.position), Quaternion(rotation).normalized()};
+  const Matrix3 rotation = local.evaluate(functions.values, functions.derivatives).rotation;
+  return {interpolate<Nodes>(functions.values, positions), Quaternion(rotation).normalized()};
+}
+
+/// The polynomial through the values at the stiffness points, where stress is most accurate, at xi.
+template <int Nodes>
+Vector6 extended(const std::array<Vector6, Nodes - 1>& values, double xi) {
+  const auto& abscissa = GaussLegendre<Nodes - 1>::points;
+  Vector6 sum = Vector6::Zero();
+  for (int a = 0; a < Nodes - 1; ++a) {
+    double weight = 1;
+    for (int b = 0; b < Nodes - 1; ++b)
+      if (b != a) weight *= (xi - abscissa[b]) / (abscissa[a] - abscissa[b]);
+    sum += weight * values[a];
+  }
+  return sum;
+}
+
+/// From the mass centroid, at c in the section, to the reference line, by which the section turns: there
+/// r = r_c - Lambda c, hence Gamma = Gamma_c + c x K, and with the same virtual work N = N_c, M = M_c + c x N.
+void set_stress(const Matrix6& stiffness, const Vector6& strain, const Vector3& centroid, BeamPoint& point) {
+  point.strain = strain;
+  point.strain.head<3>() += centroid.cross(strain.tail<3>());
+  point.resultant = stiffness * strain;
+  point.resultant.tail<3>() += centroid.cross(point.resultant.head<3>());
 }
 
 }  // namespace
@@ -39,30 +61,18 @@ void beam_points(const Model& model, const State& state, const BeamLink& beam, i
       constexpr int N = std::decay_t<decltype(element)>::kNodes;
       const ElementConfiguration<N> nodes(element, state);
       const LocalRotations<N> local(nodes.orientation);
+      std::array<Vector6, N - 1> strains;
+      for (int k = 0; k < N - 1; ++k) strains[k] = centroid_strain(element, nodes, local, state, k);
       const int steps = (N - 1) * (between + 1);
       for (int k = e == 0 ? 0 : 1; k <= steps; ++k) {
         const int pair = std::min(k / (between + 1), N - 2);
         const double left = node_coordinate<N>(pair), right = node_coordinate<N>(pair + 1);
         const double xi = left + (right - left) * (k - pair * (between + 1)) / (between + 1);
-        const ShapeFunctions<N> functions = lagrange<N>(xi);
-        BeamPoint point;
+        BeamPoint& point = points.emplace_back();
         point.arc_length = begin + 0.5 * (1 + xi) * (end - begin);
-        const Matrix3 rotation = local.evaluate(functions.values, functions.derivatives).rotation;
-        point.pose.orientation = Quaternion(rotation).normalized();
-        point.pose.position = interpolate<N>(functions.values, nodes.position) - rotation * beam.centroid;
-        // Stress is most accurate at the stiffness points: the polynomial through them, extended to the whole element.
-        for (int a = 0; a < N - 1; ++a) {
-          double weight = 1;
-          const auto& abscissa = GaussLegendre<N - 1>::points;
-          for (int b = 0; b < N - 1; ++b)
-            if (b != a) weight *= (xi - abscissa[b]) / (abscissa[a] - abscissa[b]);
-          const auto& q = element.stiffness_points[a];
-          point.strain += weight * point_kinematics(local.evaluate(q.shape, q.derivative),
-                                                    interpolate<N>(q.derivative, nodes.position), q.reference_strain)
-                                       .strain;
-        }
-        point.resultant = element.stiffness * point.strain;
-        points.push_back(point);
+        point.pose = section_pose<N>(nodes.position, local, xi);
+        point.pose.position = point.pose * Vector3(-beam.centroid);
+        set_stress(element.stiffness, extended<N>(strains, xi), beam.centroid, point);
       }
     });
     begin = end;
@@ -89,12 +99,12 @@ ProbeState probe_state(const Model& model, const State& state, const std::vector
   visit_element(model, *model.links[probe.link].beam, probe.element, [&](const auto& element) {
     constexpr int N = std::decay_t<decltype(element)>::kNodes;
     const ElementConfiguration<N> nodes(element, state);
-    const Pose section = section_pose<N>(nodes, probe.xi);
+    const LocalRotations<N> local(nodes.orientation);
+    const Pose section = section_pose<N>(nodes.position, local, probe.xi);
     out.pose = section * probe.offset;
     const ShapeFunctions<N> functions = lagrange<N>(probe.xi);
     GeneralisedShapeFunctions<N> generalised;
-    LocalRotationVariation<N>(LocalRotations<N>(nodes.orientation))
-        .evaluate(functions.values, functions.derivatives, generalised);
+    LocalRotationVariation<N>(local).evaluate(functions.values, functions.derivatives, generalised);
     out.velocity.setZero();
     Vector3 spin = Vector3::Zero();
     for (int i = 0; i < N; ++i) {

@@ -1,15 +1,14 @@
 #include "flexarm/simulation/simulation.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
-#include <set>
 
 #include "flexarm/math/so3.h"
 #include "flexarm/model/line_release.h"
 #include "flexarm/scene/integrator_options.h"
 #include "flexarm/simulation/output_velocities.h"
+#include "simulation/state_flaw.h"
 
 namespace flexarm {
 namespace {
@@ -99,19 +98,6 @@ struct Simulation::Implementation {
     if (!built) built = std::make_unique<const Model>(model);
     set_model(std::move(changed));
   }
-
-  /// False for what is not a state of this scene.
-  bool fits(const State& other) const {
-    const Model& as_built = built ? *built : model;
-    const auto leaves = [&](int j) {
-      return j >= 0 && j < static_cast<int>(as_built.joints.size()) && as_built.joints[j].leaving >= 0;
-    };
-    const std::set<int> distinct(other.left_lines.begin(), other.left_lines.end());
-    return std::all_of(distinct.begin(), distinct.end(), leaves) && distinct.size() == other.left_lines.size() &&
-           other.nodes.size() == as_built.nodes.size() + distinct.size() &&
-           other.released.size() == state.released.size() && other.mass_points.size() == state.mass_points.size() &&
-           other.commands.size() == state.commands.size();
-  }
 };
 
 Simulation::Simulation(scene::SceneDescription scene, const SimulationOptions& options)
@@ -145,7 +131,9 @@ void Simulation::reset() {
 }
 
 void Simulation::restore(const State& state) {
-  if (!implementation_->fits(state)) throw std::invalid_argument("the state belongs to another model");
+  const std::string flaw = state_flaw(implementation_->built ? *implementation_->built : implementation_->model,
+                                      implementation_->initial, implementation_->settings.max_halvings, state);
+  if (!flaw.empty()) throw std::invalid_argument("not a state of this scene: " + flaw);
   implementation_->fit_to_state(state);
   implementation_->state = state;
   implementation_->velocities_hold = false;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <locale>
+#include <optional>
 #include <stdexcept>
 
 using flexarm::TimeFunction;
@@ -66,12 +67,21 @@ TEST(TimeFunction, ReadsTables) {
   EXPECT_EQ(TimeFunction::parse("1:7")(-3), 7);
 }
 
-TEST(TimeFunction, CopiesShareTheFunction) {
-  const TimeFunction original = TimeFunction::parse("t*t");
-  const TimeFunction copy = original;
-  EXPECT_EQ(copy(3), 9);
-  EXPECT_EQ(original(2), 4);
-  EXPECT_EQ(copy.text(), original.text());
+TEST(TimeFunction, CopiesAreIndependent) {
+  for (const std::string text : {"t*t", "0:0 1:1 2:4 3:9", "9"}) {
+    std::optional<TimeFunction> original = TimeFunction::parse(text);
+    const TimeFunction copy = *original, copy_of_copy = copy;
+    TimeFunction assigned(5);
+    assigned = copy;
+    EXPECT_EQ((*original)(2), text == "9" ? 9 : 4);
+    original.reset();
+    for (const TimeFunction& other : {copy, copy_of_copy, assigned}) {
+      EXPECT_EQ(other(3), 9) << text;
+      EXPECT_EQ(other.text(), text);
+    }
+    const TimeFunction moved = std::move(assigned);
+    EXPECT_EQ(moved(3), 9) << text;
+  }
 }
 
 TEST(TimeFunction, DerivativeIsAccurateToItsOrder) {

@@ -274,13 +274,16 @@ TEST(InitialVelocity, FieldThroughAPlanarJoint) {
   const scene::InitialLink field{"hand", Vector3(-0.3, 0.7, 0), Vector3(0, 0, 1.2), {"s.urdf", 7}};
   const scene::SceneDescription scene = planar_arm(field);
   const Model model = build_model(scene);
+  int found = 0;
   for (std::size_t i = 0; i < model.nodes.size(); ++i) {
     const Pose hand = link_pose(model, "hand");
     if ((model.nodes[i].position - hand * Vector3(0.5, 0, 0)).norm() > 1e-12) continue;
+    ++found;
     const Vector3 expected = field.linear + field.angular.cross(model.nodes[i].position - hand.position);
     EXPECT_LE((model.initial_velocity[i].head<3>() - expected).norm(), 1e-13);
     EXPECT_LE((model.initial_velocity[i].tail<3>() - field.angular).norm(), 1e-13);
   }
+  EXPECT_EQ(found, 1);
 }
 
 TEST(InitialVelocity, FieldThroughAUniversalJoint) {

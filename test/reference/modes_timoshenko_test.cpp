@@ -65,13 +65,16 @@ TEST_P(TimoshenkoSpectrum, ErrorsFallWithOrderTwoP) {
   const int coarsest[] = {0, 32, 12, 8};
   for (int order = 1; order <= 3; ++order) {
     const std::vector<double> coarse = computed(coarsest[order], order), fine = computed(2 * coarsest[order], order);
+    int measured = 0;
     for (int k = 0; k < 4; ++k) {
       const double exact = GetParam().omega[k];
       // Near the round-off of the eigenvalue no order is left; the pure shear mode of the pinned beam is always exact.
       if (std::abs(coarse[k] - exact) < 1e-7 * exact) continue;
       EXPECT_NEAR(observed_order(coarse[k] - exact, fine[k] - exact), 2 * order, kOrderTolerance)
           << "order " << order << ", mode " << k + 1;
+      ++measured;
     }
+    EXPECT_GE(measured, 1) << "order " << order;
   }
 }
 

@@ -100,9 +100,10 @@ TEST_P(Allocation, NoneInAThousandSteps) {
               }
             }),
             0);
-  if (scheme == "beta1" || scheme == "beta2") return;  // these fail where the axial strain rests (beam.md 3.3)
-  EXPECT_EQ(converged, 1000);
-  EXPECT_GT(std::abs(simulation.position(*simulation.find_coordinate("hinge"))), 0.015) << "the stop must be reached";
+  const bool may_fail = scheme == "beta1" || scheme == "beta2";  // where the axial strain rests (beam.md 3.3)
+  EXPECT_GE(converged, may_fail ? 1 : 1000);
+  if (!may_fail)
+    EXPECT_GT(std::abs(simulation.position(*simulation.find_coordinate("hinge"))), 0.015) << "the stop must be reached";
 }
 INSTANTIATE_TEST_SUITE_P(
     Schemes, Allocation,

@@ -43,4 +43,13 @@ inline std::vector<SchemeVariant> scheme_variants(double step = 0.01) {
   return variants;
 }
 
+/// Those whose scheme is as the predicate says.
+template <class Predicate>
+std::vector<SchemeVariant> scheme_variants_where(const Predicate& suits) {
+  std::vector<SchemeVariant> variants;
+  for (const SchemeVariant& variant : scheme_variants())
+    if (suits(variant.scheme)) variants.push_back(variant);
+  return variants;
+}
+
 }  // namespace flexarm::test

@@ -23,4 +23,22 @@ struct ElementConfiguration {
   }
 };
 
+/// Rotation and curvature of an integration point by the scheme's own interpolation: what the state keeps where that
+/// depends on the past (`kept`, at `index`), else the local interpolation.
+template <int Nodes, class Point>
+PointRotation point_rotation(const LocalRotations<Nodes>& local, const Point& point,
+                             const std::vector<PointRotation>& kept, int index) {
+  return kept.empty() ? local.evaluate(point.shape, point.derivative) : kept[index];
+}
+
+/// {Gamma, K} [-, 1/m] about the mass centroid at the element's stiffness point k, by the scheme's own interpolation.
+template <int Nodes>
+Vector6 centroid_strain(const BeamElement<Nodes>& element, const ElementConfiguration<Nodes>& nodes,
+                        const LocalRotations<Nodes>& local, const State& state, int k) {
+  const auto& point = element.stiffness_points[k];
+  return point_kinematics(point_rotation(local, point, state.stiffness_rotations, element.first_stiffness_point + k),
+                          interpolate<Nodes>(point.derivative, nodes.position), point.reference_strain)
+      .strain;
+}
+
 }  // namespace flexarm

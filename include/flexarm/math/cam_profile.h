@@ -22,6 +22,9 @@ class CamProfile {
   double secant(double from, double to) const;
   /// Its derivative with respect to `to`.
   double secant_derivative(double from, double to) const;
+  /// All that defines it, to tell two profiles apart: radius and offset [m], then of each piece of the spline its begin
+  /// [rad] and its coefficients.
+  std::vector<double> numbers() const;
 
  private:
   /// A polynomial c[0] + c[1] t + c[2] t^2 + c[3] t^3, t = u - begin.

@@ -7,13 +7,17 @@
 
 namespace flexarm {
 
-/// A function of time t [s]. Immutable to the caller; copies share the compiled expression.
-/// Evaluation does not allocate after the first call, so that it may be used in the real-time loop.
-/// Not safe for concurrent evaluation of copies of one function.
+/// A function of time t [s]. Immutable to the caller. Evaluation does not allocate, so that it may be used in the
+/// real-time loop. Copies are independent of each other: several threads may copy one function and evaluate their
+/// copies at the same time. One object must not be evaluated by two threads at once.
 class TimeFunction {
  public:
   /// The constant 1.
   TimeFunction();
+  TimeFunction(const TimeFunction& other);
+  TimeFunction(TimeFunction&&) noexcept;  ///< what was moved from may only be assigned to or destroyed
+  TimeFunction& operator=(TimeFunction other) noexcept;
+  ~TimeFunction();
   explicit TimeFunction(double constant);
   /// Parses `text`: an expression in t ("t < 1 ? t : 0", "sin(2*_pi*t)") or a table "0:0 1:50 2:0"
   /// (linear between its points, constant outside; strictly increasing times).
@@ -28,9 +32,9 @@ class TimeFunction {
   const std::string& text() const;
 
  private:
-  class Implementation;
-  explicit TimeFunction(std::shared_ptr<const Implementation> implementation);
-  std::shared_ptr<const Implementation> implementation_;
+  struct Implementation;
+  explicit TimeFunction(std::unique_ptr<const Implementation> implementation);
+  std::unique_ptr<const Implementation> implementation_;
 };
 
 }  // namespace flexarm

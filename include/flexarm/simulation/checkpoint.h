@@ -13,8 +13,10 @@ namespace flexarm {
 /// @throws std::runtime_error naming the file if it cannot be written.
 void write_checkpoint(const Simulation& simulation, const std::string& path);
 
-/// Replaces the simulation's state by one written before from the same model.
-/// @throws std::runtime_error naming the file if it cannot be read, is damaged, or belongs to another model or scheme.
+/// Replaces the simulation's state by one written before from the same scene, scheme and step. Newton's tolerance and
+/// limits, and probes, may be others. On an error the simulation is as before.
+/// @throws std::runtime_error naming the file and what is wrong if it cannot be read, is damaged (a checksum tells any
+///   flipped bit), belongs to another scene, scheme or step, or has values that no state has.
 void read_checkpoint(Simulation& simulation, const std::string& path);
 
 }  // namespace flexarm

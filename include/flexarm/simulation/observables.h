@@ -9,12 +9,12 @@
 
 namespace flexarm {
 
-/// One point of a deformed centreline.
+/// One point of a deformed centreline: the reference line of the section, wherever its mass centroid lies.
 struct BeamPoint {
   double arc_length = 0;                ///< of the undeformed line [m]
-  Pose pose;                            ///< of the section, in the world
-  Vector6 strain = Vector6::Zero();     ///< {Gamma, K} in the section frame [-, 1/m]
-  Vector6 resultant = Vector6::Zero();  ///< {N, M} in the section frame [N, N m]
+  Pose pose;                            ///< of the section, in the world; between nodes by the local interpolation
+  Vector6 strain = Vector6::Zero();     ///< {Gamma, K} in the section frame [-, 1/m], by the scheme's interpolation
+  Vector6 resultant = Vector6::Zero();  ///< {N, M} in the section frame [N, N m], elastic: without damping
 };
 /// Points at every node and `between` equally spaced points inside each pair of nodes; appended to `points`.
 void beam_points(const Model& model, const State& state, const BeamLink& beam, int between,

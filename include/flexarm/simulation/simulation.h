@@ -41,7 +41,8 @@ class Simulation {
   StepResult step();
   /// Back to the scene's initial state; commands are forgotten.
   void reset();
-  /// Replaces the state, e.g. by a copy of state() taken before.
+  /// Replaces the state, e.g. by a copy of state() taken before. @throws std::invalid_argument if it is not one of
+  /// this.
   void restore(const State& state);
 
   double time() const;         ///< [s]

@@ -1,4 +1,4 @@
-// Residuals of every scheme against an independent numpy implementation (scripts/prototype_steps.py).
+// Residuals of every scheme against an independent numpy implementation (scripts/reference_steps.py).
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -20,11 +20,11 @@ namespace {
 
 using namespace test;
 
-/// One random step as the prototype wrote it.
-class PrototypeStep {
+/// One random step as the reference wrote it.
+class ReferenceStep {
  public:
-  explicit PrototypeStep(int nodes) {
-    std::ifstream file(source_path("test/elements/prototype_steps.csv"));
+  explicit ReferenceStep(int nodes) {
+    std::ifstream file(source_path("test/elements/reference_steps.csv"));
     for (std::string line; std::getline(file, line);) {
       if (line.empty() || line.front() == '#') continue;
       std::istringstream cells(line);
@@ -156,7 +156,7 @@ class Comparison {
   ElementSystem<Nodes> conserving() {
     std::array<PointKinematics, Nodes - 1> end;
     ElementSystem<Nodes> system;
-    // The prototype tests and interpolates with the Lagrange functions themselves (beyond.md 1.1).
+    // The reference tests and interpolates with the Lagrange functions themselves (beyond.md 1.1).
     ElementFunctions<Nodes> lagrange;
     for (int k = 0; k < Nodes - 1; ++k)
       for (int i = 0; i < Nodes; ++i) {
@@ -191,7 +191,7 @@ class Comparison {
     EXPECT_LE(largest(system.residual - expected), 1e-12 * largest(expected)) << key << ", " << Nodes << " nodes";
   }
 
-  PrototypeStep data_;
+  ReferenceStep data_;
   double step_;
   BeamElement<Nodes> element_;
   std::array<Quaternion, Nodes> begin_orientation_;
@@ -202,16 +202,16 @@ class Comparison {
   std::array<MassPointState, Nodes> mass_points_;
 };
 
-TEST(Prototype, TwoNodes) {
+TEST(ReferenceSteps, TwoNodes) {
   Comparison<2>().check_all();
 }
-TEST(Prototype, ThreeNodes) {
+TEST(ReferenceSteps, ThreeNodes) {
   Comparison<3>().check_all();
 }
-TEST(Prototype, FourNodes) {
+TEST(ReferenceSteps, FourNodes) {
   Comparison<4>().check_all();
 }
-TEST(Prototype, FiveNodes) {
+TEST(ReferenceSteps, FiveNodes) {
   Comparison<5>().check_all();
 }
 

@@ -1,0 +1,151 @@
+#include "simulation/scene_identity.h"
+
+#include <type_traits>
+
+#include <fmt/format.h>
+
+#include "flexarm/integrators/scheme.h"
+#include "simulation/fingerprint.h"
+
+namespace flexarm {
+namespace {
+
+/// Fingerprint of the parts of a scene. Structures are taken apart by name, so that a new member does not compile here
+/// before somebody has decided whether it counts.
+class SceneFingerprint {
+ public:
+  template <class... Parts>
+  static std::string of(const Parts&... parts) {
+    SceneFingerprint fingerprint;
+    fingerprint.all(parts...);
+    return fingerprint.bytes_.text();
+  }
+
+ private:
+  template <class... Parts>
+  void all(const Parts&... parts) {
+    (add(parts), ...);
+  }
+
+  template <class Number, std::enable_if_t<std::is_arithmetic_v<Number> || std::is_enum_v<Number>, int> = 0>
+  void add(Number number) {
+    const double value = static_cast<double>(number) + 0.0;  // -0 and 0 are the same
+    bytes_.add({reinterpret_cast<const char*>(&value), sizeof value});
+  }
+  void add(const std::string& text) {
+    add(text.size());
+    bytes_.add(text);
+  }
+  template <class Derived>
+  void add(const Eigen::MatrixBase<Derived>& matrix) {
+    for (const double number : matrix.reshaped()) add(number);
+  }
+  template <class Value>
+  void add(const std::optional<Value>& value) {
+    add(value.has_value());
+    if (value) add(*value);
+  }
+  template <class Value>
+  void add(const std::vector<Value>& values) {
+    add(values.size());
+    for (const Value& value : values) add(value);
+  }
+  template <class... Values>
+  void add(const std::variant<Values...>& value) {
+    add(value.index());
+    std::visit([&](const auto& held) { add(held); }, value);
+  }
+  void add(const TimeFunction& function) { add(function.text()); }
+  void add(const Pose& pose) { all(pose.position, pose.orientation.coeffs()); }
+
+  // ---- beams
+  void add(const scene::Circle& circle) { add(circle.radius); }
+  void add(const scene::Tube& tube) { all(tube.outer_radius, tube.inner_radius); }
+  void add(const scene::Rectangle& rectangle) { all(rectangle.width, rectangle.height); }
+  void add(const scene::BoxTube& box) { all(box.width, box.height, box.thickness); }
+  void add(const scene::GeometricSection& section) {
+    const auto& [young, poisson, density] = section.material;
+    all(section.shape, young, poisson, density);
+  }
+  void add(const scene::DirectSection& section) {
+    const auto& [ea, ga2, ga3, gj, ei2, ei3, mass, j1, j2, j3] = section;
+    all(ea, ga2, ga3, gj, ei2, ei3, mass, j1, j2, j3);
+  }
+  void add(const scene::MatrixSection& section) { all(section.stiffness, section.inertia); }
+  void add(const scene::CentrelinePiece& piece) {
+    const auto& [kind, to, center, twist, location] = piece;
+    all(kind, to, center, twist);
+  }
+  void add(const scene::BeamDescription& beam) {
+    const auto& [elements, order, centreline, section_y, section, stiffness_damping, mass_damping, location] = beam;
+    all(elements, order, centreline, section_y, section, stiffness_damping, mass_damping);
+  }
+
+  // ---- links and joints
+  void add(const scene::RigidInertia& inertia) { all(inertia.mass, inertia.center_of_mass, inertia.inertia); }
+  void add(const scene::LinkDescription& link) {
+    const auto& [name, inertial, beam, location] = link;
+    all(name, inertial, beam);
+  }
+  void add(const scene::JointLimits& limits) { all(limits.lower, limits.upper); }
+  void add(const scene::Mimic& mimic) { all(mimic.joint, mimic.multiplier, mimic.offset); }
+  void add(const scene::SlideDescription& slide) {
+    const auto& [start, rotation, on_end, scheme, smooth, offset, location] = slide;
+    all(start, rotation, on_end, scheme, smooth, offset);
+  }
+  void add(const scene::FrictionDescription& friction) { all(friction.law, friction.coefficient, friction.radius); }
+  void add(const scene::JointDescription& joint) {
+    const auto& [name, kind, parent, child, origin, axis, axis2, ratio, offset, direction, profile, slide, limits,
+                 effort_limit, damping, friction, friction_law, mimic, child_origin, location] = joint;
+    all(name, kind, parent, child, origin, axis, axis2, ratio, offset, direction, slide, limits, effort_limit, damping,
+        friction, friction_law, mimic, child_origin);
+    if (profile) add(profile->numbers());
+  }
+
+  // ---- simulation
+  void add(const scene::InitialJoint& initial) {
+    const auto& [coordinate, position, velocity, location, gives_velocity] = initial;
+    all(coordinate, position, velocity, gives_velocity);
+  }
+  void add(const scene::InitialLink& initial) { all(initial.link, initial.linear, initial.angular); }
+  void add(const scene::PointLoad& load) {
+    const auto& [link, at, force, moment, frame, history, location] = load;
+    all(link, at, force, moment, frame, history);
+  }
+  void add(const scene::DistributedLoad& load) { all(load.link, load.force, load.frame, load.history); }
+  void add(const scene::PrescribedMotion& motion) { all(motion.coordinate, motion.position); }
+  void add(const scene::JointEffort& effort) { all(effort.coordinate, effort.history); }
+
+  Fingerprint bytes_;
+};
+
+std::string integrator_line(const scene::IntegratorDescription& integrator) {
+  const Scheme scheme = make_scheme(integrator);
+  const NumericalDissipation& d = scheme.dissipation;
+  return fmt::format(
+      "scheme {}, step {} s, beta {}, gamma {}, alpha {}, dissipation {} {} {}, interpolation {}, weak form {}",
+      scheme.name, integrator.step, scheme.beta, scheme.gamma, scheme.alpha, d.stiffness, d.forgetting, d.inertance,
+      static_cast<int>(scheme.interpolation), static_cast<int>(scheme.weak_form));
+}
+
+template <class Parts>
+std::string named_lines(const char* kind, const Parts& parts) {
+  std::string text;
+  for (const auto& part : parts) text += fmt::format("{} '{}' {}\n", kind, part.name, SceneFingerprint::of(part));
+  return text;
+}
+
+}  // namespace
+
+std::string scene_identity(const scene::SceneDescription& scene) {
+  const auto& [name, file, root, links, joints, loop_joints, gravity, integrator, initial_joints, initial_links, loads,
+               distributed_loads, motions, efforts, probes] = scene;
+  return integrator_line(integrator) + "\n" + named_lines("link", links) + named_lines("joint", joints) +
+         named_lines("loop_joint", loop_joints) +
+         fmt::format("gravity {}\ninitial {}\nload {}\ndistributed_load {}\nmotion {}\neffort {}\n",
+                     SceneFingerprint::of(gravity), SceneFingerprint::of(root, initial_joints, initial_links),
+                     SceneFingerprint::of(loads), SceneFingerprint::of(distributed_loads),
+                     SceneFingerprint::of(motions), SceneFingerprint::of(efforts));
+}
+
+}  // namespace flexarm

@@ -1,0 +1,104 @@
+#include "simulation/state_flaw.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "simulation/state_numbers.h"
+
+namespace flexarm {
+namespace {
+
+/// Steps normalise quaternions to some units of round-off; this leaves room for states that somebody else made.
+constexpr double kUnitTolerance = 1e-12;
+
+/// Keeps the first flaw found.
+class Flaw {
+ public:
+  void require(bool ok, const char* what, double value, const std::string& expected) {
+    if (!ok && text_.empty()) text_ = fmt::format("{} is {}, expected {}", what, value, expected);
+  }
+  void require_range(const char* what, double value, double least, double most) {
+    require(value >= least && value <= most, what, value, fmt::format("{} to {}", least, most));
+  }
+  void require_size(const char* what, std::size_t size, std::size_t expected) {
+    require(size == expected, what, static_cast<double>(size), std::to_string(expected));
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+void check_left_lines(const Model& built, const State& state, Flaw& flaw) {
+  for (auto left = state.left_lines.begin(); left != state.left_lines.end(); ++left) {
+    const bool leaves = *left >= 0 && *left < static_cast<int>(built.joints.size()) && built.joints[*left].leaving >= 0;
+    flaw.require(leaves, "a joint that has left its line", *left, "one that may leave it");
+    flaw.require(std::find(state.left_lines.begin(), left, *left) == left, "a joint that has left its line", *left,
+                 "each at most once");
+  }
+}
+
+void check_sizes(const State& initial, const State& state, Flaw& flaw) {
+  const std::size_t left = state.left_lines.size();
+  const auto of_nodes = [&](std::size_t initial_size) { return initial_size == 0 ? 0 : initial_size + left; };
+  flaw.require_size("the number of nodes", state.nodes.size(), of_nodes(initial.nodes.size()));
+  flaw.require_size("the number of joints", state.released.size(), initial.released.size());
+  flaw.require_size("the number of mass points", state.mass_points.size(), initial.mass_points.size());
+  flaw.require_size("the number of strain rates", state.strain_rates.size(), initial.strain_rates.size());
+  flaw.require_size("the number of commands", state.commands.size(), initial.commands.size());
+  flaw.require_size("the number of efforts", state.efforts.size(), initial.efforts.size());
+  flaw.require_size("the number of impulses of motions", state.drives.impulse.size(), initial.drives.impulse.size());
+  for (const std::vector<double>& means : state.drives.means)
+    flaw.require_size("the number of efforts of motions", means.size(), initial.efforts.size());
+  flaw.require_range("the number of past efforts of motions", state.drives.count, 0, DriveEfforts::kLength);
+  flaw.require_size("the number of marks of rest", state.rests.size(), initial.rests.size());
+  flaw.require_size("the number of strain memories", state.strain_memory.size(), initial.strain_memory.size());
+  flaw.require_size("the number of rotations of stiffness points", state.stiffness_rotations.size(),
+                    initial.stiffness_rotations.size());
+  flaw.require_size("the number of rotations of mass points", state.mass_rotations.size(),
+                    initial.mass_rotations.size());
+  flaw.require_size("the number of total rotations", state.total_rotations.size(),
+                    of_nodes(initial.total_rotations.size()));
+  flaw.require_size("the number of nodal forces", state.forces.size(), of_nodes(initial.forces.size()));
+  flaw.require_size("the number of momentum rates", state.momentum_rates.size(),
+                    of_nodes(initial.momentum_rates.size()));
+  if (!state.reactions.empty())
+    flaw.require_size("the number of reactions", state.reactions.size(), state.nodes.size());
+}
+
+void check_history(const IncrementHistory& history, Flaw& flaw) {
+  flaw.require_range("the number of past increments", history.count, 0, IncrementHistory::kLength);
+  flaw.require_range("the order of extrapolation", history.order, 0, IncrementHistory::kHighestOrder);
+  for (int i = 0; i < std::min<int>(history.count, history.steps.size()); ++i) {
+    flaw.require(history.steps[i] != 0, "the length of a past step", history.steps[i], "another number than 0");
+    flaw.require_size("the number of increments of a past step", history.increments[i].size(),
+                      history.increments[0].size());
+  }
+}
+
+}  // namespace
+
+std::string state_flaw(const Model& built, const State& initial, int max_halvings, const State& state) {
+  Flaw flaw;
+  check_left_lines(built, state, flaw);
+  check_sizes(initial, state, flaw);
+  check_history(state.history, flaw);
+  flaw.require(state.steps >= 0, "the number of steps", static_cast<double>(state.steps), "0 or more");
+  flaw.require_range("the halving level", state.halving_level, 0, max_halvings);
+  flaw.require(state.good_steps >= 0, "the number of good steps", state.good_steps, "0 or more");
+  for_each_number(state, [&](const char* what, double number) {
+    if (what == kCommand && std::isnan(number)) return;
+    flaw.require(std::isfinite(number), what, number, "a finite number");
+  });
+  const auto require_unit = [&](const char* what, const Quaternion& q) {
+    flaw.require(std::abs(q.squaredNorm() - 1) <= kUnitTolerance, what, q.norm(), "1");
+  };
+  for (const NodeState& node : state.nodes) require_unit("the norm of a node's orientation", node.orientation);
+  for (const Released& released : state.released) require_unit("the norm of a joint's rotation", released.rotation);
+  for (const double rest : state.rests) flaw.require(rest == 0 || rest == 1, "a mark of rest", rest, "0 or 1");
+  return flaw.text();
+}
+
+}  // namespace flexarm

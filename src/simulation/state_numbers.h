@@ -1,0 +1,63 @@
+#pragma once
+/// The layout of a state: the one place that knows all its numbers.
+
+#include "flexarm/model/state.h"
+
+namespace flexarm {
+
+/// The quantity that may be nan: no command holds.
+constexpr const char* kCommand = "a command";
+
+/// Calls `visit(what, number)` for every number of a state in a fixed order; `what`: its quantity, for messages. The
+/// whole numbers, halving_level to steps, the counts and order of histories, and left_lines are not among them.
+template <class AnyState, class Visit>
+void for_each_number(AnyState& state, const Visit& visit) {
+  const auto vector = [&](const char* what, auto& v) {
+    for (int k = 0; k < v.size(); ++k) visit(what, v[k]);
+  };
+  visit("the time", state.time);
+  for (auto& node : state.nodes) {
+    vector("a node's position", node.position);
+    vector("a node's orientation", node.orientation.coeffs());
+    vector("a node's velocity", node.velocity);
+    vector("a node's angular velocity", node.angular_velocity);
+    vector("a node's acceleration", node.acceleration);
+    vector("a node's angular acceleration", node.angular_acceleration);
+  }
+  for (auto& released : state.released) {
+    vector("a joint's displacement", released.displacement);
+    vector("a joint's rotation", released.rotation.coeffs());
+  }
+  for (auto& point : state.mass_points) {
+    vector("a mass point's angular velocity", point.angular_velocity);
+    vector("a mass point's angular acceleration", point.angular_acceleration);
+  }
+  for (auto& rate : state.strain_rates) vector("a strain rate", rate);
+  for (auto& command : state.commands) visit(kCommand, command);
+  for (auto& effort : state.efforts) visit("an effort", effort);
+  for (auto& rest : state.rests) visit("a mark of rest", rest);
+  for (auto& made : state.history.increments)
+    for (auto& increment : made) visit("an increment", increment);
+  for (auto& step : state.history.steps) visit("the length of a past step", step);
+  for (auto& impulse : state.drives.impulse) visit("the impulse of a motion", impulse);
+  for (auto& means : state.drives.means)
+    for (auto& mean : means) visit("the effort of a motion", mean);
+  visit("the work", state.work);
+  visit("the dissipated energy", state.dissipated);
+  visit("the energy defect", state.energy_defect);
+  for (auto& memory : state.strain_memory) {
+    vector("an average of strain increments", memory.average);
+    vector("a strain rate", memory.rate);
+  }
+  for (auto* points : {&state.stiffness_rotations, &state.mass_rotations})
+    for (auto& point : *points) {
+      for (int k = 0; k < 9; ++k) visit("a point's rotation", point.rotation(k / 3, k % 3));
+      vector("a point's curvature", point.curvature);
+    }
+  for (auto& rotation : state.total_rotations) vector("a total rotation", rotation);
+  for (auto& force : state.forces) vector("a nodal force", force);
+  for (auto& reaction : state.reactions) vector("a reaction", reaction);
+  for (auto& rate : state.momentum_rates) vector("a momentum rate", rate);
+}
+
+}  // namespace flexarm

@@ -1,0 +1,59 @@
+#!/usr/bin/python3
+"""scripts/count_tests.py counts what passed, failed and was skipped, and fails where it must."""
+
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "scripts", "count_tests.py")
+
+
+def program(name, status, inner=""):
+    return '<testcase name="%s" status="%s">%s</testcase>' % (name, status, inner)
+
+
+def single(name, inner="", status="run"):
+    return '<testcase classname="A" name="%s" status="%s">%s</testcase>' % (name, status, inner)
+
+
+class CountTests(unittest.TestCase):
+    def count(self, programs, gtest=None):
+        """(exit status, last line) for what ctest and the gtest `math` reported."""
+        with tempfile.TemporaryDirectory() as folder:
+            report = os.path.join(folder, "ctest.xml")
+            with open(report, "w", encoding="utf-8") as file:
+                file.write("<testsuite>%s</testsuite>" % "".join(programs))
+            if gtest is not None:
+                with open(os.path.join(folder, "gtest-math.xml"), "w", encoding="utf-8") as file:
+                    file.write(gtest)
+            run = subprocess.run([sys.executable, PROGRAM, report, folder], stdout=subprocess.PIPE, check=False)
+            return run.returncode, run.stdout.decode().splitlines()[-1]
+
+    def test_programs(self):
+        skipped, missing = '<skipped message="SKIP_RETURN_CODE=77"/>', '<skipped message="Unable to find executable"/>'
+        programs = [program("good", "run"), program("skips", "notrun", skipped), program("off", "disabled")]
+        self.assertEqual(self.count(programs), (0, "1 passed, 0 failed, 2 skipped"))
+        programs += [program("bad", "fail", "<failure/>"), program("absent", "notrun", missing)]
+        self.assertEqual(self.count(programs), (1, "1 passed, 2 failed, 2 skipped"))
+
+    def test_single_tests(self):
+        tests = [single("good"), single("skips", "<skipped/>"), single("off", status="notrun")]
+        gtest = "<testsuites><testsuite>%s</testsuite></testsuites>"
+        name = "_ctest_flexarm_gtest_math"
+        ran, broke = program(name, "run"), program(name, "fail")
+        self.assertEqual(self.count([ran], gtest % "".join(tests)), (0, "1 passed, 0 failed, 2 skipped"))
+        # A program that crashed behind its last test has failed, too, and one whose report cannot be read.
+        self.assertEqual(self.count([broke], gtest % "".join(tests)), (1, "1 passed, 1 failed, 2 skipped"))
+        self.assertEqual(self.count([ran], "<testsuites>"), (1, "0 passed, 1 failed, 0 skipped"))
+        tests.append(single("bad", "<failure/>"))
+        self.assertEqual(self.count([broke], gtest % "".join(tests)), (1, "1 passed, 1 failed, 2 skipped"))
+
+    def test_nothing_passed(self):
+        self.assertEqual(self.count([]), (1, "0 passed, 0 failed, 0 skipped"))
+        self.assertEqual(self.count([program("off", "disabled")]), (1, "0 passed, 0 failed, 1 skipped"))
+
+
+if __name__ == "__main__":
+    unittest.main()

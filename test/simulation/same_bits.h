@@ -1,0 +1,49 @@
+#pragma once
+/// Comparison of states bit for bit.
+
+#include <cstring>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "flexarm/model/state.h"
+
+namespace flexarm::test {
+
+/// All numbers of a state, to be compared bit for bit.
+inline std::vector<double> numbers(const State& state) {
+  std::vector<double> out{state.time,
+                          state.work,
+                          state.dissipated,
+                          double(state.steps),
+                          double(state.history.count),
+                          double(state.history.order)};
+  const auto add = [&](const auto& v) { out.insert(out.end(), v.data(), v.data() + v.size()); };
+  for (const auto& made : state.history.increments) add(made);
+  add(state.history.steps);
+  for (const NodeState& node : state.nodes) {
+    add(node.position);
+    add(node.orientation.coeffs());
+    add(node.velocity);
+    add(node.angular_velocity);
+    add(node.acceleration);
+    add(node.angular_acceleration);
+  }
+  for (const Released& released : state.released) add(released.displacement), add(released.rotation.coeffs());
+  for (const MassPointState& point : state.mass_points) add(point.angular_velocity), add(point.angular_acceleration);
+  for (const Vector6& rate : state.strain_rates) add(rate);
+  out.insert(out.end(), state.efforts.begin(), state.efforts.end());
+  return out;
+}
+
+inline ::testing::AssertionResult same_bits(const State& a, const State& b) {
+  const std::vector<double> x = numbers(a), y = numbers(b);
+  if (x.size() != y.size()) return ::testing::AssertionFailure() << "different sizes";
+  for (std::size_t i = 0; i < x.size(); ++i)
+    if (std::memcmp(&x[i], &y[i], sizeof(double)) != 0)
+      return ::testing::AssertionFailure()
+             << "number " << i << " of " << x.size() << ": " << x[i] << " and " << y[i] << " differ by " << x[i] - y[i];
+  return ::testing::AssertionSuccess();
+}
+
+}  // namespace flexarm::test
