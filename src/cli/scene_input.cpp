@@ -3,13 +3,25 @@
 #include <fmt/format.h>
 
 #include "cli/commands.h"
-#include "flexarm/scene/urdf_reader.h"
 #include "math/parse_number.h"
 
 namespace flexarm::cli {
 
-Simulation load_simulation(const std::string& scene, const SimulationOptions& options) {
-  scene::ReadResult result = scene::read_scene_file(scene);
+void add_scene(CLI::App& command, SceneInput& input) {
+  command.add_option("scene", input.path, "scene file")->required();
+  const auto add_choice = [&](const char* name, const char* value, bool& chosen, const char* description) {
+    command
+        .add_option_function<std::string>(
+            name, [&chosen](const std::string&) { chosen = true; }, description)
+        ->check(CLI::IsMember({value}));
+  };
+  add_choice("--start", "clamp", input.options.clamp_start,
+             "joints that would start outside their limits start at the nearest one");
+  add_choice("--massless", "lock", input.options.lock_massless, "joints that move nothing with inertia are held");
+}
+
+Simulation load_simulation(const SceneInput& input, const SimulationOptions& options) {
+  scene::ReadResult result = scene::read_scene_file(input.path, input.options);
   std::string findings = scene::to_text(result.diagnostics);
   if (!findings.empty()) findings.pop_back();  // the last line's end, which print and what() supply
   if (!result.scene) throw InputError(findings);

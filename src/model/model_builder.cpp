@@ -117,7 +117,7 @@ BuiltModel build(const scene::SceneDescription& scene) {
   }
   throw ModelError(text + scene.file +
                    ": give the links outboard of these joints an <inertial> or a <beam>, or hold those with one "
-                   "coordinate where they are by massless=\"lock\" of <simulation>");
+                   "coordinate where they are by massless=\"lock\" of <simulation> (--massless lock)");
 }
 
 /// The scene with constant motions of these coordinates in place of everything else that it says of them.
