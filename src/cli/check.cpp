@@ -115,9 +115,9 @@ void print_frequencies(Simulation& simulation) {
 }  // namespace
 
 void add_check(CLI::App& app, int& status) {
-  const auto scene = std::make_shared<std::string>();
+  const auto scene = std::make_shared<SceneInput>();
   CLI::App* command = app.add_subcommand("check", "Reads a scene, builds its model and describes it");
-  command->add_option("scene", *scene, "scene file")->required();
+  add_scene(*command, *scene);
   command->callback([scene, &status] {
     Simulation simulation = load_simulation(*scene);
     print_size(simulation);

@@ -7,7 +7,7 @@ namespace flexarm::cli {
 namespace {
 
 struct Arguments {
-  std::string scene;
+  SceneInput scene;
   int count = 10;
 };
 
@@ -54,7 +54,7 @@ int solve(const Arguments& arguments) {
 void add_modes(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("modes", "Natural frequencies and shapes about the equilibrium");
-  command->add_option("scene", arguments->scene, "scene file")->required();
+  add_scene(*command, arguments->scene);
   command->add_option("--count", arguments->count, "number of modes")
       ->capture_default_str()
       ->check(CLI::Range(1, 10000));

@@ -15,7 +15,8 @@ namespace flexarm::cli {
 namespace {
 
 struct Arguments {
-  std::string scene, output, resume, checkpoint;
+  SceneInput scene;
+  std::string output, resume, checkpoint;
   double until = 10;  // s
   int every = 1;
   bool quiet = false;
@@ -71,7 +72,7 @@ Run run(const Arguments& arguments, Simulation& simulation) {
 void report_failure(const Arguments& arguments, const Simulation& simulation, const Run& run) {
   const std::string kept = !arguments.checkpoint.empty()
                                ? arguments.checkpoint
-                               : std::filesystem::path(arguments.scene).stem().string() + ".last_good_state";
+                               : std::filesystem::path(arguments.scene.path).stem().string() + ".last_good_state";
   fmt::print(stderr, "flexarm: simulation failed after t = {:.17g} s: {}\n", simulation.time(),
              to_string(run.last.reason));
   write_checkpoint(simulation, kept);
@@ -114,7 +115,7 @@ int simulate(const Arguments& arguments) {
 void add_simulate(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("simulate", "Simulates a scene in time");
-  command->add_option("scene", arguments->scene, "scene file")->required();
+  add_scene(*command, arguments->scene);
   command->add_option("--until", arguments->until, "end time [s]")->capture_default_str()->check(check_non_negative);
   command->add_option("--step", arguments->options.step, "time step [s]")->check(check_positive);
   command->add_option("--scheme", arguments->options.scheme, "integration scheme");

@@ -8,7 +8,8 @@ namespace flexarm::cli {
 namespace {
 
 struct Arguments {
-  std::string scene, output;
+  SceneInput scene;
+  std::string output;
   int load_steps = 10;
 };
 
@@ -50,7 +51,7 @@ int solve(const Arguments& arguments) {
 void add_static(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("static", "Finds the equilibrium under gravity and the loads at t = 0");
-  command->add_option("scene", arguments->scene, "scene file")->required();
+  add_scene(*command, arguments->scene);
   command->add_option("--load-steps", arguments->load_steps, "steps in which gravity and loads grow")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000000));

@@ -4,7 +4,6 @@
 #include <unordered_set>
 
 #include "flexarm/math/so3.h"
-#include "flexarm/model/model_builder.h"
 
 namespace flexarm {
 namespace {
@@ -67,40 +66,70 @@ std::vector<Composite> composites(const std::vector<int>& parents, const Model& 
   return out;
 }
 
+/// What a coordinate moves, at the start.
+struct MovedInertia {
+  double inertia;    ///< m |t|^2 + J |r|^2 [kg or kg m^2]
+  bool is_anything;  ///< more than round-off
+};
+
+MovedInertia moved_inertia(const Model& model, const Coordinate& coordinate, const std::vector<Composite>& outboard) {
+  const JointMap& joint = model.joints[coordinate.joint];
+  const NodePose world;
+  const NodePose& master = joint.master < 0 ? world : model.nodes[joint.master];
+  const Matrix3 frame = master.rotation * joint.origin.orientation.toRotationMatrix();
+  Vector3 translation = joint.translation, rotation = joint.rotation;
+  if (joint.profile) translation *= joint.profile->derivative(model.initial_released[coordinate.joint].displacement[0]);
+  if (joint.kind != JointMapKind::Scalar) {
+    const Vector3 unit = Vector3::Unit(coordinate.component % 3);
+    translation = coordinate.is_angle ? Vector3::Zero() : unit;
+    rotation = coordinate.is_angle ? unit : Vector3::Zero();
+  }
+  const Composite& body = outboard[joint.slave];
+  // Screw-like couplings have no cross term about their axis.
+  double inertia = body.mass * translation.squaredNorm();
+  const Vector3& point = model.nodes[joint.slave].position;
+  if (rotation.norm() > 0) inertia += body.about(point, frame * rotation.normalized()) * rotation.squaredNorm();
+  // Nothing is what the shift to the axis leaves by round-off.
+  const double terms = body.mass * (translation.squaredNorm() + point.squaredNorm() * rotation.squaredNorm()) +
+                       body.inertia.trace() * rotation.squaredNorm();
+  return {inertia, inertia > 1e-13 * terms};
+}
+
+/// Adds what coordinates that move nothing themselves move through those that follow them.
+void add_followers(const Model& model, std::vector<MovedInertia>& moved) {
+  const std::vector<MovedInertia> own = moved;
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    const Coordinate& follower = model.coordinates[i];
+    if (follower.mimicked < 0 || !own[i].is_anything || own[follower.mimicked].is_anything) continue;
+    MovedInertia& leader = moved[follower.mimicked];
+    const int joint = model.coordinates[follower.mimicked].joint;
+    const double ratio = follower.mimic.derivative(model.initial_released[joint].displacement[0]);
+    leader.inertia = (leader.is_anything ? leader.inertia : 0) + ratio * ratio * own[i].inertia;
+    leader.is_anything = leader.inertia > 0;
+  }
+}
+
 }  // namespace
 
-void finish_mass_properties(const scene::SceneDescription& scene, const std::vector<int>& parents, Model& model) {
+std::vector<int> finish_mass_properties(const scene::SceneDescription& scene, const std::vector<int>& parents,
+                                        Model& model) {
   const std::vector<Composite> outboard = composites(parents, model);
-  for (Coordinate& coordinate : model.coordinates) {
-    const JointMap& joint = model.joints[coordinate.joint];
-    const NodePose world;
-    const NodePose& master = joint.master < 0 ? world : model.nodes[joint.master];
-    const Matrix3 frame = master.rotation * joint.origin.orientation.toRotationMatrix();
-    Vector3 translation = joint.translation, rotation = joint.rotation;
-    if (joint.profile)
-      translation *= joint.profile->derivative(model.initial_released[coordinate.joint].displacement[0]);
-    if (joint.kind != JointMapKind::Scalar) {
-      const Vector3 unit = Vector3::Unit(coordinate.component % 3);
-      translation = coordinate.is_angle ? Vector3::Zero() : unit;
-      rotation = coordinate.is_angle ? unit : Vector3::Zero();
-    }
-    const Composite& body = outboard[joint.slave];
-    // Inertia that the coordinate moves: m |t|^2 + J |r|^2 (screw-like couplings have no cross term about their axis).
-    double inertia = body.mass * translation.squaredNorm();
-    const Vector3& point = model.nodes[joint.slave].position;
-    if (rotation.norm() > 0) inertia += body.about(point, frame * rotation.normalized()) * rotation.squaredNorm();
-    // A driven or mimicking coordinate needs none. Nothing is what the shift to the axis leaves by round-off.
-    const double terms = body.mass * (translation.squaredNorm() + point.squaredNorm() * rotation.squaredNorm()) +
-                         body.inertia.trace() * rotation.squaredNorm();
-    if (!(inertia > 1e-13 * terms) && coordinate.motion < 0 && coordinate.mimicked < 0)
-      throw ModelError(scene.file + ": joint coordinate '" + coordinate.name +
-                       "' moves nothing that has inertia: give the links outboard of it an <inertial> or a <beam>");
+  std::vector<MovedInertia> moved;
+  for (const Coordinate& coordinate : model.coordinates) moved.push_back(moved_inertia(model, coordinate, outboard));
+  add_followers(model, moved);
+  std::vector<int> massless;
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    Coordinate& coordinate = model.coordinates[i];
+    // A driven or following coordinate needs none.
+    if (!moved[i].is_anything && coordinate.motion < 0 && coordinate.mimicked < 0)
+      massless.push_back(static_cast<int>(i));
     if (coordinate.limit) {
       const double omega = kPi / (kContactSteps * scene.integrator.step);
-      coordinate.limit->stiffness = inertia * omega * omega;
-      coordinate.limit->damping = 2 * kStopDampingRatio * inertia * omega;
+      coordinate.limit->stiffness = moved[i].inertia * omega * omega;
+      coordinate.limit->damping = 2 * kStopDampingRatio * moved[i].inertia * omega;
     }
   }
+  return massless;
 }
 
 }  // namespace flexarm

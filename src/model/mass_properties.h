@@ -8,9 +8,9 @@
 
 namespace flexarm {
 
-/// Checks that every released coordinate moves some inertia, and gives the stops of limited coordinates their penalty.
-/// `node_parents`: see MechanismBuilder.
-/// @throws ModelError
-void finish_mass_properties(const scene::SceneDescription& scene, const std::vector<int>& node_parents, Model& model);
+/// Gives the stops of limited coordinates their penalty. `node_parents`: see MechanismBuilder.
+/// @return coordinates that are free to move, and move nothing that has inertia, directly or through what follows them.
+std::vector<int> finish_mass_properties(const scene::SceneDescription& scene, const std::vector<int>& node_parents,
+                                        Model& model);
 
 }  // namespace flexarm

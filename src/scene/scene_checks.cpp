@@ -158,7 +158,8 @@ class ReferenceCheck {
       const char* element = "<initial> of simulation";
       check_link(initial.link, initial.location, element);
       if (initial.link == scene_.root_link && !scene_.root_link.empty())
-        findings_.error(initial.location.line, element, "the root link is clamped and cannot move",
+        findings_.error(initial.location.line, element,
+                        "the root link is clamped and cannot move, unless <root type=\"floating\"/> lets it fly",
                         quoted(initial.link));
       if (!moving.insert(initial.link).second)
         findings_.error(initial.location.line, element, "the link has an initial velocity already",

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "flexarm/scene/integrator_options.h"
+#include "scene/choice.h"
 #include "scene/extension_reader.h"
 #include "scene/limits.h"
 
@@ -69,7 +70,18 @@ void read_gravity(const XmlElement& gravity, SceneDescription& scene) {
   scene.gravity = gravity.vector("xyz").value_or(scene.gravity);
 }
 
-void read_initial(const XmlElement& initial, SceneDescription& scene) {
+/// A number, or "clamp": then 0, until the joint's limits are known.
+double read_initial_position(const XmlElement& initial, const std::string& coordinate, StartRequest& start) {
+  if (!initial.has("position")) return 0;
+  if (initial.text("position") == "clamp") {
+    start.clamped.insert(coordinate);
+    return 0;
+  }
+  start.placed.insert(coordinate);
+  return initial.number("position", kAnyNumber, 0);
+}
+
+void read_initial(const XmlElement& initial, SceneDescription& scene, StartRequest& start) {
   const bool of_link = initial.has("link");
   if (of_link == initial.has("joint")) {
     initial.error("either attribute 'joint' or attribute 'link' is expected");
@@ -84,9 +96,10 @@ void read_initial(const XmlElement& initial, SceneDescription& scene) {
     initial.expect_only({"joint", "position", "velocity"});
     if (!initial.has("position") && !initial.has("velocity"))
       initial.error("attribute 'position' or 'velocity' is missing");
-    scene.initial_joints.push_back({initial.text("joint").value_or(""), initial.number("position", kAnyNumber, 0),
-                                    initial.number("velocity", kAnyNumber, 0), initial.location(),
-                                    initial.has("velocity")});
+    const std::string coordinate = initial.text("joint").value_or("");
+    const double position = read_initial_position(initial, coordinate, start);
+    scene.initial_joints.push_back(
+        {coordinate, position, initial.number("velocity", kAnyNumber, 0), initial.location(), initial.has("velocity")});
   }
 }
 
@@ -133,13 +146,24 @@ void read_probe(const XmlElement& probe, SceneDescription& scene) {
                           probe.vector("at", Vector3::Zero()), probe.location()});
 }
 
+constexpr Choice<bool> kRootTypes[] = {{"clamped", false}, {"floating", true}};
+constexpr Choice<bool> kStarts[] = {{"given", false}, {"clamp", true}};
+constexpr Choice<bool> kMassless[] = {{"refuse", false}, {"lock", true}};
+
+void read_root(const XmlElement& root, StartRequest& start) {
+  root.expect_only({"type"});
+  start.root = {read_choice(root, "type", kRootTypes).value_or(false), root.location()};
+}
+
 }  // namespace
 
-void read_simulation(const XmlElement& unowned, SceneDescription& scene) {
+void read_simulation(const XmlElement& unowned, SceneDescription& scene, StartRequest& start) {
   const XmlElement simulation = unowned.with_owner("simulation");
-  simulation.expect_only({},
-                         {"gravity", "integrator", "initial", "load", "distributed_load", "motion", "effort", "probe"});
-  simulation.expect_at_most_one({"gravity", "integrator"});
+  simulation.expect_only({"start", "massless"}, {"gravity", "integrator", "root", "initial", "load", "distributed_load",
+                                                 "motion", "effort", "probe"});
+  simulation.expect_at_most_one({"gravity", "integrator", "root"});
+  start.clamps_all = read_choice(simulation, "start", kStarts, false) || start.clamps_all;
+  scene.lock_massless = read_choice(simulation, "massless", kMassless, false) || scene.lock_massless;
   const std::vector<XmlElement> entries = simulation.children();
   if (entries.size() > kMostSimulationEntries) {
     simulation.error(fmt::format("at most {} entries are allowed", kMostSimulationEntries),
@@ -150,7 +174,8 @@ void read_simulation(const XmlElement& unowned, SceneDescription& scene) {
     const std::string tag = entry.tag();
     if (tag == "gravity") read_gravity(entry, scene);
     if (tag == "integrator") read_integrator(entry, scene.integrator);
-    if (tag == "initial") read_initial(entry, scene);
+    if (tag == "root") read_root(entry, start);
+    if (tag == "initial") read_initial(entry, scene, start);
     if (tag == "load") read_load(entry, scene);
     if (tag == "distributed_load") read_distributed_load(entry, scene);
     if (tag == "motion") read_motion(entry, scene);

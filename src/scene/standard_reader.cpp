@@ -6,7 +6,6 @@
 #include "scene/slide_reader.h"
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
 
 #include "scene/urdfdom.h"
 
@@ -23,30 +22,19 @@ struct StandardAttribute {
 };
 
 constexpr StandardAttribute kInertialAttributes[] = {
-    {"origin", "xyz", 3, false, kAnyNumber},   {"origin", "rpy", 3, false, kAnyNumber},
-    {"mass", "value", 1, true, kNonNegative},  {"inertia", "ixx", 1, true, kNonNegative},
-    {"inertia", "ixy", 1, true, kAnyNumber},   {"inertia", "ixz", 1, true, kAnyNumber},
-    {"inertia", "iyy", 1, true, kNonNegative}, {"inertia", "iyz", 1, true, kAnyNumber},
-    {"inertia", "izz", 1, true, kNonNegative},
+    {"origin", "xyz", 3, false, kAnyNumber},  {"origin", "rpy", 3, false, kAnyNumber},
+    {"mass", "value", 1, true, kNonNegative}, {"inertia", "ixx", 1, true, kAnyNumber},
+    {"inertia", "ixy", 1, true, kAnyNumber},  {"inertia", "ixz", 1, true, kAnyNumber},
+    {"inertia", "iyy", 1, true, kAnyNumber},  {"inertia", "iyz", 1, true, kAnyNumber},
+    {"inertia", "izz", 1, true, kAnyNumber},
 };
 
 constexpr StandardAttribute kJointAttributes[] = {
-    {"origin", "xyz", 3, false, kAnyNumber},
-    {"origin", "rpy", 3, false, kAnyNumber},
-    {"limit", "lower", 1, false, kAnyNumber},
-    {"limit", "upper", 1, false, kAnyNumber},
-    {"limit", "effort", 1, true, kNonNegative},
-    {"limit", "velocity", 1, true, kNonNegative},
-    {"dynamics", "damping", 1, false, kNonNegative},
-    {"dynamics", "friction", 1, false, kNonNegative},
-    {"mimic", "multiplier", 1, false, kAnyNumber},
-    {"mimic", "offset", 1, false, kAnyNumber},
-    {"safety_controller", "soft_lower_limit", 1, false, kAnyNumber},
-    {"safety_controller", "soft_upper_limit", 1, false, kAnyNumber},
-    {"safety_controller", "k_position", 1, false, kAnyNumber},
-    {"safety_controller", "k_velocity", 1, true, kAnyNumber},
-    {"calibration", "rising", 1, false, kAnyNumber},
-    {"calibration", "falling", 1, false, kAnyNumber},
+    {"origin", "xyz", 3, false, kAnyNumber},         {"origin", "rpy", 3, false, kAnyNumber},
+    {"limit", "lower", 1, false, kAnyNumber},        {"limit", "upper", 1, false, kAnyNumber},
+    {"limit", "effort", 1, false, kNonNegative},     {"limit", "velocity", 1, false, kNonNegative},
+    {"dynamics", "damping", 1, false, kNonNegative}, {"dynamics", "friction", 1, false, kNonNegative},
+    {"mimic", "multiplier", 1, false, kAnyNumber},   {"mimic", "offset", 1, false, kAnyNumber},
 };
 
 template <std::size_t Count>
@@ -57,35 +45,33 @@ void check_attributes(const XmlElement& element, const StandardAttribute (&table
   }
 }
 
-Vector3 from_urdf(const urdf::Vector3& v) {
-  return {v.x, v.y, v.z};
-}
-
-Pose from_urdf(const urdf::Pose& pose) {
-  const urdf::Rotation& q = pose.rotation;
-  return {from_urdf(pose.position), Quaternion(q.w, q.x, q.y, q.z).normalized()};
-}
-
-/// Has urdfdom read a document with only these elements of <robot>; its complaints become a finding about `element`.
-urdf::ModelInterfaceSharedPtr read_alone(const XmlElement& element, const std::string& elements) {
+/// Has urdfdom read a document with only these elements of <robot>. What only other programs stumble over is a warning.
+void judge_alone(const XmlElement& element, const std::string& elements) {
   const UrdfdomResult result = parse_with_urdfdom("<robot name=\"robot\">" + elements + "</robot>");
-  if (!result.errors.empty()) element.error("must be valid URDF", quoted(result.errors.front()));
-  return result.errors.empty() ? result.model : nullptr;
+  if (!result.errors.empty())
+    element.warning("programs that use urdfdom cannot read it", quoted(result.errors.front()));
+}
+
+/// Of <origin> and <child_origin>.
+Pose read_pose(const XmlElement& origin) {
+  const Vector3 xyz = origin.vector("xyz", Vector3::Zero()), rpy = origin.vector("rpy", Vector3::Zero());
+  urdf::Rotation rotation;
+  rotation.setFromRPY(rpy.x(), rpy.y(), rpy.z());
+  return {xyz, Quaternion(rotation.w, rotation.x, rotation.y, rotation.z).normalized()};
+}
+
+Pose read_origin(const XmlElement& element) {
+  const std::optional<XmlElement> origin = element.child("origin");
+  return origin ? read_pose(*origin) : Pose();
+}
+
+/// An attribute that has been checked already; 0 if it or the child is not there.
+double checked_number(const XmlElement& element, const char* child, const char* attribute) {
+  const std::optional<XmlElement> found = element.child(child);
+  return found ? found->number(attribute, kAnyNumber, 0) : 0;
 }
 
 // ---------------------------------------------------------------- links
-
-/// A real body's inertia: positive semidefinite, and no principal moment larger than the sum of the others.
-void check_inertia(const XmlElement& inertial, const Matrix3& inertia) {
-  const Vector3 moments = Eigen::SelfAdjointEigenSolver<Matrix3>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
-  const double tolerance = 1e-9 * moments.cwiseAbs().maxCoeff();
-  const XmlElement element = inertial.child("inertia").value_or(inertial);
-  if (moments[0] < -tolerance) {
-    element.error("principal moments of inertia must be >= 0", fmt::format("'{}'", moments[0]));
-  } else if (moments[2] > moments[0] + moments[1] + tolerance) {
-    element.warning("no body has a principal moment of inertia larger than the sum of the others");
-  }
-}
 
 std::optional<RigidInertia> read_inertial(const XmlElement& inertial) {
   const std::size_t errors = inertial.findings().error_count();
@@ -95,23 +81,24 @@ std::optional<RigidInertia> read_inertial(const XmlElement& inertial) {
   check_attributes(inertial, kInertialAttributes);
   if (inertial.findings().error_count() > errors) return std::nullopt;
 
-  const urdf::ModelInterfaceSharedPtr model =
-      read_alone(inertial, "<link name=\"link\">" + printed(inertial.xml()) + "</link>");
-  if (!model || !model->getRoot() || !model->getRoot()->inertial) return std::nullopt;
-  const urdf::Inertial& read = *model->getRoot()->inertial;
+  judge_alone(inertial, "<link name=\"link\">" + printed(inertial.xml()) + "</link>");
+  const auto moment = [&](const char* attribute) { return checked_number(inertial, "inertia", attribute); };
+  const double xx = moment("ixx"), yy = moment("iyy"), zz = moment("izz");
+  const double xy = moment("ixy"), xz = moment("ixz"), yz = moment("iyz");
   Matrix3 inertia;
-  inertia << read.ixx, read.ixy, read.ixz, read.ixy, read.iyy, read.iyz, read.ixz, read.iyz, read.izz;
-  check_inertia(inertial, inertia);
-  const Pose frame = from_urdf(read.origin);
+  inertia << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+  const Pose frame = read_origin(inertial);
   const Matrix3 rotation = frame.orientation.toRotationMatrix();
-  return RigidInertia{read.mass, frame.position, rotation * inertia * rotation.transpose()};
+  return RigidInertia{checked_number(inertial, "mass", "value"), frame.position,
+                      rotation * inertia * rotation.transpose(), inertial.child("inertia")->location()};
 }
 
 // ---------------------------------------------------------------- joints
 
 constexpr Choice<JointKind> kTypes[] = {{"fixed", JointKind::Fixed},           {"revolute", JointKind::Revolute},
                                         {"continuous", JointKind::Continuous}, {"prismatic", JointKind::Prismatic},
-                                        {"planar", JointKind::Planar},         {"floating", JointKind::Floating}};
+                                        {"planar", JointKind::Planar},         {"floating", JointKind::Floating},
+                                        {"spherical", JointKind::Spherical}};  // not URDF's, but Bullet's
 constexpr Choice<JointKind> kReleases[] = {{"spherical", JointKind::Spherical},
                                            {"universal", JointKind::Universal},
                                            {"cylindrical", JointKind::Cylindrical},
@@ -172,19 +159,28 @@ void read_axes(const XmlElement& joint, JointDescription& description) {
     axis2->attribute_error("xyz", "the axes of a universal joint must not be parallel");
 }
 
-void read_limits(const XmlElement& joint, const urdf::Joint& read, JointDescription& description) {
-  if (!read.limits) return;
-  const urdf::JointLimits& limits = *read.limits;
-  description.effort_limit = limits.effort;
-  if (has_dependent_travel(description.kind) && limits.lower == limits.upper) return;  // given for effort only
+void read_limits(const XmlElement& joint, JointDescription& description) {
+  const std::optional<XmlElement> limit = joint.child("limit");
+  if (!limit) return;
+  description.effort_limit = limit->number("effort", kNonNegative, 0);
+  const double lower = limit->number("lower", kAnyNumber, 0), upper = limit->number("upper", kAnyNumber, 0);
+  if (has_dependent_travel(description.kind) && lower == upper) return;  // given for effort only
   if (description.kind != JointKind::Revolute && description.kind != JointKind::Prismatic &&
       !has_dependent_travel(description.kind))
     return;
-  const XmlElement element = joint.child("limit").value_or(joint);
-  if (limits.lower > limits.upper)
-    element.error("lower must be <= upper", fmt::format("lower '{}', upper '{}'", limits.lower, limits.upper));
-  if (limits.lower == limits.upper) element.warning("lower and upper are equal: the joint cannot move");
-  description.limits = JointLimits{limits.lower, limits.upper, limits.velocity};
+  if (lower > upper) limit->error("lower must be <= upper", fmt::format("lower '{}', upper '{}'", lower, upper));
+  if (lower == upper) limit->warning("lower and upper are equal: the joint cannot move");
+  description.limits = JointLimits{lower, upper, limit->number("velocity", kNonNegative, 0)};
+}
+
+/// The coordinate that a joint follows. Exporters keep <mimic> where they have fixed a joint.
+std::optional<Mimic> read_mimic(const XmlElement& mimic, JointKind kind) {
+  if (kind == JointKind::Fixed) {
+    mimic.warning("is ignored: a fixed joint has no coordinate that could follow another");
+    return std::nullopt;
+  }
+  return Mimic{mimic.text("joint").value_or(""), mimic.number("multiplier", kAnyNumber, 1),
+               mimic.number("offset", kAnyNumber, 0)};
 }
 
 void check_joint_structure(const XmlElement& joint) {
@@ -213,19 +209,10 @@ std::string printed_joint(const XmlElement& joint) {
   return printed(*copy);
 }
 
-Pose read_child_origin(const XmlElement& origin) {
-  origin.expect_only({"xyz", "rpy"});
-  const Vector3 rpy = origin.vector("rpy", Vector3::Zero());
-  urdf::Rotation rotation;
-  rotation.setFromRPY(rpy.x(), rpy.y(), rpy.z());
-  const Vector3 xyz = origin.vector("xyz", Vector3::Zero());
-  return {xyz, Quaternion(rotation.w, rotation.x, rotation.y, rotation.z).normalized()};
-}
-
 }  // namespace
 
-void check_with_urdfdom(const XmlElement& element) {
-  read_alone(element, printed(element.xml()) + "<link name=\"link\"/>");
+void judge_material(const XmlElement& material) {
+  judge_alone(material, printed(material.xml()) + "<link name=\"link\"/>");
 }
 
 LinkDescription read_link(const XmlElement& unnamed) {
@@ -239,7 +226,7 @@ LinkDescription read_link(const XmlElement& unnamed) {
   // Each alone, since urdfdom leaves a link at its first error.
   for (const XmlElement& child : link.children())
     if (child.tag() == "visual" || child.tag() == "collision")
-      read_alone(child, "<link name=\"link\">" + printed(child.xml()) + "</link>");
+      judge_alone(child, "<link name=\"link\">" + printed(child.xml()) + "</link>");
   return description;
 }
 
@@ -251,8 +238,6 @@ JointDescription read_joint(const XmlElement& unnamed) {
   const std::size_t errors = joint.findings().error_count();
   description.parent = read_link_name(joint, "parent");
   description.child = read_link_name(joint, "child");
-  if (const std::optional<XmlElement> mimic = joint.child("mimic"))
-    description.mimic = Mimic{mimic->text("joint").value_or("")};
   check_joint_structure(joint);
   if (const std::optional<JointKind> kind = read_joint_kind(joint)) {
     description.kind = *kind;
@@ -262,19 +247,16 @@ JointDescription read_joint(const XmlElement& unnamed) {
     if (const std::optional<XmlElement> couple = joint.child("couple")) read_couple(joint, *couple, description);
     if (const std::optional<XmlElement> friction = joint.child("friction")) read_friction(*friction, description);
   }
+  const std::optional<XmlElement> mimic = joint.child("mimic");
+  if (mimic && !mimic->has("joint")) mimic->error("attribute 'joint' is missing");
   if (joint.findings().error_count() > errors) return description;
 
-  const urdf::ModelInterfaceSharedPtr model =
-      read_alone(joint, "<link name=\"parent\"/><link name=\"child\"/>" + printed_joint(joint));
-  const urdf::JointConstSharedPtr read = model ? model->getJoint(description.name) : nullptr;
-  if (!read) return description;
-  description.origin = from_urdf(read->parent_to_joint_origin_transform);
-  if (read->dynamics) {
-    description.damping = read->dynamics->damping;
-    description.friction = read->dynamics->friction;
-  }
-  if (read->mimic) description.mimic = Mimic{read->mimic->joint_name, read->mimic->multiplier, read->mimic->offset};
-  read_limits(joint, *read, description);
+  judge_alone(joint, "<link name=\"parent\"/><link name=\"child\"/>" + printed_joint(joint));
+  description.origin = read_origin(joint);
+  description.damping = checked_number(joint, "dynamics", "damping");
+  description.friction = checked_number(joint, "dynamics", "friction");
+  if (mimic) description.mimic = read_mimic(*mimic, description.kind);
+  read_limits(joint, description);
   return description;
 }
 
@@ -290,8 +272,10 @@ JointDescription read_loop_joint(const XmlElement& unnamed) {
   if (joint.findings().error_count() == errors) description = read_joint(unnamed);
   description.name = unnamed.text("name").value_or("");
   description.location = unnamed.location();
-  if (const std::optional<XmlElement> origin = joint.child("child_origin"))
-    description.child_origin = read_child_origin(*origin);
+  if (const std::optional<XmlElement> origin = joint.child("child_origin")) {
+    origin->expect_only({"xyz", "rpy"});
+    description.child_origin = read_pose(*origin);
+  }
   if (description.kind == JointKind::Floating && joint.findings().error_count() == errors)
     joint.error("a <loop_joint> must hold something: not 'floating' alone, nor <release kind=\"free\"/>");
   return description;

@@ -1,5 +1,5 @@
 #pragma once
-/// URDF's own <link> and <joint>: numbers are checked here, line by line; values come from urdfdom.
+/// URDF's own <link> and <joint>: read and checked line by line; urdfdom tells what other programs make of them.
 
 #include "scene/xml_element.h"
 
@@ -14,7 +14,7 @@ JointDescription read_joint(const XmlElement& joint);
 /// Reads <loop_joint>: the same elements, less <slide> and <mimic>, and <child_origin>.
 JointDescription read_loop_joint(const XmlElement& joint);
 
-/// Has urdfdom read `element` as a child of <robot>; its complaints become a finding about the element.
-void check_with_urdfdom(const XmlElement& element);
+/// Records what urdfdom finds wrong with a <material> of the robot.
+void judge_material(const XmlElement& material);
 
 }  // namespace flexarm::scene

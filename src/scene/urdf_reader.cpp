@@ -5,10 +5,12 @@
 #include <fmt/format.h>
 
 #include "scene/extension_reader.h"
+#include "scene/inertia_checks.h"
 #include "scene/limits.h"
 #include "scene/scene_checks.h"
 #include "scene/standard_reader.h"
 #include "scene/urdfdom.h"
+#include "scene/xacro.h"
 #include "scene/xml_document.h"
 
 namespace flexarm::scene {
@@ -21,7 +23,8 @@ struct Place {
 };
 constexpr Place kPlaces[] = {{"beam", "link"},      {"release", "joint"},    {"axis2", "joint"},
                              {"slide", "joint"},    {"couple", "joint"},     {"child_origin", "loop_joint"},
-                             {"friction", "joint"}, {"simulation", "robot"}, {"loop_joint", "robot"}};
+                             {"friction", "joint"}, {"simulation", "robot"}, {"loop_joint", "robot"},
+                             {"root", "simulation"}};
 
 /// Records our elements where they would be ignored like a stranger's.
 void check_places(const XmlElement& element) {
@@ -37,7 +40,10 @@ void check_places(const XmlElement& element) {
 
 class SceneReader {
  public:
-  explicit SceneReader(Findings& findings) : findings_(findings) {}
+  SceneReader(const ReadOptions& options, Findings& findings) : findings_(findings) {
+    start_.clamps_all = options.clamp_start;
+    scene_.lock_massless = options.lock_massless;
+  }
 
   SceneDescription read(const XmlElement& unnamed) {
     scene_.file = findings_.file();
@@ -51,6 +57,9 @@ class SceneReader {
     check_size(robot, "loop joints", scene_.loop_joints.size(), kMostJoints);
     if (scene_.links.empty()) robot.error("at least one <link> is expected");
     check_tree(scene_, findings_);
+    settle_root(scene_, start_, findings_);
+    check_inertias(scene_, findings_);
+    settle_positions(scene_, start_, unreadable_, findings_);
     check_references(scene_, unreadable_, findings_);
     return std::move(scene_);
   }
@@ -67,13 +76,13 @@ class SceneReader {
       scene_.joints.push_back(read_joint(child));
       if (findings_.error_count() > errors) unreadable_.insert(scene_.joints.back().name);
     } else if (tag == "material") {
-      check_with_urdfdom(child);
+      judge_material(child);
     } else if (tag == "loop_joint" && scene_.loop_joints.size() <= kMostJoints) {
       check_places(child);
       scene_.loop_joints.push_back(read_loop_joint(child));
       if (findings_.error_count() > errors) unreadable_.insert(scene_.loop_joints.back().name);
     } else if (tag == "simulation") {
-      read_simulation(child, scene_);
+      read_simulation(child, scene_, start_);
     }
   }
 
@@ -95,10 +104,11 @@ class SceneReader {
 
   Findings& findings_;
   SceneDescription scene_;
+  StartRequest start_;
   std::set<std::string> unreadable_;  // links and joints with errors, of which only the name is to be trusted
 };
 
-std::optional<SceneDescription> read_scene(const std::string& text, Findings& findings) {
+std::optional<SceneDescription> read_scene(const std::string& text, const ReadOptions& options, Findings& findings) {
   if (text.size() > kLargestFile) {
     findings.error(0, "file", fmt::format("may have {} bytes", kLargestFile), fmt::format("'{}'", text.size()));
     return std::nullopt;
@@ -112,15 +122,13 @@ std::optional<SceneDescription> read_scene(const std::string& text, Findings& fi
     return std::nullopt;
   }
   const XmlElement robot(*root, "<robot>", "robot", findings);
-  SceneDescription scene = SceneReader(findings).read(robot);
+  if (refuse_xacro(robot)) return std::nullopt;
+  SceneDescription scene = SceneReader(options, findings).read(robot);
   if (findings.error_count() > 0) return std::nullopt;
 
-  // Each part has been read alone; now the judge of other tools about the whole.
+  // Each part has been judged alone; now the whole, as other programs read it.
   const UrdfdomResult whole = parse_with_urdfdom(text);
-  if (!whole.errors.empty()) {
-    robot.error("must be valid URDF", quoted(whole.errors.front()));
-    return std::nullopt;
-  }
+  if (!whole.errors.empty()) robot.warning("programs that use urdfdom refuse this file", quoted(whole.errors.front()));
   return scene;
 }
 
@@ -138,17 +146,17 @@ std::optional<std::string> read_bytes(const std::string& path) {
 
 }  // namespace
 
-ReadResult read_scene_text(const std::string& text, const std::string& name) {
+ReadResult read_scene_text(const std::string& text, const std::string& name, const ReadOptions& options) {
   Findings findings(name);
   ReadResult result;
-  result.scene = read_scene(text, findings);
+  result.scene = read_scene(text, options, findings);
   result.diagnostics = findings.take();
   return result;
 }
 
-ReadResult read_scene_file(const std::string& path) {
+ReadResult read_scene_file(const std::string& path, const ReadOptions& options) {
   const std::optional<std::string> text = read_bytes(path);
-  if (text) return read_scene_text(*text, path);
+  if (text) return read_scene_text(*text, path, options);
   Findings findings(path);
   findings.error(0, "file", "cannot be read");
   return {std::nullopt, findings.take()};

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <map>
 #include <stdexcept>
 
 #include "math/parse_number.h"
@@ -66,10 +66,19 @@ std::optional<XmlElement> XmlElement::child(const char* tag) const {
 }
 
 void XmlElement::expect_at_most_one(std::initializer_list<const char*> tags) const {
-  std::set<std::string> seen;
+  std::map<std::string, const tinyxml2::XMLElement*> seen;
   for (const XmlElement& child : children()) {
-    if (contains(tags, child.tag()) && !seen.insert(child.tag()).second)
-      child.error("at most one <" + child.tag() + "> is allowed here");
+    if (!contains(tags, child.tag())) continue;
+    const auto [first, is_new] = seen.emplace(child.tag(), &child.xml());
+    if (is_new) continue;
+    const bool is_alike =
+        child.xml().ShallowEqual(first->second) && child.xml().NoChildren() && first->second->NoChildren();
+    const std::string expected = "at most one <" + child.tag() + "> is allowed here";
+    if (is_alike) {
+      child.warning(expected + "; the other one is alike");
+    } else {
+      child.error(expected);
+    }
   }
 }
 

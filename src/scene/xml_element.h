@@ -54,7 +54,7 @@ class XmlElement {
   std::vector<XmlElement> children() const;
   /// First child of this name.
   std::optional<XmlElement> child(const char* tag) const;
-  /// Records children of these names that come twice.
+  /// Records children of these names that come twice; it is a warning where they say the same.
   void expect_at_most_one(std::initializer_list<const char*> tags) const;
   /// Inside an extension element: records every attribute, child and text that is not known here.
   void expect_only(std::initializer_list<const char*> attributes, std::initializer_list<const char*> tags = {}) const;

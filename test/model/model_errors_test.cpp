@@ -33,6 +33,61 @@ TEST(ModelErrors, NothingOutboardHasInertia) {
   EXPECT_NO_THROW(build_model(builder.scene));  // driven, it needs none
 }
 
+TEST(ModelErrors, AllMasslessJointsAreNamedAtOnce) {
+  SceneBuilder builder = arm();
+  builder.scene.links.push_back({"ghost", {}, {}, {}});
+  builder.scene.links.push_back({"shadow", {}, {}, {}});
+  builder.joint("idle", JointKind::Revolute, "arm", "ghost").location = {"s.urdf", 13};
+  builder.joint("loose", JointKind::Universal, "ghost", "shadow").location = {"s.urdf", 14};
+  for (const char* text :
+       {"s.urdf:13: <joint>: joint coordinate 'idle' moves nothing that has inertia\n",
+        "s.urdf:14: <joint>: joint coordinate 'loose/1' moves nothing that has inertia\n",
+        "s.urdf:14: <joint>: joint coordinate 'loose/2' moves nothing", "or hold those with one coordinate"})
+    expect_error(builder.scene, text);
+}
+
+TEST(ModelErrors, MasslessJointsAreHeldWhereTheyStartOnDemand) {
+  SceneBuilder builder = arm();
+  builder.scene.links.push_back({"ghost", {}, {}, {}});
+  scene::JointDescription& idle = builder.joint("idle", JointKind::Revolute, "arm", "ghost");
+  idle.limits = scene::JointLimits{-1, 1};
+  builder.scene.initial_joints.push_back({"idle", 0.3, 2, {}, true});
+  builder.scene.efforts.push_back({"idle", TimeFunction(5), {}});
+  builder.scene.lock_massless = true;
+  const Model model = build_model(builder.scene);
+  ASSERT_EQ(model.coordinates.size(), 2u);
+  EXPECT_LT(model.coordinates[0].motion, 0);  // the hinge moves the arm
+  const Coordinate& held = model.coordinates[1];
+  ASSERT_GE(held.motion, 0);
+  EXPECT_EQ(model.histories[held.motion](1.0), 0.3);
+  EXPECT_EQ(model.initial_released[held.joint].displacement[0], 0.3);
+  EXPECT_LT(held.effort, 0);
+  EXPECT_FALSE(held.limit);
+  EXPECT_TRUE(model.initial_velocity.back().isZero(0));
+}
+
+TEST(ModelErrors, AFreeRotationWithoutInertiaCannotBeHeld) {
+  SceneBuilder builder = arm();
+  builder.scene.links.push_back({"ghost", {}, {}, {}});
+  builder.joint("idle", JointKind::Spherical, "arm", "ghost");
+  builder.scene.lock_massless = true;
+  expect_error(builder.scene, "'idle/rx' moves nothing");
+}
+
+TEST(ModelErrors, WhatFollowsAJointIsMovedByIt) {
+  SceneBuilder builder = arm();
+  builder.scene.links.push_back({"handle", {}, {}, {}});
+  builder.joint("crank", JointKind::Revolute, "world", "handle").limits = scene::JointLimits{-1, 1};
+  expect_error(builder.scene, "'crank' moves nothing");
+  builder.scene.joints[0].mimic = scene::Mimic{"crank", 3, 0};
+  const Model model = build_model(builder.scene);
+  // The stop of the crank feels the arm, J + m l^2 about the hinge, by the square of the ratio.
+  SceneBuilder alone = arm();
+  alone.scene.joints[0].limits = scene::JointLimits{-1, 1};
+  const double stiffness = build_model(alone.scene).coordinates[0].limit->stiffness;
+  EXPECT_NEAR(model.coordinates[1].limit->stiffness, 9 * stiffness, 1e-12 * stiffness);
+}
+
 TEST(ModelErrors, PointMassOnTheAxis) {
   RandomSource random(1);
   for (int repeat = 0; repeat < 10; ++repeat) {

@@ -118,7 +118,7 @@ TEST(HostileInput, HandlerOfTheLogIsRestored) {
   const auto handler = reinterpret_cast<Function>(dlsym(RTLD_DEFAULT, "_ZN14console_bridge16getOutputHandlerEv"));
   ASSERT_NE(handler, nullptr);
   const void* before = handler();
-  EXPECT_FALSE(read(good_scene_with(R"(<box size="1 1 1"/>)", "<bocks/>")).scene);
+  EXPECT_FALSE(read(good_scene_with(R"(<box size="1 1 1"/>)", "<bocks/>")).diagnostics.empty());
   EXPECT_EQ(handler(), before);
 }
 

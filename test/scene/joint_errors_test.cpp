@@ -38,25 +38,54 @@ TEST(JointErrors, Numbers) {
   expect_error(R"(lower="-1")", R"(lower="low")", 10,
                "<limit> of joint 'shoulder': lower must be a finite number, got 'low'");
   expect_error(R"(lower="-1")", R"(lower="2.5")", 10, "lower must be <= upper, got lower '2.5', upper '2'");
-  expect_error(R"(effort="30")", "", 10, "attribute 'effort' is missing");
   expect_error(R"(effort="30")", R"(effort="-30")", 10, "effort must be >= 0, got '-30'");
   expect_error(R"(damping="0.1" f)", R"(damping="-0.1" f)", 11, "damping must be >= 0");
   expect_error(R"(friction="0.2")", R"(friction="1,5")", 11, "friction must be a finite number, got '1,5'");
-  expect_error(R"(<dynamics damping="0.1" friction="0.2"/>)", "<dynamics/>", 5,
-               "<joint> 'shoulder': must be valid URDF");
   expect_error(R"(multiplier="-2")", R"(multiplier="-2x")", 50, "<mimic> of joint 'finger': multiplier must be");
   expect_error(R"(<limit lower="-1" upper="2" effort="30" velocity="4"/>)", "", 5,
                "<joint> 'shoulder': a revolute joint needs <limit");
-  expect_error(R"(<dynamics)", R"(<safety_controller k_position="1"/><dynamics)", 11,
-               "<safety_controller> of joint 'shoulder': attribute 'k_velocity' is missing");
+}
+
+TEST(JointErrors, WhatOnlyOtherProgramsNeedIsAWarning) {
+  const auto expect = [](const std::string& from, const std::string& to, const std::string& fragment) {
+    const ReadResult result = read(good_scene_with(from, to));
+    expect_warning(result, 5, "<joint> 'shoulder': programs that use urdfdom cannot read it, got '" + fragment);
+    expect_warning(result, 1, "programs that use urdfdom refuse this file, got '" + fragment);
+  };
+  expect(R"(effort="30")", "", "joint limit: no effort");
+  expect(R"( velocity="4")", "", "joint limit: no velocity");
+  expect(R"(<dynamics damping="0.1" friction="0.2"/>)", "<dynamics/>", "joint dynamics element specified with no");
+  expect(R"(<dynamics)", R"(<safety_controller k_position="1"/><dynamics)", "joint safety: no k_velocity");
+  EXPECT_EQ(read(good_scene_with(R"(effort="30")", "")).scene->joints[0].effort_limit, 0);
+}
+
+TEST(JointErrors, WhatComesTwiceAlikeIsAWarning) {
+  const std::string axis = R"(<axis xyz="0 0 2"/>)";
+  const ReadResult result = read(good_scene_with(axis, axis + axis));
+  expect_warning(result, 9, "<axis> of joint 'shoulder': at most one <axis> is allowed here; the other one is alike");
+  EXPECT_EQ(result.diagnostics.size(), 1u);
+}
+
+TEST(JointErrors, BulletsSphericalTypeIsAWarning) {
+  const ReadResult result = read(tree(joint("i", "w", "a", "spherical") + joint("j", "a", "b") + joint("k", "b", "c")));
+  expect_warning(result, 2, "<joint> 'i': programs that use urdfdom cannot read it, got");
+  EXPECT_EQ(result.scene->joints[0].kind, JointKind::Spherical);
+}
+
+TEST(JointErrors, AFixedJointThatMimicsIsAWarning) {
+  const ReadResult result =
+      read(tree(joint("i", "w", "a", "continuous") + joint("j", "a", "b", "fixed", mimic("i")) + joint("k", "b", "c")));
+  expect_warning(result, 3, "<mimic> of joint 'j': is ignored: a fixed joint has no coordinate");
+  EXPECT_EQ(result.diagnostics.size(), 1u);
+  EXPECT_FALSE(result.scene->joints[1].mimic);
 }
 
 TEST(JointErrors, Structure) {
-  expect_error(
-      R"(name="elbow" type="continuous")", R"(name="elbow" type="hinge")", 22,
-      "<joint> 'elbow': type must be one of fixed, revolute, continuous, prismatic, planar, floating, got 'hinge'");
+  expect_error(R"(name="elbow" type="continuous")", R"(name="elbow" type="hinge")", 22,
+               "<joint> 'elbow': type must be one of fixed, revolute, continuous, prismatic, planar, floating, "
+               "spherical, got 'hinge'");
   expect_error(R"(name="elbow" type="continuous")", R"(name="elbow")", 22, "attribute 'type' is missing");
-  expect_error(R"(<child link="upper"/>)", R"(<child link="upper"/><child link="upper"/>)", 8, "at most one <child>");
+  expect_error(R"(<child link="upper"/>)", R"(<child link="upper"/><child link="tip"/>)", 8, "at most one <child>");
   expect_error(R"(<axis xyz="0 0 2"/>)", R"(<axis xyz="0 0 2"/><axis xyz="0 0 1"/>)", 9, "at most one <axis>");
   expect_error(R"(<child link="forearm"/>)", "", 22, "<child link=\"...\"/> is missing");
   expect_error(R"(<child link="forearm"/>)", "<child/>", 24, "attribute 'link' is missing");
@@ -64,10 +93,10 @@ TEST(JointErrors, Structure) {
 
 TEST(JointErrors, EqualLimitsAreAWarning) {
   const ReadResult result = read(good_scene_with(R"(lower="-1" upper="2")", ""));
-  EXPECT_TRUE(result.scene);
-  ASSERT_EQ(result.diagnostics.size(), 1u);
-  EXPECT_EQ(result.diagnostics[0].line, 10);
-  EXPECT_NE(result.diagnostics[0].text().find("warning: <limit> of joint 'shoulder'"), std::string::npos);
+  expect_warning(result, 10, "warning: <limit> of joint 'shoulder': lower and upper are equal");
+  // It starts at 0.3.
+  expect_warning(result, 61, "warning: <joint> 'shoulder': starts outside its limits, 0 to 0,");
+  EXPECT_EQ(result.diagnostics.size(), 2u);
 }
 
 TEST(JointErrors, Release) {
@@ -100,7 +129,7 @@ TEST(JointErrors, Friction) {
   expect_friction_error(R"(<friction coefficient="0.1" radius="0"/>)", "radius must be > 0, got '0'");
   expect_friction_error(R"(<friction radius="0.1"/>)", "it acts with a coefficient only");
   expect_friction_error(R"(<friction mu="0.1"/>)", "unknown attribute, expected law, coefficient, radius, got 'mu'");
-  expect_friction_error(R"(<friction/><friction/>)", "at most one <friction>");
+  expect_friction_error(R"(<friction/><friction law="coulomb"/>)", "at most one <friction>");
   expect_error(R"(<mimic joint="elbow")", R"(<friction coefficient="1" radius="1"/><mimic joint="elbow")", 50,
                "nothing turns about an axis here");
   expect_one_error(tree(joint("i", "w", "a", "floating", R"(<friction coefficient="1"/>)") + joint("j", "a", "b") +

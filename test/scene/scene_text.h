@@ -108,4 +108,12 @@ inline void expect_one_error(const std::string& text, int line, const std::strin
                                                                             << result.diagnostics[0].text();
 }
 
+/// Expects a scene, and among its warnings one at this line whose text contains the fragment.
+inline void expect_warning(const ReadResult& result, int line, const std::string& fragment) {
+  ASSERT_TRUE(result.scene) << to_text(result.diagnostics);
+  for (const Diagnostic& finding : result.diagnostics)
+    if (finding.line == line && finding.text().find(fragment) != std::string::npos) return;
+  ADD_FAILURE() << "expected at line " << line << ": " << fragment << "\n" << to_text(result.diagnostics);
+}
+
 }  // namespace flexarm::scene

@@ -21,7 +21,8 @@ TEST(SimulationErrors, Structure) {
   expect_entry_error("<friction/>", "<friction> of simulation: unknown element, expected gravity, integrator");
   expect_entry_error(R"(<gravity xyz="0 0 0"/>)", "at most one <gravity>");
   expect_error("</simulation>", "</simulation><simulation/>", 68, "at most one <simulation>");
-  expect_error("<simulation>", R"(<simulation speed="1">)", 58, "unknown attribute, expected nothing, got 'speed'");
+  expect_error("<simulation>", R"(<simulation speed="1">)", 58,
+               "unknown attribute, expected start, massless, got 'speed'");
   expect_error(R"(xyz="0 0 -1.62")", R"(g="-1.62" xyz="0 0 -1.62")", 59, "unknown attribute, expected xyz, got 'g'");
   expect_error(R"( xyz="0 0 -1.62")", "", 59, "<gravity> of simulation: attribute 'xyz' is missing");
 }

@@ -89,6 +89,7 @@ struct RigidInertia {
   double mass = 0;
   Vector3 center_of_mass = Vector3::Zero();
   Matrix3 inertia = Matrix3::Zero();
+  SourceLocation location = {};
 };
 
 struct LinkDescription {
@@ -285,6 +286,7 @@ struct SceneDescription {
   std::vector<PrescribedMotion> motions;
   std::vector<JointEffort> efforts;
   std::vector<Probe> probes;
+  bool lock_massless = false;  ///< joints that move nothing with inertia are held where they start, not refused
 };
 
 /// Suffixes of the released coordinates of a joint in their order: {""} for one coordinate, {} for none,

@@ -15,9 +15,15 @@ struct ReadResult {
   Diagnostics diagnostics;
 };
 
+/// What <simulation> can say as well; either place is enough.
+struct ReadOptions {
+  bool clamp_start = false;    ///< start="clamp": joints that would start outside their limits start at the nearest one
+  bool lock_massless = false;  ///< massless="lock": see SceneDescription::lock_massless
+};
+
 /// Reads a file. Never throws for bad input: every error of the file is in the diagnostics.
-ReadResult read_scene_file(const std::string& path);
+ReadResult read_scene_file(const std::string& path, const ReadOptions& options = {});
 /// Reads text (the parameter `robot_description`); `name` stands for the file in diagnostics.
-ReadResult read_scene_text(const std::string& text, const std::string& name);
+ReadResult read_scene_text(const std::string& text, const std::string& name, const ReadOptions& options = {});
 
 }  // namespace flexarm::scene

@@ -1,0 +1,120 @@
+#include "scene/inertia_checks.h"
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <Eigen/Eigenvalues>
+
+namespace flexarm::scene {
+namespace {
+
+/// Principal moments below the round-off of their sum are not judged.
+constexpr double kRoundOff = 1e-9;
+/// Radius of gyration below which a body of this mass is a point: what exporters leave of a zero. [m]
+constexpr double kSmallestRadius = 1e-6;
+
+/// In increasing order.
+Vector3 principal_moments(const Matrix3& inertia) {
+  return Eigen::SelfAdjointEigenSolver<Matrix3>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+double round_off(const Vector3& moments) {
+  return kRoundOff * moments.cwiseAbs().maxCoeff();
+}
+
+/// Mass, first moment and inertia about the origin of a frame.
+struct Composite {
+  double mass = 0;
+  Vector3 moment = Vector3::Zero();
+  Matrix3 inertia = Matrix3::Zero();
+
+  void add(const RigidInertia& body, const Pose& pose) {
+    const Vector3 center = pose * body.center_of_mass;
+    const Matrix3 rotation = pose.orientation.toRotationMatrix();
+    mass += body.mass;
+    moment += body.mass * center;
+    inertia += rotation * body.inertia * rotation.transpose() + body.mass * steiner(center);
+  }
+  /// Nothing moves with negative kinetic energy.
+  bool can_be() const {
+    const Matrix3 about_center = mass > 0 ? Matrix3(inertia - steiner(moment / mass) * mass) : inertia;
+    const Vector3 moments = principal_moments(about_center);
+    return moments[0] >= -round_off(moments) - mass * kSmallestRadius * kSmallestRadius;
+  }
+  static Matrix3 steiner(const Vector3& d) { return d.squaredNorm() * Matrix3::Identity() - d * d.transpose(); }
+};
+
+/// Links that move as one body, and what they weigh together.
+class RigidGroups {
+ public:
+  explicit RigidGroups(const SceneDescription& scene) {
+    for (const LinkDescription& link : scene.links) links_.emplace(link.name, &link);
+    for (const JointDescription& joint : scene.joints) below_[joint.parent].push_back(&joint);
+    collect({scene.root_link, scene.root_link, Pose()});
+  }
+
+  const std::string& carrier(const std::string& link) const { return carriers_.at(link); }
+  bool is_connected(const std::string& link) const { return carriers_.count(link) > 0; }
+  const Composite& composite(const std::string& link) const { return composites_.at(carrier(link)); }
+
+ private:
+  struct Visit {
+    std::string link, carrier;
+    Pose pose;  // in the carrier
+  };
+
+  /// From here to the leaves. In a bad tree, whose errors are recorded already, every link is visited once, too.
+  void collect(const Visit& root) {
+    std::vector<Visit> stack = {root};
+    while (!stack.empty()) {
+      const Visit visit = stack.back();
+      stack.pop_back();
+      const auto link = links_.find(visit.link);
+      if (link == links_.end() || !carriers_.emplace(visit.link, visit.carrier).second) continue;
+      const bool is_rigid = !link->second->beam;
+      Composite& composite = composites_[visit.carrier];
+      if (is_rigid && link->second->inertial) composite.add(*link->second->inertial, visit.pose);
+      for (const JointDescription* joint : below_[visit.link]) {
+        const bool is_fixed = joint->kind == JointKind::Fixed && is_rigid;
+        stack.push_back(
+            {joint->child, is_fixed ? visit.carrier : joint->child, is_fixed ? visit.pose * joint->origin : Pose()});
+      }
+    }
+  }
+
+  std::map<std::string, const LinkDescription*> links_;
+  std::map<std::string, std::vector<const JointDescription*>> below_;
+  std::map<std::string, std::string> carriers_;  // of each link: the innermost one that it is fixed to
+  std::map<std::string, Composite> composites_;  // by carrier
+};
+
+}  // namespace
+
+void check_inertias(const SceneDescription& scene, Findings& findings) {
+  const RigidGroups groups(scene);
+  for (const LinkDescription& link : scene.links) {
+    if (!link.inertial || link.beam) continue;
+    const std::string element = "<inertia> of link " + quoted(link.name);
+    const int line = link.inertial->location.line;
+    const Vector3 moments = principal_moments(link.inertial->inertia);
+    if (moments[0] < -round_off(moments)) {
+      const std::string got = fmt::format("'{}'", moments[0]);
+      const bool is_harmless = groups.is_connected(link.name) &&
+                               (groups.carrier(link.name) == scene.root_link || groups.composite(link.name).can_be());
+      if (is_harmless) {
+        findings.warning(line, element,
+                         "principal moments of inertia must be >= 0 (harmless here: nothing moves with this one alone, "
+                         "or it is negligible)",
+                         got);
+      } else {
+        findings.error(line, element, "principal moments of inertia must be >= 0", got);
+      }
+    } else if (moments[2] > moments[0] + moments[1] + round_off(moments)) {
+      findings.warning(line, element, "no body has a principal moment of inertia larger than the sum of the others");
+    }
+  }
+}
+
+}  // namespace flexarm::scene

@@ -1,0 +1,149 @@
+#include "scene/start.h"
+
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+
+namespace flexarm::scene {
+namespace {
+
+constexpr const char* kWorld = "world";
+constexpr const char* kRootJoint = "root";
+
+std::string element_of(const char* tag, const std::string& name) {
+  return "<" + std::string(tag) + "> " + quoted(name);
+}
+
+template <class Named>
+const Named* find(const std::vector<Named>& things, const std::string& name) {
+  const auto found = std::find_if(things.begin(), things.end(), [&](const Named& thing) { return thing.name == name; });
+  return found == things.end() ? nullptr : &*found;
+}
+
+/// Records that a name is taken which the floating root needs.
+template <class Named>
+bool is_free(const std::vector<Named>& things, const char* tag, const char* name, int line, Findings& findings) {
+  const Named* taken = find(things, name);
+  if (taken)
+    findings.error(line, "<root> of simulation",
+                   fmt::format("a floating root link needs the name {} for a {}, which line {} has taken", quoted(name),
+                               tag, taken->location.line));
+  return !taken;
+}
+
+void let_root_float(SceneDescription& scene, const SourceLocation& location, Findings& findings) {
+  const bool is_link_free = is_free(scene.links, "link", kWorld, location.line, findings);
+  const bool is_joint_free = is_free(scene.joints, "joint", kRootJoint, location.line, findings) &&
+                             is_free(scene.loop_joints, "joint", kRootJoint, location.line, findings);
+  if (!is_link_free || !is_joint_free) return;
+  JointDescription joint;
+  joint.name = kRootJoint;
+  joint.kind = JointKind::Floating;
+  joint.parent = kWorld;
+  joint.child = scene.root_link;
+  joint.location = location;
+  scene.joints.push_back(joint);
+  LinkDescription world;
+  world.name = scene.root_link = kWorld;
+  world.location = location;
+  scene.links.push_back(world);
+}
+
+/// Mass of the root link and of what is fixed to it [kg]; it is not moved, so whatever hangs on a beam does not count.
+double clamped_mass(const SceneDescription& scene) {
+  std::map<std::string, std::vector<std::string>> fixed;  // links, by the parent
+  for (const JointDescription& joint : scene.joints)
+    if (joint.kind == JointKind::Fixed) fixed[joint.parent].push_back(joint.child);
+  std::map<std::string, const LinkDescription*> links;
+  for (const LinkDescription& link : scene.links) links.emplace(link.name, &link);
+  double mass = 0;
+  std::vector<std::string> stack = {scene.root_link};
+  while (!stack.empty()) {
+    const auto link = links.find(stack.back());
+    stack.pop_back();
+    if (link == links.end() || link->second->beam) continue;
+    if (link->second->inertial) mass += link->second->inertial->mass;
+    const std::vector<std::string>& further = fixed[link->first];
+    stack.insert(stack.end(), further.begin(), further.end());
+    links.erase(link);  // once, even in a bad tree
+  }
+  return mass;
+}
+
+/// Records a coordinate that is to start at its limits and has none.
+void check_limited(const SceneDescription& scene, const std::string& coordinate, int line, Findings& findings) {
+  const JointDescription* joint = find(scene.joints, coordinate);
+  if (!joint) joint = find(scene.joints, coordinate.substr(0, coordinate.rfind('/')));  // one of its coordinates
+  if (joint && !joint->mimic && !joint->limits)
+    findings.error(line, "<initial> of simulation",
+                   "position may be 'clamp' only for a joint with lower and upper limits", quoted(coordinate));
+}
+
+/// A joint's stops act: it follows neither another joint nor a motion.
+bool has_stops(const JointDescription& joint, const std::set<std::string>& moved) {
+  return joint.limits && joint.limits->lower <= joint.limits->upper && !joint.mimic && moved.count(joint.name) == 0;
+}
+
+/// `advice`: how it can start inside them.
+void check_start(const JointDescription& joint, double position, const SourceLocation& location,
+                 const std::string& advice, Findings& findings) {
+  if (position >= joint.limits->lower && position <= joint.limits->upper) return;
+  findings.warning(location.line, element_of("joint", joint.name),
+                   fmt::format("starts outside its limits, {} to {}, and its stop will throw it back{}",
+                               joint.limits->lower, joint.limits->upper, advice),
+                   fmt::format("'{}'", position));
+}
+
+}  // namespace
+
+void settle_root(SceneDescription& scene, const StartRequest& request, Findings& findings) {
+  if (scene.root_link.empty()) return;
+  if (request.root) {
+    if (request.root->floats) let_root_float(scene, request.root->location, findings);
+    return;
+  }
+  if (scene.root_link == kWorld) return;  // which says it
+  const LinkDescription* root = find(scene.links, scene.root_link);
+  if (const double mass = clamped_mass(scene); root && mass > 0)
+    findings.warning(root->location.line, element_of("link", root->name),
+                     "the root link is clamped, though it and what is fixed to it have a mass; <root "
+                     "type=\"floating\"/> in <simulation> lets it fly, <root type=\"clamped\"/> says that it is meant",
+                     fmt::format("'{}' kg", mass));
+}
+
+void settle_positions(SceneDescription& scene, const StartRequest& request, const std::set<std::string>& unreadable,
+                      Findings& findings) {
+  std::set<std::string> moved;
+  for (const PrescribedMotion& motion : scene.motions) moved.insert(motion.coordinate);
+  std::map<std::string, InitialJoint*> initials;
+  for (InitialJoint& initial : scene.initial_joints) initials.emplace(initial.coordinate, &initial);
+  for (const std::string& coordinate : request.clamped)
+    if (unreadable.count(coordinate) == 0)
+      check_limited(scene, coordinate, initials.at(coordinate)->location.line, findings);
+
+  std::vector<InitialJoint> added;
+  for (const JointDescription& joint : scene.joints) {
+    if (!has_stops(joint, moved)) continue;
+    const auto found = initials.find(joint.name);
+    InitialJoint* initial = found == initials.end() ? nullptr : found->second;
+    double position = initial ? initial->position : 0;
+    const bool is_clamped =
+        request.clamped.count(joint.name) > 0 || (request.clamps_all && request.placed.count(joint.name) == 0);
+    const double nearest = std::clamp(position, joint.limits->lower, joint.limits->upper);
+    if (is_clamped && nearest != position) {
+      if (!initial) initial = &added.emplace_back(InitialJoint{joint.name, 0, 0, joint.location});
+      initial->position = position = nearest;
+    }
+    check_start(joint, position, initial ? initial->location : joint.location,
+                fmt::format("; <initial joint=\"{}\" position=\"clamp\"/>, or start=\"clamp\" of <simulation> "
+                            "(--start clamp) for all joints, begins at the nearest limit",
+                            joint.name),
+                findings);
+  }
+  scene.initial_joints.insert(scene.initial_joints.end(), added.begin(), added.end());
+  for (const JointDescription& joint : scene.loop_joints)
+    if (has_stops(joint, moved)) check_start(joint, 0, joint.location, "", findings);
+}
+
+}  // namespace flexarm::scene

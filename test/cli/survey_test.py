@@ -1,0 +1,100 @@
+#!/usr/bin/python3
+"""scripts/survey over a folder of scenes: `survey_test.py PROGRAM`."""
+
+import csv
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+PENDULUM = """<robot name="pendulum"> <link name="world"/>
+<joint name="hinge" type="revolute"> <parent link="world"/> <child link="rod"/> <axis xyz="0 1 0"/>
+  <limit lower="%s" upper="3" effort="0" velocity="0"/> </joint>
+<link name="rod"> %s </link> </robot>
+"""
+INERTIAL = """<inertial> <origin xyz="1 0 0"/> <mass value="1"/>
+  <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/> </inertial>"""
+SCENES = {
+    "good.urdf": PENDULUM % ("-3", INERTIAL),
+    "folder/outside.urdf": PENDULUM % ("1", INERTIAL),
+    "massless.urdf": PENDULUM % ("-3", ""),
+    "broken.urdf": "<robot>",
+    "endless.urdf": (PENDULUM % ("-3", INERTIAL)).replace(
+        "</robot>", "<simulation> <integrator step=\"1e-9\"/> </simulation> </robot>"),
+    "no_scene.txt": "",
+}
+
+
+class Survey(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        for name, text in SCENES.items():
+            path = os.path.join(cls.folder.name, name)
+            os.makedirs(os.path.dirname(path), exist_ok=True)
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(text)
+        cls.tables = os.path.join(cls.folder.name, "table")
+        cls.finished = cls.survey(cls.tables)
+        with open(cls.tables + ".csv", newline="", encoding="utf-8") as file:
+            cls.rows = {row["file"]: row for row in csv.DictReader(file)}
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    @classmethod
+    def survey(cls, tables, *options):
+        return subprocess.run(
+            [os.path.join(ROOT, "scripts", "survey"), cls.folder.name, "--program", PROGRAM, "--output", tables,
+             "--until", "0.05", "--timeout", "5", *options], capture_output=True, text=True, check=False)
+
+    def test_every_scene_has_a_row_and_a_line_of_progress(self):
+        self.assertEqual(self.finished.returncode, 0, self.finished.stderr)
+        self.assertEqual(set(self.rows), set(SCENES) - {"no_scene.txt"})
+        self.assertIn("[5/5] refused: massless.urdf", self.finished.stderr)
+
+    def test_loaded(self):
+        row = self.rows["good.urdf"]
+        self.assertEqual((row["outcome"], row["links"], row["joints"], row["warned"]), ("loaded", "2", "1", ""))
+        self.assertEqual(float(row["stops"]), 0)
+        self.assertLess(float(row["drift"]), 1e-6)  # Newton's tolerance of 1e-8 in each of 50 steps
+        self.assertGreater(float(row["speed"]), 0)
+
+    def test_energy_in_stops(self):
+        row = self.rows["folder/outside.urdf"]
+        self.assertEqual((row["outcome"], row["warned"]), ("loaded", "yes"))
+        # Gravity adds little to what the stop holds.
+        self.assertGreater(float(row["stops"]), 0.9)
+
+    def test_refusals_give_the_reason(self):
+        self.assertIn("broken.urdf:1: file: must be well-formed XML", self.rows["broken.urdf"]["reason"])
+        self.assertIn("massless.urdf:2: <joint>: joint coordinate 'hinge' moves nothing",
+                      self.rows["massless.urdf"]["reason"])
+
+    def test_time_limit(self):
+        self.assertEqual(self.rows["endless.urdf"]["outcome"], "time out")
+
+    def test_summary(self):
+        summary = self.finished.stdout.strip()
+        self.assertTrue(summary.startswith("5 files: 2 loaded, 2 refused, 0 failed on the way, 1 out of time, 0 crashed"))
+        with open(self.tables + ".md", encoding="utf-8") as file:
+            text = file.read()
+        self.assertIn(summary, text)
+        self.assertEqual(text.count("\n| "), len(SCENES))
+
+    def test_options_of_the_program(self):
+        self.assertIn(": 3 loaded, 1 refused", self.survey(self.tables + "_2", "--start", "clamp", "--massless", "lock").stdout)
+
+    def test_no_directory(self):
+        run = subprocess.run([os.path.join(ROOT, "scripts", "survey"), "/no/such/folder"], capture_output=True, text=True,
+                             check=False)
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("is no directory", run.stderr)
+
+
+if __name__ == "__main__":
+    PROGRAM = sys.argv.pop(1)
+    unittest.main()
