@@ -81,8 +81,8 @@ ProbeState probe_state(const Model& model, const State& state, const ProbePoint&
     out.pose = attached_pose(state, probe.attachment);
     if (probe.attachment.node < 0) return out;
     const NodeState& node = state.nodes[probe.attachment.node];
-    const Vector3 spin = node.orientation * node.angular_velocity;
-    out.velocity = node.velocity + spin.cross(out.pose.position - node.position);
+    out.angular_velocity = node.orientation * node.angular_velocity;
+    out.velocity = node.velocity + out.angular_velocity.cross(out.pose.position - node.position);
     return out;
   }
   visit_element(model, *model.links[probe.link].beam, probe.element, [&](const auto& element) {
@@ -94,9 +94,9 @@ ProbeState probe_state(const Model& model, const State& state, const ProbePoint&
     GeneralisedShapeFunctions<N> generalised;
     LocalRotationVariation<N>(LocalRotations<N>(nodes.orientation))
         .evaluate(functions.values, functions.derivatives, generalised);
-    Vector3 spin = Vector3::Zero();
-    for (int i = 0; i < N; ++i) spin += generalised.values[i] * nodes.spin[i];
-    out.velocity = interpolate<N>(functions.values, nodes.velocity) + spin.cross(out.pose.position - section.position);
+    for (int i = 0; i < N; ++i) out.angular_velocity += generalised.values[i] * nodes.spin[i];
+    out.velocity = interpolate<N>(functions.values, nodes.velocity) +
+                   out.angular_velocity.cross(out.pose.position - section.position);
   });
   return out;
 }

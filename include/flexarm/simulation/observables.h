@@ -23,7 +23,8 @@ void beam_points(const Model& model, const State& state, const BeamLink& beam, i
 /// Pose and velocity of a named point.
 struct ProbeState {
   Pose pose;
-  Vector3 velocity = Vector3::Zero();  ///< world axes [m/s]
+  Vector3 velocity = Vector3::Zero();          ///< world axes [m/s]
+  Vector3 angular_velocity = Vector3::Zero();  ///< the same [rad/s]
 };
 ProbeState probe_state(const Model& model, const State& state, const ProbePoint& probe);
 
