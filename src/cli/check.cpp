@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <iterator>
 
 #include <fmt/format.h>
 
 #include "cli/commands.h"
+#include "cli/mode_table.h"
 #include "cli/scene_input.h"
 #include "flexarm/model/section.h"
 
@@ -95,21 +97,35 @@ void print_beams(const Simulation& simulation) {
   if (!is_first) fmt::print("(m, N, N m^2, kg; number of elements x order)\n");
 }
 
+void print_growth(const std::vector<Mode>& modes) {
+  for (const Mode& mode : modes)
+    if (mode.rate > 0)
+      fmt::print("not stable: {} at {:.6g} Hz, grows by {:.6g} 1/s\n", kind_of(mode), mode.frequency, mode.rate);
+}
+
 void print_frequencies(Simulation& simulation) {
   if (simulation.degrees_of_freedom() == 0) return;
-  seek_equilibrium(simulation);
-  try {
-    // Every coordinate may be a motion that nothing holds; those say nothing about the beams.
-    std::vector<Mode> modes = simulation.natural_modes(kModes + static_cast<int>(simulation.coordinate_names().size()));
-    const auto free = std::stable_partition(modes.begin(), modes.end(), [](const Mode& m) { return m.frequency != 0; });
-    fmt::print("\nfirst natural frequencies [Hz]:");
-    for (auto mode = modes.begin(); mode != free && mode - modes.begin() < kModes; ++mode)
-      fmt::print(" {:.6g}", mode->frequency);
-    if (free != modes.end()) fmt::print(" (and {} motions that nothing holds)", modes.end() - free);
+  // Free motions say nothing about the beams.
+  const std::vector<Mode> modes =
+      modes_about_equilibrium(simulation, kModes + static_cast<int>(simulation.coordinate_names().size()));
+  std::vector<Mode> oscillating;
+  std::copy_if(modes.begin(), modes.end(), std::back_inserter(oscillating),
+               [](const Mode& m) { return m.frequency > 0 && m.rate <= 0; });
+  std::sort(oscillating.begin(), oscillating.end(),
+            [](const Mode& a, const Mode& b) { return a.frequency < b.frequency; });
+  oscillating.resize(std::min<std::size_t>(oscillating.size(), kModes));
+  const auto free = std::count_if(modes.begin(), modes.end(), [](const Mode& mode) { return mode.is_free(); });
+  fmt::print("\nfirst natural frequencies [Hz]:");
+  for (const Mode& mode : oscillating) fmt::print(" {:.6g}", mode.frequency);
+  if (oscillating.empty()) fmt::print(" none");
+  if (free > 0) fmt::print(" (and {} that nothing holds)", free == 1 ? "1 motion" : fmt::format("{} motions", free));
+  fmt::print("\n");
+  if (std::any_of(oscillating.begin(), oscillating.end(), [](const Mode& mode) { return mode.rate != 0; })) {
+    fmt::print("their damping ratios:");
+    for (const Mode& mode : oscillating) fmt::print(" {:.4g}", mode.damping_ratio());
     fmt::print("\n");
-  } catch (const std::runtime_error& error) {
-    fmt::print(" none ({})\n", error.what());
   }
+  print_growth(modes);
 }
 
 }  // namespace
@@ -124,7 +140,11 @@ void add_check(CLI::App& app, int& status) {
     print_links(simulation);
     print_joints(simulation);
     print_beams(simulation);
-    print_frequencies(simulation);
+    try {
+      print_frequencies(simulation);
+    } catch (const std::runtime_error& error) {
+      fmt::print("\nfirst natural frequencies [Hz]: none ({})\n", error.what());
+    }
     status = kDone;
   });
 }

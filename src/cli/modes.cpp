@@ -1,25 +1,20 @@
 #include <fmt/format.h>
 
 #include "cli/commands.h"
+#include "cli/mode_table.h"
 #include "cli/scene_input.h"
 
 namespace flexarm::cli {
 namespace {
 
+/// Of the largest component; below it an imaginary part does not show in the digits printed.
+constexpr double kVisible = 1e-4;
+
 struct Arguments {
   SceneInput scene;
   int count = 10;
+  bool json = false, csv = false;
 };
-
-/// Displacement and spin of a frame when its node moves.
-Vector6 frame_motion(const Simulation& simulation, const Mode& mode, const Attachment& frame) {
-  if (frame.node < 0) return Vector6::Zero();
-  Vector6 motion = mode.node_motion.at(frame.node);
-  const Vector3 arm = attached_pose(simulation.state(), frame).position -
-                      attached_pose(simulation.state(), {frame.node, Pose()}).position;
-  motion.head<3>() += motion.tail<3>().cross(arm);
-  return motion;
-}
 
 void print_motion(const std::string& name, const Vector6& motion) {
   fmt::print("  {:<24}", name);
@@ -28,24 +23,44 @@ void print_motion(const std::string& name, const Vector6& motion) {
 }
 
 void print_shape(const Simulation& simulation, const Mode& mode) {
-  for (const LinkFrame& link : simulation.model().links) {
-    if (link.frame.node >= 0) print_motion(link.name, frame_motion(simulation, mode, link.frame));
-    if (link.beam) print_motion(link.name + "/tip", frame_motion(simulation, mode, link.beam->tip));
+  std::vector<NamedMotion> motions = frame_motions(simulation, mode);
+  for (const NamedMotion& probe : probe_motions(simulation, mode)) motions.push_back(probe);
+  for (const auto& [name, motion] : motions) {
+    print_motion(name, motion.real());
+    if (motion.imag().cwiseAbs().maxCoeff() > kVisible) print_motion("  a quarter period later", -motion.imag());
   }
 }
 
-int solve(const Arguments& arguments) {
-  Simulation simulation = load_simulation(arguments.scene);
-  seek_equilibrium(simulation);
-  const std::vector<Mode> modes = simulation.natural_modes(arguments.count);
+void print_eigenvalue(const Mode& mode) {
+  fmt::print("{:.7g} Hz", mode.frequency);
+  if (mode.is_free()) fmt::print(" (free: nothing holds this motion)");
+  if (mode.rate > 0) fmt::print(", grows by {:.7g} 1/s ({})", mode.rate, kind_of(mode));
+  if (mode.rate < 0) fmt::print(", decays by {:.7g} 1/s", -mode.rate);
+  if (mode.rate != 0 && mode.frequency > 0) fmt::print(", damping ratio {:.4g}", mode.damping_ratio());
+  fmt::print("\n");
+}
+
+void print_text(const Simulation& simulation, const std::vector<Mode>& modes) {
   for (std::size_t i = 0; i < modes.size(); ++i) {
-    fmt::print("mode {}: {:.7g} Hz{}\n", i + 1, modes[i].frequency,
-               modes[i].frequency < 0 ? " (negative: grows, the configuration is not stable)" : "");
+    fmt::print("mode {}: ", i + 1);
+    print_eigenvalue(modes[i]);
     if (i == 0)
       fmt::print("  {:<24} {:>11} {:>11} {:>11} {:>11} {:>11} {:>11}\n", "frame", "x", "y", "z", "about x", "about y",
                  "about z");
     print_shape(simulation, modes[i]);
   }
+}
+
+int solve(const Arguments& arguments) {
+  Simulation simulation = load_simulation(arguments.scene);
+  std::vector<Mode> modes = modes_about_equilibrium(simulation, arguments.count);
+  modes.resize(std::min<std::size_t>(modes.size(), arguments.count));
+  if (arguments.json)
+    fmt::print("{}", modes_as_json(simulation, modes));
+  else if (arguments.csv)
+    fmt::print("{}", modes_as_csv(simulation, modes));
+  else
+    print_text(simulation, modes);
   return kDone;
 }
 
@@ -53,11 +68,13 @@ int solve(const Arguments& arguments) {
 
 void add_modes(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("modes", "Natural frequencies and shapes about the equilibrium");
+  CLI::App* command = app.add_subcommand("modes", "Frequencies, growth or decay, and shapes about the equilibrium");
   add_scene(*command, arguments->scene);
   command->add_option("--count", arguments->count, "number of modes")
       ->capture_default_str()
       ->check(CLI::Range(1, 10000));
+  CLI::Option* json = command->add_flag("--json", arguments->json, "prints JSON with all digits");
+  command->add_flag("--csv", arguments->csv, "prints comma-separated values with all digits")->excludes(json);
   command->callback([arguments, &status] { status = solve(*arguments); });
 }
 

@@ -1,5 +1,6 @@
 #include "cli/scene_input.h"
 
+#include <algorithm>
 #include <set>
 
 #include <fmt/format.h>
@@ -24,6 +25,41 @@ void report_held(const Simulation& simulation) {
         fmt::print(stderr,
                    "{}:{}: warning: <joint> '{}': is held where it starts, since it moves nothing that has inertia\n",
                    joint.location.file, joint.location.line, joint.name + suffix);
+}
+
+/// Of the largest motion of a node; a joint that moves less is not named.
+constexpr double kMoves = 1e-3;
+constexpr std::size_t kMostNames = 6;
+
+/// Names of the joints that move in some free motion.
+std::vector<std::string> unheld_joints(const Simulation& simulation, const std::vector<Mode>& modes) {
+  const auto moves = [&](const std::string& coordinate) {
+    const std::size_t index = simulation.find_coordinate(coordinate).value();
+    return std::any_of(modes.begin(), modes.end(), [&](const Mode& mode) {
+      return mode.is_free() && std::abs(mode.coordinate_motion[index]) > kMoves;
+    });
+  };
+  std::vector<std::string> names;
+  const scene::SceneDescription& scene = simulation.scene();
+  for (const auto* joints : {&scene.joints, &scene.loop_joints})
+    for (const scene::JointDescription& joint : *joints) {
+      const std::vector<std::string>& suffixes = scene::coordinate_suffixes(joint);
+      if (std::any_of(suffixes.begin(), suffixes.end(), [&](const std::string& suffix) {
+            const std::string name = joint.name + suffix;
+            return simulation.find_coordinate(name) && moves(name);
+          }))
+        names.push_back(joint.name);
+    }
+  return names;
+}
+
+/// "joint 'a'", or "joints 'a', 'b' and 3 others".
+std::string listed(const std::vector<std::string>& names) {
+  std::string text = names.size() == 1 ? "joint" : "joints";
+  for (std::size_t i = 0; i < std::min(names.size(), kMostNames); ++i)
+    text += fmt::format("{} '{}'", i > 0 ? "," : "", names[i]);
+  if (names.size() > kMostNames) text += fmt::format(" and {} others", names.size() - kMostNames);
+  return text;
 }
 
 }  // namespace
@@ -62,12 +98,31 @@ std::string check_non_negative(const std::string& text) {
   return number && *number >= 0 ? "" : "must be a number >= 0, got '" + text + "'";
 }
 
-void seek_equilibrium(Simulation& simulation) {
+std::vector<Mode> modes_about_equilibrium(Simulation& simulation, int count) {
   constexpr int kLoadSteps = 10;
   const StepResult result = simulation.solve_static(kLoadSteps);
-  if (!result.converged)
-    fmt::print(stderr, "flexarm: no equilibrium found ({}); what follows is about the initial configuration\n",
-               to_string(result.reason));
+  if (result.converged) return simulation.natural_modes(count);
+  const std::vector<Mode> modes = initial_modes(simulation, count);
+  fmt::print(stderr, "flexarm: {}; the modes are those of the initial configuration\n",
+             lack_of_equilibrium(simulation, result, modes));
+  return modes;
+}
+
+std::vector<Mode> initial_modes(const Simulation& simulation, int count) {
+  return simulation.natural_modes(count + static_cast<int>(simulation.coordinate_names().size()));
+}
+
+std::string lack_of_equilibrium(const Simulation& simulation, const StepResult& result,
+                                const std::vector<Mode>& modes) {
+  const std::vector<std::string> joints = unheld_joints(simulation, modes);
+  // The tangent of what moves freely is singular but for round-off.
+  const bool is_singular = result.reason == StepResult::Reason::SingularTangent ||
+                           result.reason == StepResult::Reason::NoConvergence ||
+                           result.reason == StepResult::Reason::NotFinite;
+  if (!is_singular || joints.empty()) return fmt::format("no equilibrium found ({})", to_string(result.reason));
+  const auto free = std::count_if(modes.begin(), modes.end(), [](const Mode& mode) { return mode.is_free(); });
+  return fmt::format("no equilibrium: nothing holds {} in the initial configuration ({} free)", listed(joints),
+                     free == 1 ? "1 motion is" : fmt::format("{} motions are", free));
 }
 
 }  // namespace flexarm::cli

@@ -2,6 +2,7 @@
 /// What all subcommands do with their input.
 
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -27,7 +28,15 @@ Simulation load_simulation(const SceneInput& input, const SimulationOptions& opt
 std::string check_positive(const std::string& text);
 std::string check_non_negative(const std::string& text);
 
-/// Goes to the equilibrium if there is one that can be found, and says so if not: a free body has none.
-void seek_equilibrium(Simulation& simulation);
+/// Goes to the equilibrium if there is one that can be found; the `count` first modes about it. A mechanism that can
+/// move freely has none, which is said on the standard error output; then initial_modes().
+/// @throws std::runtime_error if the eigenvalue problem cannot be solved.
+std::vector<Mode> modes_about_equilibrium(Simulation& simulation, int count);
+
+/// Modes about the present configuration: `count`, and as many more as there may be free motions.
+std::vector<Mode> initial_modes(const Simulation& simulation, int count);
+
+/// Why solve_static() failed with `result`: by what nothing holds, if that is it. `modes`: initial_modes().
+std::string lack_of_equilibrium(const Simulation& simulation, const StepResult& result, const std::vector<Mode>& modes);
 
 }  // namespace flexarm::cli

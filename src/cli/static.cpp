@@ -35,7 +35,7 @@ int solve(const Arguments& arguments) {
   Simulation simulation = load_simulation(arguments.scene);
   const StepResult result = simulation.solve_static(arguments.load_steps);
   if (!result.converged) {
-    fmt::print(stderr, "flexarm: no equilibrium found: {}\n", to_string(result.reason));
+    fmt::print(stderr, "flexarm: {}\n", lack_of_equilibrium(simulation, result, initial_modes(simulation, 1)));
     return kFailed;
   }
   print_equilibrium(simulation);

@@ -7,7 +7,8 @@
 namespace flexarm {
 namespace {
 
-constexpr double kKinkAngle = 1e-9;  // rad; below it two tangents count as one
+constexpr double kKinkAngle = 1e-9;   // rad; below it two tangents count as one
+constexpr double kLargestGap = 1e-6;  // of the length; below it a line counts as closed
 
 Quaternion first_frame(const Vector3& tangent, const std::optional<Vector3>& section_y) {
   Vector3 y;
@@ -102,6 +103,10 @@ bool Centreline::is_kink(double s) const {
   const Vector3 before = at(s, true).orientation * Vector3::UnitX(),
                 after = at(s, false).orientation * Vector3::UnitX();
   return before.cross(after).norm() > kKinkAngle;
+}
+
+bool Centreline::is_closed() const {
+  return (at(length()).position - at(0).position).norm() <= kLargestGap * length();
 }
 
 double Centreline::nearest(const Vector3& point) const {

@@ -278,7 +278,12 @@ void MechanismBuilder::add_closure(const scene::JointDescription& joint, Attachm
     throw ModelError(where +
                      "closes a loop of rigid links, where it has no coordinate that could have damping, friction or "
                      "limits (type 'continuous' has none): put them on another joint of the loop, or cut it there");
-  if (parent.node == child.node) throw ModelError(where + "both places belong to the same rigid body");
+  if (parent.node == child.node)
+    throw ModelError(where + (joint.parent == joint.child && meshes[link_index(joint.child)]
+                                  ? "both places are the same section of link '" + joint.child +
+                                        "': join two places of its line, or let the line end where it begins (within "
+                                        "1e-6 of its length) for a ring"
+                                  : std::string("both places belong to the same rigid body")));
   if (child.node < 0) std::swap(parent, child);
   LoopClosure closure;
   closure.name = joint.name;

@@ -73,12 +73,23 @@ void MechanismBuilder::close_loops() {
   if (!scene_.loop_joints.empty()) sort_joints();
 }
 
+Attachment MechanismBuilder::loop_child(const scene::JointDescription& joint) const {
+  const Attachment nearest = attachment(joint.child, joint.child_origin.position);
+  const int link = link_index(joint.child);
+  const std::optional<LinkMesh>& beam = meshes[link];
+  if (!beam || joint.parent != joint.child || !beam->centreline.is_closed()) return nearest;
+  if (nearest.node != beam->first_node || attachment(joint.parent, joint.origin.position).node != nearest.node)
+    return nearest;
+  const int end = beam->mesh.node_at(beam->centreline.length());
+  return {beam->first_node + end, beam->mesh.nodes[end].pose.inverse()};
+}
+
 void MechanismBuilder::add_loop(const scene::JointDescription& joint, double largest_gap) {
   const std::string where = at(joint.location, "<loop_joint> '" + joint.name + "'");
   if (joint.kind == scene::JointKind::Slide || joint.kind == scene::JointKind::Floating || joint.mimic)
     throw ModelError(where + "a loop cannot be closed by a slide, a free or a mimicking joint");
   const Attachment parent = carrier(attachment(joint.parent, joint.origin.position));
-  const Attachment child = carrier(attachment(joint.child, joint.child_origin.position));
+  const Attachment child = carrier(loop_child(joint));
   const Pose frame = pose_of(parent.node) * parent.offset * joint.origin;
   std::vector<JointMap> maps;
   if (joint.kind != scene::JointKind::Fixed) maps = elementary_joints(joint);

@@ -91,6 +91,9 @@ class MechanismBuilder {
   void close_loops();
   /// `largest_gap`: between the joint's frames at the start [m].
   void add_loop(const scene::JointDescription& joint, double largest_gap);
+  /// Of the child's place. Where a flexible link is joined to itself at the beginning of a closed line, that is its
+  /// end.
+  Attachment loop_child(const scene::JointDescription& joint) const;
   /// From `master` through `maps`, the first at `frame` (world), to the existing node `slave`.
   void chain_loop(const scene::JointDescription& joint, const std::vector<JointMap>& maps,
                   const std::vector<std::string>& names, int master, int slave, const Pose& frame);

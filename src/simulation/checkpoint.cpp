@@ -113,10 +113,10 @@ class Reader {
 };
 
 std::string counts_line(const State& state) {
-  return fmt::format("steps {} level {} good {} increments {} of {} order {} drives {} reactions {} left {} {}\n", state.steps,
-                     state.halving_level, state.good_steps, state.history.increments[0].size(), state.history.count,
-                     state.history.order, state.drives.count, state.reactions.size(), state.left_lines.size(),
-                     fmt::join(state.left_lines, " "));
+  return fmt::format("steps {} level {} good {} increments {} of {} order {} drives {} reactions {} left {} {}\n",
+                     state.steps, state.halving_level, state.good_steps, state.history.increments[0].size(),
+                     state.history.count, state.history.order, state.drives.count, state.reactions.size(),
+                     state.left_lines.size(), fmt::join(state.left_lines, " "));
 }
 
 /// The whole numbers, and room for the others.

@@ -3,13 +3,16 @@
 #include <cerrno>
 #include <cstring>
 #include <initializer_list>
-#include <iterator>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
+#include "csv_fields.h"
+
 namespace flexarm {
 namespace {
+
+using csv::append;
 
 [[noreturn]] void fail(const std::string& path) {
   throw std::runtime_error(fmt::format("cannot write '{}': {}", path, std::strerror(errno)));
@@ -17,24 +20,12 @@ namespace {
 
 // ---------------------------------------------------------------- header
 
-/// A field that contains separators stands in quotes (RFC 4180).
-void append_name(std::string& line, const std::string& name) {
-  if (!line.empty()) line += ',';
-  if (name.find_first_of(",\"") == std::string::npos) {
-    line += name;
-    return;
-  }
-  line += '"';
-  for (const char c : name) line += c == '"' ? std::string("\"\"") : std::string(1, c);
-  line += '"';
-}
-
 void append_names(std::string& line, const std::string& prefix, std::initializer_list<const char*> names) {
-  for (const char* name : names) append_name(line, prefix + "/" + name);
+  for (const char* name : names) append(line, prefix + "/" + name);
 }
 
 void append_header(std::string& line, const Simulation& simulation, CsvWriter::Columns columns) {
-  append_name(line, "time");
+  append(line, std::string("time"));
   for (const std::string& name : simulation.coordinate_names())
     append_names(line, "joint/" + name, {"position", "velocity", "effort"});
   for (const std::string& name : simulation.link_names())
@@ -48,11 +39,6 @@ void append_header(std::string& line, const Simulation& simulation, CsvWriter::C
 }
 
 // ---------------------------------------------------------------- rows
-
-void append(std::string& line, double value) {
-  if (!line.empty()) line += ',';
-  fmt::format_to(std::back_inserter(line), "{:.17g}", value);
-}
 
 void append(std::string& line, const Vector3& vector) {
   for (int i = 0; i < 3; ++i) append(line, vector[i]);

@@ -93,7 +93,8 @@ ProbeState probe_state(const Model& model, const State& state, const std::vector
     if (probe.attachment.node < 0) return out;
     const Vector6& node = velocities[probe.attachment.node];
     const Vector3 arm = out.pose.position - state.nodes[probe.attachment.node].position;
-    out.velocity = node.head<3>() + node.tail<3>().cross(arm);
+    out.angular_velocity = node.tail<3>();
+    out.velocity = node.head<3>() + out.angular_velocity.cross(arm);
     return out;
   }
   visit_element(model, *model.links[probe.link].beam, probe.element, [&](const auto& element) {
@@ -105,14 +106,12 @@ ProbeState probe_state(const Model& model, const State& state, const std::vector
     const ShapeFunctions<N> functions = lagrange<N>(probe.xi);
     GeneralisedShapeFunctions<N> generalised;
     LocalRotationVariation<N>(local).evaluate(functions.values, functions.derivatives, generalised);
-    out.velocity.setZero();
-    Vector3 spin = Vector3::Zero();
     for (int i = 0; i < N; ++i) {
       const Vector6& node = velocities[element.nodes[i]];
       out.velocity += functions.values[i] * node.head<3>();
-      spin += generalised.values[i] * node.tail<3>();
+      out.angular_velocity += generalised.values[i] * node.tail<3>();
     }
-    out.velocity += spin.cross(out.pose.position - section.position);
+    out.velocity += out.angular_velocity.cross(out.pose.position - section.position);
   });
   return out;
 }

@@ -139,11 +139,12 @@ std::string named_lines(const char* kind, const Parts& parts) {
 
 std::string scene_identity(const scene::SceneDescription& scene) {
   const auto& [name, file, root, links, joints, loop_joints, gravity, integrator, initial_joints, initial_links, loads,
-               distributed_loads, motions, efforts, probes] = scene;
+               distributed_loads, motions, efforts, probes, lock_massless] = scene;
   return integrator_line(integrator) + "\n" + named_lines("link", links) + named_lines("joint", joints) +
          named_lines("loop_joint", loop_joints) +
          fmt::format("gravity {}\ninitial {}\nload {}\ndistributed_load {}\nmotion {}\neffort {}\n",
-                     SceneFingerprint::of(gravity), SceneFingerprint::of(root, initial_joints, initial_links),
+                     SceneFingerprint::of(gravity),
+                     SceneFingerprint::of(root, initial_joints, initial_links, lock_massless),
                      SceneFingerprint::of(loads), SceneFingerprint::of(distributed_loads),
                      SceneFingerprint::of(motions), SceneFingerprint::of(efforts));
 }

@@ -196,4 +196,92 @@ TEST(Modes, FrequenciesAndShapes) {
   EXPECT_EQ(outcome.output.find("mode 4"), std::string::npos);
 }
 
+TEST(Modes, JsonAndCsvHaveAllDigits) {
+  const std::string scene = example("flexible_two_link_arm");
+  const std::string json = temporary("modes.json"), csv = temporary("modes.csv");
+  const std::string command = "flexarm modes " + scene + " --count 8 ";
+  ASSERT_EQ(shell(command + "--json > " + json + " && " + command + "--csv > " + csv).status, 0);
+  const Outcome outcome = shell("python3 -c \"import json; modes = json.load(open('" + json +
+                                "'))['modes']; print(len(modes), repr(modes[7]['frequency']), "
+                                "repr(modes[7]['frames']['forearm/tip']['real'][1]), modes[0]['kind'])\"");
+  ASSERT_EQ(outcome.status, 0) << outcome.errors;
+  Columns columns = read_csv(csv);
+  ASSERT_EQ(columns["mode"].size(), 8u);
+  for (const char* name : {"rate", "damping_ratio", "joint/elbow", "joint/elbow/imaginary", "frame/forearm/tip/rz",
+                           "frame/forearm/tip/imaginary/rz", "probe/payload/x"})
+    EXPECT_EQ(columns.count(name), 1u) << name;
+  // What Python reads and prints without loss is the number of the other table, to the last bit.
+  std::size_t count = 0;
+  std::string frequency, motion, kind;
+  std::stringstream(outcome.output) >> count >> frequency >> motion >> kind;
+  EXPECT_EQ(count, 8u);
+  EXPECT_EQ(kind, "free");
+  EXPECT_GT(std::stod(frequency), 0);
+  EXPECT_EQ(std::stod(frequency), columns["frequency"][7]);
+  EXPECT_EQ(std::stod(motion), columns["frame/forearm/tip/y"][7]);
+  EXPECT_EQ(shell(command + "--json --csv").status, 2);
+}
+
+TEST(Modes, FlutterIsNamed) {
+  const std::string scene = scene_file(R"(<robot name="beck">
+  <link name="world"/>
+  <joint name="clamp" type="fixed"> <parent link="world"/> <child link="column"/> </joint>
+  <link name="column">
+    <beam order="4" elements="8"> <centerline> <line to="1 0 0"/> </centerline>
+      <section ea="1e6" ga2="1e6" ga3="1e10" gj="1e4" ei2="1e4" ei3="1" mass="1" j1="2e-6" j2="1e-6" j3="1e-6"/> </beam>
+  </link>
+  <simulation> <gravity xyz="0 0 0"/> <load link="column" at="1 0 0" force="-21 0 0" frame="follower"/> </simulation>
+</robot>)");
+  // A slender one: 1.740734 Hz and 2.12494 1/s (test/reference/modes_follower_test.cpp).
+  const Outcome modes = shell("flexarm modes " + scene + " --count 2");
+  expect_contains(modes.output, "mode 1: 1.7407");
+  expect_contains(modes.output, " Hz, grows by 2.125");
+  expect_contains(modes.output, "1/s (flutter), damping ratio -0.19");
+  expect_contains(modes.output, "a quarter period later");
+  expect_contains(shell("flexarm check " + scene).output, "not stable: flutter at 1.7407");
+}
+
+TEST(Modes, FreeMechanismIsExplained) {
+  const std::string scene = scene_file(R"(<robot name="r">
+  <link name="world"/>
+  <joint name="shoulder" type="continuous"> <parent link="world"/> <child link="rod"/> <axis xyz="0 0 1"/> </joint>
+  <link name="rod">
+    <beam> <centerline> <line to="1 0 0"/> </centerline>
+      <circle radius="0.01"/> <material young="70e9" poisson="0.33" density="2700"/> </beam>
+  </link>
+  <simulation> <gravity xyz="0 0 0"/> <effort joint="shoulder" history="1"/> </simulation>
+</robot>)");
+  const std::string sentence =
+      "no equilibrium: nothing holds joint 'shoulder' in the initial configuration (1 motion is free)";
+  const Outcome modes = shell("flexarm modes " + scene), check = shell("flexarm check " + scene);
+  for (const Outcome& outcome : {modes, check}) {
+    EXPECT_EQ(outcome.status, 0);
+    expect_contains(outcome.errors, sentence + "; the modes are those of the initial configuration");
+  }
+  expect_contains(modes.output, "mode 1: 0 Hz (free: nothing holds this motion)");
+  expect_contains(check.output, "(and 1 motion that nothing holds)");
+  const Outcome statics = shell("flexarm static " + scene);
+  EXPECT_EQ(statics.status, 1);
+  expect_contains(statics.errors, sentence);
+}
+
+TEST(CommandLine, RingOfOneLink) {
+  const std::string scene = scene_file(R"(<robot name="r">
+  <link name="world"/>
+  <link name="ring">
+    <beam elements="16">
+      <centerline> <arc to="-1 1 0" center="-1 0 0"/> <arc to="-2 0 0" center="-1 0 0"/>
+                   <arc to="-1 -1 0" center="-1 0 0"/> <arc to="0 0 0" center="-1 0 0"/> </centerline>
+      <circle radius="0.01"/> <material young="70e9" poisson="0.33" density="2700"/> </beam>
+  </link>
+  <joint name="stand" type="fixed"> <parent link="world"/> <child link="ring"/> </joint>
+  <loop_joint name="weld" type="fixed"> <parent link="ring"/> <child link="ring"/> </loop_joint>
+</robot>)");
+  for (const char* command : {"check", "modes", "static", "simulate --until 0.01 --quiet"}) {
+    const Outcome outcome = shell("flexarm " + std::string(command) + " " + scene);
+    EXPECT_EQ(outcome.status, 0) << command;
+    EXPECT_EQ(outcome.errors, "") << command;
+  }
+}
+
 }  // namespace flexarm::cli

@@ -206,7 +206,7 @@ TEST(BuildModel, LoadsAttachWithTheirOffset) {
   const NodePose& second = model.nodes[model.loads[1].node];
   EXPECT_LE((second.position - link * Vector3(1, 0.7, 0)).norm(), 1e-14);
   EXPECT_LE((second.rotation * model.loads[1].force - link.orientation * force).norm(), 1e-14);
-  const ProbeState probe = probe_state(model, initial_state(model), model.probes.at(0));
+  const ProbeState probe = probe_state(model, initial_state(model), model.initial_velocity, model.probes.at(0));
   EXPECT_LE((probe.pose.position - link * Vector3(0.37, 0.1, 0)).norm(), 1e-13);
   EXPECT_LE(probe.pose.orientation.angularDistance(link.orientation), 1e-7);
 }

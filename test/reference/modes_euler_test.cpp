@@ -74,7 +74,7 @@ INSTANTIATE_TEST_SUITE_P(Ends, SlenderBeam, testing::ValuesIn(kEnds),
 int rigid_motions(const SceneBuilder& builder, int count) {
   Simulation simulation(builder.scene);
   int rigid = 0;
-  for (const Mode& mode : simulation.natural_modes(count)) rigid += mode.frequency == 0;
+  for (const Mode& mode : simulation.natural_modes(count)) rigid += mode.is_free();
   return rigid;
 }
 

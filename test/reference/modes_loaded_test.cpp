@@ -18,8 +18,8 @@ constexpr double kPi = 3.14159265358979323846;
 double lowest_square(const SceneBuilder& builder) {
   Simulation simulation(builder.scene);
   if (!simulation.solve_static(1).converged) throw std::runtime_error("no equilibrium");
-  const double omega = 2 * kPi * simulation.natural_modes(3).front().frequency;
-  return std::copysign(omega * omega, omega);
+  const Mode mode = simulation.natural_modes(3).front();
+  return std::pow(2 * kPi * mode.frequency, 2) - std::pow(mode.rate, 2);
 }
 
 /// Load at which the equilibrium under `scene(load)` ceases to be unique: omega^2 of its lowest mode changes sign.

@@ -25,6 +25,8 @@ class Centreline {
   std::vector<double> piece_ends() const;
   /// True where the tangent jumps at s (a piece border).
   bool is_kink(double s) const;
+  /// True where the line ends at the place where it begins, within 1e-6 of its length.
+  bool is_closed() const;
   /// Arc length of the point of the line nearest to `point` (link frame).
   double nearest(const Vector3& point) const;
   /// Total turning of tangent and section between two arc lengths, kinks excluded [rad].

@@ -23,7 +23,9 @@ void beam_points(const Model& model, const State& state, const BeamLink& beam, i
 /// Pose and velocity of a named point.
 struct ProbeState {
   Pose pose;
-  Vector3 velocity = Vector3::Zero();  ///< of second order, see Simulation::velocity; world axes [m/s]
+  // Of second order in the step, see Simulation::velocity.
+  Vector3 velocity = Vector3::Zero();          ///< world axes [m/s]
+  Vector3 angular_velocity = Vector3::Zero();  ///< the same [rad/s]
 };
 /// `velocities`: {v, w} per node, world axes.
 ProbeState probe_state(const Model& model, const State& state, const std::vector<Vector6>& velocities,

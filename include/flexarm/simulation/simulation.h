@@ -86,7 +86,7 @@ class Simulation {
   /// other released coordinates are solved for. On success the state is the equilibrium, at rest.
   StepResult solve_static(int load_steps);
 
-  /// Natural modes about the current configuration, lowest first.
+  /// Modes about the current configuration, taken to be at rest: growing ones first, then by |lambda|.
   std::vector<Mode> natural_modes(int count) const;
 
   std::size_t node_count() const;
