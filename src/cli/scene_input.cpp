@@ -1,31 +1,15 @@
 #include "cli/scene_input.h"
 
 #include <algorithm>
-#include <set>
 
 #include <fmt/format.h>
 
 #include "cli/commands.h"
+#include "flexarm/simulation/held_joints.h"
 #include "math/parse_number.h"
 
 namespace flexarm::cli {
 namespace {
-
-/// Names the joints that are held because they move nothing with inertia, which only the model knows.
-void report_held(const Simulation& simulation) {
-  const scene::SceneDescription& scene = simulation.scene();
-  std::set<std::string> driven;
-  for (const scene::PrescribedMotion& motion : scene.motions) driven.insert(motion.coordinate);
-  std::set<std::string> held;
-  for (const Coordinate& coordinate : simulation.model().coordinates)
-    if (coordinate.motion >= 0 && driven.count(coordinate.name) == 0) held.insert(coordinate.name);
-  for (const scene::JointDescription& joint : scene.joints)
-    for (const std::string& suffix : scene::coordinate_suffixes(joint))
-      if (held.count(joint.name + suffix) > 0)
-        fmt::print(stderr,
-                   "{}:{}: warning: <joint> '{}': is held where it starts, since it moves nothing that has inertia\n",
-                   joint.location.file, joint.location.line, joint.name + suffix);
-}
 
 /// Of the largest motion of a node; a joint that moves less is not named.
 constexpr double kMoves = 1e-3;
@@ -84,7 +68,7 @@ Simulation load_simulation(const SceneInput& input, const SimulationOptions& opt
   if (!result.scene) throw InputError(findings);
   if (!findings.empty()) fmt::print(stderr, "{}\n", findings);
   Simulation simulation(std::move(*result.scene), options);
-  report_held(simulation);
+  for (const scene::Diagnostic& held : held_joints(simulation)) fmt::print(stderr, "{}\n", held.text());
   return simulation;
 }
 

@@ -90,19 +90,30 @@ void override_integrator(const ros::NodeHandle& private_node, scene::IntegratorD
   reader.throw_if_any();
 }
 
+/// A parameter that may have one value only, or be empty: true where it has that.
+bool read_choice(ParameterReader& reader, const std::string& name, const std::string& choice) {
+  std::string value;
+  reader.read(name, value);
+  if (!value.empty() && value != choice) reader.complain(name, "must be '" + choice + "' or empty", "'" + value + "'");
+  return value == choice;
+}
+
 scene::ReadResult read_file_or_text(const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
   std::string path;
+  scene::ReadOptions options;
   ParameterReader reader(private_node);
   reader.read("scene", path);
+  options.clamp_start = read_choice(reader, "start", "clamp");
+  options.lock_massless = read_choice(reader, "massless", "lock");
   reader.throw_if_any();
-  if (!path.empty()) return scene::read_scene_file(path);
+  if (!path.empty()) return scene::read_scene_file(path, options);
 
   std::string key, text;
   if (!node.searchParam("robot_description", key) || !node.getParam(key, text)) {
     throw ParameterError("no scene: set the parameter 'robot_description' to the text of a URDF, or '" +
                          private_node.resolveName("scene") + "' to the path of one");
   }
-  return scene::read_scene_text(text, key);
+  return scene::read_scene_text(text, key, options);
 }
 
 }  // namespace

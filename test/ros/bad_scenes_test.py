@@ -70,6 +70,9 @@ class BadScenes(unittest.TestCase):
     def test_an_option_that_the_scheme_does_not_have(self):
         self.assert_refused(["_scene:=" + GOOD_SCENE, "_scheme:=newmark", "_rho_infinity:=0.5"], "rho_infinity", "edmc1")
 
+    def test_choices(self):
+        self.assert_refused(["_scene:=" + GOOD_SCENE, "_start:=lock", "_massless:=clamp"], "'clamp'", "'lock'")
+
     def test_a_frame_prefix_with_a_leading_slash(self):
         self.assert_refused(["_scene:=" + GOOD_SCENE, "_frame_prefix:=/left"], "frame_prefix", "/left")
 

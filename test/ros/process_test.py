@@ -12,10 +12,20 @@ import rospy
 import rostest
 from flexarm.msg import SimulatorStatus
 from geometry_msgs.msg import TransformStamped
+from sensor_msgs.msg import JointState
 from simulated_arm import PATIENCE, wait_until
 from tf2_msgs.msg import TFMessage
 
 SCENE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "two_arms.urdf")
+
+
+LEG = """<robot name="leg"> <link name="trunk"/> <link name="foot"/>
+<link name="shank"> <inertial> <origin xyz="0 0 -0.2"/> <mass value="1"/>
+  <inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/> </inertial> </link>
+<joint name="knee" type="revolute"> <parent link="trunk"/> <child link="shank"/> <axis xyz="0 1 0"/>
+  <limit lower="-2.5" upper="-0.75" effort="0" velocity="0"/> </joint>
+<joint name="ankle" type="continuous"> <parent link="shank"/> <child link="foot"/> <axis xyz="0 1 0"/> </joint>
+</robot>"""
 
 
 class RunningNode:
@@ -67,6 +77,15 @@ class Process(unittest.TestCase):
         with RunningNode("_step:=0.003", "_scheme:=newmark") as node:
             self.assertEqual(node.status.step, 0.003)
             self.assertEqual(node.status.scheme, "newmark")
+
+    def test_starts_a_robot_that_lacks_inertia_outside_its_limits(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
+            file.write(LEG)
+            file.flush()
+            with RunningNode("_scene:=" + file.name, "_start:=clamp", "_massless:=lock", "_paused:=true") as node:
+                states = rospy.wait_for_message("/joint_states", JointState, PATIENCE)
+                self.assertEqual(states.position[states.name.index("knee")], -0.75)
+                self.assertIn("'ankle': is held where it starts", node.output())
 
     def test_counts_the_steps_that_it_cannot_make(self):
         with RunningNode("_real_time_factor:=1e6"):
