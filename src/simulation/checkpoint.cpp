@@ -12,7 +12,7 @@
 namespace flexarm {
 namespace {
 
-constexpr const char* kHeader = "flexarm-checkpoint 4";
+constexpr const char* kHeader = "flexarm-checkpoint 5";
 
 /// Calls `visit(number, may_be_nan)` for every number of a state in a fixed order; the one place that knows its layout.
 template <class AnyState, class Visit>
@@ -51,6 +51,7 @@ void for_each_number(AnyState& state, const Visit& visit) {
   for (auto& memory : state.strain_memory) {
     vector(memory.average);
     vector(memory.rate);
+    vector(memory.delayed_rate);
   }
   for (auto* points : {&state.stiffness_rotations, &state.mass_rotations})
     for (auto& point : *points) {
