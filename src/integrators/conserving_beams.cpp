@@ -69,13 +69,12 @@ BeamNodes<Nodes, Pack> ConservingBeams::gather(const ElementPack<Nodes>& pack, c
 template <int Nodes>
 void ConservingBeams::gather(const ElementPack<Nodes>& pack, const std::vector<StrainMemory>& memory,
                              std::array<StrainMemoryT<Pack>, Nodes - 1>& points) {
-  for (int k = 0; k < Nodes - 1; ++k)
-    for (int lane = 0; lane < Pack::kLanes; ++lane) {
-      const StrainMemory& from = memory[pack.first_stiffness_point[lane] + k];
-      set_lane(points[k].average, lane, from.average);
-      set_lane(points[k].rate, lane, from.rate);
-      set_lane(points[k].delayed_rate, lane, from.delayed_rate);
-    }
+  for (int k = 0; k < Nodes - 1; ++k) {
+    const auto from = [&](int lane) -> const StrainMemory& { return memory[pack.first_stiffness_point[lane] + k]; };
+    points[k].average = gathered_vector<6>([&](int lane) -> const Vector6& { return from(lane).average; });
+    points[k].rate = gathered_vector<6>([&](int lane) -> const Vector6& { return from(lane).rate; });
+    points[k].delayed_rate = gathered_vector<6>([&](int lane) -> const Vector6& { return from(lane).delayed_rate; });
+  }
 }
 
 template <int Nodes>

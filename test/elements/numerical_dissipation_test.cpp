@@ -176,9 +176,8 @@ TYPED_TEST(DissipativeBeam, DampingFollowsItsDefinition) {
     const StrainMemory &begin = damped.memory[k], &end = damped.end_memory[k];
     const Vector6 rate = 0.5 * (begin.rate + end.rate), delayed = 0.5 * (begin.delayed_rate + end.delayed_rate);
     EXPECT_LE(largest(delayed + relaxation / kStep * (end.delayed_rate - begin.delayed_rate) - rate), kRoundOff);
-    const Vector6 stress =
-        viscosity * step.element.stiffness *
-        (0.75 * rate + 0.25 * delayed + 0.25 * relaxation / kStep * (end.rate - begin.rate));
+    const Vector6 stress = viscosity * step.element.stiffness *
+                           (0.75 * rate + 0.25 * delayed + 0.25 * relaxation / kStep * (end.rate - begin.rate));
     work += step.element.stiffness_points[k].weight * kStep * rate.dot(stress);
   }
   EXPECT_NEAR(step.work(whole - elastic), work, kRoundOff * (largest(whole) + std::abs(work)));

@@ -60,7 +60,8 @@ class Lanes {
         step.element.stiffness.template bottomLeftCorner<3, 3>().setZero();
       }
       test::element_functions<Nodes>(step.element, step.begin_orientation, functions_[lane]);
-      for (StrainMemory& memory : memory_[lane]) memory = {0.1 * random.vector6(), 0.1 * random.vector6(), 0.1 * random.vector6()};
+      for (StrainMemory& memory : memory_[lane])
+        memory = {0.1 * random.vector6(), 0.1 * random.vector6(), 0.1 * random.vector6()};
     }
   }
   LaneInput<Nodes> input(int lane) const {

@@ -56,8 +56,8 @@ struct Oscillator {
   }
   Polynomial polynomial() const {
     const Polynomial average = nu > 0 ? Polynomial{nu, 2 - nu} : Polynomial{1}, delay = {1, 2};
-    Polynomial sum = Polynomial{1, 0, 4 / q + 4 * b} * average +
-                     (nu > 0 ? Polynomial{0, 0, 4 * kappa} : Polynomial{0, 2 * kappa});
+    Polynomial sum =
+        Polynomial{1, 0, 4 / q + 4 * b} * average + (nu > 0 ? Polynomial{0, 0, 4 * kappa} : Polynomial{0, 2 * kappa});
     if (r > 0) sum = sum * delay + Polynomial{0, 2 * r} * Polynomial{1, 2, 1} * average;
     while (sum.back() == 0) sum.pop_back();
     return sum;
@@ -167,8 +167,9 @@ TEST_P(Spectrum, MotionFollowsTheSlowestRoot) {
   const double end = simulation.energies().total(), expected = theory.energies().total();
   // d(E)/E = 2 d(u)/|u|, twice for the four parts of the state.
   EXPECT_NEAR(end / expected, 1, 8 * round_off / std::abs(u)) << c;
-  std::printf("order %d rho %.2f omega h %8.2e eta %.0e h: |z| = %.6f; %3d steps, defect %.1e of %.1e, energy %.2e of first\n",
-              c.order, c.rho, c.frequency, c.damping, modulus, steps, defect, round_off, end / begin);
+  std::printf(
+      "order %d rho %.2f omega h %8.2e eta %.0e h: |z| = %.6f; %3d steps, defect %.1e of %.1e, energy %.2e of first\n",
+      c.order, c.rho, c.frequency, c.damping, modulus, steps, defect, round_off, end / begin);
 }
 
 std::vector<Case> spectrum_cases() {
@@ -205,9 +206,9 @@ TEST(SpectralRadius, StrongDampingLeavesNothingToRing) {
     }
 }
 
-// Of a resolved frequency the exact factor is exp(s), s^2/q + r s + 1 = 0. The scheme has s^2/q + r s (1 + s^2/4) + 1 = 0
-// to the leading order, and log z = s + s^3/12: together an error of |s|^3 (1/12 + zeta/4) with the fraction of critical
-// damping zeta = r sqrt(q)/2, and twice that is the bound.
+// Of a resolved frequency the exact factor is exp(s), s^2/q + r s + 1 = 0. The scheme has s^2/q + r s (1 + s^2/4) + 1 =
+// 0 to the leading order, and log z = s + s^3/12: together an error of |s|^3 (1/12 + zeta/4) with the fraction of
+// critical damping zeta = r sqrt(q)/2, and twice that is the bound.
 TEST(SpectralRadius, ResolvedFrequenciesHaveTheirDamping) {
   for (const double frequency : {1e-3, 1e-2, 1e-1})
     for (const double zeta : {1e-3, 1e-2, 0.1, 0.5}) {

@@ -38,9 +38,9 @@ scene::SceneDescription guide_arm() {
   return *result.scene;
 }
 
-/// The scheme's velocity of the shoulder every millisecond from 1.05 to 1.5 s. The beam's modes above 2 / eta = 2000 rad/s
-/// creep, those below it that a step of 1 ms does not resolve (1000 rad/s) decay with eta omega^2 / 2 = 500/s at least:
-/// of what the jump at 1 s has started, exp(-25) is left.
+/// The scheme's velocity of the shoulder every millisecond from 1.05 to 1.5 s. The beam's modes above 2 / eta = 2000
+/// rad/s creep, those below it that a step of 1 ms does not resolve (1000 rad/s) decay with eta omega^2 / 2 = 500/s at
+/// least: of what the jump at 1 s has started, exp(-25) is left.
 std::vector<double> velocities_after_jump(const std::string& scheme, int refinement) {
   Simulation simulation(guide_arm(), options(scheme, 1e-3 / refinement));
   const int shoulder = simulation.model().joints[simulation.model().coordinates.front().joint].slave;

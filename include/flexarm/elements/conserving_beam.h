@@ -194,7 +194,7 @@ void conserving_beam(const ConservingElement<Nodes, S>& element, const BeamNodes
     }
     if (element.has_stiffness_damping) {
       const conserving::StructuralDamper<S> damper(element.stiffness_damping, rule.damping_relaxation, memory[k],
-                                                   p.conjugate_strain, element.stiffness, step);
+                                                   p.conjugate_strain, p.conjugate_stress, element.stiffness, step);
       factor += damper.factor;
       stress -= damper.remembered;
       system.dissipated += constants.weight * damper.dissipated;

@@ -39,16 +39,16 @@ struct StructuralDamper {
   S factor, dissipated;  // [-], [J/m]
   Vector6T<S> remembered, delayed_rate;
 
-  /// `viscosity` eta, `relaxation` h_0 [s].
+  /// `viscosity` eta, `relaxation` h_0 [s]; `stress` C s.
   StructuralDamper(const S& viscosity, double relaxation, const StrainMemoryT<S>& begin, const Vector6T<S>& s,
-                   const SectionStiffness<S>& stiffness, double step) {
+                   const Vector6T<S>& stress, const SectionStiffness<S>& stiffness, double step) {
     const double follows = 1 / (step + 2 * relaxation);
-    const Vector6T<S> mean = S(1 / step) * s, delayed = S(follows) * (s + S(2 * relaxation) * begin.delayed_rate);
+    const Vector6T<S> delayed = S(follows) * (s + S(2 * relaxation) * begin.delayed_rate);
     factor = viscosity * S(0.75 / step + 0.25 * follows + 0.5 * relaxation / (step * step));
     remembered = viscosity * stiffness.stress(S(0.5 * relaxation / step) * begin.rate -
                                               S(0.5 * relaxation * follows) * begin.delayed_rate);
-    dissipated = S(step) * viscosity *
-                 (S(0.75) * dot6(mean, stiffness.stress(mean)) + S(0.25) * dot6(delayed, stiffness.stress(delayed)));
+    dissipated =
+        viscosity * (S(0.75 / step) * dot6(s, stress) + S(0.25 * step) * dot6(delayed, stiffness.stress(delayed)));
     delayed_rate = S(2) * delayed - begin.delayed_rate;
   }
 };
