@@ -160,12 +160,16 @@ TYPED_TEST(PackBeam, LanesAreSingleElements) {
         EXPECT_NEAR(actual.system.dissipated, expected.system.dissipated, kRoundOff);
         for (int k = 0; k < N - 1; ++k) {
           EXPECT_LE(largest(actual.points[k].strain - expected.points[k].strain), kRoundOff);
-          if (options.dissipation_order > 0)
-            EXPECT_LE(largest(actual.memory[k].average - expected.memory[k].average), kRoundOff);
-          if (options.dissipation_order > 0 || options.is_damped)
-            EXPECT_LE(largest(actual.memory[k].rate - expected.memory[k].rate), kRoundOff);
-          if (options.is_damped)
-            EXPECT_LE(largest(actual.memory[k].delayed_rate - expected.memory[k].delayed_rate), kRoundOff);
+          const StrainMemory &is = actual.memory[k], &should = expected.memory[k];
+          if (options.dissipation_order > 0) {
+            EXPECT_LE(largest(is.average - should.average), kRoundOff);
+          }
+          if (options.dissipation_order > 0 || options.is_damped) {
+            EXPECT_LE(largest(is.rate - should.rate), kRoundOff);
+          }
+          if (options.is_damped) {
+            EXPECT_LE(largest(is.delayed_rate - should.delayed_rate), kRoundOff);
+          }
         }
       }
     }

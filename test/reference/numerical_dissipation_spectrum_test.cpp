@@ -145,7 +145,9 @@ TEST_P(Spectrum, MotionFollowsTheSlowestRoot) {
   const Case c = GetParam();
   const Oscillator o = c.oscillator();
   const Complex p = slowest(o), z = factor(p);
-  ASSERT_LT(std::abs(o.value(p)), 100 * kEpsilon * (1 + std::abs(4 / o.q * p * p)));
+  // The delay's pole at p = -1/2 magnifies the round-off of p.
+  const double magnified = c.damping > 0 ? 1 + 1 / std::abs(1.0 + 2.0 * p) : 1;
+  ASSERT_LT(std::abs(o.value(p)), 100 * kEpsilon * magnified * (1 + std::abs(4 / o.q * p * p)));
   const double amplitude = 0.05;
   Simulation simulation = bar(c);
   start_on(simulation, o, p, amplitude);
@@ -201,8 +203,11 @@ TEST(SpectralRadius, StrongDampingLeavesNothingToRing) {
       const Complex slow = slowest(o);
       EXPECT_NEAR(slow.real(), -0.5 / damping, 1 / (damping * damping));
       const double bound = std::sqrt((1 + 4 / o.q) / (2 * damping));
-      for (const Complex& p : o.roots())
-        if (std::abs(p - slow) > 0) EXPECT_LT(std::abs(factor(p)), bound) << "omega h = " << frequency;
+      for (const Complex& p : o.roots()) {
+        if (p != slow) {
+          EXPECT_LT(std::abs(factor(p)), bound) << "omega h = " << frequency;
+        }
+      }
     }
 }
 
