@@ -146,6 +146,7 @@ double ConservingBeams::add(const StepMotion& step, bool with_tangent, SparseAss
                             std::vector<StrainMemory>& end_memory) {
   double dissipated = 0;
   for_each_group(groups_, [&](auto& packs) {
+    if (packs.empty()) return;  // not even memories are made
     constexpr int N = std::decay_t<decltype(packs)>::value_type::kNodes;
     simd::run([&] {
       std::array<StrainMemoryT<Pack>, N - 1> memory, new_memory;
