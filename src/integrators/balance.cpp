@@ -1,6 +1,7 @@
 #include "flexarm/integrators/balance.h"
 
 #include "flexarm/elements/element_configuration.h"
+#include "flexarm/elements/strain_dampers.h"
 #include "flexarm/joints/joint_forces.h"
 
 namespace flexarm {
@@ -21,8 +22,9 @@ Matrix3 lumped_rotary(const NodalInertia& inertia, const Scheme& scheme) {
 double stored(const TimeRule& rule, const StrainMemory& memory, const Matrix6& stiffness, double viscosity) {
   const auto square = [&](const Vector6& strain) { return strain.dot(stiffness * strain); };
   const NumericalDissipation& d = rule.dissipation;
-  const double damping = 0.125 * viscosity * rule.damping_relaxation;
-  double energy = (0.5 * d.inertance + damping) * square(memory.rate) + damping * square(memory.delayed_rate);
+  const conserving::DamperParts<double> damper(viscosity, rule.damping_relaxation);
+  double energy = 0.5 * (d.inertance + damper.inertance) * square(memory.rate) +
+                  0.5 * damper.delayed * rule.damping_relaxation * square(memory.delayed_rate);
   if (d.forgetting > 0) energy += 0.5 * d.stiffness / d.forgetting * square(memory.average);
   return energy;
 }

@@ -106,7 +106,7 @@ std::vector<Scheme> build_table() {
     if (scheme.name == "em4") {
       scheme.is_composition = true;
       scheme.order = 4;
-      scheme.damping_relaxation = 0;  // whose memory would spoil the order: it is not that of a symmetric step
+      scheme.damping_relaxation = 0;  // its effect is of second order in the scene's step, not in those composed
     }
     if (scheme.name == "m2") scheme.backward_velocity = true, scheme.order = 1;
     if (scheme.name == "std") {

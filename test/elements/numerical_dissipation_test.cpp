@@ -38,6 +38,14 @@ TimeRule dissipative_rule(int order, double rho, double relaxation = 0) {
   return rule;
 }
 
+/// Structural damping, docs/schemes.md: eta min(eta, h_0)/4 [s^2] and max(eta - h_0, 0)/4 [s].
+double inertance_of(double viscosity, double relaxation) {
+  return 0.25 * viscosity * std::min(viscosity, relaxation);
+}
+double delayed_dashpot_of(double viscosity, double relaxation) {
+  return 0.25 * std::max(viscosity - relaxation, 0.0);
+}
+
 template <int Nodes>
 struct Dissipative {
   const RandomStep<Nodes>& step;
@@ -78,18 +86,20 @@ TYPED_TEST(DissipativeBeam, Tangent) {
     }
 }
 
-/// (stiffness / forgetting) y.Cy / 2 + inertance w.Cw / 2 + damping relaxation (w.Cw + q.Cq) / 8 over the element.
+/// (stiffness / forgetting y.Cy + inertance w.Cw + relaxation delayed q.Cq) / 2 over the element, with the inertance of
+/// both dampers.
 template <int Nodes>
 double stored(const RandomStep<Nodes>& step, const TimeRule& rule, const Memory<Nodes>& memory) {
   const NumericalDissipation& d = rule.dissipation;
-  const double damping = step.element.stiffness_damping * rule.damping_relaxation;
+  const double relaxation = rule.damping_relaxation, viscosity = step.element.stiffness_damping;
+  const double inertance = d.inertance + inertance_of(viscosity, relaxation);
+  const double delayed = relaxation * delayed_dashpot_of(viscosity, relaxation);
   double energy = 0;
   for (int k = 0; k < Nodes - 1; ++k) {
     const Vector6 &y = memory[k].average, &w = memory[k].rate, &q = memory[k].delayed_rate;
     const Matrix6 stiffness = step.element.stiffness_points[k].weight * step.element.stiffness;
     if (d.forgetting > 0) energy += 0.5 * d.stiffness / d.forgetting * y.dot(stiffness * y);
-    energy += 0.5 * d.inertance * w.dot(stiffness * w);
-    energy += 0.125 * damping * (w.dot(stiffness * w) + q.dot(stiffness * q));
+    energy += 0.5 * inertance * w.dot(stiffness * w) + 0.5 * delayed * q.dot(stiffness * q);
   }
   return energy;
 }
@@ -158,29 +168,37 @@ TYPED_TEST(DissipativeBeam, MemoryFollowsItsDefinition) {
   }
 }
 
-// The definition: (q_0 + q_1)/2 + (h_0/h) (q_1 - q_0) = s/h = (w_0 + w_1)/2, and
-// eta C [3/4 s/h + 1/4 q_mean + h_0/(4 h) (w_1 - w_0)] is what damping does work with in the increment of the nodes.
+// The definition: (q_0 + q_1)/2 + (h_0/h) (q_1 - q_0) = s/h = (w_0 + w_1)/2, and the stress
+// C [dashpot s/h + inertance (w_1 - w_0)/h + delayed q_mean] is what does the work of damping.
 TYPED_TEST(DissipativeBeam, DampingFollowsItsDefinition) {
   constexpr int N = TypeParam::value;
   RandomSource random(6);
-  RandomStep<N> step(random, 0.4);
-  const double relaxation = 2 * kStep, viscosity = 0.2;
+  const double relaxation = 2 * kStep;
   const Memory<N> memory = random_memory<N>(random, 0, 0.4);
-  Dissipative<N> undamped(step, dissipative_rule(0, 1, relaxation), memory);
-  const auto elastic = undamped.template evaluate<true>(step.nodes, false).residual;
-  step.element.stiffness_damping = viscosity;
-  Dissipative<N> damped(step, dissipative_rule(0, 1, relaxation), memory);
-  const auto whole = damped.template evaluate<true>(step.nodes, false).residual;
-  double work = 0;
-  for (int k = 0; k < N - 1; ++k) {
-    const StrainMemory &begin = damped.memory[k], &end = damped.end_memory[k];
-    const Vector6 rate = 0.5 * (begin.rate + end.rate), delayed = 0.5 * (begin.delayed_rate + end.delayed_rate);
-    EXPECT_LE(largest(delayed + relaxation / kStep * (end.delayed_rate - begin.delayed_rate) - rate), kRoundOff);
-    const Vector6 stress = viscosity * step.element.stiffness *
-                           (0.75 * rate + 0.25 * delayed + 0.25 * relaxation / kStep * (end.rate - begin.rate));
-    work += step.element.stiffness_points[k].weight * kStep * rate.dot(stress);
+  for (const double viscosity : {0.0, 0.3 * relaxation, 4 * relaxation}) {
+    RandomStep<N> step(random, 0.4);
+    Dissipative<N> undamped(step, dissipative_rule(0, 1, relaxation), memory);
+    const auto elastic = undamped.template evaluate<true>(step.nodes, false).residual;
+    step.element.stiffness_damping = viscosity;
+    Dissipative<N> damped(step, dissipative_rule(0, 1, relaxation), memory);
+    const auto whole = damped.template evaluate<true>(step.nodes, false).residual;
+    if (viscosity == 0) {
+      EXPECT_EQ(whole, elastic);
+      continue;
+    }
+    const double delayed_dashpot = delayed_dashpot_of(viscosity, relaxation);
+    double work = 0;
+    for (int k = 0; k < N - 1; ++k) {
+      const StrainMemory &begin = damped.memory[k], &end = damped.end_memory[k];
+      const Vector6 rate = 0.5 * (begin.rate + end.rate), delayed = 0.5 * (begin.delayed_rate + end.delayed_rate);
+      EXPECT_LE(largest(delayed + relaxation / kStep * (end.delayed_rate - begin.delayed_rate) - rate), kRoundOff);
+      const Vector6 stress =
+          step.element.stiffness * ((viscosity - delayed_dashpot) * rate + delayed_dashpot * delayed +
+                                    inertance_of(viscosity, relaxation) / kStep * (end.rate - begin.rate));
+      work += step.element.stiffness_points[k].weight * kStep * rate.dot(stress);
+    }
+    EXPECT_NEAR(step.work(whole - elastic), work, kRoundOff * (largest(whole) + std::abs(work)));
   }
-  EXPECT_NEAR(step.work(whole - elastic), work, kRoundOff * (largest(whole) + std::abs(work)));
 }
 
 // A massless spring of unit stiffness, the limit of infinite frequency: (x_0 + x_1)/2 + stiffness (s - y_0) + inertance

@@ -171,6 +171,7 @@ void conserving_beam(const ConservingElement<Nodes, S>& element, const BeamNodes
     if (is_corrected) multiplier.add(constants.weight, element.stiffness, begin[k], end[k], points[k]);
   }
 
+  const conserving::DamperParts<S> damper_parts(element.stiffness_damping, rule.damping_relaxation);
   const S lambda = is_corrected ? multiplier.value() : S(0);
   std::array<Matrix3T<S>, Nodes> inverse_tangent;  // S(w)^{-1}: dw = S^{-1} spin
   std::array<Vector6T<S>, Nodes> conjugate_residual, multiplier_row;
@@ -193,8 +194,8 @@ void conserving_beam(const ConservingElement<Nodes, S>& element, const BeamNodes
       end_memory[k].average = damper.average;
     }
     if (element.has_stiffness_damping) {
-      const conserving::StructuralDamper<S> damper(element.stiffness_damping, rule.damping_relaxation, memory[k],
-                                                   p.conjugate_strain, p.conjugate_stress, element.stiffness, step);
+      const conserving::StructuralDamper<S> damper(damper_parts, rule.damping_relaxation, memory[k], p.conjugate_strain,
+                                                   p.conjugate_stress, element.stiffness, step);
       factor += damper.factor;
       stress -= damper.remembered;
       system.dissipated += constants.weight * damper.dissipated;

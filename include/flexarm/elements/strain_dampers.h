@@ -29,26 +29,40 @@ struct NumericalDamper {
   }
 };
 
-/// The stress eta C (strain rate), by three passive parts side by side with a relaxation time h_0: three quarters of it
-/// a dashpot, one a dashpot behind a spring, which feels the delayed rate q, and an inertance h_0/4,
-///   eta C [3/4 s/h + 1/4 q_mean + h_0/(4 h) (w_1 - w_0)],   q_mean + (h_0/h) (q_1 - q_0) = s/h.
+/// What takes the place of the viscosity eta, three passive parts side by side: a dashpot, an inertance, and, where eta
+/// is longer than the relaxation time h_0, a dashpot behind a spring that relaxes with it.
+template <typename S>
+struct DamperParts {
+  S dashpot, inertance, delayed;  // [s], [s^2], [s]
+
+  DamperParts(const S& viscosity, double relaxation) {
+    using std::abs;
+    const S difference = viscosity - S(relaxation), excess = S(0.5) * (difference + abs(difference));  // or zero
+    delayed = S(0.25) * excess;
+    dashpot = viscosity - delayed;
+    inertance = S(0.25) * viscosity * (viscosity - excess);
+  }
+};
+
+/// The stress eta C (strain rate) by these parts: with the delayed rate q,
+///   C [dashpot s/h + inertance (w_1 - w_0)/h + delayed q_mean],   q_mean + (h_0/h) (q_1 - q_0) = s/h.
 /// A dashpot alone would leave the strain of a mode that it damps strongly nearly as it is and make its velocity change
-/// the sign in every step. This one brings both to rest in a few. eta h_0/8 (w.Cw + q.Cq) is stored.
+/// the sign in every step. These bring both to rest. (inertance w.Cw + delayed h_0 q.Cq)/2 is stored.
 template <typename S>
 struct StructuralDamper {
   S factor, dissipated;  // [-], [J/m]
   Vector6T<S> remembered, delayed_rate;
 
-  /// `viscosity` eta, `relaxation` h_0 [s]; `stress` C s.
-  StructuralDamper(const S& viscosity, double relaxation, const StrainMemoryT<S>& begin, const Vector6T<S>& s,
+  /// `stress` C s; `relaxation` h_0 [s].
+  StructuralDamper(const DamperParts<S>& parts, double relaxation, const StrainMemoryT<S>& begin, const Vector6T<S>& s,
                    const Vector6T<S>& stress, const SectionStiffness<S>& stiffness, double step) {
     const double follows = 1 / (step + 2 * relaxation);
     const Vector6T<S> delayed = S(follows) * (s + S(2 * relaxation) * begin.delayed_rate);
-    factor = viscosity * S(0.75 / step + 0.25 * follows + 0.5 * relaxation / (step * step));
-    remembered = viscosity * stiffness.stress(S(0.5 * relaxation / step) * begin.rate -
-                                              S(0.5 * relaxation * follows) * begin.delayed_rate);
-    dissipated =
-        viscosity * (S(0.75 / step) * dot6(s, stress) + S(0.25 * step) * dot6(delayed, stiffness.stress(delayed)));
+    factor = parts.dashpot * S(1 / step) + parts.inertance * S(2 / (step * step)) + parts.delayed * S(follows);
+    remembered = stiffness.stress((parts.inertance * S(2 / step)) * begin.rate -
+                                  (parts.delayed * S(2 * relaxation * follows)) * begin.delayed_rate);
+    dissipated = parts.dashpot * S(1 / step) * dot6(s, stress) +
+                 parts.delayed * S(step) * dot6(delayed, stiffness.stress(delayed));
     delayed_rate = S(2) * delayed - begin.delayed_rate;
   }
 };
