@@ -1,6 +1,7 @@
 #include "flexarm/integrators/balance.h"
 
 #include "flexarm/elements/element_configuration.h"
+#include "flexarm/elements/strain_dampers.h"
 #include "flexarm/joints/joint_forces.h"
 
 namespace flexarm {
@@ -10,10 +11,14 @@ Matrix3 lumped_rotary(const NodalInertia& inertia, const Scheme& scheme) {
   return scheme.nodal_rotary_inertia ? Matrix3(inertia.rotary + inertia.beam_rotary) : inertia.rotary;
 }
 
-/// Energy of the numerical dissipation's memory [J/m].
-double stored(const NumericalDissipation& d, const StrainMemory& memory, const Matrix6& stiffness) {
-  double energy = 0.5 * d.inertance * memory.rate.dot(stiffness * memory.rate);
-  if (d.forgetting > 0) energy += 0.5 * d.stiffness / d.forgetting * memory.average.dot(stiffness * memory.average);
+/// Energy that the dampers' memory stores [J/m].
+double stored(const TimeRule& rule, const StrainMemory& memory, const Matrix6& stiffness, double viscosity) {
+  const auto square = [&](const Vector6& strain) { return strain.dot(stiffness * strain); };
+  const NumericalDissipation& d = rule.dissipation;
+  const conserving::DamperParts<double> damper(viscosity, rule.damping_relaxation);
+  double energy = 0.5 * (d.inertance + damper.inertance) * square(memory.rate) +
+                  0.5 * damper.delayed * rule.damping_relaxation * square(memory.delayed_rate);
+  if (d.forgetting > 0) energy += 0.5 * d.stiffness / d.forgetting * square(memory.average);
   return energy;
 }
 
@@ -32,8 +37,8 @@ Energies energies(const Model& model, const Scheme& scheme, const State& state) 
       const Vector6 strain = centroid_strain(element, nodes, local, state, k);
       out.strain += 0.5 * weight * strain.dot(element.stiffness * strain);
       if (!state.strain_memory.empty())
-        out.strain += weight * stored(scheme.dissipation, state.strain_memory[element.first_stiffness_point + k],
-                                      element.stiffness);
+        out.strain += weight * stored(scheme, state.strain_memory[element.first_stiffness_point + k], element.stiffness,
+                                      element.stiffness_damping);
     }
     for (int i = 0; i < N; ++i)
       for (int j = 0; j < N; ++j) out.kinetic += 0.5 * element.mass(i, j) * nodes.velocity[i].dot(nodes.velocity[j]);

@@ -14,7 +14,7 @@ void fill_packs(const Elements& elements, Packs& packs) {
   const int count = static_cast<int>(elements.size());
   packs.resize((count + lanes - 1) / lanes);
   // Which terms there are is the same for a whole group, so that an element does not feel its neighbours.
-  bool is_coupled = false, has_mass_damping = false;
+  bool is_coupled = false, has_stiffness_damping = false, has_mass_damping = false;
   for (std::size_t p = 0; p < packs.size(); ++p) {
     auto& pack = packs[p];
     const int first = static_cast<int>(p) * lanes;
@@ -27,21 +27,26 @@ void fill_packs(const Elements& elements, Packs& packs) {
       set_lane(pack.element, lane, element);
     }
     is_coupled = is_coupled || pack.element.stiffness.is_coupled;
+    has_stiffness_damping = has_stiffness_damping || pack.element.has_stiffness_damping;
     has_mass_damping = has_mass_damping || pack.element.has_mass_damping;
   }
   for (auto& pack : packs) {
     pack.element.stiffness.is_coupled = is_coupled;
+    pack.element.has_stiffness_damping = has_stiffness_damping;
     pack.element.has_mass_damping = has_mass_damping;
   }
 }
 
 }  // namespace
 
-ConservingBeams::ConservingBeams(const Model& model, const TimeRule& rule) : rule_(rule) {
+ConservingBeams::ConservingBeams(const Model& model, const TimeRule& rule)
+    : rule_(rule), has_memory_(rule.dissipation.any()) {
   if (rule.stress != StressRule::Conjugate) return;
   for_each_group(model.beams, [&](const auto& group) {
     constexpr int N = std::decay_t<decltype(group.elements)>::value_type::kNodes;
-    fill_packs(group.elements, std::get<PackGroup<N>>(groups_));
+    auto& packs = std::get<PackGroup<N>>(groups_);
+    fill_packs(group.elements, packs);
+    if (!packs.empty() && packs.front().element.has_stiffness_damping) has_memory_ = true;
   });
 }
 
@@ -64,12 +69,12 @@ BeamNodes<Nodes, Pack> ConservingBeams::gather(const ElementPack<Nodes>& pack, c
 template <int Nodes>
 void ConservingBeams::gather(const ElementPack<Nodes>& pack, const std::vector<StrainMemory>& memory,
                              std::array<StrainMemoryT<Pack>, Nodes - 1>& points) {
-  for (int k = 0; k < Nodes - 1; ++k)
-    for (int lane = 0; lane < Pack::kLanes; ++lane) {
-      const StrainMemory& from = memory[pack.first_stiffness_point[lane] + k];
-      set_lane(points[k].average, lane, from.average);
-      set_lane(points[k].rate, lane, from.rate);
-    }
+  for (int k = 0; k < Nodes - 1; ++k) {
+    const auto from = [&](int lane) -> const StrainMemory& { return memory[pack.first_stiffness_point[lane] + k]; };
+    points[k].average = gathered_vector<6>([&](int lane) -> const Vector6& { return from(lane).average; });
+    points[k].rate = gathered_vector<6>([&](int lane) -> const Vector6& { return from(lane).rate; });
+    points[k].delayed_rate = gathered_vector<6>([&](int lane) -> const Vector6& { return from(lane).delayed_rate; });
+  }
 }
 
 template <int Nodes>
@@ -77,8 +82,8 @@ void ConservingBeams::scatter(const ElementPack<Nodes>& pack, const std::array<S
                               std::vector<StrainMemory>& memory) {
   for (int k = 0; k < Nodes - 1; ++k)
     for (int lane = 0; lane < pack.lanes; ++lane)
-      memory[pack.first_stiffness_point[lane] + k] = {get_lane(points[k].average, lane),
-                                                      get_lane(points[k].rate, lane)};
+      memory[pack.first_stiffness_point[lane] + k] = {get_lane(points[k].average, lane), get_lane(points[k].rate, lane),
+                                                      get_lane(points[k].delayed_rate, lane)};
 }
 
 template <int Nodes>
@@ -140,19 +145,19 @@ void ConservingBeams::set_mid_functions(const StepMotion& step) {
 double ConservingBeams::add(const StepMotion& step, bool with_tangent, SparseAssembler& assembler,
                             std::vector<StrainMemory>& end_memory) {
   double dissipated = 0;
-  const bool has_memory = rule_.dissipation.any();
   for_each_group(groups_, [&](auto& packs) {
+    if (packs.empty()) return;  // not even memories are made
     constexpr int N = std::decay_t<decltype(packs)>::value_type::kNodes;
     simd::run([&] {
       std::array<StrainMemoryT<Pack>, N - 1> memory, new_memory;
       BlockSystem<N, Pack> system;
       for (auto& pack : packs) {
-        if (has_memory) gather<N>(pack, step.state.strain_memory, memory);
+        if (has_memory_) gather<N>(pack, step.state.strain_memory, memory);
         conserving_beam<N, Pack>(pack.element, gather<N>(pack, step), rule_, pack.mid_functions,
-                                 pack.points[begin_].data(), has_memory ? memory.data() : nullptr, step.step,
-                                 with_tangent, pack.points[1 - begin_].data(), has_memory ? new_memory.data() : nullptr,
-                                 system);
-        if (has_memory) scatter<N>(pack, new_memory, end_memory);
+                                 pack.points[begin_].data(), has_memory_ ? memory.data() : nullptr, step.step,
+                                 with_tangent, pack.points[1 - begin_].data(),
+                                 has_memory_ ? new_memory.data() : nullptr, system);
+        if (has_memory_) scatter<N>(pack, new_memory, end_memory);
         scatter<N>(pack, system, with_tangent, assembler);
         for (int lane = 0; lane < pack.lanes; ++lane) dissipated += system.dissipated[lane];
       }

@@ -13,11 +13,11 @@ template <class Get>
   static_assert(Pack::kLanes == 4);
   return {get(0), get(1), get(2), get(3)};
 }
-/// One vector of each lane; get(lane) is a const Vector3&.
-template <class Get>
-[[gnu::always_inline]] inline Vector3T<Pack> gathered_vector(const Get& get) {
-  Vector3T<Pack> out;
-  for (int c = 0; c < 3; ++c) out[c] = gathered([&](int lane) { return get(lane)[c]; });
+/// One vector of each lane; get(lane) is a const reference to a vector of `Size` numbers.
+template <int Size = 3, class Get>
+[[gnu::always_inline]] inline Eigen::Matrix<Pack, Size, 1> gathered_vector(const Get& get) {
+  Eigen::Matrix<Pack, Size, 1> out;
+  for (int c = 0; c < Size; ++c) out[c] = gathered([&](int lane) { return get(lane)[c]; });
   return out;
 }
 /// get(lane) is a const Quaternion&.

@@ -15,6 +15,7 @@ Scheme energy_momentum(std::string_view name, std::string_view description) {
   scheme.name = name;
   scheme.description = description;
   scheme.correction = EnergyCorrection::Multiplier;
+  scheme.damping_relaxation = scene::IntegratorDescription().step;
   scheme.conserves_energy = scheme.conserves_momenta = true;
   return scheme;
 }
@@ -102,7 +103,11 @@ std::vector<Scheme> build_table() {
   };
   for (Scheme& scheme : table) {
     if (scheme.name == "em_scaled") scheme.scales_velocities = scheme.conserves_energy = true;
-    if (scheme.name == "em4") scheme.is_composition = true, scheme.order = 4;
+    if (scheme.name == "em4") {
+      scheme.is_composition = true;
+      scheme.order = 4;
+      scheme.damping_relaxation = 0;  // its effect is of second order in the scene's step, not in those composed
+    }
     if (scheme.name == "m2") scheme.backward_velocity = true, scheme.order = 1;
     if (scheme.name == "std") {
       scheme.interpolation = Interpolation::Incremental;
@@ -155,6 +160,7 @@ Scheme make_scheme(const scene::IntegratorDescription& integrator) {
   require(scheme.alpha >= -1.0 / 3 && scheme.alpha <= 0, "alpha must be from -1/3 to 0");
   if (integrator.interpolation) scheme.interpolation = *integrator.interpolation;
   if (integrator.weak_form) scheme.weak_form = *integrator.weak_form;
+  if (scheme.damping_relaxation > 0) scheme.damping_relaxation = integrator.step;
   const double rho = integrator.rho_infinity.value_or(kDefaultRho);
   require(rho >= 0 && rho <= 1, "rho_infinity must be from 0 to 1");
   if (scheme.dissipation.any()) {

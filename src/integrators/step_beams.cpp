@@ -142,7 +142,8 @@ void StepSystem::initialise_strain_memory(State& state) {
         rate.segment<3>(3) += functions.values[i] * nodes.spin[i];
         rate.tail<3>() += functions.derivatives[i] * nodes.spin[i];
       }
-      state.strain_memory[element.first_stiffness_point + k].rate = strain_derivative(point) * rate;
+      StrainMemory& memory = state.strain_memory[element.first_stiffness_point + k];
+      memory.rate = memory.delayed_rate = strain_derivative(point) * rate;
     }
   });
 }

@@ -50,7 +50,7 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme, Tangent tangent
       end_mass_rotations_(model.mass_point_count),
       end_mass_points_(model.mass_point_count),
       end_strain_rates_(model.stiffness_point_count, Vector6::Zero()),
-      end_strain_memory_(scheme.dissipation.any() ? model.stiffness_point_count : 0),
+      end_strain_memory_(conserving_beams_.has_memory() ? model.stiffness_point_count : 0),
       interpolated_(model.nodes),
       interpolated_spins_(model.nodes.size(), Matrix3::Identity()),
       end_forces_(model.nodes.size(), Vector6::Zero()),
@@ -248,7 +248,7 @@ MimicMap StepSystem::mimic_map(int coordinate) const {
 
 void StepSystem::initialise(State& state) {
   reference_.initialise(state);
-  if (scheme_.dissipation.any()) initialise_strain_memory(state);
+  if (conserving_beams_.has_memory()) initialise_strain_memory(state);
   if (scheme_.hht == HhtForm::None) return;
   state.forces.assign(state.nodes.size(), Vector6::Zero());
   begin_static(state, 1);

@@ -48,6 +48,7 @@ void for_each_number(AnyState& state, const Visit& visit) {
   for (auto& memory : state.strain_memory) {
     vector("an average of strain increments", memory.average);
     vector("a strain rate", memory.rate);
+    vector("a delayed strain rate", memory.delayed_rate);
   }
   for (auto* points : {&state.stiffness_rotations, &state.mass_rotations})
     for (auto& point : *points) {

@@ -47,6 +47,7 @@ struct KernelData {
       const StrainMemory& from = input.memory ? input.memory[k] : none;
       set_lane(memory[k].average, lane, from.average);
       set_lane(memory[k].rate, lane, from.rate);
+      set_lane(memory[k].delayed_rate, lane, from.delayed_rate);
     }
   }
   void evaluate(const TimeRule& rule, double step, bool with_tangent) {
@@ -65,7 +66,9 @@ struct KernelData {
   void get_end(int lane, PointKinematics* points, StrainMemory* memories) const {
     for (int k = 0; k < Nodes - 1; ++k) {
       points[k] = {get_lane(end[k].rotation, lane), get_lane(end[k].tangent, lane), get_lane(end[k].strain, lane)};
-      if (memories) memories[k] = {get_lane(end_memory[k].average, lane), get_lane(end_memory[k].rate, lane)};
+      if (memories)
+        memories[k] = {get_lane(end_memory[k].average, lane), get_lane(end_memory[k].rate, lane),
+                       get_lane(end_memory[k].delayed_rate, lane)};
     }
   }
 };

@@ -1,4 +1,4 @@
-// Numerical dissipation of the energy-momentum family by the stress alone.
+// Dampers with a memory of the energy-momentum family: numerical dissipation and structural damping.
 #include "elements/conserving_kernel.h"
 #include "elements/kernel_checks.h"
 #include "flexarm/integrators/scheme.h"
@@ -18,21 +18,32 @@ TYPED_TEST_SUITE(DissipativeBeam, NodeCounts);
 template <int Nodes>
 using Memory = std::array<StrainMemory, Nodes - 1>;
 
-/// As a past could have left it: the first-order rule keeps no average.
+/// As a past could have left it: only the second-order rule keeps an average.
 template <int Nodes>
 Memory<Nodes> random_memory(RandomSource& random, int order, double size) {
   Memory<Nodes> memory;
   for (StrainMemory& point : memory) {
     if (order == 2) point.average = size * random.vector6();
     point.rate = size / kStep * random.vector6();
+    point.delayed_rate = size / kStep * random.vector6();
   }
   return memory;
 }
 
-TimeRule dissipative_rule(int order, double rho) {
+/// Order 0: none.
+TimeRule dissipative_rule(int order, double rho, double relaxation = 0) {
   TimeRule rule;
-  rule.dissipation = numerical_dissipation(order, rho, kStep);
+  if (order > 0) rule.dissipation = numerical_dissipation(order, rho, kStep);
+  rule.damping_relaxation = relaxation;
   return rule;
+}
+
+/// Structural damping, docs/schemes.md: eta min(eta, h_0)/4 [s^2] and max(eta - h_0, 0)/4 [s].
+double inertance_of(double viscosity, double relaxation) {
+  return 0.25 * viscosity * std::min(viscosity, relaxation);
+}
+double delayed_dashpot_of(double viscosity, double relaxation) {
+  return 0.25 * std::max(viscosity - relaxation, 0.0);
 }
 
 template <int Nodes>
@@ -59,12 +70,12 @@ struct Dissipative {
 TYPED_TEST(DissipativeBeam, Tangent) {
   constexpr int N = TypeParam::value;
   RandomSource random(1);
-  for (const int order : {1, 2})
+  for (const int order : {0, 1, 2})
     for (const double damping : {0.0, 0.2}) {
       const double size = 0.4;
       RandomStep<N> step(random, size);
       step.element.stiffness_damping = damping;
-      Dissipative<N> dissipative(step, dissipative_rule(order, 0.5), random_memory<N>(random, order, size));
+      Dissipative<N> dissipative(step, dissipative_rule(order, 0.5, 2 * kStep), random_memory<N>(random, order, size));
       expect_consistent_tangent<N>(
           step,
           [&](const ElementNodes<N>& nodes, bool with) { return dissipative.template evaluate<true>(nodes, with); },
@@ -75,40 +86,59 @@ TYPED_TEST(DissipativeBeam, Tangent) {
     }
 }
 
-/// (stiffness / forgetting) y.Cy / 2 + inertance w.Cw / 2 over the element.
+/// (stiffness / forgetting y.Cy + inertance w.Cw + relaxation delayed q.Cq) / 2 over the element, with the inertance of
+/// both dampers.
 template <int Nodes>
-double stored(const RandomStep<Nodes>& step, const NumericalDissipation& d, const Memory<Nodes>& memory) {
+double stored(const RandomStep<Nodes>& step, const TimeRule& rule, const Memory<Nodes>& memory) {
+  const NumericalDissipation& d = rule.dissipation;
+  const double relaxation = rule.damping_relaxation, viscosity = step.element.stiffness_damping;
+  const double inertance = d.inertance + inertance_of(viscosity, relaxation);
+  const double delayed = relaxation * delayed_dashpot_of(viscosity, relaxation);
   double energy = 0;
   for (int k = 0; k < Nodes - 1; ++k) {
-    const Vector6 &y = memory[k].average, &w = memory[k].rate;
-    const double weight = step.element.stiffness_points[k].weight;
-    if (d.forgetting > 0) energy += 0.5 * weight * d.stiffness / d.forgetting * y.dot(step.element.stiffness * y);
-    energy += 0.5 * weight * d.inertance * w.dot(step.element.stiffness * w);
+    const Vector6 &y = memory[k].average, &w = memory[k].rate, &q = memory[k].delayed_rate;
+    const Matrix6 stiffness = step.element.stiffness_points[k].weight * step.element.stiffness;
+    if (d.forgetting > 0) energy += 0.5 * d.stiffness / d.forgetting * y.dot(stiffness * y);
+    energy += 0.5 * inertance * w.dot(stiffness * w) + 0.5 * delayed * q.dot(stiffness * q);
   }
   return energy;
 }
 
+template <int Nodes>
+void expect_exact_budget(RandomSource& random, const TimeRule& rule, int order, double damping, double size) {
+  RandomStep<Nodes> step(random, size);
+  step.element.mass.setZero();
+  step.element.stiffness_damping = damping;
+  Dissipative<Nodes> dissipative(step, rule, random_memory<Nodes>(random, order, size));
+  const ElementSystem<Nodes> system = dissipative.template evaluate<true>(step.nodes, false);
+  const double before = step.strain_energy(step.begin_points) + stored(step, rule, dissipative.memory);
+  const double after = step.strain_energy(dissipative.end) + stored(step, rule, dissipative.end_memory);
+  EXPECT_GE(system.dissipated, 0);
+  EXPECT_NEAR(step.work(system.residual), after - before + system.dissipated,
+              kRoundOff * (before + after + largest(system.residual) * size * 6 * Nodes));
+}
+
 // Increment . internal forces = change of strain energy and of what the memory stores + dissipated.
 TYPED_TEST(DissipativeBeam, BudgetIsExact) {
-  constexpr int N = TypeParam::value;
   RandomSource random(2);
   for (const int order : {1, 2})
     for (const double rho : {0.0, 0.5, 0.9})
       for (const double size : {1e-3, 0.1, 0.8})
         for (const MidFunctions mid : {MidFunctions::Explicit, MidFunctions::Symmetric}) {
-          RandomStep<N> step(random, size);
-          step.element.mass.setZero();
           TimeRule rule = dissipative_rule(order, rho);
           rule.mid_functions = mid;
-          Dissipative<N> dissipative(step, rule, random_memory<N>(random, order, size));
-          const ElementSystem<N> system = dissipative.template evaluate<true>(step.nodes, false);
-          const NumericalDissipation& d = rule.dissipation;
-          const double before = step.strain_energy(step.begin_points) + stored(step, d, dissipative.memory);
-          const double after = step.strain_energy(dissipative.end) + stored(step, d, dissipative.end_memory);
-          EXPECT_GE(system.dissipated, 0);
-          EXPECT_NEAR(step.work(system.residual), after - before + system.dissipated,
-                      kRoundOff * (before + after + largest(system.residual) * size * 6 * N));
+          expect_exact_budget<TypeParam::value>(random, rule, order, 0, size);
         }
+}
+
+// The same with structural damping from weak to strong, in steps of the relaxation time, in halved ones, and without
+// relaxation.
+TYPED_TEST(DissipativeBeam, BudgetOfDampingIsExact) {
+  RandomSource random(5);
+  for (const int order : {0, 2})
+    for (const double damping : {1e-3 * kStep, kStep, 1e3 * kStep})
+      for (const double relaxation : {0.0, kStep, 8 * kStep})
+        expect_exact_budget<TypeParam::value>(random, dissipative_rule(order, 0.5, relaxation), order, damping, 0.1);
 }
 
 TYPED_TEST(DissipativeBeam, MomentaBalance) {
@@ -135,6 +165,39 @@ TYPED_TEST(DissipativeBeam, MemoryFollowsItsDefinition) {
     const Vector6 s = 0.5 * kStep * (begin.rate + end.rate);
     const Vector6 expected = begin.average + dissipative.rule.dissipation.forgetting * (s - begin.average);
     EXPECT_LE(largest(end.average - expected), kRoundOff);
+  }
+}
+
+// The definition: (q_0 + q_1)/2 + (h_0/h) (q_1 - q_0) = s/h = (w_0 + w_1)/2, and the stress
+// C [dashpot s/h + inertance (w_1 - w_0)/h + delayed q_mean] is what does the work of damping.
+TYPED_TEST(DissipativeBeam, DampingFollowsItsDefinition) {
+  constexpr int N = TypeParam::value;
+  RandomSource random(6);
+  const double relaxation = 2 * kStep;
+  const Memory<N> memory = random_memory<N>(random, 0, 0.4);
+  for (const double viscosity : {0.0, 0.3 * relaxation, 4 * relaxation}) {
+    RandomStep<N> step(random, 0.4);
+    Dissipative<N> undamped(step, dissipative_rule(0, 1, relaxation), memory);
+    const auto elastic = undamped.template evaluate<true>(step.nodes, false).residual;
+    step.element.stiffness_damping = viscosity;
+    Dissipative<N> damped(step, dissipative_rule(0, 1, relaxation), memory);
+    const auto whole = damped.template evaluate<true>(step.nodes, false).residual;
+    if (viscosity == 0) {
+      EXPECT_EQ(whole, elastic);
+      continue;
+    }
+    const double delayed_dashpot = delayed_dashpot_of(viscosity, relaxation);
+    double work = 0;
+    for (int k = 0; k < N - 1; ++k) {
+      const StrainMemory &begin = damped.memory[k], &end = damped.end_memory[k];
+      const Vector6 rate = 0.5 * (begin.rate + end.rate), delayed = 0.5 * (begin.delayed_rate + end.delayed_rate);
+      EXPECT_LE(largest(delayed + relaxation / kStep * (end.delayed_rate - begin.delayed_rate) - rate), kRoundOff);
+      const Vector6 stress =
+          step.element.stiffness * ((viscosity - delayed_dashpot) * rate + delayed_dashpot * delayed +
+                                    inertance_of(viscosity, relaxation) / kStep * (end.rate - begin.rate));
+      work += step.element.stiffness_points[k].weight * kStep * rate.dot(stress);
+    }
+    EXPECT_NEAR(step.work(whole - elastic), work, kRoundOff * (largest(whole) + std::abs(work)));
   }
 }
 

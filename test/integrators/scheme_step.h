@@ -24,7 +24,8 @@ class SchemeStep : public ::testing::TestWithParam<SchemeVariant> {
   /// The state with what the scheme keeps in it, random where it may be.
   State prepared(State state, StepSystem& system, RandomSource& random) const {
     system.initialise(state);
-    for (StrainMemory& memory : state.strain_memory) memory = {0.1 * random.vector6(), random.vector6()};
+    for (StrainMemory& memory : state.strain_memory)
+      memory = {0.1 * random.vector6(), random.vector6(), random.vector6()};
     for (Vector6& force : state.forces) force = random.vector6();
     if (scheme().hht != HhtForm::None) state.reactions.resize(state.nodes.size());
     for (Vector6& reaction : state.reactions) reaction = random.vector6();

@@ -59,6 +59,15 @@ Problem arm_with_joints() {
   return {"arm_with_joints", b, 1, 0.02};
 }
 
+/// The same arm, its first modes damped by some tenths of critical.
+Problem damped_arm() {
+  Problem problem = arm_with_joints();
+  problem.name = "damped_arm";
+  for (scene::LinkDescription& link : problem.scene.scene.links)
+    if (link.beam) link.beam->stiffness_proportional_damping = 0.05;
+  return problem;
+}
+
 /// Tip positions every `coarsest_step`.
 History tip_history(const Problem& problem, const scene::IntegratorDescription& integrator, int refinement) {
   scene::SceneDescription scene = problem.scene.scene;
@@ -133,6 +142,12 @@ std::vector<SchemeVariant> variants(const std::vector<std::string>& names) {
     if (std::find(names.begin(), names.end(), variant.name) != names.end()) selected.push_back(variant);
   return selected;
 }
+
+INSTANTIATE_TEST_SUITE_P(StructuralDamping, OrderInTime,
+                         ::testing::Combine(::testing::ValuesIn(variants({"em", "em0", "em_symmetric", "em4", "edmc1",
+                                                                          "edmc2"})),
+                                            ::testing::Values(damped_arm())),
+                         name_of);
 
 INSTANTIATE_TEST_SUITE_P(LargeDeformation, OrderInTime,
                          ::testing::Combine(::testing::ValuesIn(variants({"em", "em0", "m1", "newmark"})),

@@ -1,5 +1,6 @@
-// Spectrum of numerical dissipation: a bar that vibrates along its axis is a linear oscillator; its motion over many
-// steps follows the roots of the scheme's characteristic polynomial, and these approach rho_infinity for stiff bars.
+// Spectrum of numerical dissipation and of structural damping: a bar that vibrates along its axis is a linear
+// oscillator; its motion over many steps follows the roots of the scheme's characteristic polynomial. Without damping
+// these approach rho_infinity for stiff bars; strong damping takes them to zero.
 #include <complex>
 #include <cstdio>
 #include <limits>
@@ -13,6 +14,20 @@ namespace flexarm::test {
 namespace {
 
 using Complex = std::complex<double>;
+using Polynomial = std::vector<double>;  // lowest coefficient first
+
+Polynomial operator*(const Polynomial& a, const Polynomial& b) {
+  Polynomial product(a.size() + b.size() - 1, 0.0);
+  for (std::size_t i = 0; i < a.size(); ++i)
+    for (std::size_t j = 0; j < b.size(); ++j) product[i + j] += a[i] * b[j];
+  return product;
+}
+
+Polynomial operator+(Polynomial a, const Polynomial& b) {
+  a.resize(std::max(a.size(), b.size()), 0.0);
+  for (std::size_t i = 0; i < b.size(); ++i) a[i] += b[i];
+  return a;
+}
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kStep = 0.01;  // s
@@ -21,27 +36,37 @@ constexpr double kStep = 0.01;  // s
 /// q = (omega h)^2 and (kappa, nu, b) of numerical_dissipation(),
 ///   mean v = dx/h                         h v = 2 p x        (and the strain rate w = v, which has the same rule)
 ///   y_1 = y_0 + nu (dx - y_0)             y = nu (z - 1) x / (z - 1 + nu)
-///   m dv/h + k [mean x + kappa (dx - y) + (b/h) dw] = 0
-/// and the last, divided by k (z + 1)/2, is
-///   (4/q + 4 b/h^2) p^2 + 1 + 4 kappa p^2 / (2 p + nu (1 - p)) = 0.
+///   m dv/h + k [mean x + kappa (dx - y) + (b/h) dw + damping] = 0
+/// and with damping of r steps, whose delayed rate is w / (1 + 2 p), the last, divided by k (z + 1)/2, is
+///   (4/q + 4 b/h^2) p^2 + 4 kappa p^2 / (2 p + nu (1 - p)) + Y = 0,
+///   Y = (1 + r p)^2 for r <= 1,  (1 + p)^2 (1 + 2 r p) / (1 + 2 p) for r > 1.
 struct Oscillator {
-  double q = 0, kappa = 0, nu = 0, b = 0;  // b in units of h^2
+  double q = 0, r = 0, kappa = 0, nu = 0, b = 0;  // b in units of h^2
 
-  Oscillator(int order, double rho, double frequency) : q(frequency * frequency) {
+  /// Order 0: no numerical dissipation.
+  Oscillator(int order, double rho, double frequency, double damping = 0) : q(frequency * frequency), r(damping) {
+    if (order == 0) return;
     const NumericalDissipation d = numerical_dissipation(order, rho, kStep);
     kappa = d.stiffness;
     nu = d.forgetting;
     b = d.inertance / (kStep * kStep);
   }
   Complex value(const Complex& p) const {
-    return (4 / q + 4 * b) * p * p + 1.0 + (kappa > 0 ? 4 * kappa * p * p / (2.0 * p + nu * (1.0 - p)) : 0.0);
+    const Complex damped =
+        r > 1 ? (1.0 + p) * (1.0 + p) * (1.0 + 2 * r * p) / (1.0 + 2.0 * p) : (1.0 + r * p) * (1.0 + r * p);
+    return (4 / q + 4 * b) * p * p + (kappa > 0 ? 4 * kappa * p * p / (2.0 * p + nu * (1.0 - p)) : 0.0) + damped;
   }
-  /// Roots p. First order (nu = 0): a quadratic; second: a cubic.
+  Polynomial polynomial() const {
+    const Polynomial average = nu > 0 ? Polynomial{nu, 2 - nu} : Polynomial{1};
+    const Polynomial dissipation = nu > 0 ? Polynomial{0, 0, 4 * kappa} : Polynomial{0, 2 * kappa};
+    const Polynomial delay = r > 1 ? Polynomial{1, 2} : Polynomial{1};
+    const Polynomial damped = r > 1 ? Polynomial{1, 2, 1} * Polynomial{1, 2 * r} : Polynomial{1, 2 * r, r * r};
+    Polynomial sum = (Polynomial{0, 0, 4 / q + 4 * b} * average + dissipation) * delay + damped * average;
+    while (sum.back() == 0) sum.pop_back();
+    return sum;
+  }
   std::vector<Complex> roots() const {
-    const double a = 4 / q + 4 * b;
-    // Lowest coefficient first.
-    const std::vector<double> c = nu == 0 ? std::vector<double>{1, 2 * kappa, a}
-                                          : std::vector<double>{nu, 2 - nu, a * nu + 4 * kappa, a * (2 - nu)};
+    const Polynomial c = polynomial();
     const int n = static_cast<int>(c.size()) - 1;
     Eigen::MatrixXd companion = Eigen::MatrixXd::Zero(n, n);
     for (int i = 0; i < n; ++i) {
@@ -75,8 +100,11 @@ Complex slowest(const Oscillator& oscillator) {
 struct Case {
   int order;
   double rho, frequency;  ///< omega h
+  double damping = 0;     ///< eta / h
+  Oscillator oscillator() const { return {order, rho, frequency, damping}; }
   friend std::ostream& operator<<(std::ostream& out, const Case& c) {
-    return out << "order " << c.order << ", rho " << c.rho << ", omega h = " << c.frequency;
+    return out << "order " << c.order << ", rho " << c.rho << ", omega h = " << c.frequency << ", eta = " << c.damping
+               << " h";
   }
 };
 
@@ -86,8 +114,9 @@ Simulation bar(const Case& c) {
   const double omega = c.frequency / kStep;
   b.beam("bar", {{1, 0, 0}}, scene::DirectSection{omega * omega / 3, 1, 1, 1, 1, 1, 1, 1, 1, 1}, 1, 1);
   b.joint("clamp", scene::JointKind::Fixed, "world", "bar");
-  b.scene.integrator.scheme = "edmc" + std::to_string(c.order);
-  b.scene.integrator.rho_infinity = c.rho;
+  b.scene.links.back().beam->stiffness_proportional_damping = c.damping * kStep;
+  b.scene.integrator.scheme = c.order == 0 ? "em" : "edmc" + std::to_string(c.order);
+  if (c.order > 0) b.scene.integrator.rho_infinity = c.rho;
   b.scene.integrator.step = kStep;
   b.scene.integrator.tolerance = 1e-10;
   SimulationOptions set;
@@ -106,6 +135,7 @@ void start_on(Simulation& simulation, const Oscillator& o, const Complex& p, con
   StrainMemory& memory = state.strain_memory.front();
   tip.position.x() = 1 + u.real();
   tip.velocity.x() = memory.rate[0] = (2.0 * p * u).real() / kStep;
+  memory.delayed_rate[0] = (2.0 * p * u / (1.0 + 2.0 * p)).real() / kStep;
   memory.average[0] = o.nu == 0 ? 0 : (o.nu * 2.0 * p * u / (2.0 * p + o.nu * (1.0 - p))).real();
   simulation.restore(state);
 }
@@ -116,9 +146,11 @@ class Spectrum : public ::testing::TestWithParam<Case> {};
 // state, is that of this mode: it decays as |z|^{2n} but for a periodic factor.
 TEST_P(Spectrum, MotionFollowsTheSlowestRoot) {
   const Case c = GetParam();
-  const Oscillator o(c.order, c.rho, c.frequency);
+  const Oscillator o = c.oscillator();
   const Complex p = slowest(o), z = factor(p);
-  ASSERT_LT(std::abs(o.value(p)), 100 * kEpsilon * (1 + std::abs(4 / o.q * p * p)));
+  // The delay's pole at p = -1/2 magnifies the round-off of p.
+  const double magnified = c.damping > 1 ? 1 + 1 / std::abs(1.0 + 2.0 * p) : 1;
+  ASSERT_LT(std::abs(o.value(p)), 100 * kEpsilon * magnified * (1 + std::abs(4 / o.q * p * p)));
   const double amplitude = 0.05;
   Simulation simulation = bar(c);
   start_on(simulation, o, p, amplitude);
@@ -140,8 +172,9 @@ TEST_P(Spectrum, MotionFollowsTheSlowestRoot) {
   const double end = simulation.energies().total(), expected = theory.energies().total();
   // d(E)/E = 2 d(u)/|u|, twice for the four parts of the state.
   EXPECT_NEAR(end / expected, 1, 8 * round_off / std::abs(u)) << c;
-  std::printf("order %d rho %.2f omega h %8.2e: |z| = %.6f; %3d steps, defect %.1e of %.1e, energy %.2e of first\n",
-              c.order, c.rho, c.frequency, modulus, steps, defect, round_off, end / begin);
+  std::printf(
+      "order %d rho %.2f omega h %8.2e eta %.0e h: |z| = %.6f; %3d steps, defect %.1e of %.1e, energy %.2e of first\n",
+      c.order, c.rho, c.frequency, c.damping, modulus, steps, defect, round_off, end / begin);
 }
 
 std::vector<Case> spectrum_cases() {
@@ -153,6 +186,60 @@ std::vector<Case> spectrum_cases() {
   return cases;
 }
 INSTANTIATE_TEST_SUITE_P(Frequencies, Spectrum, ::testing::ValuesIn(spectrum_cases()));
+
+std::vector<Case> damped_cases() {
+  std::vector<Case> cases;
+  for (const int order : {0, 1, 2})
+    for (const double damping : {1e-3, 1e-1, 1.0, 1e2, 1e4})
+      for (const double frequency : {1e-2, 1.0, 1e2, 1e4}) cases.push_back({order, 0.8, frequency, damping});
+  return cases;
+}
+INSTANTIATE_TEST_SUITE_P(Damped, Spectrum, ::testing::ValuesIn(damped_cases()));
+
+// Without mass the polynomial is (1 + r p)^2 for r <= 1: both roots are z = -(1 - r)/(1 + r). With mass it is
+// (1 + r p)^2 + 4 p^2/q: |1 + r p| = 2/(r sqrt(q)) to the leading order, and dz = 2 dp/(1 + 1/r)^2. Twice that bounds
+// it.
+TEST(SpectralRadius, WeakDampingOfHighFrequencies) {
+  for (const double frequency : {1e4, 1e6})
+    for (const double r : {1e-2, 0.1, 0.5, 1.0}) {
+      const double dp = 2 / (r * r * frequency);
+      for (const Complex& p : Oscillator(0, 1, frequency, r).roots())
+        EXPECT_LT(std::abs(factor(p) + (1 - r) / (1 + r)), 2 * 2 * dp / std::pow(1 + 1 / r, 2))
+            << "eta = " << r << " h";
+    }
+}
+
+// For r > 1 it is (1 + p)^2 (1 + 2 r p) + (4 p^2/q) (1 + 2 p): one slow root, the spring's creeping through the damper,
+// p = -1/(2 r), and two near p = -1, |1 + p| = sqrt(4/q / (2 r - 1)) =: d, |z| = d/2. Twice that bounds them.
+TEST(SpectralRadius, StrongDampingLeavesNothingToRing) {
+  for (const double frequency : {1e-1, 1.0, 1e2, 1e6})
+    for (const double damping : {1e4, 1e6, 1e8}) {
+      const Oscillator o(0, 1, frequency, damping);
+      const Complex slow = slowest(o);
+      EXPECT_NEAR(slow.real(), -0.5 / damping, 1 / (damping * damping));
+      const double bound = std::sqrt(4 / o.q / (2 * damping - 1)) + 10 * std::sqrt(kEpsilon);
+      for (const Complex& p : o.roots()) {
+        if (p != slow) {
+          EXPECT_LT(std::abs(factor(p)), bound) << "omega h = " << frequency;
+        }
+      }
+    }
+}
+
+// Of a resolved frequency the exact factor is exp(s), s^2/q + r s + 1 = 0. In s = 2 p the scheme adds c s^2/4 and at
+// most r s^3/4, c = min(r, 1)^2, and log z = s + s^3/12: together an error of w^3 (1/12 + (c/8 + zeta/4) / sqrt(1 -
+// zeta^2)) with w = sqrt(q) = |s| and the fraction of critical damping zeta = r w/2. Twice that is the bound.
+TEST(SpectralRadius, ResolvedFrequenciesHaveTheirDamping) {
+  for (const double w : {1e-3, 1e-2, 1e-1})
+    for (const double zeta : {1e-3, 1e-2, 0.1, 0.5}) {
+      const double r = 2 * zeta / w, c = std::pow(std::min(r, 1.0), 2), damped = std::sqrt(1 - zeta * zeta);
+      const Complex exact = w * Complex(-zeta, damped);
+      Complex z = factor(slowest(Oscillator(0, 1, w, r)));
+      if (z.imag() < 0) z = std::conj(z);
+      const double bound = 2 * std::pow(w, 3) * (1.0 / 12 + (c / 8 + zeta / 4) / damped);
+      EXPECT_LT(std::abs(std::log(z) - exact), bound + 100 * kEpsilon) << "zeta = " << zeta;
+    }
+}
 
 // With P = (1 + rho)/(1 - rho), the polynomial times its denominator is, to first order in 1/q,
 //   first order:  (p + P)^2 / P^2 + 4 p^2/q = 0                       |p + P| = 2 P^2 / sqrt(q),

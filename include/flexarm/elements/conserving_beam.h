@@ -9,7 +9,7 @@
 /// couples no forces with curvatures.
 
 #include "flexarm/elements/conserving_point.h"
-#include "flexarm/elements/time_rule.h"
+#include "flexarm/elements/strain_dampers.h"
 #include "flexarm/math/cayley.h"
 #include "flexarm/math/so3.h"
 
@@ -85,25 +85,6 @@ struct Multiplier {
   }
 };
 
-/// The numerical damper at a stiffness point, see NumericalDissipation: what it adds to the stress is
-/// factor C s - remembered, and what it knows at the end.
-template <typename S>
-struct NumericalDamper {
-  S factor, dissipated;  // [-], [J/m]
-  Vector6T<S> remembered;
-  StrainMemoryT<S> end;
-
-  NumericalDamper(const NumericalDissipation& d, const StrainMemoryT<S>& begin, const Vector6T<S>& s,
-                  const SectionStiffness<S>& stiffness, double step)
-      : factor(d.stiffness + 2 * d.inertance / (step * step)) {
-    const Vector6T<S> deviation = s - begin.average;
-    remembered = stiffness.stress(S(d.stiffness) * begin.average + S(2 * d.inertance / step) * begin.rate);
-    dissipated = S(d.stiffness * (1 - 0.5 * d.forgetting)) * dot6(deviation, stiffness.stress(deviation));
-    end.average = begin.average + S(d.forgetting) * deviation;
-    end.rate = S(2 / step) * s - begin.rate;
-  }
-};
-
 /// Translational inertia (1/h) int I^i I^j mass (v_{n+1} - v_n), v_{n+1} = factor Delta r / h - (factor - 1) v_n, and
 /// mass-proportional damping by the mean velocity Delta r / h. Sets the system.
 template <int Nodes, typename S>
@@ -140,8 +121,8 @@ void set_translation(const ConservingElement<Nodes, S>& element, const BeamNodes
 }  // namespace conserving
 
 /// Internal forces, damping and translational inertia of one element over a step of length `step`, EM family. `begin`
-/// holds the element's stiffness points at t_n, `end` receives those at t_{n+1}; `memory`, `end_memory` serve the
-/// schemes with numerical dissipation. Rotary inertia is added elsewhere.
+/// holds the element's stiffness points at t_n, `end` receives those at t_{n+1}; `memory`, `end_memory` serve
+/// numerical dissipation and damped elements; without either they may be null. Rotary inertia is added elsewhere.
 ///
 /// The moment rows are tested with, and the increments interpolated by, generalised shape functions of about the middle
 /// of the step: `functions` are these (MidFunctions::Explicit) or those of the begin (Symmetric), which are averaged
@@ -159,6 +140,7 @@ void conserving_beam(const ConservingElement<Nodes, S>& element, const BeamNodes
   using conserving::Point;
   const bool is_symmetric = rule.mid_functions == MidFunctions::Symmetric;
   const bool is_corrected = rule.correction == EnergyCorrection::Multiplier;
+  const bool has_memory = rule.dissipation.any() || element.has_stiffness_damping;
   conserving::set_translation<Nodes, S>(element, nodes, rule.velocity_factor(), step, with_tangent, system);
 
   std::array<Point<Nodes, S>, kPoints> points;
@@ -189,7 +171,7 @@ void conserving_beam(const ConservingElement<Nodes, S>& element, const BeamNodes
     if (is_corrected) multiplier.add(constants.weight, element.stiffness, begin[k], end[k], points[k]);
   }
 
-  const S viscosity = element.stiffness_damping * S(1 / step);
+  const conserving::DamperParts<S> damper_parts(element.stiffness_damping, rule.damping_relaxation);
   const S lambda = is_corrected ? multiplier.value() : S(0);
   std::array<Matrix3T<S>, Nodes> inverse_tangent;  // S(w)^{-1}: dw = S^{-1} spin
   std::array<Vector6T<S>, Nodes> conjugate_residual, multiplier_row;
@@ -201,17 +183,25 @@ void conserving_beam(const ConservingElement<Nodes, S>& element, const BeamNodes
   for (int k = 0; k < kPoints; ++k) {
     const auto& constants = element.points[k];
     const Point<Nodes, S>& p = points[k];
-    S factor = lambda + viscosity;
+    S factor = lambda;
     Vector6T<S> stress = p.stress;
-    system.dissipated += constants.weight * viscosity * dot6(p.conjugate_strain, p.conjugate_stress);
     if (rule.dissipation.any()) {
       const conserving::NumericalDamper<S> damper(rule.dissipation, memory[k], p.conjugate_strain, element.stiffness,
                                                   step);
       factor += damper.factor;
       stress -= damper.remembered;
       system.dissipated += constants.weight * damper.dissipated;
-      end_memory[k] = damper.end;
+      end_memory[k].average = damper.average;
     }
+    if (element.has_stiffness_damping) {
+      const conserving::StructuralDamper<S> damper(damper_parts, rule.damping_relaxation, memory[k], p.conjugate_strain,
+                                                   p.conjugate_stress, element.stiffness, step);
+      factor += damper.factor;
+      stress -= damper.remembered;
+      system.dissipated += constants.weight * damper.dissipated;
+      end_memory[k].delayed_rate = damper.delayed_rate;
+    }
+    if (has_memory) end_memory[k].rate = conserving::end_rate(memory[k], p.conjugate_strain, step);
     stress += factor * p.conjugate_stress;
     stress *= constants.weight;
     const Vector3T<S> force = stress.template head<3>(), moment = stress.template tail<3>();

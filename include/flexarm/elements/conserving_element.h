@@ -45,7 +45,7 @@ struct ConservingElement {
   SectionStiffness<S> stiffness;
   Eigen::Matrix<S, Nodes, Nodes> mass;
   S stiffness_damping, mass_damping;
-  bool has_mass_damping = false;
+  bool has_stiffness_damping = false, has_mass_damping = false;
 };
 
 /// Makes an element a lane.
@@ -67,6 +67,7 @@ void set_lane(ConservingElement<Nodes, S>& pack, int lane, const BeamElement<Nod
   set_lane(pack.mass, lane, element.mass);
   set_lane(pack.stiffness_damping, lane, element.stiffness_damping);
   set_lane(pack.mass_damping, lane, element.mass_damping);
+  pack.has_stiffness_damping = pack.has_stiffness_damping || element.stiffness_damping != 0;
   pack.has_mass_damping = pack.has_mass_damping || element.mass_damping != 0;
 }
 

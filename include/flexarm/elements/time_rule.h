@@ -62,6 +62,7 @@ struct TimeRule {
   bool backward_velocity = false;    ///< v_1 = Delta r / h (M2); else (v_0 + v_1)/2
   MidFunctions mid_functions = MidFunctions::Explicit;
   NumericalDissipation dissipation;
+  double damping_relaxation = 0;  ///< h_0 of StructuralDamper [s]; 0: a dashpot at the middle of the step (EM family)
   HhtForm hht = HhtForm::None;
   double beta = 0.25, gamma = 0.5, alpha = 0;  ///< Newmark family
   Interpolation interpolation = Interpolation::Local;

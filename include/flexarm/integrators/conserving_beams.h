@@ -17,12 +17,14 @@ class ConservingBeams {
   /// Empty unless the rule is one of the family.
   ConservingBeams(const Model& model, const TimeRule& rule);
 
+  /// True where numerical dissipation or structural damping keeps State::strain_memory.
+  bool has_memory() const { return has_memory_; }
   /// Stiffness points of a configuration at the begin.
   void set_begin(const std::vector<NodePose>& begin);
   /// Test functions for the middle of the step, as the velocities at the begin foresee it.
   void set_mid_functions(const StepMotion& step);
-  /// Adds forces, damping and translational inertia. `end_memory`: per stiffness point, schemes with numerical
-  /// dissipation. Returns what is dissipated over the step [J].
+  /// Adds forces, damping and translational inertia. `end_memory`: per stiffness point, where has_memory(). Returns
+  /// what is dissipated over the step [J].
   double add(const StepMotion& step, bool with_tangent, SparseAssembler& assembler,
              std::vector<StrainMemory>& end_memory);
   /// The points of the last add() are those at the begin of the next step.
@@ -57,6 +59,7 @@ class ConservingBeams {
 
   TimeRule rule_;
   std::tuple<PackGroup<2>, PackGroup<3>, PackGroup<4>, PackGroup<5>> groups_;
+  bool has_memory_ = false;
   int begin_ = 0;  // which of ElementPack::points
 };
 

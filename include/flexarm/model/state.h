@@ -38,11 +38,12 @@ struct MassPointState {
   Vector3 angular_acceleration = Vector3::Zero();
 };
 
-/// What numerical dissipation remembers at a stiffness point (NumericalDissipation).
+/// What numerical dissipation and structural damping remember at a stiffness point (NumericalDamper, StructuralDamper).
 template <typename S>
 struct StrainMemoryT {
-  Vector6T<S> average = Vector6T<S>::Zero();  ///< of past strain increments [-, 1/m]
-  Vector6T<S> rate = Vector6T<S>::Zero();     ///< of strain [1/s, 1/(m s)]
+  Vector6T<S> average = Vector6T<S>::Zero();       ///< of past strain increments [-, 1/m]
+  Vector6T<S> rate = Vector6T<S>::Zero();          ///< of strain [1/s, 1/(m s)]
+  Vector6T<S> delayed_rate = Vector6T<S>::Zero();  ///< what follows it with a relaxation time; the same units
 };
 using StrainMemory = StrainMemoryT<double>;
 

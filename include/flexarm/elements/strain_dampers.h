@@ -1,0 +1,70 @@
+#pragma once
+/// Dampers with a memory at a stiffness point of the energy-momentum family. Over a step in which the strain grows by
+/// s, each adds factor C s - remembered to the stress. (docs/schemes.md, "Numerical dissipation", "Structural damping")
+
+#include "flexarm/elements/conserving_element.h"
+#include "flexarm/elements/time_rule.h"
+
+namespace flexarm::conserving {
+
+/// The strain rate at the end: (w_0 + w_1)/2 = s/h.
+template <typename S>
+Vector6T<S> end_rate(const StrainMemoryT<S>& begin, const Vector6T<S>& s, double step) {
+  return S(2 / step) * s - begin.rate;
+}
+
+/// See NumericalDissipation.
+template <typename S>
+struct NumericalDamper {
+  S factor, dissipated;  // [-], [J/m]
+  Vector6T<S> remembered, average;
+
+  NumericalDamper(const NumericalDissipation& d, const StrainMemoryT<S>& begin, const Vector6T<S>& s,
+                  const SectionStiffness<S>& stiffness, double step)
+      : factor(d.stiffness + 2 * d.inertance / (step * step)) {
+    const Vector6T<S> deviation = s - begin.average;
+    remembered = stiffness.stress(S(d.stiffness) * begin.average + S(2 * d.inertance / step) * begin.rate);
+    dissipated = S(d.stiffness * (1 - 0.5 * d.forgetting)) * dot6(deviation, stiffness.stress(deviation));
+    average = begin.average + S(d.forgetting) * deviation;
+  }
+};
+
+/// What takes the place of the viscosity eta, three passive parts side by side: a dashpot, an inertance, and, where eta
+/// is longer than the relaxation time h_0, a dashpot behind a spring that relaxes with it.
+template <typename S>
+struct DamperParts {
+  S dashpot, inertance, delayed;  // [s], [s^2], [s]
+
+  DamperParts(const S& viscosity, double relaxation) {
+    using std::abs;
+    const S difference = viscosity - S(relaxation), excess = S(0.5) * (difference + abs(difference));  // or zero
+    delayed = S(0.25) * excess;
+    dashpot = viscosity - delayed;
+    inertance = S(0.25) * viscosity * (viscosity - excess);
+  }
+};
+
+/// The stress eta C (strain rate) by these parts: with the delayed rate q,
+///   C [dashpot s/h + inertance (w_1 - w_0)/h + delayed q_mean],   q_mean + (h_0/h) (q_1 - q_0) = s/h.
+/// A dashpot alone would leave the strain of a mode that it damps strongly nearly as it is and make its velocity change
+/// the sign in every step. These bring both to rest. (inertance w.Cw + delayed h_0 q.Cq)/2 is stored.
+template <typename S>
+struct StructuralDamper {
+  S factor, dissipated;  // [-], [J/m]
+  Vector6T<S> remembered, delayed_rate;
+
+  /// `stress` C s; `relaxation` h_0 [s].
+  StructuralDamper(const DamperParts<S>& parts, double relaxation, const StrainMemoryT<S>& begin, const Vector6T<S>& s,
+                   const Vector6T<S>& stress, const SectionStiffness<S>& stiffness, double step) {
+    const double follows = 1 / (step + 2 * relaxation);
+    const Vector6T<S> delayed = S(follows) * (s + S(2 * relaxation) * begin.delayed_rate);
+    factor = parts.dashpot * S(1 / step) + parts.inertance * S(2 / (step * step)) + parts.delayed * S(follows);
+    remembered = stiffness.stress((parts.inertance * S(2 / step)) * begin.rate -
+                                  (parts.delayed * S(2 * relaxation * follows)) * begin.delayed_rate);
+    dissipated = parts.dashpot * S(1 / step) * dot6(s, stress) +
+                 parts.delayed * S(step) * dot6(delayed, stiffness.stress(delayed));
+    delayed_rate = S(2) * delayed - begin.delayed_rate;
+  }
+};
+
+}  // namespace flexarm::conserving

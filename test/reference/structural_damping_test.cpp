@@ -1,0 +1,105 @@
+// Structural damping of the energy-momentum family: strong damping leaves nothing to ring, and the account stays exact.
+// (Its roots: numerical_dissipation_spectrum_test; its order: dynamics_order_test.)
+#include <cstdio>
+
+#include "flexarm/scene/urdf_reader.h"
+#include "reference/dynamics_runs.h"
+
+namespace flexarm::test {
+namespace {
+
+/// The arm of docs/guide.md: its motor's torque jumps at 0 and at 1 s.
+scene::SceneDescription guide_arm() {
+  const scene::ReadResult result = scene::read_scene_text(R"(
+    <robot name="arm">
+      <link name="world"/>
+      <joint name="shoulder" type="revolute">
+        <parent link="world"/> <child link="boom"/> <axis xyz="0 0 1"/>
+        <limit lower="-3" upper="3" effort="10" velocity="5"/> <dynamics damping="0.01"/>
+      </joint>
+      <link name="boom">
+        <beam>
+          <centerline> <line to="2 0 0"/> </centerline>
+          <circle radius="0.008"/>
+          <material young="70e9" poisson="0.33" density="2700"/>
+          <damping stiffness_proportional="0.001"/>
+        </beam>
+      </link>
+      <joint name="grip" type="fixed"> <parent link="boom"/> <child link="payload"/> <origin xyz="2 0 0"/> </joint>
+      <link name="payload">
+        <inertial> <mass value="1"/> <inertia ixx="1e-3" ixy="0" ixz="0" iyy="1e-3" iyz="0" izz="1e-3"/> </inertial>
+      </link>
+      <simulation>
+        <gravity xyz="0 0 0"/>
+        <effort joint="shoulder" history="t &lt; 1 ? 4 : -4"/>
+      </simulation>
+    </robot>)",
+                                                          "arm.urdf");
+  return *result.scene;
+}
+
+/// The scheme's velocity of the shoulder every millisecond from 1.05 to 1.5 s. The beam's modes above 2 / eta = 2000
+/// rad/s creep, those below it that a step of 1 ms does not resolve (1000 rad/s) decay with eta omega^2 / 2 = 500/s at
+/// least: of what the jump at 1 s has started, exp(-25) is left.
+std::vector<double> velocities_after_jump(const std::string& scheme, int refinement) {
+  Simulation simulation(guide_arm(), options(scheme, 1e-3 / refinement));
+  const int shoulder = simulation.model().joints[simulation.model().coordinates.front().joint].slave;
+  std::vector<double> velocities;
+  for (int n = 1; n <= 1500; ++n) {
+    run(simulation, refinement);
+    const NodeState& node = simulation.state().nodes[shoulder];
+    if (n >= 1050) velocities.push_back((node.orientation * node.angular_velocity).z());
+  }
+  return velocities;
+}
+
+/// Root mean square of how far each value is from the mean of its neighbours: what alternates counts twice, the rest
+/// with the square of its frequency.
+double roughness(const std::vector<double>& values) {
+  double sum = 0;
+  for (std::size_t i = 1; i + 1 < values.size(); ++i)
+    sum += std::pow(values[i] - 0.5 * (values[i - 1] + values[i + 1]), 2);
+  return std::sqrt(sum / (values.size() - 2));
+}
+
+class StructuralDamping : public ::testing::TestWithParam<std::string> {};
+
+// The step resolves all that still moves, so the velocity is about as smooth as that of steps sixteen times shorter:
+// what alternates is less than what the motion itself has. A dashpot at the middle of the step leaves six hundred times
+// as much.
+TEST_P(StructuralDamping, JumpOfATorqueLeavesNoRinging) {
+  const double coarse = roughness(velocities_after_jump(GetParam(), 1)),
+               fine = roughness(velocities_after_jump(GetParam(), 16));
+  std::printf("%s: roughness %.3e rad/s, of a step sixteen times shorter %.3e\n", GetParam().c_str(), coarse, fine);
+  EXPECT_LT(coarse, 2 * fine);
+}
+
+// Steps of any length in any order; strong damping, whose memory holds much of the energy.
+TEST_P(StructuralDamping, AccountIsExactInHalvedSteps) {
+  SceneBuilder b;
+  b.beam("arm", {{1, 0, 0}, {1.5, 0.3, 0}}, section(40, 20, 6, 8, 1.4, 0.2, 0.1), 3, 2).stiffness_proportional_damping =
+      0.1;
+  b.body("hand", 0.8, {0.1, 0.05, -0.1}, 0.2 * Matrix3::Identity());
+  b.joint("shoulder", scene::JointKind::Spherical, "world", "arm");
+  b.joint("wrist", scene::JointKind::Fixed, "arm", "hand", {1.5, 0.3, 0});
+  b.scene.gravity = {0, 0, -9.81};
+  Simulation simulation(b.scene, options(GetParam(), 0.02, 1e-10));
+  InvariantDrift drift(simulation);
+  double dissipated = 0;
+  for (int n = 0; n < 200; ++n) {
+    State state = simulation.state();
+    state.halving_level = n % 4;
+    simulation.restore(state);
+    ASSERT_TRUE(simulation.step().converged);
+    drift.observe();
+    EXPECT_GE(simulation.energies().dissipated, dissipated);
+    dissipated = simulation.energies().dissipated;
+  }
+  EXPECT_GT(dissipated, 0);
+  EXPECT_LT(drift.energy(), 1e-10);  // round-off: Newton's last step squares its tolerance
+}
+INSTANTIATE_TEST_SUITE_P(Schemes, StructuralDamping, ::testing::Values("em", "em_symmetric", "edmc2"),
+                         [](const auto& info) { return info.param; });
+
+}  // namespace
+}  // namespace flexarm::test
