@@ -16,8 +16,8 @@ double stored(const TimeRule& rule, const StrainMemory& memory, const Matrix6& s
   const auto square = [&](const Vector6& strain) { return strain.dot(stiffness * strain); };
   const NumericalDissipation& d = rule.dissipation;
   const conserving::DamperParts<double> damper(viscosity, rule.damping_relaxation);
-  double energy = 0.5 * (d.inertance + damper.inertance) * square(memory.rate) +
-                  0.5 * damper.delayed * rule.damping_relaxation * square(memory.delayed_rate);
+  double energy =
+      0.5 * ((d.inertance + damper.inertance) * square(memory.rate) + damper.inertance * square(memory.delayed_rate));
   if (d.forgetting > 0) energy += 0.5 * d.stiffness / d.forgetting * square(memory.average);
   return energy;
 }

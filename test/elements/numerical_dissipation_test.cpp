@@ -38,12 +38,12 @@ TimeRule dissipative_rule(int order, double rho, double relaxation = 0) {
   return rule;
 }
 
-/// Structural damping, docs/schemes.md: eta min(eta, h_0)/4 [s^2] and max(eta - h_0, 0)/4 [s].
-double inertance_of(double viscosity, double relaxation) {
-  return 0.25 * viscosity * std::min(viscosity, relaxation);
-}
+/// Structural damping, docs/schemes.md: delta = eta/4 min(eta/h_0, 1) [s], and delta h_0 [s^2].
 double delayed_dashpot_of(double viscosity, double relaxation) {
-  return 0.25 * std::max(viscosity - relaxation, 0.0);
+  return relaxation > 0 ? 0.25 * viscosity * std::min(viscosity / relaxation, 1.0) : 0;
+}
+double inertance_of(double viscosity, double relaxation) {
+  return relaxation * delayed_dashpot_of(viscosity, relaxation);
 }
 
 template <int Nodes>
@@ -86,20 +86,18 @@ TYPED_TEST(DissipativeBeam, Tangent) {
     }
 }
 
-/// (stiffness / forgetting y.Cy + inertance w.Cw + relaxation delayed q.Cq) / 2 over the element, with the inertance of
-/// both dampers.
+/// (stiffness / forgetting y.Cy + inertance w.Cw) / 2 over the element, and inertance (w.Cw + q.Cq) / 2 of structural
+/// damping.
 template <int Nodes>
 double stored(const RandomStep<Nodes>& step, const TimeRule& rule, const Memory<Nodes>& memory) {
   const NumericalDissipation& d = rule.dissipation;
-  const double relaxation = rule.damping_relaxation, viscosity = step.element.stiffness_damping;
-  const double inertance = d.inertance + inertance_of(viscosity, relaxation);
-  const double delayed = relaxation * delayed_dashpot_of(viscosity, relaxation);
+  const double damper = inertance_of(step.element.stiffness_damping, rule.damping_relaxation);
   double energy = 0;
   for (int k = 0; k < Nodes - 1; ++k) {
     const Vector6 &y = memory[k].average, &w = memory[k].rate, &q = memory[k].delayed_rate;
     const Matrix6 stiffness = step.element.stiffness_points[k].weight * step.element.stiffness;
     if (d.forgetting > 0) energy += 0.5 * d.stiffness / d.forgetting * y.dot(stiffness * y);
-    energy += 0.5 * inertance * w.dot(stiffness * w) + 0.5 * delayed * q.dot(stiffness * q);
+    energy += 0.5 * (d.inertance + damper) * w.dot(stiffness * w) + 0.5 * damper * q.dot(stiffness * q);
   }
   return energy;
 }

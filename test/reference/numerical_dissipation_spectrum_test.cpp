@@ -38,8 +38,7 @@ constexpr double kStep = 0.01;  // s
 ///   y_1 = y_0 + nu (dx - y_0)             y = nu (z - 1) x / (z - 1 + nu)
 ///   m dv/h + k [mean x + kappa (dx - y) + (b/h) dw + damping] = 0
 /// and with damping of r steps, whose delayed rate is w / (1 + 2 p), the last, divided by k (z + 1)/2, is
-///   (4/q + 4 b/h^2) p^2 + 4 kappa p^2 / (2 p + nu (1 - p)) + Y = 0,
-///   Y = (1 + r p)^2 for r <= 1,  (1 + p)^2 (1 + 2 r p) / (1 + 2 p) for r > 1.
+///   (4/q + 4 b/h^2) p^2 + 1 + 4 kappa p^2 / (2 p + nu (1 - p)) + 2 r p (1 + mu p^2 / (1 + 2 p)) = 0,  mu = min(r, 1).
 struct Oscillator {
   double q = 0, r = 0, kappa = 0, nu = 0, b = 0;  // b in units of h^2
 
@@ -52,16 +51,15 @@ struct Oscillator {
     b = d.inertance / (kStep * kStep);
   }
   Complex value(const Complex& p) const {
-    const Complex damped =
-        r > 1 ? (1.0 + p) * (1.0 + p) * (1.0 + 2 * r * p) / (1.0 + 2.0 * p) : (1.0 + r * p) * (1.0 + r * p);
-    return (4 / q + 4 * b) * p * p + (kappa > 0 ? 4 * kappa * p * p / (2.0 * p + nu * (1.0 - p)) : 0.0) + damped;
+    return (4 / q + 4 * b) * p * p + 1.0 + (kappa > 0 ? 4 * kappa * p * p / (2.0 * p + nu * (1.0 - p)) : 0.0) +
+           2 * r * p * (1.0 + mu() * p * p / (1.0 + 2.0 * p));
   }
+  double mu() const { return std::min(r, 1.0); }
   Polynomial polynomial() const {
     const Polynomial average = nu > 0 ? Polynomial{nu, 2 - nu} : Polynomial{1};
     const Polynomial dissipation = nu > 0 ? Polynomial{0, 0, 4 * kappa} : Polynomial{0, 2 * kappa};
-    const Polynomial delay = r > 1 ? Polynomial{1, 2} : Polynomial{1};
-    const Polynomial damped = r > 1 ? Polynomial{1, 2, 1} * Polynomial{1, 2 * r} : Polynomial{1, 2 * r, r * r};
-    Polynomial sum = (Polynomial{0, 0, 4 / q + 4 * b} * average + dissipation) * delay + damped * average;
+    Polynomial sum = Polynomial{1, 0, 4 / q + 4 * b} * average + dissipation;
+    if (r > 0) sum = sum * Polynomial{1, 2} + Polynomial{0, 2 * r} * Polynomial{1, 2, mu()} * average;
     while (sum.back() == 0) sum.pop_back();
     return sum;
   }
@@ -148,8 +146,9 @@ TEST_P(Spectrum, MotionFollowsTheSlowestRoot) {
   const Case c = GetParam();
   const Oscillator o = c.oscillator();
   const Complex p = slowest(o), z = factor(p);
-  // The delay's pole at p = -1/2 magnifies the round-off of p.
-  const double magnified = c.damping > 1 ? 1 + 1 / std::abs(1.0 + 2.0 * p) : 1;
+  // The poles of the delay and of the average magnify the round-off of p.
+  const double magnified = 1 + (c.damping > 0 ? 1 / std::abs(1.0 + 2.0 * p) : 0) +
+                           (c.damping > 0 && o.nu > 0 ? 1 / std::abs(o.nu + (2 - o.nu) * p) : 0);
   ASSERT_LT(std::abs(o.value(p)), 100 * kEpsilon * magnified * (1 + std::abs(4 / o.q * p * p)));
   const double amplitude = 0.05;
   Simulation simulation = bar(c);
@@ -196,28 +195,25 @@ std::vector<Case> damped_cases() {
 }
 INSTANTIATE_TEST_SUITE_P(Damped, Spectrum, ::testing::ValuesIn(damped_cases()));
 
-// Without mass the polynomial is (1 + r p)^2 for r <= 1: both roots are z = -(1 - r)/(1 + r). With mass it is
-// (1 + r p)^2 + 4 p^2/q: |1 + r p| = 2/(r sqrt(q)) to the leading order, and dz = 2 dp/(1 + 1/r)^2. Twice that bounds
-// it.
+// For r <= 1 and an infinite frequency two roots are near p = -1/r: with p = (d - 1)/r the polynomial over (1 + 2 p) is
+// d^2 + r/2 to the leading order in r, so that |d| = sqrt(r/2) and 1 - |z| = 2 r. The next order is smaller by sqrt(r).
 TEST(SpectralRadius, WeakDampingOfHighFrequencies) {
-  for (const double frequency : {1e4, 1e6})
-    for (const double r : {1e-2, 0.1, 0.5, 1.0}) {
-      const double dp = 2 / (r * r * frequency);
-      for (const Complex& p : Oscillator(0, 1, frequency, r).roots())
-        EXPECT_LT(std::abs(factor(p) + (1 - r) / (1 + r)), 2 * 2 * dp / std::pow(1 + 1 / r, 2))
-            << "eta = " << r << " h";
-    }
+  for (const double r : {1e-4, 1e-3, 1e-2}) {
+    const double modulus = std::abs(factor(slowest(Oscillator(0, 1, 1e8, r))));
+    EXPECT_NEAR((1 - modulus) / (2 * r), 1, std::sqrt(r)) << "eta = " << r << " h";
+  }
 }
 
-// For r > 1 it is (1 + p)^2 (1 + 2 r p) + (4 p^2/q) (1 + 2 p): one slow root, the spring's creeping through the damper,
-// p = -1/(2 r), and two near p = -1, |1 + p| = sqrt(4/q / (2 r - 1)) =: d, |z| = d/2. Twice that bounds them.
+// For r >= 1 the polynomial is 2 r p (1 + p)^2 + (1 + 2 p) (1 + 4 p^2/q): one slow root, the spring's creeping through
+// the damper, p = -1/(2 r), and two near p = -1, |1 + p| = sqrt((1 + 4/q) / 2 r) =: d, |z| = d/2. Twice that bounds
+// them.
 TEST(SpectralRadius, StrongDampingLeavesNothingToRing) {
   for (const double frequency : {1e-1, 1.0, 1e2, 1e6})
     for (const double damping : {1e4, 1e6, 1e8}) {
       const Oscillator o(0, 1, frequency, damping);
       const Complex slow = slowest(o);
       EXPECT_NEAR(slow.real(), -0.5 / damping, 1 / (damping * damping));
-      const double bound = std::sqrt(4 / o.q / (2 * damping - 1)) + 10 * std::sqrt(kEpsilon);
+      const double bound = std::sqrt((1 + 4 / o.q) / (2 * damping));
       for (const Complex& p : o.roots()) {
         if (p != slow) {
           EXPECT_LT(std::abs(factor(p)), bound) << "omega h = " << frequency;
@@ -226,17 +222,17 @@ TEST(SpectralRadius, StrongDampingLeavesNothingToRing) {
     }
 }
 
-// Of a resolved frequency the exact factor is exp(s), s^2/q + r s + 1 = 0. In s = 2 p the scheme adds c s^2/4 and at
-// most r s^3/4, c = min(r, 1)^2, and log z = s + s^3/12: together an error of w^3 (1/12 + (c/8 + zeta/4) / sqrt(1 -
-// zeta^2)) with w = sqrt(q) = |s| and the fraction of critical damping zeta = r w/2. Twice that is the bound.
+// Of a resolved frequency the exact factor is exp(s), s^2/q + r s + 1 = 0. In s = 2 p the scheme adds at most r s^3/4,
+// and log z = s + s^3/12: together an error of w^3 (1/12 + zeta/4 / sqrt(1 - zeta^2)) with w = sqrt(q) = |s| and the
+// fraction of critical damping zeta = r w/2. Twice that is the bound.
 TEST(SpectralRadius, ResolvedFrequenciesHaveTheirDamping) {
   for (const double w : {1e-3, 1e-2, 1e-1})
     for (const double zeta : {1e-3, 1e-2, 0.1, 0.5}) {
-      const double r = 2 * zeta / w, c = std::pow(std::min(r, 1.0), 2), damped = std::sqrt(1 - zeta * zeta);
+      const double damped = std::sqrt(1 - zeta * zeta);
       const Complex exact = w * Complex(-zeta, damped);
-      Complex z = factor(slowest(Oscillator(0, 1, w, r)));
+      Complex z = factor(slowest(Oscillator(0, 1, w, 2 * zeta / w)));
       if (z.imag() < 0) z = std::conj(z);
-      const double bound = 2 * std::pow(w, 3) * (1.0 / 12 + (c / 8 + zeta / 4) / damped);
+      const double bound = 2 * std::pow(w, 3) * (1.0 / 12 + zeta / 4 / damped);
       EXPECT_LT(std::abs(std::log(z) - exact), bound + 100 * kEpsilon) << "zeta = " << zeta;
     }
 }

@@ -29,25 +29,25 @@ struct NumericalDamper {
   }
 };
 
-/// What takes the place of the viscosity eta, three passive parts side by side: a dashpot, an inertance, and, where eta
-/// is longer than the relaxation time h_0, a dashpot behind a spring that relaxes with it.
+/// What takes the place of the viscosity eta, three passive parts side by side: a dashpot, a dashpot behind a spring
+/// that relaxes with the time h_0, and an inertance. The last two grow with eta until it is h_0.
 template <typename S>
 struct DamperParts {
-  S dashpot, inertance, delayed;  // [s], [s^2], [s]
+  S dashpot, delayed, inertance;  // [s], [s], [s^2]
 
   DamperParts(const S& viscosity, double relaxation) {
     using std::abs;
-    const S difference = viscosity - S(relaxation), excess = S(0.5) * (difference + abs(difference));  // or zero
-    delayed = S(0.25) * excess;
+    const S least = S(0.5) * (viscosity + S(relaxation) - abs(viscosity - S(relaxation)));  // of eta and h_0
+    delayed = relaxation > 0 ? S(0.25 / relaxation) * viscosity * least : S(0);
+    inertance = S(relaxation) * delayed;
     dashpot = viscosity - delayed;
-    inertance = S(0.25) * viscosity * (viscosity - excess);
   }
 };
 
 /// The stress eta C (strain rate) by these parts: with the delayed rate q,
 ///   C [dashpot s/h + inertance (w_1 - w_0)/h + delayed q_mean],   q_mean + (h_0/h) (q_1 - q_0) = s/h.
 /// A dashpot alone would leave the strain of a mode that it damps strongly nearly as it is and make its velocity change
-/// the sign in every step. These bring both to rest. (inertance w.Cw + delayed h_0 q.Cq)/2 is stored.
+/// the sign in every step. These bring both to rest. inertance (w.Cw + q.Cq)/2 is stored.
 template <typename S>
 struct StructuralDamper {
   S factor, dissipated;  // [-], [J/m]
