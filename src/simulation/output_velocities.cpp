@@ -34,7 +34,6 @@ double counted_increment(const TimeRule& rule, const JointMap& joint, const Coor
 template <int Size>
 Eigen::Matrix<double, Size, 1> LastSteps::rate_at_end(const MeanRates<Size>& mean) const {
   using Rate = Eigen::Matrix<double, Size, 1>;
-  if (count < 2) return mean[0];
   const auto& [h0, h1, h2] = length;
   // From the mean of the newest step to its end, by the change of the mean since the step before, and the same by the
   // change before that.
@@ -43,7 +42,8 @@ Eigen::Matrix<double, Size, 1> LastSteps::rate_at_end(const MeanRates<Size>& mea
   const Rate before = h0 / (h1 + h2) * (mean[1] - mean[2]);
   if ((last - before).norm() <= kSmooth * (last + before).norm())
     return mean[0] + last + (h0 + h1) / (h0 + h1 + h2) * (last - before);
-  return mean[0] + std::clamp(last.dot(before) / last.squaredNorm(), 0.0, 1.0) * last;
+  const double agreement = last.dot(before), square = last.squaredNorm();
+  return agreement > 0 ? Rate(mean[0] + std::min(agreement / square, 1.0) * last) : mean[0];
 }
 template Eigen::Matrix<double, 1, 1> LastSteps::rate_at_end<1>(const MeanRates<1>&) const;
 template Eigen::Matrix<double, 3, 1> LastSteps::rate_at_end<3>(const MeanRates<3>&) const;
@@ -55,7 +55,7 @@ void OutputVelocities::update(const Model& model, const DegreesOfFreedom& dof, c
   rates_.resize(model.joints.size());
   for (std::size_t i = 0; i < state.nodes.size(); ++i) poses_[i] = node_pose(state.nodes[i]);
   const IncrementHistory& history = state.history;
-  if (!history.holds_for(dof.unknowns)) return take_scheme_velocities(model, state);
+  if (!history.holds_for(dof.unknowns) || history.count < 2) return take_scheme_velocities(model, state);
   steps_.count = std::min(history.count, LastSteps::kMost);
   std::copy_n(history.steps.begin(), LastSteps::kMost, steps_.length.begin());
   set_free_nodes(dof, rule, state);

@@ -167,8 +167,9 @@ TEST_P(RigidMechanism, ConvergesAtSecondOrderToTheTextbookEquations) {
               error[2], error[3], slope);
   // The trapezoidal rule applies to the centres of mass, which the joints constrain: the largest constant of the three.
   EXPECT_LT(error[3], scheme == "newmark" ? 2e-3 : 2e-4);
+  // More where the error of the published velocities prevails, which is of third order.
   if (error[2] > 1e-9) {
-    EXPECT_NEAR(slope, 2, 0.1);
+    EXPECT_GT(slope, 1.9);
   }
 }
 INSTANTIATE_TEST_SUITE_P(Schemes, RigidMechanism,

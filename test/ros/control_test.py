@@ -72,7 +72,7 @@ class Control(unittest.TestCase):
         self.hold("/demo", 2000, 500, 0.03, inertia=100, every=1)
 
     def test_demo_at_100_hz(self):
-        self.hold("/demo", 2000, 500, 0.03, inertia=100, every=10)
+        self.hold("/demo", 2000, 300, 0.03, inertia=100, every=10)
 
 
 if __name__ == "__main__":

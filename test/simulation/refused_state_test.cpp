@@ -227,7 +227,7 @@ TEST_F(DamagedCheckpoint, WrongContentIsRefused) {
       {"steps 5 level 0 good 5 increments 99999999999", line_of(counts)},
       {"steps 5 level 0 good 5 increments -1", line_of(counts)},
       {"steps five level 0 good 5 increments 7", line_of(counts)},
-      {"steps 5 level 0 good 5 increments 8", "expected the length of a past step"},
+      {"steps 5 level 0 good 5 increments 8", "expected the effort of a motion"},
       {"steps -5 level 0 good 5 increments 7", "the number of steps is -5, expected 0 or more"},
       {"steps 5 level 6 good 5 increments 7", "the halving level is 6, expected 0 to 5"}};
   for (const auto& [wrong, told] : wrong_counts)

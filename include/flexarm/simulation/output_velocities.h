@@ -16,7 +16,7 @@ namespace flexarm {
 /// Lengths of the last steps, newest first: what turns mean rates of these steps into the rate at the end.
 struct LastSteps {
   static constexpr int kMost = 3;
-  int count = 0;
+  int count = 2;                       ///< at least two
   std::array<double, kMost> length{};  ///< [s]; parts of a composed step may be negative
 
   /// Mean rates of a quantity of Size 1 or 3 in these steps: increments over lengths, newest first.
@@ -29,7 +29,8 @@ struct LastSteps {
 };
 
 /// Velocities of a state. They follow from the increments that the state remembers for the predictor: nothing else is
-/// kept from step to step. Allocates only for another model than before.
+/// kept from step to step. At the start and after the first step they are the scheme's own. Allocates only for another
+/// model than before.
 class OutputVelocities {
  public:
   void update(const Model& model, const DegreesOfFreedom& dof, const TimeRule& rule, const State& state);
