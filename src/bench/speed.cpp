@@ -51,8 +51,9 @@ struct Times {
   }
 };
 
-/// The reference, which must come to its end, and how far two coarser ones are from it.
-Trajectory compute_reference(const std::string& folder, SpeedMeasurement& out, const std::function<void()>& advance) {
+/// The reference, which must come to its end, and how far two coarser ones are from it. Its trajectory and frames are
+/// handed out.
+SpeedRun compute_reference(const std::string& folder, SpeedMeasurement& out, const std::function<void()>& advance) {
   const Discretisation& d = out.problem.reference;
   const auto complete = [&](const Discretisation& discretisation) {
     SpeedRun run = run_speed(folder, out.problem, discretisation);
@@ -62,13 +63,14 @@ Trajectory compute_reference(const std::string& folder, SpeedMeasurement& out, c
     return run;
   };
   SpeedRun reference = complete(d);
-  const Trajectory trajectory = std::move(reference.trajectory);
-  reference.trajectory.clear();
+  const Trajectory& trajectory = reference.trajectory;
   out.mesh_error = trajectory_error(complete(with_half_the_elements(d)).trajectory, trajectory);
   out.step_error = trajectory_error(complete(with_twice_the_step(d)).trajectory, trajectory);
   out.largest_displacement = largest_displacement(trajectory);
-  out.reference = {d, std::move(reference), 1, 0};
-  return trajectory;
+  out.reference = {d, reference, 1, 0};
+  out.reference.run.trajectory.clear();
+  out.reference.run.frames.clear();
+  return reference;
 }
 
 void measure_runs(const std::string& folder, SpeedMeasurement& out, const Trajectory& reference, bool quick,
@@ -83,6 +85,7 @@ void measure_runs(const std::string& folder, SpeedMeasurement& out, const Trajec
         if (repetition == 0) {
           const double error = run.failure ? 0 : trajectory_error(run.trajectory, reference);
           run.trajectory = {};
+          run.frames = {};
           out.outcomes.push_back({runs[i], std::move(run), 1, error});
         }
       }
@@ -92,18 +95,22 @@ void measure_runs(const std::string& folder, SpeedMeasurement& out, const Trajec
 }
 
 /// Runs of the same problem by other programs, where they are built in.
-std::vector<PeerOutcome> measure_peers(const SpeedProblem& problem, const Trajectory& reference, bool quick,
+std::vector<PeerOutcome> measure_peers(const SpeedProblem& problem, const SpeedRun& reference, bool quick,
                                        const std::function<void()>& advance) {
   const std::map<std::string, PeerProblem> known = {{"spin_up", PeerProblem::SpinUp},
                                                     {"double_pendulum", PeerProblem::DoublePendulum}};
   const auto found = known.find(problem.name);
   if (found == known.end()) return {};
   std::vector<double> times;
-  for (std::size_t i = 0; i < reference.size(); ++i) times.push_back(static_cast<double>(i) * problem.interval);
+  for (std::size_t i = 0; i < reference.trajectory.size(); ++i)
+    times.push_back(static_cast<double>(i) * problem.interval);
   std::vector<PeerOutcome> outcomes;
-  for (const PeerRun& run : mujoco_runs(found->second, times, quick, advance))
+  for (PeerRun& run : mujoco_runs(found->second, times, quick, advance)) {
+    for (std::size_t i = 0; i < reference.frames.size() && i < run.probe.size(); ++i)
+      run.probe[i] = in_frame(reference.frames[i], run.probe[i]);
     outcomes.push_back({run.program, run.variant, run.segments, run.step, run.seconds, run.completed,
-                        run.completed ? trajectory_error(run.probe, reference) : 0});
+                        run.completed ? trajectory_error(run.probe, reference.trajectory) : 0});
+  }
   return outcomes;
 }
 
@@ -182,8 +189,9 @@ SpeedReport measure_speed(const std::string& folder, const std::vector<SpeedProb
     const auto advance = [&](double cost) { progress((done += cost) / whole, problem.name); };
     SpeedMeasurement measurement;
     measurement.problem = problem;
-    const Trajectory reference = compute_reference(folder, measurement, [&] { advance(reference_cost(problem)); });
-    measure_runs(folder, measurement, reference, quick, [&](const Discretisation& d) { advance(cost_of(problem, d)); });
+    const SpeedRun reference = compute_reference(folder, measurement, [&] { advance(reference_cost(problem)); });
+    measure_runs(folder, measurement, reference.trajectory, quick,
+                 [&](const Discretisation& d) { advance(cost_of(problem, d)); });
     measurement.peers =
         measure_peers(problem, reference, quick, [&] { progress(done / whole, problem.name + ", other programs"); });
     if (problem.name == "right_angle_cantilever") report.iteration_costs = measure_iterations(folder, quick);

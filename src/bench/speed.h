@@ -31,14 +31,18 @@ struct SpeedProblem {
   double interval;              ///< of comparison, a multiple of all steps [s]
   Discretisation reference;     ///< finer than all runs
   std::vector<Discretisation> runs;
-  std::string note = {};  ///< what the reader of the report should know
+  std::string note = {};   ///< what the reader of the report should know
+  std::string frame = {};  ///< link in whose frame the probe is compared; empty: the world
 };
 
-/// A figure that flexarm shall reach, and the best published one.
+/// A figure that flexarm shall reach, and the best of the public programs: tuned for this error, on one machine in one
+/// run with flexarm. Machines differ, so only these two compare.
 struct SpeedTarget {
   std::string problem;
   double error;                           ///< trajectory_error
-  double public_seconds, target_seconds;  ///< for the whole problem
+  double public_seconds, beside_seconds;  ///< for the whole problem; flexarm's in the same run
+  double target_seconds;                  ///< the same
+  std::string public_model;               ///< what was fastest there
 };
 
 std::vector<SpeedProblem> speed_problems();
@@ -51,6 +55,9 @@ SpeedProblem shortened(SpeedProblem problem);
 /// Positions of a probe at equal intervals, the first at the start [m].
 using Trajectory = std::vector<Vector3>;
 
+/// A point of the world in a frame.
+Vector3 in_frame(const Pose& frame, const Vector3& point);
+
 /// Largest distance from the start [m].
 double largest_displacement(const Trajectory& trajectory);
 
@@ -62,7 +69,8 @@ double trajectory_error(const Trajectory& trajectory, const Trajectory& referenc
 /// What one run of a discretisation gave.
 struct SpeedRun {
   std::optional<Failure> failure;
-  Trajectory trajectory;
+  Trajectory trajectory;     ///< in the problem's frame
+  std::vector<Pose> frames;  ///< that frame at the same times; empty: the world
   double build_seconds = 0;  ///< processor time of building the model from a scene that has been read
   double seconds = 0;        ///< processor time of stepping, all steps: the wall time of an idle machine
   double wall_seconds = 0;   ///< wall time of the same

@@ -63,7 +63,20 @@ std::size_t probe_of(const scene::SceneDescription& scene, const std::string& na
   throw std::runtime_error(fmt::format("{}: expected a probe '{}'", scene.file, name));
 }
 
+/// The link of that name; none: the world.
+std::optional<std::size_t> frame_of(const Simulation& simulation, const std::string& name) {
+  if (name.empty()) return std::nullopt;
+  const std::vector<std::string>& links = simulation.link_names();
+  const auto found = std::find(links.begin(), links.end(), name);
+  if (found == links.end()) throw std::runtime_error(fmt::format("expected a link '{}'", name));
+  return found - links.begin();
+}
+
 }  // namespace
+
+Vector3 in_frame(const Pose& frame, const Vector3& point) {
+  return frame.orientation.conjugate() * (point - frame.position);
+}
 
 std::string Discretisation::mesh() const {
   return fmt::format("{} x {}", elements, order);
@@ -106,7 +119,13 @@ SpeedRun run_speed(const std::string& folder, const SpeedProblem& problem, const
   out.build_seconds = processor_seconds() - building;
   const EffortPlayer player(pulses, simulation);
   out.trajectory.reserve(intervals + 1);
-  out.trajectory.push_back(simulation.probe(probe).pose.position);
+  const std::optional<std::size_t> frame = frame_of(simulation, problem.frame);
+  const auto record = [&] {
+    const Vector3 position = simulation.probe(probe).pose.position;
+    if (frame) out.frames.push_back(simulation.link_pose(*frame));
+    out.trajectory.push_back(frame ? in_frame(out.frames.back(), position) : position);
+  };
+  record();
 
   const double processor = processor_seconds();
   const Clock::time_point start = Clock::now();
@@ -118,7 +137,7 @@ SpeedRun run_speed(const std::string& folder, const SpeedProblem& problem, const
     out.factorisations += result.factorisations;
     out.halvings += result.halvings;
     if (!result.converged) out.failure = Failure{simulation.time(), result.reason};
-    if (n % stride == 0) out.trajectory.push_back(simulation.probe(probe).pose.position);
+    if (n % stride == 0) record();
   }
   out.seconds = processor_seconds() - processor;
   out.wall_seconds = std::chrono::duration<double>(Clock::now() - start).count();
