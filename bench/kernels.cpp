@@ -10,15 +10,15 @@
 #include <vector>
 
 #include "bench/scenes.h"
-#include "flexarm/integrators/step_system.h"
-#include "flexarm/joints/joint_map.h"
-#include "flexarm/math/lanes.h"
-#include "flexarm/math/local_rotation.h"
-#include "flexarm/math/quadrature.h"
-#include "flexarm/math/simd.h"
-#include "flexarm/math/so3.h"
 #include "flexarm/simulation/simulation.h"
-#include "flexarm/solver/linear_solver.h"
+#include "integrators/step_system.h"
+#include "joints/joint_map.h"
+#include "math/lanes.h"
+#include "math/local_rotation.h"
+#include "math/quadrature.h"
+#include "math/simd.h"
+#include "math/so3.h"
+#include "solver/linear_solver.h"
 
 namespace flexarm {
 namespace {

@@ -10,10 +10,10 @@
 #include <optional>
 
 #include "bench/scenes.h"
-#include "flexarm/integrators/step_system.h"
 #include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/simulation.h"
-#include "flexarm/solver/linear_solver.h"
+#include "integrators/step_system.h"
+#include "solver/linear_solver.h"
 
 namespace flexarm {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "bench/scenes.h"
-#include "flexarm/math/so3.h"
+#include "math/so3.h"
 
 namespace flexarm::bench {
 namespace {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "bench/scenes.h"
-#include "flexarm/math/quadrature.h"
-#include "flexarm/math/referenced_rotation.h"
+#include "math/quadrature.h"
+#include "math/referenced_rotation.h"
 
 namespace flexarm::bench {
 namespace {

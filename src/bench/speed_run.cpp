@@ -9,8 +9,8 @@
 #include "bench/effort_schedule.h"
 #include "bench/processor_time.h"
 #include "bench/speed.h"
-#include "flexarm/scene/integrator_options.h"
 #include "flexarm/scene/urdf_reader.h"
+#include "scene/integrator_options.h"
 
 namespace flexarm::bench {
 namespace {

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "flexarm/scene/integrator_options.h"
 #include "flexarm/scene/urdf_reader.h"
+#include "scene/integrator_options.h"
 
 namespace flexarm::bench {
 namespace {

@@ -1,6 +1,6 @@
 #include "bench/variants.h"
 
-#include "flexarm/scene/integrator_options.h"
+#include "scene/integrator_options.h"
 
 namespace flexarm::bench {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "flexarm/integrators/scheme.h"
+#include "integrators/scheme.h"
 
 namespace flexarm::bench {
 

@@ -6,7 +6,7 @@
 #include "cli/commands.h"
 #include "cli/mode_table.h"
 #include "cli/scene_input.h"
-#include "flexarm/model/section.h"
+#include "model/section.h"
 
 namespace flexarm::cli {
 namespace {

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "cli/commands.h"
-#include "flexarm/model/model_builder.h"
+#include "model/model_builder.h"
 
 namespace {
 

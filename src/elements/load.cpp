@@ -1,6 +1,6 @@
-#include "flexarm/elements/load.h"
+#include "elements/load.h"
 
-#include "flexarm/math/so3.h"
+#include "math/so3.h"
 
 namespace flexarm {
 

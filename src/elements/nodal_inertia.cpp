@@ -1,7 +1,7 @@
-#include "flexarm/elements/nodal_inertia.h"
+#include "elements/nodal_inertia.h"
 
-#include "flexarm/elements/conserving_node.h"
-#include "flexarm/elements/rotary_inertia.h"
+#include "elements/conserving_node.h"
+#include "elements/rotary_inertia.h"
 
 namespace flexarm {
 namespace {

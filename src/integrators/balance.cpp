@@ -1,8 +1,8 @@
-#include "flexarm/integrators/balance.h"
+#include "integrators/balance.h"
 
-#include "flexarm/elements/element_configuration.h"
-#include "flexarm/elements/strain_dampers.h"
-#include "flexarm/joints/joint_forces.h"
+#include "elements/element_configuration.h"
+#include "elements/strain_dampers.h"
+#include "joints/joint_forces.h"
 
 namespace flexarm {
 namespace {

@@ -1,9 +1,9 @@
-#include "flexarm/integrators/conserving_beams.h"
+#include "integrators/conserving_beams.h"
 
 #include <algorithm>
 
-#include "flexarm/math/simd.h"
 #include "integrators/gathered.h"
+#include "math/simd.h"
 
 namespace flexarm {
 namespace {

@@ -1,8 +1,8 @@
-#include "flexarm/integrators/conserving_nodes.h"
+#include "integrators/conserving_nodes.h"
 
-#include "flexarm/math/lanes.h"
-#include "flexarm/math/simd.h"
 #include "integrators/gathered.h"
+#include "math/lanes.h"
+#include "math/simd.h"
 
 namespace flexarm {
 namespace {

@@ -1,9 +1,9 @@
 #pragma once
 /// From nodes and elements that lie one behind the other to packs.
 
-#include "flexarm/math/pack.h"
-#include "flexarm/math/so3.h"
-#include "flexarm/model/joint.h"
+#include "math/pack.h"
+#include "math/so3.h"
+#include "model/joint.h"
 
 namespace flexarm {
 

@@ -1,8 +1,8 @@
-#include "flexarm/integrators/rotation_reference.h"
+#include "integrators/rotation_reference.h"
 
 #include <algorithm>
 
-#include "flexarm/math/so3.h"
+#include "math/so3.h"
 
 namespace flexarm {
 namespace {

@@ -1,9 +1,9 @@
-#include "flexarm/integrators/scheme.h"
+#include "integrators/scheme.h"
 
 #include <fmt/format.h>
 
-#include "flexarm/model/model_builder.h"
-#include "flexarm/scene/integrator_options.h"
+#include "model/model_builder.h"
+#include "scene/integrator_options.h"
 
 namespace flexarm {
 namespace {

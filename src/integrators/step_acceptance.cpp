@@ -3,10 +3,10 @@
 #include <cmath>
 #include <limits>
 
-#include "flexarm/elements/load.h"
-#include "flexarm/elements/nodal_inertia.h"
-#include "flexarm/integrators/step_system.h"
-#include "flexarm/math/cayley.h"
+#include "elements/load.h"
+#include "elements/nodal_inertia.h"
+#include "integrators/step_system.h"
+#include "math/cayley.h"
 
 namespace flexarm {
 namespace {

@@ -1,8 +1,8 @@
 // What beams contribute to residual and tangent of a step.
-#include "flexarm/elements/additive_beam.h"
-#include "flexarm/elements/element_configuration.h"
-#include "flexarm/integrators/step_system.h"
-#include "flexarm/math/so3.h"
+#include "elements/additive_beam.h"
+#include "elements/element_configuration.h"
+#include "integrators/step_system.h"
+#include "math/so3.h"
 
 namespace flexarm {
 

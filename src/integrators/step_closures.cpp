@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "flexarm/integrators/step_system.h"
+#include "integrators/step_system.h"
 
 namespace flexarm {
 

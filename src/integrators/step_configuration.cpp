@@ -1,9 +1,9 @@
 // The trial configuration of a step: its start, its guess, Newton updates on the group.
 #include <algorithm>
 
-#include "flexarm/integrators/step_system.h"
-#include "flexarm/math/cayley.h"
-#include "flexarm/math/so3.h"
+#include "integrators/step_system.h"
+#include "math/cayley.h"
+#include "math/so3.h"
 
 namespace flexarm {
 namespace {

@@ -11,10 +11,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "flexarm/integrators/step_system.h"
-#include "flexarm/joints/joint_forces.h"
-#include "flexarm/math/cayley.h"
-#include "flexarm/model/model_builder.h"
+#include "integrators/step_system.h"
+#include "joints/joint_forces.h"
+#include "math/cayley.h"
+#include "model/model_builder.h"
 
 namespace flexarm {
 namespace {

@@ -9,8 +9,8 @@
 //   vanish.
 #include <algorithm>
 
-#include "flexarm/integrators/step_system.h"
-#include "flexarm/math/so3.h"
+#include "integrators/step_system.h"
+#include "math/so3.h"
 
 namespace flexarm {
 

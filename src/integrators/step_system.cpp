@@ -1,12 +1,12 @@
-#include "flexarm/integrators/step_system.h"
+#include "integrators/step_system.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "flexarm/elements/load.h"
-#include "flexarm/joints/joint_forces.h"
-#include "flexarm/math/cayley.h"
-#include "flexarm/math/so3.h"
+#include "elements/load.h"
+#include "joints/joint_forces.h"
+#include "math/cayley.h"
+#include "math/so3.h"
 
 namespace flexarm {
 namespace {

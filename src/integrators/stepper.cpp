@@ -1,4 +1,4 @@
-#include "flexarm/integrators/stepper.h"
+#include "integrators/stepper.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,12 @@
-#include "flexarm/integrators/velocity_scaling.h"
+#include "integrators/velocity_scaling.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "flexarm/integrators/balance.h"
-#include "flexarm/joints/joint_map.h"
-#include "flexarm/math/so3.h"
-#include "flexarm/model/model_builder.h"
+#include "integrators/balance.h"
+#include "joints/joint_map.h"
+#include "math/so3.h"
+#include "model/model_builder.h"
 
 namespace flexarm {
 namespace {

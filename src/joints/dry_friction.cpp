@@ -1,4 +1,4 @@
-#include "flexarm/joints/dry_friction.h"
+#include "joints/dry_friction.h"
 
 #include <algorithm>
 

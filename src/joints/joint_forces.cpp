@@ -1,4 +1,4 @@
-#include "flexarm/joints/joint_forces.h"
+#include "joints/joint_forces.h"
 
 #include <algorithm>
 #include <cmath>

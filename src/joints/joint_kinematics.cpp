@@ -1,4 +1,4 @@
-#include "flexarm/joints/joint_kinematics.h"
+#include "joints/joint_kinematics.h"
 
 namespace flexarm {
 

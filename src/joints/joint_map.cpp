@@ -1,9 +1,9 @@
-#include "flexarm/joints/joint_map.h"
+#include "joints/joint_map.h"
 
 #include <cmath>
 
-#include "flexarm/math/cayley.h"
-#include "flexarm/math/so3.h"
+#include "math/cayley.h"
+#include "math/so3.h"
 
 namespace flexarm {
 namespace {

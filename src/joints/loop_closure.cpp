@@ -1,6 +1,6 @@
-#include "flexarm/joints/loop_closure.h"
+#include "joints/loop_closure.h"
 
-#include "flexarm/math/so3.h"
+#include "math/so3.h"
 
 namespace flexarm {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <optional>
 
-#include "flexarm/math/so3.h"
+#include "math/so3.h"
 #include "slide_step.h"
 
 namespace flexarm {

@@ -1,4 +1,4 @@
-#include "flexarm/joints/slide_map.h"
+#include "joints/slide_map.h"
 
 #include <algorithm>
 

@@ -1,8 +1,8 @@
 #pragma once
 /// What both forms of a slider's maps are made of.
 
-#include "flexarm/joints/slide_map.h"
-#include "flexarm/joints/slide_variation.h"
+#include "joints/slide_map.h"
+#include "joints/slide_variation.h"
 
 namespace flexarm::slide {
 

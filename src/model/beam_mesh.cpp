@@ -1,13 +1,13 @@
-#include "flexarm/model/beam_mesh.h"
+#include "model/beam_mesh.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <queue>
 
-#include "flexarm/elements/beam_point.h"
-#include "flexarm/math/quadrature.h"
-#include "flexarm/math/shape_functions.h"
+#include "elements/beam_point.h"
+#include "math/quadrature.h"
+#include "math/shape_functions.h"
 
 namespace flexarm {
 namespace {

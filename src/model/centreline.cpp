@@ -1,4 +1,4 @@
-#include "flexarm/model/centreline.h"
+#include "model/centreline.h"
 
 #include <algorithm>
 #include <cmath>

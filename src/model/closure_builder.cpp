@@ -6,8 +6,8 @@
 #include <numeric>
 #include <set>
 
-#include "flexarm/joints/joint_kinematics.h"
-#include "flexarm/joints/loop_closure.h"
+#include "joints/joint_kinematics.h"
+#include "joints/loop_closure.h"
 #include "mechanism_builder.h"
 
 namespace flexarm {

@@ -5,8 +5,8 @@
 
 #include <Eigen/SparseCore>
 
-#include "flexarm/model/degrees_of_freedom.h"
-#include "flexarm/model/model.h"
+#include "model/degrees_of_freedom.h"
+#include "model/model.h"
 
 namespace flexarm {
 

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <unordered_set>
 
-#include "flexarm/joints/joint_kinematics.h"
-#include "flexarm/math/so3.h"
+#include "joints/joint_kinematics.h"
+#include "math/so3.h"
 #include "mechanism_builder.h"
 
 namespace flexarm {

@@ -1,4 +1,4 @@
-#include "flexarm/model/degrees_of_freedom.h"
+#include "model/degrees_of_freedom.h"
 
 namespace flexarm {
 

@@ -1,4 +1,4 @@
-#include "flexarm/model/drive_efforts.h"
+#include "model/drive_efforts.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "flexarm/model/increment_history.h"
+#include "model/increment_history.h"
 
 #include <algorithm>
 #include <cmath>

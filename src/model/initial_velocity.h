@@ -4,7 +4,7 @@
 #include <map>
 #include <vector>
 
-#include "flexarm/joints/joint_kinematics.h"
+#include "joints/joint_kinematics.h"
 #include "mechanism_builder.h"
 
 namespace flexarm {

@@ -1,4 +1,4 @@
-#include "flexarm/model/line_release.h"
+#include "model/line_release.h"
 
 #include <algorithm>
 

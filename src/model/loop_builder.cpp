@@ -3,7 +3,7 @@
 #include <cmath>
 #include <unordered_set>
 
-#include "flexarm/joints/joint_kinematics.h"
+#include "joints/joint_kinematics.h"
 #include "mechanism_builder.h"
 
 namespace flexarm {

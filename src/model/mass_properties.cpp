@@ -3,7 +3,7 @@
 #include <cmath>
 #include <unordered_set>
 
-#include "flexarm/math/so3.h"
+#include "math/so3.h"
 
 namespace flexarm {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "flexarm/model/model.h"
 #include "flexarm/scene/scene_description.h"
+#include "model/model.h"
 
 namespace flexarm {
 

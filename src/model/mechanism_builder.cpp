@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "flexarm/joints/joint_kinematics.h"
-#include "flexarm/math/shape_functions.h"
-#include "flexarm/math/so3.h"
 #include "initial_velocity.h"
+#include "joints/joint_kinematics.h"
+#include "math/shape_functions.h"
+#include "math/so3.h"
 
 namespace flexarm {
 std::string MechanismBuilder::at(const scene::SourceLocation& location, const std::string& element) {

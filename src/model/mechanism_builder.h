@@ -7,11 +7,11 @@
 #include <unordered_map>
 #include <vector>
 
-#include "flexarm/model/beam_mesh.h"
-#include "flexarm/model/centreline.h"
-#include "flexarm/model/model.h"
-#include "flexarm/model/model_builder.h"
 #include "flexarm/scene/scene_description.h"
+#include "model/beam_mesh.h"
+#include "model/centreline.h"
+#include "model/model.h"
+#include "model/model_builder.h"
 
 namespace flexarm {
 

@@ -1,4 +1,4 @@
-#include "flexarm/model/model_builder.h"
+#include "model/model_builder.h"
 
 #include <algorithm>
 #include <map>

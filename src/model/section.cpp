@@ -1,4 +1,4 @@
-#include "flexarm/model/section.h"
+#include "model/section.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "flexarm/scene/integrator_options.h"
+#include "scene/integrator_options.h"
 
 namespace flexarm {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string>
 
-#include "flexarm/scene/integrator_options.h"
 #include "flexarm/scene/urdf_reader.h"
+#include "scene/integrator_options.h"
 
 namespace flexarm::node {
 namespace {

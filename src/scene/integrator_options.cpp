@@ -1,4 +1,4 @@
-#include "flexarm/scene/integrator_options.h"
+#include "scene/integrator_options.h"
 
 #include <algorithm>
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "flexarm/elements/element_configuration.h"
-#include "flexarm/math/quadrature.h"
-#include "flexarm/math/shape_functions.h"
+#include "elements/element_configuration.h"
+#include "math/quadrature.h"
+#include "math/shape_functions.h"
 
 namespace flexarm {
 namespace {

@@ -1,10 +1,10 @@
-#include "flexarm/simulation/output_velocities.h"
+#include "simulation/output_velocities.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "flexarm/joints/joint_kinematics.h"
-#include "flexarm/math/cayley.h"
+#include "joints/joint_kinematics.h"
+#include "math/cayley.h"
 
 namespace flexarm {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "flexarm/integrators/scheme.h"
+#include "integrators/scheme.h"
 #include "simulation/fingerprint.h"
 
 namespace flexarm {

@@ -4,10 +4,10 @@
 #include <limits>
 #include <map>
 
-#include "flexarm/math/so3.h"
-#include "flexarm/model/line_release.h"
-#include "flexarm/scene/integrator_options.h"
-#include "flexarm/simulation/output_velocities.h"
+#include "math/so3.h"
+#include "model/line_release.h"
+#include "scene/integrator_options.h"
+#include "simulation/output_velocities.h"
 #include "simulation/state_flaw.h"
 
 namespace flexarm {

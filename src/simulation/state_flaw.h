@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "flexarm/model/model.h"
-#include "flexarm/model/state.h"
+#include "model/model.h"
+#include "model/state.h"
 
 namespace flexarm {
 

@@ -1,7 +1,7 @@
 #pragma once
 /// The layout of a state: the one place that knows all its numbers.
 
-#include "flexarm/model/state.h"
+#include "model/state.h"
 
 namespace flexarm {
 

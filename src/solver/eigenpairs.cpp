@@ -7,7 +7,7 @@
 #include <Spectra/GenEigsSolver.h>
 #include <Eigen/Eigenvalues>
 
-#include "flexarm/solver/linear_solver.h"
+#include "solver/linear_solver.h"
 
 namespace flexarm {
 namespace {

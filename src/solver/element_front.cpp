@@ -1,11 +1,11 @@
-#include "flexarm/solver/element_front.h"
+#include "solver/element_front.h"
 
 #include <cmath>
 #include <cstring>
 #include <utility>
 
-#include "flexarm/math/pack.h"
-#include "flexarm/math/simd.h"
+#include "math/pack.h"
+#include "math/simd.h"
 
 // Vectors are passed between functions that are always inlined only: that their passing differs between processors does
 // not matter.

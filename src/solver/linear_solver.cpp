@@ -1,4 +1,4 @@
-#include "flexarm/solver/linear_solver.h"
+#include "solver/linear_solver.h"
 
 #include <algorithm>
 #include <cmath>

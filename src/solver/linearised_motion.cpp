@@ -6,9 +6,9 @@
 
 #include <Eigen/QR>
 
-#include "flexarm/elements/element_configuration.h"
-#include "flexarm/elements/endpoint_beam.h"
-#include "flexarm/joints/joint_forces.h"
+#include "elements/element_configuration.h"
+#include "elements/endpoint_beam.h"
+#include "joints/joint_forces.h"
 
 namespace flexarm {
 namespace {

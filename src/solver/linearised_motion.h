@@ -6,8 +6,8 @@
 
 #include <Eigen/SparseCore>
 
-#include "flexarm/integrators/step_system.h"
-#include "flexarm/solver/modes.h"
+#include "integrators/step_system.h"
+#include "solver/modes.h"
 
 namespace flexarm {
 

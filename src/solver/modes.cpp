@@ -1,4 +1,4 @@
-#include "flexarm/solver/modes.h"
+#include "solver/modes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "flexarm/solver/sparse_assembler.h"
+#include "solver/sparse_assembler.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // Closures of loops in the assembled system.
-#include "flexarm/solver/sparse_assembler.h"
+#include "solver/sparse_assembler.h"
 
 namespace flexarm {
 

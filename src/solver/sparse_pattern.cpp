@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <unordered_map>
 
-#include "flexarm/solver/sparse_assembler.h"
+#include "solver/sparse_assembler.h"
 
 namespace flexarm {
 

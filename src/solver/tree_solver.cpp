@@ -1,9 +1,9 @@
-#include "flexarm/solver/tree_solver.h"
+#include "solver/tree_solver.h"
 
 #include <algorithm>
 
-#include "flexarm/math/so3.h"
-#include "flexarm/solver/element_front.h"
+#include "math/so3.h"
+#include "solver/element_front.h"
 
 namespace flexarm {
 namespace {

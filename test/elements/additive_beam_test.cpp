@@ -1,5 +1,5 @@
 // The additive weak form: rows conjugate to total rotation vectors.
-#include "flexarm/elements/additive_beam.h"
+#include "elements/additive_beam.h"
 
 #include "elements/kernel_checks.h"
 

@@ -1,8 +1,8 @@
 #pragma once
 /// Rotary inertia at the mass points by the average rule, as the momentum-conserving schemes have it.
 
-#include "flexarm/elements/momentum_beam.h"
-#include "flexarm/elements/rotary_inertia.h"
+#include "elements/momentum_beam.h"
+#include "elements/rotary_inertia.h"
 
 namespace flexarm::test {
 

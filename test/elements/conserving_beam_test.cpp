@@ -1,5 +1,5 @@
 // Beams over a step in the conserving family: tangents, momenta, energy, damping.
-#include "flexarm/elements/conserving_beam.h"
+#include "elements/conserving_beam.h"
 
 #include "elements/conserving_kernel.h"
 #include "elements/kernel_checks.h"

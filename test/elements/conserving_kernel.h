@@ -1,8 +1,8 @@
 #pragma once
 /// The kernel of the energy-momentum family as tests call it: elements in and systems out, lane by lane.
 
+#include "elements/conserving_beam.h"
 #include "elements/random_element.h"
-#include "flexarm/elements/conserving_beam.h"
 
 namespace flexarm::test {
 

@@ -1,5 +1,5 @@
 // Beams at one configuration: statics and the Newmark family.
-#include "flexarm/elements/endpoint_beam.h"
+#include "elements/endpoint_beam.h"
 
 #include "elements/kernel_checks.h"
 

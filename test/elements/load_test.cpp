@@ -1,5 +1,5 @@
 // Nodal loads.
-#include "flexarm/elements/load.h"
+#include "elements/load.h"
 
 #include <gtest/gtest.h>
 

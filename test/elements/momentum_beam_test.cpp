@@ -1,9 +1,9 @@
 // Beams of the momentum-conserving schemes and of those with an energy correction by forces.
-#include "flexarm/elements/momentum_beam.h"
+#include "elements/momentum_beam.h"
 
 #include "elements/average_rotary.h"
 #include "elements/kernel_checks.h"
-#include "flexarm/integrators/scheme.h"
+#include "integrators/scheme.h"
 
 namespace flexarm {
 namespace {

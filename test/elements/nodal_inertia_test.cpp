@@ -1,11 +1,11 @@
 // Rigid bodies at nodes.
-#include "flexarm/elements/nodal_inertia.h"
+#include "elements/nodal_inertia.h"
 
 #include <gtest/gtest.h>
 
 #include "elements/differences.h"
 #include "elements/random_element.h"
-#include "flexarm/integrators/scheme.h"
+#include "integrators/scheme.h"
 
 namespace flexarm {
 namespace {

@@ -1,7 +1,7 @@
 // Dampers with a memory of the energy-momentum family: numerical dissipation and structural damping.
 #include "elements/conserving_kernel.h"
 #include "elements/kernel_checks.h"
-#include "flexarm/integrators/scheme.h"
+#include "integrators/scheme.h"
 
 namespace flexarm {
 namespace {

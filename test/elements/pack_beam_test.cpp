@@ -3,10 +3,10 @@
 #include <memory>
 
 #include "elements/conserving_kernel.h"
+#include "elements/conserving_node.h"
 #include "elements/kernel_checks.h"
-#include "flexarm/elements/conserving_node.h"
-#include "flexarm/integrators/scheme.h"
-#include "flexarm/math/simd.h"
+#include "integrators/scheme.h"
+#include "math/simd.h"
 
 namespace flexarm {
 namespace {

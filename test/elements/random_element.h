@@ -3,12 +3,12 @@
 
 #include <random>
 
-#include "flexarm/elements/beam_point.h"
-#include "flexarm/elements/time_rule.h"
-#include "flexarm/math/cayley.h"
-#include "flexarm/math/so3.h"
-#include "flexarm/model/beam_mesh.h"
-#include "flexarm/model/state.h"
+#include "elements/beam_point.h"
+#include "elements/time_rule.h"
+#include "math/cayley.h"
+#include "math/so3.h"
+#include "model/beam_mesh.h"
+#include "model/state.h"
 
 namespace flexarm::test {
 

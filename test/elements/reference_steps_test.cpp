@@ -9,10 +9,10 @@
 #include "elements/average_rotary.h"
 #include "elements/conserving_kernel.h"
 #include "elements/differences.h"
-#include "flexarm/elements/endpoint_beam.h"
-#include "flexarm/elements/nodal_inertia.h"
-#include "flexarm/integrators/scheme.h"
-#include "flexarm/model/beam_mesh.h"
+#include "elements/endpoint_beam.h"
+#include "elements/nodal_inertia.h"
+#include "integrators/scheme.h"
+#include "model/beam_mesh.h"
 #include "support/source_path.h"
 
 namespace flexarm {

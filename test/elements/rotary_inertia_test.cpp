@@ -1,5 +1,5 @@
 // Rotary inertia of beams at the mass points.
-#include "flexarm/elements/rotary_inertia.h"
+#include "elements/rotary_inertia.h"
 
 #include "elements/kernel_checks.h"
 

@@ -5,7 +5,7 @@
 
 #include "elements/differences.h"
 #include "elements/random_element.h"
-#include "flexarm/integrators/step_system.h"
+#include "integrators/step_system.h"
 
 namespace flexarm::test {
 

@@ -1,5 +1,5 @@
 // When Newton's method makes new factors.
-#include "flexarm/integrators/factor_reuse.h"
+#include "integrators/factor_reuse.h"
 
 #include <gtest/gtest.h>
 

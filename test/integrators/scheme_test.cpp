@@ -1,8 +1,8 @@
 // The table of schemes.
-#include "flexarm/integrators/scheme.h"
+#include "integrators/scheme.h"
 
-#include "flexarm/model/model_builder.h"
-#include "flexarm/scene/integrator_options.h"
+#include "model/model_builder.h"
+#include "scene/integrator_options.h"
 
 #include <set>
 #include <string>

@@ -1,7 +1,7 @@
 // Whole steps of sliders by each of their algorithms, on lines of elements and smooth ones, within elements and across.
-#include "flexarm/integrators/stepper.h"
 #include "integrators/consistent_tangent.h"
 #include "integrators/mechanism.h"
+#include "integrators/stepper.h"
 
 namespace flexarm {
 namespace {

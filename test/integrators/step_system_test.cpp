@@ -1,7 +1,7 @@
 // The residual and the reduced tangent of a whole step, for a mechanism with everything in it.
-#include "flexarm/integrators/stepper.h"
-#include "flexarm/joints/joint_forces.h"
 #include "integrators/scheme_step.h"
+#include "integrators/stepper.h"
+#include "joints/joint_forces.h"
 
 namespace flexarm {
 namespace {

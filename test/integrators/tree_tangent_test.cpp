@@ -1,9 +1,9 @@
 // The elimination along the tree against the assembled matrix, for whole steps of every scheme.
 #include <Eigen/Dense>
 
-#include "flexarm/integrators/stepper.h"
 #include "flexarm/scene/urdf_reader.h"
 #include "integrators/scheme_step.h"
+#include "integrators/stepper.h"
 #include "support/source_path.h"
 
 namespace flexarm {

@@ -1,5 +1,5 @@
 // The set-valued law of one coordinate, and the force that presses on a joint.
-#include "flexarm/joints/dry_friction.h"
+#include "joints/dry_friction.h"
 
 #include <gtest/gtest.h>
 

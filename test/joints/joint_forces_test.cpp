@@ -1,5 +1,5 @@
 // Passive efforts on coordinates: damping, friction, stops.
-#include "flexarm/joints/joint_forces.h"
+#include "joints/joint_forces.h"
 
 #include <gtest/gtest.h>
 

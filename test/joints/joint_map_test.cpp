@@ -1,5 +1,5 @@
 // One tester for the maps of all elementary joints.
-#include "flexarm/joints/joint_map.h"
+#include "joints/joint_map.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Constraints that close loops: derivatives, discrete gradient, momenta.
-#include "flexarm/joints/loop_closure.h"
+#include "joints/loop_closure.h"
 
 #include <gtest/gtest.h>
 

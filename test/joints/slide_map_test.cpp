@@ -1,5 +1,5 @@
 // A section that slides along a line of several elements: its maps against exact kinematics and differences.
-#include "flexarm/joints/slide_map.h"
+#include "joints/slide_map.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <complex>
 #include <vector>
 
-#include "flexarm/joints/slide_map.h"
+#include "joints/slide_map.h"
 
 namespace flexarm::test {
 

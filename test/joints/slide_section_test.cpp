@@ -1,11 +1,11 @@
 // Sections of plain and smooth lines: partition of unity, continuity, derivatives, objectivity.
-#include "flexarm/joints/slide_section.h"
+#include "joints/slide_section.h"
 
 #include <gtest/gtest.h>
 
 #include "elements/differences.h"
 #include "elements/random_element.h"
-#include "flexarm/joints/slide_variation.h"
+#include "joints/slide_variation.h"
 
 namespace flexarm {
 namespace {

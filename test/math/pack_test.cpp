@@ -1,15 +1,15 @@
 // Packs: lanes go their own ways, and rotations of packs are those of their lanes.
-#include "flexarm/math/pack.h"
+#include "math/pack.h"
 
 #include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "flexarm/math/lanes.h"
 #include "flexarm/math/pose.h"
-#include "flexarm/math/simd.h"
-#include "flexarm/math/so3.h"
+#include "math/lanes.h"
+#include "math/simd.h"
+#include "math/so3.h"
 
 namespace flexarm {
 namespace {

@@ -1,10 +1,10 @@
 // Meshes of flexible links.
-#include "flexarm/model/beam_mesh.h"
+#include "model/beam_mesh.h"
 
 #include <gtest/gtest.h>
 
 #include "elements/differences.h"
-#include "flexarm/math/shape_functions.h"
+#include "math/shape_functions.h"
 #include "support/scene_builder.h"
 
 namespace flexarm {

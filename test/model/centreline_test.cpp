@@ -1,5 +1,5 @@
 // Undeformed centrelines.
-#include "flexarm/model/centreline.h"
+#include "model/centreline.h"
 
 #include <limits>
 

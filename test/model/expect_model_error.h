@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "flexarm/model/model_builder.h"
+#include "model/model_builder.h"
 
 namespace flexarm::test {
 

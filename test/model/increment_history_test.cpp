@@ -1,5 +1,5 @@
 // The predictor's extrapolation.
-#include "flexarm/model/increment_history.h"
+#include "model/increment_history.h"
 
 #include <cmath>
 #include <limits>

@@ -1,10 +1,10 @@
 // Models with loops that flexible links close.
 #include <gtest/gtest.h>
 
-#include "flexarm/joints/joint_kinematics.h"
-#include "flexarm/joints/loop_closure.h"
-#include "flexarm/model/model_builder.h"
+#include "joints/joint_kinematics.h"
+#include "joints/loop_closure.h"
 #include "model/expect_model_error.h"
+#include "model/model_builder.h"
 #include "support/loops.h"
 
 namespace flexarm::test {

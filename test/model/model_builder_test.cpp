@@ -1,5 +1,5 @@
 // Models built from scenes.
-#include "flexarm/model/model_builder.h"
+#include "model/model_builder.h"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "elements/random_element.h"
-#include "flexarm/model/model_builder.h"
 #include "model/expect_model_error.h"
+#include "model/model_builder.h"
 #include "support/scene_builder.h"
 
 namespace flexarm {

@@ -1,5 +1,5 @@
 // Cross-sections against handbook values and independent formulas.
-#include "flexarm/model/section.h"
+#include "model/section.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Invariants of free flight (reference case D1) over ten thousand steps.
 #include <cstdio>
 
-#include "flexarm/integrators/scheme.h"
+#include "integrators/scheme.h"
 #include "reference/dynamics_joint_chain.h"
 
 namespace flexarm::test {

@@ -1,7 +1,7 @@
 // Loops of rigid links, closed by multipliers: closed-form motions, invariants, constraints.
 #include <cmath>
 
-#include "flexarm/joints/loop_closure.h"
+#include "joints/loop_closure.h"
 #include "reference/dynamics_runs.h"
 #include "reference/ode.h"
 #include "support/closed_ring.h"

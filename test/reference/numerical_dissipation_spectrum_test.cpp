@@ -7,7 +7,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "flexarm/integrators/scheme.h"
+#include "integrators/scheme.h"
 #include "reference/dynamics_runs.h"
 
 namespace flexarm::test {

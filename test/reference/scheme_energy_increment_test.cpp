@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "flexarm/elements/beam_point.h"
+#include "elements/beam_point.h"
 #include "reference/dynamics_joint_chain.h"
 
 namespace flexarm::test {

@@ -1,5 +1,5 @@
 // Lines over several links: welded beams are one line, kinks end it.
-#include "flexarm/model/model_builder.h"
+#include "model/model_builder.h"
 #include "reference/dynamics_joint_chain.h"
 
 namespace flexarm::test {

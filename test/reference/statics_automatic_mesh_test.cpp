@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "flexarm/model/beam_mesh.h"
+#include "model/beam_mesh.h"
 #include "reference_cantilever.h"
 #include "reference_shooting.h"
 

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/LU>
 
-#include "flexarm/math/so3.h"
+#include "math/so3.h"
 #include "reference_cantilever.h"
 #include "reference_shooting.h"
 

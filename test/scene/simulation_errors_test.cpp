@@ -1,4 +1,4 @@
-#include "flexarm/scene/integrator_options.h"
+#include "scene/integrator_options.h"
 #include "scene/scene_text.h"
 
 namespace flexarm::scene {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "flexarm/math/so3.h"
+#include "math/so3.h"
 #include "support/scene_builder.h"
 #include "support/scheme_variants.h"
 

@@ -1,12 +1,12 @@
 // The rule that turns increments over steps into rates at their end.
-#include "flexarm/simulation/output_velocities.h"
+#include "simulation/output_velocities.h"
 
 #include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
 
-#include "flexarm/math/so3.h"
+#include "math/so3.h"
 
 namespace flexarm {
 namespace {

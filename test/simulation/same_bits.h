@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "flexarm/model/state.h"
+#include "model/state.h"
 
 namespace flexarm::test {
 

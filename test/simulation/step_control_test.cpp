@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "flexarm/scene/integrator_options.h"
+#include "scene/integrator_options.h"
 #include "support/scene_builder.h"
 
 namespace flexarm::test {

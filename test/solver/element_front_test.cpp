@@ -1,5 +1,5 @@
 // Elimination of an element's outboard nodes against a dense solution of the whole element.
-#include "flexarm/solver/element_front.h"
+#include "solver/element_front.h"
 
 #include <array>
 #include <limits>

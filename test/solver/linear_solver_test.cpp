@@ -1,5 +1,5 @@
 // Sparse LU.
-#include "flexarm/solver/linear_solver.h"
+#include "solver/linear_solver.h"
 
 #include <limits>
 #include <random>

@@ -1,10 +1,10 @@
 // Natural modes of mechanisms whose frequencies are known in closed form or by counting.
-#include "flexarm/solver/modes.h"
+#include "solver/modes.h"
 
 #include <gtest/gtest.h>
 
-#include "flexarm/model/model_builder.h"
 #include "flexarm/simulation/observables.h"
+#include "model/model_builder.h"
 #include "support/scene_builder.h"
 
 namespace flexarm {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "flexarm/integrators/scheme.h"
-#include "flexarm/scene/integrator_options.h"
+#include "integrators/scheme.h"
+#include "scene/integrator_options.h"
 
 namespace flexarm::test {
 

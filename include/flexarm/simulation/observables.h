@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "flexarm/integrators/balance.h"
-#include "flexarm/model/model.h"
-#include "flexarm/model/state.h"
+#include "integrators/balance.h"
+#include "model/model.h"
+#include "model/state.h"
 
 namespace flexarm {
 

@@ -7,12 +7,12 @@
 #include <string_view>
 #include <vector>
 
-#include "flexarm/integrators/stepper.h"
 #include "flexarm/math/pose.h"
-#include "flexarm/model/model_builder.h"
 #include "flexarm/scene/scene_description.h"
 #include "flexarm/simulation/observables.h"
-#include "flexarm/solver/modes.h"
+#include "integrators/stepper.h"
+#include "model/model_builder.h"
+#include "solver/modes.h"
 
 namespace flexarm {
 

@@ -1,0 +1,200 @@
+#pragma once
+/// What all beam kernels share: the nodes of an element over a step, strains at a point, and the scatter of a point's
+/// linearised stress resultants into the element's residual and tangent.
+
+#include <array>
+#include <optional>
+#include <type_traits>
+
+#include "math/local_rotation.h"
+#include "math/referenced_rotation.h"
+#include "model/beam_element.h"
+
+namespace flexarm {
+
+/// Kinematics of a stiffness point at one instant.
+template <typename S>
+struct PointKinematicsT {
+  Matrix3T<S> rotation;  ///< Lambda
+  Vector3T<S> tangent;   ///< r' = dr/ds
+  Vector6T<S> strain;    ///< {Gamma, K}
+};
+using PointKinematics = PointKinematicsT<double>;
+
+/// Nodal motion of an element over a step [t_n, t_{n+1}].
+template <int Nodes>
+struct ElementNodes {
+  std::array<Vector3, Nodes> begin, end;      ///< positions [m]
+  std::array<Quaternion, Nodes> orientation;  ///< at the end
+  std::array<Vector3, Nodes> increment;       ///< tangent-scaled rotation increments, Lambda_{n+1} = cay(w) Lambda_n
+  std::array<Matrix3, Nodes> increment_inverse_tangent;  ///< S(w)^{-1}: dw = S^{-1} spin
+  std::array<Vector3, Nodes> velocity, acceleration;     ///< at the begin [m/s, m/s^2]
+  /// Of the interpolations that measure rotations from a reference; the local one has none.
+  std::array<Vector3, Nodes> rotation_vector;
+  RotationParameters parameters = RotationParameters::Unscaled;
+  const InterpolatedRotation<double>* stiffness_reference = nullptr;  ///< per stiffness point of the element
+  const InterpolatedRotation<double>* mass_reference = nullptr;       ///< per mass point
+};
+
+/// Residual {f_i, phi_i} and its derivative with respect to {dr_j, spin_j}, node by node.
+template <int Nodes>
+struct ElementSystem {
+  Eigen::Matrix<double, 6 * Nodes, 1> residual;
+  Eigen::Matrix<double, 6 * Nodes, 6 * Nodes> tangent;
+  double dissipated = 0;  ///< over the step [J]
+
+  void set_zero() {
+    residual.setZero();
+    tangent.setZero();
+    dissipated = 0;
+  }
+};
+
+/// Interpolated rotations of an element, with their variation only where it is wanted.
+template <int Nodes>
+class ElementRotations {
+ public:
+  ElementRotations(const ElementNodes<Nodes>& nodes, bool with_variation) {
+    if (nodes.stiffness_reference) {
+      referenced_.emplace(nodes.parameters, nodes.rotation_vector);
+    } else {
+      local_.emplace(nodes.orientation);
+      if (with_variation) variation_.emplace(*local_);
+    }
+  }
+  /// `reference` is used by the interpolations that have one.
+  InterpolatedRotation<double> evaluate(const NodalValues<Nodes>& shape, const NodalValues<Nodes>& derivative,
+                                        const InterpolatedRotation<double>* reference,
+                                        GeneralisedShapeFunctions<Nodes>& generalised) const {
+    if (variation_) return variation_->evaluate(shape, derivative, generalised);
+    if (local_) return local_->evaluate(shape, derivative);
+    return referenced_->evaluate(shape, derivative, *reference, generalised);
+  }
+
+ private:
+  std::optional<LocalRotations<Nodes>> local_;
+  std::optional<LocalRotationVariation<Nodes>> variation_;
+  std::optional<ReferencedRotations<Nodes>> referenced_;
+};
+
+template <int Nodes, typename S = double>
+Vector3T<S> interpolate(const NodalValues<Nodes, S>& weights, const std::array<Vector3T<S>, Nodes>& values) {
+  Vector3T<S> sum = weights[0] * values[0];
+  for (int i = 1; i < Nodes; ++i) sum += weights[i] * values[i];
+  return sum;
+}
+
+/// Strains of a configuration (Muñoz 2004, eq. 2.1): Gamma = Lambda^T r' - reference, K = Upsilon - reference.
+template <typename S>
+PointKinematicsT<S> point_kinematics(const InterpolatedRotation<S>& interpolated,
+                                     const Vector3T<std::decay_t<S>>& tangent,
+                                     const Vector6T<std::decay_t<S>>& reference_strain) {
+  PointKinematicsT<S> point;
+  point.rotation = interpolated.rotation;
+  point.tangent = tangent;
+  point.strain.template head<3>() = interpolated.rotation.transpose() * tangent;
+  point.strain.template tail<3>() = interpolated.curvature;
+  point.strain -= reference_strain;
+  return point;
+}
+
+/// d{Gamma, K} at an instant, columns {dr', spin, spin'} (beam.md 3.2).
+inline Eigen::Matrix<double, 6, 9> strain_derivative(const PointKinematics& point) {
+  const Matrix3 transposed = point.rotation.transpose();
+  Eigen::Matrix<double, 6, 9> d = Eigen::Matrix<double, 6, 9>::Zero();
+  d.topLeftCorner<3, 3>() = transposed;
+  d.block<3, 3>(0, 3) = transposed * so3::hat(point.tangent);
+  d.bottomRightCorner<3, 3>() = transposed;
+  return d;
+}
+
+/// Test functions of the moment rows at a point: the Lagrange functions themselves ...
+template <int Nodes>
+struct LagrangeTests {
+  const NodalValues<Nodes>& shape;
+  const NodalValues<Nodes>& slope;
+  template <class Rows>
+  auto value(int i, const Rows& rows) const {
+    return shape[i] * rows;
+  }
+  template <class Rows>
+  auto derivative(int i, const Rows& rows) const {
+    return slope[i] * rows;
+  }
+};
+/// ... or generalised shape functions, transposed.
+template <int Nodes>
+struct GeneralisedTests {
+  const GeneralisedShapeFunctions<Nodes>& functions;
+  template <class Rows>
+  auto value(int i, const Rows& rows) const {
+    return functions.values[i].transpose().lazyProduct(rows);
+  }
+  template <class Rows>
+  auto derivative(int i, const Rows& rows) const {
+    return functions.derivatives[i].transpose().lazyProduct(rows);
+  }
+};
+
+/// Adds w {I^i' n, I_t^i' m - I_t^i (arm x n)} to the residual; I_t: the moment rows' test functions.
+template <int Nodes, class Tests>
+void add_point_residual(double weight, const NodalValues<Nodes>& derivative, const Tests& tests, const Vector3& n,
+                        const Vector3& m, const Vector3& arm, Eigen::Matrix<double, 6 * Nodes, 1>& residual) {
+  const Vector3 wn = weight * n, wm = weight * m, wc = arm.cross(wn);
+  for (int i = 0; i < Nodes; ++i) {
+    residual.template segment<3>(6 * i) += derivative[i] * wn;
+    residual.template segment<3>(6 * i + 3) += tests.derivative(i, wm);
+    residual.template segment<3>(6 * i + 3) -= tests.value(i, wc);
+  }
+}
+
+/// How the columns {dr', spin, spin'} of a point depend on the nodes' {dr_j, spin_j}: spin = sum values[j] spin_j, ...
+template <int Nodes>
+struct PointVariation {
+  const NodalValues<Nodes>& derivative;           ///< dr' = sum derivative[j] dr_j
+  const GeneralisedShapeFunctions<Nodes>& spins;  ///< of spin, spin'
+};
+
+/// The linearisation of a point with respect to node j's {dr_j, spin_j}.
+template <int Nodes, int Rows>
+Eigen::Matrix<double, Rows, 6> node_columns(const Eigen::Matrix<double, Rows, 9>& point,
+                                            const PointVariation<Nodes>& variation, int j) {
+  Eigen::Matrix<double, Rows, 6> columns;
+  columns.template leftCols<3>() = variation.derivative[j] * point.template leftCols<3>();
+  auto spin = columns.template rightCols<3>();
+  spin.noalias() = point.template middleCols<3>(3).lazyProduct(variation.spins.values[j]);
+  spin.noalias() += point.template rightCols<3>().lazyProduct(variation.spins.derivatives[j]);
+  return columns;
+}
+
+/// Adds the tangent of add_point_residual. `resultants` is d{n, m}, `couple` d(arm x n), columns {dr', spin, spin'}.
+template <int Nodes, class Tests>
+void add_point_tangent(double weight, const Tests& tests, const PointVariation<Nodes>& variation,
+                       const Eigen::Matrix<double, 6, 9>& resultants, const Eigen::Matrix<double, 3, 9>& couple,
+                       Eigen::Matrix<double, 6 * Nodes, 6 * Nodes>& tangent) {
+  Eigen::Matrix<double, 9, 9> all;
+  all << weight * resultants, weight * couple;
+  for (int j = 0; j < Nodes; ++j) {
+    const Eigen::Matrix<double, 9, 6> d = node_columns<Nodes, 9>(all, variation, j);
+    const Eigen::Matrix<double, 3, 6> moment = d.template middleRows<3>(3), cross = d.template bottomRows<3>();
+    for (int i = 0; i < Nodes; ++i) {
+      tangent.template block<3, 6>(6 * i, 6 * j) += variation.derivative[i] * d.template topRows<3>();
+      tangent.template block<3, 6>(6 * i + 3, 6 * j) += tests.derivative(i, moment);
+      tangent.template block<3, 6>(6 * i + 3, 6 * j) -= tests.value(i, cross);
+    }
+  }
+}
+
+/// Adds coefficient * mass_ij * vectors_j to the force rows, and slope * mass_ij to the translational tangent.
+template <int Nodes>
+void add_translational(const Eigen::Matrix<double, Nodes, Nodes>& mass, const std::array<Vector3, Nodes>& vectors,
+                       double slope, bool with_tangent, ElementSystem<Nodes>& system) {
+  for (int i = 0; i < Nodes; ++i) {
+    for (int j = 0; j < Nodes; ++j) {
+      system.residual.template segment<3>(6 * i) += mass(i, j) * vectors[j];
+      if (with_tangent) system.tangent.template block<3, 3>(6 * i, 6 * j).diagonal().array() += slope * mass(i, j);
+    }
+  }
+}
+
+}  // namespace flexarm

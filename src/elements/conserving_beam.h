@@ -1,0 +1,242 @@
+#pragma once
+/// Beam residual and tangent over a step for the energy-momentum (EM) family (beam.md 3.2, beyond.md 1):
+///   g_v^i = int {I^i' n,  I_t^i' m - I_t^i r'_* x n} ds,  n = Lambda_bar N_a,  m = Lambda_bar M_a.
+/// Momenta are conserved for any stress N_a, M_a and any test functions with sum I_t = 1, if the arm r'_* suits the
+/// rule of the velocities.
+///
+/// One source for one element (S = double) and for four of them side by side (S = Pack). The algebra is by 3 x 3 blocks
+/// in world axes: the linearisation of a point has few of them that are not zero, and fewer still where the section
+/// couples no forces with curvatures.
+
+#include "elements/conserving_point.h"
+#include "elements/strain_dampers.h"
+#include "math/cayley.h"
+#include "math/so3.h"
+
+namespace flexarm {
+
+/// Generalised shape functions at the stiffness points of an element.
+template <int Nodes, typename S = double>
+using ElementFunctions = std::array<GeneralisedShapeFunctions<Nodes, S>, Nodes - 1>;
+
+/// Their values for given nodal rotations.
+template <int Nodes, typename S>
+void element_functions(const ConservingElement<Nodes, S>& element, const std::array<QuaternionT<S>, Nodes>& orientation,
+                       ElementFunctions<Nodes, S>& functions) {
+  const LocalRotationVariation<Nodes, S> local{LocalRotations<Nodes, S>(orientation)};
+  for (int k = 0; k < Nodes - 1; ++k)
+    local.evaluate(element.points[k].shape, element.points[k].derivative, functions[k]);
+}
+
+/// The stiffness points for given nodal positions and rotations.
+template <int Nodes, typename S>
+void element_points(const ConservingElement<Nodes, S>& element, const std::array<Vector3T<S>, Nodes>& position,
+                    const std::array<QuaternionT<S>, Nodes>& orientation, PointKinematicsT<S>* points) {
+  const LocalRotations<Nodes, S> local(orientation);
+  for (int k = 0; k < Nodes - 1; ++k) {
+    const auto& constants = element.points[k];
+    points[k] = point_kinematics(local.evaluate(constants.shape, constants.derivative),
+                                 interpolate<Nodes>(constants.derivative, position), constants.reference_strain);
+  }
+}
+
+namespace conserving {
+
+/// The element's energy multiplier lambda.
+template <int Nodes, typename S>
+struct Multiplier {
+  S numerator = S(0), denominator = S(0), reference = S(0);
+
+  void add(const S& weight, const SectionStiffness<S>& stiffness, const PointKinematicsT<S>& begin,
+           const PointKinematicsT<S>& end, Point<Nodes, S>& p) {
+    // Tangent-scaled vector of Q = Lambda_{n+1} Lambda_n^T: 4 vee(Q) / (1 + tr Q).
+    Vector3T<S> axial = so3::cross(begin.rotation.col(0), end.rotation.col(0));
+    S trace = so3::dot(begin.rotation.col(0), end.rotation.col(0));
+    for (int c = 1; c < 3; ++c) {
+      axial += so3::cross(begin.rotation.col(c), end.rotation.col(c));
+      trace += so3::dot(begin.rotation.col(c), end.rotation.col(c));
+    }
+    const Vector3T<S> turn = (S(2) / (S(1) + trace)) * axial;
+    // Delta Gamma - s_Gamma = Lambda_bar^T (arm x (w_point - w)), free of cancellation.
+    Vector6T<S> defect;  // Delta Sigma - s
+    defect.template head<3>() = p.average_rotation.transpose() * so3::cross(p.arm, Vector3T<S>(turn - p.increment));
+    defect.template tail<3>() =
+        end.strain.template tail<3>() - begin.strain.template tail<3>() - p.conjugate_strain.template tail<3>();
+    numerator += weight * dot6(p.stress, defect);
+    denominator += weight * dot6(p.conjugate_strain, p.conjugate_stress);
+    reference += S(0.5) * weight * dot6(Vector6T<S>(end.strain + begin.strain), p.stress);
+    p.energy_stress = S(0.5) * stiffness.stress(defect) + p.stress;
+  }
+
+  /// lambda = num den / (den^2 + eps^2): the guard switches the correction off where the element does not deform.
+  S guarded_square() const {
+    using std::abs;
+    const S guard = S(1e-16) * abs(reference) + S(1e-60);
+    return denominator * denominator + guard * guard;
+  }
+  S value() const { return numerator * denominator / guarded_square(); }
+  /// d(lambda) as a linear form at a point.
+  PointForm<S> form(const S& weight, const Point<Nodes, S>& p) const {
+    const S q = guarded_square();
+    const S of_numerator = weight * (denominator / q);
+    const S of_denominator = weight * (numerator / q) * (S(1) - S(2) * denominator * (denominator / q));
+    return strain_form<Nodes, S>(p, (S(2) * of_denominator) * p.conjugate_stress - of_numerator * p.stress,
+                                 of_numerator * p.energy_stress);
+  }
+};
+
+/// Translational inertia (1/h) int I^i I^j mass (v_{n+1} - v_n), v_{n+1} = factor Delta r / h - (factor - 1) v_n, and
+/// mass-proportional damping by the mean velocity Delta r / h. Sets the system.
+template <int Nodes, typename S>
+void set_translation(const ConservingElement<Nodes, S>& element, const BeamNodes<Nodes, S>& nodes, double factor,
+                     double step, bool with_tangent, BlockSystem<Nodes, S>& system) {
+  std::array<Vector3T<S>, Nodes> mean, force;
+  S slope = S(factor / (step * step));
+  for (int i = 0; i < Nodes; ++i) {
+    mean[i] = S(1 / step) * (nodes.end[i] - nodes.begin[i]);
+    force[i] = S(factor / step) * (mean[i] - nodes.velocity[i]);
+  }
+  system.dissipated = S(0);
+  if (element.has_mass_damping) {
+    slope += element.mass_damping * S(1 / step);
+    for (int i = 0; i < Nodes; ++i) {
+      force[i] += element.mass_damping * mean[i];
+      for (int j = 0; j < Nodes; ++j)
+        system.dissipated += element.mass_damping * S(step) * element.mass(i, j) * so3::dot(mean[i], mean[j]);
+    }
+  }
+  for (int i = 0; i < Nodes; ++i) {
+    Vector3T<S> sum = element.mass(i, 0) * force[0];
+    for (int j = 1; j < Nodes; ++j) sum += element.mass(i, j) * force[j];
+    system.residual[i].template head<3>() = sum;
+    system.residual[i].template tail<3>().setConstant(S(0));
+    for (int j = 0; j < Nodes && with_tangent; ++j) {
+      Matrix6T<S>& block = system.tangent[i][j];
+      block.setConstant(S(0));
+      block.diagonal().template head<3>().setConstant(slope * element.mass(i, j));
+    }
+  }
+}
+
+}  // namespace conserving
+
+/// Internal forces, damping and translational inertia of one element over a step of length `step`, EM family. `begin`
+/// holds the element's stiffness points at t_n, `end` receives those at t_{n+1}; `memory`, `end_memory` serve
+/// numerical dissipation and damped elements; without either they may be null. Rotary inertia is added elsewhere.
+///
+/// The moment rows are tested with, and the increments interpolated by, generalised shape functions of about the middle
+/// of the step: `functions` are these (MidFunctions::Explicit) or those of the begin (Symmetric), which are averaged
+/// with those of the end; then the tangent, which leaves their variation out, makes Newton converge linearly, by a
+/// factor that falls with the step. Any of them conserve momenta (sum I_g = 1) and, with the multiplier, energy; those
+/// of the middle make Delta(strain) - s third order in the step. With the Lagrange functions (beyond.md 1.1) it is
+/// first order wherever an element is deformed, and the multiplier that makes up for it has no limit where the strain
+/// comes to rest.
+template <int Nodes, typename S>
+void conserving_beam(const ConservingElement<Nodes, S>& element, const BeamNodes<Nodes, S>& nodes, const TimeRule& rule,
+                     const ElementFunctions<Nodes, S>& functions, const PointKinematicsT<S>* begin,
+                     const StrainMemoryT<S>* memory, double step, bool with_tangent, PointKinematicsT<S>* end,
+                     StrainMemoryT<S>* end_memory, BlockSystem<Nodes, S>& system) {
+  constexpr int kPoints = Nodes - 1;
+  using conserving::Point;
+  const bool is_symmetric = rule.mid_functions == MidFunctions::Symmetric;
+  const bool is_corrected = rule.correction == EnergyCorrection::Multiplier;
+  const bool has_memory = rule.dissipation.any() || element.has_stiffness_damping;
+  conserving::set_translation<Nodes, S>(element, nodes, rule.velocity_factor(), step, with_tangent, system);
+
+  std::array<Point<Nodes, S>, kPoints> points;
+  ElementFunctions<Nodes, S> averages;
+  const LocalRotations<Nodes, S> rotations(nodes.orientation);
+  std::array<InterpolatedRotation<S>, kPoints> rotation;
+  if (with_tangent || is_symmetric) {
+    const LocalRotationVariation<Nodes, S> variation(rotations);
+    for (int k = 0; k < kPoints; ++k)
+      rotation[k] = variation.evaluate(element.points[k].shape, element.points[k].derivative, points[k].generalised);
+  } else {
+    for (int k = 0; k < kPoints; ++k)
+      rotation[k] = rotations.evaluate(element.points[k].shape, element.points[k].derivative);
+  }
+  for (int k = 0; k < kPoints && is_symmetric; ++k)
+    for (int i = 0; i < Nodes; ++i) {
+      averages[k].values[i] = S(0.5) * (functions[k].values[i] + points[k].generalised.values[i]);
+      averages[k].derivatives[i] = S(0.5) * (functions[k].derivatives[i] + points[k].generalised.derivatives[i]);
+    }
+  const ElementFunctions<Nodes, S>& mid = is_symmetric ? averages : functions;
+
+  conserving::Multiplier<Nodes, S> multiplier;
+  for (int k = 0; k < kPoints; ++k) {
+    const auto& constants = element.points[k];
+    end[k] =
+        point_kinematics(rotation[k], interpolate<Nodes>(constants.derivative, nodes.end), constants.reference_strain);
+    conserving::set_strains<Nodes, S>(mid[k], element.stiffness, nodes, begin[k], end[k], points[k]);
+    if (is_corrected) multiplier.add(constants.weight, element.stiffness, begin[k], end[k], points[k]);
+  }
+
+  const conserving::DamperParts<S> damper_parts(element.stiffness_damping, rule.damping_relaxation);
+  const S lambda = is_corrected ? multiplier.value() : S(0);
+  std::array<Matrix3T<S>, Nodes> inverse_tangent;  // S(w)^{-1}: dw = S^{-1} spin
+  std::array<Vector6T<S>, Nodes> conjugate_residual, multiplier_row;
+  for (int i = 0; i < Nodes && with_tangent; ++i) {
+    inverse_tangent[i] = cayley::inverse_tangent(nodes.increment[i]);
+    conjugate_residual[i].setConstant(S(0));
+    multiplier_row[i].setConstant(S(0));
+  }
+  for (int k = 0; k < kPoints; ++k) {
+    const auto& constants = element.points[k];
+    const Point<Nodes, S>& p = points[k];
+    S factor = lambda;
+    Vector6T<S> stress = p.stress;
+    if (rule.dissipation.any()) {
+      const conserving::NumericalDamper<S> damper(rule.dissipation, memory[k], p.conjugate_strain, element.stiffness,
+                                                  step);
+      factor += damper.factor;
+      stress -= damper.remembered;
+      system.dissipated += constants.weight * damper.dissipated;
+      end_memory[k].average = damper.average;
+    }
+    if (element.has_stiffness_damping) {
+      const conserving::StructuralDamper<S> damper(damper_parts, rule.damping_relaxation, memory[k], p.conjugate_strain,
+                                                   p.conjugate_stress, element.stiffness, step);
+      factor += damper.factor;
+      stress -= damper.remembered;
+      system.dissipated += constants.weight * damper.dissipated;
+      end_memory[k].delayed_rate = damper.delayed_rate;
+    }
+    if (has_memory) end_memory[k].rate = conserving::end_rate(memory[k], p.conjugate_strain, step);
+    stress += factor * p.conjugate_stress;
+    stress *= constants.weight;
+    const Vector3T<S> force = stress.template head<3>(), moment = stress.template tail<3>();
+    const Vector3T<S> n = p.average_rotation * force, m = p.average_rotation * moment;
+    conserving::add_residual<Nodes, S>(constants.derivative, mid[k], n, m, p.arm, system.residual);
+    if (!with_tangent) continue;
+
+    const bool is_coupled = element.stiffness.is_coupled;
+    const conserving::SlopeBuilder<Nodes, S> slope(p, constants.weight, factor);
+    conserving::ResultantSlopes<S> dn, dm;
+    slope.set_strain_part(element.stiffness.forces, false, dn);
+    slope.set_curvature_part(element.stiffness.moments, false, dm);
+    if (is_coupled) {
+      slope.set_curvature_part(element.stiffness.coupling, true, dn);
+      slope.set_strain_part(element.stiffness.coupling.transpose(), true, dm);
+    } else {  // not used, but compilers warn
+      dn.spin_derivative.setConstant(S(0));
+      dn.increment_derivative.setConstant(S(0));
+      dm.position.setConstant(S(0));
+      dm.increment.setConstant(S(0));
+    }
+    slope.add_turn(force, dn);
+    slope.add_turn(moment, dm);
+    conserving::add_tangent<Nodes, S>(constants.derivative, mid[k], p, inverse_tangent, is_coupled, n, dn, dm,
+                                      system.tangent);
+    if (!is_corrected) continue;
+    const Vector6T<S> conjugate = constants.weight * p.conjugate_stress;
+    conserving::add_residual<Nodes, S>(constants.derivative, mid[k], p.average_rotation * conjugate.template head<3>(),
+                                       p.average_rotation * conjugate.template tail<3>(), p.arm, conjugate_residual);
+    conserving::add_form<Nodes, S>(multiplier.form(constants.weight, p), constants.derivative, p.generalised, mid[k],
+                                   inverse_tangent, multiplier_row);
+  }
+  for (int i = 0; i < Nodes && is_corrected && with_tangent; ++i)
+    for (int j = 0; j < Nodes; ++j)
+      system.tangent[i][j] += conjugate_residual[i].lazyProduct(multiplier_row[j].transpose());
+}
+
+}  // namespace flexarm

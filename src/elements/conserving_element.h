@@ -1,0 +1,95 @@
+#pragma once
+/// What the kernel of the energy-momentum family reads and writes, for one element (S = double) or a pack of them.
+
+#include <array>
+
+#include "math/lanes.h"
+#include "math/local_rotation.h"
+#include "model/beam_element.h"
+#include "model/state.h"
+
+namespace flexarm {
+
+template <typename S>
+inline S dot6(const Vector6T<S>& a, const Vector6T<S>& b) {
+  return (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) + (a[3] * b[3] + a[4] * b[4] + a[5] * b[5]);
+}
+
+/// Stiffness of a section by blocks: the symmetric C of {N, M} = C {Gamma, K}.
+template <typename S>
+struct SectionStiffness {
+  Matrix3T<S> forces, coupling, moments;  ///< dN/dGamma, dN/dK, dM/dK
+  bool is_coupled = false;                ///< false: `coupling` is zero
+
+  Vector6T<S> stress(const Vector6T<S>& strain) const {
+    Vector6T<S> out;
+    out.template head<3>() = forces * strain.template head<3>();
+    out.template tail<3>() = moments * strain.template tail<3>();
+    if (is_coupled) {
+      out.template head<3>() += coupling * strain.template tail<3>();
+      out.template tail<3>() += coupling.transpose() * strain.template head<3>();
+    }
+    return out;
+  }
+};
+
+/// Constant data; units as in BeamElement.
+template <int Nodes, typename S = double>
+struct ConservingElement {
+  struct Point {
+    NodalValues<Nodes, S> shape, derivative;
+    S weight;
+    Vector6T<S> reference_strain;
+  };
+  std::array<Point, Nodes - 1> points;
+  SectionStiffness<S> stiffness;
+  Eigen::Matrix<S, Nodes, Nodes> mass;
+  S stiffness_damping, mass_damping;
+  bool has_stiffness_damping = false, has_mass_damping = false;
+};
+
+/// Makes an element a lane.
+template <int Nodes, typename S>
+void set_lane(ConservingElement<Nodes, S>& pack, int lane, const BeamElement<Nodes>& element) {
+  for (int k = 0; k < Nodes - 1; ++k) {
+    const auto& point = element.stiffness_points[k];
+    auto& to = pack.points[k];
+    set_lane(to.shape, lane, point.shape);
+    set_lane(to.derivative, lane, point.derivative);
+    set_lane(to.weight, lane, point.weight);
+    set_lane(to.reference_strain, lane, point.reference_strain);
+  }
+  const auto coupling = element.stiffness.template topRightCorner<3, 3>();
+  set_lane(pack.stiffness.forces, lane, element.stiffness.template topLeftCorner<3, 3>());
+  set_lane(pack.stiffness.coupling, lane, coupling);
+  set_lane(pack.stiffness.moments, lane, element.stiffness.template bottomRightCorner<3, 3>());
+  pack.stiffness.is_coupled = pack.stiffness.is_coupled || !coupling.isZero(0);
+  set_lane(pack.mass, lane, element.mass);
+  set_lane(pack.stiffness_damping, lane, element.stiffness_damping);
+  set_lane(pack.mass_damping, lane, element.mass_damping);
+  pack.has_stiffness_damping = pack.has_stiffness_damping || element.stiffness_damping != 0;
+  pack.has_mass_damping = pack.has_mass_damping || element.mass_damping != 0;
+}
+
+/// Nodal motion over a step.
+template <int Nodes, typename S = double>
+struct BeamNodes {
+  std::array<Vector3T<S>, Nodes> begin, end;      ///< positions [m]
+  std::array<QuaternionT<S>, Nodes> orientation;  ///< at the end
+  std::array<Vector3T<S>, Nodes> increment;       ///< tangent-scaled, Lambda_{n+1} = cay(w) Lambda_n
+  std::array<Vector3T<S>, Nodes> velocity;        ///< at the begin [m/s]
+};
+
+/// Block (i, j): derivative of node i's {f, phi} with respect to node j's {dr, spin}.
+template <int Nodes, typename S>
+using BlockTangent = std::array<std::array<Matrix6T<S>, Nodes>, Nodes>;
+
+/// Residual {f_i, phi_i} per node and its tangent.
+template <int Nodes, typename S = double>
+struct BlockSystem {
+  std::array<Vector6T<S>, Nodes> residual;
+  BlockTangent<Nodes, S> tangent;
+  S dissipated;  ///< over the step [J]
+};
+
+}  // namespace flexarm

@@ -1,0 +1,131 @@
+#pragma once
+/// Beam residual and tangent at one configuration: statics, natural modes and the Newmark family
+/// (beam.md 2.2, 2.5, 3.1).
+
+#include "elements/beam_point.h"
+#include "math/so3.h"
+
+namespace flexarm {
+
+/// Newmark's rule a_1 = (Delta x - h v_0 - (1/2 - beta) h^2 a_0) / (beta h^2), v_1 = v_0 + h ((1 - gamma) a_0 + gamma
+/// a_1), for translations and, with Delta x the material rotation increment, for rotations (Muñoz 2004, eq. 4.1-4.4).
+struct NewmarkRule {
+  double beta = 0.25, gamma = 0.5, step = 0;
+  double alpha = 0;  ///< strains are those at t_{n+1+alpha} (HHT3)
+
+  Vector3 acceleration(const Vector3& increment, const Vector3& velocity, const Vector3& acceleration) const {
+    return (increment - step * velocity - (0.5 - beta) * step * step * acceleration) / (beta * step * step);
+  }
+  Vector3 velocity(const Vector3& velocity, const Vector3& acceleration, const Vector3& new_acceleration) const {
+    return velocity + step * ((1 - gamma) * acceleration + gamma * new_acceleration);
+  }
+  double acceleration_slope() const { return 1 / (beta * step * step); }
+  double velocity_slope() const { return gamma / (beta * step); }
+};
+
+namespace endpoint {
+
+/// Linearisation of {n, m} and of r' x n at a point; columns {dr', spin, spin'} (Muñoz 2004, eq. F.9, F.27).
+struct PointTangent {
+  Eigen::Matrix<double, 6, 9> resultants;
+  Eigen::Matrix<double, 3, 9> couple;
+};
+
+/// `stress_slope`: d(stress)/d(strain) = stress_slope * stiffness (1, or more with damping).
+inline PointTangent point_tangent(const PointKinematics& point, const Matrix6& stiffness, double stress_slope,
+                                  const Vector3& n, const Vector3& m) {
+  const Matrix3& rotation = point.rotation;
+  const Eigen::Matrix<double, 6, 9> stress = stress_slope * stiffness.lazyProduct(strain_derivative(point));
+  PointTangent d;
+  d.resultants.topRows<3>().noalias() = rotation.lazyProduct(stress.topRows<3>());
+  d.resultants.bottomRows<3>().noalias() = rotation.lazyProduct(stress.bottomRows<3>());
+  d.resultants.block<3, 3>(0, 3) -= so3::hat(n);
+  d.resultants.block<3, 3>(3, 3) -= so3::hat(m);
+  d.couple = so3::hat(point.tangent) * d.resultants.topRows<3>();
+  d.couple.leftCols<3>() -= so3::hat(n);
+  return d;
+}
+
+/// Stress at a point with stiffness-proportional damping.
+struct PointStress {
+  Vector6 stress, strain_rate;
+  double slope = 1;       ///< d(stress)/d(strain) = slope * stiffness
+  double dissipated = 0;  ///< over the step [J/m]
+};
+
+/// `rule` null: statics. `begin`, `strain_rate`: at the begin of the step, used where there is damping.
+template <int Nodes>
+PointStress point_stress(const BeamElement<Nodes>& element, const Vector6& strain, const NewmarkRule* rule,
+                         const PointKinematics& begin, const Vector6& strain_rate) {
+  PointStress out;
+  out.stress = element.stiffness * strain;
+  out.strain_rate.setZero();
+  if (!rule || element.stiffness_damping == 0) return out;
+  const Vector6 increment = (strain - begin.strain) / (1 + rule->alpha);
+  out.strain_rate = (increment / rule->step - (1 - rule->gamma) * strain_rate) / rule->gamma;
+  const Vector6 rate = (1 + rule->alpha) * out.strain_rate - rule->alpha * strain_rate;
+  const Vector6 damping_stress = element.stiffness_damping * (element.stiffness * rate);
+  out.stress += damping_stress;
+  out.slope += element.stiffness_damping / (rule->gamma * rule->step);
+  out.dissipated = damping_stress.dot(increment);
+  return out;
+}
+
+}  // namespace endpoint
+
+/// Internal forces of one element at the end configuration; its stiffness points go to `end`. With a rule (dynamics):
+/// stiffness-proportional damping from `begin`, the points at the begin, and their strain rates; those at the end go to
+/// `new_strain_rates`.
+template <int Nodes>
+void endpoint_internal(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const NewmarkRule* rule,
+                       const PointKinematics* begin, const Vector6* strain_rates, bool with_tangent,
+                       PointKinematics* end, Vector6* new_strain_rates, ElementSystem<Nodes>& system) {
+  const ElementRotations<Nodes> rotations(nodes, with_tangent);
+  for (int k = 0; k < BeamElement<Nodes>::kStiffnessPoints; ++k) {
+    const auto& constants = element.stiffness_points[k];
+    GeneralisedShapeFunctions<Nodes> generalised;
+    const auto* reference = nodes.stiffness_reference ? nodes.stiffness_reference + k : nullptr;
+    const auto rotation = rotations.evaluate(constants.shape, constants.derivative, reference, generalised);
+    end[k] =
+        point_kinematics(rotation, interpolate<Nodes>(constants.derivative, nodes.end), constants.reference_strain);
+    const endpoint::PointStress point = endpoint::point_stress(element, end[k].strain, rule, begin[k], strain_rates[k]);
+    system.dissipated += constants.weight * point.dissipated;
+    new_strain_rates[k] = point.strain_rate;
+    const Vector3 n = end[k].rotation * point.stress.head<3>(), m = end[k].rotation * point.stress.tail<3>();
+    const LagrangeTests<Nodes> tests{constants.shape, constants.derivative};
+    add_point_residual<Nodes>(constants.weight, constants.derivative, tests, n, m, end[k].tangent, system.residual);
+    if (!with_tangent) continue;
+    const endpoint::PointTangent d = endpoint::point_tangent(end[k], element.stiffness, point.slope, n, m);
+    add_point_tangent<Nodes>(constants.weight, tests, {constants.derivative, generalised}, d.resultants, d.couple,
+                             system.tangent);
+  }
+}
+
+/// Newmark translational inertia.
+template <int Nodes>
+void newmark_translation(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const NewmarkRule& rule,
+                         bool with_tangent, ElementSystem<Nodes>& system) {
+  std::array<Vector3, Nodes> acceleration;
+  for (int i = 0; i < Nodes; ++i)
+    acceleration[i] = rule.acceleration(nodes.end[i] - nodes.begin[i], nodes.velocity[i], nodes.acceleration[i]);
+  add_translational<Nodes>(element.mass, acceleration, rule.acceleration_slope(), with_tangent, system);
+}
+
+/// Mass-proportional damping by the velocity at t_{n+1+alpha}.
+template <int Nodes>
+void newmark_mass_damping(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const NewmarkRule& rule,
+                          bool with_tangent, ElementSystem<Nodes>& system) {
+  if (element.mass_damping == 0) return;
+  std::array<Vector3, Nodes> force;
+  for (int i = 0; i < Nodes; ++i) {
+    const Vector3 a = rule.acceleration(nodes.end[i] - nodes.begin[i], nodes.velocity[i], nodes.acceleration[i]);
+    const Vector3 v = rule.velocity(nodes.velocity[i], nodes.acceleration[i], a);
+    force[i] = element.mass_damping * ((1 + rule.alpha) * v - rule.alpha * nodes.velocity[i]);
+    for (int j = 0; j < Nodes; ++j)
+      system.dissipated += element.mass(i, j) * force[i].dot(nodes.end[j] - nodes.begin[j]);
+  }
+  add_translational<Nodes>(element.mass, force, element.mass_damping * (1 + rule.alpha) * rule.velocity_slope(),
+                           with_tangent, system);
+}
+
+}  // namespace flexarm

@@ -1,0 +1,24 @@
+#pragma once
+/// Residual and tangent of a nodal load.
+
+#include "model/joint.h"
+#include "model/model.h"
+
+namespace flexarm {
+
+/// With which rotation a load acts in a step.
+enum class LoadPoint {
+  Mean,  ///< average rotation (conserving schemes): the work over the step is exact
+  End    ///< rotation at the end (statics, Newmark)
+};
+
+/// Spatial force and moment about the node, and their derivative with respect to the node's spin at the end (6 x 3).
+struct LoadAction {
+  Vector6 wrench;
+  Eigen::Matrix<double, 6, 3> derivative;
+};
+
+/// `scale`: value of the load's history. (beam.md 3.4)
+LoadAction load_action(const NodalLoad& load, double scale, const Matrix3& begin, const Matrix3& end, LoadPoint point);
+
+}  // namespace flexarm

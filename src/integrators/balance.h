@@ -1,0 +1,27 @@
+#pragma once
+/// Energies and momenta of a state.
+
+#include "integrators/scheme.h"
+#include "model/model.h"
+#include "model/state.h"
+
+namespace flexarm {
+
+/// Energies of a state [J]; work and dissipation are path integrals since the start.
+struct Energies {
+  double kinetic = 0, strain = 0, potential = 0, work = 0, dissipated = 0;
+  double total() const { return kinetic + strain + potential; }
+};
+
+/// Linear and angular momentum (about the world origin) [kg m/s, kg m^2/s].
+struct Momenta {
+  Vector3 linear = Vector3::Zero(), angular = Vector3::Zero();
+};
+
+/// By the scheme's own quadrature (lumped or integrated rotary inertia), so that its balance is exact. `strain`
+/// contains the elastic energy of joint stops and what numerical dissipation has stored (second order in the step);
+/// `potential` is that of gravity.
+Energies energies(const Model& model, const Scheme& scheme, const State& state);
+Momenta momenta(const Model& model, const Scheme& scheme, const State& state);
+
+}  // namespace flexarm

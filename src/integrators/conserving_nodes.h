@@ -1,0 +1,34 @@
+#pragma once
+/// Inertia lumped at the nodes of a model over a step of the energy-momentum family, in packs of nodes.
+
+#include <array>
+#include <vector>
+
+#include "elements/conserving_node.h"
+#include "elements/time_rule.h"
+#include "integrators/step_motion.h"
+#include "solver/sparse_assembler.h"
+
+namespace flexarm {
+
+class ConservingNodes {
+ public:
+  /// Empty unless the rule is one of the family, all of which turn bodies by tangent-scaled increments.
+  ConservingNodes(const Model& model, const TimeRule& rule);
+
+  /// Adds the rates of momentum.
+  void add(const StepMotion& step, bool with_tangent, SparseAssembler& assembler) const;
+
+ private:
+  /// Nodes side by side; the last one fills what the model leaves of its last pack.
+  struct NodePack {
+    int lanes = 0;  // in use
+    std::array<int, Pack::kLanes> nodes;
+    LumpedInertia<Pack> inertia;
+  };
+
+  double velocity_factor_;
+  std::vector<NodePack> packs_;
+};
+
+}  // namespace flexarm

@@ -1,0 +1,18 @@
+#pragma once
+/// The motion of all nodes over a step.
+
+#include <vector>
+
+#include "model/model.h"
+#include "model/state.h"
+
+namespace flexarm {
+
+struct StepMotion {
+  const State& state;  ///< at the begin
+  const std::vector<NodePose>&begin, &end;
+  const std::vector<Vector3>& increments;  ///< tangent-scaled
+  double step;                             ///< [s]
+};
+
+}  // namespace flexarm

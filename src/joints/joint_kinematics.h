@@ -1,0 +1,26 @@
+#pragma once
+/// Kinematics of a model's joints of any kind.
+
+#include "joints/joint_map.h"
+#include "joints/slide_map.h"
+#include "model/model.h"
+
+namespace flexarm {
+
+/// Pose of the slave of joint `j` from those of the other nodes.
+NodePose slave_pose(const Model& model, int j, const std::vector<NodePose>& nodes, const Released& released);
+
+/// How the velocity of a joint's slave follows: carried + columns * rates.
+struct SlaveVelocity {
+  Vector6 carried;          ///< {v, w} with the released rates at zero
+  ReleasedColumns columns;  ///< per released rate
+};
+/// `velocities`: spatial {v, w} of the model's nodes.
+SlaveVelocity slave_velocity(const Model& model, int j, const std::vector<NodePose>& nodes, const Released& released,
+                             const std::vector<Vector6>& velocities);
+
+/// Least-squares released rates from the velocities of all nodes.
+ReleasedVector released_rates(const Model& model, int j, const std::vector<NodePose>& nodes, const Released& released,
+                              const std::vector<Vector6>& velocities);
+
+}  // namespace flexarm

@@ -1,0 +1,274 @@
+#pragma once
+/// Sections of a slide line between its nodes, for scalars of any kind.
+///
+/// A plain line is that of the elements, whose tangents jump at their borders. A smooth one adds to each element what
+/// turns its end tangents into the average with the neighbour's, by cubic Hermite functions; the frames alike, by
+/// rotations: r + H (jump of r'), exp(H (jump of k)) Lambda. Nodes stay where they are. (joints.md 4.1, beyond.md 2)
+
+#include <array>
+#include <type_traits>
+
+#include "math/cayley.h"
+#include "math/local_rotation.h"
+#include "model/slide_line.h"
+
+namespace flexarm {
+
+/// A node's pose with scalars of any kind (complex steps).
+template <typename S>
+struct PoseT {
+  Vector3T<S> position;
+  QuaternionT<S> orientation;
+};
+
+/// The section of the line at an arc length X.
+template <typename S>
+struct Section {
+  Vector3T<S> position, tangent;  ///< r, dr/dX
+  Matrix3T<S> rotation;           ///< Lambda
+  Vector3T<S> spatial_curvature;  ///< k = Lambda Upsilon: spin per change of X [1/m]
+};
+
+namespace slide {
+
+constexpr int kMostNodes = 5;                 ///< of an element
+constexpr int kMostWeights = 3 * kMostNodes;  ///< nodes on which a section depends
+
+/// Calls visit(std::integral_constant<int, N>) for the number of nodes of a piece.
+template <class Visit>
+decltype(auto) with_node_count(int count, const Visit& visit) {
+  switch (count) {
+    case 2:
+      return visit(std::integral_constant<int, 2>());
+    case 3:
+      return visit(std::integral_constant<int, 3>());
+    case 4:
+      return visit(std::integral_constant<int, 4>());
+    default:
+      return visit(std::integral_constant<int, 5>());
+  }
+}
+
+/// Functions of a piece or a line over its nodes, one after the other from node `first` on: r = values[i] r_i.
+template <typename S, int Most>
+struct Weights {
+  int first = 0, count = 0;
+  std::array<S, Most> values, derivatives;  ///< the latter over the arc length
+};
+template <typename S>
+using LagrangeWeights = Weights<S, kMostNodes>;
+template <typename S>
+using LineWeights = Weights<S, kMostWeights>;
+
+/// Lagrange functions of a piece.
+template <typename S>
+LagrangeWeights<S> lagrange_weights(const SlidePiece& piece, const S& arc_length) {
+  LagrangeWeights<S> out;
+  out.first = piece.first_node;
+  out.count = piece.node_count;
+  const double scale = 2 / piece.length();
+  const S xi = scale * (arc_length - piece.begin) - S(1);
+  for (int i = 0; i < piece.node_count; ++i) {
+    S value(1), derivative(0);
+    for (int k = 0; k < piece.node_count; ++k) {
+      if (k == i) continue;
+      const double slope = 1 / (node_coordinate(piece.node_count, i) - node_coordinate(piece.node_count, k));
+      const S factor = slope * (xi - node_coordinate(piece.node_count, k));
+      derivative = derivative * factor + value * slope;
+      value *= factor;
+    }
+    out.values[i] = value;
+    out.derivatives[i] = scale * derivative;
+  }
+  return out;
+}
+
+/// (I(to) - I(from)) / (to - from) of a piece's Lagrange functions, free of cancellation: [fg] = [f] g(to) + f(from)
+/// [g].
+template <typename S>
+std::array<S, kMostNodes> lagrange_differences(const SlidePiece& piece, double from, const S& to) {
+  std::array<S, kMostNodes> out;
+  const double scale = 2 / piece.length();
+  const double xi_from = scale * (from - piece.begin) - 1;
+  const S xi_to = scale * (to - piece.begin) - S(1);
+  for (int i = 0; i < piece.node_count; ++i) {
+    double at_from = 1;
+    S difference(0);
+    for (int k = 0; k < piece.node_count; ++k) {
+      if (k == i) continue;
+      const double node = node_coordinate(piece.node_count, k);
+      const double slope = 1 / (node_coordinate(piece.node_count, i) - node);
+      difference = difference * (slope * (xi_to - node)) + at_from * slope;
+      at_from *= slope * (xi_from - node);
+    }
+    out[i] = scale * difference;
+  }
+  return out;
+}
+
+/// Cubics of a piece that are 0 at both ends and have the slope 1 at the begin, or at the end.
+struct Hermite {
+  double begin, length;
+  bool at_end;
+  template <typename S>
+  S value(const S& arc_length) const {
+    const S xi = (arc_length - begin) / length;
+    return at_end ? length * xi * xi * (xi - 1.0) : length * xi * (1.0 - xi) * (1.0 - xi);
+  }
+  template <typename S>
+  S slope(const S& arc_length) const {
+    const S xi = (arc_length - begin) / length;
+    return at_end ? xi * (3.0 * xi - 2.0) : (1.0 - xi) * (1.0 - 3.0 * xi);
+  }
+  /// (H(to) - H(from)) / (to - from).
+  template <typename S>
+  S difference(double from, const S& to) const {
+    const double s = (from - begin) / length;
+    const S t = (to - begin) / length;
+    const S cubic = s * s + s * t + t * t, square = s + t;
+    return at_end ? cubic - square : 1.0 - 2.0 * square + cubic;
+  }
+};
+
+/// Calls visit(neighbour's index, arc length of the border, share, Hermite) for the borders of a piece at which a
+/// smooth line is not the elements': its tangent there is the piece's + share (the neighbour's - the piece's), the
+/// shares being weighted by lengths such that both sides agree.
+template <class Visit>
+void for_each_smoothed_border(const SlideLine& line, int index, const Visit& visit) {
+  if (!line.smooth) return;
+  const SlidePiece& piece = line.pieces[index];
+  for (const bool at_end : {false, true}) {
+    const int neighbour = at_end ? index + 1 : index - 1;
+    if (neighbour < 0 || neighbour >= static_cast<int>(line.pieces.size())) continue;
+    const double share = piece.length() / (piece.length() + line.pieces[neighbour].length());
+    visit(neighbour, at_end ? piece.end : piece.begin, share, Hermite{piece.begin, piece.length(), at_end});
+  }
+}
+
+/// Adds the jumps of the tangents at the piece's borders to weights of its support; `factors(hermite)`: of the values
+/// and of the derivatives.
+template <typename S, class Factors>
+void add_smoothing(const SlideLine& line, int index, const Factors& factors, LineWeights<S>& weights) {
+  for_each_smoothed_border(line, index, [&](int neighbour, double border, double share, const Hermite& hermite) {
+    const auto [value, derivative] = factors(hermite);
+    for (const auto& [piece, sign] : {std::pair{neighbour, share}, std::pair{index, -share}}) {
+      const LagrangeWeights<double> jump = lagrange_weights(line.pieces[piece], border);
+      for (int i = 0; i < jump.count; ++i) {
+        weights.values[jump.first + i - weights.first] += sign * jump.derivatives[i] * value;
+        weights.derivatives[jump.first + i - weights.first] += sign * jump.derivatives[i] * derivative;
+      }
+    }
+  });
+}
+
+template <typename S>
+LineWeights<S> empty_weights(const SlideLine& line, int index) {
+  const NodeRange support = line.support(index, index);
+  LineWeights<S> out;
+  out.first = support.first;
+  out.count = support.end - support.first;
+  out.values.fill(S(0));
+  out.derivatives.fill(S(0));
+  return out;
+}
+
+/// Functions of the line at an arc length of the piece `index`.
+template <typename S>
+LineWeights<S> line_weights(const SlideLine& line, int index, const S& arc_length) {
+  LineWeights<S> out = empty_weights<S>(line, index);
+  const LagrangeWeights<S> plain = lagrange_weights(line.pieces[index], arc_length);
+  for (int i = 0; i < plain.count; ++i) {
+    out.values[plain.first + i - out.first] = plain.values[i];
+    out.derivatives[plain.first + i - out.first] = plain.derivatives[i];
+  }
+  add_smoothing(
+      line, index,
+      [&](const Hermite& hermite) { return std::pair<S, S>(hermite.value(arc_length), hermite.slope(arc_length)); },
+      out);
+  return out;
+}
+
+/// Their divided differences within the piece `index`, as values.
+template <typename S>
+LineWeights<S> line_differences(const SlideLine& line, int index, double from, const S& to) {
+  LineWeights<S> out = empty_weights<S>(line, index);
+  const SlidePiece& piece = line.pieces[index];
+  const std::array<S, kMostNodes> plain = lagrange_differences(piece, from, to);
+  for (int i = 0; i < piece.node_count; ++i) out.values[piece.first_node + i - out.first] = plain[i];
+  add_smoothing(
+      line, index, [&](const Hermite& hermite) { return std::pair<S, S>(hermite.difference(from, to), S(0)); }, out);
+  return out;
+}
+
+/// Rotation and spatial curvature by a piece's own interpolation.
+template <typename S>
+struct Frame {
+  Matrix3T<S> rotation;
+  Vector3T<S> spatial_curvature;
+};
+template <typename S, class Poses>
+Frame<S> element_frame(const SlidePiece& piece, const S& arc_length, const Poses& poses) {
+  const LagrangeWeights<S> w = lagrange_weights(piece, arc_length);
+  Frame<S> out;
+  with_node_count(piece.node_count, [&](auto count) {
+    constexpr int N = decltype(count)::value;
+    std::array<QuaternionT<S>, N> orientation;
+    for (int i = 0; i < N; ++i) orientation[i] = poses(piece.first_node + i).orientation;
+    const LocalRotations<N, S> local(orientation);
+    Vector3T<S> theta = Vector3T<S>::Zero(), slope = Vector3T<S>::Zero();
+    for (int i = 0; i < N; ++i) {
+      theta += w.values[i] * local.rotation_vectors()[i];
+      slope += w.derivatives[i] * local.rotation_vectors()[i];
+    }
+    const so3::ExponentialMap<S> map(theta);
+    out.rotation = map.rotation() * local.reference_rotation();
+    // Local vectors are kept in space, so T theta' is the spin per arc length in space.
+    out.spatial_curvature = map.tangent() * slope;
+  });
+  return out;
+}
+
+/// What a smooth line's frame is turned by, psi = sum H (jump of k), and its derivative over the arc length.
+template <typename S, class Poses>
+std::pair<Vector3T<S>, Vector3T<S>> frame_smoothing(const SlideLine& line, int index, const S& arc_length,
+                                                    const Poses& poses) {
+  Vector3T<S> turn = Vector3T<S>::Zero(), slope = Vector3T<S>::Zero();
+  for_each_smoothed_border(line, index, [&](int neighbour, double border, double share, const Hermite& hermite) {
+    const Vector3T<S> jump = S(share) * (element_frame(line.pieces[neighbour], S(border), poses).spatial_curvature -
+                                         element_frame(line.pieces[index], S(border), poses).spatial_curvature);
+    turn += hermite.value(arc_length) * jump;
+    slope += hermite.slope(arc_length) * jump;
+  });
+  return {turn, slope};
+}
+
+}  // namespace slide
+
+/// Rotation and curvature only, in the piece `index`; `poses(i)`: PoseT<S> of the line's node i.
+template <typename S, class Poses>
+slide::Frame<S> frame_at(const SlideLine& line, int index, const S& arc_length, const Poses& poses) {
+  slide::Frame<S> frame = slide::element_frame(line.pieces[index], arc_length, poses);
+  if (!line.smooth) return frame;
+  const auto [turn, slope] = slide::frame_smoothing(line, index, arc_length, poses);
+  const so3::ExponentialMap<S> map(turn);
+  const Matrix3T<S> rotation = map.rotation();
+  frame.rotation = (rotation * frame.rotation).eval();
+  frame.spatial_curvature = (map.tangent() * slope + rotation * frame.spatial_curvature).eval();
+  return frame;
+}
+
+/// The section at arc length X.
+template <typename S, class Poses>
+Section<S> section_at(const SlideLine& line, int index, const S& arc_length, const Poses& poses) {
+  const slide::Frame<S> frame = frame_at(line, index, arc_length, poses);
+  Section<S> out{Vector3T<S>::Zero(), Vector3T<S>::Zero(), frame.rotation, frame.spatial_curvature};
+  const slide::LineWeights<S> w = slide::line_weights(line, index, arc_length);
+  for (int i = 0; i < w.count; ++i) {
+    const PoseT<S> pose = poses(w.first + i);
+    out.position += w.values[i] * pose.position;
+    out.tangent += w.derivatives[i] * pose.position;
+  }
+  return out;
+}
+
+}  // namespace flexarm

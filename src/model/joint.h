@@ -1,0 +1,68 @@
+#pragma once
+/// Constant data of elementary joints, the values of their released coordinates, and poses of nodes.
+///
+/// Notation: B = Lambda_m A the joint frame, A its orientation in the master node's frame, b its origin there:
+///   r = r_m + Lambda_m b + B (displacement),   Lambda = B Lambda_J Lambda_0.
+/// A joint with several scalar coordinates is a chain of elementary ones through massless nodes.
+
+#include <memory>
+
+#include "flexarm/math/cam_profile.h"
+#include "flexarm/math/pose.h"
+#include "model/slide_line.h"
+
+namespace flexarm {
+
+/// Which released coordinates an elementary joint has.
+enum class JointMapKind {
+  Rigid,      ///< none
+  Scalar,     ///< one: translation along `translation` and rotation about `rotation`, both functions of it
+  Spherical,  ///< three: a free rotation
+  Free,       ///< six: translation and rotation
+  Slide       ///< one: the arc length of a section that slides along a line of nodes
+};
+
+constexpr int released_count(JointMapKind kind) {
+  switch (kind) {
+    case JointMapKind::Rigid:
+      return 0;
+    case JointMapKind::Scalar:
+    case JointMapKind::Slide:
+      return 1;
+    case JointMapKind::Spherical:
+      return 3;
+    case JointMapKind::Free:
+      return 6;
+  }
+  return 0;
+}
+
+/// Constant data of an elementary joint.
+struct JointMap {
+  JointMapKind kind = JointMapKind::Rigid;
+  int master = -1;                                        ///< node; -1: the world; Slide: the line's first node
+  int slave = -1;                                         ///< node
+  Pose origin;                                            ///< joint frame in the master node's frame (b, A)
+  Quaternion slave_orientation = Quaternion::Identity();  ///< Lambda_0: slave node's frame in the moved joint frame
+  int line = -1;                                          ///< Slide: index into Model::slide_lines
+  SlideAlgorithm algorithm;                               ///< Slide
+  int leaving = -1;  ///< Slide: joint whose slave flies on beyond the line's ends; -1: it does not leave
+  Vector3 translation = Vector3::Zero();      ///< Scalar: travel per unit of f(coordinate), joint frame
+  std::shared_ptr<const CamProfile> profile;  ///< Scalar: f; null: f(u) = u
+  Vector3 rotation = Vector3::Zero();         ///< Scalar: rotation vector per unit coordinate, joint frame
+};
+
+/// Values of the released coordinates.
+struct Released {
+  Vector3 displacement = Vector3::Zero();        ///< Scalar, Slide: u in [0]; Free: translation in the joint frame [m]
+  Quaternion rotation = Quaternion::Identity();  ///< Spherical, Free: Lambda_J
+};
+
+/// A node's pose with its rotation matrix at hand.
+struct NodePose {
+  Vector3 position = Vector3::Zero();
+  Quaternion orientation = Quaternion::Identity();
+  Matrix3 rotation = Matrix3::Identity();
+};
+
+}  // namespace flexarm

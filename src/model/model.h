@@ -1,0 +1,129 @@
+#pragma once
+/// The mechanism as numbers: nodes, elements, joints, loads and their numbering. Immutable after building.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "flexarm/math/time_function.h"
+#include "flexarm/scene/scene_description.h"
+#include "model/beam_element.h"
+#include "model/joint.h"
+#include "model/loop_closure.h"
+#include "model/slide_line.h"
+
+namespace flexarm {
+
+/// Mass and rotary inertia lumped at a node whose origin is their centre of mass, in the node's frame.
+struct NodalInertia {
+  double mass = 0;                           ///< [kg]
+  Matrix3 rotary = Matrix3::Zero();          ///< of rigid bodies [kg m^2]
+  Matrix3 beam_rotary = Matrix3::Zero();     ///< of the beams, int I^i ds J; used where a scheme lumps it [kg m^2]
+  Matrix3 rotary_damping = Matrix3::Zero();  ///< mass-proportional damping of the beams' rotation [kg m^2/s]
+  double total_mass = 0;                     ///< with the beams' share int I^i mass ds: weight and momentum [kg]
+  bool empty() const { return mass == 0 && rotary.isZero(0) && beam_rotary.isZero(0) && rotary_damping.isZero(0); }
+};
+
+/// A load on a node: force at the material point `arm` of its frame, and a moment; scaled by history(t).
+struct NodalLoad {
+  int node = -1;
+  Vector3 arm = Vector3::Zero(), force = Vector3::Zero(), moment = Vector3::Zero();  ///< world or node frame
+  scene::LoadFrame frame = scene::LoadFrame::World;
+  int history = 0;  ///< index into Model::histories
+};
+
+/// Unilateral stop of a scalar coordinate: penalty k [N/m or N m/rad] and contact damping c.
+struct LimitStop {
+  double lower, upper, stiffness, damping;
+};
+
+/// How a coordinate follows another one u: offset + multiplier f(u).
+struct MimicLaw {
+  double multiplier = 1, offset = 0;
+  std::shared_ptr<const CamProfile> profile;  ///< f; null: f(u) = u
+
+  double value(double u) const { return offset + multiplier * (profile ? profile->value(u) : u); }
+  double derivative(double u) const { return multiplier * (profile ? profile->derivative(u) : 1.0); }
+  double second_derivative(double u) const { return profile ? multiplier * profile->second_derivative(u) : 0.0; }
+  double secant(double from, double to) const { return multiplier * (profile ? profile->secant(from, to) : 1.0); }
+  /// Of the secant, with respect to `to`.
+  double secant_derivative(double from, double to) const {
+    return profile ? multiplier * profile->secant_derivative(from, to) : 0.0;
+  }
+};
+
+/// One released scalar as users see it.
+struct Coordinate {
+  std::string name;
+  int joint = -1;         ///< index into Model::joints
+  int component = 0;      ///< row among the joint's released coordinates
+  bool is_angle = false;  ///< component of a rotation vector of a Spherical or Free joint
+  double damping = 0, friction = 0;
+  bool sticks = false;              ///< set-valued Coulomb law; else smooth
+  double friction_coefficient = 0;  ///< of the joint's normal force, times a radius where the coordinate is an angle
+  double effort_limit = 0;          ///< 0: none
+  std::optional<LimitStop> limit;
+  int motion = -1;    ///< history index of a prescribed position; -1: free
+  int effort = -1;    ///< history index of the scene's effort; -1: none
+  int mimicked = -1;  ///< coordinate that this one follows; -1: none
+  MimicLaw mimic;
+  bool is_coupled = false;  ///< it follows the coordinate right behind it, of the same joint
+};
+
+/// A frame fixed to a node.
+struct Attachment {
+  int node = -1;
+  Pose offset;
+};
+
+/// Placement of a flexible link's mesh, for output: elements in order along the line.
+struct BeamLink {
+  int order = 2;                     ///< elements are in the group of order + 1 nodes
+  std::vector<int> elements;         ///< indices into that group
+  std::vector<double> element_ends;  ///< arc length at the end of each [m]
+  Attachment tip;
+  Vector3 centroid =
+      Vector3::Zero();  ///< mass centroid in the section: nodes lie there, the reference line at -centroid
+  double length = 0, mass = 0, radius = 0;
+};
+
+struct LinkFrame {
+  std::string name;
+  Attachment frame;  ///< of the link origin
+  std::optional<BeamLink> beam;
+};
+
+/// A point of a link for output: on a node, or inside an element of the link's beam at shape parameter xi in [-1, 1].
+struct ProbePoint {
+  int link = -1;
+  Attachment attachment;  ///< node < 0: inside an element
+  int element = -1;
+  double xi = 0;
+  Pose offset;  ///< in the interpolated section frame
+};
+
+struct Model {
+  // ---- mechanics
+  std::vector<NodePose> nodes;         ///< initial poses (released coordinates at their initial values)
+  std::vector<NodalInertia> inertias;  ///< per node
+  BeamGroups beams;
+  int stiffness_point_count = 0, mass_point_count = 0;
+  std::vector<JointMap> joints;  ///< root to leaf
+  std::vector<SlideLine> slide_lines;
+  std::vector<LoopClosure> closures;       ///< loops that no joint closes by its slave
+  std::vector<Released> initial_released;  ///< per joint
+  std::vector<Vector6> initial_velocity;   ///< per node {v, w}, spatial
+  std::vector<Coordinate> coordinates;
+  std::vector<int> first_coordinate;  ///< per joint; its coordinates are consecutive
+  std::vector<NodalLoad> loads;
+  std::vector<TimeFunction> histories;
+  Vector3 gravity = Vector3::Zero();
+  double length_scale = 1;  ///< extent of the mechanism [m]: scales displacements in the convergence test
+
+  // ---- output
+  std::vector<LinkFrame> links;  ///< in the scene's order
+  std::vector<ProbePoint> probes;
+};
+
+}  // namespace flexarm
