@@ -5,7 +5,7 @@
 /// in so3.h: d(cay w) = hat(dvartheta) cay w with dvartheta = S(w) dw. |w| grows without bound as the angle
 /// approaches pi. (Muñoz 2004, appendix G)
 
-#include <flexarm/math/so3.h>
+#include "math/so3.h"
 
 namespace flexarm::cayley {
 

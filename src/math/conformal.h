@@ -9,7 +9,7 @@
 /// (T follows from spin = 2 (q_0 dq_v - q_v dq_0 + q_v x dq_v).) Conventions as in so3.h: d(Lambda) = hat(dvartheta)
 /// Lambda with dvartheta = T(c) dc. (docs/notes/beam.md, sec. 1.4; Milenkovic 1982)
 
-#include <flexarm/math/cayley.h>
+#include "math/cayley.h"
 
 namespace flexarm::conformal {
 

@@ -13,8 +13,8 @@
 #include <array>
 #include <cstddef>
 
-#include <flexarm/math/shape_functions.h>
-#include <flexarm/math/so3.h>
+#include "math/shape_functions.h"
+#include "math/so3.h"
 
 namespace flexarm {
 

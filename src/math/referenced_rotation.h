@@ -5,8 +5,8 @@
 /// tangent-scaled vectors and the last step, that of Simo, Tarnow and Doblaré. None is strain-invariant.
 /// (Muñoz 2004, sec. 5.2; eq. 5.5, E.3, E.9)
 
-#include <flexarm/math/cayley.h>
-#include <flexarm/math/local_rotation.h>
+#include "math/cayley.h"
+#include "math/local_rotation.h"
 
 namespace flexarm {
 

@@ -7,7 +7,7 @@
 #include <complex>
 #include <limits>
 
-#include <flexarm/math/pack.h>
+#include "math/pack.h"
 
 namespace flexarm::so3 {
 

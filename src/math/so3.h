@@ -8,7 +8,7 @@
 
 #include <Eigen/Geometry>
 
-#include <flexarm/math/rotation_series.h>
+#include "math/rotation_series.h"
 
 namespace flexarm {
 

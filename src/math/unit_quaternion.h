@@ -8,7 +8,7 @@
 /// T dq = dq for q.dq = 0. Operators are polynomials of q, and the derivatives are those of the polynomials, with
 /// respect to four independent components. (Nikravesh 1988, ch. 6; G is his matrix of spatial angular velocities)
 
-#include <flexarm/math/so3.h>
+#include "math/so3.h"
 
 namespace flexarm::unit_quaternion {
 

@@ -1,6 +1,6 @@
 /// Tangent-scaled rotations: what only they have. The common requirements are in rotation_test.cpp.
 
-#include <flexarm/math/cayley.h>
+#include "math/cayley.h"
 
 #include <gtest/gtest.h>
 

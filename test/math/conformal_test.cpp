@@ -1,6 +1,6 @@
 /// Conformal rotation vectors: what only they have. The common requirements are in rotation_test.cpp.
 
-#include <flexarm/math/conformal.h>
+#include "math/conformal.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 /// Strain-invariant interpolation of rotations and its generalised shape functions.
 
-#include <flexarm/math/local_rotation.h>
+#include "math/local_rotation.h"
 
 #include <type_traits>
 

@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include <flexarm/math/cayley.h>
-#include <flexarm/math/conformal.h>
-#include <flexarm/math/so3.h>
-#include <flexarm/math/unit_quaternion.h>
+#include "math/cayley.h"
+#include "math/conformal.h"
+#include "math/so3.h"
+#include "math/unit_quaternion.h"
 
 #include "rotation_samples.h"
 

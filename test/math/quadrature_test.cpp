@@ -1,6 +1,6 @@
 /// Gauss-Legendre rules: degree of exactness, for every number of points.
 
-#include <flexarm/math/quadrature.h>
+#include "math/quadrature.h"
 
 #include <cmath>
 #include <limits>

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include <flexarm/math/so3.h>
+#include "math/so3.h"
 
 namespace flexarm::test {
 

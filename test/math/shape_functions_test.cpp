@@ -1,7 +1,7 @@
 /// Lagrange shape functions: the defining properties, for every node count.
 
-#include <flexarm/math/quadrature.h>
-#include <flexarm/math/shape_functions.h>
+#include "math/shape_functions.h"
+#include "math/quadrature.h"
 
 #include <cmath>
 #include <limits>

@@ -1,6 +1,6 @@
 /// Rotation vectors: coefficients, logarithm through pi, and the operators that only they have.
 
-#include <flexarm/math/so3.h>
+#include "math/so3.h"
 
 #include <array>
 

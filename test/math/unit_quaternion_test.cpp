@@ -1,6 +1,6 @@
 /// Unit quaternions as rotation parameters: what only they have. The common requirements are in rotation_test.cpp.
 
-#include <flexarm/math/unit_quaternion.h>
+#include "math/unit_quaternion.h"
 
 #include <gtest/gtest.h>
 
