@@ -58,21 +58,21 @@ void BorderedElimination::reserve() {
     fours += static_cast<std::size_t>(lanes) * (3 * own + 16 + riders);
   }
   scalars_.reserve(scalars);
-  memory_.reserve(fours);
-  places_.reserve(most);
+  memory_.resize(fours);
+  runs_.reserve(most);
   work_.resize(lanes_for(most));
   front_.reserve(most);
-  blocks_.held.reserve(model_.coordinates.size());
 }
 
 void BorderedElimination::begin() {
   scalars_.clear();
-  memory_.clear();
+  used_ = 0;
 }
 
 std::size_t BorderedElimination::allocate(int numbers) {
-  const std::size_t at = memory_.size();
-  memory_.resize(at + lanes_for(numbers));
+  const std::size_t at = used_;
+  used_ += lanes_for(numbers);
+  if (used_ > memory_.size()) memory_.resize(2 * used_);
   return at;
 }
 
@@ -173,11 +173,17 @@ void BorderedElimination::add_closure(int k) {
 void BorderedElimination::add_remainder(const Factors& f) {
   const int size = f.size - f.pivots;
   const double* values = memory(f.remainder);
-  places_.clear();
-  for (int k = 0; k < size; ++k) places_.push_back(front_.column_place(scalars_[f.columns + f.pivots + k]));
+  runs_.clear();  // of columns that follow each other here, too
+  for (int k = 0; k < size; ++k) {
+    const int place = front_.column_place(scalars_[f.columns + f.pivots + k]);
+    if (runs_.empty() || runs_.back().place + k - runs_.back().from != place) runs_.push_back({k, place, 0});
+    ++runs_.back().count;
+  }
   for (int i = 0; i < size; ++i, values += size) {
     double* to = front_.row(front_.row_place(scalars_[f.rows + f.pivots + i]));
-    for (int k = 0; k < size; ++k) to[places_[k]] += values[k];
+    for (const Run& run : runs_)
+      Eigen::Map<Eigen::VectorXd>(to + run.place, run.count) +=
+          Eigen::Map<const Eigen::VectorXd>(values + run.from, run.count);
   }
 }
 
@@ -312,7 +318,9 @@ void BorderedElimination::keep(int pivots, Factors& f) {
   for (int k = 0; k < pivots; ++k) {
     const double* row = front_.row(k);
     std::copy_n(front_.lower(k), f.stride, memory(f.lower) + f.stride * k);
-    std::copy(row + k + 1, row + f.size, memory(f.upper) + f.stride * k + k + 1);
+    std::copy_n(row, f.stride, memory(f.upper) + f.stride * k);
+    std::fill_n(memory(f.upper) + f.stride * k, k + 1, 0.0);
+    std::fill_n(memory(f.upper) + f.stride * k + f.size, f.stride - f.size, 0.0);
     memory(f.reciprocals)[k] = front_.reciprocal(k);
   }
 }

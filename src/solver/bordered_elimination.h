@@ -37,6 +37,10 @@ class BorderedElimination {
     std::size_t targets = 0, left = 0, right = 0, held = 0, mimics = 0;
   };
 
+  struct Run {
+    int from, place, count;
+  };
+
   double* memory(std::size_t fours) { return memory_.data()->lane + 4 * fours; }
   const double* memory(std::size_t fours) const { return memory_.data()->lane + 4 * fours; }
   std::size_t allocate(int numbers);
@@ -64,8 +68,10 @@ class BorderedElimination {
   int candidates_ = 0, certain_ = 0;
   std::vector<char> is_placed_;   // per scalar: it has rows and columns in fronts
   std::vector<Factors> factors_;  // per part
-  std::vector<int> scalars_, places_;
+  std::vector<int> scalars_;
+  std::vector<Run> runs_;
   FrontMemory memory_;
+  std::size_t used_ = 0;  // of the memory
   mutable FrontMemory work_;
 };
 

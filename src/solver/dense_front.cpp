@@ -35,6 +35,108 @@ constexpr double kRoundOff = 8 * std::numeric_limits<double>::epsilon();
   return std::max(std::max(most[0], most[1]), std::max(most[2], most[3]));
 }
 
+/// What DenseFront::eliminate() works on; in a loop that simd::run() compiles as a whole.
+struct Elimination {
+  int active, candidates, stride;
+  double *values, *lower, *column_sizes, *scales, *reciprocals;
+  int *row_names, *column_names;
+  int pivots = 0;
+
+  [[gnu::always_inline]] inline double* row(int i) { return values + static_cast<std::size_t>(stride) * i; }
+  [[gnu::always_inline]] inline bool scale();
+  [[gnu::always_inline]] inline bool take_pivots(int certain, bool all);
+
+ private:
+  [[gnu::always_inline]] inline double largest_entry(int column, int first, int last, int& at);
+  [[gnu::always_inline]] inline bool take_pivot(int column, bool must);
+  [[gnu::always_inline]] inline void swap_rows(int a, int b);
+  [[gnu::always_inline]] inline void swap_columns(int a, int b);
+};
+
+bool Elimination::scale() {
+  const int lanes = lanes_for(active), candidate_lanes = lanes_for(candidates);
+  for (int i = 0; i < active; ++i) {
+    double* own = row(i);
+    for (int k = active; k < 4 * lanes; ++k) own[k] = 0;  // of what was folded
+    const double size = largest(own, lanes);
+    if (!std::isfinite(size)) return false;
+    scales[i] = size > 0 ? 1 / size : 0.0;
+    const Lanes scale = broadcast(scales[i]);
+    for (int v = 0; v < candidate_lanes; ++v) {
+      const Lanes old = load(column_sizes + 4 * v), scaled = scale * absolute(load(own + 4 * v));
+      store(scaled > old ? scaled : old, column_sizes + 4 * v);
+    }
+  }
+  return true;
+}
+
+void Elimination::swap_rows(int a, int b) {
+  if (a == b) return;
+  for (int v = 0; v < stride; v += 4) {
+    const Lanes kept = load(row(a) + v);
+    store(load(row(b) + v), row(a) + v);
+    store(kept, row(b) + v);
+  }
+  for (int k = 0; k < pivots; ++k) std::swap(lower[stride * k + a], lower[stride * k + b]);
+  std::swap(scales[a], scales[b]);
+  std::swap(row_names[a], row_names[b]);
+}
+
+void Elimination::swap_columns(int a, int b) {
+  if (a == b) return;
+  for (int i = 0; i < active; ++i) std::swap(row(i)[a], row(i)[b]);
+  std::swap(column_sizes[a], column_sizes[b]);
+  std::swap(column_names[a], column_names[b]);
+}
+
+/// Of a column among rows, scaled by rows.
+double Elimination::largest_entry(int column, int first, int last, int& at) {
+  double most = 0;
+  at = first;
+  for (int i = first; i < last; ++i) {
+    const double size = scales[i] * std::abs(row(i)[column]);
+    if (size > most) most = size, at = i;
+  }
+  return most;
+}
+
+/// Takes a pivot in the column, if one is good enough.
+bool Elimination::take_pivot(int column, bool must) {
+  int pivot_row, other;
+  const double size = largest_entry(column, pivots, candidates, pivot_row);
+  if (!(size > kRoundOff * column_sizes[column])) return false;
+  if (!must && size < kThreshold * largest_entry(column, candidates, active, other)) return false;
+  swap_rows(pivot_row, pivots);
+  swap_columns(column, pivots);
+  const double* pivot_values = row(pivots);
+  const double reciprocal = reciprocals[pivots] = 1 / pivot_values[pivots];
+  double* multipliers = lower + static_cast<std::size_t>(stride) * pivots;
+  for (int i = pivots / 4 * 4; i <= pivots; ++i) multipliers[i] = 0;
+  for (int i = active; i < stride; ++i) multipliers[i] = 0;
+  for (int i = pivots + 1; i < active; ++i) {
+    double* own = row(i);
+    const double multiplier = own[pivots] * reciprocal;
+    multipliers[i] = multiplier;
+    if (multiplier != 0) subtract(own, multiplier, pivot_values, pivots / 4, lanes_for(active));
+  }
+  ++pivots;
+  return true;
+}
+
+bool Elimination::take_pivots(int certain, bool all) {
+  for (int k = 0; k < certain; ++k)
+    if (!take_pivot(k, true)) return false;
+  // A column that had no pivot may have one after others. Where all must go, the best come first.
+  for (const bool must : {false, true}) {
+    if (must && !all) break;
+    for (int before = -1; before != pivots && pivots < candidates;) {
+      before = pivots;
+      for (int k = pivots; k < candidates; ++k) take_pivot(k, must);
+    }
+  }
+  return !all || pivots == candidates;
+}
+
 }  // namespace
 
 void DenseFront::reserve(int size) {
@@ -57,7 +159,9 @@ void DenseFront::start(int active) {
   active_ = active;
   const int lanes = lanes_for(size());
   stride_ = 4 * lanes;
-  values_.assign(static_cast<std::size_t>(lanes) * size(), {});
+  const std::size_t fours = static_cast<std::size_t>(lanes) * size();
+  if (values_.size() < fours) values_.resize(fours);
+  std::fill_n(values_.data()->lane, 4 * fours, 0.0);
   for (int i = 0; i < size(); ++i) {
     row_place_[rows[i]] = i;
     column_place_[columns[i]] = i;
@@ -66,6 +170,13 @@ void DenseFront::start(int active) {
 
 void DenseFront::add(int row, int column, const double* values, int row_count, int column_count, int distance) {
   const int first_row = row_place_[row], first_column = column_place_[column];
+  if (row_count == 6 && column_count == 6 && distance == 6) {  // most of them: loops that are unrolled
+    for (int r = 0; r < 6; ++r) {
+      double* to = this->row(first_row + r) + first_column;
+      for (int c = 0; c < 6; ++c) to[c] += values[6 * c + r];
+    }
+    return;
+  }
   for (int r = 0; r < row_count; ++r) {
     double* to = this->row(first_row + r) + first_column;
     for (int c = 0; c < column_count; ++c) to[c] += values[distance * c + r];
@@ -74,22 +185,26 @@ void DenseFront::add(int row, int column, const double* values, int row_count, i
 
 void DenseFront::fold(int slave, int count, const double* left, const double* right, int distance, const int* targets,
                       int target_count) {
-  const int place = column_place_[slave], slave_row = row_place_[slave], lanes = lanes_for(size());
+  const int place = column_place_[slave], slave_row = row_place_[slave], lanes = lanes_for(size()),
+            rows_in_all = size();
   right_.assign(static_cast<std::size_t>(lanes) * count, {});  // by columns of the front
-  double* columns_of = right_.data()->lane;
+  double *columns_of = right_.data()->lane, *values = values_.data()->lane;
   for (int k = 0; k < count; ++k)
     for (int t = 0; t < target_count; ++t)
       columns_of[stride_ * k + column_place_[targets[t]]] = right[distance * k + t];
+  const int* places = row_place_.data();
+  const int stride = stride_;
   simd::run([&] {
-    for (int i = 0; i < size(); ++i) {
-      double* values = row(i);
+    for (int i = 0; i < rows_in_all; ++i) {
+      double* own = values + stride * i;
       for (int k = 0; k < count; ++k)
-        if (values[place + k] != 0) subtract(values, -values[place + k], columns_of + stride_ * k, 0, lanes);
+        if (own[place + k] != 0) subtract(own, -own[place + k], columns_of + stride * k, 0, lanes);
     }
     for (int t = 0; t < target_count; ++t) {
-      double* values = row(row_place_[targets[t]]);
+      double* own = values + stride * places[targets[t]];
       for (int k = 0; k < count; ++k)
-        if (left[distance * k + t] != 0) subtract(values, -left[distance * k + t], row(slave_row + k), 0, lanes);
+        if (left[distance * k + t] != 0)
+          subtract(own, -left[distance * k + t], values + stride * (slave_row + k), 0, lanes);
     }
   });
 }
@@ -98,93 +213,24 @@ void DenseFront::clear_row(int scalar) {
   std::fill_n(row(row_place_[scalar]), stride_, 0.0);
 }
 
-void DenseFront::swap_rows(int a, int b) {
-  if (a == b) return;
-  std::swap_ranges(row(a), row(a) + stride_, row(b));
-  double* lower = lower_.data()->lane;
-  for (int k = 0; k < pivots_; ++k) std::swap(lower[stride_ * k + a], lower[stride_ * k + b]);
-  std::swap(scales_[a], scales_[b]);
-  std::swap(rows[a], rows[b]);
-}
-
-void DenseFront::swap_columns(int a, int b) {
-  if (a == b) return;
-  for (int i = 0; i < active_; ++i) std::swap(row(i)[a], row(i)[b]);
-  double* sizes = column_sizes_.data()->lane;
-  std::swap(sizes[a], sizes[b]);
-  std::swap(columns[a], columns[b]);
-}
-
 int DenseFront::eliminate(int candidates, int certain, bool all) {
-  candidates_ = candidates;
-  pivots_ = 0;
-  lower_.assign(static_cast<std::size_t>(stride_ / 4) * candidates, {});
+  lower_.resize(std::max(lower_.size(), static_cast<std::size_t>(stride_ / 4) * candidates));
   scales_.resize(active_);
   column_sizes_.assign(lanes_for(candidates), {});
   reciprocals_.resize(candidates);
+  Elimination elimination{active_,
+                          candidates,
+                          stride_,
+                          values_.data()->lane,
+                          lower_.data()->lane,
+                          column_sizes_.data()->lane,
+                          scales_.data(),
+                          reciprocals_.data(),
+                          rows.data(),
+                          columns.data()};
   bool done = false;
-  simd::run([&] { done = scale() && take_pivots(certain, all); });
-  return done ? pivots_ : -1;
-}
-
-bool DenseFront::scale() {
-  const int lanes = lanes_for(active_), candidate_lanes = lanes_for(candidates_);
-  double* sizes = column_sizes_.data()->lane;
-  for (int i = 0; i < active_; ++i) {
-    double* values = row(i);
-    std::fill(values + active_, values + stride_, 0.0);  // what was folded
-    const double size = largest(values, lanes);
-    if (!std::isfinite(size)) return false;
-    scales_[i] = size > 0 ? 1 / size : 0.0;
-    const Lanes scale = broadcast(scales_[i]);
-    for (int v = 0; v < candidate_lanes; ++v) {
-      const Lanes old = load(sizes + 4 * v), own = scale * absolute(load(values + 4 * v));
-      store(own > old ? own : old, sizes + 4 * v);
-    }
-  }
-  return true;
-}
-
-bool DenseFront::take_pivots(int certain, bool all) {
-  for (int k = 0; k < certain; ++k)
-    if (!take_pivot(k, true)) return false;
-  // A column that had no pivot may have one after others. Where all must go, the best come first.
-  for (const bool must : {false, true}) {
-    if (must && !all) break;
-    for (int before = -1; before != pivots_ && pivots_ < candidates_;) {
-      before = pivots_;
-      for (int k = pivots_; k < candidates_; ++k) take_pivot(k, must);
-    }
-  }
-  return !all || pivots_ == candidates_;
-}
-
-std::pair<double, int> DenseFront::largest_row(int column, int first, int last) {
-  std::pair<double, int> best(0.0, first);
-  for (int i = first; i < last; ++i) {
-    const double size = scales_[i] * std::abs(row(i)[column]);
-    if (size > best.first) best = {size, i};
-  }
-  return best;
-}
-
-bool DenseFront::take_pivot(int column, bool must) {
-  const auto [size, pivot_row] = largest_row(column, pivots_, candidates_);
-  if (!(size > kRoundOff * column_sizes_.data()->lane[column])) return false;
-  if (!must && size < kThreshold * largest_row(column, candidates_, active_).first) return false;
-  swap_rows(pivot_row, pivots_);
-  swap_columns(column, pivots_);
-  const double* pivot_values = row(pivots_);
-  const double reciprocal = reciprocals_[pivots_] = 1 / pivot_values[pivots_];
-  double* lower = lower_.data()->lane + static_cast<std::size_t>(stride_) * pivots_;
-  for (int i = pivots_ + 1; i < active_; ++i) {
-    double* values = row(i);
-    const double multiplier = values[pivots_] * reciprocal;
-    lower[i] = multiplier;
-    if (multiplier != 0) subtract(values, multiplier, pivot_values, pivots_ / 4, lanes_for(active_));
-  }
-  ++pivots_;
-  return true;
+  simd::run([&] { done = elimination.scale() && elimination.take_pivots(certain, all); });
+  return done ? elimination.pivots : -1;
 }
 
 }  // namespace flexarm

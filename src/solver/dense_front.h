@@ -1,7 +1,6 @@
 #pragma once
 /// A dense front of the block elimination with any variables in it: folds slaves, eliminates with partial pivoting.
 
-#include <utility>
 #include <vector>
 
 #include "solver/front_lanes.h"
@@ -53,16 +52,7 @@ class DenseFront {
   double reciprocal(int k) const { return reciprocals_[k]; }
 
  private:
-  bool scale();
-  bool take_pivots(int certain, bool all);
-  /// Takes a pivot in the column, if one is good enough.
-  bool take_pivot(int column, bool must);
-  /// Largest entry of a column among rows, scaled by rows.
-  std::pair<double, int> largest_row(int column, int first, int last);
-  void swap_rows(int a, int b);
-  void swap_columns(int a, int b);
-
-  int active_ = 0, stride_ = 0, candidates_ = 0, pivots_ = 0;
+  int active_ = 0, stride_ = 0;
   FrontMemory values_, lower_, right_, column_sizes_;
   std::vector<double> scales_, reciprocals_;
   std::vector<int> row_place_, column_place_;

@@ -9,6 +9,7 @@ TreeBlocks::TreeBlocks(const Model& model, const DegreesOfFreedom& dof)
       maps(model.joints.size()),
       slide_maps(model.joints.size()),
       mimics(dof.mimics.size()) {
+  held.reserve(model.coordinates.size());
   std::size_t blocks = 0;
   for_each_element(model.beams, [&](const auto& element) {
     const std::size_t count = element.nodes.size() * element.nodes.size();

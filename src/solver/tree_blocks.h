@@ -23,7 +23,7 @@ struct TreeBlocks {
   /// Per closure, by rows: {child, parent, multipliers} with each other.
   std::vector<Eigen::MatrixXd> closures;
   std::vector<MimicMap> mimics;
-  std::vector<HeldRow> held;  ///< of coordinates in parts with a border
+  std::vector<HeldRow> held;
 
   double* diagonal(int variable) { return diagonals.data() + 36 * static_cast<std::size_t>(variable); }
   const double* diagonal(int variable) const { return diagonals.data() + 36 * static_cast<std::size_t>(variable); }

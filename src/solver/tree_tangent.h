@@ -35,7 +35,7 @@ class TreeTangent : public TangentBackend {
   void fold(int) override {}  // is left to the elimination
   void fold(int joint, const SlideMaps& maps) override;
   void fold_mimics(const std::vector<MimicMap>& maps) override { blocks_.mimics = maps; }
-  void finish() override { order_.update(); }
+  void finish() override {}
   void hold_row(int joint, int component, int first, const ReleasedVector& coefficients) override;
   bool factorise() override;
   bool solve(Eigen::VectorXd& b) override;
@@ -51,6 +51,7 @@ class TreeTangent : public TangentBackend {
     Matrix6 inverse, elimination, coupling;  // A^-1, A^-1 B, C
   };
 
+  void hold_rows();
   template <int Size>
   bool eliminate_released(int joint);
   void add_to_master(int joint, const Matrix6& tangent);
