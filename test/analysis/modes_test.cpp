@@ -1,5 +1,5 @@
 // Natural modes of mechanisms whose frequencies are known in closed form or by counting.
-#include "solver/modes.h"
+#include "analysis/modes.h"
 
 #include <gtest/gtest.h>
 

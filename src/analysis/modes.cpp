@@ -1,12 +1,12 @@
-#include "solver/modes.h"
+#include "analysis/modes.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <tuple>
 
-#include "eigenpairs.h"
-#include "linearised_motion.h"
+#include "analysis/eigenpairs.h"
+#include "analysis/linearised_motion.h"
 
 namespace flexarm {
 namespace {

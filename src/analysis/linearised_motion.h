@@ -6,8 +6,8 @@
 
 #include <Eigen/SparseCore>
 
+#include "analysis/modes.h"
 #include "integrators/step_system.h"
-#include "solver/modes.h"
 
 namespace flexarm {
 

@@ -1,4 +1,4 @@
-#include "linearised_motion.h"
+#include "analysis/linearised_motion.h"
 
 #include <algorithm>
 #include <cmath>
