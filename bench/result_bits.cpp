@@ -16,9 +16,9 @@
 #include <unistd.h>
 
 #include "flexarm/scene/urdf_reader.h"
+#include "flexarm/schemes/integrator_description.h"
 #include "flexarm/simulation/checkpoint.h"
 #include "flexarm/simulation/simulation.h"
-#include "scene/integrator_options.h"
 
 namespace {
 
@@ -75,7 +75,7 @@ int main(int count, char** arguments) {
       std::fprintf(stderr, "%s", to_text(read.diagnostics).c_str());
       return 2;
     }
-    for (const std::string_view scheme : flexarm::scene::scheme_names())
+    for (const std::string_view scheme : flexarm::scheme_names())
       report(*read.scene, arguments[i], std::string(scheme), file);
   }
   std::filesystem::remove(file);

@@ -172,7 +172,8 @@ void StepSystem::add_joint_efforts(int j, bool with_tangent) {
   for (int k = 0; k < count; ++k) {
     const std::size_t index = model_.first_coordinate[j] + k;
     const Coordinate& coordinate = model_.coordinates[index];
-    const PassiveEffort passive = passive_effort(coordinate, coordinate_step(index, change[k]));
+    const StopPenalty penalty = stop_penalty(coordinate, scheme_.contact_time);
+    const PassiveEffort passive = passive_effort(coordinate, penalty, coordinate_step(index, change[k]));
     dissipated_ += passive.dissipated;
     applied_[index] = effort_at(coordinate, index);
     const double weight = effort_weight();

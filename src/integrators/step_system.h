@@ -11,12 +11,12 @@
 #include "integrators/conserving_nodes.h"
 #include "integrators/friction_carrier.h"
 #include "integrators/rotation_reference.h"
-#include "integrators/scheme.h"
 #include "joints/joint_forces.h"
 #include "joints/joint_kinematics.h"
 #include "model/degrees_of_freedom.h"
 #include "model/model.h"
 #include "model/state.h"
+#include "schemes/scheme.h"
 #include "solver/sparse_assembler.h"
 #include "solver/tree_solver.h"
 
