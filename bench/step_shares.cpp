@@ -13,6 +13,7 @@
 #include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/simulation.h"
 #include "integrators/step_system.h"
+#include "simulation/inside.h"
 
 namespace flexarm {
 namespace {
@@ -39,16 +40,16 @@ struct Parts {
 
   explicit Parts(const Simulation& simulation) {
     const double step = simulation.step_size();
-    StepSystem system(simulation.model(), make_scheme(simulation.scene().integrator));
+    StepSystem system(model_of(simulation), make_scheme(simulation.scene().integrator));
     TangentBackend& backend = system.tangent();
     const auto nothing = [] {};
 
-    State state = simulation.state();
+    State state = state_of(simulation);
     const auto started = [&] {
-      state = simulation.state();
+      state = state_of(simulation);
       system.begin(state, step, StepSystem::Guess::Extrapolated);
     };
-    begin = seconds_of([&] { state = simulation.state(); },
+    begin = seconds_of([&] { state = state_of(simulation); },
                        [&] { system.begin(state, step, StepSystem::Guess::Extrapolated); });
     residual = seconds_of(nothing, [&] { system.evaluate(false); });
     tangent = seconds_of(nothing, [&] { system.evaluate(true); });

@@ -100,10 +100,6 @@ bool comes_before(const Mode& a, const Mode& b) {
 
 }  // namespace
 
-double Mode::damping_ratio() const {
-  return rate == 0 ? 0 : -rate / std::hypot(2 * kPi * frequency, rate);
-}
-
 std::vector<Mode> natural_modes(const Model& model, const State& state, int count, double contact_time) {
   const LinearisedMotion system(model, state, contact_time);
   // More modes than asked for, so that the scale is that of elastic ones where there are free motions.

@@ -3,31 +3,12 @@
 
 #include <optional>
 
+#include "flexarm/model/results.h"
 #include "integrators/factor_reuse.h"
 #include "integrators/step_system.h"
 #include "integrators/velocity_scaling.h"
 
 namespace flexarm {
-
-/// Outcome of a step; a value, never an exception.
-struct StepResult {
-  enum class Reason {
-    None,
-    NoConvergence,
-    SingularTangent,
-    NotFinite,
-    RotationTooLarge,
-    EnergyDefect,
-    OffTheLine,
-    OpenLoop
-  };
-  bool converged = false;
-  int iterations = 0;  ///< Newton iterations of all sub-steps
-  int halvings = 0;    ///< times that a sub-step had to be halved
-  int factorisations = 0;
-  Reason reason = Reason::None;  ///< why it failed
-};
-const char* to_string(StepResult::Reason reason);
 
 /// Settings of Newton's method and of the step control.
 struct StepSettings {

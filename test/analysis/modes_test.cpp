@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "flexarm/simulation/observables.h"
 #include "model/model_builder.h"
+#include "simulation/observables.h"
 #include "support/scene_builder.h"
 
 namespace flexarm {

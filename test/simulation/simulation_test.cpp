@@ -5,6 +5,7 @@
 
 #include "flexarm/schemes/integrator_description.h"
 #include "simulation/everything_scene.h"
+#include "simulation/inside.h"
 
 namespace flexarm::test {
 namespace {
@@ -201,7 +202,7 @@ TEST(Simulation, TimeCountsWholeSteps) {
   Simulation s(everything_scene().scene);
   for (int n = 0; n < 100; ++n) ASSERT_TRUE(s.step().converged);
   EXPECT_NEAR(s.time(), 0.2, 1e-14);
-  EXPECT_EQ(s.state().steps, 100);
+  EXPECT_EQ(state_of(s).steps, 100);
 }
 
 TEST(Simulation, MomentaAreThoseOfTheMotion) {
