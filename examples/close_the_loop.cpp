@@ -13,9 +13,9 @@
 
 namespace {
 
-constexpr double kPeriod = 1e-3, kUntil = 4;        // [s]
-constexpr double kStiffness = 40, kDamping = 12;    // [N m/rad], [N m s/rad]
-constexpr int kReports = 8;                         // lines printed
+constexpr double kPeriod = 1e-3, kUntil = 4;      // [s]
+constexpr double kStiffness = 40, kDamping = 12;  // [N m/rad], [N m s/rad]
+constexpr int kReports = 8;                       // lines printed
 
 struct Controller {
   std::size_t coordinate;

@@ -38,9 +38,9 @@ double damping_of(const Coordinate& coordinate, const StopPenalty& stop, const R
   return coordinate.damping + (touches ? stop.damping : 0);
 }
 
-/// Its tangent in statics is that of the residual at the end.
-Scheme end_point_scheme(double contact_time) {
-  Scheme scheme = *find_scheme("newmark");
+/// Equilibrium of exact forces.
+Scheme rest(double contact_time) {
+  Scheme scheme = statics_of(*find_scheme("newmark"));
   scheme.contact_time = contact_time;
   return scheme;
 }
@@ -51,12 +51,12 @@ LinearisedMotion::LinearisedMotion(const Model& model, const State& state, doubl
     : model_(model),
       state_(state),
       contact_time_(contact_time),
-      system_(model, end_point_scheme(contact_time), BackendChoice::Matrix),
+      system_(model, rest(contact_time), BackendChoice::Matrix),
       dof_(system_.degrees_of_freedom()),
       stiffness_(static_cast<const SparseTangent&>(system_.tangent())),
       damping_(model, dof_),
       mass_(model, dof_) {
-  system_.begin_static(state, 1.0);
+  system_.begin_equilibrium(state, 1.0);
   if (!system_.evaluate(true)) throw std::runtime_error("the stiffness is not finite");
   find_multipliers();
   set_joint_maps();

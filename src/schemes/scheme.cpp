@@ -27,6 +27,12 @@ std::optional<Scheme> find_scheme(std::string_view name) {
   return found.empty() ? std::nullopt : std::optional(*found.front());
 }
 
+Scheme statics_of(Scheme scheme) {
+  scheme.is_static = true;
+  scheme.stress = StressRule::EndPoint;
+  return scheme;
+}
+
 Scheme make_scheme(const IntegratorDescription& integrator) {
   const std::vector<const Scheme*> found = meanings(integrator.scheme);
   if (found.empty())

@@ -39,6 +39,8 @@ struct Scheme : TimeRule {
 const std::vector<Scheme>& schemes();
 /// By name, default options; "auto" is the default scheme. Empty if unknown.
 std::optional<Scheme> find_scheme(std::string_view name);
+/// The rule by which a scheme's interpolation finds equilibria: forces at the configuration, nothing moves.
+Scheme statics_of(Scheme scheme);
 /// Those of the table that a name in a scene may mean: several for "auto", none if unknown.
 std::vector<const Scheme*> meanings(std::string_view name);
 /// With the options of <integrator>; "auto" becomes edmc2 where rho_infinity asks for numerical dissipation.

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "analysis/modes.h"
+#include "analysis/statics.h"
 #include "integrators/balance.h"
 #include "integrators/stepper.h"
 #include "math/so3.h"
@@ -266,7 +267,10 @@ ProbeState Simulation::probe(std::size_t index) const {
 StepResult Simulation::solve_static(int load_steps) {
   if (load_steps < 1) throw std::invalid_argument("the number of load steps must be >= 1");
   implementation_->velocities_hold = false;
-  return implementation_->stepper->solve_static(implementation_->state, load_steps);
+  Implementation& s = *implementation_;
+  const StepResult result = flexarm::solve_static(s.model, s.scheme, s.settings, load_steps, s.state);
+  s.stepper->invalidate();
+  return result;
 }
 
 std::vector<Mode> Simulation::natural_modes(int count) const {
