@@ -3,12 +3,12 @@
 #include <cmath>
 #include <unordered_set>
 
+#include "math/pi.h"
 #include "math/so3.h"
 
 namespace flexarm {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 /// Half a contact period of a stop lasts this many nominal steps: resolved by the integrator, and short to the eye.
 constexpr double kContactSteps = 10;
 /// Ratio of a stop's damping to the critical one. A contact that never pulls ends where its force vanishes, after which

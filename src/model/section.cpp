@@ -3,21 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/pi.h"
+#include "math/so3.h"
+
 namespace flexarm {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Area [m^2], second moments and torsion constant [m^4], shear correction factors, edge distance [m].
 struct Geometry {
   double area, i2, i3, torsion, k2, k3, radius;
 };
-
-Matrix3 skew(const Vector3& v) {
-  Matrix3 m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
 
 Geometry geometry(const scene::Circle& circle, double nu) {
   const double r2 = circle.radius * circle.radius;
@@ -103,7 +98,7 @@ SectionProperties convert(const scene::MatrixSection& s) {
   const Matrix3 coupling = s.inertia.bottomLeftCorner<3, 3>() / out.mass;  // = d^
   out.center_of_mass =
       0.5 * Vector3(coupling(2, 1) - coupling(1, 2), coupling(0, 2) - coupling(2, 0), coupling(1, 0) - coupling(0, 1));
-  const Matrix3 d = skew(out.center_of_mass);
+  const Matrix3 d = so3::hat(out.center_of_mass);
   const Matrix3 about_reference = s.inertia.bottomRightCorner<3, 3>();
   out.inertia = 0.5 * (about_reference + about_reference.transpose()) + out.mass * d * d;
   out.radius = radius_from(out.stiffness);
@@ -118,7 +113,7 @@ SectionProperties section_properties(const scene::Section& section) {
 
 SectionProperties referred_to_center_of_mass(const SectionProperties& section) {
   Matrix6 transform = Matrix6::Identity();  // {Gamma, K} at the reference line from those at the centroid
-  transform.topRightCorner<3, 3>() = skew(section.center_of_mass);
+  transform.topRightCorner<3, 3>() = so3::hat(section.center_of_mass);
   SectionProperties out = section;
   out.stiffness = transform.transpose() * section.stiffness * transform;
   out.center_of_mass.setZero();

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "elements/differences.h"
+#include "math/pi.h"
 #include "math/shape_functions.h"
 #include "support/scene_builder.h"
 
@@ -12,8 +13,6 @@ namespace {
 
 using namespace test;
 using scene::CentrelinePiece;
-
-constexpr double kPi = 3.14159265358979323846;
 
 scene::BeamDescription beam_along(const std::vector<Vector3>& points, std::optional<int> elements, int order) {
   scene::BeamDescription beam;

@@ -7,14 +7,13 @@
 
 #include "elements/differences.h"
 #include "elements/random_element.h"
+#include "math/pi.h"
 
 namespace flexarm {
 namespace {
 
 using namespace test;
 using scene::CentrelinePiece;
-
-constexpr double kPi = 3.14159265358979323846;
 
 CentrelinePiece line(const Vector3& to, double twist = 0) {
   return {CentrelinePiece::Kind::Line, to, {}, twist, {}};

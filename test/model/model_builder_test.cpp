@@ -5,6 +5,7 @@
 
 #include "elements/differences.h"
 #include "integrators/mechanism.h"
+#include "math/pi.h"
 
 namespace flexarm {
 namespace {
@@ -171,7 +172,7 @@ TEST(BuildModel, StopsAreResolvedByTheStep) {
   const Model model = build_model(builder.scene);
   ASSERT_TRUE(model.coordinates[0].limit);
   const double omega = std::sqrt(model.coordinates[0].limit->stiffness / 2);
-  EXPECT_NEAR(omega, M_PI / 1e-2, 1e-9 * omega);
+  EXPECT_NEAR(omega, kPi / 1e-2, 1e-9 * omega);
   // m x'' = min(0, -k x - c x'), hit at unit speed: integrated finely until the force vanishes.
   const double k = model.coordinates[0].limit->stiffness, c = model.coordinates[0].limit->damping;
   double x = 0, v = 1;

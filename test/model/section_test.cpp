@@ -5,13 +5,13 @@
 
 #include "elements/differences.h"
 #include "elements/random_element.h"
+#include "math/pi.h"
 
 namespace flexarm {
 namespace {
 
 using namespace test;
 
-constexpr double kPi = 3.14159265358979323846;
 const scene::Material kSteel{2.1e11, 0.3, 7850};
 const double kShearModulus = 2.1e11 / 2.6;
 

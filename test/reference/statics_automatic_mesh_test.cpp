@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "math/pi.h"
 #include "model/beam_mesh.h"
 #include "reference_cantilever.h"
 #include "reference_shooting.h"
@@ -12,7 +13,7 @@
 namespace flexarm::test {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846, kAccuracy = 0.01;
+constexpr double kAccuracy = 0.01;
 
 /// Largest turning per element [rad], from a line with so many turns that nothing else counts.
 double turning_per_element(int order) {

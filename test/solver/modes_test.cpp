@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "flexarm/simulation/observables.h"
+#include "math/pi.h"
 #include "model/model_builder.h"
 #include "support/scene_builder.h"
 
@@ -11,8 +12,6 @@ namespace flexarm {
 namespace {
 
 using namespace test;
-
-constexpr double kPi = 3.14159265358979323846;
 
 TEST(NaturalModes, PendulumAboutItsEquilibrium) {
   SceneBuilder builder;
