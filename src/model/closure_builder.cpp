@@ -7,7 +7,7 @@
 #include <set>
 
 #include "joints/joint_kinematics.h"
-#include "joints/loop_closure.h"
+#include "joints/closure_maps.h"
 #include "mechanism_builder.h"
 
 namespace flexarm {

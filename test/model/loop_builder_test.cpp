@@ -1,8 +1,8 @@
 // Models with loops that flexible links close.
 #include <gtest/gtest.h>
 
+#include "joints/closure_maps.h"
 #include "joints/joint_kinematics.h"
-#include "joints/loop_closure.h"
 #include "model/expect_model_error.h"
 #include "model/model_builder.h"
 #include "support/loops.h"

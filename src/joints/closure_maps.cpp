@@ -1,4 +1,4 @@
-#include "joints/loop_closure.h"
+#include "joints/closure_maps.h"
 
 #include "math/so3.h"
 

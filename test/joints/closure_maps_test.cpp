@@ -1,5 +1,5 @@
 // Constraints that close loops: derivatives, discrete gradient, momenta.
-#include "joints/loop_closure.h"
+#include "joints/closure_maps.h"
 
 #include <gtest/gtest.h>
 
