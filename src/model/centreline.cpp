@@ -10,6 +10,17 @@ namespace {
 constexpr double kKinkAngle = 1e-9;   // rad; below it two tangents count as one
 constexpr double kLargestGap = 1e-6;  // of the length; below it a line counts as closed
 
+/// Maps the direction of `from` onto that of `to`, which is not opposite: Eigen's FromTwoVectors provides for that by a
+/// singular value decomposition, which takes long to compile.
+Quaternion smallest_rotation(const Vector3& from, const Vector3& to) {
+  const Vector3 a = from.normalized(), b = to.normalized();
+  const double twice_half_cosine = std::sqrt((1 + b.dot(a)) * 2);
+  Quaternion rotation;
+  rotation.vec() = a.cross(b) * (1 / twice_half_cosine);
+  rotation.w() = 0.5 * twice_half_cosine;
+  return rotation;
+}
+
 Quaternion first_frame(const Vector3& tangent, const std::optional<Vector3>& section_y) {
   Vector3 y;
   if (section_y) {
@@ -73,7 +84,7 @@ Centreline::Centreline(const std::vector<scene::CentrelinePiece>& pieces, const 
       const Vector3 tangent_before = before.orientation * Vector3::UnitX();
       if (tangent_before.dot(piece.tangent) < -1 + 1e-9)
         throw std::invalid_argument("centreline reverses its direction");
-      piece.frame = Quaternion::FromTwoVectors(tangent_before, piece.tangent) * before.orientation;
+      piece.frame = smallest_rotation(tangent_before, piece.tangent) * before.orientation;
       piece.begin = pieces_.back().end;
     }
     piece.end = piece.begin + length;

@@ -1,32 +1,17 @@
 #pragma once
-/// Loops of rigid links: their constraints as a matrix (internal to model/).
+/// Loops that no free node of a beam can close: constraints with multipliers (internal to model/; joints.md 3).
 
-#include <vector>
-
-#include <Eigen/SparseCore>
-
-#include "model/degrees_of_freedom.h"
-#include "model/model.h"
+#include "model/mechanism.h"
 
 namespace flexarm {
 
-/// Derivatives of the values of all closures' constraints, kept ones then implied ones, closure by closure, with
-/// respect to the scalars of `dof` at the model's start; columns of slaves and of following coordinates are folded into
-/// their masters' and zero.
-using ConstraintRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
-ConstraintRows closure_jacobian(const Model& model, const DegreesOfFreedom& dof);
+/// All constraints of a joint between frames of `parent` and `child`, at `frame` (world).
+/// @throws ModelError where this joint cannot close a loop of rigid links.
+LoopClosure loop_closure(const ScenePlan& plan, const Mechanism& mechanism, const scene::JointDescription& joint,
+                         Attachment parent, Attachment child, const Pose& frame);
 
-/// Rows that share columns, directly or through others, and what is not zero of them. A mechanism of many loops has as
-/// many small groups, unless they hang together.
-struct ConstraintGroup {
-  std::vector<int> rows, columns;
-  Eigen::MatrixXd block;
-};
-std::vector<ConstraintGroup> independent_groups(const ConstraintRows& jacobian);
-
-/// Per scalar of the nodes and joints: the model's length scale where it is a displacement, 1 where it is a rotation.
-Eigen::VectorXd scalar_scales(const Model& model, const DegreesOfFreedom& dof);
-/// Per row of closure_jacobian(): the length scale of a gap, 1 of a direction.
-Eigen::VectorXd constraint_scales(const Model& model);
+/// Of the closures' constraints those that are independent, by pivoting at the start; the others are implied.
+/// @throws ModelError where nothing is left to move, or where friction would hold more than there is freedom.
+SolvableMechanism choose_constraints(const ScenePlan& plan, DrivenMechanism mechanism);
 
 }  // namespace flexarm

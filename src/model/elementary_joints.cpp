@@ -1,7 +1,7 @@
-// What joints of the scene are made of.
-#include <cmath>
+#include "model/elementary_joints.h"
 
-#include "mechanism_builder.h"
+#include <cmath>
+#include <utility>
 
 namespace flexarm {
 namespace {
@@ -54,8 +54,6 @@ std::vector<JointMap> elementary_joints(const scene::JointDescription& joint) {
   using scene::JointKind;
   const Vector3 zero = Vector3::Zero(), a = joint.axis.normalized(), a2 = joint.axis2.normalized();
   switch (joint.kind) {
-    case JointKind::Fixed:
-      return {map_of_kind(JointMapKind::Rigid)};
     case JointKind::Revolute:
     case JointKind::Continuous:
       return {scalar_map(zero, a)};
@@ -83,10 +81,17 @@ std::vector<JointMap> elementary_joints(const scene::JointDescription& joint) {
       return {map_of_kind(JointMapKind::Spherical)};
     case JointKind::Floating:
       return {map_of_kind(JointMapKind::Free)};
-    case JointKind::Slide:
-      break;  // by its rotation
+    case JointKind::Fixed:
+    case JointKind::Slide:  // by its rotation
+      break;
   }
   return {};
+}
+
+std::vector<std::string> coordinate_names(const scene::JointDescription& joint) {
+  std::vector<std::string> names;
+  for (const std::string& suffix : scene::coordinate_suffixes(joint)) names.push_back(joint.name + suffix);
+  return names;
 }
 
 }  // namespace flexarm

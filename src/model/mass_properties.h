@@ -8,7 +8,7 @@
 
 namespace flexarm {
 
-/// Gives the stops of limited coordinates their penalty. `node_parents`: see MechanismBuilder.
+/// Gives the stops of limited coordinates their penalty. `node_parents`: see Mechanism.
 /// @return coordinates that are free to move, and move nothing that has inertia, directly or through what follows them.
 std::vector<int> finish_mass_properties(const scene::SceneDescription& scene, const std::vector<int>& node_parents,
                                         Model& model);

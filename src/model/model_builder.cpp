@@ -3,89 +3,20 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <utility>
 
-#include "mass_properties.h"
-#include "mechanism_builder.h"
+#include "model/closure_builder.h"
+#include "model/coordinate_builder.h"
+#include "model/elementary_joints.h"
+#include "model/inertia_builder.h"
+#include "model/initial_velocity.h"
+#include "model/load_builder.h"
+#include "model/loop_builder.h"
+#include "model/mass_properties.h"
+#include "model/tree_builder.h"
 
 namespace flexarm {
 namespace {
-
-/// Loads, their histories, and probes.
-class LoadPlacer {
- public:
-  LoadPlacer(const scene::SceneDescription& scene, MechanismBuilder& mechanism)
-      : scene_(scene), mechanism_(mechanism), model_(mechanism.model) {}
-
-  void place() {
-    for (const scene::PointLoad& load : scene_.loads) point_load(load);
-    for (const scene::DistributedLoad& load : scene_.distributed_loads) distributed_load(load);
-    for (const scene::Probe& probe : scene_.probes) model_.probes.push_back(probe_point(probe));
-  }
-
- private:
-  void point_load(const scene::PointLoad& load) {
-    const Attachment attachment = mechanism_.attachment(load.link, load.at);
-    if (attachment.node < 0)
-      throw ModelError(mechanism_.at(load.location, "<load>") + "link '" + load.link + "' is fixed to the world");
-    const Pose at = attachment.offset * Pose{load.at, Quaternion::Identity()};
-    NodalLoad out;
-    out.node = attachment.node;
-    out.arm = at.position;
-    out.frame = load.frame;
-    const bool follower = load.frame == scene::LoadFrame::Follower;
-    out.force = follower ? Vector3(attachment.offset.orientation * load.force) : load.force;
-    out.moment = follower ? Vector3(attachment.offset.orientation * load.moment) : load.moment;
-    out.history = mechanism_.add_history(load.history);
-    model_.loads.push_back(out);
-  }
-
-  void distributed_load(const scene::DistributedLoad& load) {
-    const int link = mechanism_.link_index(load.link);
-    const auto& mesh = mechanism_.meshes[link];
-    if (!mesh)
-      throw ModelError(mechanism_.at(load.location, "<distributed_load>") + "link '" + load.link + "' has no <beam>");
-    const int history = mechanism_.add_history(load.history);
-    // Lumped with the weights int I^i ds: exact for a dead load, the nodes' Newton-Cotes rule for a follower load.
-    const std::vector<double> weights = mechanism_.length_weights(link);
-    for (std::size_t i = 0; i < weights.size(); ++i) {
-      const Pose& pose = mesh->mesh.nodes[i].pose;
-      NodalLoad out;
-      out.node = mesh->first_node + static_cast<int>(i);
-      out.arm = -mesh->mesh.centroid;
-      out.frame = load.frame;
-      out.force = weights[i] * load.force;
-      if (load.frame == scene::LoadFrame::Follower) out.force = pose.orientation.conjugate() * out.force;
-      out.history = history;
-      model_.loads.push_back(out);
-    }
-  }
-
-  ProbePoint probe_point(const scene::Probe& probe) const {
-    ProbePoint out;
-    out.link = mechanism_.link_index(probe.link);
-    const LinkFrame& link = model_.links[out.link];
-    const Pose at{probe.at, Quaternion::Identity()};
-    if (!link.beam) {
-      out.attachment = {link.frame.node, link.frame.offset * at};
-      return out;
-    }
-    const auto& mesh = *mechanism_.meshes[out.link];
-    const double s = mesh.centreline.nearest(probe.at);
-    const std::vector<double>& ends = link.beam->element_ends;
-    const auto found = std::lower_bound(ends.begin(), std::prev(ends.end()), s - 1e-12 * link.beam->length);
-    const double begin = found == ends.begin() ? 0.0 : *std::prev(found);
-    out.element = static_cast<int>(found - ends.begin());
-    out.xi = 2 * (s - begin) / (*found - begin) - 1;
-    Pose section = mesh.centreline.at(s);
-    section.position += section.orientation * mesh.mesh.centroid;
-    out.offset = section.inverse() * at;
-    return out;
-  }
-
-  const scene::SceneDescription& scene_;
-  MechanismBuilder& mechanism_;
-  Model& model_;
-};
 
 /// A model, and its coordinates that move nothing that has inertia: their accelerations would be undetermined.
 struct BuiltModel {
@@ -94,13 +25,23 @@ struct BuiltModel {
 };
 
 BuiltModel build(const scene::SceneDescription& scene) {
-  MechanismBuilder mechanism(scene);
-  mechanism.build();
-  LoadPlacer(scene, mechanism).place();
-  mechanism.model.length_scale = mechanism.extent();
-  Model model = std::move(mechanism.model);
+  const ScenePlan plan(scene);
+  PlacedTree placed = place_tree(plan);
+  WeightyTree weighty = add_inertia(plan, std::move(placed));
+  StartingTree starting = follow_mimics(plan, std::move(weighty));
+  ClosedMechanism closed = close_loops(plan, std::move(starting));
+  DrivenMechanism driven = connect_drives(plan, std::move(closed));
+  SolvableMechanism solvable = choose_constraints(plan, std::move(driven));
+
+  std::vector<Vector6> velocity = initial_velocity(plan, solvable);
+  PlacedLoads placed_loads = place_loads(plan, solvable.model);
+  Model model = std::move(solvable.model);
+  model.initial_velocity = std::move(velocity);
+  model.loads = std::move(placed_loads.loads);
+  model.histories = std::move(placed_loads.histories);
+  model.probes = place_probes(plan, model);
   model.gravity = scene.gravity;
-  std::vector<int> massless = finish_mass_properties(scene, mechanism.node_parents, model);
+  std::vector<int> massless = finish_mass_properties(scene, solvable.node_parents, model);
   return {std::move(model), std::move(massless)};
 }
 
@@ -108,12 +49,12 @@ BuiltModel build(const scene::SceneDescription& scene) {
   std::map<std::string, const scene::JointDescription*> joints;  // by coordinate
   for (const auto* list : {&scene.joints, &scene.loop_joints})
     for (const scene::JointDescription& joint : *list)
-      for (const std::string& suffix : scene::coordinate_suffixes(joint)) joints.emplace(joint.name + suffix, &joint);
+      for (const std::string& name : coordinate_names(joint)) joints.emplace(name, &joint);
   std::string text;
   for (const int index : built.massless) {
     const std::string& name = built.model.coordinates[index].name;
-    text += MechanismBuilder::at(joints.at(name)->location, "<joint>") + "joint coordinate '" + name +
-            "' moves nothing that has inertia\n";
+    text +=
+        at(joints.at(name)->location, "<joint>") + "joint coordinate '" + name + "' moves nothing that has inertia\n";
   }
   throw ModelError(text + scene.file +
                    ": give the links outboard of these joints an <inertial> or a <beam>, or hold those with one "

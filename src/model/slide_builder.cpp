@@ -1,8 +1,9 @@
-// Lines on which something slides, and the sections that slide on them.
-#include "mechanism_builder.h"
+#include "model/slide_builder.h"
 
 #include <algorithm>
 
+#include "model/elementary_joints.h"
+#include "model/model_builder.h"
 #include "scene/integrator_options.h"
 
 namespace flexarm {
@@ -22,46 +23,46 @@ SlideAlgorithm slide_algorithm(const std::string& name) {
 
 }  // namespace
 
-bool MechanismBuilder::continues(int before, int after) const {
+bool SlideBuilder::continues(int before, int after) const {
   if (before == after) return true;
-  const Pose a = pose_of(before), b = pose_of(after);
+  const Pose a = mechanism_.pose_of(before), b = mechanism_.pose_of(after);
   const double scale = 1 + a.position.norm();
   return (a.position - b.position).norm() <= kSamePlace * scale &&
          a.orientation.angularDistance(b.orientation) <= kSameDirection;
 }
 
-std::vector<int> MechanismBuilder::welded_beams(int link) const {
+std::vector<int> SlideBuilder::welded_beams(int link) const {
   const auto is_weld = [&](const scene::JointDescription* joint) {
     if (!joint || joint->kind != scene::JointKind::Fixed) return false;
-    const int parent = link_index(joint->parent), child = link_index(joint->child);
-    const bool are_placed = meshes[parent] && meshes[child] && meshes[child]->first_node >= 0;
-    return are_placed && continues(last_node(parent), meshes[child]->first_node);
+    const LinkFrame &parent = model_.links[plan_.links[joint->parent]],
+                    &child = model_.links[plan_.links[joint->child]];
+    return parent.beam && child.beam && continues(parent.beam->tip.node, child.frame.node);  // where both have a place
   };
   std::vector<int> chain = {link};
-  while (is_weld(joints_above_[chain.back()])) chain.push_back(link_index(joints_above_[chain.back()]->parent));
+  while (is_weld(plan_.tree.above[chain.back()])) chain.push_back(plan_.links[plan_.tree.above[chain.back()]->parent]);
   std::reverse(chain.begin(), chain.end());
   for (bool grows = true; grows;) {
-    const auto& below = joints_below_[chain.back()];
+    const auto& below = plan_.tree.below[chain.back()];
     const auto weld = std::find_if(below.begin(), below.end(), is_weld);
     grows = weld != below.end();
-    if (grows) chain.push_back(link_index((*weld)->child));
+    if (grows) chain.push_back(plan_.links[(*weld)->child]);
   }
   return chain;
 }
 
-int MechanismBuilder::slide_line(int link, const scene::SlideDescription& slide) {
+int SlideBuilder::slide_line(int link, const scene::SlideDescription& slide) {
   const std::vector<int> chain = welded_beams(link);
   double begin = 0;
   for (const int before : chain) {
     if (before == link) break;
-    begin -= meshes[before]->centreline.length();
+    begin -= plan_.meshes[before]->centreline.length();
   }
   SlideLine line, empty;
   line.smooth = empty.smooth = slide.smooth;
   for (const int beam : chain) {
     const double origin = begin;
-    for (const MeshElement& element : meshes[beam]->mesh.elements) {
-      const int base = meshes[beam]->first_node, front = base + element.nodes.front();
+    for (const MeshElement& element : plan_.meshes[beam]->mesh.elements) {
+      const int base = model_.links[beam].frame.node, front = base + element.nodes.front();
       if (!line.nodes.empty() && !continues(line.nodes.back(), front)) {  // a kink
         if (slide.start <= begin) return add_line(line);
         line = empty;
@@ -76,59 +77,59 @@ int MechanismBuilder::slide_line(int link, const scene::SlideDescription& slide)
   return add_line(line);
 }
 
-int MechanismBuilder::add_line(const SlideLine& line) {
-  for (std::size_t i = 0; i < model.slide_lines.size(); ++i)
-    if (model.slide_lines[i].nodes == line.nodes && model.slide_lines[i].begin() == line.begin() &&
-        model.slide_lines[i].smooth == line.smooth)
+int SlideBuilder::add_line(const SlideLine& line) {
+  for (std::size_t i = 0; i < model_.slide_lines.size(); ++i)
+    if (model_.slide_lines[i].nodes == line.nodes && model_.slide_lines[i].begin() == line.begin() &&
+        model_.slide_lines[i].smooth == line.smooth)
       return static_cast<int>(i);
-  model.slide_lines.push_back(line);
-  return static_cast<int>(model.slide_lines.size()) - 1;
+  model_.slide_lines.push_back(line);
+  return static_cast<int>(model_.slide_lines.size()) - 1;
 }
 
-Attachment MechanismBuilder::add_slide(const scene::JointDescription& joint) {
+Attachment SlideBuilder::add(const scene::JointDescription& joint) {
   const scene::SlideDescription& slide = *joint.slide;
   const std::string where = at(slide.location, "<slide> of joint '" + joint.name + "'");
-  const int parent = link_index(joint.parent);
-  if (!meshes[parent]) throw ModelError(where + "link '" + joint.parent + "' has no <beam> to slide on");
+  const int parent = plan_.links[joint.parent];
+  if (!plan_.meshes[parent]) throw ModelError(where + "link '" + joint.parent + "' has no <beam> to slide on");
   if (!joint.origin.position.isZero(0))
     throw ModelError(where +
                      "the place on the line is 'start', beside it is 'offset'; xyz of the joint's <origin> must "
                      "be 0 0 0");
   const std::string conflict = scene::slide_scheme_conflict(slide.scheme, scene_.integrator.scheme);
   if (!conflict.empty()) throw ModelError(where + conflict);
-  const LinkMesh& mesh = *meshes[parent];
+  const LinkMesh& mesh = *plan_.meshes[parent];
   JointMap map;
   map.kind = JointMapKind::Slide;
   map.line = slide_line(parent, slide);
   if (!scene::is_newmark_family(scene_.integrator.scheme)) map.algorithm = slide_algorithm(slide.scheme);
-  const SlideLine& line = model.slide_lines[map.line];
+  const SlideLine& line = model_.slide_lines[map.line];
   map.master = line.nodes.front();
-  const std::string name = joint.name + scene::coordinate_suffixes(joint).front();
+  const std::string name = coordinate_names(joint).front();
   Released released;
-  released.displacement[0] = initial_position(name, slide.start);
+  released.displacement[0] = plan_.initial_positions.of(name, slide.start);
   for (const double x : {slide.start, released.displacement[0]})
     if (!(x >= line.begin() && x <= line.end()))
       throw ModelError(where + "the arc length must be from " + std::to_string(line.begin()) + " to " +
                        std::to_string(line.end()) + " (the ends of the line or kinks), got " + std::to_string(x));
-  const int node = add_map(map, released);
+  const int node = mechanism_.add_map(map, released);
   scene::JointDescription travel = joint;
   travel.limits.reset();
   if (slide.on_end == scene::SlideDescription::End::Stop) travel.limits = scene::JointLimits{line.begin(), line.end()};
-  add_coordinates(travel, {name});
+  mechanism_.add_coordinates(travel, {name});
   // The joint's frame is fixed to the section: its orientation in the link where the undeformed line starts.
   const Pose section = mesh.centreline.at(slide.start);
   const Pose frame{-mesh.mesh.centroid, section.orientation.conjugate() * joint.origin.orientation};
   return {node, frame * Pose{slide.offset, Quaternion::Identity()}};
 }
 
-void MechanismBuilder::couple_slide(const scene::JointDescription& joint) {
-  const int angle = static_cast<int>(model.coordinates.size()) - 1;
-  Coordinate& travel = model.coordinates[angle - 1];
+void SlideBuilder::couple(const scene::JointDescription& joint) {
+  const int angle = static_cast<int>(model_.coordinates.size()) - 1;
+  Coordinate& travel = model_.coordinates[angle - 1];
   travel.mimicked = angle;
   travel.is_coupled = true;
   travel.mimic = {joint.kind == scene::JointKind::Cam ? 1.0 : joint.ratio, joint.slide->start, joint.profile};
-  model.initial_released[travel.joint].displacement[0] =
-      travel.mimic.value(model.initial_released[model.coordinates[angle].joint].displacement[0]);
+  model_.initial_released[travel.joint].displacement[0] =
+      travel.mimic.value(model_.initial_released[model_.coordinates[angle].joint].displacement[0]);
 }
 
 }  // namespace flexarm
