@@ -159,7 +159,7 @@ void StepSystem::add_endpoint_forces(bool with_tangent) {
     ElementSystem<N> system;
     system.set_zero();
     gather_nodes(element, end, nodes);
-    const auto internal = is_additive ? additive_internal<N> : endpoint_internal<N>;
+    const auto internal = is_additive ? endpoint_internal<N, AdditiveForm> : endpoint_internal<N>;
     internal(element, nodes, static_ ? nullptr : &rule, &begin_points_[first], state_->strain_rates.data() + first,
              with_tangent, &end_points_[first], &end_strain_rates_[first], system);
     if (is_additive) additive_to_spins(nodes, with_tangent, system);
