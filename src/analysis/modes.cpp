@@ -7,13 +7,13 @@
 
 #include "analysis/eigenpairs.h"
 #include "analysis/linearised_motion.h"
+#include "math/pi.h"
 
 namespace flexarm {
 namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kPi = 3.14159265358979323846;
 /// Modes computed beyond those asked for.
 constexpr int kExtraModes = 12;
 

@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
+#include "building/section.h"
 #include "cli/commands.h"
 #include "cli/mode_table.h"
 #include "cli/scene_input.h"
-#include "model/section.h"
 #include "simulation/inside.h"
 
 namespace flexarm::cli {

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "math/pi.h"
+
 namespace flexarm {
 
 const char* to_string(StepResult::Reason reason) {
@@ -27,7 +29,6 @@ const char* to_string(StepResult::Reason reason) {
 }
 
 double Mode::damping_ratio() const {
-  constexpr double kPi = 3.14159265358979323846;
   return rate == 0 ? 0 : -rate / std::hypot(2 * kPi * frequency, rate);
 }
 

@@ -9,11 +9,11 @@
 
 #include "analysis/modes.h"
 #include "analysis/statics.h"
+#include "building/model_builder.h"
 #include "integrators/balance.h"
 #include "integrators/stepper.h"
 #include "math/so3.h"
 #include "model/line_release.h"
-#include "model/model_builder.h"
 #include "schemes/slide_scheme.h"
 #include "simulation/inside.h"
 #include "simulation/observables.h"

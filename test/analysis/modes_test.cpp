@@ -3,7 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "model/model_builder.h"
+#include "building/model_builder.h"
+#include "math/pi.h"
 #include "simulation/observables.h"
 #include "support/scene_builder.h"
 
@@ -11,8 +12,6 @@ namespace flexarm {
 namespace {
 
 using namespace test;
-
-constexpr double kPi = 3.14159265358979323846;
 
 TEST(NaturalModes, PendulumAboutItsEquilibrium) {
   SceneBuilder builder;

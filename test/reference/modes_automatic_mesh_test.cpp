@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "model/beam_mesh.h"
+#include "building/beam_mesh.h"
 #include "reference_plane_scene.h"
 #include "simulation/inside.h"
 

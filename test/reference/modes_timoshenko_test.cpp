@@ -5,14 +5,13 @@
 
 #include <gtest/gtest.h>
 
+#include "math/pi.h"
 #include "reference_cantilever.h"
 #include "reference_plane_scene.h"
 #include "simulation/inside.h"
 
 namespace flexarm::test {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// omega sqrt(m L^4 / EI) for rotary inertia j / (m L^2) and shear compliance EI / (GA L^2): Rayleigh-Ritz with
 /// Legendre polynomials, all digits converged.

@@ -1,5 +1,5 @@
 // Lines over several links: welded beams are one line, kinks end it.
-#include "model/model_builder.h"
+#include "building/model_builder.h"
 #include "reference/dynamics_joint_chain.h"
 #include "simulation/inside.h"
 

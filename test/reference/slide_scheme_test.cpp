@@ -1,8 +1,8 @@
 // The thesis's algorithms for sliders: what each of them keeps, on a runner in free flight and in the example 12.2.
 #include <cstdio>
 
+#include "building/model_builder.h"
 #include "joints/joint_kinematics.h"
-#include "model/model_builder.h"
 #include "reference/slide_scenes.h"
 #include "simulation/inside.h"
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "flexarm/simulation/checkpoint.h"
+#include "schemes/scheme.h"
 #include "simulation/everything_scene.h"
 #include "simulation/inside.h"
 #include "simulation/same_bits.h"
@@ -53,16 +54,17 @@ TEST_P(Checkpoint, ResetReproducesTheRun) {
 TEST_P(Checkpoint, SnapshotContinuesBitForBit) {
   Simulation simulation = this->simulation();
   run(simulation, 40);
-  const State snapshot = state_of(simulation);
+  const Snapshot snapshot = simulation.snapshot();
+  const State then = state_of(simulation);
   run(simulation, 40);
   const State later = state_of(simulation);
   run(simulation, 13);
-  restore(simulation, snapshot);
-  EXPECT_TRUE(same_bits(state_of(simulation), snapshot));
+  simulation.restore(snapshot);
+  EXPECT_TRUE(same_bits(state_of(simulation), then));
   run(simulation, 40);
   EXPECT_TRUE(same_bits(state_of(simulation), later));
   Simulation other = this->simulation();
-  restore(other, snapshot);
+  other.restore(snapshot);
   run(other, 40);
   EXPECT_TRUE(same_bits(state_of(other), later)) << "also in another instance";
 }
@@ -109,10 +111,10 @@ TEST_P(Checkpoint, ContinuesToRoundOffWithKeptFactors) {
       for (scene::JointDescription& joint : *joints) joint.friction = 0, joint.friction_law = {};
   Simulation simulation(builder.scene, options);
   run(simulation, 40);
-  const State snapshot = state_of(simulation);
+  const Snapshot snapshot = simulation.snapshot();
   run(simulation, 40);
   const Vector3 tip = simulation.probe(0).pose.position;
-  restore(simulation, snapshot);
+  simulation.restore(snapshot);
   run(simulation, 40);
   EXPECT_LT((simulation.probe(0).pose.position - tip).norm(), 1e-10);
 }
@@ -127,7 +129,7 @@ TEST_P(Checkpoint, OfAnotherModelOrSchemeIsRefused) {
   b.joint("clamp", scene::JointKind::Fixed, "world", "arm");
   Simulation other(b.scene);
   EXPECT_THROW(read_checkpoint(other, path_), std::runtime_error);
-  EXPECT_THROW(restore(other, state_of(simulation)), std::invalid_argument);
+  EXPECT_THROW(other.restore(simulation.snapshot()), std::invalid_argument);
   EXPECT_TRUE(other.step().converged) << "unharmed";
 
   SimulationOptions options;
