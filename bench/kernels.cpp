@@ -18,7 +18,7 @@
 #include "math/quadrature.h"
 #include "math/simd.h"
 #include "math/so3.h"
-#include "solver/linear_solver.h"
+#include "solver/sparse_tangent.h"
 
 namespace flexarm {
 namespace {
@@ -49,10 +49,9 @@ struct StepUnderWay {
   Simulation simulation;
   StepSystem system;
 
-  StepUnderWay(const std::string& scheme, int elements, int order,
-               StepSystem::Tangent tangent = StepSystem::Tangent::Tree)
+  StepUnderWay(const std::string& scheme, int elements, int order, BackendChoice backend = BackendChoice::Fastest)
       : simulation(cantilever_in_motion(scheme, elements, order)),
-        system(simulation.model(), find_scheme(scheme).value(), tangent) {
+        system(simulation.model(), find_scheme(scheme).value(), backend) {
     system.begin(simulation.state(), kStep, StepSystem::Guess::Extrapolated);
   }
 };
@@ -72,12 +71,14 @@ void begin_step(benchmark::State& state, int order) {
 void gather(benchmark::State& state, int order) {
   const Simulation simulation = cantilever_in_motion("em", kElements, order);
   const DegreesOfFreedom dof(simulation.model());
-  SparseAssembler assembler(simulation.model(), dof);
+  ReducedResidual rows(simulation.model(), dof);
+  SparseTangent tangent(simulation.model(), dof);
   Eigen::VectorXd residual(dof.unknowns);
   for (auto _ : state) {
-    assembler.set_zero();
-    assembler.gather(residual);
-    assembler.gather_tangent();
+    rows.set_zero();
+    tangent.set_zero();
+    rows.gather(residual);
+    tangent.finish();
     benchmark::ClobberMemory();
   }
   count_elements(state, kElements);
@@ -107,7 +108,7 @@ void factorise_tree(benchmark::State& state, int order) {
   for (auto _ : state) {
     step.system.evaluate(true);  // factors take the place of what they are made of
     const auto begin = std::chrono::steady_clock::now();
-    benchmark::DoNotOptimize(step.system.tree()->factorise());
+    benchmark::DoNotOptimize(step.system.tangent().factorise());
     state.SetIterationTime(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   }
   count_elements(state, kElements);
@@ -116,35 +117,31 @@ void factorise_tree(benchmark::State& state, int order) {
 void solve_tree(benchmark::State& state, int order) {
   StepUnderWay step("em", kElements, order);
   step.system.evaluate(true);
-  step.system.tree()->factorise();
+  step.system.tangent().factorise();
   Eigen::VectorXd x(step.system.residual().size());
   for (auto _ : state) {
     x = step.system.residual();
-    benchmark::DoNotOptimize(step.system.tree()->solve(x));
+    benchmark::DoNotOptimize(step.system.tangent().solve(x));
   }
   count_elements(state, kElements);
 }
 
 void factorise_matrix(benchmark::State& state, int order) {
-  StepUnderWay step("em", kElements, order, StepSystem::Tangent::Matrix);
+  StepUnderWay step("em", kElements, order, BackendChoice::Matrix);
   step.system.evaluate(true);
-  const SparseAssembler& assembler = step.system.assembler();
-  LinearSolver solver(assembler.unknowns(), assembler.column_starts(), assembler.row_indices());
-  solver.factorise(assembler.values(), assembler.pattern());  // chooses pivots; later ones keep them
-  for (auto _ : state) benchmark::DoNotOptimize(solver.factorise(assembler.values(), assembler.pattern()));
+  step.system.tangent().factorise();  // chooses pivots; later ones keep them
+  for (auto _ : state) benchmark::DoNotOptimize(step.system.tangent().factorise());
   count_elements(state, kElements);
 }
 
 void solve_matrix(benchmark::State& state, int order) {
-  StepUnderWay step("em", kElements, order, StepSystem::Tangent::Matrix);
+  StepUnderWay step("em", kElements, order, BackendChoice::Matrix);
   step.system.evaluate(true);
-  const SparseAssembler& assembler = step.system.assembler();
-  LinearSolver solver(assembler.unknowns(), assembler.column_starts(), assembler.row_indices());
-  solver.factorise(assembler.values(), assembler.pattern());
-  Eigen::VectorXd x(assembler.unknowns());
+  step.system.tangent().factorise();
+  Eigen::VectorXd x(step.system.residual().size());
   for (auto _ : state) {
     x = step.system.residual();
-    benchmark::DoNotOptimize(solver.solve(x));
+    benchmark::DoNotOptimize(step.system.tangent().solve(x));
   }
   count_elements(state, kElements);
 }

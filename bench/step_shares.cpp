@@ -13,7 +13,6 @@
 #include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/simulation.h"
 #include "integrators/step_system.h"
-#include "solver/linear_solver.h"
 
 namespace flexarm {
 namespace {
@@ -40,15 +39,8 @@ struct Parts {
 
   explicit Parts(const Simulation& simulation) {
     const double step = simulation.step_size();
-    StepSystem system(simulation.model(), make_scheme(simulation.scene().integrator),
-                      StepSystem::tangent_for(simulation.model()));
-    const SparseAssembler& matrix = system.assembler();
-    std::optional<LinearSolver> solver;
-    if (!system.tree()) solver.emplace(matrix.unknowns(), matrix.column_starts(), matrix.row_indices());
-    const auto factorised = [&] {
-      return system.tree() ? system.tree()->factorise() : solver->factorise(matrix.values(), matrix.pattern());
-    };
-    const auto solved = [&](Eigen::VectorXd& b) { return system.tree() ? system.tree()->solve(b) : solver->solve(b); };
+    StepSystem system(simulation.model(), make_scheme(simulation.scene().integrator));
+    TangentBackend& backend = system.tangent();
     const auto nothing = [] {};
 
     State state = simulation.state();
@@ -60,9 +52,10 @@ struct Parts {
                        [&] { system.begin(state, step, StepSystem::Guess::Extrapolated); });
     residual = seconds_of(nothing, [&] { system.evaluate(false); });
     tangent = seconds_of(nothing, [&] { system.evaluate(true); });
-    factorise = seconds_of([&] { system.evaluate(true); }, [&] { benchmark::DoNotOptimize(factorised()); });
+    factorise = seconds_of([&] { system.evaluate(true); }, [&] { benchmark::DoNotOptimize(backend.factorise()); });
     Eigen::VectorXd increment;
-    solve = seconds_of([&] { increment = system.residual(); }, [&] { benchmark::DoNotOptimize(solved(increment)); });
+    solve =
+        seconds_of([&] { increment = system.residual(); }, [&] { benchmark::DoNotOptimize(backend.solve(increment)); });
     increment.setZero();
     update = seconds_of(nothing, [&] {
       benchmark::DoNotOptimize(system.largest_rotation(increment));

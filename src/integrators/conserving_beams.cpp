@@ -87,15 +87,15 @@ void ConservingBeams::scatter(const ElementPack<Nodes>& pack, const std::array<S
 }
 
 template <int Nodes>
-void ConservingBeams::scatter(const ElementPack<Nodes>& pack, const BlockSystem<Nodes, Pack>& system, bool with_tangent,
-                              SparseAssembler& assembler) {
+void ConservingBeams::scatter(const ElementPack<Nodes>& pack, const BlockSystem<Nodes, Pack>& system,
+                              Balance& balance) {
   std::array<double*, Pack::kLanes> targets;
   for (int i = 0; i < Nodes; ++i) {
-    for (int lane = 0; lane < pack.lanes; ++lane) targets[lane] = assembler.residual(pack.nodes[lane][i]);
+    for (int lane = 0; lane < pack.lanes; ++lane) targets[lane] = balance.residual.at(pack.nodes[lane][i]);
     add_lanes<6>(system.residual[i].data(), pack.lanes, targets.data());
-    for (int j = 0; j < Nodes && with_tangent; ++j) {
+    for (int j = 0; j < Nodes && balance.tangent; ++j) {
       for (int lane = 0; lane < pack.lanes; ++lane)
-        targets[lane] = assembler.element_block(pack.first_block[lane] + i * Nodes + j);
+        targets[lane] = balance.tangent->element_block(pack.first_block[lane] + i * Nodes + j);
       add_lanes<36>(system.tangent[i][j].data(), pack.lanes, targets.data());
     }
   }
@@ -142,8 +142,7 @@ void ConservingBeams::set_mid_functions(const StepMotion& step) {
   });
 }
 
-double ConservingBeams::add(const StepMotion& step, bool with_tangent, SparseAssembler& assembler,
-                            std::vector<StrainMemory>& end_memory) {
+void ConservingBeams::add(const StepMotion& step, Balance& balance, std::vector<StrainMemory>& end_memory) {
   double dissipated = 0;
   for_each_group(groups_, [&](auto& packs) {
     if (packs.empty()) return;  // not even memories are made
@@ -155,15 +154,15 @@ double ConservingBeams::add(const StepMotion& step, bool with_tangent, SparseAss
         if (has_memory_) gather<N>(pack, step.state.strain_memory, memory);
         packs::conserving_beam<N>(pack.element, gather<N>(pack, step), rule_, pack.mid_functions,
                                   pack.points[begin_].data(), has_memory_ ? memory.data() : nullptr, step.step,
-                                  with_tangent, pack.points[1 - begin_].data(),
+                                  balance.tangent != nullptr, pack.points[1 - begin_].data(),
                                   has_memory_ ? new_memory.data() : nullptr, system);
         if (has_memory_) scatter<N>(pack, new_memory, end_memory);
-        scatter<N>(pack, system, with_tangent, assembler);
+        scatter<N>(pack, system, balance);
         for (int lane = 0; lane < pack.lanes; ++lane) dissipated += system.dissipated[lane];
       }
     });
   });
-  return dissipated;
+  balance.dissipated += dissipated;
 }
 
 }  // namespace flexarm

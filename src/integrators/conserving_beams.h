@@ -7,7 +7,7 @@
 
 #include "elements/conserving_pack.h"
 #include "integrators/step_motion.h"
-#include "solver/sparse_assembler.h"
+#include "solver/reduced_residual.h"
 
 namespace flexarm {
 
@@ -23,10 +23,8 @@ class ConservingBeams {
   void set_begin(const std::vector<NodePose>& begin);
   /// Test functions for the middle of the step, as the velocities at the begin foresee it.
   void set_mid_functions(const StepMotion& step);
-  /// Adds forces, damping and translational inertia. `end_memory`: per stiffness point, where has_memory(). Returns
-  /// what is dissipated over the step [J].
-  double add(const StepMotion& step, bool with_tangent, SparseAssembler& assembler,
-             std::vector<StrainMemory>& end_memory);
+  /// Adds forces, damping and translational inertia. `end_memory`: per stiffness point, where has_memory().
+  void add(const StepMotion& step, Balance& balance, std::vector<StrainMemory>& end_memory);
   /// The points of the last add() are those at the begin of the next step.
   void accept() { begin_ = 1 - begin_; }
 
@@ -54,8 +52,7 @@ class ConservingBeams {
   static void scatter(const ElementPack<Nodes>& pack, const std::array<StrainMemoryT<Pack>, Nodes - 1>& points,
                       std::vector<StrainMemory>& memory);
   template <int Nodes>
-  static void scatter(const ElementPack<Nodes>& pack, const BlockSystem<Nodes, Pack>& system, bool with_tangent,
-                      SparseAssembler& assembler);
+  static void scatter(const ElementPack<Nodes>& pack, const BlockSystem<Nodes, Pack>& system, Balance& balance);
 
   TimeRule rule_;
   std::tuple<PackGroup<2>, PackGroup<3>, PackGroup<4>, PackGroup<5>> groups_;

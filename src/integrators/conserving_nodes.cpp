@@ -8,12 +8,12 @@ namespace flexarm {
 namespace {
 
 template <class NodePack>
-void scatter(const NodePack& pack, const ConservingNode<Pack>& node, bool with_tangent, SparseAssembler& assembler) {
+void scatter(const NodePack& pack, const ConservingNode<Pack>& node, Balance& balance) {
   std::array<double*, Pack::kLanes> targets;
-  for (int lane = 0; lane < pack.lanes; ++lane) targets[lane] = assembler.residual(pack.nodes[lane]);
+  for (int lane = 0; lane < pack.lanes; ++lane) targets[lane] = balance.residual.at(pack.nodes[lane]);
   add_lanes<6>(node.residual.data(), pack.lanes, targets.data());
-  for (int lane = 0; lane < pack.lanes && with_tangent; ++lane) {
-    Eigen::Map<Matrix6> tangent(assembler.diagonal_block(pack.nodes[lane]));
+  for (int lane = 0; lane < pack.lanes && balance.tangent; ++lane) {
+    Eigen::Map<Matrix6> tangent(balance.tangent->diagonal_block(pack.nodes[lane]));
     for (int c = 0; c < 3; ++c) {
       tangent(c, c) += node.translational[lane];
       for (int r = 0; r < 3; ++r) tangent(3 + r, 3 + c) += node.rotational(r, c)[lane];
@@ -43,7 +43,7 @@ ConservingNodes::ConservingNodes(const Model& model, const TimeRule& rule) : vel
   }
 }
 
-void ConservingNodes::add(const StepMotion& step, bool with_tangent, SparseAssembler& assembler) const {
+void ConservingNodes::add(const StepMotion& step, Balance& balance) const {
   simd::run([&] {
     for (const NodePack& pack : packs_) {
       const auto begin = [&](int lane) -> const NodePose& { return step.begin[pack.nodes[lane]]; };
@@ -61,8 +61,8 @@ void ConservingNodes::add(const StepMotion& step, bool with_tangent, SparseAssem
       node.velocity = gathered_vector([&](int lane) -> const Vector3& { return state(lane).velocity; });
       node.angular_velocity = gathered_vector([&](int lane) -> const Vector3& { return state(lane).angular_velocity; });
       node.inverse_tangent = cayley::inverse_tangent(node.increment);
-      scatter(pack, ConservingNode<Pack>(pack.inertia, node, velocity_factor_, step.step, with_tangent), with_tangent,
-              assembler);
+      scatter(pack, ConservingNode<Pack>(pack.inertia, node, velocity_factor_, step.step, balance.tangent != nullptr),
+              balance);
     }
   });
 }

@@ -7,7 +7,7 @@
 #include "elements/conserving_node.h"
 #include "elements/time_rule.h"
 #include "integrators/step_motion.h"
-#include "solver/sparse_assembler.h"
+#include "solver/reduced_residual.h"
 
 namespace flexarm {
 
@@ -17,7 +17,7 @@ class ConservingNodes {
   ConservingNodes(const Model& model, const TimeRule& rule);
 
   /// Adds the rates of momentum.
-  void add(const StepMotion& step, bool with_tangent, SparseAssembler& assembler) const;
+  void add(const StepMotion& step, Balance& balance) const;
 
  private:
   /// Nodes side by side; the last one fills what the model leaves of its last pack.

@@ -10,12 +10,9 @@ namespace flexarm {
 /// that turn need more, slow motions none), and later where updates contract slowly.
 class FactorReuse {
  public:
-  /// Costs of an iteration with new factors, along a tree and of a matrix, over that of one with kept ones; about what
-  /// `bench_kernels --benchmark_filter=step_shares` measures (its counter "new/kept").
-  static constexpr double kTree = 2.2, kMatrix = 5;
-
-  /// New factors square the error, kept ones contract it by a rate 10^-L. In a typical solve an iteration more with new
-  /// ones saves kept ones for about 7.5 digits, one less costs kept ones for 15 digits at the rate L.
+  /// `cost`: of an iteration with new factors over that of one with kept ones, see TangentBackend. New factors square
+  /// the error, kept ones contract it by a rate 10^-L. In a typical solve an iteration more with new ones saves kept
+  /// ones for about 7.5 digits, one less costs kept ones for 15 digits at the rate L.
   explicit FactorReuse(double cost) : slow_(std::pow(10.0, -7.5 / cost)), fast_(std::pow(10.0, -15.0 / cost)) {}
 
   void reset() { fresh_ = unjudged_ = 0; }

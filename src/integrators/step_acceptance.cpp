@@ -101,8 +101,7 @@ void StepSystem::accept(State& state) {
   for (std::size_t index = 0; index < model_.coordinates.size(); ++index) {
     const Coordinate& coordinate = model_.coordinates[index];
     if (coordinate.motion < 0) continue;
-    applied_[index] +=
-        assembler_.residual(dof_.variable_of_joint(coordinate.joint))[coordinate.component] / effort_weight();
+    applied_[index] += rows_.at(dof_.variable_of_joint(coordinate.joint))[coordinate.component] / effort_weight();
     // Over the step; the Newmark family has that at its end, and none at the start of a simulation.
     const bool is_mean = scheme_.is_incremental() || state.history.count == 0;
     state.drives.impulse[index] += step_ * (is_mean ? applied_[index] : 0.5 * (state.efforts[index] + applied_[index]));

@@ -26,9 +26,9 @@ template <int Nodes>
 void StepSystem::scatter(const BeamElement<Nodes>& element, const ElementSystem<Nodes>& system, bool with_tangent) {
   dissipated_ += system.dissipated;
   for (int i = 0; i < Nodes; ++i) {
-    Eigen::Map<Vector6>(assembler_.residual(element.nodes[i])) += system.residual.template segment<6>(6 * i);
+    Eigen::Map<Vector6>(rows_.at(element.nodes[i])) += system.residual.template segment<6>(6 * i);
     for (int j = 0; j < Nodes && with_tangent; ++j)
-      Eigen::Map<Matrix6>(assembler_.element_block(element.first_block + i * Nodes + j)) +=
+      Eigen::Map<Matrix6>(backend_->element_block(element.first_block + i * Nodes + j)) +=
           system.tangent.template block<6, 6>(6 * i, 6 * j);
   }
 }

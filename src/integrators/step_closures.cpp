@@ -19,7 +19,9 @@ void StepSystem::add_closures(bool with_tangent) {
     const ClosurePoses begin = closure_poses(closure, begin_), end = closure_poses(closure, end_);
     for (std::size_t i = 0; i < closure.constraints.size(); ++i) {
       closure_maps(closure, closure.constraints[i], begin, end, weight, maps);
-      assembler_.add_closure(static_cast<int>(k), static_cast<int>(i), multipliers_[k][i], maps, with_tangent);
+      const int closure_index = static_cast<int>(k), index = static_cast<int>(i);
+      rows_.add_closure(closure_index, index, multipliers_[k][i], maps);
+      if (with_tangent) backend_->add_closure(closure_index, index, multipliers_[k][i], maps);
     }
   }
 }

@@ -162,7 +162,7 @@ void StepSystem::hold_friction() {
   for (FrictionCarrier& carrier : carriers_) {
     const Coordinate& coordinate = model_.coordinates[carrier.coordinate];
     if (coordinate.motion >= 0) continue;
-    double& row = assembler_.residual(dof_.variable_of_joint(coordinate.joint))[coordinate.component];
+    double& row = rows_.at(dof_.variable_of_joint(coordinate.joint))[coordinate.component];
     carrier.increment = increment_of(coordinate);
     carrier.reaction = -row / effort_weight();
     carrier.capacity = 0;
@@ -190,11 +190,7 @@ void StepSystem::hold_friction_tangent() {
                                    .tail<3>();
       coefficients = cayley::inverse_tangent(rotation).row(component).transpose();
     }
-    const int equation = equation_of(coordinate);
-    if (tree_)
-      tree_->hold_row(coordinate.joint, coordinate.component, coordinate.component - component, coefficients);
-    else
-      assembler_.set_row(equation, equation - component, coefficients);
+    backend_->hold_row(coordinate.joint, coordinate.component, coordinate.component - component, coefficients);
   }
 }
 

@@ -64,16 +64,16 @@ void StepSystem::add_interpolated_forces(bool with_tangent) {
       force.head<3>() = (1 + scheme_.alpha) * end_forces_[i].head<3>() - scheme_.alpha * begin.head<3>();
       force.tail<3>() = moment.value;
       if (with_tangent)
-        Eigen::Map<Matrix6>(assembler_.diagonal_block(node)).bottomRightCorner<3, 3>() += moment.derivative;
+        Eigen::Map<Matrix6>(backend_->diagonal_block(node)).bottomRightCorner<3, 3>() += moment.derivative;
     }
-    Eigen::Map<Vector6>(assembler_.residual(node)) += force;
+    Eigen::Map<Vector6>(rows_.at(node)) += force;
   }
 }
 
 void StepSystem::shift_reactions() {
   const double weight = scheme_.alpha / (1 - scheme_.alpha);
   for (std::size_t i = 0; i < end_.size(); ++i) {
-    Eigen::Map<Vector6> residual(assembler_.residual(static_cast<int>(i)));
+    Eigen::Map<Vector6> residual(rows_.at(static_cast<int>(i)));
     end_reactions_[i] = residual;
     if (has_reactions()) residual += weight * state_->reactions[i];
   }

@@ -26,16 +26,12 @@ std::size_t slide_node_count(const Model& model) {
 
 }  // namespace
 
-StepSystem::Tangent StepSystem::tangent_for(const Model& model) {
-  return TreeSolver::suits(model, DegreesOfFreedom(model)) ? Tangent::Tree : Tangent::Matrix;
-}
-
-StepSystem::StepSystem(const Model& model, const Scheme& scheme, Tangent tangent)
+StepSystem::StepSystem(const Model& model, const Scheme& scheme, BackendChoice backend)
     : model_(model),
       scheme_(scheme),
       dof_(model),
-      tree_(tangent == Tangent::Tree ? std::make_optional<TreeSolver>(model, dof_) : std::nullopt),
-      assembler_(model, dof_, tree()),
+      rows_(model, dof_),
+      backend_(make_tangent_backend(model, dof_, backend)),
       begin_(model.nodes),
       end_(model.nodes),
       released_(model.initial_released),
@@ -82,7 +78,7 @@ void StepSystem::add_nodal_force(int node, const Vector6& force, Eigen::Matrix<d
                                  bool of_configuration, bool with_tangent) {
   if (scheme_.hht != HhtForm::None) end_forces_[node] += force;
   if (!is_interpolated()) {
-    Eigen::Map<Vector6>(assembler_.residual(node)) += force;
+    Eigen::Map<Vector6>(rows_.at(node)) += force;
   } else if (scheme_.hht == HhtForm::Kinematics) {
     if (of_configuration) rotational = (rotational * interpolated_spins_[node]).eval();
   } else if (with_tangent) {
@@ -90,7 +86,7 @@ void StepSystem::add_nodal_force(int node, const Vector6& force, Eigen::Matrix<d
     rotational.bottomRows<3>() =
         (interpolated_moment(node, Vector3::Zero(), Vector3::Zero(), false).slope * rotational.bottomRows<3>()).eval();
   }
-  if (with_tangent) Eigen::Map<Matrix6>(assembler_.diagonal_block(node)).rightCols<3>() += rotational;
+  if (with_tangent) Eigen::Map<Matrix6>(backend_->diagonal_block(node)).rightCols<3>() += rotational;
 }
 
 void StepSystem::add_nodal_forces(bool with_tangent) {
@@ -122,17 +118,18 @@ void StepSystem::add_nodal_forces(bool with_tangent) {
 
 void StepSystem::add_nodal_inertia(bool with_tangent) {
   if (scheme_.stress == StressRule::Conjugate) {
-    conserving_nodes_.add(motion(), with_tangent, assembler_);
+    Balance balance{rows_, with_tangent ? backend_.get() : nullptr};
+    conserving_nodes_.add(motion(), balance);
     return;
   }
   for (std::size_t i = 0; i < end_.size(); ++i) {
     const NodalInertia& inertia = model_.inertias[i];
     if (inertia.empty()) continue;
     const NodalAction action = nodal_inertia_action(inertia, scheme_, node_step(i), with_tangent);
-    Eigen::Map<Vector6>(assembler_.residual(static_cast<int>(i))) += action.residual;
+    Eigen::Map<Vector6>(rows_.at(static_cast<int>(i))) += action.residual;
     end_momentum_rates_[model_.mass_point_count + i] = action.residual.tail<3>();
     if (!with_tangent) continue;
-    Eigen::Map<Matrix6> tangent(assembler_.diagonal_block(static_cast<int>(i)));
+    Eigen::Map<Matrix6> tangent(backend_->diagonal_block(static_cast<int>(i)));
     tangent.topLeftCorner<3, 3>().diagonal().array() += action.translational;
     tangent.bottomRightCorner<3, 3>() += action.rotational;
   }
@@ -165,8 +162,8 @@ void StepSystem::add_joint_efforts(int j, bool with_tangent) {
   const JointMap& joint = model_.joints[j];
   const int count = released_count(joint.kind), variable = dof_.variable_of_joint(j);
   if (count == 0) return;
-  double* residual = assembler_.residual(variable);
-  Eigen::Map<ReleasedSquare> tangent(assembler_.diagonal_block(variable), count, count);
+  double* residual = rows_.at(variable);
+  Eigen::Map<ReleasedSquare> tangent(backend_->diagonal_block(variable), count, count);
   ReleasedVector change = ReleasedVector::Zero(count);
   if (!static_) change = released_increment(joint, state_->released[j], released_[j]);
   for (int k = 0; k < count; ++k) {
@@ -198,10 +195,11 @@ void StepSystem::slide_maps(int j, const Vector6& g, SlideMaps& maps, bool with_
 }
 
 void StepSystem::fold_slide(int j, bool with_tangent) {
-  const Vector6 g = assembler_.slave_residual(model_.joints[j].slave);
+  const Vector6 g = rows_.node(model_.joints[j].slave);
   slide_maps(j, g, slide_maps_, with_tangent);
   add_normal_friction(j, g, slide_maps_, with_tangent);
-  assembler_.fold(j, slide_maps_, with_tangent);
+  rows_.fold(j, slide_maps_);
+  if (with_tangent) backend_->fold(j, slide_maps_);
   add_joint_efforts(j, with_tangent);
 }
 
@@ -225,15 +223,17 @@ void StepSystem::fold_joints(bool with_tangent) {
       fold_slide(j, with_tangent);
       continue;
     }
-    const Vector6 g = assembler_.slave_residual(joint.slave);
-    FoldMaps& maps = with_tangent && tree_ ? tree_->maps(j) : scratch;
+    const Vector6 g = rows_.node(joint.slave);
+    FoldMaps& maps = with_tangent ? backend_->fold_maps(j) : scratch;
     joint_maps(j, g, maps, with_tangent);
     add_normal_friction(j, g, maps, with_tangent);
-    assembler_.fold(j, maps, with_tangent);
+    rows_.fold(j, maps);
+    if (with_tangent) backend_->fold(j);
     add_joint_efforts(j, with_tangent);
   }
   for (std::size_t i = 0; i < mimic_maps_.size(); ++i) mimic_maps_[i] = mimic_map(dof_.mimics[i].coordinate);
-  assembler_.fold_mimics(mimic_maps_, with_tangent);
+  rows_.fold_mimics(mimic_maps_);
+  if (with_tangent) backend_->fold_mimics(mimic_maps_);
 }
 
 MimicMap StepSystem::mimic_map(int coordinate) const {
@@ -261,7 +261,8 @@ void StepSystem::initialise(State& state) {
 
 bool StepSystem::evaluate(bool with_tangent) {
   if (is_off_line_) return false;
-  assembler_.set_zero(with_tangent);
+  rows_.set_zero();
+  if (with_tangent) backend_->set_zero();
   dissipated_ = 0;
   if (with_tangent && !static_ && scheme_.stress != StressRule::Conjugate)
     for (std::size_t i = 0; i < increments_.size(); ++i) inverse_tangents_[i] = cayley::inverse_tangent(increments_[i]);
@@ -272,8 +273,11 @@ bool StepSystem::evaluate(bool with_tangent) {
     add_endpoint_forces(with_tangent);
   else if (scheme_.stress != StressRule::Conjugate)
     add_momentum_beams(with_tangent);
-  else
-    dissipated_ += conserving_beams_.add(motion(), with_tangent, assembler_, end_strain_memory_);
+  else {
+    Balance balance{rows_, with_tangent ? backend_.get() : nullptr};
+    conserving_beams_.add(motion(), balance, end_strain_memory_);
+    dissipated_ += balance.dissipated;
+  }
   add_nodal_forces(with_tangent);
   if (is_interpolated()) add_interpolated_forces(with_tangent);
   if (!static_) add_nodal_inertia(with_tangent);
@@ -285,9 +289,9 @@ bool StepSystem::evaluate(bool with_tangent) {
   add_closures(with_tangent);
   fold_joints(with_tangent);
   hold_friction();
-  assembler_.gather(residual_);
+  rows_.gather(residual_);
   if (with_tangent) {
-    assembler_.gather_tangent();
+    backend_->finish();
     hold_friction_tangent();
   }
   return residual_.allFinite();

@@ -1,7 +1,7 @@
 #pragma once
 /// Residual and tangent of one step (or of a static configuration) as a function of the trial end configuration.
 
-#include <optional>
+#include <memory>
 #include <vector>
 
 #include "elements/momentum_beam.h"
@@ -17,8 +17,8 @@
 #include "model/degrees_of_freedom.h"
 #include "model/model.h"
 #include "model/state.h"
-#include "solver/sparse_assembler.h"
-#include "solver/tree_solver.h"
+#include "solver/reduced_residual.h"
+#include "solver/tangent_backend.h"
 
 namespace flexarm {
 
@@ -34,11 +34,7 @@ struct InterpolatedMoment {
 /// Life of a step: begin(state, h), guess, then evaluate / update until converged, then accept(state).
 class StepSystem {
  public:
-  /// What becomes of the tangent: a matrix in assembler(), or fronts along the tree, for solve() alone.
-  enum class Tangent { Matrix, Tree };
-  /// The fronts for models that suit a TreeSolver.
-  static Tangent tangent_for(const Model& model);
-  StepSystem(const Model& model, const Scheme& scheme, Tangent tangent = Tangent::Matrix);
+  StepSystem(const Model& model, const Scheme& scheme, BackendChoice backend = BackendChoice::Fastest);
 
   enum class Guess {
     Extrapolated,  ///< from the last increments, see IncrementHistory; continuing the velocities in the first step
@@ -80,9 +76,8 @@ class StepSystem {
   /// loop was singular at the start.
   double open_loop() const;
   const Eigen::VectorXd& residual() const { return residual_; }
-  const SparseAssembler& assembler() const { return assembler_; }
-  /// The tangent along the tree; null if it is a matrix.
-  TreeSolver* tree() { return tree_ ? &*tree_ : nullptr; }
+  TangentBackend& tangent() { return *backend_; }
+  const TangentBackend& tangent() const { return *backend_; }
   const DegreesOfFreedom& degrees_of_freedom() const { return dof_; }
   /// Largest entry of an increment, displacements divided by the model's length scale [-, rad].
   double scaled_norm(const Eigen::VectorXd& increment) const;
@@ -173,8 +168,8 @@ class StepSystem {
   const Model& model_;
   Scheme scheme_;
   DegreesOfFreedom dof_;
-  std::optional<TreeSolver> tree_;
-  SparseAssembler assembler_;
+  ReducedResidual rows_;
+  std::unique_ptr<TangentBackend> backend_;
 
   const State* state_ = nullptr;
   double step_ = 0, load_factor_ = 1;

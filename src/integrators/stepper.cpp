@@ -58,13 +58,11 @@ Stepper::Stepper(const Model& model, const Scheme& scheme, const StepSettings& s
     : model_(model),
       scheme_(scheme),
       settings_(settings),
-      system_(model, scheme, StepSystem::tangent_for(model)),
-      update_(system_.assembler().unknowns()),
-      factor_reuse_(system_.tree() ? FactorReuse::kTree : FactorReuse::kMatrix) {
-  const SparseAssembler& matrix = system_.assembler();
-  if (!system_.tree()) solver_.emplace(matrix.unknowns(), matrix.column_starts(), matrix.row_indices());
+      system_(model, scheme),
+      update_(system_.degrees_of_freedom().unknowns),
+      factor_reuse_(system_.tangent().cost_of_factors()) {
   update_norms_.reserve(settings.max_iterations + 1);
-  for (std::vector<double>& increment : before_.history.increments) increment.reserve(matrix.unknowns());
+  for (std::vector<double>& increment : before_.history.increments) increment.reserve(update_.size());
   if (scheme.scales_velocities) scaling_.emplace(model, scheme);
 }
 
@@ -72,15 +70,6 @@ void Stepper::invalidate() {
   system_.invalidate();
   factorised_step_ = 0;
   factor_reuse_.reset();
-}
-
-bool Stepper::factorise_tangent() {
-  if (system_.tree()) return system_.tree()->factorise();
-  return solver_->factorise(system_.assembler().values(), system_.assembler().pattern());
-}
-
-bool Stepper::solve(Eigen::VectorXd& b) {
-  return system_.tree() ? system_.tree()->solve(b) : solver_->solve(b);
 }
 
 bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
@@ -92,7 +81,7 @@ bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
     return false;
   };
   const auto not_evaluated = [&] { return system_.is_off_line() ? Reason::OffTheLine : Reason::NotFinite; };
-  if (system_.assembler().unknowns() == 0) return system_.evaluate(false) || fail(not_evaluated());
+  if (update_.size() == 0) return system_.evaluate(false) || fail(not_evaluated());
 
   bool factorise = factor_reuse_.begin(factorised_step_ == system_.step() && system_.tangent_holds()) || !reuse;
   int since_revision = 0;  // updates
@@ -106,11 +95,11 @@ bool Stepper::iterate(Updates updates, bool reuse, StepResult& result) {
     ++result.iterations;
     if (factorise) {
       ++result.factorisations;
-      if (!factorise_tangent()) return fail(Reason::SingularTangent);
+      if (!system_.tangent().factorise()) return fail(Reason::SingularTangent);
       factorised_step_ = system_.step();
     }
     update_ = -system_.residual();
-    if (!solve(update_)) return fail(Reason::SingularTangent);
+    if (!system_.tangent().solve(update_)) return fail(Reason::SingularTangent);
     const double rotation = system_.largest_rotation(update_);
     if (updates == Updates::Limited && rotation > kLargestRotationUpdate) update_ *= kLargestRotationUpdate / rotation;
     const double norm = system_.scaled_norm(update_);

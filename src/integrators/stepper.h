@@ -6,7 +6,6 @@
 #include "integrators/factor_reuse.h"
 #include "integrators/step_system.h"
 #include "integrators/velocity_scaling.h"
-#include "solver/linear_solver.h"
 
 namespace flexarm {
 
@@ -69,8 +68,6 @@ class Stepper {
   /// Newton from the present trial configuration; leaves the system evaluated at the solution. With `reuse` it starts
   /// with the factors of an earlier solve where these have shown to do, and makes new ones where the iteration is slow.
   bool iterate(Updates updates, bool reuse, StepResult& result);
-  bool factorise_tangent();
-  bool solve(Eigen::VectorXd& b);
   void initialise_accelerations(State& state);
   /// A step of a composed scheme is several simple ones; on failure the state is untouched.
   bool sub_step(State& state, double step, StepResult& result);
@@ -80,7 +77,6 @@ class Stepper {
   Scheme scheme_;
   StepSettings settings_;
   StepSystem system_;
-  std::optional<LinearSolver> solver_;  // where the model is no tree
   Eigen::VectorXd update_;
   std::optional<VelocityScaling> scaling_;
   State before_;                // of a step that may have to be taken back

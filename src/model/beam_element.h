@@ -39,7 +39,7 @@ struct BeamElement {
   Eigen::Matrix<double, Nodes, Nodes> mass;  ///< int I^i I^j mass ds [kg]
   double stiffness_damping = 0;              ///< eta of F += eta C d(strain)/dt [s]
   double mass_damping = 0;                   ///< [1/s]
-  int first_block = 0;                       ///< into SparseAssembler::element_blocks, then [i * Nodes + j]
+  int first_block = 0;                       ///< into TangentBackend::element_block, then [i * Nodes + j]
 };
 
 /// Elements of equal order, contiguous.

@@ -45,9 +45,9 @@ double damping_of(const Coordinate& coordinate, const Released& released) {
 LinearisedMotion::LinearisedMotion(const Model& model, const State& state)
     : model_(model),
       state_(state),
-      system_(model, *find_scheme("newmark")),
+      system_(model, *find_scheme("newmark"), BackendChoice::Matrix),
       dof_(system_.degrees_of_freedom()),
-      stiffness_(system_.assembler()),
+      stiffness_(static_cast<const SparseTangent&>(system_.tangent())),
       damping_(model, dof_),
       mass_(model, dof_) {
   system_.begin_static(state, 1.0);
@@ -65,7 +65,7 @@ int LinearisedMotion::freedoms() const {
   return freedoms;
 }
 
-LinearisedMotion::Matrix LinearisedMotion::matrix(const SparseAssembler& assembler) {
+LinearisedMotion::Matrix LinearisedMotion::matrix(const SparseTangent& assembler) {
   return Matrix(assembler.unknowns(), assembler.unknowns(), assembler.values().size(), assembler.column_starts().data(),
                 assembler.row_indices().data(), assembler.values().data());
 }
@@ -185,15 +185,15 @@ void LinearisedMotion::assemble_damping() {
   fold(damping_);
 }
 
-void LinearisedMotion::fold(SparseAssembler& assembler) const {
+void LinearisedMotion::fold(SparseTangent& assembler) const {
   for (int j = static_cast<int>(model_.joints.size()) - 1; j >= 0; --j) {
     if (model_.joints[j].kind == JointMapKind::Slide)
-      assembler.fold(j, maps_.slides[j], true);
+      assembler.fold(j, maps_.slides[j]);
     else
-      assembler.fold(j, maps_.folds[j], true);
+      assembler.fold(j, maps_.folds[j]);
   }
-  assembler.fold_mimics(maps_.mimics, true);
-  assembler.gather_tangent();
+  assembler.fold_mimics(maps_.mimics);
+  assembler.finish();
 }
 
 // ---------------------------------------------------------------- motions

@@ -8,6 +8,7 @@
 
 #include "integrators/step_system.h"
 #include "solver/modes.h"
+#include "solver/sparse_tangent.h"
 
 namespace flexarm {
 
@@ -33,7 +34,7 @@ class LinearisedMotion {
   /// Motions that no multiplier of a loop holds.
   int freedoms() const;
   /// All three have the same pattern.
-  const SparseAssembler& pattern() const { return stiffness_; }
+  const SparseTangent& pattern() const { return stiffness_; }
   Matrix stiffness() const { return matrix(stiffness_); }
   /// What multiplies velocities. About a configuration at rest there are no gyroscopic terms in it.
   Matrix damping() const { return matrix(damping_); }
@@ -49,12 +50,12 @@ class LinearisedMotion {
   double round_off(const std::vector<ComplexVector6>& node_motion) const;
 
  private:
-  static Matrix matrix(const SparseAssembler& assembler);
+  static Matrix matrix(const SparseTangent& assembler);
   void find_multipliers();
   void set_joint_maps();
   void assemble_mass();
   void assemble_damping();
-  void fold(SparseAssembler& assembler) const;
+  void fold(SparseTangent& assembler) const;
   std::vector<double> scalars(const Eigen::VectorXd& vector) const;
   std::vector<Vector6> node_motion(const std::vector<double>& scalars) const;
 
@@ -62,8 +63,8 @@ class LinearisedMotion {
   const State& state_;
   StepSystem system_;
   const DegreesOfFreedom& dof_;
-  const SparseAssembler& stiffness_;
-  SparseAssembler damping_, mass_;
+  const SparseTangent& stiffness_;
+  SparseTangent damping_, mass_;
   JointMaps maps_;
 };
 

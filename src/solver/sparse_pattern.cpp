@@ -1,16 +1,17 @@
 // The blocks of the tangent, the program of its reduction, and the pattern of the reduced matrix.
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <unordered_map>
 
-#include "solver/sparse_assembler.h"
+#include "solver/sparse_tangent.h"
 
 namespace flexarm {
 
 /// Collects blocks and folds symbolically.
-class SparseAssembler::PatternBuilder {
+class SparseTangent::PatternBuilder {
  public:
-  PatternBuilder(SparseAssembler& assembler)
+  PatternBuilder(SparseTangent& assembler)
       : a_(assembler), rows_of_(a_.dof_.size.size()), columns_of_(a_.dof_.size.size()), folded_(a_.dof_.size.size()) {}
 
   int block(int row, int column) {
@@ -125,30 +126,29 @@ class SparseAssembler::PatternBuilder {
   bool folded(int variable) const { return folded_[variable]; }
 
  private:
-  SparseAssembler& a_;
+  SparseTangent& a_;
   std::size_t offset_ = 0;
   std::unordered_map<std::uint64_t, int> index_;
   std::vector<std::vector<int>> rows_of_, columns_of_;
   std::vector<bool> folded_;
 };
 
-SparseAssembler::SparseAssembler(const Model& model, const DegreesOfFreedom& dof, TreeSolver* tree)
-    : model_(model), dof_(dof), tree_(tree), residual_(dof.scalar_count, 0.0) {
-  if (!tree) build_pattern();
+SparseTangent::SparseTangent(const Model& model, const DegreesOfFreedom& dof) : model_(model), dof_(dof) {
+  build_pattern();
 }
 
-void SparseAssembler::build_pattern() {
+void SparseTangent::build_pattern() {
   joint_folds_.resize(model_.joints.size());
   slide_folds_.resize(model_.joints.size());
   column_blocks_.resize(dof_.size.size());
   active_.assign(model_.joints.size(), {0, 0});
   PatternBuilder pattern(*this);
   for (std::size_t v = 0; v < dof_.size.size(); ++v)
-    diagonal_.push_back(pattern.block(static_cast<int>(v), static_cast<int>(v)));
+    diagonal_places_.push_back(pattern.block(static_cast<int>(v), static_cast<int>(v)));
   for_each_element(model_.beams, [&](const auto& element) {
-    element_blocks_.resize(std::max<std::size_t>(element_blocks_.size(), element.first_block));
+    element_places_.resize(std::max<std::size_t>(element_places_.size(), element.first_block));
     for (const int i : element.nodes)
-      for (const int j : element.nodes) element_blocks_.push_back(pattern.block(i, j));
+      for (const int j : element.nodes) element_places_.push_back(pattern.block(i, j));
   });
   for (std::size_t k = 0; k < model_.closures.size(); ++k) pattern.add_closure(static_cast<int>(k));
   for (int j = static_cast<int>(model_.joints.size()) - 1; j >= 0; --j) {
@@ -164,6 +164,9 @@ void SparseAssembler::build_pattern() {
   for (std::vector<int>& list : column_blocks_)
     std::sort(list.begin(), list.end(), [&](int a, int b) { return blocks_[a].row < blocks_[b].row; });
   values_.assign(pattern.value_count(), 0.0);
+  const auto place = [&](int block) { return values_.data() + blocks_[block].offset; };
+  std::transform(diagonal_places_.begin(), diagonal_places_.end(), std::back_inserter(diagonal_blocks_), place);
+  std::transform(element_places_.begin(), element_places_.end(), std::back_inserter(element_blocks_), place);
   written_.reserve(blocks_.size());
   live_.assign(blocks_.size(), true);
   build_compressed_columns();  // the largest pattern: all later ones fit into its memory
@@ -178,13 +181,13 @@ void SparseAssembler::build_pattern() {
   pattern_ = 0;
 }
 
-void SparseAssembler::set_active(int j, int first, int count) {
+void SparseTangent::set_active(int j, int first, int count) {
   if (active_[j].first <= first && first + count <= active_[j].end) return;
   active_[j] = {first, first + count};
   pattern_is_old_ = true;
 }
 
-void SparseAssembler::update_pattern() {
+void SparseTangent::update_pattern() {
   mark_live_blocks();
   written_.clear();
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
@@ -202,13 +205,13 @@ void SparseAssembler::update_pattern() {
 }
 
 /// The folds once more, for the blocks that are not zero for good.
-void SparseAssembler::mark_live_blocks() {
+void SparseTangent::mark_live_blocks() {
   std::fill(live_.begin(), live_.end(), false);
   const auto mark = [&](int block) {
     if (block >= 0) live_[block] = true;
   };
-  for (const int block : element_blocks_) mark(block);
-  for (const int block : diagonal_) mark(block);
+  for (const int block : element_places_) mark(block);
+  for (const int block : diagonal_places_) mark(block);
   for (const ClosureBlocks& b : closure_blocks_)
     for (const int block : {b.parent_parent, b.parent_child, b.child_parent, b.child_child, b.parent_multiplier,
                             b.child_multiplier, b.multiplier_parent, b.multiplier_child})
@@ -234,7 +237,7 @@ void SparseAssembler::mark_live_blocks() {
   }
 }
 
-void SparseAssembler::mark_slide(int j) {
+void SparseTangent::mark_slide(int j) {
   const SlideFold& fold = slide_folds_[j];
   const NodeRange active = active_[j];
   const auto mark = [&](int first) {
@@ -255,7 +258,7 @@ void SparseAssembler::mark_slide(int j) {
   for (int k = active.first; k < active.end; ++k) mark(fold.masters_masters + k * count);
 }
 
-void SparseAssembler::build_compressed_columns() {
+void SparseTangent::build_compressed_columns() {
   column_starts_.assign(1, 0);
   row_indices_.clear();
   copies_.clear();

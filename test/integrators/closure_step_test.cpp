@@ -25,12 +25,12 @@ TEST_P(ClosedStep, TangentOfAStep) {
   const Model model = ring_with_beam(kind);
   ASSERT_FALSE(model.closures.at(0).constraints.empty());
   RandomSource random(5);
-  StepSystem system(model, *find_scheme(name));
+  StepSystem system(model, *find_scheme(name), BackendChoice::Matrix);
   State state = random_state(model, random, 0.15);
   system.initialise(state);
   system.begin(state, 0.2, StepSystem::Guess::Extrapolated);
-  system.update(random_update(system.assembler().unknowns(), random, 0.1));
-  Eigen::VectorXd multipliers = Eigen::VectorXd::Zero(system.assembler().unknowns());
+  system.update(random_update(system.degrees_of_freedom().unknowns, random, 0.1));
+  Eigen::VectorXd multipliers = Eigen::VectorXd::Zero(system.degrees_of_freedom().unknowns);
   const DegreesOfFreedom& dof = system.degrees_of_freedom();
   for (std::size_t i = 0; i < model.closures[0].constraints.size(); ++i)
     multipliers[dof.equation[dof.first[dof.variable_of_closure(0)] + i]] = 20 * random.number();
@@ -47,7 +47,7 @@ INSTANTIATE_TEST_SUITE_P(
 // A multiplier counts by the way that its force moves the mechanism in a step: h^2 / mass of it, over the length.
 TEST(ClosedStep, MultipliersCountInNormsByTheirWay) {
   const Model model = ring_with_beam(JointKind::Fixed);
-  StepSystem system(model, *find_scheme("em"));
+  StepSystem system(model, *find_scheme("em"), BackendChoice::Matrix);
   const DegreesOfFreedom& dof = system.degrees_of_freedom();
   const int first = dof.equation[dof.first[dof.variable_of_closure(0)]];
   EXPECT_EQ(first, dof.unknowns - 6);

@@ -6,10 +6,16 @@
 #include "elements/differences.h"
 #include "elements/random_element.h"
 #include "integrators/step_system.h"
+#include "solver/sparse_tangent.h"
 
 namespace flexarm::test {
 
-inline Eigen::MatrixXd dense(const SparseAssembler& assembler) {
+/// The tangent of a system that was made with BackendChoice::Matrix.
+inline const SparseTangent& matrix_of(const StepSystem& system) {
+  return dynamic_cast<const SparseTangent&>(system.tangent());
+}
+
+inline Eigen::MatrixXd dense(const SparseTangent& assembler) {
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(assembler.unknowns(), assembler.unknowns());
   for (int column = 0; column < assembler.unknowns(); ++column)
     for (int p = assembler.column_starts()[column]; p < assembler.column_starts()[column + 1]; ++p)
@@ -20,7 +26,7 @@ inline Eigen::MatrixXd dense(const SparseAssembler& assembler) {
 /// Every column of the tangent against differences; `size`: over what update the residual changes its shape.
 inline void expect_consistent_tangent(StepSystem& system, double size) {
   ASSERT_TRUE(system.evaluate(true));
-  const Eigen::MatrixXd tangent = dense(system.assembler());
+  const Eigen::MatrixXd tangent = dense(matrix_of(system));
   const double scale = std::max(largest(tangent), largest(system.residual()));
   for (int column = 0; column < tangent.cols(); ++column) {
     const Eigen::VectorXd unit = Eigen::VectorXd::Unit(tangent.cols(), column);

@@ -25,21 +25,21 @@ class FrictionTangent : public SchemeStep {
 TEST_P(FrictionTangent, Slipping) {
   const Model model = rubbing_model(true);
   RandomSource random(21);
-  StepSystem system(model, scheme());
+  StepSystem system(model, scheme(), BackendChoice::Matrix);
   const State state = prepared(random_state(model, random, 0.15), system, random);
   system.begin(state, 0.2, StepSystem::Guess::Extrapolated);
-  system.update(random_update(system.assembler().unknowns(), random, 0.1));
+  system.update(random_update(system.degrees_of_freedom().unknowns, random, 0.1));
   expect_consistent_tangent(system, kShort);
 }
 
 TEST_P(FrictionTangent, Held) {
   const Model model = rubbing_model(true);
   RandomSource random(32);
-  StepSystem system(model, scheme());
+  StepSystem system(model, scheme(), BackendChoice::Matrix);
   State state = prepared(random_state(model, random, 0.15), system, random);
   for (std::size_t i = 0; i < state.rests.size(); ++i) state.rests[i] = i % 2;
   system.begin(state, 0.2, StepSystem::Guess::Unchanged);
-  system.update(random_update(system.assembler().unknowns(), random, 0.1));
+  system.update(random_update(system.degrees_of_freedom().unknowns, random, 0.1));
   expect_consistent_tangent(system, kShort);
 }
 

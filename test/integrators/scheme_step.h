@@ -39,7 +39,7 @@ class SchemeStep : public ::testing::TestWithParam<SchemeVariant> {
   /// step * speed = 0.03.
   void expect_consistent_tangent_of_a_slow_step(const Model& model, unsigned seed) const {
     RandomSource random(seed);
-    StepSystem system(model, scheme());
+    StepSystem system(model, scheme(), BackendChoice::Matrix);
     State state = prepared(random_state(model, random, 0.05), system, random);
     for (NodeState& node : state.nodes) {
       node.velocity *= 1e-3;
@@ -48,7 +48,7 @@ class SchemeStep : public ::testing::TestWithParam<SchemeVariant> {
       node.angular_acceleration.setZero();
     }
     system.begin(state, 30.0, StepSystem::Guess::Unchanged);
-    system.update(random_update(system.assembler().unknowns(), random, 0.01));
+    system.update(random_update(system.degrees_of_freedom().unknowns, random, 0.01));
     // A beta correction divides by a work of the increments, here 0.01: the residual changes its shape over a part of
     // that.
     const bool divides =

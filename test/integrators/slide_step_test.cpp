@@ -45,12 +45,12 @@ TEST_P(SlideStepOf, TangentIsConsistent) {
   RandomSource random(1);
   // Elements are 0.41 m long, then 0.55 m; from 1.0 m: within, over the weld, over two borders, backwards.
   for (const double travel : {0.1, 0.5, 0.95, -0.3}) {
-    StepSystem system(model, *find_scheme(GetParam().scheme));
+    StepSystem system(model, *find_scheme(GetParam().scheme), BackendChoice::Matrix);
     State state = random_state(model, random, 0.1);
     state.released[s].displacement[0] = 1.0;
     system.initialise(state);
     system.begin(state, 0.2, StepSystem::Guess::Unchanged);
-    Eigen::VectorXd update = random_update(system.assembler().unknowns(), random, 0.1);
+    Eigen::VectorXd update = random_update(system.degrees_of_freedom().unknowns, random, 0.1);
     const DegreesOfFreedom& dof = system.degrees_of_freedom();
     update[dof.equation[dof.first[dof.variable_of_joint(static_cast<int>(s))]]] = travel;
     system.update(update);
@@ -80,34 +80,34 @@ TEST_P(SlidePattern, FollowsTheSlider) {
   const auto evaluate = [&](StepSystem& system, double from, double to) {
     state.released[s].displacement[0] = from;
     system.begin(state, 0.1, StepSystem::Guess::Unchanged);
-    Eigen::VectorXd update = Eigen::VectorXd::Zero(system.assembler().unknowns());
+    Eigen::VectorXd update = Eigen::VectorXd::Zero(system.degrees_of_freedom().unknowns);
     const DegreesOfFreedom& dof = system.degrees_of_freedom();
     update[dof.equation[dof.first[dof.variable_of_joint(static_cast<int>(s))]]] = to - from;
     system.update(update);
     ASSERT_TRUE(system.evaluate(true));
   };
-  StepSystem walking(model, schemes().front());
+  StepSystem walking(model, schemes().front(), BackendChoice::Matrix);
   int patterns = 0;
   for (double x = 0.1; x < 3.8; x += 0.06) {
-    StepSystem fresh(model, schemes().front());
+    StepSystem fresh(model, schemes().front(), BackendChoice::Matrix);
     evaluate(walking, x, x + 0.06);
     evaluate(fresh, x, x + 0.06);
-    EXPECT_EQ(dense(walking.assembler()), dense(fresh.assembler())) << x;
+    EXPECT_EQ(dense(matrix_of(walking)), dense(matrix_of(fresh))) << x;
     // The elements, the arm's 12 unknowns with 1 + 3 of the joint, their coupling with the nodes of the active
     // elements, and the coupling of these: of 208 * 208.
     const std::size_t elements = is_smooth ? 4 : 2, nodal = 6 * (2 * elements + 1);
     const std::size_t uncoupled = 18 * 18 * elements - 36 * (elements - 1);
-    EXPECT_LE(walking.assembler().values().size(),
+    EXPECT_LE(matrix_of(walking).values().size(),
               16 * 18 * 18 - 15 * 36 + 16 * 16 + 2 * 16 * nodal + nodal * nodal - uncoupled);
-    patterns = walking.assembler().pattern();
+    patterns = matrix_of(walking).pattern();
   }
   EXPECT_GE(patterns, 14);
   EXPECT_LE(patterns, 16) << "once per border";
   evaluate(walking, 3.7, 3.75);
   evaluate(walking, 0.3, 0.35);  // far away
-  StepSystem fresh(model, schemes().front());
+  StepSystem fresh(model, schemes().front(), BackendChoice::Matrix);
   evaluate(fresh, 0.3, 0.35);
-  EXPECT_EQ(dense(walking.assembler()), dense(fresh.assembler()));
+  EXPECT_EQ(dense(matrix_of(walking)), dense(matrix_of(fresh)));
 }
 
 std::vector<SlideCase> cases() {

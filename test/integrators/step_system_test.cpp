@@ -21,11 +21,11 @@ Model smooth_model() {
 TEST_P(ConsistentTangent, TangentOfAStep) {
   const Model model = smooth_model();
   RandomSource random(1);
-  StepSystem system(model, scheme());
+  StepSystem system(model, scheme(), BackendChoice::Matrix);
   State state = prepared(random_state(model, random, 0.15), system, random);
   state.time = 0.3;
   system.begin(state, 0.2, StepSystem::Guess::Extrapolated);
-  system.update(random_update(system.assembler().unknowns(), random, 0.1));
+  system.update(random_update(system.degrees_of_freedom().unknowns, random, 0.1));
   expect_consistent_tangent(system, 0.15);
 }
 
@@ -38,10 +38,10 @@ TEST_P(ConsistentTangent, TangentInsideAStop) {
   for (Coordinate& coordinate : model.coordinates)
     if (coordinate.limit) coordinate.limit = LimitStop{0.6, 3.0, 20.0, 0.5};  // the slider's travel is about zero
   RandomSource random(3);
-  StepSystem system(model, scheme());
+  StepSystem system(model, scheme(), BackendChoice::Matrix);
   const State state = prepared(random_state(model, random, 0.1), system, random);
   system.begin(state, 0.2, StepSystem::Guess::Unchanged);
-  system.update(random_update(system.assembler().unknowns(), random, 0.1));
+  system.update(random_update(system.degrees_of_freedom().unknowns, random, 0.1));
   expect_consistent_tangent(system, 0.25);
 }
 
@@ -50,10 +50,10 @@ TEST_P(ConsistentTangent, TangentInsideAStop) {
 TEST_P(StepSystemOf, KinematicsHoldAfterAStep) {
   const Model model = build_model(every_joint_scene(false));
   RandomSource random(4);
-  StepSystem system(model, scheme());
+  StepSystem system(model, scheme(), BackendChoice::Matrix);
   State state = prepared(random_state(model, random, 0.1), system, random);
   system.begin(state, 0.2, StepSystem::Guess::Unchanged);
-  system.update(random_update(system.assembler().unknowns(), random, 0.1));
+  system.update(random_update(system.degrees_of_freedom().unknowns, random, 0.1));
   ASSERT_TRUE(system.evaluate(false));
   system.accept(state);
   EXPECT_NEAR(state.time, 0.2, 1e-15);
@@ -88,27 +88,27 @@ TEST(StepSystem, TangentOfStatics) {
     if (coordinate.limit) coordinate.limit = LimitStop{0.6, 3.0, 20.0, 0.5};
   RandomSource random(5);
   const State state = random_state(model, random, 0.1);
-  StepSystem system(model, schemes().front());
+  StepSystem system(model, schemes().front(), BackendChoice::Matrix);
   system.begin_static(state, 0.7);
-  system.update(random_update(system.assembler().unknowns(), random, 0.1));
+  system.update(random_update(system.degrees_of_freedom().unknowns, random, 0.1));
   expect_consistent_tangent(system, 1);
 }
 
 // ---------------------------------------------------------------- pattern and numbering
 
-TEST(SparseAssembler, PatternHasEveryEntryOnce) {
+TEST(SparseTangent, PatternHasEveryEntryOnce) {
   const Model model = build_model(every_joint_scene(false));
-  const StepSystem system(model, schemes().front());
-  const SparseAssembler& assembler = system.assembler();
-  const std::vector<int>&starts = assembler.column_starts(), &rows = assembler.row_indices();
-  ASSERT_EQ(starts.size(), static_cast<std::size_t>(assembler.unknowns()) + 1);
+  const StepSystem system(model, schemes().front(), BackendChoice::Matrix);
+  const SparseTangent& matrix = matrix_of(system);
+  const std::vector<int>&starts = matrix.column_starts(), &rows = matrix.row_indices();
+  ASSERT_EQ(starts.size(), static_cast<std::size_t>(matrix.unknowns()) + 1);
   EXPECT_EQ(starts.front(), 0);
   EXPECT_EQ(starts.back(), static_cast<int>(rows.size()));
-  EXPECT_EQ(assembler.values().size(), rows.size());
-  for (int column = 0; column < assembler.unknowns(); ++column) {
+  EXPECT_EQ(matrix.values().size(), rows.size());
+  for (int column = 0; column < matrix.unknowns(); ++column) {
     bool diagonal = false;
     for (int p = starts[column]; p < starts[column + 1]; ++p) {
-      EXPECT_TRUE(rows[p] >= 0 && rows[p] < assembler.unknowns());
+      EXPECT_TRUE(rows[p] >= 0 && rows[p] < matrix.unknowns());
       EXPECT_TRUE(p == starts[column] || rows[p - 1] < rows[p]) << "column " << column;
       diagonal = diagonal || rows[p] == column;
     }
@@ -116,14 +116,14 @@ TEST(SparseAssembler, PatternHasEveryEntryOnce) {
   }
 }
 
-TEST(SparseAssembler, PatternIsSymmetric) {
+TEST(SparseTangent, PatternIsSymmetric) {
   const Model model = build_model(every_joint_scene(false));
-  const StepSystem system(model, schemes().front());
-  const SparseAssembler& assembler = system.assembler();
-  Eigen::MatrixXi entry = Eigen::MatrixXi::Zero(assembler.unknowns(), assembler.unknowns());
-  for (int column = 0; column < assembler.unknowns(); ++column)
-    for (int p = assembler.column_starts()[column]; p < assembler.column_starts()[column + 1]; ++p)
-      entry(assembler.row_indices()[p], column) = 1;
+  const StepSystem system(model, schemes().front(), BackendChoice::Matrix);
+  const SparseTangent& matrix = matrix_of(system);
+  Eigen::MatrixXi entry = Eigen::MatrixXi::Zero(matrix.unknowns(), matrix.unknowns());
+  for (int column = 0; column < matrix.unknowns(); ++column)
+    for (int p = matrix.column_starts()[column]; p < matrix.column_starts()[column + 1]; ++p)
+      entry(matrix.row_indices()[p], column) = 1;
   EXPECT_EQ(entry, Eigen::MatrixXi(entry.transpose()));
 }
 

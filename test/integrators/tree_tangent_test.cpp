@@ -4,6 +4,7 @@
 #include "flexarm/scene/urdf_reader.h"
 #include "integrators/scheme_step.h"
 #include "integrators/stepper.h"
+#include "solver/tree_tangent.h"
 #include "support/source_path.h"
 
 namespace flexarm {
@@ -41,25 +42,25 @@ void expect_equal_solutions(StepSystem& matrix, StepSystem& tree) {
   ASSERT_TRUE(matrix.evaluate(true));
   ASSERT_TRUE(tree.evaluate(true));
   EXPECT_EQ(matrix.residual(), tree.residual());
-  const Eigen::MatrixXd tangent = dense(matrix.assembler());
-  ASSERT_TRUE(tree.tree()->factorise());
+  const Eigen::MatrixXd tangent = dense(matrix_of(matrix));
+  ASSERT_TRUE(tree.tangent().factorise());
   for (int repeat = 0; repeat < 2; ++repeat) {
     const Eigen::VectorXd b = repeat == 0 ? matrix.residual() : Eigen::VectorXd::Ones(tangent.cols());
     Eigen::VectorXd x = b;
-    ASSERT_TRUE(tree.tree()->solve(x));
+    ASSERT_TRUE(tree.tangent().solve(x));
     EXPECT_LE((tangent * x - b).norm(), kBackwardError * (tangent.norm() * x.norm() + b.norm()));
   }
 }
 
-class TreeTangent : public SchemeStep {
+class TreeSystem : public SchemeStep {
  protected:
   /// Both systems at the same random trial; every other coordinate with dry friction rests.
   void expect_equal_solutions_of_a_step(const Model& model) const {
-    StepSystem matrix(model, scheme()), tree(model, scheme(), StepSystem::Tangent::Tree);
+    StepSystem matrix(model, scheme(), BackendChoice::Matrix), tree(model, scheme());
     RandomSource random(1);
     State state = prepared(random_state(model, random, 0.15), matrix, random);
     for (std::size_t i = 0; i < state.rests.size(); ++i) state.rests[i] = i % 2;
-    const Eigen::VectorXd update = random_update(matrix.assembler().unknowns(), random, 0.05);
+    const Eigen::VectorXd update = random_update(matrix.degrees_of_freedom().unknowns, random, 0.05);
     for (StepSystem* system : {&matrix, &tree}) {
       system->begin(state, 0.2, StepSystem::Guess::Unchanged);
       system->update(update);
@@ -68,17 +69,17 @@ class TreeTangent : public SchemeStep {
   }
 };
 
-TEST_P(TreeTangent, SolvesWithTheTangentOfAStep) {
+TEST_P(TreeSystem, SolvesWithTheTangentOfAStep) {
   for (const bool floating : {false, true}) expect_equal_solutions_of_a_step(build_model(tree_scene(floating)));
 }
 
 // Joints that friction holds: their rows are replaced.
-TEST_P(TreeTangent, SolvesWhereFrictionHolds) {
+TEST_P(TreeSystem, SolvesWhereFrictionHolds) {
   if (scheme().is_composition) GTEST_SKIP() << "its step backwards refuses friction that sticks";
   expect_equal_solutions_of_a_step(rubbing(build_model(tree_scene(false))));
 }
 
-INSTANTIATE_TEST_SUITE_P(Schemes, TreeTangent, ::testing::ValuesIn(scheme_variants(0.2)),
+INSTANTIATE_TEST_SUITE_P(Schemes, TreeSystem, ::testing::ValuesIn(scheme_variants(0.2)),
                          [](const auto& info) { return info.param.name; });
 
 scene::SceneDescription example(const std::string& name) {
@@ -86,13 +87,13 @@ scene::SceneDescription example(const std::string& name) {
 }
 
 // Without inertia, which helps dynamics, and with forces that stiffen.
-TEST(TreeSolver, SolvesWithTheTangentOfStatics) {
+TEST(TreeTangent, SolvesWithTheTangentOfStatics) {
   for (const char* name : {"cantilever", "curved_and_twisted"}) {
     const Model model = build_model(example(name));
-    StepSystem matrix(model, schemes().front()), tree(model, schemes().front(), StepSystem::Tangent::Tree);
+    StepSystem matrix(model, schemes().front(), BackendChoice::Matrix), tree(model, schemes().front());
     const State state = initial_state(model);
     RandomSource random(3);
-    const Eigen::VectorXd update = random_update(matrix.assembler().unknowns(), random, 0.05);
+    const Eigen::VectorXd update = random_update(matrix.degrees_of_freedom().unknowns, random, 0.05);
     for (StepSystem* system : {&matrix, &tree}) {
       system->begin_static(state, 0.7);
       system->update(update);
@@ -101,10 +102,10 @@ TEST(TreeSolver, SolvesWithTheTangentOfStatics) {
   }
 }
 
-TEST(TreeSolver, SuitsTreesOnly) {
+TEST(TreeTangent, SuitsTreesOnly) {
   const auto suits = [](const scene::SceneDescription& scene) {
     const Model model = build_model(scene);
-    return TreeSolver::suits(model, DegreesOfFreedom(model));
+    return TreeTangent::suits(model, DegreesOfFreedom(model));
   };
   EXPECT_TRUE(suits(tree_scene(false)));
   EXPECT_TRUE(suits(example("cantilever")));

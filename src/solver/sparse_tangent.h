@@ -1,22 +1,14 @@
 #pragma once
-/// From nodal residuals and tangents to the reduced system of the unknowns: slaves are folded into their masters and
-/// released coordinates, block by block, along a program that is fixed when the model is built.
+/// The tangent as a sparse matrix of the unknowns: slaves are folded into their masters and released coordinates, block
+/// by block, along a program that is fixed when the model is built; KLU factorises what is left.
 
+#include <optional>
 #include <vector>
 
-#include "joints/joint_map.h"
-#include "joints/loop_closure.h"
-#include "joints/slide_map.h"
-#include "model/degrees_of_freedom.h"
-#include "solver/tree_solver.h"
+#include "solver/linear_solver.h"
+#include "solver/tangent_backend.h"
 
 namespace flexarm {
-
-/// Of a coordinate that follows another one: the factors of its row and of its column, and the derivative of the
-/// former.
-struct MimicMap {
-  double left, right, left_derivative;
-};
 
 /// Block-sparse nodal tangent and its reduction to compressed columns.
 ///
@@ -28,50 +20,29 @@ struct MimicMap {
 /// good, and the reduced matrix only those that the sliders' active nodes reach. When a slider enters other elements
 /// its pattern follows: a new number in pattern(), no allocation here; but the solver analyses it anew, which allocates
 /// and takes the time of about three factorisations.
-class SparseAssembler {
+class SparseTangent : public TangentBackend {
  public:
-  /// With a `tree` the blocks of the tangent are the tree's, and there is no matrix: folding is left to its
-  /// elimination.
-  SparseAssembler(const Model& model, const DegreesOfFreedom& dof, TreeSolver* tree = nullptr);
+  SparseTangent(const Model& model, const DegreesOfFreedom& dof);
 
-  // ---- accumulation
-  void set_zero(bool with_tangent = true);
-  double* residual(int variable) { return residual_.data() + dof_.first[variable]; }
-  const double* residual(int variable) const { return residual_.data() + dof_.first[variable]; }
-  /// Column-major block on the diagonal of a variable, size x size.
-  double* diagonal_block(int variable) {
-    if (tree_) return tree_->diagonal_block(variable);
-    return values_.data() + blocks_[diagonal_[variable]].offset;
-  }
-  /// Block (node i, node j) of an element, 6 x 6; `index` = element.first_block + i * Nodes + j.
-  double* element_block(int index) {
-    if (tree_) return tree_->element_block(index);
-    return values_.data() + blocks_[element_blocks_[index]].offset;
-  }
-
-  /// Adds constraint `index` of a closure with its multiplier, before joints are folded.
-  void add_closure(int closure, int index, double multiplier, const ClosureMaps& maps, bool with_tangent);
-
-  // ---- reduction
-  /// Total residual of a slave node, complete once its own slaves have been folded.
-  Eigen::Map<const Vector6> slave_residual(int node) const { return Eigen::Map<const Vector6>(residual(node)); }
-  /// Folds the slave of `joint`; to be called leaf to root, with the maps for the slave's total residual.
-  void fold(int joint, const FoldMaps& maps, bool with_tangent);
-  void fold(int joint, const SlideMaps& maps, bool with_tangent);
-  /// Folds coordinates that follow others; after all joints. `maps`: per entry of DegreesOfFreedom::mimics.
-  void fold_mimics(const std::vector<MimicMap>& maps, bool with_tangent);
-  /// Writes the reduced residual and, if asked, the compressed-column values.
-  void gather(Eigen::VectorXd& residual) const;
-  void gather_tangent();
-  /// Replaces the gathered row of an equation by `coefficients` in the columns from `first` on, and zeros.
-  void set_row(int equation, int first, const ReleasedVector& coefficients);
+  void set_zero() override;
+  void add_closure(int closure, int index, double multiplier, const ClosureMaps& maps) override;
+  FoldMaps& fold_maps(int) override { return maps_; }
+  void fold(int joint) override { fold(joint, maps_); }
+  void fold(int joint, const FoldMaps& maps);
+  void fold(int joint, const SlideMaps& maps) override;
+  void fold_mimics(const std::vector<MimicMap>& maps) override;
+  void finish() override;
+  void hold_row(int joint, int component, int first, const ReleasedVector& coefficients) override;
+  bool factorise() override;
+  bool solve(Eigen::VectorXd& b) override;
+  double cost_of_factors() const override;
 
   // ---- reduced matrix, compressed columns
   int unknowns() const { return dof_.unknowns; }
   const std::vector<int>& column_starts() const { return column_starts_; }
   const std::vector<int>& row_indices() const { return row_indices_; }
   const std::vector<double>& values() const { return reduced_values_; }
-  /// Changes with the pattern, in gather_tangent().
+  /// Changes with the pattern, in finish().
   int pattern() const { return pattern_; }
 
  private:
@@ -136,9 +107,8 @@ class SparseAssembler {
 
   const Model& model_;
   const DegreesOfFreedom& dof_;
-  TreeSolver* tree_;
   std::vector<Block> blocks_;
-  std::vector<int> element_blocks_, diagonal_;
+  std::vector<int> element_places_, diagonal_places_;  // blocks, as TangentBackend's pointers
   std::vector<ColumnFold> column_folds_;
   std::vector<RowFold> row_folds_;
   std::vector<JointFold> joint_folds_;
@@ -153,13 +123,15 @@ class SparseAssembler {
   std::vector<char> live_;                       // per block: what a tangent may write
   bool pattern_is_old_ = false;
   int pattern_ = 0;
-  std::vector<double> values_, residual_, reduced_values_;
+  std::vector<double> values_, reduced_values_;
   std::vector<Copy> copies_;
   struct Span {
     std::size_t from, count;
   };
   std::vector<Span> written_;  // of values_
   std::vector<int> column_starts_, row_indices_;
+  FoldMaps maps_;
+  std::optional<LinearSolver> solver_;  // once something is to be solved
 };
 
 }  // namespace flexarm

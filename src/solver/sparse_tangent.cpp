@@ -1,4 +1,4 @@
-#include "solver/sparse_assembler.h"
+#include "solver/sparse_tangent.h"
 
 #include <algorithm>
 
@@ -31,39 +31,40 @@ void fold_block_columns(const double* source, int rows, const FoldMaps& maps, do
 
 }  // namespace
 
-void SparseAssembler::set_zero(bool with_tangent) {
-  if (with_tangent && tree_) tree_->set_zero();
-  if (with_tangent)
-    for (const Span& span : written_) std::fill_n(values_.begin() + span.from, span.count, 0.0);
-  std::fill(residual_.begin(), residual_.end(), 0.0);
+void SparseTangent::set_zero() {
+  for (const Span& span : written_) std::fill_n(values_.begin() + span.from, span.count, 0.0);
 }
 
-void SparseAssembler::fold(int j, const FoldMaps& maps, bool with_tangent) {
-  const JointMap& joint = model_.joints[j];
-  const Vector6 g = slave_residual(joint.slave);
-  const int count = released_count(joint.kind);
-  double* released = residual(dof_.variable_of_joint(j));
-  for (int k = 0; k < count; ++k) released[k] += maps.left.col(k).dot(g);
-  if (joint.master >= 0) {
-    Eigen::Map<Vector6> master(residual(joint.master));
-    master += g;
-    master.tail<3>() += maps.lever_left.cross(g.head<3>());
-  }
-  if (!with_tangent || tree_) return;
+void SparseTangent::add_closure(int closure, int index, double multiplier, const ClosureMaps& maps) {
+  const LoopClosure& loop = model_.closures[closure];
+  const int count = dof_.size[dof_.variable_of_closure(closure)];
+  const ClosureBlocks& blocks = closure_blocks_[closure];
+  const auto at = [&](int block) { return values_.data() + blocks_[block].offset; };
+  const auto add = [&](int block, const Matrix6& values) { Eigen::Map<Matrix6>(at(block)) += multiplier * values; };
+  const auto add_column = [&](int block, const Vector6& left) { Eigen::Map<Vector6>(at(block) + 6 * index) += left; };
+  const auto add_row = [&](int block, const Vector6& right) {
+    for (int k = 0; k < 6; ++k) at(block)[k * count + index] += right[k];
+  };
+  add(blocks.child_child, maps.child_child);
+  add_column(blocks.child_multiplier, maps.left.child);
+  add_row(blocks.multiplier_child, maps.right.child);
+  if (loop.parent < 0) return;
+  add(blocks.parent_parent, maps.parent_parent);
+  add(blocks.parent_child, maps.parent_child);
+  add(blocks.child_parent, maps.child_parent);
+  add_column(blocks.parent_multiplier, maps.left.parent);
+  add_row(blocks.multiplier_parent, maps.right.parent);
+}
+
+void SparseTangent::fold(int j, const FoldMaps& maps) {
   const JointFold& fold = joint_folds_[j];
   fold_columns(fold, maps);
   fold_rows(fold, maps);
   add_geometric(fold.geometric, maps);
 }
 
-void SparseAssembler::fold(int j, const SlideMaps& maps, bool with_tangent) {
-  const JointMap& joint = model_.joints[j];
-  const SlideLine& line = model_.slide_lines[joint.line];
-  const Vector6 g = slave_residual(joint.slave);
-  residual(dof_.variable_of_joint(j))[0] += maps.released_left.dot(g);
-  for (int k = 0; k < maps.count; ++k)
-    Eigen::Map<Vector6>(residual(line.nodes[maps.first + k])) += maps.left[k].transpose() * g;
-  if (!with_tangent) return;
+void SparseTangent::fold(int j, const SlideMaps& maps) {
+  const SlideLine& line = model_.slide_lines[model_.joints[j].line];
   set_active(j, maps.first, maps.count);
   const SlideFold& fold = slide_folds_[j];
   fold_slide_columns(fold, maps);
@@ -80,7 +81,7 @@ void SparseAssembler::fold(int j, const SlideMaps& maps, bool with_tangent) {
   }
 }
 
-void SparseAssembler::fold_slide_columns(const SlideFold& fold, const SlideMaps& maps) {
+void SparseTangent::fold_slide_columns(const SlideFold& fold, const SlideMaps& maps) {
   using Columns = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::ColMajor, 6, 6>;
   using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1>;
   for (int f = fold.first_column_fold; f < fold.last_column_fold; ++f) {
@@ -95,7 +96,7 @@ void SparseAssembler::fold_slide_columns(const SlideFold& fold, const SlideMaps&
   }
 }
 
-void SparseAssembler::fold_slide_rows(const SlideFold& fold, const SlideMaps& maps) {
+void SparseTangent::fold_slide_rows(const SlideFold& fold, const SlideMaps& maps) {
   using Rows = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
   using Row = Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, 6>;
   for (int f = fold.first_row_fold; f < fold.last_row_fold; ++f) {
@@ -110,7 +111,7 @@ void SparseAssembler::fold_slide_rows(const SlideFold& fold, const SlideMaps& ma
   }
 }
 
-void SparseAssembler::fold_columns(const JointFold& fold, const FoldMaps& maps) {
+void SparseTangent::fold_columns(const JointFold& fold, const FoldMaps& maps) {
   for (int f = fold.first_column_fold; f < fold.last_column_fold; ++f) {
     const ColumnFold& op = column_folds_[f];
     const double* source = values_.data() + blocks_[op.source].offset;
@@ -123,7 +124,7 @@ void SparseAssembler::fold_columns(const JointFold& fold, const FoldMaps& maps) 
   }
 }
 
-void SparseAssembler::fold_rows(const JointFold& fold, const FoldMaps& maps) {
+void SparseTangent::fold_rows(const JointFold& fold, const FoldMaps& maps) {
   using Rows = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
   for (int f = fold.first_row_fold; f < fold.last_row_fold; ++f) {
     const RowFold& op = row_folds_[f];
@@ -143,7 +144,7 @@ void SparseAssembler::fold_rows(const JointFold& fold, const FoldMaps& maps) {
   }
 }
 
-void SparseAssembler::add_geometric(const Geometric& geometric, const FoldMaps& maps) {
+void SparseTangent::add_geometric(const Geometric& geometric, const FoldMaps& maps) {
   const int count = static_cast<int>(maps.left.cols());
   const auto add = [&](int block, const auto& values) {
     if (block < 0) return;
@@ -158,7 +159,7 @@ void SparseAssembler::add_geometric(const Geometric& geometric, const FoldMaps& 
   add(geometric.master_master, maps.master_master);
 }
 
-void SparseAssembler::fold_mimics(const std::vector<MimicMap>& maps, bool with_tangent) {
+void SparseTangent::fold_mimics(const std::vector<MimicMap>& maps) {
   const auto add = [&](int first, int last, double factor) {
     for (int f = first; f < last; ++f) {
       const ScaledAddition& op = mimic_additions_[f];
@@ -167,35 +168,42 @@ void SparseAssembler::fold_mimics(const std::vector<MimicMap>& maps, bool with_t
     }
   };
   for (std::size_t i = 0; i < maps.size(); ++i) {
-    const double row = *residual(dof_.mimics[i].slave_variable);
-    *residual(dof_.mimics[i].master_variable) += maps[i].left * row;
-    if (!with_tangent) continue;
     const MimicFold& fold = mimic_folds_[i];
     add(fold.first_column_fold, fold.first_row_fold, maps[i].right);
     add(fold.first_row_fold, fold.last_row_fold, maps[i].left);
-    values_[blocks_[fold.master].offset] += maps[i].left_derivative * row;
+    values_[blocks_[fold.master].offset] += maps[i].geometric;
   }
 }
 
-void SparseAssembler::gather(Eigen::VectorXd& residual) const {
-  for (int scalar = 0; scalar < dof_.scalar_count; ++scalar)
-    if (dof_.equation[scalar] >= 0) residual[dof_.equation[scalar]] = residual_[scalar];
-}
-
-void SparseAssembler::gather_tangent() {
+void SparseTangent::finish() {
   if (pattern_is_old_) update_pattern();
   for (const Copy& copy : copies_)
     std::copy_n(values_.data() + copy.from, copy.count, reduced_values_.data() + copy.to);
 }
 
-void SparseAssembler::set_row(int equation, int first, const ReleasedVector& coefficients) {
+void SparseTangent::hold_row(int joint, int component, int first, const ReleasedVector& coefficients) {
+  const int equation = dof_.equation[dof_.first[dof_.variable_of_joint(joint)] + component];
+  const int first_column = equation - component + first;
   for (int column = 0; column < unknowns(); ++column) {
     const auto end = row_indices_.begin() + column_starts_[column + 1];
     const auto entry = std::lower_bound(row_indices_.begin() + column_starts_[column], end, equation);
     if (entry == end || *entry != equation) continue;
-    const int k = column - first;
+    const int k = column - first_column;
     reduced_values_[entry - row_indices_.begin()] = k >= 0 && k < coefficients.size() ? coefficients[k] : 0.0;
   }
+}
+
+bool SparseTangent::factorise() {
+  if (!solver_) solver_.emplace(unknowns(), column_starts_, row_indices_);
+  return solver_->factorise(reduced_values_, pattern_);
+}
+
+bool SparseTangent::solve(Eigen::VectorXd& b) {
+  return solver_->solve(b);
+}
+
+double SparseTangent::cost_of_factors() const {
+  return 5;  // bench_kernels --benchmark_filter=step_shares, counter "new/kept"
 }
 
 }  // namespace flexarm

@@ -4,8 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "joints/joint_map.h"
-#include "model/degrees_of_freedom.h"
+#include "solver/tangent_backend.h"
 
 namespace flexarm {
 
@@ -18,30 +17,25 @@ namespace flexarm {
 ///   K_m += L_left^T K L_right + G_mm - C A^-1 B:
 /// the articulated-body algorithm with the tangent in the place of the inertia. No matrix of the whole is ever formed,
 /// so a chain of joints costs no more than its length.
-class TreeSolver {
+class TreeTangent : public TangentBackend {
  public:
   /// True if every node hangs on the root by one chain of joints and elements, and coordinates depend on no others.
   static bool suits(const Model& model, const DegreesOfFreedom& dof);
 
   /// Of a model that suits; both must outlive the solver.
-  TreeSolver(const Model& model, const DegreesOfFreedom& dof);
+  TreeTangent(const Model& model, const DegreesOfFreedom& dof);
 
-  // ---- accumulation
-  void set_zero();
-  /// Column-major block on the diagonal of a variable (node or joint), size x size.
-  double* diagonal_block(int variable) { return diagonals_.data() + 36 * static_cast<std::size_t>(variable); }
-  /// Block (node i, node j) of an element, 6 x 6, column-major; `index` = element.first_block + i * Nodes + j.
-  double* element_block(int index) { return elements_.data() + 36 * static_cast<std::size_t>(index); }
-  /// Maps of a joint, to be set with tangent before factorise().
-  FoldMaps& maps(int joint) { return joints_[joint].maps; }
-  /// Replaces the row of a released component by `coefficients` in the columns of the components from `first` on.
-  void hold_row(int joint, int component, int first, const ReleasedVector& coefficients);
-
-  // ---- solution
-  /// Replaces what was accumulated by its factors. False if a pivot is zero or not finite.
-  bool factorise();
-  /// Replaces b, one entry per equation, by the solution. False if that is not finite.
-  bool solve(Eigen::VectorXd& b);
+  void set_zero() override;
+  void add_closure(int, int, double, const ClosureMaps&) override {}  // there are none, see suits()
+  FoldMaps& fold_maps(int joint) override { return joints_[joint].maps; }
+  void fold(int) override {}  // is left to the elimination
+  void fold(int, const SlideMaps&) override {}
+  void fold_mimics(const std::vector<MimicMap>&) override {}
+  void finish() override {}
+  void hold_row(int joint, int component, int first, const ReleasedVector& coefficients) override;
+  bool factorise() override;
+  bool solve(Eigen::VectorXd& b) override;
+  double cost_of_factors() const override;
 
  private:
   /// A part of the tree: the joint of a slave, or an element with the nodes outboard of its first one.

@@ -1,4 +1,4 @@
-#include "solver/tree_solver.h"
+#include "solver/tree_tangent.h"
 
 #include <algorithm>
 
@@ -38,7 +38,7 @@ void move_rows(const Vector3& lever, Eigen::Matrix<double, 6, Columns>& rows) {
 
 }  // namespace
 
-std::vector<TreeSolver::Part> TreeSolver::parts_of(const Model& model, const DegreesOfFreedom& dof) {
+std::vector<TreeTangent::Part> TreeTangent::parts_of(const Model& model, const DegreesOfFreedom& dof) {
   std::vector<std::vector<Part>> outboard(model.nodes.size());  // elements by their first node
   std::size_t pivots = 0, parts_in_all = model.joints.size();
   for_each_element(model.beams, [&](const auto& element) {
@@ -78,14 +78,14 @@ std::vector<TreeSolver::Part> TreeSolver::parts_of(const Model& model, const Deg
   return all_reached && parts.size() == parts_in_all ? parts : std::vector<Part>();
 }
 
-bool TreeSolver::suits(const Model& model, const DegreesOfFreedom& dof) {
+bool TreeTangent::suits(const Model& model, const DegreesOfFreedom& dof) {
   const bool has_slides = std::any_of(model.joints.begin(), model.joints.end(),
                                       [](const JointMap& joint) { return joint.kind == JointMapKind::Slide; });
   return !has_slides && model.closures.empty() && dof.mimics.empty() && !model.joints.empty() &&
          !parts_of(model, dof).empty();
 }
 
-TreeSolver::TreeSolver(const Model& model, const DegreesOfFreedom& dof)
+TreeTangent::TreeTangent(const Model& model, const DegreesOfFreedom& dof)
     : parts_(parts_of(model, dof)),
       joints_(model.joints.size()),
       diagonals_(36 * dof.size.size()),
@@ -111,14 +111,20 @@ TreeSolver::TreeSolver(const Model& model, const DegreesOfFreedom& dof)
   }
   elements_.resize(36 * blocks);
   pivots_.resize(pivots);
+  for (std::size_t v = 0; v < dof.size.size(); ++v) diagonal_blocks_.push_back(diagonals_.data() + 36 * v);
+  for (std::size_t b = 0; b < blocks; ++b) element_blocks_.push_back(elements_.data() + 36 * b);
 }
 
-void TreeSolver::set_zero() {
+double TreeTangent::cost_of_factors() const {
+  return 2.2;  // bench_kernels --benchmark_filter=step_shares, counter "new/kept"
+}
+
+void TreeTangent::set_zero() {
   std::fill(diagonals_.begin(), diagonals_.end(), 0.0);
   std::fill(elements_.begin(), elements_.end(), 0.0);
 }
 
-void TreeSolver::hold_row(int joint, int component, int first, const ReleasedVector& coefficients) {
+void TreeTangent::hold_row(int joint, int component, int first, const ReleasedVector& coefficients) {
   JointFront& front = joints_[joint];
   const int size = static_cast<int>(front.maps.left.cols());
   front.maps.left.col(component).setZero();
@@ -131,13 +137,13 @@ void TreeSolver::hold_row(int joint, int component, int first, const ReleasedVec
 // ---------------------------------------------------------------- factors
 
 template <class Pointer, class Values>
-std::array<Pointer, 5> TreeSolver::node_blocks(const Part& part, Values& values, int size) const {
+std::array<Pointer, 5> TreeTangent::node_blocks(const Part& part, Values& values, int size) const {
   std::array<Pointer, 5> blocks{};
   for (int i = 0; i < part.node_count; ++i) blocks[i] = values.data() + static_cast<std::size_t>(size) * part.nodes[i];
   return blocks;
 }
 
-bool TreeSolver::eliminate(const Part& part) {
+bool TreeTangent::eliminate(const Part& part) {
   const std::array<double*, 5> diagonals = node_blocks<double*>(part, diagonals_, 36);
   return with_front(part.node_count, [&](auto front) {
     return front.eliminate(elements_.data() + 36 * part.first_block, diagonals.data(),
@@ -146,7 +152,7 @@ bool TreeSolver::eliminate(const Part& part) {
 }
 
 template <int Size>
-bool TreeSolver::eliminate_released(JointFront& front) {
+bool TreeTangent::eliminate_released(JointFront& front) {
   using Square = Eigen::Matrix<double, Size, Size>;
   using Columns = Eigen::Matrix<double, 6, Size>;
   using Rows = Eigen::Matrix<double, Size, 6>;
@@ -188,11 +194,11 @@ bool TreeSolver::eliminate_released(JointFront& front) {
   return true;
 }
 
-void TreeSolver::add_to_master(const JointFront& front, const Matrix6& tangent) {
+void TreeTangent::add_to_master(const JointFront& front, const Matrix6& tangent) {
   Eigen::Map<Matrix6>(diagonal_block(front.master)) += tangent + front.maps.master_master;
 }
 
-bool TreeSolver::eliminate(JointFront& front) {
+bool TreeTangent::eliminate(JointFront& front) {
   if (front.count == 1) return eliminate_released<1>(front);
   if (front.count > 1) return eliminate_released<6>(front);
   if (front.master < 0) return true;
@@ -202,7 +208,7 @@ bool TreeSolver::eliminate(JointFront& front) {
   return true;
 }
 
-bool TreeSolver::factorise() {
+bool TreeTangent::factorise() {
   for (auto part = parts_.rbegin(); part != parts_.rend(); ++part)
     if (!(part->joint >= 0 ? eliminate(joints_[part->joint]) : eliminate(*part))) return false;
   return true;
@@ -210,19 +216,19 @@ bool TreeSolver::factorise() {
 
 // ---------------------------------------------------------------- solution
 
-void TreeSolver::forward(const Part& part) {
+void TreeTangent::forward(const Part& part) {
   const std::array<double*, 5> r = node_blocks<double*>(part, right_hand_sides_, 6);
   with_front(part.node_count, [&](auto front) {
     front.forward(elements_.data() + 36 * part.first_block, pivots_.data() + part.first_pivot, r.data());
   });
 }
 
-void TreeSolver::backward(const Part& part) {
+void TreeTangent::backward(const Part& part) {
   const std::array<double*, 5> r = node_blocks<double*>(part, right_hand_sides_, 6);
   with_front(part.node_count, [&](auto front) { front.backward(elements_.data() + 36 * part.first_block, r.data()); });
 }
 
-void TreeSolver::forward(const JointFront& front, Eigen::VectorXd& b) {
+void TreeTangent::forward(const JointFront& front, Eigen::VectorXd& b) {
   const Eigen::Map<const Vector6> slave(right_hand_sides_.data() + 6 * static_cast<std::size_t>(front.slave));
   const int count = front.count;
   ReleasedVector released(count);
@@ -236,7 +242,7 @@ void TreeSolver::forward(const JointFront& front, Eigen::VectorXd& b) {
   for (int k = 0; k < count; ++k) master -= released[k] * front.coupling.col(k);
 }
 
-void TreeSolver::backward(const JointFront& front, Eigen::VectorXd& b) {
+void TreeTangent::backward(const JointFront& front, Eigen::VectorXd& b) {
   Eigen::Map<Vector6> slave(right_hand_sides_.data() + 6 * static_cast<std::size_t>(front.slave));
   Vector6 moved = Vector6::Zero();
   if (front.master >= 0) {
@@ -249,7 +255,7 @@ void TreeSolver::backward(const JointFront& front, Eigen::VectorXd& b) {
   slave = moved;
 }
 
-bool TreeSolver::solve(Eigen::VectorXd& b) {
+bool TreeTangent::solve(Eigen::VectorXd& b) {
   const auto node_values = [&](std::size_t i) { return Eigen::Map<Vector6>(right_hand_sides_.data() + 6 * i); };
   for (std::size_t i = 0; i < first_equation_.size(); ++i)
     if (first_equation_[i] < 0)

@@ -1,0 +1,47 @@
+#pragma once
+/// From the residuals of nodes, coordinates and closures to that of the unknowns.
+
+#include <vector>
+
+#include "model/degrees_of_freedom.h"
+#include "solver/tangent_backend.h"
+
+namespace flexarm {
+
+/// Residual per variable. Slaves are folded into their masters and released coordinates from leaf to root, then mimics;
+/// what stands in a prescribed coordinate's place after that is what drives it.
+class ReducedResidual {
+ public:
+  ReducedResidual(const Model& model, const DegreesOfFreedom& dof);
+
+  void set_zero();
+  double* at(int variable) { return values_.data() + dof_.first[variable]; }
+  const double* at(int variable) const { return values_.data() + dof_.first[variable]; }
+  Eigen::Map<Vector6> node(int node) { return Eigen::Map<Vector6>(at(node)); }
+  /// Of a slave: complete once its own slaves have been folded.
+  Eigen::Map<const Vector6> node(int node) const { return Eigen::Map<const Vector6>(at(node)); }
+
+  /// Adds constraint `index` of a closure with its multiplier, before joints are folded.
+  void add_closure(int closure, int index, double multiplier, const ClosureMaps& maps);
+  /// With the maps for the slave's total residual.
+  void fold(int joint, const FoldMaps& maps);
+  void fold(int joint, const SlideMaps& maps);
+  /// Sets the geometric parts of the maps.
+  void fold_mimics(std::vector<MimicMap>& maps);
+  /// Writes one entry per equation.
+  void gather(Eigen::VectorXd& residual) const;
+
+ private:
+  const Model& model_;
+  const DegreesOfFreedom& dof_;
+  std::vector<double> values_;
+};
+
+/// Where the parts of a step put what they contribute.
+struct Balance {
+  ReducedResidual& residual;
+  TangentBackend* tangent;  ///< null where only the residual is asked for
+  double dissipated = 0;    ///< energy that has left over the step [J]
+};
+
+}  // namespace flexarm

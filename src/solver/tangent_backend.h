@@ -1,0 +1,74 @@
+#pragma once
+/// What becomes of the tangent of a step: a sparse matrix, or fronts along the tree. Nothing else knows which one runs.
+
+#include <memory>
+#include <vector>
+
+#include "joints/joint_map.h"
+#include "joints/loop_closure.h"
+#include "joints/slide_map.h"
+#include "model/degrees_of_freedom.h"
+
+namespace flexarm {
+
+/// Of a coordinate that follows another one: the factors of its row and of its column, the derivative of the former,
+/// and that derivative times the row, see ReducedResidual::fold_mimics.
+struct MimicMap {
+  double left, right, left_derivative;
+  double geometric = 0;
+};
+
+/// Accumulates the nodal tangent in blocks, folds slaves into their masters and released coordinates, and solves.
+///
+/// Life of a tangent: set_zero(), blocks and closures, then folds from leaf to root, mimics, finish(), rows that are
+/// held, factorise(); then as many solutions as are needed.
+class TangentBackend {
+ public:
+  virtual ~TangentBackend() = default;
+
+  // ---- accumulation
+  virtual void set_zero() = 0;
+  /// Column-major block on the diagonal of a variable, size x size.
+  double* diagonal_block(int variable) { return diagonal_blocks_[variable]; }
+  /// Block (node i, node j) of an element, 6 x 6, column-major; `index` = element.first_block + i * Nodes + j.
+  double* element_block(int index) { return element_blocks_[index]; }
+  /// Adds constraint `index` of a closure with its multiplier, before joints are folded.
+  virtual void add_closure(int closure, int index, double multiplier, const ClosureMaps& maps) = 0;
+
+  // ---- reduction
+  /// Where the maps of a joint are to be written, for fold().
+  virtual FoldMaps& fold_maps(int joint) = 0;
+  /// Folds the slave of `joint` by the maps that stand in fold_maps(); leaf to root.
+  virtual void fold(int joint) = 0;
+  /// The same for a slave that slides.
+  virtual void fold(int joint, const SlideMaps& maps) = 0;
+  /// Folds coordinates that follow others; after all joints. `maps`: per entry of DegreesOfFreedom::mimics.
+  virtual void fold_mimics(const std::vector<MimicMap>& maps) = 0;
+  /// Everything is folded.
+  virtual void finish() = 0;
+  /// Replaces the row of a released component by `coefficients` in the columns of the joint's components from `first`
+  /// on, and zeros; after finish().
+  virtual void hold_row(int joint, int component, int first, const ReleasedVector& coefficients) = 0;
+
+  // ---- solution
+  /// False if the tangent is singular or not finite.
+  virtual bool factorise() = 0;
+  /// Replaces b, one entry per equation, by the solution with the factors made last. False if that is not finite.
+  virtual bool solve(Eigen::VectorXd& b) = 0;
+
+  /// An iteration with new factors costs about so much more than one with kept ones, see FactorReuse.
+  virtual double cost_of_factors() const = 0;
+
+ protected:
+  std::vector<double*> diagonal_blocks_, element_blocks_;
+};
+
+enum class BackendChoice {
+  Fastest,  ///< what the model allows
+  Matrix    ///< the sparse matrix: the reference for all others
+};
+/// Of a model; both must outlive it.
+std::unique_ptr<TangentBackend> make_tangent_backend(const Model& model, const DegreesOfFreedom& dof,
+                                                     BackendChoice choice = BackendChoice::Fastest);
+
+}  // namespace flexarm
