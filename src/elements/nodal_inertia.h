@@ -36,6 +36,12 @@ NodalAction nodal_inertia_action(const NodalInertia& inertia, const TimeRule& ru
 /// Damping of the beams' rotation that is lumped at the node.
 NodalAction nodal_damping_action(const NodalInertia& inertia, const TimeRule& rule, const NodeStep& node);
 
+/// d(Lambda J W)/dt [N m].
+inline Vector3 momentum_rate(const Matrix3& rotation, const Matrix3& inertia, const MassPointState& motion) {
+  const Vector3 &W = motion.angular_velocity, &A = motion.angular_acceleration;
+  return rotation * (W.cross(inertia * W) + inertia * A);
+}
+
 /// The node's motion at the end of the step.
 NodeState advanced(const TimeRule& rule, const NodeStep& node);
 

@@ -54,6 +54,7 @@ enum class HhtForm {
 };
 
 struct TimeRule {
+  bool is_static = false;  ///< equilibrium of forces instead of a step: nothing has inertia or a rate
   StressRule stress = StressRule::Conjugate;
   EnergyCorrection correction = EnergyCorrection::None;
   RotationRule beam_rotation = RotationRule::TangentScaled;  ///< at the mass points (or nodes) of beams

@@ -140,6 +140,12 @@ std::optional<Scheme> find_scheme(std::string_view name) {
   return std::nullopt;
 }
 
+Scheme statics_of(Scheme scheme) {
+  scheme.is_static = true;
+  scheme.stress = StressRule::EndPoint;
+  return scheme;
+}
+
 Scheme make_scheme(const scene::IntegratorDescription& integrator) {
   const bool wants_dissipation = integrator.scheme == "auto" && integrator.rho_infinity.value_or(1) < 1;
   const std::optional<Scheme> found = find_scheme(wants_dissipation ? "edmc2" : integrator.scheme);

@@ -23,6 +23,8 @@ struct Scheme : TimeRule {
 const std::vector<Scheme>& schemes();
 /// By name, default options; "auto" is the default scheme. Empty if unknown.
 std::optional<Scheme> find_scheme(std::string_view name);
+/// The rule by which a scheme's interpolation finds equilibria: forces at the configuration, nothing moves.
+Scheme statics_of(Scheme scheme);
 /// With the options of <integrator>; "auto" becomes edmc2 where rho_infinity asks for numerical dissipation.
 /// @throws ModelError naming the option that does not suit the scheme, or an unknown scheme.
 Scheme make_scheme(const scene::IntegratorDescription& integrator);

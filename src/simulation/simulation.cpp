@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 
+#include "analysis/statics.h"
 #include "math/so3.h"
 #include "model/line_release.h"
 #include "scene/integrator_options.h"
@@ -242,7 +243,10 @@ ProbeState Simulation::probe(std::size_t index) const {
 StepResult Simulation::solve_static(int load_steps) {
   if (load_steps < 1) throw std::invalid_argument("the number of load steps must be >= 1");
   implementation_->velocities_hold = false;
-  return implementation_->stepper->solve_static(implementation_->state, load_steps);
+  Implementation& s = *implementation_;
+  const StepResult result = flexarm::solve_static(s.model, s.scheme, s.settings, load_steps, s.state);
+  s.stepper->invalidate();
+  return result;
 }
 
 std::vector<Mode> Simulation::natural_modes(int count) const {

@@ -45,12 +45,12 @@ double damping_of(const Coordinate& coordinate, const Released& released) {
 LinearisedMotion::LinearisedMotion(const Model& model, const State& state)
     : model_(model),
       state_(state),
-      system_(model, *find_scheme("newmark"), BackendChoice::Matrix),
+      system_(model, statics_of(*find_scheme("newmark")), BackendChoice::Matrix),
       dof_(system_.degrees_of_freedom()),
       stiffness_(static_cast<const SparseTangent&>(system_.tangent())),
       damping_(model, dof_),
       mass_(model, dof_) {
-  system_.begin_static(state, 1.0);
+  system_.begin_equilibrium(state, 1.0);
   if (!system_.evaluate(true)) throw std::runtime_error("the stiffness is not finite");
   find_multipliers();
   set_joint_maps();
