@@ -53,7 +53,7 @@ struct StepUnderWay {
   StepUnderWay(const std::string& scheme, int elements, int order, BackendChoice backend = BackendChoice::Fastest)
       : simulation(cantilever_in_motion(scheme, elements, order)),
         system(model_of(simulation), find_scheme(scheme).value(), backend) {
-    system.begin(state_of(simulation), kStep, StepSystem::Guess::Extrapolated);
+    system.begin(state_of(simulation), kStep, Guess::Extrapolated);
   }
 };
 
@@ -65,7 +65,7 @@ void evaluate(benchmark::State& state, const std::string& scheme, int elements, 
 
 void begin_step(benchmark::State& state, int order) {
   StepUnderWay step("em", kElements, order);
-  for (auto _ : state) step.system.begin(step.state_of(simulation), kStep, StepSystem::Guess::Extrapolated);
+  for (auto _ : state) step.system.begin(state_of(step.simulation), kStep, Guess::Extrapolated);
   count_elements(state, kElements);
 }
 
