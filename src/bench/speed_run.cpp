@@ -10,7 +10,7 @@
 #include "bench/processor_time.h"
 #include "bench/speed.h"
 #include "flexarm/scene/urdf_reader.h"
-#include "scene/integrator_options.h"
+#include "flexarm/schemes/integrator_description.h"
 
 namespace flexarm::bench {
 namespace {
@@ -51,7 +51,7 @@ scene::SceneDescription scene_of(const std::string& folder, const SpeedProblem& 
     throw std::runtime_error(read.diagnostics.empty() ? "cannot read '" + path + "'" : read.diagnostics[0].text());
   scene::SceneDescription scene = std::move(*read.scene);
   refine(scene, discretisation.elements, discretisation.order);
-  scene.integrator = scene::with_scheme(scene.integrator, discretisation.scheme);
+  scene.integrator = with_scheme(scene.integrator, discretisation.scheme);
   scene.integrator.step = discretisation.step;
   scene.integrator.tolerance = discretisation.tolerance;
   return scene;
@@ -109,8 +109,9 @@ SpeedRun run_speed(const std::string& folder, const SpeedProblem& problem, const
   const std::size_t probe = probe_of(scene, problem.probe);
   const int stride = quotient(problem.interval, discretisation.step, "interval");
   const int intervals = quotient(problem.until, problem.interval, "end");
-  const std::vector<EffortPulse> pulses =
-      problem.commands.empty() ? std::vector<EffortPulse>() : read_effort_schedule(folder + "/" + problem.commands);
+  const std::vector<EffortPulse> pulses = problem.commands.empty()
+                                              ? std::vector<EffortPulse>()
+                                              : read_effort_schedule(folder + "/" + problem.commands).pulses;
   SimulationOptions options;
   options.reuse_factorisation = reuse_factorisation;
   SpeedRun out;

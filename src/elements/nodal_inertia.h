@@ -2,10 +2,10 @@
 /// Inertia residuals of rigid bodies (and of beams' rotary inertia where a scheme lumps it) at their nodes.
 
 #include "elements/endpoint_beam.h"
-#include "elements/time_rule.h"
 #include "model/joint.h"
 #include "model/model.h"
 #include "model/state.h"
+#include "schemes/time_rule.h"
 
 namespace flexarm {
 
@@ -19,6 +19,10 @@ struct NodeStep {
   double step;                              ///< [s]
   Vector3 momentum_rate = Vector3::Zero();  ///< d(Lambda J W)/dt at the begin; Hilber-Hughes-Taylor family [N m]
 };
+
+/// The rotation of a step as the scheme's rule for the angular velocities of nodes counts it, from the tangent-scaled
+/// one [rad].
+Vector3 counted_rotation(const TimeRule& rule, const Vector3& tangent_scaled);
 
 /// Residual {f, phi} and its translational (scalar) and rotational tangent.
 struct NodalAction {
@@ -35,6 +39,12 @@ NodalAction nodal_inertia_action(const NodalInertia& inertia, const TimeRule& ru
 
 /// Damping of the beams' rotation that is lumped at the node.
 NodalAction nodal_damping_action(const NodalInertia& inertia, const TimeRule& rule, const NodeStep& node);
+
+/// d(Lambda J W)/dt [N m].
+inline Vector3 momentum_rate(const Matrix3& rotation, const Matrix3& inertia, const MassPointState& motion) {
+  const Vector3 &W = motion.angular_velocity, &A = motion.angular_acceleration;
+  return rotation * (W.cross(inertia * W) + inertia * A);
+}
 
 /// The node's motion at the end of the step.
 NodeState advanced(const TimeRule& rule, const NodeStep& node);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "integrators/gathered.h"
+#include "integrators/initial_strain_memory.h"
 #include "math/simd.h"
 
 namespace flexarm {
@@ -39,15 +40,30 @@ void fill_packs(const Elements& elements, Packs& packs) {
 
 }  // namespace
 
-ConservingBeams::ConservingBeams(const Model& model, const TimeRule& rule)
-    : rule_(rule), has_memory_(rule.dissipation.any()) {
-  if (rule.stress != StressRule::Conjugate) return;
-  for_each_group(model.beams, [&](const auto& group) {
+ConservingBeams::ConservingBeams(const StepConfiguration& configuration)
+    : configuration_(configuration), rule_(configuration.scheme()), has_memory_(rule_.dissipation.any()) {
+  for_each_group(configuration.model().beams, [&](const auto& group) {
     constexpr int N = std::decay_t<decltype(group.elements)>::value_type::kNodes;
     auto& packs = std::get<PackGroup<N>>(groups_);
     fill_packs(group.elements, packs);
     if (!packs.empty() && packs.front().element.has_stiffness_damping) has_memory_ = true;
   });
+  if (has_memory_) end_memory_.resize(configuration.model().stiffness_point_count);
+}
+
+void ConservingBeams::initialise(State& state) {
+  if (has_memory_) state.strain_memory = initial_strain_memory(configuration_.model(), state);
+}
+
+void ConservingBeams::begin() {
+  if (!holds_begin_points_) set_begin_points();
+  holds_begin_points_ = true;
+  set_mid_functions();
+}
+
+void ConservingBeams::accept(State& state) {
+  std::copy(end_memory_.begin(), end_memory_.end(), state.strain_memory.begin());
+  begin_ = 1 - begin_;  // the points of the end are those at the beginning of the next step
 }
 
 template <int Nodes>
@@ -101,7 +117,8 @@ void ConservingBeams::scatter(const ElementPack<Nodes>& pack, const BlockSystem<
   }
 }
 
-void ConservingBeams::set_begin(const std::vector<NodePose>& begin) {
+void ConservingBeams::set_begin_points() {
+  const std::vector<NodePose>& begin = configuration_.begin();
   for_each_group(groups_, [&](auto& packs) {
     constexpr int N = std::decay_t<decltype(packs)>::value_type::kNodes;
     simd::run([&] {
@@ -113,15 +130,17 @@ void ConservingBeams::set_begin(const std::vector<NodePose>& begin) {
           position[i] = gathered_vector([&](int lane) -> const Vector3& { return pose(lane).position; });
           orientation[i] = gathered_quaternion([&](int lane) -> const Quaternion& { return pose(lane).orientation; });
         }
-        element_points<N, Pack>(pack.element, position, orientation, pack.points[begin_].data());
+        packs::element_points<N>(pack.element, position, orientation, pack.points[begin_].data());
       }
     });
   });
 }
 
-void ConservingBeams::set_mid_functions(const StepMotion& step) {
+/// Test functions for the middle of the step, as the velocities at its beginning foresee it.
+void ConservingBeams::set_mid_functions() {
+  const StepMotion step = configuration_.motion();
   // To second order: explicit, so that the tangent stays simple. Where the functions are to be averaged with those of
-  // the end: the begin.
+  // the end: the beginning.
   const Pack turned(rule_.mid_functions == MidFunctions::Explicit ? 0.5 * step.step : 0.0);
   for_each_group(groups_, [&](auto& packs) {
     constexpr int N = std::decay_t<decltype(packs)>::value_type::kNodes;
@@ -136,13 +155,14 @@ void ConservingBeams::set_mid_functions(const StepMotion& step) {
               gathered_quaternion([&](int lane) -> const Quaternion& { return step.begin[node(lane)].orientation; }) *
               so3::exp_quaternion(Vector3T<Pack>(turned * spin));
         }
-        element_functions<N, Pack>(pack.element, orientation, pack.mid_functions);
+        packs::element_functions<N>(pack.element, orientation, pack.mid_functions);
       }
     });
   });
 }
 
-void ConservingBeams::add(const StepMotion& step, Balance& balance, std::vector<StrainMemory>& end_memory) {
+void ConservingBeams::add_forces(Balance& balance) {
+  const StepMotion step = configuration_.motion();
   double dissipated = 0;
   for_each_group(groups_, [&](auto& packs) {
     if (packs.empty()) return;  // not even memories are made
@@ -152,11 +172,11 @@ void ConservingBeams::add(const StepMotion& step, Balance& balance, std::vector<
       BlockSystem<N, Pack> system;
       for (auto& pack : packs) {
         if (has_memory_) gather<N>(pack, step.state.strain_memory, memory);
-        conserving_beam<N, Pack>(pack.element, gather<N>(pack, step), rule_, pack.mid_functions,
-                                 pack.points[begin_].data(), has_memory_ ? memory.data() : nullptr, step.step,
-                                 balance.tangent != nullptr, pack.points[1 - begin_].data(),
-                                 has_memory_ ? new_memory.data() : nullptr, system);
-        if (has_memory_) scatter<N>(pack, new_memory, end_memory);
+        packs::conserving_beam<N>(pack.element, gather<N>(pack, step), rule_, pack.mid_functions,
+                                  pack.points[begin_].data(), has_memory_ ? memory.data() : nullptr, step.step,
+                                  balance.tangent != nullptr, pack.points[1 - begin_].data(),
+                                  has_memory_ ? new_memory.data() : nullptr, system);
+        if (has_memory_) scatter<N>(pack, new_memory, end_memory_);
         scatter<N>(pack, system, balance);
         for (int lane = 0; lane < pack.lanes; ++lane) dissipated += system.dissipated[lane];
       }

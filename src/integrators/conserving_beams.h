@@ -5,30 +5,25 @@
 #include <tuple>
 #include <vector>
 
-#include "elements/conserving_beam.h"
-#include "integrators/step_motion.h"
-#include "solver/reduced_residual.h"
+#include "elements/conserving_pack.h"
+#include "integrators/beam_family.h"
 
 namespace flexarm {
 
-/// Life of a step: begin points (kept from the last step by accept()), middle functions, then add() until converged.
-class ConservingBeams {
+class ConservingBeams : public BeamFamily {
  public:
-  /// Empty unless the rule is one of the family.
-  ConservingBeams(const Model& model, const TimeRule& rule);
+  explicit ConservingBeams(const StepConfiguration& configuration);
 
-  /// True where numerical dissipation or structural damping keeps State::strain_memory.
-  bool has_memory() const { return has_memory_; }
-  /// Stiffness points of a configuration at the begin.
-  void set_begin(const std::vector<NodePose>& begin);
-  /// Test functions for the middle of the step, as the velocities at the begin foresee it.
-  void set_mid_functions(const StepMotion& step);
-  /// Adds forces, damping and translational inertia. `end_memory`: per stiffness point, where has_memory().
-  void add(const StepMotion& step, Balance& balance, std::vector<StrainMemory>& end_memory);
-  /// The points of the last add() are those at the begin of the next step.
-  void accept() { begin_ = 1 - begin_; }
+  void initialise(State& state) override;
+  void begin() override;
+  void add_forces(Balance& balance) override;
+  void accept(State& state) override;
+  void invalidate() override { holds_begin_points_ = false; }
 
  private:
+  void set_begin_points();
+  void set_mid_functions();
+
   /// Elements side by side; the last one fills what the group leaves of its last pack.
   template <int Nodes>
   struct ElementPack {
@@ -54,10 +49,13 @@ class ConservingBeams {
   template <int Nodes>
   static void scatter(const ElementPack<Nodes>& pack, const BlockSystem<Nodes, Pack>& system, Balance& balance);
 
+  const StepConfiguration& configuration_;
   TimeRule rule_;
   std::tuple<PackGroup<2>, PackGroup<3>, PackGroup<4>, PackGroup<5>> groups_;
-  bool has_memory_ = false;
-  int begin_ = 0;  // which of ElementPack::points
+  bool has_memory_ = false;               // numerical dissipation or structural damping keep State::strain_memory
+  std::vector<StrainMemory> end_memory_;  // per stiffness point, where has_memory_
+  int begin_ = 0;                         // which of ElementPack::points
+  bool holds_begin_points_ = false;       // from the last step
 };
 
 }  // namespace flexarm

@@ -1,7 +1,9 @@
-// The trial configuration of a step: its start, its guess, Newton updates on the group.
-#include <algorithm>
+#include "integrators/step_configuration.h"
 
-#include "integrators/step_system.h"
+#include <algorithm>
+#include <cmath>
+
+#include "joints/joint_kinematics.h"
 #include "math/cayley.h"
 #include "math/so3.h"
 
@@ -15,89 +17,41 @@ constexpr double kLargestWayBeyond = 1.0;
 
 }  // namespace
 
-void StepSystem::load_begin_configuration(const State& state) {
+StepConfiguration::StepConfiguration(const Model& model, const Scheme& scheme, const DegreesOfFreedom& dof)
+    : model_(model),
+      scheme_(scheme),
+      dof_(dof),
+      begin_(model.nodes),
+      end_(model.nodes),
+      released_(model.initial_released),
+      increments_(model.nodes.size(), Vector3::Zero()),
+      inverse_tangents_(model.nodes.size(), Matrix3::Identity()),
+      keeps_begin_rates_(!scheme.is_incremental() && !scheme.is_static),
+      begin_velocities_(model.nodes.size()),
+      begin_rates_(model.joints.size()) {}
+
+void StepConfiguration::begin(const State& state, double step) {
   state_ = &state;
+  step_ = step;
   for (std::size_t i = 0; i < state.nodes.size(); ++i) begin_[i] = node_pose(state.nodes[i]);
-  reference_.begin(state);
   std::copy(begin_.begin(), begin_.end(), end_.begin());
   std::copy(state.released.begin(), state.released.end(), released_.begin());
-  for (ReleasedVector& multipliers : multipliers_) multipliers.setZero();
+  if (keeps_begin_rates_) set_begin_rates();
 }
 
-void StepSystem::compute_begin_points() {
-  points_valid_ = true;
-  conserving_beams_.set_begin(begin_);
-  if (scheme_.stress == StressRule::Conjugate) return;
-  for_each_element(model_.beams, [&](const auto& element) {
-    using Element = std::decay_t<decltype(element)>;
-    constexpr int N = Element::kNodes;
-    std::array<Quaternion, N> orientation;
-    std::array<Vector3, N> position;
-    for (int i = 0; i < N; ++i) {
-      orientation[i] = begin_[element.nodes[i]].orientation;
-      position[i] = begin_[element.nodes[i]].position;
-    }
-    const LocalRotations<N> local(orientation);
-    for (int k = 0; k < Element::kStiffnessPoints; ++k) {
-      const auto& point = element.stiffness_points[k];
-      const int index = element.first_stiffness_point + k;
-      begin_points_[index] = point_kinematics(
-          reference_.is_used() ? state_->stiffness_rotations[index] : local.evaluate(point.shape, point.derivative),
-          interpolate<N>(point.derivative, position), point.reference_strain);
-    }
-    for (int k = 0; k < Element::kMassPoints; ++k) {
-      const auto& point = element.mass_points[k];
-      const int index = element.first_mass_point + k;
-      begin_mass_rotations_[index] = reference_.is_used() ? state_->mass_rotations[index].rotation
-                                                          : local.evaluate(point.shape, point.derivative).rotation;
-    }
-  });
-}
-
-void StepSystem::compute_begin_rates() {
+void StepConfiguration::set_begin_rates() {
   for (std::size_t i = 0; i < begin_velocities_.size(); ++i) begin_velocities_[i] = spatial_velocity(state_->nodes[i]);
   for (std::size_t j = 0; j < model_.joints.size(); ++j)
     begin_rates_[j] = released_rates(model_, static_cast<int>(j), begin_, released_[j], begin_velocities_);
 }
 
-void StepSystem::begin(const State& state, double step, Guess guess) {
-  static_ = false;
-  updates_ = 0;
-  step_ = step;
-  load_factor_ = 1;
-  load_begin_configuration(state);
-  if (!points_valid_) compute_begin_points();
-  conserving_beams_.set_mid_functions(motion());
-  for (std::size_t i = 0; i < model_.histories.size(); ++i) {
-    history_values_[i] = model_.histories[i](state.time + load_time() * step);
-    if (!scheme_.is_incremental()) begin_history_values_[i] = model_.histories[i](state.time);
-  }
-  if (!scheme_.is_incremental() || !carriers_.empty()) compute_begin_rates();
-  begin_friction();
-  if (guess != Guess::Unchanged) extrapolate(guess == Guess::Extrapolated ? state.history.order : 0);
-  set_prescribed(state.time + step);
-  set_slaves();
-  update_increments();
-}
-
-void StepSystem::begin_static(const State& state, double load_factor) {
-  static_ = true;
-  step_ = 0;
-  load_factor_ = load_factor;
-  load_begin_configuration(state);
-  if (reference_.is_used()) compute_begin_points();
-  for (std::size_t i = 0; i < model_.histories.size(); ++i) history_values_[i] = model_.histories[i](0.0);
-  set_prescribed(0.0);
-  set_slaves();
-}
-
-void StepSystem::set_prescribed(double time) {
+void StepConfiguration::set_prescribed(double time) {
   for (const Coordinate& coordinate : model_.coordinates)
     if (coordinate.motion >= 0)
       released_[coordinate.joint].displacement[coordinate.component] = model_.histories[coordinate.motion](time);
 }
 
-void StepSystem::extrapolate(int order) {
+void StepConfiguration::extrapolate(int order) {
   const State& state = *state_;
   const IncrementHistory& history = state.history;
   const bool has_last = history.holds_for(dof_.unknowns);
@@ -121,7 +75,6 @@ void StepSystem::extrapolate(int order) {
     end_[i].rotation = end_[i].orientation.toRotationMatrix();
   }
   if (!has_last) return;  // the released coordinates of the first step start where they are
-  extrapolate_multipliers();
   for (std::size_t j = 0; j < model_.joints.size(); ++j) {
     const JointMap& joint = model_.joints[j];
     const int variable = dof_.variable_of_joint(static_cast<int>(j)), count = released_count(joint.kind);
@@ -138,51 +91,7 @@ void StepSystem::extrapolate(int order) {
   }
 }
 
-bool StepSystem::is_on_line(const JointMap& joint, int j) const {
-  const SlideLine& line = model_.slide_lines[joint.line];
-  const double to = released_[j].displacement[0];
-  const int pieces = std::abs(line.piece_at(to) - line.piece_at(state_->released[j].displacement[0])) + 1;
-  const double largest = joint.leaving < 0 ? kLargestOvershoot : kLargestWayBeyond;
-  return line.overshoot(to) <= largest && pieces <= SlideLine::kMostPieces;
-}
-
-SlideTravel StepSystem::slide_travel(int j) const {
-  const JointMap& joint = model_.joints[j];
-  return {model_.slide_lines[joint.line],
-          begin_,
-          end_,
-          state_->released[j].displacement[0],
-          released_[j].displacement[0],
-          joint.algorithm,
-          scheme_.arm_weight()};
-}
-
-void StepSystem::set_slaves() {
-  for (const Coordinate& coordinate : model_.coordinates)
-    if (coordinate.mimicked >= 0) {
-      const Coordinate& master = model_.coordinates[coordinate.mimicked];
-      released_[coordinate.joint].displacement[coordinate.component] =
-          coordinate.mimic.value(released_[master.joint].displacement[master.component]);
-    }
-  is_off_line_ = false;
-  for (std::size_t j = 0; j < model_.joints.size(); ++j) {
-    const JointMap& joint = model_.joints[j];
-    if (joint.kind == JointMapKind::Slide && !static_ && scheme_.is_incremental())
-      end_[joint.slave] = slide_pose(slide_travel(static_cast<int>(j)), begin_[joint.slave].position);
-    else
-      end_[joint.slave] = slave_pose(model_, static_cast<int>(j), end_, released_[j]);
-    if (joint.kind == JointMapKind::Slide) is_off_line_ = is_off_line_ || !is_on_line(joint, static_cast<int>(j));
-  }
-}
-
-void StepSystem::update_increments() {
-  for (std::size_t i = 0; i < end_.size(); ++i) {
-    increments_[i] = cayley::increment(begin_[i].orientation, end_[i].orientation);
-  }
-}
-
-void StepSystem::update(const Eigen::VectorXd& increment) {
-  remember_smooth_rates();
+void StepConfiguration::update(const Eigen::VectorXd& increment) {
   for (int i = 0; i < dof_.node_count; ++i) {
     if (dof_.slave_joint[i] >= 0) continue;
     const int equation = dof_.equation[dof_.first[i]];
@@ -200,11 +109,120 @@ void StepSystem::update(const Eigen::VectorXd& increment) {
     }
     released_[j] = updated(model_.joints[j], released_[j], part);
   }
-  update_multipliers(increment);
-  place_held_coordinates();
-  stop_smooth_reversals();
-  set_slaves();
-  if (!static_) update_increments();
+}
+
+void StepConfiguration::set_slaves() {
+  for (const Coordinate& coordinate : model_.coordinates)
+    if (coordinate.mimicked >= 0) {
+      const Coordinate& master = model_.coordinates[coordinate.mimicked];
+      released_[coordinate.joint].displacement[coordinate.component] =
+          coordinate.mimic.value(released_[master.joint].displacement[master.component]);
+    }
+  is_off_line_ = false;
+  for (std::size_t j = 0; j < model_.joints.size(); ++j) {
+    const JointMap& joint = model_.joints[j];
+    const bool slides = joint.kind == JointMapKind::Slide;
+    if (slides && has_incremental_joints())
+      end_[joint.slave] = slide_pose(slide_travel(static_cast<int>(j)), begin_[joint.slave].position);
+    else
+      end_[joint.slave] = slave_pose(model_, static_cast<int>(j), end_, released_[j]);
+    if (slides) is_off_line_ = is_off_line_ || !is_on_line(joint, static_cast<int>(j));
+  }
+  if (scheme_.is_static) return;
+  for (std::size_t i = 0; i < end_.size(); ++i)
+    increments_[i] = cayley::increment(begin_[i].orientation, end_[i].orientation);
+}
+
+void StepConfiguration::set_inverse_tangents() {
+  for (std::size_t i = 0; i < increments_.size(); ++i) inverse_tangents_[i] = cayley::inverse_tangent(increments_[i]);
+}
+
+void StepConfiguration::remember_increments(IncrementHistory& history) const {
+  std::vector<double>& made = history.push(step_, dof_.unknowns);
+  for (int i = 0; i < dof_.node_count; ++i) {
+    const int equation = dof_.equation[dof_.first[i]];
+    for (int k = 0; k < 3 && equation >= 0; ++k) {
+      made[equation + k] = end_[i].position[k] - begin_[i].position[k];
+      made[equation + 3 + k] = increments_[i][k];
+    }
+  }
+  for (std::size_t j = 0; j < model_.joints.size(); ++j) {
+    const ReleasedVector change = increment_of(static_cast<int>(j));
+    const int first = dof_.first[dof_.variable_of_joint(static_cast<int>(j))];
+    for (int k = 0; k < change.size(); ++k)
+      if (dof_.equation[first + k] >= 0) made[dof_.equation[first + k]] = change[k];
+  }
+}
+
+// ---------------------------------------------------------------- joints
+
+bool StepConfiguration::is_on_line(const JointMap& joint, int j) const {
+  const SlideLine& line = model_.slide_lines[joint.line];
+  const double to = released_[j].displacement[0];
+  const int pieces = std::abs(line.piece_at(to) - line.piece_at(state_->released[j].displacement[0])) + 1;
+  const double largest = joint.leaving < 0 ? kLargestOvershoot : kLargestWayBeyond;
+  return line.overshoot(to) <= largest && pieces <= SlideLine::kMostPieces;
+}
+
+SlideTravel StepConfiguration::slide_travel(int j) const {
+  const JointMap& joint = model_.joints[j];
+  return {model_.slide_lines[joint.line],
+          begin_,
+          end_,
+          state_->released[j].displacement[0],
+          released_[j].displacement[0],
+          joint.algorithm,
+          scheme_.arm_weight()};
+}
+
+void StepConfiguration::joint_maps(int j, const Vector6& g, FoldMaps& maps, bool with_tangent) const {
+  const NodePose world;
+  const JointMap& joint = model_.joints[j];
+  const NodePose& end = joint.master < 0 ? world : end_[joint.master];
+  if (has_incremental_joints())
+    incremental_maps(joint, joint.master < 0 ? world : begin_[joint.master], end, state_->released[j], released_[j], g,
+                     maps, with_tangent, scheme_.arm_weight());
+  else
+    variational_maps(joint, end, released_[j], g, maps);
+}
+
+void StepConfiguration::slide_maps(int j, const Vector6& g, SlideMaps& maps, bool with_tangent) const {
+  const SlideTravel travel = slide_travel(j);
+  if (has_incremental_joints())
+    slide_incremental_maps(travel, g, maps, with_tangent);
+  else
+    slide_variational_maps(travel.line, end_, travel.to, g, maps, with_tangent);
+}
+
+MimicMap StepConfiguration::mimic_map(int coordinate) const {
+  const Coordinate& following = model_.coordinates[coordinate];
+  const int joint = model_.coordinates[following.mimicked].joint;
+  const double from = state_->released[joint].displacement[0], to = released_[joint].displacement[0];
+  const MimicLaw& law = following.mimic;
+  const double right = law.derivative(to);
+  if (!has_incremental_joints()) return {right, right, law.second_derivative(to)};
+  return {law.secant(from, to), right, law.secant_derivative(from, to)};
+}
+
+ReleasedVector StepConfiguration::increment_of(int joint) const {
+  return released_increment(model_.joints[joint], state_->released[joint], released_[joint]);
+}
+
+double StepConfiguration::increment_of(const Coordinate& coordinate) const {
+  return increment_of(coordinate.joint)[coordinate.component];
+}
+
+CoordinateStep StepConfiguration::coordinate_step(std::size_t index, double increment) const {
+  const Coordinate& coordinate = model_.coordinates[index];
+  const int j = coordinate.joint, k = coordinate.component;
+  CoordinateStep step;
+  step.begin = state_->released[j].displacement[k % 3];
+  step.end = released_[j].displacement[k % 3];
+  step.increment = increment;
+  step.step = step_;
+  if (!scheme_.is_incremental())
+    step.gamma = scheme_.gamma, step.begin_rate = keeps_begin_rates_ ? begin_rates_[j][k] : 0.0;
+  return step;
 }
 
 }  // namespace flexarm

@@ -52,7 +52,7 @@ class TreeSystem : public SchemeStep {
     for (std::size_t i = 0; i < state.rests.size(); ++i) state.rests[i] = i % 2;
     const Eigen::VectorXd update = random_update(matrix.degrees_of_freedom().unknowns, random, 0.05);
     for (StepSystem* system : {&matrix, &tree}) {
-      system->begin(state, 0.2, StepSystem::Guess::Unchanged);
+      system->begin(state, 0.2, Guess::Unchanged);
       system->update(update);
     }
     expect_equal_solutions(matrix, tree);
@@ -95,7 +95,7 @@ TEST_P(TreeSystem, SolvesWithTheTangentsOfAllScenes) {
     }
     RandomSource random(2);
     const State state = prepared(random_state(model, random, 1e-3), *matrix, random);
-    for (StepSystem* system : {&*matrix, &*tree}) system->begin(state, 1e-3, StepSystem::Guess::Unchanged);
+    for (StepSystem* system : {&*matrix, &*tree}) system->begin(state, 1e-3, Guess::Unchanged);
     for (const double size : {1e-3, 3e-3}) {
       const Eigen::VectorXd update = random_update(matrix->degrees_of_freedom().unknowns, random, size);
       for (StepSystem* system : {&*matrix, &*tree}) system->update(update);
@@ -109,16 +109,17 @@ INSTANTIATE_TEST_SUITE_P(Schemes, TreeSystem, ::testing::ValuesIn(scheme_variant
 
 // Without inertia, which helps dynamics, and with forces that stiffen. Joints that nothing holds are singular here.
 TEST(TreeTangent, SolvesWithTheTangentOfStatics) {
+  const Scheme statics = statics_of(schemes().front());
   int regular = 0;
   for (const std::string& file : scene_files()) {
     SCOPED_TRACE(file);
     const Model model = model_of(file);
-    StepSystem matrix(model, schemes().front(), BackendChoice::Matrix), tree(model, schemes().front());
+    StepSystem matrix(model, statics, BackendChoice::Matrix), tree(model, statics);
     const State state = initial_state(model);
     RandomSource random(3);
     const Eigen::VectorXd update = random_update(matrix.degrees_of_freedom().unknowns, random, 1e-3);
     for (StepSystem* system : {&matrix, &tree}) {
-      system->begin_static(state, 0.7);
+      system->begin_equilibrium(state, 0.7);
       system->update(update);
     }
     ASSERT_TRUE(matrix.evaluate(true));

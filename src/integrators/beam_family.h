@@ -1,0 +1,38 @@
+#pragma once
+/// All beams of a model over a step: one part of the step for each family of schemes.
+
+#include <memory>
+
+#include "integrators/hht_interpolation.h"
+#include "integrators/step_configuration.h"
+#include "solver/reduced_residual.h"
+
+namespace flexarm {
+
+/// Forces and inertia of beams. One call is for all elements.
+class BeamFamily {
+ public:
+  virtual ~BeamFamily() = default;
+
+  /// Adds to an initial state what the family keeps there.
+  virtual void initialise(State&) {}
+  /// The configuration's step has begun.
+  virtual void begin() = 0;
+  /// Internal forces and damping; in families that have their inertia at the same points, that as well.
+  virtual void add_forces(Balance& balance) = 0;
+  /// What add_forces() leaves, once all forces are in the balance.
+  virtual void add_inertia(Balance&) {}
+  /// Writes what the family keeps of the trial configuration, evaluated last, into the state.
+  virtual void accept(State& state) = 0;
+  /// The state was changed by somebody else: what was kept from the last step does not hold.
+  virtual void invalidate() = 0;
+  /// Per node, of the trial configuration: rotation vectors from the undeformed state, where the scheme keeps them.
+  virtual const std::vector<Vector3>& total_rotations() const;
+  /// To be set before the first step where forces are interpolated in time.
+  virtual void set_interpolation(HhtInterpolation*) {}
+};
+
+/// The family of the configuration's scheme.
+std::unique_ptr<BeamFamily> make_beam_family(const StepConfiguration& configuration);
+
+}  // namespace flexarm

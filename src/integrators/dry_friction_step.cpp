@@ -1,0 +1,244 @@
+#include "integrators/dry_friction_step.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "building/model_builder.h"
+#include "joints/joint_forces.h"
+#include "math/cayley.h"
+
+namespace flexarm {
+namespace {
+
+/// Increments over a step below which a coordinate is taken to be at rest, relative to the model's length or to 1 rad.
+constexpr double kAtRest = 1e-12;
+/// Part of the capacity by which efforts at rest may exceed it: round-off, and where branches do not settle.
+constexpr double kSlack = 1e-10, kLooseSlack = 1e-6;
+/// Revisions in a solve after which only one coordinate is revised at a time, and after which slack is loose.
+constexpr int kRevisionsAtOnce = 4, kTightRevisions = 10;
+
+Contact contact_of(const JointMap& joint) {
+  if (joint.kind == JointMapKind::Slide || joint.rotation.isZero(0)) return Contact::Travel;
+  return joint.translation.isZero(0) ? Contact::Turn : Contact::Both;
+}
+
+/// Of increments: 1 rad, or the model's length.
+double scale_of(const Model& model, const Coordinate& coordinate) {
+  const bool turns = coordinate.is_angle || !model.joints[coordinate.joint].rotation.isZero(0);
+  return turns ? 1.0 : model.length_scale;
+}
+
+}  // namespace
+
+std::size_t most_slide_nodes(const Model& model) {
+  std::size_t most = 0;
+  for (const SlideLine& line : model.slide_lines) {
+    const int pieces = static_cast<int>(line.pieces.size());
+    for (int p = 0; p < pieces; ++p) {
+      const NodeRange active = line.support(p, std::min(p + SlideLine::kMostPieces, pieces) - 1);
+      most = std::max(most, static_cast<std::size_t>(active.end - active.first));
+    }
+  }
+  return most;
+}
+
+DryFrictionStep::DryFrictionStep(StepConfiguration& configuration, const HhtInterpolation* interpolation)
+    : configuration_(configuration),
+      interpolation_(interpolation),
+      model_(configuration.model()),
+      carrier_of_(model_.coordinates.size(), -1),
+      capacities_(model_.coordinates.size(), 0.0),
+      scratch_(most_slide_nodes(model_)) {
+  if (!configuration.scheme().is_static) find_carriers();
+  tangent_branches_.assign(carriers_.size(), StickSlip::Free);
+  if (!carriers_.empty()) configuration.keep_begin_rates();
+}
+
+void DryFrictionStep::find_carriers() {
+  const Scheme& scheme = configuration_.scheme();
+  std::vector<int> carrier_at(model_.coordinates.size(), -1);  // per coordinate that follows none
+  for (std::size_t index = 0; index < model_.coordinates.size(); ++index) {
+    const Coordinate& coordinate = model_.coordinates[index];
+    if (!coordinate.sticks || (coordinate.friction <= 0 && coordinate.friction_coefficient <= 0)) continue;
+    if (scheme.is_composition)
+      throw ModelError("<integrator>: scheme '" + std::string(scheme.name) +
+                       "' steps backwards, in which friction of the law 'coulomb' (coordinate '" + coordinate.name +
+                       "') would drive; take another scheme or the law 'smooth'");
+    int base = static_cast<int>(index);
+    while (model_.coordinates[base].mimicked >= 0) base = model_.coordinates[base].mimicked;
+    int& c = carrier_at[base];
+    if (c < 0) {
+      c = static_cast<int>(carriers_.size());
+      carriers_.emplace_back();
+      carriers_[c].coordinate = base;
+    }
+    carriers_[c].members.push_back(static_cast<int>(index));
+    carrier_of_[index] = c;
+  }
+}
+
+double DryFrictionStep::travel_per_carrier(int coordinate) const {
+  double ratio = 1;
+  for (; model_.coordinates[coordinate].mimicked >= 0; coordinate = model_.coordinates[coordinate].mimicked)
+    ratio *= configuration_.mimic_map(coordinate).left;
+  return ratio;
+}
+
+void DryFrictionStep::begin() {
+  revisions_ = 0;
+  const Scheme& scheme = configuration_.scheme();
+  const double step = configuration_.step();
+  const double gamma = scheme.is_incremental() ? (scheme.backward_velocity ? 1.0 : 0.5) : scheme.gamma;
+  for (FrictionCarrier& carrier : carriers_) {
+    const Coordinate& coordinate = model_.coordinates[carrier.coordinate];
+    double rate = configuration_.state().rests[carrier.coordinate] > 0
+                      ? 0.0
+                      : configuration_.begin_rates(coordinate.joint)[coordinate.component];
+    if (std::abs(rate * step) <= kAtRest * scale_of(model_, coordinate)) rate = 0;
+    carrier.law.begin((1 - gamma) * step * rate, rate);
+  }
+}
+
+void DryFrictionStep::begin_evaluation() {
+  std::fill(capacities_.begin(), capacities_.end(), 0.0);
+}
+
+double DryFrictionStep::direction(int index) const {
+  const int c = carrier_of_[index];
+  if (c < 0) return 0;
+  const FrictionCarrier& carrier = carriers_[c];
+  const Coordinate& base = model_.coordinates[carrier.coordinate];
+  const double along = base.motion >= 0 ? configuration_.increment_of(base) : carrier.law.direction();
+  return along == 0 ? 0.0 : std::copysign(1.0, along * travel_per_carrier(index));
+}
+
+void DryFrictionStep::add_constant(int index, double increment, double& row, Balance& balance) {
+  if (carrier_of_[index] < 0) return;
+  const Coordinate& coordinate = model_.coordinates[index];
+  const double effort = direction(index) * coordinate.friction;
+  row += effort_weight() * effort;
+  balance.dissipated += effort * increment;
+  capacities_[index] += coordinate.friction;
+}
+
+template <class AddDerivative>
+void DryFrictionStep::turn_row(int j, const Vector6& g, Eigen::Ref<Vector6> left, const AddDerivative& add_derivative,
+                               Balance& balance) {
+  const int index = model_.first_coordinate[j];
+  const Coordinate& coordinate = model_.coordinates[index];
+  if (coordinate.friction_coefficient <= 0 || configuration_.scheme().is_static) return;
+  const NormalForce normal = normal_force(contact_of(model_.joints[j]), left, g.head<3>());
+  const double capacity = coordinate.friction_coefficient * normal.magnitude;  // of the row
+  capacities_[index] = capacity / effort_weight();
+  const CoordinateStep change = configuration_.coordinate_step(index, configuration_.increment_of(coordinate));
+  const SmoothDirection direction_now =
+      coordinate.sticks ? SmoothDirection{direction(index), 0} : smooth_direction(change);
+  balance.dissipated += direction_now.value * capacities_[index] * change.increment;
+  const double factor = direction_now.value * coordinate.friction_coefficient;
+  left.head<3>() += factor * normal.direction;
+  if (balance.tangent) add_derivative(normal.arm, factor * normal.along, direction_now.slope * capacity);
+}
+
+void DryFrictionStep::add_normal(int j, const Vector6& g, FoldMaps& maps, Balance& balance) {
+  if (model_.joints[j].kind != JointMapKind::Scalar) return;
+  const auto add_derivative = [&](const Vector6& arm, double along, double slope) {
+    maps.released_released(0, 0) += slope;
+    if (along == 0) return;
+    FoldMaps of_arm;
+    configuration_.joint_maps(j, arm, of_arm, true);
+    maps.released_released += along * of_arm.released_released;
+    maps.released_master += along * of_arm.released_master;
+  };
+  Vector6 left = maps.left.col(0);
+  turn_row(j, g, left, add_derivative, balance);
+  maps.left.col(0) = left;
+}
+
+void DryFrictionStep::add_normal(int j, const Vector6& g, SlideMaps& maps, Balance& balance) {
+  const auto add_derivative = [&](const Vector6& arm, double along, double slope) {
+    maps.released_released += slope;
+    if (along == 0) return;
+    configuration_.slide_maps(j, arm, scratch_, true);
+    maps.released_released += along * scratch_.released_released;
+    for (int i = 0; i < maps.count; ++i) maps.released_master[i] += along * scratch_.released_master[i];
+  };
+  turn_row(j, g, maps.released_left, add_derivative, balance);
+}
+
+void DryFrictionStep::hold(Balance& balance) {
+  const DegreesOfFreedom& dof = configuration_.degrees_of_freedom();
+  for (std::size_t c = 0; c < carriers_.size(); ++c) {
+    FrictionCarrier& carrier = carriers_[c];
+    if (balance.tangent) tangent_branches_[c] = carrier.law.branch();
+    const Coordinate& coordinate = model_.coordinates[carrier.coordinate];
+    if (coordinate.motion >= 0) continue;
+    double& row = balance.residual.at(dof.variable_of_joint(coordinate.joint))[coordinate.component];
+    carrier.increment = configuration_.increment_of(coordinate);
+    carrier.reaction = -row / effort_weight();
+    carrier.capacity = 0;
+    for (const int index : carrier.members)
+      carrier.capacity += std::abs(travel_per_carrier(index)) * capacities_[index];
+    if (!carrier.law.is_held()) continue;
+    balance.dissipated += carrier.reaction * carrier.increment;
+    row = carrier.increment - carrier.law.held_increment();
+    if (balance.tangent) hold_tangent_row(coordinate, *balance.tangent);
+  }
+}
+
+void DryFrictionStep::hold_tangent_row(const Coordinate& coordinate, TangentBackend& tangent) const {
+  ReleasedVector coefficients = ReleasedVector::Ones(1);
+  int component = 0;
+  if (coordinate.is_angle) {  // the increment varies as S^{-1} spin
+    component = coordinate.component % 3;
+    const Vector3 rotation = configuration_.increment_of(coordinate.joint).tail<3>();
+    coefficients = cayley::inverse_tangent(rotation).row(component).transpose();
+  }
+  tangent.hold_row(coordinate.joint, coordinate.component, coordinate.component - component, coefficients);
+}
+
+bool DryFrictionStep::tangent_holds() const {
+  for (std::size_t c = 0; c < carriers_.size(); ++c)
+    if (tangent_branches_[c] != carriers_[c].law.branch()) return false;
+  return true;
+}
+
+bool DryFrictionStep::revise() {
+  bool revised = false;
+  for (FrictionCarrier& carrier : carriers_) {
+    if (model_.coordinates[carrier.coordinate].motion >= 0) continue;
+    if (revised && revisions_ >= kRevisionsAtOnce) break;
+    const double slack = revisions_ < kTightRevisions ? kSlack : kLooseSlack;
+    if (carrier.law.revise(carrier.increment, carrier.reaction, carrier.capacity, slack)) revised = true;
+  }
+  revisions_ += revised;
+  return revised;
+}
+
+void DryFrictionStep::place_held() {
+  const auto is_there = [&](const FrictionCarrier& carrier) {
+    const Coordinate& coordinate = model_.coordinates[carrier.coordinate];
+    return coordinate.motion < 0 && carrier.law.is_held() &&
+           std::abs(configuration_.increment_of(coordinate) - carrier.law.held_increment()) <=
+               kAtRest * scale_of(model_, coordinate);
+  };
+  int resting_angles = 0;  // of the free rotation at hand; its components follow each other
+  for (const FrictionCarrier& carrier : carriers_) {
+    const Coordinate& coordinate = model_.coordinates[carrier.coordinate];
+    const int component = coordinate.component % 3;
+    Released& released = configuration_.released(coordinate.joint);
+    const Released& begin = configuration_.state().released[coordinate.joint];
+    if (coordinate.is_angle) {
+      if (component == 0) resting_angles = 0;
+      resting_angles += is_there(carrier) && carrier.law.held_increment() == 0;
+      if (component == 2 && resting_angles == 3) released.rotation = begin.rotation;
+    } else if (is_there(carrier)) {
+      released.displacement[component] = begin.displacement[component] + carrier.law.held_increment();
+    }
+  }
+}
+
+void DryFrictionStep::accept(State& state) const {
+  for (const FrictionCarrier& carrier : carriers_) state.rests[carrier.coordinate] = carrier.law.is_stopped() ? 1 : 0;
+}
+
+}  // namespace flexarm

@@ -1,0 +1,39 @@
+#pragma once
+/// All beams of a model at the end of a step (Newmark's family), or in equilibrium (Muñoz 2004, ch. 4).
+
+#include "elements/additive_beam.h"
+#include "elements/endpoint_beam.h"
+#include "integrators/beam_family.h"
+#include "integrators/integration_points.h"
+
+namespace flexarm {
+
+class EndpointBeams : public BeamFamily {
+ public:
+  explicit EndpointBeams(const StepConfiguration& configuration);
+
+  void initialise(State& state) override;
+  void begin() override;
+  void add_forces(Balance& balance) override;
+  void add_inertia(Balance& balance) override;
+  void accept(State& state) override;
+  void invalidate() override { points_.invalidate(); }
+  const std::vector<Vector3>& total_rotations() const override { return points_.reference.total_rotations(); }
+  void set_interpolation(HhtInterpolation* interpolation) override { interpolation_ = interpolation; }
+
+ private:
+  template <int Nodes>
+  void add_rotary(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, bool with_tangent,
+                  ElementSystem<Nodes>& system);
+  bool is_additive() const { return configuration_.scheme().weak_form == WeakForm::Additive; }
+  bool interpolates_kinematics() const { return interpolation_ && configuration_.scheme().hht == HhtForm::Kinematics; }
+
+  const StepConfiguration& configuration_;
+  HhtInterpolation* interpolation_ = nullptr;
+  IntegrationPoints points_;
+  NewmarkRule rule_{};
+  std::vector<Vector6> end_strain_rates_;
+  std::vector<Vector3> end_momentum_rates_;  // per mass point
+};
+
+}  // namespace flexarm

@@ -1,0 +1,56 @@
+#include "integrators/integration_points.h"
+
+#include <algorithm>
+
+namespace flexarm {
+
+IntegrationPoints::IntegrationPoints(const StepConfiguration& configuration)
+    : reference(configuration.model(), configuration.scheme()),
+      begin_stiffness(configuration.model().stiffness_point_count),
+      end_stiffness(configuration.model().stiffness_point_count),
+      begin_rotations(configuration.model().mass_point_count),
+      end_rotations(configuration.model().mass_point_count),
+      end_motion(configuration.model().mass_point_count),
+      configuration_(configuration) {}
+
+void IntegrationPoints::begin() {
+  reference.begin(configuration_.state());
+  if (!hold_) set_begin_points();
+  hold_ = true;
+}
+
+void IntegrationPoints::set_begin_points() {
+  const State& state = configuration_.state();
+  for_each_element(configuration_.model().beams, [&](const auto& element) {
+    using Element = std::decay_t<decltype(element)>;
+    constexpr int N = Element::kNodes;
+    std::array<Quaternion, N> orientation;
+    std::array<Vector3, N> position;
+    for (int i = 0; i < N; ++i) {
+      orientation[i] = configuration_.begin()[element.nodes[i]].orientation;
+      position[i] = configuration_.begin()[element.nodes[i]].position;
+    }
+    const LocalRotations<N> local(orientation);
+    for (int k = 0; k < Element::kStiffnessPoints; ++k) {
+      const auto& point = element.stiffness_points[k];
+      const int index = element.first_stiffness_point + k;
+      begin_stiffness[index] = point_kinematics(
+          reference.is_used() ? state.stiffness_rotations[index] : local.evaluate(point.shape, point.derivative),
+          interpolate<N>(point.derivative, position), point.reference_strain);
+    }
+    for (int k = 0; k < Element::kMassPoints; ++k) {
+      const auto& point = element.mass_points[k];
+      const int index = element.first_mass_point + k;
+      begin_rotations[index] = reference.is_used() ? state.mass_rotations[index].rotation
+                                                   : local.evaluate(point.shape, point.derivative).rotation;
+    }
+  });
+}
+
+void IntegrationPoints::accept(State& state) {
+  reference.accept(state);
+  std::swap(begin_stiffness, end_stiffness);
+  std::swap(begin_rotations, end_rotations);
+}
+
+}  // namespace flexarm

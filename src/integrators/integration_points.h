@@ -1,0 +1,66 @@
+#pragma once
+/// The integration points of all beams at both ends of a step, of the families whose elements go one by one.
+
+#include <vector>
+
+#include "elements/additive_beam.h"
+#include "integrators/rotation_reference.h"
+#include "integrators/step_configuration.h"
+#include "solver/reduced_residual.h"
+
+namespace flexarm {
+
+/// Life of a step: begin(); elements are gathered and write the points of the trial configuration; accept().
+class IntegrationPoints {
+ public:
+  explicit IntegrationPoints(const StepConfiguration& configuration);
+
+  /// Points of the configuration at the beginning, unless those of the last step's end still hold.
+  void begin();
+  /// The state was changed by somebody else.
+  void invalidate() { hold_ = false; }
+  /// The points at hand become those at the beginning of the next step, and the state's.
+  void accept(State& state);
+
+  /// An element's nodes, moved to the poses `end`.
+  template <int Nodes>
+  void gather(const BeamElement<Nodes>& element, const std::vector<NodePose>& end, ElementNodes<Nodes>& nodes) const {
+    const StepConfiguration& c = configuration_;
+    for (int i = 0; i < Nodes; ++i) {
+      const int node = element.nodes[i];
+      nodes.begin[i] = c.begin()[node].position;
+      nodes.end[i] = end[node].position;
+      nodes.orientation[i] = end[node].orientation;
+      nodes.increment[i] = c.increments()[node];
+      nodes.increment_inverse_tangent[i] = c.inverse_tangents()[node];
+      nodes.velocity[i] = c.state().nodes[node].velocity;
+      nodes.acceleration[i] = c.state().nodes[node].acceleration;
+    }
+    reference.gather(element, nodes);
+  }
+
+  RotationReference reference;
+  std::vector<PointKinematics> begin_stiffness, end_stiffness;
+  std::vector<Matrix3> begin_rotations, end_rotations;  ///< of mass points
+  std::vector<MassPointState> end_motion;               ///< of mass points
+
+ private:
+  void set_begin_points();
+
+  const StepConfiguration& configuration_;
+  bool hold_ = false;
+};
+
+/// Adds an element's system to the balance.
+template <int Nodes>
+void scatter(const BeamElement<Nodes>& element, const ElementSystem<Nodes>& system, Balance& balance) {
+  balance.dissipated += system.dissipated;
+  for (int i = 0; i < Nodes; ++i) {
+    balance.residual.node(element.nodes[i]) += system.residual.template segment<6>(6 * i);
+    for (int j = 0; j < Nodes && balance.tangent; ++j)
+      Eigen::Map<Matrix6>(balance.tangent->element_block(element.first_block + i * Nodes + j)) +=
+          system.tangent.template block<6, 6>(6 * i, 6 * j);
+  }
+}
+
+}  // namespace flexarm

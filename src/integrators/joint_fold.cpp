@@ -1,0 +1,128 @@
+#include "integrators/joint_fold.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "joints/joint_forces.h"
+#include "math/cayley.h"
+
+namespace flexarm {
+
+JointFold::JointFold(const StepConfiguration& configuration, const StepHistories& histories, DryFrictionStep& friction)
+    : configuration_(configuration),
+      histories_(histories),
+      friction_(friction),
+      applied_(configuration.model().coordinates.size(), 0.0),
+      slide_maps_(most_slide_nodes(configuration.model())),
+      mimic_maps_(configuration.degrees_of_freedom().mimics.size()) {
+  for (const Coordinate& coordinate : configuration.model().coordinates)
+    stops_.push_back(stop_penalty(coordinate, configuration.scheme().contact_time));
+}
+
+double JointFold::effort_at(const Coordinate& coordinate, std::size_t index) const {
+  const double commanded = configuration_.state().commands[index];
+  double effort = 0;
+  if (!std::isnan(commanded))
+    effort = commanded;
+  else if (coordinate.effort >= 0)
+    effort = histories_.at_point[coordinate.effort];
+  if (coordinate.effort_limit > 0) effort = std::clamp(effort, -coordinate.effort_limit, coordinate.effort_limit);
+  return histories_.factor * effort;
+}
+
+void JointFold::add_efforts(int j, Balance& balance) {
+  const Model& model = configuration_.model();
+  const int count = released_count(model.joints[j].kind);
+  if (count == 0) return;
+  const int variable = configuration_.degrees_of_freedom().variable_of_joint(j);
+  double* residual = balance.residual.at(variable);
+  ReleasedVector change = ReleasedVector::Zero(count);
+  if (!configuration_.scheme().is_static) change = configuration_.increment_of(j);
+  const double weight = friction_.effort_weight();
+  for (int k = 0; k < count; ++k) {
+    const std::size_t index = model.first_coordinate[j] + k;
+    const Coordinate& coordinate = model.coordinates[index];
+    const PassiveEffort passive =
+        passive_effort(coordinate, stops_[index], configuration_.coordinate_step(index, change[k]));
+    balance.dissipated += passive.dissipated;
+    applied_[index] = effort_at(coordinate, index);
+    residual[k] -= weight * (applied_[index] + passive.effort);
+    friction_.add_constant(static_cast<int>(index), change[k], residual[k], balance);
+    const double slope = weight * passive.slope;
+    if (!balance.tangent || slope == 0) continue;
+    Eigen::Map<ReleasedSquare> tangent(balance.tangent->diagonal_block(variable), count, count);
+    if (coordinate.is_angle) {  // the increment varies as S^{-1} spin
+      const Vector3 rotation = change.tail<3>();
+      tangent.row(k).tail<3>() -= slope * cayley::inverse_tangent(rotation).row(k - (count - 3));
+    } else {
+      tangent(k, k) -= slope;
+    }
+  }
+}
+
+void JointFold::fold_slide(int j, Balance& balance) {
+  const Vector6 g = balance.residual.node(configuration_.model().joints[j].slave);
+  configuration_.slide_maps(j, g, slide_maps_, balance.tangent != nullptr);
+  friction_.add_normal(j, g, slide_maps_, balance);
+  balance.residual.fold(j, slide_maps_);
+  if (balance.tangent) balance.tangent->fold(j, slide_maps_);
+}
+
+void JointFold::evaluate(Balance& balance) {
+  const std::vector<JointMap>& joints = configuration_.model().joints;
+  friction_.begin_evaluation();
+  for (int j = static_cast<int>(joints.size()) - 1; j >= 0; --j) {
+    if (joints[j].kind == JointMapKind::Slide) {
+      fold_slide(j, balance);
+    } else {
+      const Vector6 g = balance.residual.node(joints[j].slave);
+      FoldMaps& maps = balance.tangent ? balance.tangent->fold_maps(j) : fold_maps_;
+      configuration_.joint_maps(j, g, maps, balance.tangent != nullptr);
+      friction_.add_normal(j, g, maps, balance);
+      balance.residual.fold(j, maps);
+      if (balance.tangent) balance.tangent->fold(j);
+    }
+    add_efforts(j, balance);
+  }
+  const std::vector<DegreesOfFreedom::Mimic>& mimics = configuration_.degrees_of_freedom().mimics;
+  for (std::size_t i = 0; i < mimics.size(); ++i) mimic_maps_[i] = configuration_.mimic_map(mimics[i].coordinate);
+  balance.residual.fold_mimics(mimic_maps_);
+  if (balance.tangent) balance.tangent->fold_mimics(mimic_maps_);
+}
+
+void JointFold::find_drives(const ReducedResidual& residual, DriveEfforts& drives) {
+  const Model& model = configuration_.model();
+  const State& state = configuration_.state();
+  for (std::size_t index = 0; index < model.coordinates.size(); ++index) {
+    const Coordinate& coordinate = model.coordinates[index];
+    if (coordinate.motion < 0) continue;
+    // A prescribed coordinate's row is the effort that drives it.
+    const int variable = configuration_.degrees_of_freedom().variable_of_joint(coordinate.joint);
+    applied_[index] += residual.at(variable)[coordinate.component] / friction_.effort_weight();
+    // Over the step; the Newmark family has that at its end, and none at the start of a simulation.
+    const bool is_mean = configuration_.scheme().is_incremental() || state.history.count == 0;
+    drives.impulse[index] +=
+        configuration_.step() * (is_mean ? applied_[index] : 0.5 * (state.efforts[index] + applied_[index]));
+  }
+}
+
+void JointFold::add_work(double& work) const {
+  const Model& model = configuration_.model();
+  const State& state = configuration_.state();
+  for (std::size_t j = 0; j < model.joints.size(); ++j) {
+    const ReleasedVector change = configuration_.increment_of(static_cast<int>(j));
+    for (int k = 0; k < change.size(); ++k) {
+      const std::size_t index = model.first_coordinate[j] + k;
+      const double effort =
+          configuration_.scheme().is_incremental() ? applied_[index] : 0.5 * (applied_[index] + state.efforts[index]);
+      work += effort * change[k];
+    }
+  }
+}
+
+void JointFold::accept(State& state) const {
+  std::copy(configuration_.released().begin(), configuration_.released().end(), state.released.begin());
+  std::copy(applied_.begin(), applied_.end(), state.efforts.begin());
+}
+
+}  // namespace flexarm

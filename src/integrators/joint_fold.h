@@ -1,0 +1,43 @@
+#pragma once
+/// All joints of a model over a step: slaves are folded into their masters, efforts act on what is released.
+
+#include <vector>
+
+#include "integrators/dry_friction_step.h"
+#include "integrators/histories.h"
+#include "integrators/step_configuration.h"
+#include "solver/reduced_residual.h"
+
+namespace flexarm {
+
+class JointFold {
+ public:
+  JointFold(const StepConfiguration& configuration, const StepHistories& histories, DryFrictionStep& friction);
+
+  /// Folds all joints from leaf to root, then coordinates that follow others; all nodes' forces are in the balance.
+  void evaluate(Balance& balance);
+  /// Adds the work of efforts over the step to `work` [J].
+  void add_work(double& work) const;
+  /// Finds what drove prescribed coordinates; before add_work().
+  void find_drives(const ReducedResidual& residual, DriveEfforts& drives);
+  /// Writes released coordinates and efforts.
+  void accept(State& state) const;
+  /// Per coordinate: effort in this step.
+  const std::vector<double>& efforts() const { return applied_; }
+
+ private:
+  void fold_slide(int joint, Balance& balance);
+  void add_efforts(int joint, Balance& balance);
+  double effort_at(const Coordinate& coordinate, std::size_t index) const;
+
+  const StepConfiguration& configuration_;
+  const StepHistories& histories_;
+  DryFrictionStep& friction_;
+  std::vector<StopPenalty> stops_;  // per coordinate
+  std::vector<double> applied_;
+  FoldMaps fold_maps_;
+  SlideMaps slide_maps_;
+  std::vector<MimicMap> mimic_maps_;
+};
+
+}  // namespace flexarm

@@ -1,0 +1,71 @@
+#include "integrators/loop_multipliers.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flexarm {
+
+LoopMultipliers::LoopMultipliers(const StepConfiguration& configuration) : configuration_(configuration) {
+  for (const LoopClosure& closure : configuration.model().closures)
+    values_.push_back(ReleasedVector::Zero(static_cast<Eigen::Index>(closure.constraints.size())));
+}
+
+ClosurePoses LoopMultipliers::poses(const LoopClosure& closure, const std::vector<NodePose>& nodes) const {
+  return {closure.parent < 0 ? NodePose() : nodes[closure.parent], nodes[closure.child]};
+}
+
+/// visit(multiplier, its equation)
+template <class Visit>
+void LoopMultipliers::for_each(const Visit& visit) {
+  const DegreesOfFreedom& dof = configuration_.degrees_of_freedom();
+  for (std::size_t k = 0; k < values_.size(); ++k) {
+    const int first = dof.first[dof.variable_of_closure(static_cast<int>(k))];
+    for (int i = 0; i < values_[k].size(); ++i) visit(values_[k][i], dof.equation[first + i]);
+  }
+}
+
+void LoopMultipliers::begin() {
+  for_each([](double& value, int) { value = 0; });
+}
+
+void LoopMultipliers::extrapolate() {
+  for_each([&](double& value, int equation) { value = configuration_.state().history.increments[0][equation]; });
+}
+
+void LoopMultipliers::update(const Eigen::VectorXd& increment) {
+  for_each([&](double& value, int equation) { value += increment[equation]; });
+}
+
+void LoopMultipliers::evaluate(Balance& balance) const {
+  // Multipliers are forces of the whole step: no scheme weights them.
+  const double weight = configuration_.has_incremental_joints() ? 0.5 : 1.0;
+  const std::vector<LoopClosure>& closures = configuration_.model().closures;
+  ClosureMaps maps;
+  for (int k = 0; k < static_cast<int>(closures.size()); ++k) {
+    const LoopClosure& closure = closures[k];
+    const ClosurePoses begin = poses(closure, configuration_.begin()), end = poses(closure, configuration_.end());
+    for (int i = 0; i < static_cast<int>(closure.constraints.size()); ++i) {
+      closure_maps(closure, closure.constraints[i], begin, end, weight, maps);
+      balance.residual.add_closure(k, i, values_[k][i], maps);
+      if (balance.tangent) balance.tangent->add_closure(k, i, values_[k][i], maps);
+    }
+  }
+}
+
+void LoopMultipliers::accept(State& state) {
+  for_each([&](double value, int equation) { state.history.increments[0][equation] = value; });
+}
+
+double LoopMultipliers::open_loop() const {
+  const Model& model = configuration_.model();
+  double largest = 0;
+  for (const LoopClosure& closure : model.closures)
+    for (const ClosureConstraint& constraint : closure.implied) {
+      const double scale = constraint.kind == ClosureConstraint::Kind::Gap ? model.length_scale : 1.0;
+      largest =
+          std::max(largest, std::abs(closure_value(closure, constraint, poses(closure, configuration_.end()))) / scale);
+    }
+  return largest;
+}
+
+}  // namespace flexarm

@@ -1,0 +1,38 @@
+#pragma once
+/// Loops that multipliers close: their forces, and the multipliers' way through a step.
+
+#include <vector>
+
+#include "integrators/step_configuration.h"
+#include "solver/reduced_residual.h"
+
+namespace flexarm {
+
+class LoopMultipliers {
+ public:
+  explicit LoopMultipliers(const StepConfiguration& configuration);
+
+  /// No forces.
+  void begin();
+  /// Those of the last step.
+  void extrapolate();
+  void evaluate(Balance& balance) const;
+  /// A Newton update, one entry per unknown.
+  void update(const Eigen::VectorXd& increment);
+  /// The history keeps the multipliers in the place of increments of their own.
+  void accept(State& state);
+
+  /// Largest violation of what the closures of loops imply, over the model's length scale and in rad: not zero where a
+  /// loop was singular at the start.
+  double open_loop() const;
+
+ private:
+  ClosurePoses poses(const LoopClosure& closure, const std::vector<NodePose>& nodes) const;
+  template <class Visit>
+  void for_each(const Visit& visit);
+
+  const StepConfiguration& configuration_;
+  std::vector<ReleasedVector> values_;  // per closure
+};
+
+}  // namespace flexarm

@@ -1,0 +1,31 @@
+#pragma once
+/// All beams of a model over a step of the thesis's momentum-conserving schemes (Muñoz 2004, ch. 6).
+
+#include "elements/momentum_beam.h"
+#include "elements/rotary_inertia.h"
+#include "integrators/beam_family.h"
+#include "integrators/integration_points.h"
+
+namespace flexarm {
+
+class MomentumBeams : public BeamFamily {
+ public:
+  explicit MomentumBeams(const StepConfiguration& configuration)
+      : configuration_(configuration), points_(configuration) {}
+
+  void initialise(State& state) override { points_.reference.initialise(state); }
+  void begin() override { points_.begin(); }
+  void add_forces(Balance& balance) override;
+  void accept(State& state) override;
+  void invalidate() override { points_.invalidate(); }
+
+ private:
+  template <int Nodes>
+  void add_rotary(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, bool with_tangent,
+                  ElementEnergy<Nodes>* energy, ElementSystem<Nodes>& system);
+
+  const StepConfiguration& configuration_;
+  IntegrationPoints points_;
+};
+
+}  // namespace flexarm

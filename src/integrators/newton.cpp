@@ -1,0 +1,148 @@
+#include "integrators/newton.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace flexarm {
+namespace {
+
+/// Larger updates of a rotation are scaled down where limits are asked for [rad]: the residual's directions have turned
+/// by as much, and the linear model says nothing any more.
+constexpr double kLargestRotationUpdate = 1.0;
+/// The iteration is given up when an update is this much larger than the first one, ...
+constexpr double kDivergence = 1e4;
+/// ... or than so much, since a good guess makes the first one tiny [- or rad].
+constexpr double kSmallestFirstUpdate = 1e-3;
+/// Updates that after so many iterations still do not shrink below this contraction are halved: full ones jump to and
+/// fro between two sides of a steep law, half ones fall between them.
+constexpr int kPatience = 5;
+constexpr double kStalled = 0.5;
+/// Growth of updates by kept factors with which a solve begins anew: it happens where these are of another branch.
+constexpr double kAstray = 10;
+/// Updates by new factors that no longer shrink below this are the round-off of a stiff system: its condition, up to
+/// 1e4 in the test scenes of stiff bodies, times that of a double.
+constexpr double kStagnation = 1e-12;
+/// Scaled updates cannot be expected to become smaller than this.
+constexpr double kRoundOff = 1e-15;
+
+}  // namespace
+
+NewtonIteration::NewtonIteration(StepSystem& system, const StepSettings& settings)
+    : system_(system),
+      settings_(settings),
+      factors_(system.configuration(), system.tangent()),
+      factor_reuse_(system.tangent().cost_of_factors()),
+      update_(system.degrees_of_freedom().unknowns) {
+  norms_.reserve(settings.max_iterations + 1);
+}
+
+void NewtonIteration::forget_factors() {
+  factorised_step_ = 0;
+  factor_reuse_.reset();
+}
+
+bool NewtonIteration::solve(Updates updates, Factors factors, StepResult& result) {
+  const Reason reason = iterate(updates, factors, result);
+  enter(StepPhase::Control);
+  if (reason == Reason::None) return true;
+  result.reason = reason;
+  factorised_step_ = 0;
+  return false;
+}
+
+StepResult::Reason NewtonIteration::evaluate(bool with_tangent) {
+  enter(with_tangent ? StepPhase::Tangent : StepPhase::Residual);
+  if (system_.evaluate(with_tangent)) return Reason::None;
+  return system_.configuration().is_off_line() ? Reason::OffTheLine : Reason::NotFinite;
+}
+
+StepResult::Reason NewtonIteration::iterate(Updates updates, Factors factors, StepResult& result) {
+  norms_.clear();
+  if (update_.size() == 0) return evaluate(false);
+  const double step = system_.configuration().step();
+  const bool always_fresh = factors == Factors::Fresh;
+  Progress progress;
+  bool factorise = factor_reuse_.begin(factorised_step_ == step && system_.tangent_holds()) || always_fresh;
+  for (; progress.iteration < settings_.max_iterations; ++progress.iteration) {
+    if (const Reason failure = evaluate(factorise); failure != Reason::None) return failure;
+    if (progress.since_revision > 0 && system_.revise_friction()) {
+      progress.since_revision = 0;
+      factorise = true;
+      if (const Reason failure = evaluate(true); failure != Reason::None) return failure;
+    }
+    ++result.iterations;
+    if (factorise) {
+      enter(StepPhase::Factorise);
+      ++result.factorisations;
+      if (!factors_.make()) return Reason::SingularTangent;
+      factorised_step_ = step;
+    }
+    progress.with_kept = !factorise;
+    if (const Reason failure = find_update(updates, progress); failure != Reason::None) return failure;
+    if (diverges(progress)) return Reason::NoConvergence;
+    const bool compares = progress.since_revision > 0 && progress.norm > kStagnation;
+    factorise =
+        factor_reuse_.renew(progress.iteration, progress.with_kept, compares, progress.contraction) || always_fresh;
+    if (is_led_astray(progress)) return Reason::NoConvergence;
+    if (stalls(progress)) update_ *= 0.5;
+    system_.update(update_);
+    ++progress.since_revision;
+    if (!has_converged(progress, factors)) continue;
+    if (const Reason failure = evaluate(false); failure != Reason::None) return failure;
+    if (!system_.revise_friction()) return Reason::None;
+    progress.since_revision = 0;
+    factorise = true;
+  }
+  return Reason::NoConvergence;
+}
+
+StepResult::Reason NewtonIteration::find_update(Updates updates, Progress& progress) {
+  enter(StepPhase::Solve);
+  update_ = -system_.residual();
+  const bool is_solved = progress.with_kept ? factors_.solve(update_) : factors_.solve(update_);
+  if (!is_solved) return Reason::SingularTangent;
+  enter(StepPhase::Update);
+  const double rotation = system_.scales().largest_rotation(update_);
+  if (updates == Updates::Limited && rotation > kLargestRotationUpdate) update_ *= kLargestRotationUpdate / rotation;
+  progress.norm = system_.scales().norm(update_, system_.configuration().step());
+  if (!std::isfinite(progress.norm)) return Reason::NotFinite;
+  progress.contraction =
+      progress.since_revision == 0 ? 1.0 : progress.norm / std::max(norms_.back(), std::numeric_limits<double>::min());
+  norms_.push_back(progress.norm);
+  return Reason::None;
+}
+
+bool NewtonIteration::diverges(const Progress& progress) const {
+  return progress.norm > kDivergence * std::max(norms_.front(), kSmallestFirstUpdate);
+}
+
+/// Kept factors that make updates grow so lead astray; full Newton begins anew.
+bool NewtonIteration::is_led_astray(const Progress& progress) const {
+  return progress.with_kept && progress.since_revision > 0 && progress.contraction > kAstray;
+}
+
+/// A steep law (friction near sticking, the touch of a stop) makes full updates jump to and fro; statics has none.
+bool NewtonIteration::stalls(const Progress& progress) const {
+  return system_.configuration().step() != 0 && progress.since_revision >= kPatience && progress.contraction > kStalled;
+}
+
+/// By the rate of the last two updates: new factors square the error, kept ones contract it.
+double NewtonIteration::remainder_after(const Progress& progress) const {
+  const double rate = std::min(progress.contraction, 1.0);
+  // Symmetric middle functions are not in the tangent: they leave linear convergence with new factors, too.
+  const bool squares = !progress.with_kept && system_.configuration().scheme().mid_functions == MidFunctions::Explicit;
+  return progress.norm * (squares ? rate * rate : rate);
+}
+
+/// Where factors may be kept, convergence is to round-off, also when a solve has begun anew without them.
+bool NewtonIteration::has_converged(const Progress& progress, Factors factors) const {
+  const bool may_have_begun_anew = settings_.reuse_factorisation && system_.configuration().step() != 0 &&
+                                   progress.iteration + 1 < settings_.max_iterations;
+  if (factors == Factors::Fresh && !may_have_begun_anew) return progress.norm <= settings_.tolerance;
+  const bool stagnates = !progress.with_kept && progress.norm <= kStagnation && progress.contraction > kStalled &&
+                         progress.since_revision > 1;
+  return stagnates || remainder_after(progress) <= std::max(settings_.tolerance * settings_.tolerance, kRoundOff);
+}
+
+}  // namespace flexarm

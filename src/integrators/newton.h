@@ -1,0 +1,71 @@
+#pragma once
+/// Newton's method for the equations of a step.
+
+#include <vector>
+
+#include "flexarm/model/results.h"
+#include "integrators/corotated_factors.h"
+#include "integrators/factor_reuse.h"
+#include "integrators/step_observer.h"
+#include "integrators/step_settings.h"
+#include "integrators/step_system.h"
+
+namespace flexarm {
+
+/// Solves a StepSystem from its present trial configuration, with new factors or those of an earlier solve.
+class NewtonIteration {
+ public:
+  enum class Updates {
+    Full,
+    Limited  ///< large rotations are scaled down
+  };
+  /// Where a solve may start with the factors of an earlier one.
+  enum class Factors { Fresh, MayBeKept };
+
+  /// Both must outlive the iteration.
+  NewtonIteration(StepSystem& system, const StepSettings& settings);
+
+  /// Leaves the system evaluated at the solution. Counts iterations and factorisations in `result`, and says there why
+  /// it failed.
+  bool solve(Updates updates, Factors factors, StepResult& result);
+  /// Factors of another step are worth nothing any more.
+  void forget_factors();
+  /// Update norms of the last solve.
+  const std::vector<double>& update_norms() const { return norms_; }
+  /// Null: nobody.
+  void observe(StepObserver* observer) { observer_ = observer; }
+
+ private:
+  using Reason = StepResult::Reason;
+  /// What an update tells of how the iteration goes.
+  struct Progress {
+    int iteration = 0;       // of the solve
+    int since_revision = 0;  // updates of the same equations before this one
+    bool with_kept = false;  // factors
+    double norm = 0;         // of the update
+    double contraction = 1;  // its ratio to the one before; 1 where there is none
+  };
+
+  Reason iterate(Updates updates, Factors factors, StepResult& result);
+  Reason evaluate(bool with_tangent);
+  Reason find_update(Updates updates, Progress& progress);
+  bool diverges(const Progress& progress) const;
+  bool is_led_astray(const Progress& progress) const;
+  bool stalls(const Progress& progress) const;
+  bool has_converged(const Progress& progress, Factors factors) const;
+  double remainder_after(const Progress& progress) const;
+  void enter(StepPhase phase) {
+    if (observer_) observer_->enter(phase);
+  }
+
+  StepSystem& system_;
+  const StepSettings& settings_;
+  CorotatedFactors factors_;
+  FactorReuse factor_reuse_;
+  double factorised_step_ = 0;  // for which the factors hold; 0: none
+  Eigen::VectorXd update_;
+  std::vector<double> norms_;
+  StepObserver* observer_ = nullptr;
+};
+
+}  // namespace flexarm

@@ -1,0 +1,28 @@
+#pragma once
+/// Weights, loads and dampers at the nodes of a model over a step.
+
+#include "integrators/hht_interpolation.h"
+#include "integrators/histories.h"
+
+namespace flexarm {
+
+class NodalForces {
+ public:
+  /// `interpolation`: null unless forces are interpolated in time.
+  NodalForces(const StepConfiguration& configuration, const StepHistories& histories, HhtInterpolation* interpolation)
+      : configuration_(configuration), histories_(histories), interpolation_(interpolation) {}
+
+  void evaluate(Balance& balance) const;
+  /// Adds the work of loads over the step to `work` [J]; that of weights is in the potential energy.
+  void add_work(double& work) const;
+
+ private:
+  void add(int node, const Vector6& force, Eigen::Matrix<double, 6, 3> rotational, bool of_configuration,
+           bool with_tangent, Balance& balance) const;
+
+  const StepConfiguration& configuration_;
+  const StepHistories& histories_;
+  HhtInterpolation* interpolation_;
+};
+
+}  // namespace flexarm

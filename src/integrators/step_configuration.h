@@ -1,0 +1,97 @@
+#pragma once
+/// Both ends of a step: the configuration at its beginning, and the trial one at its end.
+
+#include <vector>
+
+#include "integrators/step_motion.h"
+#include "joints/joint_forces.h"
+#include "joints/joint_map.h"
+#include "joints/slide_map.h"
+#include "model/degrees_of_freedom.h"
+#include "schemes/scheme.h"
+#include "solver/tangent_backend.h"
+
+namespace flexarm {
+
+/// How the iteration of a step starts.
+enum class Guess {
+  Extrapolated,  ///< from the last increments, see IncrementHistory; continuing the velocities in the first step
+  Repeated,      ///< the last increments again
+  Unchanged      ///< the configuration at the beginning
+};
+
+/// Poses of all nodes and released coordinates at both ends of a step, and what follows from them alone. The trial end
+/// is moved by guesses and by Newton's updates of the group's unknowns; slaves follow their joints.
+class StepConfiguration {
+ public:
+  StepConfiguration(const Model& model, const Scheme& scheme, const DegreesOfFreedom& dof);
+  StepConfiguration(const StepConfiguration&) = delete;  // parts of the step refer to it
+
+  /// Both ends are the configuration of `state`, which must outlive the step. `step` [s]; 0: statics.
+  void begin(const State& state, double step);
+  /// Moves the trial end by the extrapolation of that order, see IncrementHistory.
+  void extrapolate(int order);
+  /// Prescribed coordinates take their values at `time` [s].
+  void set_prescribed(double time);
+  /// A Newton update, one entry per unknown: released coordinates and nodes that are no slaves.
+  void update(const Eigen::VectorXd& increment);
+  /// To be called when all else stands: following coordinates, slaves, increments.
+  void set_slaves();
+  /// inverse_tangents of all nodes.
+  void set_inverse_tangents();
+  /// Writes the increments of the step as the newest of the history.
+  void remember_increments(IncrementHistory& history) const;
+
+  const Model& model() const { return model_; }
+  const Scheme& scheme() const { return scheme_; }
+  const DegreesOfFreedom& degrees_of_freedom() const { return dof_; }
+  const State& state() const { return *state_; }  ///< at the beginning
+  double step() const { return step_; }           ///< [s]; 0: statics
+  const std::vector<NodePose>& begin() const { return begin_; }
+  const std::vector<NodePose>& end() const { return end_; }
+  const std::vector<Released>& released() const { return released_; }
+  Released& released(int joint) { return released_[joint]; }
+  /// Per node: tangent-scaled rotation increments, and the inverse of their tangent.
+  const std::vector<Vector3>& increments() const { return increments_; }
+  const std::vector<Matrix3>& inverse_tangents() const { return inverse_tangents_; }
+  StepMotion motion() const { return {*state_, begin_, end_, increments_, step_}; }
+  /// True where a slider has left its line, or goes over more elements than a step may.
+  bool is_off_line() const { return is_off_line_; }
+
+  // ---- joints over the step
+  bool has_incremental_joints() const { return scheme_.is_incremental(); }
+  /// Increment of the released coordinates of a joint, and of one of them.
+  ReleasedVector increment_of(int joint) const;
+  double increment_of(const Coordinate& coordinate) const;
+  /// Maps of a joint for residual `g` on its slave.
+  void joint_maps(int joint, const Vector6& g, FoldMaps& maps, bool with_tangent) const;
+  void slide_maps(int joint, const Vector6& g, SlideMaps& maps, bool with_tangent) const;
+  MimicMap mimic_map(int coordinate) const;
+  /// What passive efforts on a coordinate feel of the step.
+  CoordinateStep coordinate_step(std::size_t coordinate, double increment) const;
+  /// Released rates of a joint at the beginning; where `keeps_begin_rates`.
+  const ReleasedVector& begin_rates(int joint) const { return begin_rates_[joint]; }
+  /// Asks for begin_rates(), which the Newmark family has in any case.
+  void keep_begin_rates() { keeps_begin_rates_ = !scheme_.is_static; }
+
+ private:
+  void set_begin_rates();
+  SlideTravel slide_travel(int joint) const;
+  bool is_on_line(const JointMap& joint, int j) const;
+
+  const Model& model_;
+  Scheme scheme_;
+  const DegreesOfFreedom& dof_;
+  const State* state_ = nullptr;
+  double step_ = 0;
+  std::vector<NodePose> begin_, end_;
+  std::vector<Released> released_;
+  std::vector<Vector3> increments_;
+  std::vector<Matrix3> inverse_tangents_;
+  bool is_off_line_ = false;
+  bool keeps_begin_rates_ = false;
+  std::vector<Vector6> begin_velocities_;  // per node, spatial
+  std::vector<ReleasedVector> begin_rates_;
+};
+
+}  // namespace flexarm

@@ -1,0 +1,15 @@
+#pragma once
+/// Somebody who watches what a step spends its time on.
+
+namespace flexarm {
+
+enum class StepPhase { Begin, Residual, Tangent, Factorise, Solve, Update, Accept, Control };
+
+class StepObserver {
+ public:
+  virtual ~StepObserver() = default;
+  /// A phase begins; the one before has ended.
+  virtual void enter(StepPhase phase) = 0;
+};
+
+}  // namespace flexarm
