@@ -32,7 +32,7 @@ enum class RotationRule {
 
 /// Which generalised shape functions test the moment rows of the EM family; they stay the same during the iteration ...
 enum class MidFunctions {
-  Explicit,  ///< ... those of the middle that the velocities at the begin foresee
+  Explicit,  ///< ... those of the middle that the velocities at the beginning foresee
   Symmetric  ///< or not: the average of both ends, which makes the step symmetric in time
 };
 

@@ -24,9 +24,9 @@ struct Mechanism {
   std::vector<int> slave_joint;   ///< per node: joint of which it is the slave, or -1
   std::vector<JointChain> tree_joints, loop_joints;  ///< root to leaf
 
-  /// Of a node, or the world (-1).
+  /// Of a node, or of the world (-1) [m].
   Pose pose_of(int node) const;
-  /// As it starts [m].
+  /// Size of the mechanism as it starts; 1 where that is nothing [m].
   double extent() const;
 
   int add_node(const Pose& pose, int parent);

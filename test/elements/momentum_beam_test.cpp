@@ -156,7 +156,7 @@ TYPED_TEST(MomentumBeam, EnergyBalanceIsExact) {
       expect_energy_balance<TypeParam::value>(name, 0.3, 0.2, random, interpolation);
 }
 
-// Resultant force and moment are the rates of the momenta, with the arms of the middle, or of the begin (M2).
+// Resultant force and moment are the rates of the momenta, with the arms of the middle, or of the beginning (M2).
 TYPED_TEST(MomentumBeam, MomentaBalance) {
   constexpr int N = TypeParam::value;
   RandomSource random(5);
