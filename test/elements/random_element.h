@@ -146,6 +146,17 @@ struct RandomStep {
     }
   }
 
+  /// The same step as an observer in a turned frame sees it.
+  void turn(const Quaternion& rotation) {
+    for (int i = 0; i < Nodes; ++i) {
+      nodes.begin[i] = rotation * nodes.begin[i];
+      nodes.end[i] = rotation * nodes.end[i];
+      nodes.velocity[i] = rotation * nodes.velocity[i];
+      begin_orientation[i] = rotation * begin_orientation[i];
+      set_orientation(i, rotation * nodes.orientation[i]);
+    }
+    set_begin_points();
+  }
   void set_orientation(int i, const Quaternion& orientation) { set_orientation(i, orientation, nodes); }
   void set_orientation(int i, const Quaternion& orientation, ElementNodes<Nodes>& of) const {
     of.orientation[i] = orientation.normalized();
