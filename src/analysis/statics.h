@@ -1,10 +1,11 @@
 #pragma once
 /// Equilibria under gravity and loads.
 
-#include "integrators/scheme.h"
-#include "integrators/step_result.h"
+#include "flexarm/model/results.h"
+#include "integrators/step_settings.h"
 #include "model/model.h"
 #include "model/state.h"
+#include "schemes/scheme.h"
 
 namespace flexarm {
 

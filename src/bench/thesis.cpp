@@ -7,7 +7,8 @@
 #include <fmt/format.h>
 
 #include "flexarm/scene/urdf_reader.h"
-#include "scene/integrator_options.h"
+#include "flexarm/schemes/integrator_description.h"
+#include "simulation/inside.h"
 
 namespace flexarm::bench {
 namespace {
@@ -20,7 +21,7 @@ scene::SceneDescription scene_of(const std::string& folder, const ThesisRun& run
   if (!read.scene)
     throw std::runtime_error(read.diagnostics.empty() ? "cannot read '" + path + "'" : read.diagnostics[0].text());
   scene::SceneDescription scene = *read.scene;
-  scene.integrator = scene::with_scheme(scene.integrator, run.scheme);
+  scene.integrator = with_scheme(scene.integrator, run.scheme);
   scene.integrator.step = run.step;
   for (scene::LinkDescription& link : scene.links) {
     if (!link.beam) continue;
@@ -114,7 +115,7 @@ ThesisOutcome run_thesis(const std::string& scene_folder, const ThesisExample& e
     sub_steps += 1 + result.halvings;
     const double now = example.travel(simulation), moved = now - travel;
     const auto time_at = [&](double place) { return before + (simulation.time() - before) * (place - travel) / moved; };
-    for (int k = borders_between(simulation.model(), travel, now); k > 0; --k)
+    for (int k = borders_between(model_of(simulation), travel, now); k > 0; --k)
       out.crossings.push_back(simulation.time());
     const bool arrives = example.ends_at_zero && travel > 0 && now <= 0;
     if (arrives) out.arrival = time_at(0);

@@ -15,10 +15,6 @@
 
 namespace flexarm {
 
-/// Generalised shape functions at the stiffness points of an element.
-template <int Nodes, typename S = double>
-using ElementFunctions = std::array<GeneralisedShapeFunctions<Nodes, S>, Nodes - 1>;
-
 /// Their values for given nodal rotations.
 template <int Nodes, typename S>
 void element_functions(const ConservingElement<Nodes, S>& element, const std::array<QuaternionT<S>, Nodes>& orientation,

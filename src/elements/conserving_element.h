@@ -80,6 +80,10 @@ struct BeamNodes {
   std::array<Vector3T<S>, Nodes> velocity;        ///< at the beginning [m/s]
 };
 
+/// Generalised shape functions at the stiffness points of an element.
+template <int Nodes, typename S = double>
+using ElementFunctions = std::array<GeneralisedShapeFunctions<Nodes, S>, Nodes - 1>;
+
 /// Block (i, j): derivative of node i's {f, phi} with respect to node j's {dr, spin}.
 template <int Nodes, typename S>
 using BlockTangent = std::array<std::array<Matrix6T<S>, Nodes>, Nodes>;

@@ -130,7 +130,7 @@ void ConservingBeams::set_begin_points() {
           position[i] = gathered_vector([&](int lane) -> const Vector3& { return pose(lane).position; });
           orientation[i] = gathered_quaternion([&](int lane) -> const Quaternion& { return pose(lane).orientation; });
         }
-        element_points<N, Pack>(pack.element, position, orientation, pack.points[begin_].data());
+        packs::element_points<N>(pack.element, position, orientation, pack.points[begin_].data());
       }
     });
   });
@@ -155,7 +155,7 @@ void ConservingBeams::set_mid_functions() {
               gathered_quaternion([&](int lane) -> const Quaternion& { return step.begin[node(lane)].orientation; }) *
               so3::exp_quaternion(Vector3T<Pack>(turned * spin));
         }
-        element_functions<N, Pack>(pack.element, orientation, pack.mid_functions);
+        packs::element_functions<N>(pack.element, orientation, pack.mid_functions);
       }
     });
   });
@@ -172,10 +172,10 @@ void ConservingBeams::add_forces(Balance& balance) {
       BlockSystem<N, Pack> system;
       for (auto& pack : packs) {
         if (has_memory_) gather<N>(pack, step.state.strain_memory, memory);
-        conserving_beam<N, Pack>(pack.element, gather<N>(pack, step), rule_, pack.mid_functions,
-                                 pack.points[begin_].data(), has_memory_ ? memory.data() : nullptr, step.step,
-                                 balance.tangent != nullptr, pack.points[1 - begin_].data(),
-                                 has_memory_ ? new_memory.data() : nullptr, system);
+        packs::conserving_beam<N>(pack.element, gather<N>(pack, step), rule_, pack.mid_functions,
+                                  pack.points[begin_].data(), has_memory_ ? memory.data() : nullptr, step.step,
+                                  balance.tangent != nullptr, pack.points[1 - begin_].data(),
+                                  has_memory_ ? new_memory.data() : nullptr, system);
         if (has_memory_) scatter<N>(pack, new_memory, end_memory_);
         scatter<N>(pack, system, balance);
         for (int lane = 0; lane < pack.lanes; ++lane) dissipated += system.dissipated[lane];

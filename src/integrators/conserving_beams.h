@@ -5,7 +5,7 @@
 #include <tuple>
 #include <vector>
 
-#include "elements/conserving_beam.h"
+#include "elements/conserving_pack.h"
 #include "integrators/beam_family.h"
 
 namespace flexarm {

@@ -1,10 +1,10 @@
 #include "strain_legend.h"
 
+#include <cmath>
 #include <cstdio>
 #include <string>
 
 #include "conversions.h"
-#include "math/pi.h"
 #include "tube.h"
 
 namespace flexarm::node {
@@ -30,7 +30,7 @@ std::string percentage(double strain) {
 void add_strain_legend(const std_msgs::Header& header, const SceneExtent& extent, double largest,
                        visualization_msgs::MarkerArray& message) {
   const Vector3 center = extent.center - kDistance * extent.radius * Vector3::UnitX();
-  const Quaternion upright(Eigen::AngleAxisd(-kPi / 2, Vector3::UnitY()));
+  const Quaternion upright(Eigen::AngleAxisd(-M_PI / 2, Vector3::UnitY()));
   const auto height = [&](double value) { return (2 * value - 1) * kHalfHeight * extent.radius * Vector3::UnitZ(); };
 
   visualization_msgs::Marker bar = make_marker(header, kName, visualization_msgs::Marker::TRIANGLE_LIST);

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "conversions.h"
-#include "math/pi.h"
 
 namespace flexarm::node {
 namespace {
@@ -45,7 +44,7 @@ visualization_msgs::Marker make_marker(const std_msgs::Header& header, const std
 void Tube::add_section(const Pose& pose, const std_msgs::ColorRGBA& color) {
   Section section{pose, {}, color};
   for (int side = 0; side < kSides; ++side) {
-    const double angle = 2 * kPi * side / kSides;
+    const double angle = 2 * M_PI * side / kSides;
     const Vector3 normal = pose.orientation * Vector3(0, std::cos(angle), std::sin(angle));
     section.corners[side] = {to_point(pose.position + radius_ * normal), lit(color, normal)};
   }

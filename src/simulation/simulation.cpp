@@ -3,11 +3,20 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <stdexcept>
 
+#include <fmt/format.h>
+
+#include "analysis/modes.h"
 #include "analysis/statics.h"
+#include "building/model_builder.h"
+#include "integrators/balance.h"
+#include "integrators/stepper.h"
 #include "math/so3.h"
 #include "model/line_release.h"
-#include "scene/integrator_options.h"
+#include "schemes/slide_scheme.h"
+#include "simulation/inside.h"
+#include "simulation/observables.h"
 #include "simulation/output_velocities.h"
 #include "simulation/state_flaw.h"
 
@@ -31,11 +40,23 @@ StepSettings settings_of(const scene::SceneDescription& scene, const SimulationO
   return settings;
 }
 
-/// The scene with the scheme and the step in use; the stops' penalty must resolve the latter.
+/// The scene with the scheme and the step in use.
 scene::SceneDescription with_options(scene::SceneDescription scene, const SimulationOptions& options) {
-  if (options.scheme) scene.integrator = scene::with_scheme(scene.integrator, *options.scheme);
+  if (options.scheme) scene.integrator = with_scheme(scene.integrator, *options.scheme);
   scene.integrator.step = settings_of(scene, options).step;
   return scene;
+}
+
+/// @throws ModelError naming the first slide that does not go with the scheme.
+void require_suitable_slides(const scene::SceneDescription& scene, const Scheme& scheme) {
+  for (const auto* joints : {&scene.joints, &scene.loop_joints})
+    for (const scene::JointDescription& joint : *joints) {
+      if (!joint.slide) continue;
+      const std::string conflict = slide_scheme_conflict(*find_slide_scheme(joint.slide->scheme), scheme);
+      const scene::SourceLocation& place = joint.slide->location;
+      if (!conflict.empty())
+        throw ModelError(fmt::format("{}:{}: <slide> of joint '{}': {}", place.file, place.line, joint.name, conflict));
+    }
 }
 
 }  // namespace
@@ -60,6 +81,7 @@ struct Simulation::Implementation {
         model(build_model(scene)),
         stepper(std::make_unique<Stepper>(model, scheme, settings)),
         initial(initial_state(model)) {
+    require_suitable_slides(scene, scheme);
     for (const Coordinate& coordinate : model.coordinates) {
       coordinate_indices.emplace(coordinate.name, coordinate_names.size());
       coordinate_names.push_back(coordinate.name);
@@ -99,6 +121,19 @@ struct Simulation::Implementation {
     if (!built) built = std::make_unique<const Model>(model);
     set_model(std::move(changed));
   }
+
+  void set_state(const State& other) {
+    fit_to_state(other);
+    state = other;
+    velocities_hold = false;
+    stepper->invalidate();
+  }
+
+  void restore(const State& other) {
+    const std::string flaw = state_flaw(built ? *built : model, initial, settings.max_halvings, other);
+    if (!flaw.empty()) throw std::invalid_argument("not a state of this scene: " + flaw);
+    set_state(other);
+  }
 };
 
 Simulation::Simulation(scene::SceneDescription scene, const SimulationOptions& options)
@@ -110,12 +145,6 @@ Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 const scene::SceneDescription& Simulation::scene() const {
   return implementation_->scene;
 }
-const Model& Simulation::model() const {
-  return implementation_->model;
-}
-const State& Simulation::state() const {
-  return implementation_->state;
-}
 
 StepResult Simulation::step() {
   const StepResult result = implementation_->stepper->advance(implementation_->state);
@@ -125,20 +154,15 @@ StepResult Simulation::step() {
 }
 
 void Simulation::reset() {
-  implementation_->fit_to_state(implementation_->initial);
-  implementation_->state = implementation_->initial;
-  implementation_->velocities_hold = false;
-  implementation_->stepper->invalidate();
+  implementation_->set_state(implementation_->initial);
 }
 
-void Simulation::restore(const State& state) {
-  const std::string flaw = state_flaw(implementation_->built ? *implementation_->built : implementation_->model,
-                                      implementation_->initial, implementation_->settings.max_halvings, state);
-  if (!flaw.empty()) throw std::invalid_argument("not a state of this scene: " + flaw);
-  implementation_->fit_to_state(state);
-  implementation_->state = state;
-  implementation_->velocities_hold = false;
-  implementation_->stepper->invalidate();
+Snapshot Simulation::snapshot() const {
+  return Snapshot(std::make_shared<const State>(implementation_->state));
+}
+
+void Simulation::restore(const Snapshot& snapshot) {
+  implementation_->restore(*snapshot.state_);
 }
 
 double Simulation::time() const {
@@ -251,7 +275,8 @@ StepResult Simulation::solve_static(int load_steps) {
 
 std::vector<Mode> Simulation::natural_modes(int count) const {
   if (count < 1) throw std::invalid_argument("the number of modes must be >= 1");
-  return flexarm::natural_modes(implementation_->model, implementation_->state, count);
+  return flexarm::natural_modes(implementation_->model, implementation_->state, count,
+                                implementation_->scheme.contact_time);
 }
 
 std::size_t Simulation::node_count() const {
@@ -260,8 +285,24 @@ std::size_t Simulation::node_count() const {
 std::size_t Simulation::degrees_of_freedom() const {
   return implementation_->stepper->degrees_of_freedom().unknowns;
 }
-const std::vector<double>& Simulation::update_norms() const {
-  return implementation_->stepper->update_norms();
+
+// ---------------------------------------------------------------- the inside
+
+struct Inside {
+  static Simulation::Implementation& of(const Simulation& simulation) { return *simulation.implementation_; }
+};
+
+const Model& model_of(const Simulation& simulation) {
+  return Inside::of(simulation).model;
+}
+const State& state_of(const Simulation& simulation) {
+  return Inside::of(simulation).state;
+}
+const std::vector<double>& update_norms_of(const Simulation& simulation) {
+  return Inside::of(simulation).stepper->update_norms();
+}
+void restore(Simulation& simulation, const State& state) {
+  Inside::of(simulation).restore(state);
 }
 
 }  // namespace flexarm

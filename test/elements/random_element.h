@@ -3,13 +3,13 @@
 
 #include <random>
 
+#include "building/beam_mesh.h"
 #include "elements/beam_point.h"
-#include "elements/time_rule.h"
 #include "math/cayley.h"
 #include "math/pi.h"
 #include "math/so3.h"
-#include "model/beam_mesh.h"
 #include "model/state.h"
+#include "schemes/time_rule.h"
 
 namespace flexarm::test {
 

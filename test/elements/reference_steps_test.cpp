@@ -6,13 +6,13 @@
 
 #include <gtest/gtest.h>
 
+#include "building/beam_mesh.h"
 #include "elements/average_rotary.h"
 #include "elements/conserving_kernel.h"
 #include "elements/differences.h"
 #include "elements/endpoint_beam.h"
 #include "elements/nodal_inertia.h"
-#include "integrators/scheme.h"
-#include "model/beam_mesh.h"
+#include "schemes/scheme.h"
 #include "support/source_path.h"
 
 namespace flexarm {

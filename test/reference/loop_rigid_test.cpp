@@ -5,6 +5,7 @@
 #include "math/pi.h"
 #include "reference/dynamics_runs.h"
 #include "reference/ode.h"
+#include "simulation/inside.h"
 #include "support/closed_ring.h"
 
 namespace flexarm::test {
@@ -76,8 +77,8 @@ TEST(RigidLoop, ParallelogramIsAPendulum) {
 double opening(const Simulation& s) {
   double largest = 0;
   std::vector<NodePose> poses;
-  for (const NodeState& node : s.state().nodes) poses.push_back(node_pose(node));
-  for (const LoopClosure& closure : s.model().closures)
+  for (const NodeState& node : state_of(s).nodes) poses.push_back(node_pose(node));
+  for (const LoopClosure& closure : model_of(s).closures)
     for (const auto* list : {&closure.constraints, &closure.implied})
       for (const ClosureConstraint& constraint : *list)
         largest = std::max(

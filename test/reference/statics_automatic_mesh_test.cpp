@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "building/beam_mesh.h"
 #include "math/pi.h"
-#include "model/beam_mesh.h"
 #include "reference_cantilever.h"
 #include "reference_shooting.h"
 

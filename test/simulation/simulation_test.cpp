@@ -3,9 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include "flexarm/schemes/integrator_description.h"
 #include "math/pi.h"
-#include "scene/integrator_options.h"
 #include "simulation/everything_scene.h"
+#include "simulation/inside.h"
 
 namespace flexarm::test {
 namespace {
@@ -77,7 +78,7 @@ TEST_F(SmallArm, StartsWhereTheSceneSays) {
 // The mean of the velocities at both ends of a step is off the secant by no more than the secants of the last steps
 // differ, which is little beside the velocity itself.
 TEST_F(SmallArm, ProbeVelocityIsTheRateOfItsPosition) {
-  for (const std::string_view name : scene::scheme_names()) {
+  for (const std::string_view name : scheme_names()) {
     SimulationOptions options;
     options.scheme = std::string(name);
     options.step = 1e-4;
@@ -202,7 +203,7 @@ TEST(Simulation, TimeCountsWholeSteps) {
   Simulation s(everything_scene().scene);
   for (int n = 0; n < 100; ++n) ASSERT_TRUE(s.step().converged);
   EXPECT_NEAR(s.time(), 0.2, 1e-14);
-  EXPECT_EQ(s.state().steps, 100);
+  EXPECT_EQ(state_of(s).steps, 100);
 }
 
 TEST(Simulation, MomentaAreThoseOfTheMotion) {

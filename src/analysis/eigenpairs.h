@@ -1,0 +1,28 @@
+#pragma once
+/// The eigenvalues of small motions that lie next to zero.
+
+#include <complex>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "analysis/linearised_motion.h"
+
+namespace flexarm {
+
+struct Eigenpair {
+  std::complex<double> value;
+  Eigen::VectorXcd vector;
+};
+
+/// The `count` pairs of K phi = mu M phi with mu nearest to -`shift`, nearest first; shift > 0.
+/// @throws std::runtime_error if the shifted matrix is singular or the iteration does not converge.
+std::vector<Eigenpair> undamped_pairs(const LinearisedMotion& motion, double shift, int count);
+
+/// The `count` pairs of (lambda^2 M + lambda D + K) phi = 0 with lambda nearest to `shift` [1/s], nearest first; shift
+/// > 0. Stiffness-proportional damping eta makes eigenvalues crowd at -1/eta; of a large model's, those that cannot be
+/// told apart are left out.
+/// @throws std::runtime_error as above.
+std::vector<Eigenpair> damped_pairs(const LinearisedMotion& motion, double shift, int count);
+
+}  // namespace flexarm

@@ -1,0 +1,73 @@
+#pragma once
+/// Small motions of a mechanism about a configuration at rest: M x'' + D x' + K x = 0 in its unknowns.
+
+#include <limits>
+#include <vector>
+
+#include <Eigen/SparseCore>
+
+#include "analysis/modes.h"
+#include "integrators/step_system.h"
+#include "solver/sparse_tangent.h"
+
+namespace flexarm {
+
+/// Maps of all joints at a configuration, for zero residual.
+struct JointMaps {
+  std::vector<FoldMaps> folds;    ///< per joint
+  std::vector<SlideMaps> slides;  ///< per joint; used for those that slide
+  std::vector<MimicMap> mimics;
+};
+
+class LinearisedMotion {
+ public:
+  /// Relative round-off of a term of the stiffness, which has some sixty operations behind it: interpolation,
+  /// rotations, section, folding, factorisation.
+  static constexpr double kRoundOff = 64 * std::numeric_limits<double>::epsilon();
+  using Matrix = Eigen::Map<const Eigen::SparseMatrix<double>>;
+
+  /// About the configuration of `state`, under the loads at time 0. Both must outlive this. `contact_time`: of stops
+  /// (Scheme::contact_time) [s].
+  /// @throws std::runtime_error if the stiffness is not finite.
+  LinearisedMotion(const Model& model, const State& state, double contact_time);
+
+  int unknowns() const { return stiffness_.unknowns(); }
+  /// Motions that no multiplier of a loop holds.
+  int freedoms() const;
+  /// All three have the same pattern.
+  const SparseTangent& pattern() const { return stiffness_; }
+  Matrix stiffness() const { return matrix(stiffness_); }
+  /// What multiplies velocities. About a configuration at rest there are no gyroscopic terms in it.
+  Matrix damping() const { return matrix(damping_); }
+  Matrix mass() const { return matrix(mass_); }
+  bool is_damped() const;
+  /// Some load has no potential (it follows, or is a moment in space), so that a motion about the equilibrium may gain
+  /// energy.
+  bool is_circulatory() const;
+
+  /// The motion of all nodes and coordinates that an eigenvector means; frequency and rate are left alone.
+  Mode expand(const Eigen::VectorXcd& vector) const;
+  /// What round-off may make of phi* K phi [J]: kRoundOff times the sum of its terms, in absolute value.
+  double round_off(const std::vector<ComplexVector6>& node_motion) const;
+
+ private:
+  static Matrix matrix(const SparseTangent& assembler);
+  void find_multipliers();
+  void set_joint_maps();
+  void assemble_mass();
+  void assemble_damping();
+  void fold(SparseTangent& assembler) const;
+  std::vector<double> scalars(const Eigen::VectorXd& vector) const;
+  std::vector<Vector6> node_motion(const std::vector<double>& scalars) const;
+
+  const Model& model_;
+  const State& state_;
+  const double contact_time_;
+  StepSystem system_;
+  const DegreesOfFreedom& dof_;
+  const SparseTangent& stiffness_;
+  SparseTangent damping_, mass_;
+  JointMaps maps_;
+};
+
+}  // namespace flexarm

@@ -1,0 +1,133 @@
+#include "analysis/modes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <tuple>
+
+#include "analysis/eigenpairs.h"
+#include "analysis/linearised_motion.h"
+#include "math/pi.h"
+
+namespace flexarm {
+namespace {
+
+using Complex = std::complex<double>;
+
+/// Modes computed beyond those asked for.
+constexpr int kExtraModes = 12;
+
+/// x* A x; its real part is an energy.
+double energy(const LinearisedMotion::Matrix& matrix, const Eigen::VectorXcd& x) {
+  const Eigen::VectorXd real = x.real(), imaginary = x.imag();
+  return real.dot(matrix * real) + imaginary.dot(matrix * imaginary);
+}
+
+/// Sum of the magnitudes of the diagonal.
+double trace(const LinearisedMotion::Matrix& matrix) {
+  return Eigen::SparseMatrix<double>(matrix).diagonal().cwiseAbs().sum();
+}
+
+/// An eigenvector with what its energies say of its eigenvalue's accuracy.
+struct Motion {
+  Mode mode;
+  double mass, damping;  ///< x* M x and x* D x
+  double round_off;      ///< of x* K x, and of the solver, to which eigenvalues mu = 0 are 1/shift
+
+  Motion(const LinearisedMotion& system, double shift, Eigen::VectorXcd vector) : mode(system.expand(vector)) {
+    Complex largest = 0;
+    for (const ComplexVector6& motion : mode.node_motion)
+      for (const Complex& component : motion)
+        if (std::abs(component) > std::abs(largest)) largest = component;
+    if (largest == 0.0) largest = 1;  // all nodes are held by prescribed coordinates
+    for (ComplexVector6& motion : mode.node_motion) motion /= largest;
+    for (Complex& motion : mode.coordinate_motion) motion /= largest;
+    vector /= largest;
+    mass = std::abs(energy(system.mass(), vector));
+    damping = std::abs(energy(system.damping(), vector));
+    round_off = system.round_off(mode.node_motion) + LinearisedMotion::kRoundOff * shift * mass;
+  }
+  Mode with(Complex eigenvalue) && {
+    mode.frequency = std::abs(eigenvalue.imag()) / (2 * kPi);
+    mode.rate = eigenvalue.real();
+    return std::move(mode);
+  }
+};
+
+/// lambda of mu = -lambda^2: of the two the growing one if mu < 0, and of a complex mu the one that belongs to it
+/// alone.
+Complex undamped_eigenvalue(Complex mu) {
+  return mu.imag() == 0 && mu.real() < 0 ? std::sqrt(-mu.real()) : Complex(0, 1) * std::sqrt(mu);
+}
+
+Mode undamped_mode(const LinearisedMotion& system, double shift, const Eigenpair& pair) {
+  Motion motion(system, shift, pair.vector);
+  const double tolerance = motion.round_off / motion.mass;
+  if (std::abs(pair.value) <= tolerance) return std::move(motion).with(0);
+  if (pair.value.imag() != 0 && (!system.is_circulatory() || std::abs(pair.value.imag()) <= tolerance)) {
+    // Two real ones next to each other: K is symmetric but for round-off and what elements make of curved beams. Any
+    // combination of their vectors is one.
+    const Complex phase = pair.value.imag() > 0 ? Complex(1, 0) : Complex(0, 1);
+    const Eigen::VectorXd part = (phase * pair.vector).real();
+    return Motion(system, shift, part.cast<Complex>()).with(undamped_eigenvalue(pair.value.real()));
+  }
+  return std::move(motion).with(undamped_eigenvalue(pair.value));
+}
+
+/// Nothing where the pair is one of those that a free motion has, or the conjugate of another one.
+/// `shift`: of mu.
+std::optional<Mode> damped_mode(const LinearisedMotion& system, double shift, const Eigenpair& pair) {
+  Complex lambda = pair.value;
+  if (lambda.imag() < 0) return std::nullopt;
+  Motion motion(system, shift, pair.vector);
+  const double size = std::abs(lambda);
+  if (std::max(size * size * motion.mass, size * motion.damping) <= motion.round_off) return std::nullopt;
+  // Of the energies, and of 1/(lambda/s - 1), which the solver knows to the round-off of its largest value.
+  const double s = std::sqrt(shift);
+  const double tolerance = motion.round_off / std::abs(2.0 * lambda * motion.mass + motion.damping) +
+                           LinearisedMotion::kRoundOff * std::norm(lambda - s) / s;
+  const bool may_grow = system.is_circulatory() || lambda.imag() == 0;  // Kelvin, Tait and Chetaev
+  if (std::abs(lambda.real()) <= tolerance || (lambda.real() > 0 && !may_grow)) lambda.real(0);
+  return std::move(motion).with(lambda);
+}
+
+bool comes_before(const Mode& a, const Mode& b) {
+  const auto key = [](const Mode& mode) {
+    return std::make_tuple(-std::max(mode.rate, 0.0), std::hypot(2 * kPi * mode.frequency, mode.rate));
+  };
+  return key(a) < key(b);
+}
+
+}  // namespace
+
+std::vector<Mode> natural_modes(const Model& model, const State& state, int count, double contact_time) {
+  const LinearisedMotion system(model, state, contact_time);
+  // More modes than asked for, so that the scale is that of elastic ones where there are free motions.
+  const int computed = std::min(count + kExtraModes, system.freedoms());
+  if (count <= 0 || computed <= 0) return {};
+  // The shift makes free mechanisms solvable. A first pass finds the scale of the wanted eigenvalues, a second one with
+  // a shift far below them loses no digits.
+  double shift = std::max(1e-8 * trace(system.stiffness()) / trace(system.mass()), 1e-12);
+  std::vector<Eigenpair> pairs = undamped_pairs(system, shift, computed);
+  double scale = 0;
+  for (const Eigenpair& pair : pairs) scale = std::max(scale, pair.value.real());
+  if (scale > 0) {
+    shift = 1e-3 * scale;
+    pairs = undamped_pairs(system, shift, computed);
+  }
+  std::vector<Mode> modes;
+  for (const Eigenpair& pair : pairs) modes.push_back(undamped_mode(system, shift, pair));
+  if (system.is_damped()) {
+    // Free motions are those of K alone, damped or not; they stay.
+    modes.erase(std::remove_if(modes.begin(), modes.end(), [](const Mode& mode) { return !mode.is_free(); }),
+                modes.end());
+    const int wanted = std::min(2 * (count + static_cast<int>(modes.size())) + kExtraModes, 2 * system.freedoms());
+    for (const Eigenpair& pair : damped_pairs(system, std::sqrt(shift), wanted))
+      if (std::optional<Mode> mode = damped_mode(system, shift, pair)) modes.push_back(std::move(*mode));
+  }
+  std::sort(modes.begin(), modes.end(), comes_before);
+  modes.resize(std::min<std::size_t>(modes.size(), count));
+  return modes;
+}
+
+}  // namespace flexarm

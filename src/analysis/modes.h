@@ -1,0 +1,25 @@
+#pragma once
+/// Modes of small motion about an equilibrium.
+
+#include <vector>
+
+#include "flexarm/model/results.h"
+#include "model/model.h"
+#include "model/state.h"
+#include "schemes/scheme.h"
+
+namespace flexarm {
+
+/// Modes of (lambda^2 M + lambda D + K) phi = 0 about the configuration of `state`, at rest, under the loads at time 0:
+/// the growing ones first, then by |lambda|; the `count` first. K is the tangent of the static residual, M the
+/// consistent mass, D the damping of beams, joints and touched stops (not friction), in the unknowns of the mechanism.
+/// K is unsymmetric under follower loads, and is taken as it is.
+///
+/// Without damping a motion gives one mode, and of the two that belong to a divergence the growing one; with damping, a
+/// motion that does not oscillate gives two.
+/// `contact_time`: of touched stops [s].
+/// @throws std::runtime_error if the problem cannot be solved.
+std::vector<Mode> natural_modes(const Model& model, const State& state, int count,
+                                double contact_time = Scheme().contact_time);
+
+}  // namespace flexarm

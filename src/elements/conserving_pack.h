@@ -1,0 +1,27 @@
+#pragma once
+/// The kernels of conserving_beam.h on packs, compiled once for each order (conserving_pack_N.cpp) and run with the
+/// widest registers of the processor at hand. `Nodes`: 2 to 5.
+
+#include "elements/beam_point.h"
+#include "elements/conserving_element.h"
+#include "elements/time_rule.h"
+
+namespace flexarm::packs {
+
+template <int Nodes>
+void element_functions(const ConservingElement<Nodes, Pack>& element,
+                       const std::array<QuaternionT<Pack>, Nodes>& orientation,
+                       ElementFunctions<Nodes, Pack>& functions);
+
+template <int Nodes>
+void element_points(const ConservingElement<Nodes, Pack>& element, const std::array<Vector3T<Pack>, Nodes>& position,
+                    const std::array<QuaternionT<Pack>, Nodes>& orientation, PointKinematicsT<Pack>* points);
+
+template <int Nodes>
+void conserving_beam(const ConservingElement<Nodes, Pack>& element, const BeamNodes<Nodes, Pack>& nodes,
+                     const TimeRule& rule, const ElementFunctions<Nodes, Pack>& functions,
+                     const PointKinematicsT<Pack>* begin, const StrainMemoryT<Pack>* memory, double step,
+                     bool with_tangent, PointKinematicsT<Pack>* end, StrainMemoryT<Pack>* end_memory,
+                     BlockSystem<Nodes, Pack>& system);
+
+}  // namespace flexarm::packs

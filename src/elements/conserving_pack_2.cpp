@@ -1,0 +1,9 @@
+#include "elements/conserving_pack_kernels.h"
+
+namespace flexarm::packs {
+
+template decltype(element_functions<2>) element_functions<2>;
+template decltype(element_points<2>) element_points<2>;
+template decltype(conserving_beam<2>) conserving_beam<2>;
+
+}  // namespace flexarm::packs

@@ -1,0 +1,9 @@
+#include "elements/conserving_pack_kernels.h"
+
+namespace flexarm::packs {
+
+template decltype(element_functions<3>) element_functions<3>;
+template decltype(element_points<3>) element_points<3>;
+template decltype(conserving_beam<3>) conserving_beam<3>;
+
+}  // namespace flexarm::packs

@@ -1,0 +1,9 @@
+#include "elements/conserving_pack_kernels.h"
+
+namespace flexarm::packs {
+
+template decltype(element_functions<4>) element_functions<4>;
+template decltype(element_points<4>) element_points<4>;
+template decltype(conserving_beam<4>) conserving_beam<4>;
+
+}  // namespace flexarm::packs

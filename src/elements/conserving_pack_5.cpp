@@ -1,0 +1,9 @@
+#include "elements/conserving_pack_kernels.h"
+
+namespace flexarm::packs {
+
+template decltype(element_functions<5>) element_functions<5>;
+template decltype(element_points<5>) element_points<5>;
+template decltype(conserving_beam<5>) conserving_beam<5>;
+
+}  // namespace flexarm::packs

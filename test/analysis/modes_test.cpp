@@ -1,0 +1,220 @@
+// Natural modes of mechanisms whose frequencies are known in closed form or by counting.
+#include "analysis/modes.h"
+
+#include <gtest/gtest.h>
+
+#include "building/model_builder.h"
+#include "math/pi.h"
+#include "simulation/observables.h"
+#include "support/scene_builder.h"
+
+namespace flexarm {
+namespace {
+
+using namespace test;
+
+TEST(NaturalModes, PendulumAboutItsEquilibrium) {
+  SceneBuilder builder;
+  builder.scene.gravity = Vector3(0, 0, -9.81);
+  builder.body("bob", 2.0, Vector3(0, 0, -0.5), 0.1 * Matrix3::Identity());
+  builder.joint("hinge", scene::JointKind::Continuous, "world", "bob", Vector3::Zero(), Vector3::UnitY());
+  const Model model = build_model(builder.scene);
+  const std::vector<Mode> modes = natural_modes(model, initial_state(model), 1);
+  ASSERT_EQ(modes.size(), 1u);
+  EXPECT_NEAR(modes[0].frequency, std::sqrt(2.0 * 9.81 * 0.5 / (0.1 + 2.0 * 0.25)) / (2 * kPi), 1e-9);
+}
+
+TEST(NaturalModes, InvertedPendulumGrows) {
+  SceneBuilder builder;
+  builder.scene.gravity = Vector3(0, 0, -9.81);
+  builder.body("bob", 2.0, Vector3(0, 0, 0.5), 0.1 * Matrix3::Identity());
+  builder.joint("hinge", scene::JointKind::Continuous, "world", "bob", Vector3::Zero(), Vector3::UnitY());
+  const Model model = build_model(builder.scene);
+  const std::vector<Mode> modes = natural_modes(model, initial_state(model), 1);
+  EXPECT_EQ(modes.size(), 1u);
+  EXPECT_TRUE(modes.at(0).is_divergence());
+  EXPECT_EQ(modes[0].frequency, 0);
+  EXPECT_NEAR(modes[0].rate, std::sqrt(2.0 * 9.81 * 0.5 / (0.1 + 2.0 * 0.25)), 1e-9);
+  EXPECT_LT(modes[0].damping_ratio(), 0);
+}
+
+// What rests in a stop swings on its penalty, which the step in use decides.
+TEST(NaturalModes, OnAStop) {
+  SceneBuilder builder;
+  builder.body("block", 2, Vector3::Zero(), Matrix3::Identity());
+  builder.joint("rail", scene::JointKind::Prismatic, "world", "block").limits = scene::JointLimits{-1, 1};
+  const Model model = build_model(builder.scene);
+  State state = initial_state(model);
+  state.released[0].displacement[0] = 1.1;
+  for (const double contact_time : {1e-2, 0.3}) {
+    const std::vector<Mode> modes = natural_modes(model, state, 1, contact_time);
+    ASSERT_EQ(modes.size(), 1u);
+    EXPECT_NEAR(std::hypot(2 * kPi * modes[0].frequency, modes[0].rate) * contact_time, kPi, 1e-9);
+  }
+}
+
+// A free beam has six rigid motions, and every node of a motion moves.
+TEST(NaturalModes, FreeBeamHasSixRigidMotions) {
+  SceneBuilder builder;
+  builder.beam("beam", {Vector3(1, 0, 0)}, section(1e4, 4e3, 5, 8, 1, 1e-3, 5e-4), 4, 3);
+  builder.joint("free", scene::JointKind::Floating, "world", "beam");
+  const Model model = build_model(builder.scene);
+  const std::vector<Mode> modes = natural_modes(model, initial_state(model), 8);
+  ASSERT_EQ(modes.size(), 8u);
+  for (int k = 0; k < 6; ++k) EXPECT_TRUE(modes[k].is_free()) << k;
+  EXPECT_GT(modes[6].frequency, 1);
+  for (const Mode& mode : modes) {
+    double largest = 0;
+    for (const ComplexVector6& motion : mode.node_motion) largest = std::max(largest, motion.cwiseAbs().maxCoeff());
+    EXPECT_NEAR(largest, 1, 1e-12);
+  }
+}
+
+// Coordinates that the round-off of other links' stiffness reaches: a stiff arm, folded, with a body that turns freely.
+TEST(NaturalModes, FreeJointsOfAStiffArm) {
+  SceneBuilder builder;
+  builder.beam("upper", {Vector3(7, 0, 0)}, section(1e8, 4e7, 1e6, 3e6, 40, 3, 1.5), 3, 2);
+  builder.beam("lower", {Vector3(6, 1, 2)}, section(1e8, 4e7, 1e6, 3e6, 40, 3, 1.5), 3, 2);
+  builder.body("payload", 1000, Vector3(0.7, 0.2, 0.1), Vector3(300, 900, 1100).asDiagonal());
+  builder.joint("shoulder", scene::JointKind::Continuous, "world", "upper", Vector3::Zero(), {0.1, 0.3, 0.9});
+  builder.joint("elbow", scene::JointKind::Universal, "upper", "lower", {7, 0, 0}, {0.3, 1, 0}).axis2 = {0.2, 0.1, 1};
+  builder.joint("roll", scene::JointKind::Continuous, "lower", "payload", {6, 1, 2}, {6, 1, 2});
+  builder.scene.initial_joints = {{"shoulder", 0.7, 0, {}}, {"elbow/1", -1.9, 0, {}}, {"roll", 0.4, 0, {}}};
+  const Model model = build_model(builder.scene);
+  const std::vector<Mode> modes = natural_modes(model, initial_state(model), 10);
+  for (int k = 0; k < 10; ++k) EXPECT_EQ(modes[k].is_free(), k < 4) << k;
+  for (const Mode& mode : modes) EXPECT_LE(mode.rate, 0);
+  // Each free motion moves some joint.
+  for (int k = 0; k < 4; ++k) {
+    double largest = 0;
+    for (const std::complex<double>& motion : modes[k].coordinate_motion) largest = std::max(largest, std::abs(motion));
+    EXPECT_GT(largest, 0.01);
+  }
+}
+
+// ---------------------------------------------------------------- damping
+
+SceneBuilder damped_pendulum(double damping) {
+  SceneBuilder builder;
+  builder.scene.gravity = Vector3(0, 0, -9.81);
+  builder.body("bob", 2.0, Vector3(0, 0, -0.5), 0.1 * Matrix3::Identity());
+  builder.joint("hinge", scene::JointKind::Continuous, "world", "bob", Vector3::Zero(), Vector3::UnitY()).damping =
+      damping;
+  return builder;
+}
+
+TEST(DampedModes, PendulumOnADampedHinge) {
+  const double inertia = 0.1 + 2.0 * 0.25, stiffness = 2.0 * 9.81 * 0.5, critical = 2 * std::sqrt(stiffness * inertia);
+  for (const double ratio : {1e-6, 0.1, 0.9}) {
+    const Model model = build_model(damped_pendulum(ratio * critical).scene);
+    const std::vector<Mode> modes = natural_modes(model, initial_state(model), 5);
+    ASSERT_EQ(modes.size(), 1u);
+    const double omega = std::sqrt(stiffness / inertia);
+    EXPECT_NEAR(modes[0].damping_ratio(), ratio, 1e-11) << ratio;
+    EXPECT_NEAR(modes[0].rate, -ratio * omega, 1e-10 * omega) << ratio;
+    EXPECT_NEAR(modes[0].frequency, omega * std::sqrt(1 - ratio * ratio) / (2 * kPi), 1e-10 * omega) << ratio;
+  }
+  // Overdamped: two rates.
+  const Model model = build_model(damped_pendulum(2 * critical).scene);
+  const std::vector<Mode> modes = natural_modes(model, initial_state(model), 5);
+  ASSERT_EQ(modes.size(), 2u);
+  const double omega = std::sqrt(stiffness / inertia);
+  for (int k = 0; k < 2; ++k) {
+    EXPECT_EQ(modes[k].frequency, 0);
+    EXPECT_NEAR(modes[k].rate, -omega * (2 + (k == 0 ? -1 : 1) * std::sqrt(3.0)), 1e-10 * omega);
+    EXPECT_EQ(modes[k].damping_ratio(), 1);
+  }
+}
+
+// A wheel that nothing but a damper holds: it may stand anywhere, and comes to rest at the rate d / I.
+TEST(DampedModes, FreeWheelOnADamper) {
+  SceneBuilder builder;
+  builder.body("wheel", 2.0, Vector3::Zero(), 0.1 * Matrix3::Identity());
+  builder.joint("hinge", scene::JointKind::Continuous, "world", "wheel").damping = 0.03;
+  const Model model = build_model(builder.scene);
+  const std::vector<Mode> modes = natural_modes(model, initial_state(model), 5);
+  ASSERT_EQ(modes.size(), 2u);
+  EXPECT_TRUE(modes[0].is_free());
+  EXPECT_NEAR(modes[1].rate, -0.3, 1e-12);
+}
+
+SceneBuilder damped_cantilever(double stiffness_proportional, double mass_proportional, int elements) {
+  SceneBuilder builder;
+  scene::BeamDescription& beam = builder.beam("beam", {Vector3(0.6, 0, 0), Vector3(0.9, 0.3, 0.1)},
+                                              section(1e4, 4e3, 5, 8, 1, 1e-3, 5e-4), elements, 2);
+  beam.stiffness_proportional_damping = stiffness_proportional;
+  beam.mass_proportional_damping = mass_proportional;
+  builder.joint("clamp", scene::JointKind::Fixed, "world", "beam");
+  return builder;
+}
+
+// D = eta K + alpha M damps a mode of circular frequency w by eta w / 2 + alpha / (2 w); sizes that are solved dense
+// and by iteration.
+TEST(DampedModes, ProportionalDamping) {
+  const double eta = 1e-3, alpha = 0.4;
+  for (const int elements : {2, 30}) {
+    const Model undamped = build_model(damped_cantilever(0, 0, elements).scene);
+    const std::vector<Mode> expected = natural_modes(undamped, initial_state(undamped), 4);
+    const Model model = build_model(damped_cantilever(eta, 0, elements).scene);
+    const std::vector<Mode> modes = natural_modes(model, initial_state(model), 4);
+    ASSERT_EQ(modes.size(), 4u);
+    for (int k = 0; k < 4; ++k) {
+      const double omega = 2 * kPi * expected[k].frequency, ratio = eta * omega / 2;
+      EXPECT_NEAR(modes[k].damping_ratio(), ratio, 1e-9) << elements;
+      EXPECT_NEAR(2 * kPi * modes[k].frequency, omega * std::sqrt(1 - ratio * ratio), 1e-9 * omega) << elements;
+    }
+    // Rotary inertia is damped at the nodes, and moves at the points between: the first bending modes have less than
+    // (k r)^2 of their energy in it, r^2 = 1e-3 m^2, k < 3 / m.
+    const Model viscous = build_model(damped_cantilever(0, alpha, elements).scene);
+    const std::vector<Mode> slow = natural_modes(viscous, initial_state(viscous), 4);
+    for (int k = 0; k < 2; ++k) EXPECT_NEAR(slow[k].rate, -alpha / 2, 9e-3 * alpha / 2) << elements;
+  }
+}
+
+// Above 2 / eta the beam is overdamped, and eigenvalues crowd at -1 / eta: the slow ones are found all the same.
+TEST(DampedModes, StrongDampingOfALargeModel) {
+  const double eta = 0.02;
+  const Model undamped = build_model(damped_cantilever(0, 0, 40).scene);
+  const std::vector<Mode> expected = natural_modes(undamped, initial_state(undamped), 2);
+  const Model model = build_model(damped_cantilever(eta, 0, 40).scene);
+  const std::vector<Mode> modes = natural_modes(model, initial_state(model), 2);
+  ASSERT_EQ(modes.size(), 2u);
+  for (int k = 0; k < 2; ++k) {
+    const double omega = 2 * kPi * expected[k].frequency;
+    ASSERT_LT(omega, 1 / eta);
+    EXPECT_NEAR(modes[k].rate, -eta * omega * omega / 2, 1e-8 * omega);
+  }
+}
+
+// What is not damped does not decay, nor grow by round-off, beside what is.
+TEST(DampedModes, UndampedMotionsBesideDampedOnes) {
+  SceneBuilder builder = damped_pendulum(0.5);
+  builder.body("other", 2.0, Vector3(0, 0, -0.3), 0.1 * Matrix3::Identity());
+  builder.joint("free", scene::JointKind::Continuous, "world", "other", {0, 1, 0}, Vector3::UnitY());
+  builder.beam("beam", {Vector3(1, 0, 0)}, section(1e4, 4e3, 5, 8, 1, 1e-3, 5e-4), 30, 2);
+  builder.joint("clamp", scene::JointKind::Fixed, "world", "beam");
+  const Model model = build_model(builder.scene);
+  int damped = 0;
+  for (const Mode& mode : natural_modes(model, initial_state(model), 10)) {
+    EXPECT_LE(mode.rate, 0);
+    if (mode.rate < 0) ++damped;
+  }
+  EXPECT_EQ(damped, 1);
+}
+
+TEST(NaturalModes, NothingMovesOrNothingAsked) {
+  SceneBuilder builder;
+  builder.body("block", 2.0, Vector3::Zero(), Matrix3::Identity());
+  builder.joint("glue", scene::JointKind::Fixed, "world", "block");
+  const Model fixed = build_model(builder.scene);
+  EXPECT_TRUE(natural_modes(fixed, initial_state(fixed), 3).empty());
+  SceneBuilder pendulum;
+  pendulum.body("bob", 2.0, Vector3(0, 0, -0.5), 0.1 * Matrix3::Identity());
+  pendulum.joint("hinge", scene::JointKind::Continuous, "world", "bob", Vector3::Zero(), Vector3::UnitY());
+  const Model model = build_model(pendulum.scene);
+  EXPECT_TRUE(natural_modes(model, initial_state(model), 0).empty());
+  EXPECT_EQ(natural_modes(model, initial_state(model), 5).size(), 1u);  // no more than there are
+}
+
+}  // namespace
+}  // namespace flexarm
