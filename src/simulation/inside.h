@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "flexarm/scene/scene_description.h"
 #include "flexarm/simulation/simulation.h"
 #include "model/model.h"
 #include "model/state.h"

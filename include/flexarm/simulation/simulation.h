@@ -12,10 +12,12 @@
 #include "flexarm/model/model_error.h"
 #include "flexarm/model/results.h"
 #include "flexarm/scene/diagnostic.h"
-#include "flexarm/scene/scene_description.h"
 
 namespace flexarm {
 
+namespace scene {
+struct SceneDescription;  // flexarm/scene/scene_description.h
+}
 struct State;
 
 /// Options that override the scene's <integrator>.
@@ -46,7 +48,7 @@ class Simulation {
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
 
-  const scene::SceneDescription& scene() const;
+  const scene::SceneDescription& scene() const;  ///< with the scheme and the step in use
   /// A warning for each joint coordinate that massless="lock" holds where it starts because it moves nothing that has
   /// inertia, in the scene's order. Only the model knows which these are.
   scene::Diagnostics held_joints() const;
