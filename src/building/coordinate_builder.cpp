@@ -83,7 +83,7 @@ int add_history(const TimeFunction& function, Model& model) {
 
 }  // namespace
 
-StartingTree follow_mimics(const ScenePlan& plan, WeightyTree tree) {
+TreeAtStart follow_mimics(const ScenePlan& plan, MassiveTree tree) {
   Model& model = tree.model;
   const CoordinateNames names(model);
   MimicChains chains(tree.tree_joints);

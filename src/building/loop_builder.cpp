@@ -211,7 +211,7 @@ void sort_joints(Mechanism& mechanism) {
 
 }  // namespace
 
-ClosedMechanism close_loops(const ScenePlan& plan, StartingTree tree) {
+ClosedMechanism close_loops(const ScenePlan& plan, TreeAtStart tree) {
   LoopBuilder loops(plan, tree);
   for (const scene::JointDescription& joint : plan.scene.loop_joints) loops.add(joint);
   if (!plan.scene.loop_joints.empty()) sort_joints(tree);

@@ -39,8 +39,8 @@ struct Mechanism {
 
 // Each stage has all that those before it have: a pass cannot be called before those that it needs.
 struct PlacedTree : Mechanism {};         ///< nodes, elementary joints and coordinates of the tree
-struct WeightyTree : Mechanism {};        ///< elements of beams, rigid bodies
-struct StartingTree : Mechanism {};       ///< poses at the start, those of mimicking coordinates included
+struct MassiveTree : Mechanism {};        ///< elements of beams, rigid bodies
+struct TreeAtStart : Mechanism {};        ///< poses at the start, those of mimicking coordinates included
 struct ClosedMechanism : Mechanism {};    ///< joints and constraints that close loops; all nodes
 struct DrivenMechanism : Mechanism {};    ///< motions and efforts
 struct SolvableMechanism : Mechanism {};  ///< of the constraints those that are independent
