@@ -12,8 +12,7 @@ CorotatedFactors::CorotatedFactors(const StepConfiguration& configuration, Tange
 }
 
 bool CorotatedFactors::make() {
-  for (std::size_t i = 0; i < free_nodes_.size(); ++i)
-    made_at_[i] = configuration_.end()[free_nodes_[i].node].rotation;
+  for (std::size_t i = 0; i < free_nodes_.size(); ++i) made_at_[i] = configuration_.end()[free_nodes_[i].node].rotation;
   return tangent_.factorise();
 }
 

@@ -19,8 +19,8 @@ class CorotatedFactors {
 
   /// Of the tangent evaluated last. False if it is singular or not finite.
   bool make();
-  /// Replaces b, one entry per unknown, by the solution with factors of the tangent evaluated last. False if that is not
-  /// finite; so does the next one.
+  /// Replaces b, one entry per unknown, by the solution with factors of the tangent evaluated last. False if that is
+  /// not finite; so does the next one.
   bool solve(Eigen::VectorXd& b) { return tangent_.solve(b); }
   /// The same with factors made at another configuration, turned to the present one.
   bool solve_turned(Eigen::VectorXd& b);

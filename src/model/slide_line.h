@@ -58,6 +58,16 @@ struct SlideLine {
     const int reach = smooth ? 1 : 0, most = static_cast<int>(pieces.size()) - 1;
     return {pieces[std::max(first - reach, 0)].first_node, pieces[std::min(last + reach, most)].end_node()};
   }
+  /// Most nodes on which the sections of a step depend.
+  std::size_t most_active_nodes() const {
+    const int count = static_cast<int>(pieces.size());
+    int most = 0;
+    for (int p = 0; p < count; ++p) {
+      const NodeRange active = support(p, std::min(p + kMostPieces, count) - 1);
+      most = std::max(most, active.end - active.first);
+    }
+    return static_cast<std::size_t>(most);
+  }
   /// How far it lies beyond the ends, relative to the length of the element there; 0 on the line.
   double overshoot(double arc_length) const {
     const SlidePiece& piece = arc_length < begin() ? pieces.front() : pieces.back();
