@@ -31,6 +31,7 @@ constexpr double kRoundOff = 1e-15;
 NewtonIteration::NewtonIteration(StepSystem& system, const StepSettings& settings)
     : system_(system),
       settings_(settings),
+      factors_(system.configuration(), system.tangent()),
       factor_reuse_(system.tangent().cost_of_factors()),
       update_(system.degrees_of_freedom().unknowns) {
   norms_.reserve(settings.max_iterations + 1);
@@ -74,7 +75,7 @@ StepResult::Reason NewtonIteration::iterate(Updates updates, Factors factors, St
     if (factorise) {
       enter(StepPhase::Factorise);
       ++result.factorisations;
-      if (!system_.tangent().factorise()) return Reason::SingularTangent;
+      if (!factors_.make()) return Reason::SingularTangent;
       factorised_step_ = step;
     }
     progress.with_kept = !factorise;
@@ -99,7 +100,8 @@ StepResult::Reason NewtonIteration::iterate(Updates updates, Factors factors, St
 StepResult::Reason NewtonIteration::find_update(Updates updates, Progress& progress) {
   enter(StepPhase::Solve);
   update_ = -system_.residual();
-  if (!system_.tangent().solve(update_)) return Reason::SingularTangent;
+  const bool is_solved = progress.with_kept ? factors_.solve(update_) : factors_.solve(update_);
+  if (!is_solved) return Reason::SingularTangent;
   enter(StepPhase::Update);
   const double rotation = system_.scales().largest_rotation(update_);
   if (updates == Updates::Limited && rotation > kLargestRotationUpdate) update_ *= kLargestRotationUpdate / rotation;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "flexarm/model/results.h"
+#include "integrators/corotated_factors.h"
 #include "integrators/factor_reuse.h"
 #include "integrators/step_observer.h"
 #include "integrators/step_settings.h"
@@ -59,6 +60,7 @@ class NewtonIteration {
 
   StepSystem& system_;
   const StepSettings& settings_;
+  CorotatedFactors factors_;
   FactorReuse factor_reuse_;
   double factorised_step_ = 0;  // for which the factors hold; 0: none
   Eigen::VectorXd update_;
