@@ -155,7 +155,7 @@ class Element:
 
 @dataclasses.dataclass
 class Step:
-    """A step of the length `step` [s] from (r0, R0) to (r1, R1), and the motion at its begin. Angular quantities of nodes
+    """A step of the length `step` [s] from (r0, R0) to (r1, R1), and the motion at its beginning. Angular quantities of nodes
     and mass points are material."""
 
     step: float
@@ -247,7 +247,7 @@ def algorithmic_rows(element, step, k, stress, is_backward=False):
 
 
 def strains(element, step, k):
-    """At the begin and at the end."""
+    """At the beginning and at the end."""
     point = element.stiffness_points[k]
     return (element.strain(k, step.r0, interpolated(point, step.R0)),
             element.strain(k, step.r1, interpolated(point, step.R1)))
