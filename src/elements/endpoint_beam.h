@@ -32,19 +32,8 @@ struct PointTangent {
 };
 
 /// `stress_slope`: d(stress)/d(strain) = stress_slope * stiffness (1, or more with damping).
-inline PointTangent point_tangent(const PointKinematics& point, const Matrix6& stiffness, double stress_slope,
-                                  const Vector3& n, const Vector3& m) {
-  const Matrix3& rotation = point.rotation;
-  const Eigen::Matrix<double, 6, 9> stress = stress_slope * stiffness.lazyProduct(strain_derivative(point));
-  PointTangent d;
-  d.resultants.topRows<3>().noalias() = rotation.lazyProduct(stress.topRows<3>());
-  d.resultants.bottomRows<3>().noalias() = rotation.lazyProduct(stress.bottomRows<3>());
-  d.resultants.block<3, 3>(0, 3) -= so3::hat(n);
-  d.resultants.block<3, 3>(3, 3) -= so3::hat(m);
-  d.couple = so3::hat(point.tangent) * d.resultants.topRows<3>();
-  d.couple.leftCols<3>() -= so3::hat(n);
-  return d;
-}
+PointTangent point_tangent(const PointKinematics& point, const Matrix6& stiffness, double stress_slope,
+                           const Vector3& n, const Vector3& m);
 
 /// Stress at a point with stiffness-proportional damping.
 struct PointStress {
@@ -79,53 +68,16 @@ PointStress point_stress(const BeamElement<Nodes>& element, const Vector6& strai
 template <int Nodes>
 void endpoint_internal(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const NewmarkRule* rule,
                        const PointKinematics* begin, const Vector6* strain_rates, bool with_tangent,
-                       PointKinematics* end, Vector6* new_strain_rates, ElementSystem<Nodes>& system) {
-  const ElementRotations<Nodes> rotations(nodes, with_tangent);
-  for (int k = 0; k < BeamElement<Nodes>::kStiffnessPoints; ++k) {
-    const auto& constants = element.stiffness_points[k];
-    GeneralisedShapeFunctions<Nodes> generalised;
-    const auto* reference = nodes.stiffness_reference ? nodes.stiffness_reference + k : nullptr;
-    const auto rotation = rotations.evaluate(constants.shape, constants.derivative, reference, generalised);
-    end[k] =
-        point_kinematics(rotation, interpolate<Nodes>(constants.derivative, nodes.end), constants.reference_strain);
-    const endpoint::PointStress point = endpoint::point_stress(element, end[k].strain, rule, begin[k], strain_rates[k]);
-    system.dissipated += constants.weight * point.dissipated;
-    new_strain_rates[k] = point.strain_rate;
-    const Vector3 n = end[k].rotation * point.stress.head<3>(), m = end[k].rotation * point.stress.tail<3>();
-    const LagrangeTests<Nodes> tests{constants.shape, constants.derivative};
-    add_point_residual<Nodes>(constants.weight, constants.derivative, tests, n, m, end[k].tangent, system.residual);
-    if (!with_tangent) continue;
-    const endpoint::PointTangent d = endpoint::point_tangent(end[k], element.stiffness, point.slope, n, m);
-    add_point_tangent<Nodes>(constants.weight, tests, {constants.derivative, generalised}, d.resultants, d.couple,
-                             system.tangent);
-  }
-}
+                       PointKinematics* end, Vector6* new_strain_rates, ElementSystem<Nodes>& system);
 
 /// Newmark translational inertia.
 template <int Nodes>
 void newmark_translation(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const NewmarkRule& rule,
-                         bool with_tangent, ElementSystem<Nodes>& system) {
-  std::array<Vector3, Nodes> acceleration;
-  for (int i = 0; i < Nodes; ++i)
-    acceleration[i] = rule.acceleration(nodes.end[i] - nodes.begin[i], nodes.velocity[i], nodes.acceleration[i]);
-  add_translational<Nodes>(element.mass, acceleration, rule.acceleration_slope(), with_tangent, system);
-}
+                         bool with_tangent, ElementSystem<Nodes>& system);
 
 /// Mass-proportional damping by the velocity at t_{n+1+alpha}.
 template <int Nodes>
 void newmark_mass_damping(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const NewmarkRule& rule,
-                          bool with_tangent, ElementSystem<Nodes>& system) {
-  if (element.mass_damping == 0) return;
-  std::array<Vector3, Nodes> force;
-  for (int i = 0; i < Nodes; ++i) {
-    const Vector3 a = rule.acceleration(nodes.end[i] - nodes.begin[i], nodes.velocity[i], nodes.acceleration[i]);
-    const Vector3 v = rule.velocity(nodes.velocity[i], nodes.acceleration[i], a);
-    force[i] = element.mass_damping * ((1 + rule.alpha) * v - rule.alpha * nodes.velocity[i]);
-    for (int j = 0; j < Nodes; ++j)
-      system.dissipated += element.mass(i, j) * force[i].dot(nodes.end[j] - nodes.begin[j]);
-  }
-  add_translational<Nodes>(element.mass, force, element.mass_damping * (1 + rule.alpha) * rule.velocity_slope(),
-                           with_tangent, system);
-}
+                          bool with_tangent, ElementSystem<Nodes>& system);
 
 }  // namespace flexarm
