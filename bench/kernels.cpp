@@ -52,7 +52,7 @@ struct StepUnderWay {
   StepUnderWay(const std::string& scheme, int elements, int order, BackendChoice backend = BackendChoice::Fastest)
       : simulation(cantilever_in_motion(scheme, elements, order)),
         system(simulation.model(), find_scheme(scheme).value(), backend) {
-    system.begin(simulation.state(), kStep, StepSystem::Guess::Extrapolated);
+    system.begin(simulation.state(), kStep, Guess::Extrapolated);
   }
 };
 
@@ -64,7 +64,7 @@ void evaluate(benchmark::State& state, const std::string& scheme, int elements, 
 
 void begin_step(benchmark::State& state, int order) {
   StepUnderWay step("em", kElements, order);
-  for (auto _ : state) step.system.begin(step.simulation.state(), kStep, StepSystem::Guess::Extrapolated);
+  for (auto _ : state) step.system.begin(step.simulation.state(), kStep, Guess::Extrapolated);
   count_elements(state, kElements);
 }
 

@@ -16,9 +16,9 @@
 #include <unistd.h>
 
 #include "flexarm/scene/urdf_reader.h"
+#include "flexarm/schemes/integrator_description.h"
 #include "flexarm/simulation/checkpoint.h"
 #include "flexarm/simulation/simulation.h"
-#include "scene/integrator_options.h"
 
 namespace {
 
@@ -55,10 +55,10 @@ void report(const flexarm::scene::SceneDescription& scene, const std::string& pa
     double published = 0;
     for (std::size_t k = 0; k < simulation.coordinate_names().size(); ++k)
       published += simulation.velocity(k) + simulation.effort(k);
-    simulation.reset();
-    const bool stands = simulation.solve_static(kLoadSteps).converged;
+    flexarm::Simulation loaded(scene, options);
+    const bool stands = loaded.solve_static(kLoadSteps).converged;
     std::printf("%s %s: %d steps %d iterations %016" PRIx64 " published %a static %d %016" PRIx64 "\n", path.c_str(),
-                scheme.c_str(), done, iterations, moved, published, stands, state_hash(simulation, file));
+                scheme.c_str(), done, iterations, moved, published, stands, state_hash(loaded, file));
   } catch (const std::exception& refusal) {  // not every scheme takes every scene
     std::printf("%s %s: %s\n", path.c_str(), scheme.c_str(), refusal.what());
   }
@@ -75,7 +75,7 @@ int main(int count, char** arguments) {
       std::fprintf(stderr, "%s", to_text(read.diagnostics).c_str());
       return 2;
     }
-    for (const std::string_view scheme : flexarm::scene::scheme_names())
+    for (const std::string_view scheme : flexarm::scheme_names())
       report(*read.scene, arguments[i], std::string(scheme), file);
   }
   std::filesystem::remove(file);

@@ -1,107 +1,90 @@
-// What a step spends its time on: how often Newton's method needs each part, times what that part takes by itself.
+// What a step spends its time on, phase by phase, as the step itself tells it.
 //
-// Counters: percent of the step's time, "rest%" being what the parts leave; iterations and factorisations per step;
+// Counters: percent of the step's time, "rest%" being step control; iterations and factorisations per step;
 // "new/kept": an iteration with new factors over one with kept ones.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
-#include <limits>
+#include <numeric>
 #include <optional>
+#include <utility>
 
 #include "bench/scenes.h"
 #include "flexarm/scene/urdf_reader.h"
-#include "flexarm/simulation/simulation.h"
-#include "integrators/step_system.h"
+#include "flexarm/simulation/observables.h"
+#include "integrators/stepper.h"
+#include "model/model_builder.h"
 
 namespace flexarm {
 namespace {
 
-constexpr int kStepsBefore = 20, kTries = 200;
+constexpr int kStepsBefore = 20;
 
-/// The shortest of many tries of `work`, each after `prepare` [s].
-template <class Prepare, class Work>
-double seconds_of(const Prepare& prepare, const Work& work) {
+/// Time of each phase, and how often it came.
+class PhaseTimes : public StepObserver {
+ public:
+  void enter(StepPhase phase) override {
+    const Clock::time_point now = Clock::now();
+    if (running_) seconds_[index(current_)] += std::chrono::duration<double>(now - since_).count();
+    ++counts_[index(phase)];
+    current_ = phase;
+    since_ = now;
+    running_ = true;
+  }
+  /// A step has ended: what comes until the next one is not counted.
+  void pause() {
+    enter(StepPhase::Control);
+    running_ = false;
+  }
+  double seconds(StepPhase phase) const { return seconds_[index(phase)]; }
+  double mean(StepPhase phase) const { return seconds(phase) / std::max(counts_[index(phase)], 1L); }
+  double whole() const { return std::accumulate(seconds_.begin(), seconds_.end(), 0.0); }
+
+ private:
   using Clock = std::chrono::steady_clock;
-  double least = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < kTries; ++k) {
-    prepare();
-    const Clock::time_point begin = Clock::now();
-    work();
-    least = std::min(least, std::chrono::duration<double>(Clock::now() - begin).count());
-  }
-  return least;
-}
+  static constexpr std::size_t kPhases = static_cast<std::size_t>(StepPhase::Control) + 1;
+  static std::size_t index(StepPhase phase) { return static_cast<std::size_t>(phase); }
 
-/// The parts of a step that begins in the simulation's state [s].
-struct Parts {
-  double begin, residual, tangent, factorise, solve, update, accept;
-
-  explicit Parts(const Simulation& simulation) {
-    const double step = simulation.step_size();
-    StepSystem system(simulation.model(), make_scheme(simulation.scene().integrator));
-    TangentBackend& backend = system.tangent();
-    const auto nothing = [] {};
-
-    State state = simulation.state();
-    const auto started = [&] {
-      state = simulation.state();
-      system.begin(state, step, StepSystem::Guess::Extrapolated);
-    };
-    begin = seconds_of([&] { state = simulation.state(); },
-                       [&] { system.begin(state, step, StepSystem::Guess::Extrapolated); });
-    residual = seconds_of(nothing, [&] { system.evaluate(false); });
-    tangent = seconds_of(nothing, [&] { system.evaluate(true); });
-    factorise = seconds_of([&] { system.evaluate(true); }, [&] { benchmark::DoNotOptimize(backend.factorise()); });
-    Eigen::VectorXd increment;
-    solve =
-        seconds_of([&] { increment = system.residual(); }, [&] { benchmark::DoNotOptimize(backend.solve(increment)); });
-    increment.setZero();
-    update = seconds_of(nothing, [&] {
-      benchmark::DoNotOptimize(system.largest_rotation(increment));
-      benchmark::DoNotOptimize(system.scaled_norm(increment));
-      system.update(increment);
-    });
-    accept = seconds_of([&] { started(), system.evaluate(false); }, [&] { system.accept(state); });
-  }
+  std::array<double, kPhases> seconds_{};
+  std::array<long, kPhases> counts_{};
+  StepPhase current_ = StepPhase::Control;
+  Clock::time_point since_;
+  bool running_ = false;
 };
 
 void share(benchmark::State& state, const scene::SceneDescription& scene, std::optional<double> step = {}) {
-  SimulationOptions options;
-  options.step = step;
-  Simulation simulation(scene, options);
+  const Model model = build_model(scene);
+  StepSettings settings;
+  settings.step = step.value_or(scene.integrator.step);
+  settings.tolerance = scene.integrator.tolerance;
+  Stepper stepper(model, make_scheme(scene.integrator), settings);
+  State moving = initial_state(model);
+  stepper.initialise(moving);
   for (int n = 0; n < kStepsBefore; ++n)
-    if (!simulation.step().converged) return state.SkipWithError("the simulation failed");
-  const Parts parts(simulation);
-  double iterations = 0, factorisations = 0, whole = 0;
+    if (!stepper.advance(moving).converged) return state.SkipWithError("the simulation failed");
+  PhaseTimes times;
+  stepper.observe(&times);
+  double iterations = 0, factorisations = 0;
   for (auto _ : state) {
-    const auto begin = std::chrono::steady_clock::now();
-    const StepResult result = simulation.step();
-    whole += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const StepResult result = stepper.advance(moving);
+    times.pause();
     if (!result.converged) return state.SkipWithError(to_string(result.reason));
     iterations += result.iterations;
     factorisations += result.factorisations;
   }
   const double steps = static_cast<double>(state.iterations());
-  iterations /= steps, factorisations /= steps, whole /= steps;
-  double rest = 100;
-  const auto count = [&](const char* name, double times, double seconds) {
-    const double percent = 100 * times * seconds / whole;
-    state.counters[name] = percent;
-    rest -= percent;
-  };
-  count("begin%", 1, parts.begin);
-  count("residual%", iterations - factorisations + 1, parts.residual);  // and the one at the solution
-  count("tangent%", factorisations, parts.tangent);
-  count("factorise%", factorisations, parts.factorise);
-  count("solve%", iterations, parts.solve);
-  count("update%", iterations, parts.update);
-  count("accept%", 1, parts.accept);
-  state.counters["rest%"] = rest;
-  state.counters["iterations"] = iterations;
-  state.counters["factorisations"] = factorisations;
-  const double both = parts.solve + parts.update;
-  state.counters["new/kept"] = (parts.tangent + parts.factorise + both) / (parts.residual + both);
+  const std::pair<const char*, StepPhase> names[] = {
+      {"begin%", StepPhase::Begin},         {"residual%", StepPhase::Residual}, {"tangent%", StepPhase::Tangent},
+      {"factorise%", StepPhase::Factorise}, {"solve%", StepPhase::Solve},       {"update%", StepPhase::Update},
+      {"accept%", StepPhase::Accept},       {"rest%", StepPhase::Control}};
+  for (const auto& [name, phase] : names) state.counters[name] = 100 * times.seconds(phase) / times.whole();
+  state.counters["iterations"] = iterations / steps;
+  state.counters["factorisations"] = factorisations / steps;
+  const double both = times.mean(StepPhase::Solve) + times.mean(StepPhase::Update);
+  state.counters["new/kept"] = (times.mean(StepPhase::Tangent) + times.mean(StepPhase::Factorise) + both) /
+                               (times.mean(StepPhase::Residual) + both);
 }
 
 void right_angle_cantilever(benchmark::State& state) {

@@ -1,10 +1,10 @@
 #pragma once
 /// Equilibria under gravity and loads.
 
-#include "integrators/scheme.h"
 #include "integrators/step_result.h"
 #include "model/model.h"
 #include "model/state.h"
+#include "schemes/scheme.h"
 
 namespace flexarm {
 

@@ -18,7 +18,7 @@ struct Discretisation {
   int order;     ///< of all beam elements; 0: the scene file's
   int elements;  ///< in all beams together, in proportion to those of the scene file; 0: those
   double step;   ///< [s]
-  double tolerance = scene::IntegratorDescription().tolerance;  ///< of Newton's method
+  double tolerance = IntegratorDescription().tolerance;  ///< of Newton's method
 
   std::string mesh() const;  ///< "8 x 2": elements and their order
 };

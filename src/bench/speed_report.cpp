@@ -9,7 +9,7 @@
 namespace flexarm::bench {
 namespace {
 
-const double kDefaultTolerance = scene::IntegratorDescription().tolerance;
+const double kDefaultTolerance = IntegratorDescription().tolerance;
 
 std::string milliseconds(double seconds) {
   return fmt::format("{:.3g}", 1e3 * seconds);

@@ -10,7 +10,7 @@
 #include "bench/processor_time.h"
 #include "bench/speed.h"
 #include "flexarm/scene/urdf_reader.h"
-#include "scene/integrator_options.h"
+#include "flexarm/schemes/integrator_description.h"
 
 namespace flexarm::bench {
 namespace {
@@ -51,7 +51,7 @@ scene::SceneDescription scene_of(const std::string& folder, const SpeedProblem& 
     throw std::runtime_error(read.diagnostics.empty() ? "cannot read '" + path + "'" : read.diagnostics[0].text());
   scene::SceneDescription scene = std::move(*read.scene);
   refine(scene, discretisation.elements, discretisation.order);
-  scene.integrator = scene::with_scheme(scene.integrator, discretisation.scheme);
+  scene.integrator = with_scheme(scene.integrator, discretisation.scheme);
   scene.integrator.step = discretisation.step;
   scene.integrator.tolerance = discretisation.tolerance;
   return scene;

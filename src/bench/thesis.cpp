@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "flexarm/scene/urdf_reader.h"
-#include "scene/integrator_options.h"
+#include "flexarm/schemes/integrator_description.h"
 
 namespace flexarm::bench {
 namespace {
@@ -20,7 +20,7 @@ scene::SceneDescription scene_of(const std::string& folder, const ThesisRun& run
   if (!read.scene)
     throw std::runtime_error(read.diagnostics.empty() ? "cannot read '" + path + "'" : read.diagnostics[0].text());
   scene::SceneDescription scene = *read.scene;
-  scene.integrator = scene::with_scheme(scene.integrator, run.scheme);
+  scene.integrator = with_scheme(scene.integrator, run.scheme);
   scene.integrator.step = run.step;
   for (scene::LinkDescription& link : scene.links) {
     if (!link.beam) continue;

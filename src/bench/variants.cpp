@@ -1,20 +1,20 @@
 #include "bench/variants.h"
 
-#include "scene/integrator_options.h"
+#include "flexarm/schemes/integrator_description.h"
 
 namespace flexarm::bench {
 namespace {
 
-bool is_possible(const scene::IntegratorDescription& integrator) {
-  return scene::option_conflicts(integrator).empty();
+bool is_possible(const IntegratorDescription& integrator) {
+  return option_conflicts(integrator).empty();
 }
 
-Variant variant(const scene::IntegratorDescription& integrator) {
+Variant variant(const IntegratorDescription& integrator) {
   return {integrator, make_scheme(integrator)};
 }
 
-scene::IntegratorDescription default_integrator(const Scheme& scheme) {
-  scene::IntegratorDescription integrator;
+IntegratorDescription default_integrator(const Scheme& scheme) {
+  IntegratorDescription integrator;
   integrator.scheme = scheme.name;
   return integrator;
 }
@@ -45,7 +45,7 @@ std::string Variant::name() const {
 std::vector<Variant> variants() {
   std::vector<Variant> out;
   for (const Scheme& scheme : schemes()) {
-    scene::IntegratorDescription integrator = default_integrator(scheme);
+    IntegratorDescription integrator = default_integrator(scheme);
     out.push_back(variant(integrator));
     for (const Interpolation interpolation :
          {Interpolation::Total, Interpolation::Incremental, Interpolation::Iterative}) {

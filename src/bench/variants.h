@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "integrators/scheme.h"
+#include "schemes/scheme.h"
 
 namespace flexarm::bench {
 
 struct Variant {
-  scene::IntegratorDescription integrator;
+  IntegratorDescription integrator;
   Scheme scheme;  ///< for the integrator's step; dissipation depends on it
 
   /// "m1, total", "newmark, total, additive"; the scheme's name alone with its default options.

@@ -4,7 +4,7 @@
 
 #include "elements/beam_point.h"
 #include "elements/conserving_element.h"
-#include "elements/time_rule.h"
+#include "schemes/time_rule.h"
 
 namespace flexarm::packs {
 

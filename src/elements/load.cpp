@@ -13,7 +13,7 @@ LoadAction load_action(const NodalLoad& load, double scale, const Matrix3& begin
   Vector3 force = scale * load.force, moment = scale * load.moment;
   // d(rotation x) = -weight (end x)^ spin
   Matrix3 force_derivative = Matrix3::Zero(), moment_derivative = Matrix3::Zero();
-  if (load.frame == scene::LoadFrame::Follower) {
+  if (load.follows) {
     force_derivative = -weight * hat(Vector3(end * force));
     moment_derivative = -weight * hat(Vector3(end * moment));
     force = rotation * force;

@@ -6,10 +6,10 @@
 #include <functional>
 
 #include "elements/beam_point.h"
-#include "elements/time_rule.h"
 #include "math/cayley.h"
 #include "math/so3.h"
 #include "model/state.h"
+#include "schemes/time_rule.h"
 
 namespace flexarm {
 

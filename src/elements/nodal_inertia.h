@@ -2,10 +2,10 @@
 /// Inertia residuals of rigid bodies (and of beams' rotary inertia where a scheme lumps it) at their nodes.
 
 #include "elements/endpoint_beam.h"
-#include "elements/time_rule.h"
 #include "model/joint.h"
 #include "model/model.h"
 #include "model/state.h"
+#include "schemes/time_rule.h"
 
 namespace flexarm {
 

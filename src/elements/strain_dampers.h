@@ -3,7 +3,7 @@
 /// s, each adds factor C s - remembered to the stress. (docs/schemes.md, "Numerical dissipation", "Structural damping")
 
 #include "elements/conserving_element.h"
-#include "elements/time_rule.h"
+#include "schemes/time_rule.h"
 
 namespace flexarm::conserving {
 

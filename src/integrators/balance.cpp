@@ -55,7 +55,8 @@ Energies energies(const Model& model, const Scheme& scheme, const State& state) 
     out.potential -= inertia.total_mass * model.gravity.dot(node.position);
   }
   for (const Coordinate& coordinate : model.coordinates)
-    out.strain += stop_energy(coordinate, state.released[coordinate.joint].displacement[coordinate.component % 3]);
+    out.strain += stop_energy(coordinate, stop_penalty(coordinate, scheme.contact_time),
+                              state.released[coordinate.joint].displacement[coordinate.component % 3]);
   return out;
 }
 

@@ -1,9 +1,9 @@
 #pragma once
 /// Energies and momenta of a state.
 
-#include "integrators/scheme.h"
 #include "model/model.h"
 #include "model/state.h"
+#include "schemes/scheme.h"
 
 namespace flexarm {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "elements/conserving_node.h"
-#include "elements/time_rule.h"
 #include "integrators/step_motion.h"
+#include "schemes/time_rule.h"
 #include "solver/reduced_residual.h"
 
 namespace flexarm {

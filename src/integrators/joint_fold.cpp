@@ -14,7 +14,10 @@ JointFold::JointFold(const StepConfiguration& configuration, const StepHistories
       friction_(friction),
       applied_(configuration.model().coordinates.size(), 0.0),
       slide_maps_(most_slide_nodes(configuration.model())),
-      mimic_maps_(configuration.degrees_of_freedom().mimics.size()) {}
+      mimic_maps_(configuration.degrees_of_freedom().mimics.size()) {
+  for (const Coordinate& coordinate : configuration.model().coordinates)
+    stops_.push_back(stop_penalty(coordinate, configuration.scheme().contact_time));
+}
 
 double JointFold::effort_at(const Coordinate& coordinate, std::size_t index) const {
   const double commanded = configuration_.state().commands[index];
@@ -39,7 +42,8 @@ void JointFold::add_efforts(int j, Balance& balance) {
   for (int k = 0; k < count; ++k) {
     const std::size_t index = model.first_coordinate[j] + k;
     const Coordinate& coordinate = model.coordinates[index];
-    const PassiveEffort passive = passive_effort(coordinate, configuration_.coordinate_step(index, change[k]));
+    const PassiveEffort passive =
+        passive_effort(coordinate, stops_[index], configuration_.coordinate_step(index, change[k]));
     balance.dissipated += passive.dissipated;
     applied_[index] = effort_at(coordinate, index);
     residual[k] -= weight * (applied_[index] + passive.effort);

@@ -33,6 +33,7 @@ class JointFold {
   const StepConfiguration& configuration_;
   const StepHistories& histories_;
   DryFrictionStep& friction_;
+  std::vector<StopPenalty> stops_;  // per coordinate
   std::vector<double> applied_;
   FoldMaps fold_maps_;
   SlideMaps slide_maps_;

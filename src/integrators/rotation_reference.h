@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "elements/beam_point.h"
-#include "elements/time_rule.h"
 #include "model/model.h"
 #include "model/state.h"
+#include "schemes/time_rule.h"
 
 namespace flexarm {
 

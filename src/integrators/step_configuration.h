@@ -3,12 +3,12 @@
 
 #include <vector>
 
-#include "integrators/scheme.h"
 #include "integrators/step_motion.h"
 #include "joints/joint_forces.h"
 #include "joints/joint_map.h"
 #include "joints/slide_map.h"
 #include "model/degrees_of_freedom.h"
+#include "schemes/scheme.h"
 #include "solver/tangent_backend.h"
 
 namespace flexarm {

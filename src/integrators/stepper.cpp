@@ -155,7 +155,9 @@ void Stepper::initialise_accelerations(State& state) {
   const double h = 1e-2 * settings_.step;
   StepSettings settings = settings_;
   settings.step = h;
-  Stepper momentum(model_, *find_scheme("m1"), settings);
+  Scheme scheme = *find_scheme("m1");
+  scheme.contact_time = scheme_.contact_time;
+  Stepper momentum(model_, scheme, settings);
   State moved = state;
   if (!momentum.advance(moved).converged) return;
   for (std::size_t i = 0; i < state.nodes.size(); ++i) {

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "integrators/scheme.h"
 #include "model/model.h"
 #include "model/state.h"
+#include "schemes/scheme.h"
 
 namespace flexarm {
 

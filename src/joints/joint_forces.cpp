@@ -6,9 +6,14 @@
 namespace flexarm {
 namespace {
 
+constexpr double kPi = 3.14159265358979323846;
+/// Ratio of a stop's damping to the critical one. A contact that never pulls ends where its force vanishes, after which
+/// the speed is e = exp(-2 z acos(z) / sqrt(1 - z^2)) of that before: 0.3.
+constexpr double kStopDampingRatio = 0.497239;
+
 /// One-sided stop with gap phi >= 0 free; effort along increasing gap.
-PassiveEffort stop_effort(const LimitStop& stop, double gap_begin, double gap_end, double step) {
-  const double k = stop.stiffness;
+PassiveEffort stop_effort(const StopPenalty& penalty, double gap_begin, double gap_end, double step) {
+  const double k = penalty.stiffness;
   const double p0 = std::min(gap_begin, 0.0), p1 = std::min(gap_end, 0.0);
   if (p0 == 0 && p1 == 0) return {};
   PassiveEffort out;
@@ -24,10 +29,10 @@ PassiveEffort stop_effort(const LimitStop& stop, double gap_begin, double gap_en
     out.slope = -0.5 * k * ((p1 < 0 ? 1.0 : 0.0) * secant + (p1 + p0) * secant_slope);
   }
   // The damper acts on the rate of the penetration, which is continuous at touch and release; it never pulls.
-  const double damping = -stop.damping * (p1 - p0) / step;
+  const double damping = -penalty.damping * (p1 - p0) / step;
   if (out.effort + damping >= 0) {
     out.effort += damping;
-    out.slope -= p1 < 0 ? stop.damping / step : 0.0;
+    out.slope -= p1 < 0 ? penalty.damping / step : 0.0;
     out.dissipated = -damping * change;
   } else {
     out.dissipated = out.effort * change;
@@ -53,7 +58,13 @@ SmoothDirection smooth_direction(const CoordinateStep& change) {
   return {t, (1 - t * t) / kFrictionSpeed * rate_slope(change)};
 }
 
-PassiveEffort passive_effort(const Coordinate& coordinate, const CoordinateStep& change) {
+StopPenalty stop_penalty(const Coordinate& coordinate, double contact_time) {
+  if (!coordinate.limit) return {};
+  const double inertia = coordinate.limit->inertia, omega = kPi / contact_time;
+  return {inertia * omega * omega, 2 * kStopDampingRatio * inertia * omega};
+}
+
+PassiveEffort passive_effort(const Coordinate& coordinate, const StopPenalty& penalty, const CoordinateStep& change) {
   PassiveEffort out;
   const double friction = coordinate.sticks ? 0 : coordinate.friction;
   if (change.step != 0 && (coordinate.damping > 0 || friction > 0)) {
@@ -64,8 +75,8 @@ PassiveEffort passive_effort(const Coordinate& coordinate, const CoordinateStep&
   }
   if (coordinate.limit) {
     const LimitStop& stop = *coordinate.limit;
-    const PassiveEffort low = stop_effort(stop, change.begin - stop.lower, change.end - stop.lower, change.step);
-    const PassiveEffort high = stop_effort(stop, stop.upper - change.begin, stop.upper - change.end, change.step);
+    const PassiveEffort low = stop_effort(penalty, change.begin - stop.lower, change.end - stop.lower, change.step);
+    const PassiveEffort high = stop_effort(penalty, stop.upper - change.begin, stop.upper - change.end, change.step);
     out.effort += low.effort - high.effort;
     out.slope += low.slope + high.slope;
     out.dissipated += low.dissipated + high.dissipated;
@@ -73,10 +84,10 @@ PassiveEffort passive_effort(const Coordinate& coordinate, const CoordinateStep&
   return out;
 }
 
-double stop_energy(const Coordinate& coordinate, double position) {
+double stop_energy(const Coordinate& coordinate, const StopPenalty& penalty, double position) {
   if (!coordinate.limit) return 0;
   const double p = std::min({position - coordinate.limit->lower, coordinate.limit->upper - position, 0.0});
-  return 0.5 * coordinate.limit->stiffness * p * p;
+  return 0.5 * penalty.stiffness * p * p;
 }
 
 }  // namespace flexarm

@@ -27,15 +27,22 @@ struct SmoothDirection {
 /// Zero in statics.
 SmoothDirection smooth_direction(const CoordinateStep& change);
 
+/// By which the stops of a coordinate hold.
+struct StopPenalty {
+  double stiffness = 0, damping = 0;  ///< [N/m or N m/rad], [N s/m or N m s/rad]
+};
+/// Such that a contact lasts `contact_time` [s] were it without damping, and gives 30 % of the speed back.
+StopPenalty stop_penalty(const Coordinate& coordinate, double contact_time);
+
 /// Effort on the coordinate, its derivative with respect to the increment, and the energy that it dissipates over the
 /// step.
 struct PassiveEffort {
   double effort = 0, slope = 0, dissipated = 0;
 };
 /// Of damping, stops and smooth friction of constant capacity.
-PassiveEffort passive_effort(const Coordinate& coordinate, const CoordinateStep& change);
+PassiveEffort passive_effort(const Coordinate& coordinate, const StopPenalty& penalty, const CoordinateStep& change);
 
 /// Elastic energy of the coordinate's stop at `position` [J].
-double stop_energy(const Coordinate& coordinate, double position);
+double stop_energy(const Coordinate& coordinate, const StopPenalty& penalty, double position);
 
 }  // namespace flexarm

@@ -43,7 +43,7 @@ void MechanismBuilder::add_coordinates(const scene::JointDescription& joint, con
       coordinate.friction_coefficient =
           joint.friction_law.coefficient * (model.joints[map].rotation.isZero(0) ? 1.0 : joint.friction_law.radius);
     coordinate.effort_limit = joint.effort_limit;
-    if (joint.limits) coordinate.limit = LimitStop{joint.limits->lower, joint.limits->upper, 0, 0};
+    if (joint.limits) coordinate.limit = LimitStop{joint.limits->lower, joint.limits->upper};
     model.coordinates.push_back(coordinate);
   }
 }

@@ -1,19 +1,11 @@
 #include "mass_properties.h"
 
-#include <cmath>
 #include <unordered_set>
 
 #include "math/so3.h"
 
 namespace flexarm {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-/// Half a contact period of a stop lasts this many nominal steps: resolved by the integrator, and short to the eye.
-constexpr double kContactSteps = 10;
-/// Ratio of a stop's damping to the critical one. A contact that never pulls ends where its force vanishes, after which
-/// the speed is e = exp(-2 z acos(z) / sqrt(1 - z^2)) of that before: 0.3.
-constexpr double kStopDampingRatio = 0.497239;
 
 /// Mass, first moment and inertia about the world origin of everything outboard of a node, initial configuration.
 struct Composite {
@@ -111,8 +103,7 @@ void add_followers(const Model& model, std::vector<MovedInertia>& moved) {
 
 }  // namespace
 
-std::vector<int> finish_mass_properties(const scene::SceneDescription& scene, const std::vector<int>& parents,
-                                        Model& model) {
+std::vector<int> finish_mass_properties(const std::vector<int>& parents, Model& model) {
   const std::vector<Composite> outboard = composites(parents, model);
   std::vector<MovedInertia> moved;
   for (const Coordinate& coordinate : model.coordinates) moved.push_back(moved_inertia(model, coordinate, outboard));
@@ -123,11 +114,7 @@ std::vector<int> finish_mass_properties(const scene::SceneDescription& scene, co
     // A driven or following coordinate needs none.
     if (!moved[i].is_anything && coordinate.motion < 0 && coordinate.mimicked < 0)
       massless.push_back(static_cast<int>(i));
-    if (coordinate.limit) {
-      const double omega = kPi / (kContactSteps * scene.integrator.step);
-      coordinate.limit->stiffness = moved[i].inertia * omega * omega;
-      coordinate.limit->damping = 2 * kStopDampingRatio * moved[i].inertia * omega;
-    }
+    if (coordinate.limit) coordinate.limit->inertia = moved[i].inertia;
   }
   return massless;
 }

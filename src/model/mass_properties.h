@@ -3,14 +3,12 @@
 
 #include <vector>
 
-#include "flexarm/scene/scene_description.h"
 #include "model/model.h"
 
 namespace flexarm {
 
-/// Gives the stops of limited coordinates their penalty. `node_parents`: see MechanismBuilder.
+/// Gives the stops of limited coordinates the inertia that they feel. `node_parents`: see MechanismBuilder.
 /// @return coordinates that are free to move, and move nothing that has inertia, directly or through what follows them.
-std::vector<int> finish_mass_properties(const scene::SceneDescription& scene, const std::vector<int>& node_parents,
-                                        Model& model);
+std::vector<int> finish_mass_properties(const std::vector<int>& node_parents, Model& model);
 
 }  // namespace flexarm

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "flexarm/math/time_function.h"
-#include "flexarm/scene/scene_description.h"
 #include "model/beam_element.h"
 #include "model/joint.h"
 #include "model/loop_closure.h"
@@ -29,13 +28,14 @@ struct NodalInertia {
 struct NodalLoad {
   int node = -1;
   Vector3 arm = Vector3::Zero(), force = Vector3::Zero(), moment = Vector3::Zero();  ///< world or node frame
-  scene::LoadFrame frame = scene::LoadFrame::World;
-  int history = 0;  ///< index into Model::histories
+  bool follows = false;  ///< force and moment turn with the node; else they are fixed in the world
+  int history = 0;       ///< index into Model::histories
 };
 
-/// Unilateral stop of a scalar coordinate: penalty k [N/m or N m/rad] and contact damping c.
+/// Unilateral stops of a scalar coordinate, held by a penalty (StopPenalty).
 struct LimitStop {
-  double lower, upper, stiffness, damping;
+  double lower, upper;
+  double inertia = 0;  ///< what the coordinate moves, at the start [kg or kg m^2]
 };
 
 /// How a coordinate follows another one u: offset + multiplier f(u).

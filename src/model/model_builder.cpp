@@ -31,10 +31,9 @@ class LoadPlacer {
     NodalLoad out;
     out.node = attachment.node;
     out.arm = at.position;
-    out.frame = load.frame;
-    const bool follower = load.frame == scene::LoadFrame::Follower;
-    out.force = follower ? Vector3(attachment.offset.orientation * load.force) : load.force;
-    out.moment = follower ? Vector3(attachment.offset.orientation * load.moment) : load.moment;
+    out.follows = load.frame == scene::LoadFrame::Follower;
+    out.force = out.follows ? Vector3(attachment.offset.orientation * load.force) : load.force;
+    out.moment = out.follows ? Vector3(attachment.offset.orientation * load.moment) : load.moment;
     out.history = mechanism_.add_history(load.history);
     model_.loads.push_back(out);
   }
@@ -52,9 +51,9 @@ class LoadPlacer {
       NodalLoad out;
       out.node = mesh->first_node + static_cast<int>(i);
       out.arm = -mesh->mesh.centroid;
-      out.frame = load.frame;
+      out.follows = load.frame == scene::LoadFrame::Follower;
       out.force = weights[i] * load.force;
-      if (load.frame == scene::LoadFrame::Follower) out.force = pose.orientation.conjugate() * out.force;
+      if (out.follows) out.force = pose.orientation.conjugate() * out.force;
       out.history = history;
       model_.loads.push_back(out);
     }
@@ -100,7 +99,7 @@ BuiltModel build(const scene::SceneDescription& scene) {
   mechanism.model.length_scale = mechanism.extent();
   Model model = std::move(mechanism.model);
   model.gravity = scene.gravity;
-  std::vector<int> massless = finish_mass_properties(scene, mechanism.node_parents, model);
+  std::vector<int> massless = finish_mass_properties(mechanism.node_parents, model);
   return {std::move(model), std::move(massless)};
 }
 

@@ -3,22 +3,13 @@
 
 #include <algorithm>
 
-#include "scene/integrator_options.h"
+#include "schemes/slide_scheme.h"
 
 namespace flexarm {
 namespace {
 
 /// Of poses that are equal: relative to the distance from the origin, and in radians.
 constexpr double kSamePlace = 1e-9, kSameDirection = 1e-6;
-
-/// The thesis's strategies (Muñoz 2004, ch. 12; joints.md 4.4). `sme` is SM-EM on beams of scheme std (4.6).
-SlideAlgorithm slide_algorithm(const std::string& name) {
-  if (name == "alg1") return {SlideStep::MidContact, SlideStep::EnterEnd};
-  if (name == "alg2") return {SlideStep::BeginWeights, SlideStep::EnterEnd};
-  if (name == "alg3") return {SlideStep::EndContact, SlideStep::EnterEnd};
-  if (name == "alg4") return {SlideStep::MidContact, SlideStep::EnterMid};
-  return {};
-}
 
 }  // namespace
 
@@ -94,13 +85,13 @@ Attachment MechanismBuilder::add_slide(const scene::JointDescription& joint) {
     throw ModelError(where +
                      "the place on the line is 'start', beside it is 'offset'; xyz of the joint's <origin> must "
                      "be 0 0 0");
-  const std::string conflict = scene::slide_scheme_conflict(slide.scheme, scene_.integrator.scheme);
-  if (!conflict.empty()) throw ModelError(where + conflict);
+  const SlideScheme* scheme = find_slide_scheme(slide.scheme);
+  if (!scheme) throw ModelError(where + "unknown slide scheme '" + slide.scheme + "'");
   const LinkMesh& mesh = *meshes[parent];
   JointMap map;
   map.kind = JointMapKind::Slide;
   map.line = slide_line(parent, slide);
-  if (!scene::is_newmark_family(scene_.integrator.scheme)) map.algorithm = slide_algorithm(slide.scheme);
+  map.algorithm = scheme->algorithm;
   const SlideLine& line = model.slide_lines[map.line];
   map.master = line.nodes.front();
   const std::string name = joint.name + scene::coordinate_suffixes(joint).front();

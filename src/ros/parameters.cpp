@@ -6,7 +6,7 @@
 #include <string>
 
 #include "flexarm/scene/urdf_reader.h"
-#include "scene/integrator_options.h"
+#include "flexarm/schemes/integrator_description.h"
 
 namespace flexarm::node {
 namespace {
@@ -70,11 +70,11 @@ void read_frame_prefix(ParameterReader& reader, std::string& prefix) {
   if (prefix.back() != '/') prefix += '/';
 }
 
-void override_integrator(const ros::NodeHandle& private_node, scene::IntegratorDescription& integrator) {
+void override_integrator(const ros::NodeHandle& private_node, IntegratorDescription& integrator) {
   ParameterReader reader(private_node);
   std::string scheme = integrator.scheme;
   reader.read("scheme", scheme);
-  integrator = scene::with_scheme(integrator, scheme);
+  integrator = with_scheme(integrator, scheme);
   reader.read("step", integrator.step);
   reader.read("tolerance", integrator.tolerance);
   reader.read("max_iterations", integrator.max_iterations, 1);
@@ -84,7 +84,7 @@ void override_integrator(const ros::NodeHandle& private_node, scene::IntegratorD
     reader.read("rho_infinity", rho_infinity, true);
     if (rho_infinity > 1) reader.complain("rho_infinity", "must lie in [0, 1]", std::to_string(rho_infinity));
     integrator.rho_infinity = rho_infinity;
-    for (const scene::OptionConflict& conflict : scene::option_conflicts(integrator))
+    for (const OptionConflict& conflict : option_conflicts(integrator))
       reader.complain("rho_infinity", conflict.message, std::to_string(rho_infinity));
   }
   reader.throw_if_any();

@@ -1,6 +1,8 @@
 #pragma once
 /// Attributes whose values are names of a fixed set.
 
+#include <iterator>
+
 #include "scene/xml_element.h"
 
 namespace flexarm::scene {
@@ -11,19 +13,27 @@ struct Choice {
   Value value;
 };
 
+/// The row of a table with that `name` which the attribute gives; null where it is missing or unknown, which is
+/// recorded.
+template <class Table>
+auto read_row(const XmlElement& element, const char* attribute, const Table& table) -> decltype(&*std::begin(table)) {
+  const std::optional<std::string> name = element.text(attribute);
+  if (!name) return nullptr;
+  std::string known;
+  for (const auto& row : table) {
+    if (*name == row.name) return &row;
+    known += (known.empty() ? "" : ", ") + std::string(row.name);
+  }
+  element.attribute_error(attribute, std::string(attribute) + " must be one of " + known);
+  return nullptr;
+}
+
 /// What the attribute names among `choices`; nothing where it is missing or unknown, which is recorded.
 template <class Value, std::size_t Count>
 std::optional<Value> read_choice(const XmlElement& element, const char* attribute,
                                  const Choice<Value> (&choices)[Count]) {
-  const std::optional<std::string> name = element.text(attribute);
-  if (!name) return std::nullopt;
-  std::string known;
-  for (const Choice<Value>& choice : choices) {
-    if (*name == choice.name) return choice.value;
-    known += (known.empty() ? "" : ", ") + std::string(choice.name);
-  }
-  element.attribute_error(attribute, std::string(attribute) + " must be one of " + known);
-  return std::nullopt;
+  const Choice<Value>* choice = read_row(element, attribute, choices);
+  return choice ? std::optional<Value>(choice->value) : std::nullopt;
 }
 
 /// The same for an attribute that may be left out.

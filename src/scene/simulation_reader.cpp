@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "flexarm/schemes/integrator_description.h"
 #include "scene/choice.h"
 #include "scene/extension_reader.h"
-#include "scene/integrator_options.h"
 #include "scene/limits.h"
 
 namespace flexarm::scene {

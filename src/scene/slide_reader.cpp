@@ -2,6 +2,7 @@
 
 #include "scene/choice.h"
 #include "scene/couple_reader.h"
+#include "schemes/slide_scheme.h"
 
 namespace flexarm::scene {
 namespace {
@@ -15,8 +16,6 @@ constexpr Choice<SlideDescription::End> kEnds[] = {{"stop", SlideDescription::En
                                                    {"error", SlideDescription::End::Error},
                                                    {"free", SlideDescription::End::Free}};
 constexpr Choice<bool> kLines[] = {{"elements", false}, {"smooth", true}};
-constexpr Choice<const char*> kSchemes[] = {{"sm_em", "sm_em"}, {"alg1", "alg1"}, {"alg2", "alg2"},
-                                            {"alg3", "alg3"},   {"alg4", "alg4"}, {"sme", "sme"}};
 
 /// What turns on the section: one of the rotations, or a joint whose travel is that along the line.
 JointKind read_rotation(const XmlElement& joint, const XmlElement& slide, JointDescription& description) {
@@ -43,7 +42,8 @@ void read_slide(const XmlElement& joint, const XmlElement& slide, JointDescripti
   description.slide = out;
   out.rotation = read_rotation(joint, slide, description);
   out.on_end = read_choice(slide, "on_end", kEnds, out.on_end);
-  out.scheme = read_choice(slide, "scheme", kSchemes, "sm_em");
+  if (slide.has("scheme"))
+    if (const SlideScheme* scheme = read_row(slide, "scheme", kSlideSchemes)) out.scheme = scheme->name;
   out.smooth = read_choice(slide, "line", kLines, out.smooth);
   out.offset = slide.vector("offset", out.offset);
   description.kind = JointKind::Slide;

@@ -5,11 +5,11 @@
 #include <array>
 #include <vector>
 
-#include "elements/time_rule.h"
 #include "joints/joint_map.h"
 #include "model/degrees_of_freedom.h"
 #include "model/model.h"
 #include "model/state.h"
+#include "schemes/time_rule.h"
 
 namespace flexarm {
 

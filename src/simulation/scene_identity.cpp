@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "integrators/scheme.h"
+#include "schemes/scheme.h"
 #include "simulation/fingerprint.h"
 
 namespace flexarm {
@@ -119,7 +119,7 @@ class SceneFingerprint {
   Fingerprint bytes_;
 };
 
-std::string integrator_line(const scene::IntegratorDescription& integrator) {
+std::string integrator_line(const IntegratorDescription& integrator) {
   const Scheme scheme = make_scheme(integrator);
   const NumericalDissipation& d = scheme.dissipation;
   return fmt::format(

@@ -4,10 +4,12 @@
 #include <limits>
 #include <map>
 
+#include <fmt/format.h>
+
 #include "analysis/statics.h"
 #include "math/so3.h"
 #include "model/line_release.h"
-#include "scene/integrator_options.h"
+#include "schemes/slide_scheme.h"
 #include "simulation/output_velocities.h"
 #include "simulation/state_flaw.h"
 
@@ -31,11 +33,23 @@ StepSettings settings_of(const scene::SceneDescription& scene, const SimulationO
   return settings;
 }
 
-/// The scene with the scheme and the step in use; the stops' penalty must resolve the latter.
+/// The scene with the scheme and the step in use.
 scene::SceneDescription with_options(scene::SceneDescription scene, const SimulationOptions& options) {
-  if (options.scheme) scene.integrator = scene::with_scheme(scene.integrator, *options.scheme);
+  if (options.scheme) scene.integrator = with_scheme(scene.integrator, *options.scheme);
   scene.integrator.step = settings_of(scene, options).step;
   return scene;
+}
+
+/// @throws ModelError naming the first slide that does not go with the scheme.
+void require_suitable_slides(const scene::SceneDescription& scene, const Scheme& scheme) {
+  for (const auto* joints : {&scene.joints, &scene.loop_joints})
+    for (const scene::JointDescription& joint : *joints) {
+      if (!joint.slide) continue;
+      const std::string conflict = slide_scheme_conflict(*find_slide_scheme(joint.slide->scheme), scheme);
+      const scene::SourceLocation& place = joint.slide->location;
+      if (!conflict.empty())
+        throw ModelError(fmt::format("{}:{}: <slide> of joint '{}': {}", place.file, place.line, joint.name, conflict));
+    }
 }
 
 }  // namespace
@@ -60,6 +74,7 @@ struct Simulation::Implementation {
         model(build_model(scene)),
         stepper(std::make_unique<Stepper>(model, scheme, settings)),
         initial(initial_state(model)) {
+    require_suitable_slides(scene, scheme);
     for (const Coordinate& coordinate : model.coordinates) {
       coordinate_indices.emplace(coordinate.name, coordinate_names.size());
       coordinate_names.push_back(coordinate.name);
@@ -251,7 +266,8 @@ StepResult Simulation::solve_static(int load_steps) {
 
 std::vector<Mode> Simulation::natural_modes(int count) const {
   if (count < 1) throw std::invalid_argument("the number of modes must be >= 1");
-  return flexarm::natural_modes(implementation_->model, implementation_->state, count);
+  return flexarm::natural_modes(implementation_->model, implementation_->state, count,
+                                implementation_->scheme.contact_time);
 }
 
 std::size_t Simulation::node_count() const {

@@ -10,22 +10,21 @@ namespace flexarm {
 namespace {
 
 using namespace test;
-using scene::LoadFrame;
 
-NodalLoad random_load(RandomSource& random, LoadFrame frame) {
+NodalLoad random_load(RandomSource& random, bool follows) {
   NodalLoad load;
   load.arm = random.vector();
   load.force = random.vector();
   load.moment = random.vector();
-  load.frame = frame;
+  load.follows = follows;
   return load;
 }
 
 TEST(LoadAction, DerivativeForEveryFrameAndPoint) {
   RandomSource random(1);
-  for (const LoadFrame frame : {LoadFrame::World, LoadFrame::Follower})
+  for (const bool follows : {false, true})
     for (const LoadPoint point : {LoadPoint::Mean, LoadPoint::End}) {
-      const NodalLoad load = random_load(random, frame);
+      const NodalLoad load = random_load(random, follows);
       const Matrix3 begin = random.rotation(3).toRotationMatrix();
       const Quaternion end = random.rotation(3);
       const LoadAction action = load_action(load, 1.4, begin, end.toRotationMatrix(), point);
@@ -41,12 +40,12 @@ TEST(LoadAction, DerivativeForEveryFrameAndPoint) {
 
 TEST(LoadAction, ForceAtAnArm) {
   RandomSource random(2);
-  NodalLoad load = random_load(random, LoadFrame::World);
+  NodalLoad load = random_load(random, false);
   const Matrix3 rotation = random.rotation(3).toRotationMatrix();
   const Vector6 world = load_action(load, 2.0, rotation, rotation, LoadPoint::End).wrench;
   EXPECT_LE((world.head<3>() - 2 * load.force).norm(), 1e-14);
   EXPECT_LE((world.tail<3>() - 2 * load.moment - (rotation * load.arm).cross(2 * load.force)).norm(), 1e-14);
-  load.frame = LoadFrame::Follower;
+  load.follows = true;
   const Vector6 follower = load_action(load, 2.0, rotation, rotation, LoadPoint::End).wrench;
   EXPECT_LE((follower.head<3>() - 2 * rotation * load.force).norm(), 1e-14);
   EXPECT_LE((follower.tail<3>() - 2 * rotation * (load.moment + load.arm.cross(load.force))).norm(), 1e-14);
@@ -55,7 +54,7 @@ TEST(LoadAction, ForceAtAnArm) {
 // A dead force does the work F . Delta x of its point over the step, whatever the rotation.
 TEST(LoadAction, WorkOfADeadForceIsExact) {
   RandomSource random(3);
-  NodalLoad load = random_load(random, LoadFrame::World);
+  NodalLoad load = random_load(random, false);
   load.moment.setZero();
   const Pose begin = random.pose(1, 2), end{random.vector(), random.rotation(1.4) * begin.orientation};
   const Vector6 wrench =

@@ -3,7 +3,7 @@
 
 #include "elements/average_rotary.h"
 #include "elements/kernel_checks.h"
-#include "integrators/scheme.h"
+#include "schemes/scheme.h"
 
 namespace flexarm {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "elements/differences.h"
 #include "elements/random_element.h"
-#include "integrators/scheme.h"
+#include "schemes/scheme.h"
 
 namespace flexarm {
 namespace {

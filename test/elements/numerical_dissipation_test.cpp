@@ -1,7 +1,7 @@
 // Dampers with a memory of the energy-momentum family: numerical dissipation and structural damping.
 #include "elements/conserving_kernel.h"
 #include "elements/kernel_checks.h"
-#include "integrators/scheme.h"
+#include "schemes/scheme.h"
 
 namespace flexarm {
 namespace {

@@ -5,8 +5,8 @@
 #include "elements/conserving_kernel.h"
 #include "elements/conserving_node.h"
 #include "elements/kernel_checks.h"
-#include "integrators/scheme.h"
 #include "math/simd.h"
+#include "schemes/scheme.h"
 
 namespace flexarm {
 namespace {

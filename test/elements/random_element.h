@@ -4,11 +4,11 @@
 #include <random>
 
 #include "elements/beam_point.h"
-#include "elements/time_rule.h"
 #include "math/cayley.h"
 #include "math/so3.h"
 #include "model/beam_mesh.h"
 #include "model/state.h"
+#include "schemes/time_rule.h"
 
 namespace flexarm::test {
 

@@ -11,8 +11,8 @@
 #include "elements/differences.h"
 #include "elements/endpoint_beam.h"
 #include "elements/nodal_inertia.h"
-#include "integrators/scheme.h"
 #include "model/beam_mesh.h"
+#include "schemes/scheme.h"
 #include "support/source_path.h"
 
 namespace flexarm {

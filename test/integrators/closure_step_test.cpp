@@ -28,7 +28,7 @@ TEST_P(ClosedStep, TangentOfAStep) {
   StepSystem system(model, *find_scheme(name), BackendChoice::Matrix);
   State state = random_state(model, random, 0.15);
   system.initialise(state);
-  system.begin(state, 0.2, StepSystem::Guess::Extrapolated);
+  system.begin(state, 0.2, Guess::Extrapolated);
   system.update(random_update(system.degrees_of_freedom().unknowns, random, 0.1));
   Eigen::VectorXd multipliers = Eigen::VectorXd::Zero(system.degrees_of_freedom().unknowns);
   const DegreesOfFreedom& dof = system.degrees_of_freedom();
@@ -57,13 +57,12 @@ TEST(ClosedStep, MultipliersCountInNormsByTheirWay) {
   for (const NodalInertia& inertia : model.inertias) mass += inertia.total_mass;
   for (const double step : {0.1, 0.01}) {
     State state = initial_state(model);
-    system.begin(state, step, StepSystem::Guess::Unchanged);
+    system.begin(state, step, Guess::Unchanged);
     const double way = 1e6 * step * step / (mass * model.length_scale), arm = std::max(1.0, 1 / model.length_scale);
-    EXPECT_NEAR(system.scaled_norm(increment), way * arm, 1e-12 * way);
+    EXPECT_NEAR(system.scales().norm(increment, step), way * arm, 1e-12 * way);
   }
-  EXPECT_EQ(system.largest_rotation(increment), 0);
-  system.begin_static(initial_state(model), 1);
-  EXPECT_EQ(system.scaled_norm(increment), 0) << "statics";
+  EXPECT_EQ(system.scales().largest_rotation(increment), 0);
+  EXPECT_EQ(system.scales().norm(increment, 0), 0) << "statics";
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ TEST_P(FrictionTangent, Slipping) {
   RandomSource random(21);
   StepSystem system(model, scheme(), BackendChoice::Matrix);
   const State state = prepared(random_state(model, random, 0.15), system, random);
-  system.begin(state, 0.2, StepSystem::Guess::Extrapolated);
+  system.begin(state, 0.2, Guess::Extrapolated);
   system.update(random_update(system.degrees_of_freedom().unknowns, random, 0.1));
   expect_consistent_tangent(system, kShort);
 }
@@ -38,7 +38,7 @@ TEST_P(FrictionTangent, Held) {
   StepSystem system(model, scheme(), BackendChoice::Matrix);
   State state = prepared(random_state(model, random, 0.15), system, random);
   for (std::size_t i = 0; i < state.rests.size(); ++i) state.rests[i] = i % 2;
-  system.begin(state, 0.2, StepSystem::Guess::Unchanged);
+  system.begin(state, 0.2, Guess::Unchanged);
   system.update(random_update(system.degrees_of_freedom().unknowns, random, 0.1));
   expect_consistent_tangent(system, kShort);
 }

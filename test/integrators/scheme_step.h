@@ -47,7 +47,7 @@ class SchemeStep : public ::testing::TestWithParam<SchemeVariant> {
       node.acceleration.setZero();
       node.angular_acceleration.setZero();
     }
-    system.begin(state, 30.0, StepSystem::Guess::Unchanged);
+    system.begin(state, 30.0, Guess::Unchanged);
     system.update(random_update(system.degrees_of_freedom().unknowns, random, 0.01));
     // A beta correction divides by a work of the increments, here 0.01: the residual changes its shape over a part of
     // that.

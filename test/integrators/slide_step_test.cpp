@@ -49,12 +49,12 @@ TEST_P(SlideStepOf, TangentIsConsistent) {
     State state = random_state(model, random, 0.1);
     state.released[s].displacement[0] = 1.0;
     system.initialise(state);
-    system.begin(state, 0.2, StepSystem::Guess::Unchanged);
+    system.begin(state, 0.2, Guess::Unchanged);
     Eigen::VectorXd update = random_update(system.degrees_of_freedom().unknowns, random, 0.1);
     const DegreesOfFreedom& dof = system.degrees_of_freedom();
     update[dof.equation[dof.first[dof.variable_of_joint(static_cast<int>(s))]]] = travel;
     system.update(update);
-    ASSERT_FALSE(system.is_off_line());
+    ASSERT_FALSE(system.configuration().is_off_line());
     expect_consistent_tangent(system, 0.25);
   }
 }
@@ -79,7 +79,7 @@ TEST_P(SlidePattern, FollowsTheSlider) {
   State state = random_state(model, random, 0.05);
   const auto evaluate = [&](StepSystem& system, double from, double to) {
     state.released[s].displacement[0] = from;
-    system.begin(state, 0.1, StepSystem::Guess::Unchanged);
+    system.begin(state, 0.1, Guess::Unchanged);
     Eigen::VectorXd update = Eigen::VectorXd::Zero(system.degrees_of_freedom().unknowns);
     const DegreesOfFreedom& dof = system.degrees_of_freedom();
     update[dof.equation[dof.first[dof.variable_of_joint(static_cast<int>(s))]]] = to - from;

@@ -1,4 +1,5 @@
 // The residual and the reduced tangent of a whole step, for a mechanism with everything in it.
+#include "analysis/statics.h"
 #include "integrators/scheme_step.h"
 #include "integrators/stepper.h"
 #include "joints/joint_forces.h"
@@ -24,7 +25,7 @@ TEST_P(ConsistentTangent, TangentOfAStep) {
   StepSystem system(model, scheme(), BackendChoice::Matrix);
   State state = prepared(random_state(model, random, 0.15), system, random);
   state.time = 0.3;
-  system.begin(state, 0.2, StepSystem::Guess::Extrapolated);
+  system.begin(state, 0.2, Guess::Extrapolated);
   system.update(random_update(system.degrees_of_freedom().unknowns, random, 0.1));
   expect_consistent_tangent(system, 0.15);
 }
@@ -40,7 +41,7 @@ TEST_P(ConsistentTangent, TangentInsideAStop) {
   RandomSource random(3);
   StepSystem system(model, scheme(), BackendChoice::Matrix);
   const State state = prepared(random_state(model, random, 0.1), system, random);
-  system.begin(state, 0.2, StepSystem::Guess::Unchanged);
+  system.begin(state, 0.2, Guess::Unchanged);
   system.update(random_update(system.degrees_of_freedom().unknowns, random, 0.1));
   expect_consistent_tangent(system, 0.25);
 }
@@ -52,7 +53,7 @@ TEST_P(StepSystemOf, KinematicsHoldAfterAStep) {
   RandomSource random(4);
   StepSystem system(model, scheme(), BackendChoice::Matrix);
   State state = prepared(random_state(model, random, 0.1), system, random);
-  system.begin(state, 0.2, StepSystem::Guess::Unchanged);
+  system.begin(state, 0.2, Guess::Unchanged);
   system.update(random_update(system.degrees_of_freedom().unknowns, random, 0.1));
   ASSERT_TRUE(system.evaluate(false));
   system.accept(state);
@@ -88,8 +89,8 @@ TEST(StepSystem, TangentOfStatics) {
     if (coordinate.limit) coordinate.limit = LimitStop{0.6, 3.0, 20.0, 0.5};
   RandomSource random(5);
   const State state = random_state(model, random, 0.1);
-  StepSystem system(model, schemes().front(), BackendChoice::Matrix);
-  system.begin_static(state, 0.7);
+  StepSystem system(model, statics_of(schemes().front()), BackendChoice::Matrix);
+  system.begin_equilibrium(state, 0.7);
   system.update(random_update(system.degrees_of_freedom().unknowns, random, 0.1));
   expect_consistent_tangent(system, 1);
 }
@@ -181,16 +182,15 @@ TEST(DegreesOfFreedom, ClampedBeamHasItsFreeNodesOnly) {
 
 // ---------------------------------------------------------------- step control
 
-TEST(Stepper, FailedStaticsLeavesTheStateUntouched) {
+TEST(Statics, AFailureLeavesTheStateUntouched) {
   SceneBuilder builder;
   builder.beam("beam", {Vector3(1, 0, 0)}, section(10, 10, 1, 1, 1, 1, 1), 2, 2);
   builder.joint("hinge", scene::JointKind::Continuous, "world", "beam");  // a mechanism: no equilibrium
   builder.load("beam", Vector3(1, 0, 0), Vector3::Zero(), Vector3(0, 0, 1));
   const Model model = build_model(builder.scene);
-  Stepper stepper(model, schemes().front(), {1e-2, 1e-9, 20, 2});
   State state = initial_state(model);
   const State before = state;
-  const StepResult result = stepper.solve_static(state, 2);
+  const StepResult result = solve_static(model, schemes().front(), {1e-2, 1e-9, 20, 2}, 2, state);
   EXPECT_FALSE(result.converged);
   EXPECT_NE(result.reason, StepResult::Reason::None);
   for (std::size_t i = 0; i < state.nodes.size(); ++i) EXPECT_EQ(state.nodes[i].position, before.nodes[i].position);

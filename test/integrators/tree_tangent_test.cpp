@@ -62,7 +62,7 @@ class TreeSystem : public SchemeStep {
     for (std::size_t i = 0; i < state.rests.size(); ++i) state.rests[i] = i % 2;
     const Eigen::VectorXd update = random_update(matrix.degrees_of_freedom().unknowns, random, 0.05);
     for (StepSystem* system : {&matrix, &tree}) {
-      system->begin(state, 0.2, StepSystem::Guess::Unchanged);
+      system->begin(state, 0.2, Guess::Unchanged);
       system->update(update);
     }
     expect_equal_solutions(matrix, tree);
@@ -90,12 +90,13 @@ scene::SceneDescription example(const std::string& name) {
 TEST(TreeTangent, SolvesWithTheTangentOfStatics) {
   for (const char* name : {"cantilever", "curved_and_twisted"}) {
     const Model model = build_model(example(name));
-    StepSystem matrix(model, schemes().front(), BackendChoice::Matrix), tree(model, schemes().front());
+    const Scheme statics = statics_of(schemes().front());
+    StepSystem matrix(model, statics, BackendChoice::Matrix), tree(model, statics);
     const State state = initial_state(model);
     RandomSource random(3);
     const Eigen::VectorXd update = random_update(matrix.degrees_of_freedom().unknowns, random, 0.05);
     for (StepSystem* system : {&matrix, &tree}) {
-      system->begin_static(state, 0.7);
+      system->begin_equilibrium(state, 0.7);
       system->update(update);
     }
     expect_equal_solutions(matrix, tree);

@@ -84,8 +84,8 @@ TEST(ModelErrors, WhatFollowsAJointIsMovedByIt) {
   // The stop of the crank feels the arm, J + m l^2 about the hinge, by the square of the ratio.
   SceneBuilder alone = arm();
   alone.scene.joints[0].limits = scene::JointLimits{-1, 1};
-  const double stiffness = build_model(alone.scene).coordinates[0].limit->stiffness;
-  EXPECT_NEAR(model.coordinates[1].limit->stiffness, 9 * stiffness, 1e-12 * stiffness);
+  const double inertia = build_model(alone.scene).coordinates[0].limit->inertia;
+  EXPECT_NEAR(model.coordinates[1].limit->inertia, 9 * inertia, 1e-12 * inertia);
 }
 
 TEST(ModelErrors, PointMassOnTheAxis) {

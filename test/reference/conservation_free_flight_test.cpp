@@ -1,8 +1,8 @@
 // Invariants of free flight (reference case D1) over ten thousand steps.
 #include <cstdio>
 
-#include "integrators/scheme.h"
 #include "reference/dynamics_joint_chain.h"
+#include "schemes/scheme.h"
 
 namespace flexarm::test {
 namespace {

@@ -1,5 +1,7 @@
 // What acts in joints: damping, friction, stops, motors, mimics and prescribed motions, against closed formulas.
+#include "joints/joint_forces.h"
 #include "reference/dynamics_runs.h"
+#include "schemes/scheme.h"
 
 namespace flexarm::test {
 namespace {
@@ -102,7 +104,7 @@ TEST(JointLimit, HoldsAgainstAnEffort) {
   run(simulation, 2000, [&] { deepest = std::max(deepest, simulation.position(0)); });
   EXPECT_NEAR(simulation.velocity(0), 0, 1e-6);
   const scene::JointLimits limits = *b.scene.joints[0].limits;
-  const double stiffness = simulation.model().coordinates[0].limit->stiffness;
+  const double stiffness = stop_penalty(simulation.model().coordinates[0], kContactSteps * 1e-3).stiffness;
   EXPECT_NEAR(simulation.position(0), limits.upper + 5 / stiffness, 1e-6) << "rests where the penalty balances it";
 }
 

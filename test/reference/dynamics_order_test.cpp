@@ -69,7 +69,7 @@ Problem damped_arm(const std::string& name, double damping) {
 }
 
 /// Tip positions every `coarsest_step`.
-History tip_history(const Problem& problem, const scene::IntegratorDescription& integrator, int refinement) {
+History tip_history(const Problem& problem, const IntegratorDescription& integrator, int refinement) {
   scene::SceneDescription scene = problem.scene.scene;
   scene.integrator = integrator;
   scene.integrator.step = problem.coarsest_step / refinement;

@@ -7,8 +7,8 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "integrators/scheme.h"
 #include "reference/dynamics_runs.h"
+#include "schemes/scheme.h"
 
 namespace flexarm::test {
 namespace {

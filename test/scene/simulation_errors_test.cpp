@@ -1,4 +1,4 @@
-#include "scene/integrator_options.h"
+#include "flexarm/schemes/integrator_description.h"
 #include "scene/scene_text.h"
 
 namespace flexarm::scene {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "scene/integrator_options.h"
+#include "flexarm/schemes/integrator_description.h"
 #include "simulation/everything_scene.h"
 
 namespace flexarm::test {
@@ -76,7 +76,7 @@ TEST_F(SmallArm, StartsWhereTheSceneSays) {
 // The mean of the velocities at both ends of a step is off the secant by no more than the secants of the last steps
 // differ, which is little beside the velocity itself.
 TEST_F(SmallArm, ProbeVelocityIsTheRateOfItsPosition) {
-  for (const std::string_view name : scene::scheme_names()) {
+  for (const std::string_view name : scheme_names()) {
     SimulationOptions options;
     options.scheme = std::string(name);
     options.step = 1e-4;

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "scene/integrator_options.h"
+#include "flexarm/schemes/integrator_description.h"
 #include "support/scene_builder.h"
 
 namespace flexarm::test {
@@ -68,7 +68,7 @@ TEST(StepControl, FailureLeavesTheLastGoodState) {
 }
 
 TEST(StepControl, NonFiniteLoadFailsWithoutSpoilingTheState) {
-  for (const std::string_view name : scene::scheme_names()) {
+  for (const std::string_view name : scheme_names()) {
     const std::string scheme(name);
     SceneBuilder b;
     b.beam("arm", {{1, 0, 0}}, section(1e4, 5e3, 20, 20, 1, 0.02, 0.01), 2, 2);

@@ -5,14 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "integrators/scheme.h"
-#include "scene/integrator_options.h"
+#include "flexarm/schemes/integrator_description.h"
+#include "schemes/scheme.h"
 
 namespace flexarm::test {
 
 struct SchemeVariant {
   std::string name;
-  scene::IntegratorDescription integrator;
+  IntegratorDescription integrator;
   Scheme scheme;
   friend std::ostream& operator<<(std::ostream& out, const SchemeVariant& variant) { return out << variant.name; }
 };
@@ -20,13 +20,12 @@ struct SchemeVariant {
 /// Every scheme of the table with default options, then with each interpolation and weak form that it takes.
 /// `step`: of numerical dissipation [s].
 inline std::vector<SchemeVariant> scheme_variants(double step = 0.01) {
-  using scene::Interpolation;
   std::vector<SchemeVariant> variants;
-  const auto add = [&](const std::string& name, const scene::IntegratorDescription& integrator) {
-    if (scene::option_conflicts(integrator).empty()) variants.push_back({name, integrator, make_scheme(integrator)});
+  const auto add = [&](const std::string& name, const IntegratorDescription& integrator) {
+    if (option_conflicts(integrator).empty()) variants.push_back({name, integrator, make_scheme(integrator)});
   };
   for (const Scheme& scheme : schemes()) {
-    scene::IntegratorDescription integrator;
+    IntegratorDescription integrator;
     integrator.scheme = scheme.name;
     integrator.step = step;
     add(integrator.scheme, integrator);
@@ -37,7 +36,7 @@ inline std::vector<SchemeVariant> scheme_variants(double step = 0.01) {
       add(integrator.scheme + suffix, integrator);
     }
     integrator.interpolation = Interpolation::Total;
-    integrator.weak_form = scene::WeakForm::Additive;
+    integrator.weak_form = WeakForm::Additive;
     add(integrator.scheme + "_additive", integrator);
   }
   return variants;

@@ -10,6 +10,7 @@
 #include "flexarm/math/cam_profile.h"
 #include "flexarm/math/pose.h"
 #include "flexarm/math/time_function.h"
+#include "flexarm/schemes/integrator_description.h"
 
 namespace flexarm::scene {
 
@@ -184,34 +185,6 @@ struct JointDescription {
 };
 
 // ---------------------------------------------------------------- simulation
-
-/// <integrator>; empty fields keep the defaults of the simulator.
-/// How section rotations are interpolated inside a beam element (docs/theory.md). All but Local are for study.
-enum class Interpolation {
-  Local,        ///< rotation vectors relative to a frame that moves with the element: strain-invariant
-  Total,        ///< from the undeformed state; nodes turn by less than 2 pi
-  Incremental,  ///< from the last step
-  Iterative     ///< from the last Newton iterate
-};
-
-/// To which virtual rotations the moment rows are conjugate.
-enum class WeakForm {
-  Spin,     ///< spatial spins
-  Additive  ///< total rotation vectors: the static tangent is symmetric
-};
-
-struct IntegratorDescription {
-  std::string scheme = "auto";
-  std::optional<Interpolation> interpolation;  ///< empty: the scheme's own (local, but for "std")
-  std::optional<WeakForm> weak_form;           ///< empty: spin
-  std::optional<double> beta, gamma;           ///< of "newmark" (1/4, 1/2)
-  std::optional<double> alpha;                 ///< of "hht1", "hht2", "hht3", in [-1/3, 0] (-0.05)
-  double step = 1e-3;                          ///< [s]
-  double tolerance = 1e-8;                     ///< on the Newton update, relative to the scene's length and to 1 rad
-  int max_iterations = 20;
-  int max_halvings = 5;
-  std::optional<double> rho_infinity;  ///< of "edmc1", "edmc2", in [0, 1] (0.8)
-};
 
 /// Initial position and velocity of a released coordinate. `coordinate` is a joint's name, or for a joint with several
 /// coordinates its name with a suffix (see coordinate_suffixes).

@@ -7,12 +7,12 @@
 #include <string_view>
 #include <vector>
 
+#include "analysis/modes.h"
 #include "flexarm/math/pose.h"
 #include "flexarm/scene/scene_description.h"
 #include "flexarm/simulation/observables.h"
 #include "integrators/stepper.h"
 #include "model/model_builder.h"
-#include "solver/modes.h"
 
 namespace flexarm {
 

@@ -1,5 +1,5 @@
 // Natural modes of mechanisms whose frequencies are known in closed form or by counting.
-#include "solver/modes.h"
+#include "analysis/modes.h"
 
 #include <gtest/gtest.h>
 
@@ -37,6 +37,21 @@ TEST(NaturalModes, InvertedPendulumGrows) {
   EXPECT_EQ(modes[0].frequency, 0);
   EXPECT_NEAR(modes[0].rate, std::sqrt(2.0 * 9.81 * 0.5 / (0.1 + 2.0 * 0.25)), 1e-9);
   EXPECT_LT(modes[0].damping_ratio(), 0);
+}
+
+// What rests in a stop swings on its penalty, which the step in use decides.
+TEST(NaturalModes, OnAStop) {
+  SceneBuilder builder;
+  builder.body("block", 2, Vector3::Zero(), Matrix3::Identity());
+  builder.joint("rail", scene::JointKind::Prismatic, "world", "block").limits = scene::JointLimits{-1, 1};
+  const Model model = build_model(builder.scene);
+  State state = initial_state(model);
+  state.released[0].displacement[0] = 1.1;
+  for (const double contact_time : {1e-2, 0.3}) {
+    const std::vector<Mode> modes = natural_modes(model, state, 1, contact_time);
+    ASSERT_EQ(modes.size(), 1u);
+    EXPECT_NEAR(std::hypot(2 * kPi * modes[0].frequency, modes[0].rate) * contact_time, kPi, 1e-9);
+  }
 }
 
 // A free beam has six rigid motions, and every node of a motion moves.

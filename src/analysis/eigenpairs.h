@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "linearised_motion.h"
+#include "analysis/linearised_motion.h"
 
 namespace flexarm {
 

@@ -1,4 +1,4 @@
-#include "eigenpairs.h"
+#include "analysis/eigenpairs.h"
 
 #include <algorithm>
 #include <numeric>

@@ -6,6 +6,7 @@
 
 #include "model/model.h"
 #include "model/state.h"
+#include "schemes/scheme.h"
 
 namespace flexarm {
 
@@ -36,7 +37,9 @@ struct Mode {
 ///
 /// Without damping a motion gives one mode, and of the two that belong to a divergence the growing one; with damping, a
 /// motion that does not oscillate gives two.
+/// `contact_time`: of touched stops [s].
 /// @throws std::runtime_error if the problem cannot be solved.
-std::vector<Mode> natural_modes(const Model& model, const State& state, int count);
+std::vector<Mode> natural_modes(const Model& model, const State& state, int count,
+                                double contact_time = Scheme().contact_time);
 
 }  // namespace flexarm

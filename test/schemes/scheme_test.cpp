@@ -1,8 +1,8 @@
 // The table of schemes.
-#include "integrators/scheme.h"
+#include "schemes/scheme.h"
 
+#include "flexarm/schemes/integrator_description.h"
 #include "model/model_builder.h"
-#include "scene/integrator_options.h"
 
 #include <set>
 #include <string>
@@ -20,7 +20,7 @@ TEST(Schemes, NamesAreFoundAndUnique) {
     EXPECT_EQ(find_scheme(scheme.name)->name, scheme.name);
     EXPECT_FALSE(scheme.description.empty());
   }
-  const std::vector<std::string_view>& allowed = scene::scheme_names();
+  const std::vector<std::string_view>& allowed = scheme_names();
   names.insert("auto");
   EXPECT_EQ(names, std::set<std::string_view>(allowed.begin(), allowed.end()));
 }
@@ -45,13 +45,13 @@ TEST(Schemes, AreConsistent) {
   }
 }
 
-scene::IntegratorDescription integrator(const std::string& scheme) {
-  scene::IntegratorDescription description;
+IntegratorDescription integrator(const std::string& scheme) {
+  IntegratorDescription description;
   description.scheme = scheme;
   return description;
 }
 
-void expect_refused(const scene::IntegratorDescription& description, const std::string& what) {
+void expect_refused(const IntegratorDescription& description, const std::string& what) {
   try {
     make_scheme(description);
     ADD_FAILURE() << "accepted: " << what;
@@ -61,15 +61,15 @@ void expect_refused(const scene::IntegratorDescription& description, const std::
 }
 
 TEST(MakeScheme, TakesOptions) {
-  scene::IntegratorDescription hht = integrator("hht2");
+  IntegratorDescription hht = integrator("hht2");
   hht.alpha = -0.1;
   EXPECT_DOUBLE_EQ(make_scheme(hht).gamma, 0.6);
   EXPECT_DOUBLE_EQ(make_scheme(hht).beta, 0.3025);
-  scene::IntegratorDescription newmark = integrator("newmark");
+  IntegratorDescription newmark = integrator("newmark");
   newmark.beta = 0.3, newmark.gamma = 0.6;
   EXPECT_EQ(make_scheme(newmark).beta, 0.3);
   EXPECT_EQ(make_scheme(newmark).order, 1);
-  scene::IntegratorDescription automatic = integrator("auto");
+  IntegratorDescription automatic = integrator("auto");
   automatic.rho_infinity = 0.9;
   EXPECT_EQ(make_scheme(automatic).name, "edmc2");
   automatic.rho_infinity = 1;
@@ -78,7 +78,7 @@ TEST(MakeScheme, TakesOptions) {
 
 TEST(MakeScheme, RefusesOptionsOfOthers) {
   expect_refused(integrator("rk4"), "unknown integration scheme 'rk4'");
-  scene::IntegratorDescription description = integrator("em");
+  IntegratorDescription description = integrator("em");
   description.alpha = -0.1;
   expect_refused(description, "alpha: scheme 'em' does not have this option");
   description = integrator("em");
@@ -96,10 +96,10 @@ TEST(MakeScheme, RefusesOptionsOfOthers) {
 }
 
 TEST(WithScheme, ForgetsWhatDoesNotSuit) {
-  scene::IntegratorDescription description = integrator("hht2");
+  IntegratorDescription description = integrator("hht2");
   description.alpha = -0.1;
   description.interpolation = Interpolation::Total;
-  const scene::IntegratorDescription other = with_scheme(description, "m1");
+  const IntegratorDescription other = with_scheme(description, "m1");
   EXPECT_EQ(other.scheme, "m1");
   EXPECT_FALSE(other.alpha);
   EXPECT_EQ(other.interpolation, Interpolation::Total);

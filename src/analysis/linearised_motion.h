@@ -6,8 +6,8 @@
 
 #include <Eigen/SparseCore>
 
+#include "analysis/modes.h"
 #include "integrators/step_system.h"
-#include "solver/modes.h"
 #include "solver/sparse_tangent.h"
 
 namespace flexarm {
@@ -26,9 +26,10 @@ class LinearisedMotion {
   static constexpr double kRoundOff = 64 * std::numeric_limits<double>::epsilon();
   using Matrix = Eigen::Map<const Eigen::SparseMatrix<double>>;
 
-  /// About the configuration of `state`, under the loads at time 0. Both must outlive this.
+  /// About the configuration of `state`, under the loads at time 0. Both must outlive this. `contact_time`: of stops
+  /// (Scheme::contact_time) [s].
   /// @throws std::runtime_error if the stiffness is not finite.
-  LinearisedMotion(const Model& model, const State& state);
+  LinearisedMotion(const Model& model, const State& state, double contact_time);
 
   int unknowns() const { return stiffness_.unknowns(); }
   /// Motions that no multiplier of a loop holds.
@@ -61,6 +62,7 @@ class LinearisedMotion {
 
   const Model& model_;
   const State& state_;
+  const double contact_time_;
   StepSystem system_;
   const DegreesOfFreedom& dof_;
   const SparseTangent& stiffness_;

@@ -1,12 +1,9 @@
 #pragma once
 /// What the elements need to know of a time integration scheme.
 
-#include "flexarm/scene/scene_description.h"
+#include "flexarm/schemes/integrator_description.h"
 
 namespace flexarm {
-
-using scene::Interpolation;
-using scene::WeakForm;
 
 /// Where in a step the stress acts, and how the material moment is turned into space.
 enum class StressRule {
@@ -32,7 +29,7 @@ enum class RotationRule {
 
 /// Which generalised shape functions test the moment rows of the EM family; they stay the same during the iteration ...
 enum class MidFunctions {
-  Explicit,  ///< ... those of the middle that the velocities at the begin foresee
+  Explicit,  ///< ... those of the middle that the velocities at the beginning foresee
   Symmetric  ///< or not: the average of both ends, which makes the step symmetric in time
 };
 
@@ -70,6 +67,12 @@ struct TimeRule {
   bool cayley_interpolation = false;  ///< increments interpolated tangent-scaled (STD), with Interpolation::Incremental
   WeakForm weak_form = WeakForm::Spin;
 
+  /// Hilber, Hughes and Taylor's beta and gamma, of second order with the largest dissipation of high frequencies.
+  void set_alpha(double value) {
+    alpha = value;
+    gamma = 0.5 - alpha;
+    beta = 0.25 * (1 - alpha) * (1 - alpha);
+  }
   /// True for the schemes whose joints use the incremental maps N_Delta; false: N_delta at t_{n+1}.
   bool is_incremental() const { return stress != StressRule::EndPoint; }
   /// v_1 = velocity_factor() Delta r / h - (velocity_factor() - 1) v_0 (conserving schemes).

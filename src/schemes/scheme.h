@@ -5,18 +5,34 @@
 #include <string_view>
 #include <vector>
 
-#include "elements/time_rule.h"
+#include "schemes/time_rule.h"
 
 namespace flexarm {
 
-/// A scheme by name: its rule for the elements, and what it claims.
+/// Spectral radius at infinite frequency of the dissipative schemes where a scene does not say it.
+constexpr double kDefaultRho = 0.8;
+
+/// Steps that a contact with a stop lasts.
+constexpr double kContactSteps = 10;
+
+/// Options of <integrator> that only some schemes take.
+struct SchemeOptions {
+  bool beta = false, gamma = false, alpha = false, rho_infinity = false;
+  bool interpolation = false;  ///< others than the local one
+  bool iterative = false;      ///< among them the one from iterate to iterate
+  bool additive = false;       ///< WeakForm::Additive
+};
+
+/// A scheme by name: its rule for the elements, what it claims, and what a scene may say of it.
 struct Scheme : TimeRule {
-  std::string_view name;
+  std::string_view name, description;
   bool conserves_energy = false, conserves_momenta = false;
   int order = 2;                   ///< in time
   bool scales_velocities = false;  ///< closes the energy balance after the step (beyond.md 1.2)
   bool is_composition = false;     ///< five sub-steps of a symmetric second-order step: order four
-  std::string_view description;
+  /// Of what touches a stop [s]: resolved by the scene's steps, and short to the eye.
+  double contact_time = kContactSteps * IntegratorDescription().step;
+  SchemeOptions options;
 };
 
 /// All schemes with their default options, the default scheme first.
@@ -25,9 +41,11 @@ const std::vector<Scheme>& schemes();
 std::optional<Scheme> find_scheme(std::string_view name);
 /// The rule by which a scheme's interpolation finds equilibria: forces at the configuration, nothing moves.
 Scheme statics_of(Scheme scheme);
+/// Those of the table that a name in a scene may mean: several for "auto", none if unknown.
+std::vector<const Scheme*> meanings(std::string_view name);
 /// With the options of <integrator>; "auto" becomes edmc2 where rho_infinity asks for numerical dissipation.
 /// @throws ModelError naming the option that does not suit the scheme, or an unknown scheme.
-Scheme make_scheme(const scene::IntegratorDescription& integrator);
+Scheme make_scheme(const IntegratorDescription& integrator);
 
 /// Coefficients for a spectral radius rho_infinity in [0, 1] at infinite frequency, of first or second order, for steps
 /// of the given length [s].

@@ -1,4 +1,4 @@
-#include "linearised_motion.h"
+#include "analysis/linearised_motion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,19 +33,25 @@ Eigen::Matrix<double, 6 * Nodes, 6 * Nodes> material_stiffness(const BeamElement
 }
 
 /// Slope of a coordinate's effort against its rate, at rest.
-double damping_of(const Coordinate& coordinate, const Released& released) {
-  double damping = coordinate.damping;
-  if (stop_energy(coordinate, released.displacement[coordinate.component % 3]) > 0)
-    damping += coordinate.limit->damping;
-  return damping;
+double damping_of(const Coordinate& coordinate, const StopPenalty& stop, const Released& released) {
+  const bool touches = stop_energy(coordinate, stop, released.displacement[coordinate.component % 3]) > 0;
+  return coordinate.damping + (touches ? stop.damping : 0);
+}
+
+/// Equilibrium of exact forces.
+Scheme rest(double contact_time) {
+  Scheme scheme = statics_of(*find_scheme("newmark"));
+  scheme.contact_time = contact_time;
+  return scheme;
 }
 
 }  // namespace
 
-LinearisedMotion::LinearisedMotion(const Model& model, const State& state)
+LinearisedMotion::LinearisedMotion(const Model& model, const State& state, double contact_time)
     : model_(model),
       state_(state),
-      system_(model, statics_of(*find_scheme("newmark")), BackendChoice::Matrix),
+      contact_time_(contact_time),
+      system_(model, rest(contact_time), BackendChoice::Matrix),
       dof_(system_.degrees_of_freedom()),
       stiffness_(static_cast<const SparseTangent&>(system_.tangent())),
       damping_(model, dof_),
@@ -76,9 +82,7 @@ bool LinearisedMotion::is_damped() const {
 }
 
 bool LinearisedMotion::is_circulatory() const {
-  const auto load_circulates = [](const NodalLoad& load) {
-    return load.frame == scene::LoadFrame::Follower || !load.moment.isZero(0);
-  };
+  const auto load_circulates = [](const NodalLoad& load) { return load.follows || !load.moment.isZero(0); };
   // The moment on a free rotation has axes that stand still while it turns.
   const auto effort_circulates = [&](std::size_t i) {
     const Coordinate& coordinate = model_.coordinates[i];
@@ -180,7 +184,7 @@ void LinearisedMotion::assemble_damping() {
   for (const Coordinate& coordinate : model_.coordinates) {
     const int count = released_count(model_.joints[coordinate.joint].kind), k = coordinate.component;
     damping_.diagonal_block(dof_.variable_of_joint(coordinate.joint))[k * count + k] +=
-        damping_of(coordinate, state_.released[coordinate.joint]);
+        damping_of(coordinate, stop_penalty(coordinate, contact_time_), state_.released[coordinate.joint]);
   }
   fold(damping_);
 }

@@ -1,12 +1,12 @@
-#include "solver/modes.h"
+#include "analysis/modes.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <tuple>
 
-#include "eigenpairs.h"
-#include "linearised_motion.h"
+#include "analysis/eigenpairs.h"
+#include "analysis/linearised_motion.h"
 
 namespace flexarm {
 namespace {
@@ -104,8 +104,8 @@ double Mode::damping_ratio() const {
   return rate == 0 ? 0 : -rate / std::hypot(2 * kPi * frequency, rate);
 }
 
-std::vector<Mode> natural_modes(const Model& model, const State& state, int count) {
-  const LinearisedMotion system(model, state);
+std::vector<Mode> natural_modes(const Model& model, const State& state, int count, double contact_time) {
+  const LinearisedMotion system(model, state, contact_time);
   // More modes than asked for, so that the scale is that of elastic ones where there are free motions.
   const int computed = std::min(count + kExtraModes, system.freedoms());
   if (count <= 0 || computed <= 0) return {};

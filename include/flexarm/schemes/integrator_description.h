@@ -1,0 +1,53 @@
+#pragma once
+/// Which time integration scheme a scene asks for, with which options and settings of Newton's method.
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace flexarm {
+
+/// How section rotations are interpolated inside a beam element (docs/theory.md). All but Local are for study.
+enum class Interpolation {
+  Local,        ///< rotation vectors relative to a frame that moves with the element: strain-invariant
+  Total,        ///< from the undeformed state; nodes turn by less than 2 pi
+  Incremental,  ///< from the last step
+  Iterative     ///< from the last Newton iterate
+};
+
+/// To which virtual rotations the moment rows are conjugate.
+enum class WeakForm {
+  Spin,     ///< spatial spins
+  Additive  ///< total rotation vectors: the static tangent is symmetric
+};
+
+/// <integrator>. Options that are empty have the scheme's own values, in parentheses; docs/schemes.md says which scheme
+/// takes which.
+struct IntegratorDescription {
+  std::string scheme = "auto";                 ///< one of scheme_names()
+  std::optional<Interpolation> interpolation;  ///< (local)
+  std::optional<WeakForm> weak_form;           ///< (spin)
+  std::optional<double> beta, gamma;           ///< of Newmark's rule, > 0 (1/4, 1/2)
+  std::optional<double> alpha;                 ///< of Hilber, Hughes and Taylor's, in [-1/3, 0] (-0.05)
+  double step = 1e-3;                          ///< [s]
+  double tolerance = 1e-8;                     ///< on the Newton update, relative to the scene's length and to 1 rad
+  int max_iterations = 20;
+  int max_halvings = 5;
+  std::optional<double> rho_infinity;  ///< of numerical dissipation: spectral radius at infinite frequency (0.8)
+};
+
+/// Names of the schemes that a scene may ask for, "auto" first.
+const std::vector<std::string_view>& scheme_names();
+
+/// An option that the scheme does not have, or with a value that it does not take.
+struct OptionConflict {
+  std::string attribute, message;
+};
+/// Empty if all options that are set suit the scheme.
+std::vector<OptionConflict> option_conflicts(const IntegratorDescription& integrator);
+
+/// The same description with another scheme; options that this one does not take are forgotten.
+IntegratorDescription with_scheme(IntegratorDescription integrator, const std::string& scheme);
+
+}  // namespace flexarm

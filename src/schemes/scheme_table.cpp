@@ -1,0 +1,152 @@
+// One row for each scheme: its name, what it is made of, what is said of it.
+#include "schemes/scheme.h"
+
+namespace flexarm {
+namespace {
+
+constexpr double kDefaultAlpha = -0.05;
+
+/// Something that schemes have in common; a row lists what its scheme is made of, the family first.
+using Trait = void (*)(Scheme&);
+
+// ---------------------------------------------------------------- families
+
+void energy_momentum(Scheme& scheme) {
+  scheme.damping_relaxation = IntegratorDescription().step;
+  scheme.conserves_momenta = true;
+}
+
+/// Rotary inertia at the mass points, moments by T(omega).
+void exponential(Scheme& scheme) {
+  scheme.stress = StressRule::ExponentialMoment;
+  scheme.beam_rotation = scheme.body_rotation = RotationRule::Unscaled;
+  scheme.nodal_rotary_inertia = false;
+  scheme.conserves_momenta = true;
+  scheme.options.interpolation = scheme.options.iterative = true;
+}
+
+/// The same by S(w).
+void cayley(Scheme& scheme) {
+  exponential(scheme);
+  scheme.stress = StressRule::CayleyMoment;
+  scheme.beam_rotation = scheme.body_rotation = RotationRule::TangentScaled;
+}
+
+void end_point(Scheme& scheme) {
+  scheme.stress = StressRule::EndPoint;
+  scheme.beam_rotation = scheme.body_rotation = RotationRule::Unscaled;
+  scheme.nodal_rotary_inertia = false;
+  scheme.options.interpolation = scheme.options.iterative = scheme.options.additive = true;
+}
+
+// ---------------------------------------------------------------- energy
+
+/// Bodies take the tangent-scaled rule: it is what the increments conjugate to the residual ask for.
+template <EnergyCorrection correction>
+void corrected(Scheme& scheme) {
+  scheme.correction = correction;
+  scheme.body_rotation = RotationRule::TangentScaled;
+  scheme.conserves_energy = true;
+}
+
+void scaled(Scheme& scheme) {
+  scheme.scales_velocities = scheme.conserves_energy = true;
+}
+
+template <int order>
+void dissipative(Scheme& scheme) {
+  scheme.dissipation = numerical_dissipation(order, kDefaultRho, IntegratorDescription().step);
+  scheme.order = order;
+  scheme.conserves_energy = false;
+  scheme.options.rho_infinity = true;
+}
+
+void backward(Scheme& scheme) {
+  scheme.backward_velocity = true;
+  scheme.order = 1;
+}
+
+/// Its interpolation is a part of its energy balance: a scene cannot choose another one.
+void cayley_interpolated(Scheme& scheme) {
+  scheme.interpolation = Interpolation::Incremental;
+  scheme.cayley_interpolation = scheme.conserves_energy = true;
+  scheme.options.interpolation = scheme.options.iterative = false;
+}
+
+// ---------------------------------------------------------------- time
+
+void symmetric(Scheme& scheme) {
+  scheme.mid_functions = MidFunctions::Symmetric;
+}
+
+void composed(Scheme& scheme) {
+  scheme.is_composition = true;
+  scheme.order = 4;
+  scheme.damping_relaxation = 0;  // its effect is of second order in the scene's step, not in those composed
+}
+
+void newmark(Scheme& scheme) {
+  scheme.options.beta = scheme.options.gamma = true;
+}
+
+template <HhtForm form>
+void hht(Scheme& scheme) {
+  scheme.hht = form;
+  scheme.set_alpha(kDefaultAlpha);
+  scheme.options.alpha = true;
+  if (form == HhtForm::Kinematics) scheme.options.iterative = false;  // it follows one configuration, not two
+}
+
+struct Row {
+  std::string_view name;
+  std::vector<Trait> traits;
+  std::string_view description;
+};
+
+std::vector<Scheme> build_table() {
+  constexpr Trait multiplier = corrected<EnergyCorrection::Multiplier>;
+  constexpr Trait axial = corrected<EnergyCorrection::AxialBeta>, full = corrected<EnergyCorrection::FullBeta>;
+  const Row rows[] = {
+      {"em", {energy_momentum, multiplier}, "invariant energy-momentum scheme, one multiplier per element"},
+      {"em0", {energy_momentum}, "its base, without the multiplier: momenta exact, energy approximate"},
+      {"em_scaled", {energy_momentum, scaled}, "em0 and a scaling of the velocities that closes the energy"},
+      {"em_symmetric", {energy_momentum, multiplier, symmetric}, "em, symmetric in time"},
+      {"em4",
+       {energy_momentum, multiplier, symmetric, composed},
+       "fourth order: five steps of em_symmetric, one of them backwards"},
+      {"edmc1", {energy_momentum, multiplier, dissipative<1>}, "em with numerical dissipation of first order"},
+      {"edmc2", {energy_momentum, multiplier, dissipative<2>}, "em with numerical dissipation of second order"},
+      {"m1", {exponential}, "momentum-conserving scheme M1 (Muñoz 2004, sec. 6.3)"},
+      {"m2", {exponential, backward}, "momentum-conserving, dissipative scheme M2 (Muñoz 2004, sec. 6.3)"},
+      {"std",
+       {cayley, cayley_interpolated},
+       "Simo, Tarnow and Doblaré's energy-momentum scheme (Muñoz 2004, sec. 6.2)"},
+      {"beta1", {exponential, axial}, "M1 with its energy corrected (Muñoz 2004, eq. 6.22)"},
+      {"beta2", {cayley, axial}, "STD, local interpolation, energy corrected (eq. 6.26)"},
+      {"beta1_repaired", {exponential, full}, "beta1, correction by forces and moments"},
+      {"beta2_repaired", {cayley, full}, "beta2, correction by forces and moments"},
+      {"newmark", {end_point, newmark}, "Newmark's rule (Muñoz 2004, ch. 4)"},
+      {"hht1",
+       {end_point, hht<HhtForm::AdditiveForces>},
+       "Hilber-Hughes-Taylor, additive forces interpolated (eq. 4.10)"},
+      {"hht2", {end_point, hht<HhtForm::SpinForces>}, "Hilber-Hughes-Taylor, spin forces interpolated (eq. 4.11)"},
+      {"hht3", {end_point, hht<HhtForm::Kinematics>}, "Hilber-Hughes-Taylor, kinematics interpolated (eq. 4.12, 4.13)"},
+  };
+  std::vector<Scheme> table;
+  for (const Row& row : rows) {
+    Scheme& scheme = table.emplace_back();
+    scheme.name = row.name;
+    scheme.description = row.description;
+    for (const Trait trait : row.traits) trait(scheme);
+  }
+  return table;
+}
+
+}  // namespace
+
+const std::vector<Scheme>& schemes() {
+  static const std::vector<Scheme> table = build_table();
+  return table;
+}
+
+}  // namespace flexarm
