@@ -107,3 +107,9 @@ struct Eigen::NumTraits<flexarm::Pack> : Eigen::GenericNumTraits<double> {
     MulCost = 1
   };
 };
+
+// A pack aligns itself; Eigen would ask for 16 bytes, which is less and refused by clang.
+template <int Size>
+struct Eigen::internal::compute_default_alignment<flexarm::Pack, Size> {
+  enum { value = 0 };
+};
