@@ -18,6 +18,7 @@
 #include "math/quadrature.h"
 #include "math/simd.h"
 #include "math/so3.h"
+#include "simulation/inside.h"
 #include "solver/sparse_tangent.h"
 
 namespace flexarm {
@@ -51,8 +52,8 @@ struct StepUnderWay {
 
   StepUnderWay(const std::string& scheme, int elements, int order, BackendChoice backend = BackendChoice::Fastest)
       : simulation(cantilever_in_motion(scheme, elements, order)),
-        system(simulation.model(), find_scheme(scheme).value(), backend) {
-    system.begin(simulation.state(), kStep, Guess::Extrapolated);
+        system(model_of(simulation), find_scheme(scheme).value(), backend) {
+    system.begin(state_of(simulation), kStep, Guess::Extrapolated);
   }
 };
 
@@ -64,15 +65,15 @@ void evaluate(benchmark::State& state, const std::string& scheme, int elements, 
 
 void begin_step(benchmark::State& state, int order) {
   StepUnderWay step("em", kElements, order);
-  for (auto _ : state) step.system.begin(step.simulation.state(), kStep, Guess::Extrapolated);
+  for (auto _ : state) step.system.begin(state_of(step.simulation), kStep, Guess::Extrapolated);
   count_elements(state, kElements);
 }
 
 void gather(benchmark::State& state, int order) {
   const Simulation simulation = cantilever_in_motion("em", kElements, order);
-  const DegreesOfFreedom dof(simulation.model());
-  ReducedResidual rows(simulation.model(), dof);
-  SparseTangent tangent(simulation.model(), dof);
+  const DegreesOfFreedom dof(model_of(simulation));
+  ReducedResidual rows(model_of(simulation), dof);
+  SparseTangent tangent(model_of(simulation), dof);
   Eigen::VectorXd residual(dof.unknowns);
   for (auto _ : state) {
     rows.set_zero();

@@ -12,10 +12,11 @@
 #include <utility>
 
 #include "bench/scenes.h"
+#include "building/model_builder.h"
 #include "flexarm/scene/urdf_reader.h"
-#include "flexarm/simulation/observables.h"
 #include "integrators/stepper.h"
-#include "model/model_builder.h"
+#include "schemes/scheme.h"
+#include "simulation/observables.h"
 
 namespace flexarm {
 namespace {

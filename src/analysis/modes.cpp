@@ -7,13 +7,13 @@
 
 #include "analysis/eigenpairs.h"
 #include "analysis/linearised_motion.h"
+#include "math/pi.h"
 
 namespace flexarm {
 namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kPi = 3.14159265358979323846;
 /// Modes computed beyond those asked for.
 constexpr int kExtraModes = 12;
 
@@ -99,10 +99,6 @@ bool comes_before(const Mode& a, const Mode& b) {
 }
 
 }  // namespace
-
-double Mode::damping_ratio() const {
-  return rate == 0 ? 0 : -rate / std::hypot(2 * kPi * frequency, rate);
-}
 
 std::vector<Mode> natural_modes(const Model& model, const State& state, int count, double contact_time) {
   const LinearisedMotion system(model, state, contact_time);

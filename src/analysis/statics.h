@@ -1,7 +1,8 @@
 #pragma once
 /// Equilibria under gravity and loads.
 
-#include "integrators/step_result.h"
+#include "flexarm/model/results.h"
+#include "integrators/step_settings.h"
 #include "model/model.h"
 #include "model/state.h"
 #include "schemes/scheme.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bench/scenes.h"
+#include "simulation/inside.h"
 
 namespace flexarm::bench {
 namespace {
@@ -19,7 +20,7 @@ Measured<InvariantDrift> invariant_drift(const Variant& variant, bool quick) {
   Simulation tree = simulation(free_tree(), variant, 0.01);
   const Vector3 linear = tree.momentum(), angular = tree.angular_momentum();
   const Energies begin = tree.energies();
-  double lowest = begin.total(), energy_scale = lowest, linear_scale = std::sqrt(2 * total_mass(tree.model()));
+  double lowest = begin.total(), energy_scale = lowest, linear_scale = std::sqrt(2 * total_mass(model_of(tree)));
   linear_scale *= std::sqrt(begin.kinetic);
   InvariantDrift drift;
   const std::optional<Failure> failure = run(tree, quick ? 100 : 2000, [&](const StepResult&) {

@@ -1,6 +1,7 @@
 #include "bench/dissipation.h"
 
 #include "bench/scenes.h"
+#include "simulation/inside.h"
 
 namespace flexarm::bench {
 namespace {
@@ -23,16 +24,16 @@ double slope(const std::vector<double>& y) {
 /// a velocity omega v [m/s].
 Measured<std::vector<double>> energies_of_decay(const Variant& variant, double omega, double u, double v, int steps) {
   Simulation bar = simulation(axial_oscillator(omega), variant, kStep);
-  const int tip = std::get<BeamGroup<2>>(bar.model().beams).elements.front().nodes[1];
-  State state = bar.state();
+  const int tip = std::get<BeamGroup<2>>(model_of(bar).beams).elements.front().nodes[1];
+  State state = state_of(bar);
   state.nodes[tip].position.x() += u;
   state.nodes[tip].velocity.x() = omega * v;
   state.nodes[tip].acceleration.x() = -omega * omega * u;
   for (StrainMemory& memory : state.strain_memory) memory.rate[0] = omega * v;  // of the axial strain: 1 m long
-  bar.restore(state);
+  restore(bar, state);
   Measured<std::vector<double>> out;
   out.failure = run(bar, steps, [&](const StepResult&) {
-    const NodeState& node = bar.state().nodes[tip];
+    const NodeState& node = state_of(bar).nodes[tip];
     const double displacement = node.position.x() - 1, velocity = node.velocity.x() / omega;
     out.value.push_back(displacement * displacement + velocity * velocity);
   });

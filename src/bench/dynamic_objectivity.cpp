@@ -5,6 +5,7 @@
 
 #include "bench/scenes.h"
 #include "math/so3.h"
+#include "simulation/inside.h"
 
 namespace flexarm::bench {
 namespace {
@@ -16,9 +17,9 @@ struct Twisting {
 /// The beam's nodes and its mass points spin with `mean` and with -+ `relative` at its ends [rad/s].
 Measured<std::vector<Twisting>> twisting(const Variant& variant, double mean, double relative) {
   Simulation bar = simulation(free_bar(), variant, 0.1);
-  const auto& element = std::get<BeamGroup<2>>(bar.model().beams).elements.front();
+  const auto& element = std::get<BeamGroup<2>>(model_of(bar).beams).elements.front();
   const int first = element.nodes[0], last = element.nodes[1];
-  State state = bar.state();
+  State state = state_of(bar);
   state.nodes[first].angular_velocity.x() = mean - relative;
   state.nodes[last].angular_velocity.x() = mean + relative;
   for (std::size_t k = 0; k < element.mass_points.size() && !variant.scheme.nodal_rotary_inertia; ++k) {
@@ -26,10 +27,10 @@ Measured<std::vector<Twisting>> twisting(const Variant& variant, double mean, do
     state.mass_points[element.first_mass_point + k].angular_velocity.x() = mean + relative * (shape[1] - shape[0]);
   }
   for (StrainMemory& memory : state.strain_memory) memory.rate[3] = 2 * relative;  // of the twist: 1 m long
-  bar.restore(state);
+  restore(bar, state);
   Measured<std::vector<Twisting>> out;
   out.failure = run(bar, 12, [&](const StepResult&) {
-    const State& now = bar.state();
+    const State& now = state_of(bar);
     const Quaternion between = now.nodes[first].orientation.conjugate() * now.nodes[last].orientation;
     Twisting twisting;
     twisting.twist = so3::log(between).x();

@@ -1,76 +1,60 @@
 #include "bench/effort_schedule.h"
 
 #include <algorithm>
-#include <fstream>
-#include <regex>
-#include <sstream>
 #include <stdexcept>
 
 #include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
 
 namespace flexarm::bench {
 namespace {
 
-/// The words of `key: value` or `key: [value, ...]` in a line; none where the key is missing.
-std::vector<std::string> values_of(const std::string& line, const std::string& key) {
-  std::smatch match;
-  const std::regex pattern("\\b" + key + ": *(?:\\[([^\\]]*)\\]|([^,}\\s]+))");
-  if (!std::regex_search(line, match, pattern)) return {};
-  std::istringstream words(std::regex_replace(match[1].str() + match[2].str(), std::regex(","), " "));
-  return {std::istream_iterator<std::string>(words), {}};
+template <class T>
+T value_of(const YAML::Node& command, const char* key, T otherwise) {
+  return command[key] ? command[key].as<T>() : otherwise;
 }
 
-double number(const std::string& word) {
-  std::size_t used = 0;
-  const double value = std::stod(word, &used);
-  if (used != word.size()) throw std::invalid_argument(word);
-  return value;
-}
-
-double number_of(const std::string& line, const std::string& key) {
-  const std::vector<std::string> values = values_of(line, key);
-  if (values.size() != 1) throw std::invalid_argument(key);
-  return number(values[0]);
-}
-
-double number_of(const std::string& line, const std::string& key, double otherwise) {
-  return values_of(line, key).empty() ? otherwise : number_of(line, key);
-}
-
-void append_pulses(const std::string& line, std::vector<EffortPulse>& pulses) {
-  const std::vector<std::string> names = values_of(line, "names"), efforts = values_of(line, "efforts");
-  if (names.empty() || names.size() != efforts.size()) throw std::invalid_argument("names");
-  const double time = number_of(line, "time"), duration = number_of(line, "duration"),
-               repeat = number_of(line, "repeat", 1), every = number_of(line, "every", 0);
+void append_pulses(const YAML::Node& command, std::vector<EffortPulse>& pulses) {
+  const auto names = command["names"].as<std::vector<std::string>>();
+  const auto efforts = command["efforts"].as<std::vector<double>>();
+  if (names.empty() || names.size() != efforts.size())
+    throw YAML::RepresentationException(command.Mark(), "one effort for each name");
+  const double time = command["time"].as<double>(), duration = command["duration"].as<double>(),
+               every = value_of(command, "every", 0.0);
+  const int repeat = value_of(command, "repeat", 1);
   for (std::size_t i = 0; i < names.size(); ++i)
     for (int k = 0; k < repeat; ++k) {
       const double begin = time + k * every;
-      pulses.push_back({names[i], begin, begin + duration, number(efforts[i])});
+      pulses.push_back({names[i], begin, begin + duration, efforts[i]});
     }
+}
+
+EffortSchedule schedule_of(const YAML::Node& file, const std::string& path) {
+  EffortSchedule schedule;
+  schedule.period = value_of(file, "period", 0.0);
+  for (const YAML::Node& command : file["commands"]) {
+    try {
+      append_pulses(command, schedule.pulses);
+    } catch (const YAML::Exception& error) {
+      throw std::runtime_error(fmt::format(
+          "{}:{}: expected {{time: s, names: [joint, ...], efforts: [N m, ...], duration: s}}, got '{}' ({})", path,
+          command.Mark().line + 1, YAML::Dump(command), error.msg));
+    }
+  }
+  if (schedule.pulses.empty()) throw std::runtime_error(fmt::format("{}: expected at least one command", path));
+  return schedule;
 }
 
 }  // namespace
 
-std::vector<EffortPulse> read_effort_schedule(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) throw std::runtime_error(fmt::format("cannot read '{}'", path));
-  std::vector<EffortPulse> pulses;
-  int number = 0;
-  for (std::string line; std::getline(file, line);) {
-    ++number;
-    const std::size_t first = line.find_first_not_of(' ');
-    if (first == std::string::npos || line[first] != '-') continue;
-    try {
-      append_pulses(line, pulses);
-    } catch (const std::logic_error& error) {
-      throw std::runtime_error(
-          fmt::format("{}:{}: expected {{time: s, names: [joint, ...], efforts: [N m, ...], duration: s}} on one line, "
-                      "got '{}' ({})",
-                      path, number, line.substr(first), error.what()));
-    }
+EffortSchedule read_effort_schedule(const std::string& path) {
+  try {
+    return schedule_of(YAML::LoadFile(path), path);
+  } catch (const YAML::BadFile&) {
+    throw std::runtime_error(fmt::format("cannot read '{}'", path));
+  } catch (const YAML::Exception& error) {
+    throw std::runtime_error(fmt::format("{}:{}: {}", path, error.mark.line + 1, error.msg));
   }
-  if (pulses.empty()) throw std::runtime_error(fmt::format("{}: expected at least one command", path));
-  return pulses;
 }
 
 EffortPlayer::EffortPlayer(const std::vector<EffortPulse>& pulses, const Simulation& simulation) {

@@ -15,10 +15,15 @@ struct EffortPulse {
   double effort;      ///< [N or N m]
 };
 
-/// The commands of a file like config/demo_commands.yaml, each on one line:
-/// `- {time: s, names: [joint, ...], efforts: [N m or N, ...], duration: s, repeat: times, every: s}`.
+struct EffortSchedule {
+  double period = 0;  ///< after which scripts/demo_commands.py starts it again [s]; 0: none
+  std::vector<EffortPulse> pulses;
+};
+
+/// Reads a file like config/demo_commands.yaml: `period` and a list of `commands`
+/// `{time: s, names: [joint, ...], efforts: [N m or N, ...], duration: s, repeat: times, every: s}`.
 /// @throws std::runtime_error naming the file and the line that is not understood.
-std::vector<EffortPulse> read_effort_schedule(const std::string& path);
+EffortSchedule read_effort_schedule(const std::string& path);
 
 /// Commands the pulses of one simulation. A step's effort is the mean of the schedule over it, which has the schedule's
 /// impulse whatever the step, and is the schedule itself where every pulse begins and ends with a step.

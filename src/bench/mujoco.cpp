@@ -22,11 +22,11 @@ std::vector<PeerRun> mujoco_runs(PeerProblem, const std::vector<double>&, bool, 
 #include <mujoco/mujoco.h>
 
 #include "bench/processor_time.h"
+#include "math/pi.h"
 
 namespace flexarm::bench {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 /// Of the hub, over the beam's inertia about it.
 constexpr double kHubRatio = 1e6;
 /// Angle between segments with which a motion counts as blown up [rad].

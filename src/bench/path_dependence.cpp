@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "bench/scenes.h"
+#include "math/pi.h"
 #include "math/quadrature.h"
 #include "math/referenced_rotation.h"
 
@@ -21,7 +22,7 @@ NodeRotations target(double part) {
   NodeRotations out;
   for (int i = 0; i < kNodes; ++i) {
     const Vector3 along(0.7 + 0.3 * i, -0.4 * i, 0.5 * i), aside(0.3 * i, 0.5, -0.2);
-    out[i] = so3::exp_quaternion(Vector3(part * along + std::sin(3.141592653589793 * part) * aside));
+    out[i] = so3::exp_quaternion(Vector3(part * along + std::sin(kPi * part) * aside));
   }
   return out;
 }

@@ -109,8 +109,9 @@ SpeedRun run_speed(const std::string& folder, const SpeedProblem& problem, const
   const std::size_t probe = probe_of(scene, problem.probe);
   const int stride = quotient(problem.interval, discretisation.step, "interval");
   const int intervals = quotient(problem.until, problem.interval, "end");
-  const std::vector<EffortPulse> pulses =
-      problem.commands.empty() ? std::vector<EffortPulse>() : read_effort_schedule(folder + "/" + problem.commands);
+  const std::vector<EffortPulse> pulses = problem.commands.empty()
+                                              ? std::vector<EffortPulse>()
+                                              : read_effort_schedule(folder + "/" + problem.commands).pulses;
   SimulationOptions options;
   options.reuse_factorisation = reuse_factorisation;
   SpeedRun out;

@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include "bench/scenes.h"
-#include "flexarm/simulation/observables.h"
+#include "building/model_builder.h"
 #include "integrators/rotation_reference.h"
 #include "math/so3.h"
-#include "model/model_builder.h"
+#include "simulation/observables.h"
 
 namespace flexarm::bench {
 namespace {

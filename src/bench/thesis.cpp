@@ -8,6 +8,7 @@
 
 #include "flexarm/scene/urdf_reader.h"
 #include "flexarm/schemes/integrator_description.h"
+#include "simulation/inside.h"
 
 namespace flexarm::bench {
 namespace {
@@ -114,7 +115,7 @@ ThesisOutcome run_thesis(const std::string& scene_folder, const ThesisExample& e
     sub_steps += 1 + result.halvings;
     const double now = example.travel(simulation), moved = now - travel;
     const auto time_at = [&](double place) { return before + (simulation.time() - before) * (place - travel) / moved; };
-    for (int k = borders_between(simulation.model(), travel, now); k > 0; --k)
+    for (int k = borders_between(model_of(simulation), travel, now); k > 0; --k)
       out.crossings.push_back(simulation.time());
     const bool arrives = example.ends_at_zero && travel > 0 && now <= 0;
     if (arrives) out.arrival = time_at(0);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bench/scenes.h"
+#include "simulation/inside.h"
 
 namespace flexarm::bench {
 namespace {
@@ -32,14 +33,14 @@ std::optional<Measured<double>> time_asymmetry(const Variant& variant, bool quic
   if (variant.scheme.dissipation.any()) return std::nullopt;
   const int steps = quick ? 10 : 40;
   Simulation tree = simulation(free_tree(), variant, 0.05);
-  const State begin = tree.state();
+  const State begin = state_of(tree);
   double amplitude = 0;
   std::optional<Failure> failure =
-      run(tree, steps, [&](const StepResult&) { amplitude = std::max(amplitude, distance(tree.state(), begin)); });
+      run(tree, steps, [&](const StepResult&) { amplitude = std::max(amplitude, distance(state_of(tree), begin)); });
   if (failure) return Measured<double>{failure, 0};
-  tree.restore(reversed(tree.state()));
+  restore(tree, reversed(state_of(tree)));
   failure = run(tree, steps);
-  return Measured<double>{failure, distance(tree.state(), begin) / amplitude};
+  return Measured<double>{failure, distance(state_of(tree), begin) / amplitude};
 }
 
 }  // namespace flexarm::bench

@@ -3,10 +3,11 @@
 
 #include <fmt/format.h>
 
+#include "building/section.h"
 #include "cli/commands.h"
 #include "cli/mode_table.h"
 #include "cli/scene_input.h"
-#include "model/section.h"
+#include "simulation/inside.h"
 
 namespace flexarm::cli {
 namespace {
@@ -60,7 +61,7 @@ void print_links(const Simulation& simulation) {
   const scene::SceneDescription& scene = simulation.scene();
   for (std::size_t i = 0; i < scene.links.size(); ++i) {
     const scene::LinkDescription& link = scene.links[i];
-    const std::optional<BeamLink>& beam = simulation.model().links[i].beam;
+    const std::optional<BeamLink>& beam = model_of(simulation).links[i].beam;
     const bool is_root = link.name == scene.root_link;
     const double mass = beam ? beam->mass : link.inertial ? link.inertial->mass : 0.0;
     fmt::print("{:<24} {:<10} {:>12.6g}\n", link.name, beam ? "flexible" : is_root ? "clamped" : "rigid", mass);
@@ -88,7 +89,7 @@ void print_beams(const Simulation& simulation) {
       fmt::print("\n{:<24} {:>9} {:>11} {:>11} {:>11} {:>11} {:>11} {:>11} {:>10} {:>9}\n", "beam", "length", "EA",
                  "GA y", "GA z", "GJ", "EI y", "EI z", "mass", "elements");
     is_first = false;
-    const BeamLink& beam = *simulation.model().links[i].beam;
+    const BeamLink& beam = *model_of(simulation).links[i].beam;
     const Vector6 stiffness = section_properties(links[i].beam->section).stiffness.diagonal();
     fmt::print("{:<24} {:>9.5g}", links[i].name, beam.length);
     for (int k = 0; k < 6; ++k) fmt::print(" {:>11.5g}", stiffness[k]);

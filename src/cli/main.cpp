@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "building/model_builder.h"
 #include "cli/commands.h"
-#include "model/model_builder.h"
 
 namespace {
 

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include "simulation/csv_fields.h"
+#include "simulation/inside.h"
+#include "simulation/observables.h"
 
 namespace flexarm::cli {
 namespace {
@@ -11,8 +13,8 @@ const char* const kAxes[] = {"x", "y", "z", "rx", "ry", "rz"};
 
 ComplexVector6 frame_motion(const Simulation& simulation, const Mode& mode, const Attachment& frame) {
   ComplexVector6 motion = mode.node_motion.at(frame.node);
-  const Vector3 arm = attached_pose(simulation.state(), frame).position -
-                      attached_pose(simulation.state(), {frame.node, Pose()}).position;
+  const Vector3 arm = attached_pose(state_of(simulation), frame).position -
+                      attached_pose(state_of(simulation), {frame.node, Pose()}).position;
   motion.real().head<3>() += motion.real().tail<3>().cross(arm);
   motion.imag().head<3>() += motion.imag().tail<3>().cross(arm);
   return motion;
@@ -103,7 +105,7 @@ std::string csv_header(const Simulation& simulation, const Mode& mode) {
 
 std::vector<NamedMotion> frame_motions(const Simulation& simulation, const Mode& mode) {
   std::vector<NamedMotion> motions;
-  for (const LinkFrame& link : simulation.model().links) {
+  for (const LinkFrame& link : model_of(simulation).links) {
     if (link.frame.node >= 0) motions.push_back({link.name, frame_motion(simulation, mode, link.frame)});
     if (link.beam) motions.push_back({link.name + "/tip", frame_motion(simulation, mode, link.beam->tip)});
   }
@@ -118,9 +120,9 @@ std::vector<NamedMotion> probe_motions(const Simulation& simulation, const Mode&
   }
   std::vector<NamedMotion> motions;
   for (std::size_t i = 0; i < simulation.scene().probes.size(); ++i) {
-    const ProbePoint& point = simulation.model().probes[i];
-    const ProbeState a = probe_state(simulation.model(), simulation.state(), real, point);
-    const ProbeState b = probe_state(simulation.model(), simulation.state(), imaginary, point);
+    const ProbePoint& point = model_of(simulation).probes[i];
+    const ProbeState a = probe_state(model_of(simulation), state_of(simulation), real, point);
+    const ProbeState b = probe_state(model_of(simulation), state_of(simulation), imaginary, point);
     NamedMotion motion{simulation.scene().probes[i].name, {}};
     motion.motion.real() << a.velocity, a.angular_velocity;
     motion.motion.imag() << b.velocity, b.angular_velocity;

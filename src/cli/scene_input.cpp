@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include "cli/commands.h"
-#include "flexarm/simulation/held_joints.h"
 #include "math/parse_number.h"
 
 namespace flexarm::cli {
@@ -68,7 +67,7 @@ Simulation load_simulation(const SceneInput& input, const SimulationOptions& opt
   if (!result.scene) throw InputError(findings);
   if (!findings.empty()) fmt::print(stderr, "{}\n", findings);
   Simulation simulation(std::move(*result.scene), options);
-  for (const scene::Diagnostic& held : held_joints(simulation)) fmt::print(stderr, "{}\n", held.text());
+  for (const scene::Diagnostic& held : simulation.held_joints()) fmt::print(stderr, "{}\n", held.text());
   return simulation;
 }
 

@@ -48,37 +48,24 @@ void add_point_tangent(double weight, const PointMatrix& K, const NodalValues<No
 }  // namespace
 
 template <int Nodes>
-void additive_internal(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const NewmarkRule* rule,
-                       const PointKinematics* begin, const Vector6* strain_rates, bool with_tangent,
-                       PointKinematics* end, Vector6* new_strain_rates, ElementSystem<Nodes>& system) {
-  const ElementRotations<Nodes> rotations(nodes, false);
-  for (int k = 0; k < BeamElement<Nodes>::kStiffnessPoints; ++k) {
-    const auto& constants = element.stiffness_points[k];
-    GeneralisedShapeFunctions<Nodes> generalised;
-    const auto rotation =
-        rotations.evaluate(constants.shape, constants.derivative, nodes.stiffness_reference + k, generalised);
-    end[k] =
-        point_kinematics(rotation, interpolate<Nodes>(constants.derivative, nodes.end), constants.reference_strain);
-    const endpoint::PointStress point = endpoint::point_stress(element, end[k].strain, rule, begin[k], strain_rates[k]);
-    system.dissipated += constants.weight * point.dissipated;
-    new_strain_rates[k] = point.strain_rate;
-    const Vector3 n = end[k].rotation * point.stress.head<3>(), m = end[k].rotation * point.stress.tail<3>();
-    const Vector3 theta = interpolate<Nodes>(constants.shape, nodes.rotation_vector);
-    const Vector3 slope = interpolate<Nodes>(constants.derivative, nodes.rotation_vector);
-    const so3::ExponentialMap<double> map(theta);
-    const Vector3 couple =
-        map.tangent_derivative(slope).transpose() * m - map.tangent().transpose() * end[k].tangent.cross(n);
-    const Vector3 moment = map.tangent().transpose() * m;
-    for (int i = 0; i < Nodes; ++i) {
-      system.residual.template segment<3>(6 * i) += constants.weight * constants.derivative[i] * n;
-      system.residual.template segment<3>(6 * i + 3) +=
-          constants.weight * (constants.derivative[i] * moment + constants.shape[i] * couple);
-    }
-    if (with_tangent)
-      add_point_tangent<Nodes>(constants.weight,
-                               point_tangent(end[k], point.slope * element.stiffness, n, m, theta, slope),
-                               constants.shape, constants.derivative, system.tangent);
+void AdditiveForm::add_point(const typename BeamElement<Nodes>::StiffnessPoint& constants,
+                             const ElementNodes<Nodes>& nodes, const GeneralisedShapeFunctions<Nodes>&,
+                             const endpoint::PointForces& point, bool with_tangent, ElementSystem<Nodes>& system) {
+  const Vector3 theta = interpolate<Nodes>(constants.shape, nodes.rotation_vector);
+  const Vector3 slope = interpolate<Nodes>(constants.derivative, nodes.rotation_vector);
+  const so3::ExponentialMap<double> map(theta);
+  const Vector3 couple = map.tangent_derivative(slope).transpose() * point.m -
+                         map.tangent().transpose() * point.kinematics.tangent.cross(point.n);
+  const Vector3 moment = map.tangent().transpose() * point.m;
+  for (int i = 0; i < Nodes; ++i) {
+    system.residual.template segment<3>(6 * i) += constants.weight * constants.derivative[i] * point.n;
+    system.residual.template segment<3>(6 * i + 3) +=
+        constants.weight * (constants.derivative[i] * moment + constants.shape[i] * couple);
   }
+  if (!with_tangent) return;
+  const PointMatrix tangent =
+      point_tangent(point.kinematics, point.stress_slope * point.stiffness, point.n, point.m, theta, slope);
+  add_point_tangent<Nodes>(constants.weight, tangent, constants.shape, constants.derivative, system.tangent);
 }
 
 template <int Nodes>
@@ -118,7 +105,7 @@ void additive_to_spins(const ElementNodes<Nodes>& nodes, bool with_tangent, Elem
 
 // Compiled here once for each order of elements.
 #define COMPILE_FOR(Nodes)                                                            \
-  template decltype(additive_internal<Nodes>) additive_internal<Nodes>;               \
+  template decltype(AdditiveForm::add_point<Nodes>) AdditiveForm::add_point<Nodes>;   \
   template decltype(add_additive_rotary_rate<Nodes>) add_additive_rotary_rate<Nodes>; \
   template decltype(additive_to_spins<Nodes>) additive_to_spins<Nodes>;
 COMPILE_FOR(2)

@@ -7,12 +7,16 @@
 
 namespace flexarm {
 
-/// Internal forces and their tangent in {r_i, theta_i}, otherwise as endpoint_internal. `nodes.rotation_vector`: total
-/// rotation vectors, |theta| < 2 pi; references: the undeformed points.
-template <int Nodes>
-void additive_internal(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const NewmarkRule* rule,
-                       const PointKinematics* begin, const Vector6* strain_rates, bool with_tangent,
-                       PointKinematics* end, Vector6* new_strain_rates, ElementSystem<Nodes>& system);
+/// Form of endpoint_internal with rows and columns {r_i, theta_i}. `nodes.rotation_vector`: total rotation vectors,
+/// |theta| < 2 pi; references: the undeformed points.
+struct AdditiveForm {
+  static constexpr bool kVariesSpins = false;
+
+  template <int Nodes>
+  static void add_point(const typename BeamElement<Nodes>::StiffnessPoint& constants, const ElementNodes<Nodes>& nodes,
+                        const GeneralisedShapeFunctions<Nodes>& generalised, const endpoint::PointForces& point,
+                        bool with_tangent, ElementSystem<Nodes>& system);
+};
 
 /// Adds the moment rate at mass point k, I^i T^T (moment), in {r_i, theta_i}.
 template <int Nodes>

@@ -17,28 +17,17 @@ endpoint::PointTangent endpoint::point_tangent(const PointKinematics& point, con
 }
 
 template <int Nodes>
-void endpoint_internal(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const NewmarkRule* rule,
-                       const PointKinematics* begin, const Vector6* strain_rates, bool with_tangent,
-                       PointKinematics* end, Vector6* new_strain_rates, ElementSystem<Nodes>& system) {
-  const ElementRotations<Nodes> rotations(nodes, with_tangent);
-  for (int k = 0; k < BeamElement<Nodes>::kStiffnessPoints; ++k) {
-    const auto& constants = element.stiffness_points[k];
-    GeneralisedShapeFunctions<Nodes> generalised;
-    const auto* reference = nodes.stiffness_reference ? nodes.stiffness_reference + k : nullptr;
-    const auto rotation = rotations.evaluate(constants.shape, constants.derivative, reference, generalised);
-    end[k] =
-        point_kinematics(rotation, interpolate<Nodes>(constants.derivative, nodes.end), constants.reference_strain);
-    const endpoint::PointStress point = endpoint::point_stress(element, end[k].strain, rule, begin[k], strain_rates[k]);
-    system.dissipated += constants.weight * point.dissipated;
-    new_strain_rates[k] = point.strain_rate;
-    const Vector3 n = end[k].rotation * point.stress.head<3>(), m = end[k].rotation * point.stress.tail<3>();
-    const LagrangeTests<Nodes> tests{constants.shape, constants.derivative};
-    add_point_residual<Nodes>(constants.weight, constants.derivative, tests, n, m, end[k].tangent, system.residual);
-    if (!with_tangent) continue;
-    const endpoint::PointTangent d = endpoint::point_tangent(end[k], element.stiffness, point.slope, n, m);
-    add_point_tangent<Nodes>(constants.weight, tests, {constants.derivative, generalised}, d.resultants, d.couple,
-                             system.tangent);
-  }
+void SpinForm::add_point(const typename BeamElement<Nodes>::StiffnessPoint& constants, const ElementNodes<Nodes>&,
+                         const GeneralisedShapeFunctions<Nodes>& generalised, const endpoint::PointForces& point,
+                         bool with_tangent, ElementSystem<Nodes>& system) {
+  const LagrangeTests<Nodes> tests{constants.shape, constants.derivative};
+  add_point_residual<Nodes>(constants.weight, constants.derivative, tests, point.n, point.m, point.kinematics.tangent,
+                            system.residual);
+  if (!with_tangent) return;
+  const endpoint::PointTangent d =
+      endpoint::point_tangent(point.kinematics, point.stiffness, point.stress_slope, point.n, point.m);
+  add_point_tangent<Nodes>(constants.weight, tests, {constants.derivative, generalised}, d.resultants, d.couple,
+                           system.tangent);
 }
 
 template <int Nodes>
@@ -68,7 +57,7 @@ void newmark_mass_damping(const BeamElement<Nodes>& element, const ElementNodes<
 
 // Compiled here once for each order of elements.
 #define COMPILE_FOR(Nodes)                                                  \
-  template decltype(endpoint_internal<Nodes>) endpoint_internal<Nodes>;     \
+  template decltype(SpinForm::add_point<Nodes>) SpinForm::add_point<Nodes>; \
   template decltype(newmark_translation<Nodes>) newmark_translation<Nodes>; \
   template decltype(newmark_mass_damping<Nodes>) newmark_mass_damping<Nodes>;
 COMPILE_FOR(2)

@@ -42,7 +42,7 @@ struct PointStress {
   double dissipated = 0;  ///< over the step [J/m]
 };
 
-/// `rule` null: statics. `begin`, `strain_rate`: at the begin of the step, used where there is damping.
+/// `rule` null: statics. `begin`, `strain_rate`: at the beginning of the step, used where there is damping.
 template <int Nodes>
 PointStress point_stress(const BeamElement<Nodes>& element, const Vector6& strain, const NewmarkRule* rule,
                          const PointKinematics& begin, const Vector6& strain_rate) {
@@ -60,15 +60,51 @@ PointStress point_stress(const BeamElement<Nodes>& element, const Vector6& strai
   return out;
 }
 
+/// What a stiffness point hands to the weak form, n and m in space.
+struct PointForces {
+  const PointKinematics& kinematics;
+  const Matrix6& stiffness;
+  double stress_slope;  ///< d(stress)/d(strain) = stress_slope * stiffness
+  Vector3 n, m;
+};
+
 }  // namespace endpoint
 
+/// Rows conjugate to the spins of the nodes (beam.md 2.2).
+struct SpinForm {
+  static constexpr bool kVariesSpins = true;  ///< columns need the generalised shape functions
+
+  /// Adds the virtual work of a stiffness point and its tangent.
+  template <int Nodes>
+  static void add_point(const typename BeamElement<Nodes>::StiffnessPoint& constants, const ElementNodes<Nodes>& nodes,
+                        const GeneralisedShapeFunctions<Nodes>& generalised, const endpoint::PointForces& point,
+                        bool with_tangent, ElementSystem<Nodes>& system);
+};
+
 /// Internal forces of one element at the end configuration; its stiffness points go to `end`. With a rule (dynamics):
-/// stiffness-proportional damping from `begin`, the points at the begin, and their strain rates; those at the end go to
-/// `new_strain_rates`.
-template <int Nodes>
+/// stiffness-proportional damping from `begin`, the points at the beginning, and their strain rates; those at the end
+/// go to `new_strain_rates`. `Form`: SpinForm or AdditiveForm.
+template <int Nodes, class Form = SpinForm>
 void endpoint_internal(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const NewmarkRule* rule,
                        const PointKinematics* begin, const Vector6* strain_rates, bool with_tangent,
-                       PointKinematics* end, Vector6* new_strain_rates, ElementSystem<Nodes>& system);
+                       PointKinematics* end, Vector6* new_strain_rates, ElementSystem<Nodes>& system) {
+  const ElementRotations<Nodes> rotations(nodes, with_tangent && Form::kVariesSpins);
+  for (int k = 0; k < BeamElement<Nodes>::kStiffnessPoints; ++k) {
+    const auto& constants = element.stiffness_points[k];
+    GeneralisedShapeFunctions<Nodes> generalised;
+    const auto* reference = nodes.stiffness_reference ? nodes.stiffness_reference + k : nullptr;
+    const auto rotation = rotations.evaluate(constants.shape, constants.derivative, reference, generalised);
+    end[k] =
+        point_kinematics(rotation, interpolate<Nodes>(constants.derivative, nodes.end), constants.reference_strain);
+    const endpoint::PointStress point = endpoint::point_stress(element, end[k].strain, rule, begin[k], strain_rates[k]);
+    system.dissipated += constants.weight * point.dissipated;
+    new_strain_rates[k] = point.strain_rate;
+    const endpoint::PointForces forces{end[k], element.stiffness, point.slope,
+                                       end[k].rotation * point.stress.template head<3>(),
+                                       end[k].rotation * point.stress.template tail<3>()};
+    Form::add_point(constants, nodes, generalised, forces, with_tangent, system);
+  }
+}
 
 /// Newmark translational inertia.
 template <int Nodes>

@@ -6,22 +6,16 @@
 namespace flexarm {
 namespace {
 
-/// The increment that the scheme's rotation rule uses and its inverse tangent.
-struct RotationIncrement {
-  Vector3 value;
-  Matrix3 inverse_tangent;
-};
-RotationIncrement rotation_increment(const TimeRule& rule, const NodeStep& node) {
-  if (rule.body_rotation == RotationRule::TangentScaled) return {node.increment, node.inverse_tangent};
-  const Vector3 unscaled = cayley::to_rotation_vector(node.increment);
-  return {unscaled, so3::inverse_tangent(unscaled)};
-}
-
 MassPointState spin_state(const NodeState& state) {
   return {state.angular_velocity, state.angular_acceleration};
 }
 
 }  // namespace
+
+Vector3 counted_rotation(const TimeRule& rule, const Vector3& tangent_scaled) {
+  return rule.body_rotation == RotationRule::TangentScaled ? tangent_scaled
+                                                           : cayley::to_rotation_vector(tangent_scaled);
+}
 
 NewmarkRule newmark_rule(const TimeRule& rule, double step) {
   return {rule.beta, rule.gamma, step, rule.hht == HhtForm::Kinematics ? rule.alpha : 0.0};
@@ -38,11 +32,13 @@ NodalAction nodal_inertia_action(const NodalInertia& inertia, const TimeRule& ru
   if (rule.nodal_rotary_inertia) J += inertia.beam_rotary;
   const MassPointState spin = spin_state(node.state);
   if (rule.is_incremental()) {
-    const RotationIncrement increment = rotation_increment(rule, node);
-    const ConservingNode<double> conserving({inertia.mass, J},
-                                            {begin, end, displacement, increment.value, increment.inverse_tangent,
-                                             node.state.velocity, spin.angular_velocity},
-                                            rule.velocity_factor(), h, with_tangent);
+    const Vector3 increment = counted_rotation(rule, node.increment);
+    const bool is_unscaled = rule.body_rotation == RotationRule::Unscaled;
+    const Matrix3 inverse_tangent = is_unscaled ? so3::inverse_tangent(increment) : node.inverse_tangent;
+    const ConservingNode<double> conserving(
+        {inertia.mass, J},
+        {begin, end, displacement, increment, inverse_tangent, node.state.velocity, spin.angular_velocity},
+        rule.velocity_factor(), h, with_tangent);
     action.residual = conserving.residual;
     action.translational = conserving.translational;
     if (with_tangent) action.rotational = conserving.rotational;
@@ -102,7 +98,7 @@ NodeState advanced(const TimeRule& rule, const NodeStep& node) {
     const double factor = rule.velocity_factor();
     out.velocity = (factor / node.step) * displacement - (factor - 1) * node.state.velocity;
     out.angular_velocity =
-        (2 / node.step) * (to_material * rotation_increment(rule, node).value) - node.state.angular_velocity;
+        (2 / node.step) * (to_material * counted_rotation(rule, node.increment)) - node.state.angular_velocity;
   } else {
     const NewmarkRule newmark = newmark_rule(rule, node.step);
     const Vector3 increment = to_material * cayley::to_rotation_vector(node.increment);

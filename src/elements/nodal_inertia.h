@@ -20,6 +20,10 @@ struct NodeStep {
   Vector3 momentum_rate = Vector3::Zero();  ///< d(Lambda J W)/dt at the begin; Hilber-Hughes-Taylor family [N m]
 };
 
+/// The rotation of a step as the scheme's rule for the angular velocities of nodes counts it, from the tangent-scaled
+/// one [rad].
+Vector3 counted_rotation(const TimeRule& rule, const Vector3& tangent_scaled);
+
 /// Residual {f, phi} and its translational (scalar) and rotational tangent.
 struct NodalAction {
   Vector6 residual = Vector6::Zero();

@@ -1,17 +1,12 @@
 #pragma once
 /// Energies and momenta of a state.
 
+#include "flexarm/model/results.h"
 #include "model/model.h"
 #include "model/state.h"
 #include "schemes/scheme.h"
 
 namespace flexarm {
-
-/// Energies of a state [J]; work and dissipation are path integrals since the start.
-struct Energies {
-  double kinetic = 0, strain = 0, potential = 0, work = 0, dissipated = 0;
-  double total() const { return kinetic + strain + potential; }
-};
 
 /// Linear and angular momentum (about the world origin) [kg m/s, kg m^2/s].
 struct Momenta {

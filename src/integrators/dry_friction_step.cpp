@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "building/model_builder.h"
 #include "joints/joint_forces.h"
 #include "math/cayley.h"
-#include "model/model_builder.h"
 
 namespace flexarm {
 namespace {

@@ -3,9 +3,10 @@
 
 #include <vector>
 
+#include "flexarm/model/results.h"
 #include "integrators/factor_reuse.h"
 #include "integrators/step_observer.h"
-#include "integrators/step_result.h"
+#include "integrators/step_settings.h"
 #include "integrators/step_system.h"
 
 namespace flexarm {

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 
+#include "math/pi.h"
 #include "math/so3.h"
 
 namespace flexarm {
 namespace {
-
-constexpr double kPi = 3.141592653589793;
 
 /// The one of the rotation vectors theta, theta - 2 pi e of a rotation that is nearer to another vector.
 Vector3 nearest_vector(const Vector3& theta, const Vector3& other) {

@@ -3,8 +3,9 @@
 
 #include <optional>
 
+#include "flexarm/model/results.h"
 #include "integrators/newton.h"
-#include "integrators/step_result.h"
+#include "integrators/step_settings.h"
 #include "integrators/step_system.h"
 #include "integrators/velocity_scaling.h"
 

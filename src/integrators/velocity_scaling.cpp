@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "building/model_builder.h"
 #include "integrators/balance.h"
 #include "joints/joint_map.h"
 #include "math/so3.h"
-#include "model/model_builder.h"
 
 namespace flexarm {
 namespace {

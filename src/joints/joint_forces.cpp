@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/pi.h"
+
 namespace flexarm {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 /// Ratio of a stop's damping to the critical one. A contact that never pulls ends where its force vanishes, after which
 /// the speed is e = exp(-2 z acos(z) / sqrt(1 - z^2)) of that before: 0.3.
 constexpr double kStopDampingRatio = 0.497239;

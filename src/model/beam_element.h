@@ -45,6 +45,7 @@ struct BeamElement {
 /// Elements of equal order, contiguous.
 template <int Nodes>
 struct BeamGroup {
+  static constexpr int kNodes = Nodes;
   std::vector<BeamElement<Nodes>> elements;
 };
 

@@ -23,7 +23,7 @@ DegreesOfFreedom::DegreesOfFreedom(const Model& model)
   for (std::size_t index = 0; index < model.coordinates.size(); ++index) {
     const Coordinate& coordinate = model.coordinates[index];
     const int variable = variable_of_joint(coordinate.joint);
-    if (coordinate.motion >= 0 || coordinate.mimicked >= 0) dependent[first[variable] + coordinate.component] = true;
+    if (coordinate.motion >= 0 || coordinate.mimicked >= 0) dependent[scalar_of(coordinate)] = true;
     if (coordinate.mimicked >= 0)
       mimics.push_back(
           {variable, variable_of_joint(model.coordinates[coordinate.mimicked].joint), static_cast<int>(index)});

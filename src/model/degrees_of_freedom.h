@@ -16,6 +16,9 @@ struct DegreesOfFreedom {
   int variable_of_node(int node) const { return node; }
   int variable_of_joint(int joint) const { return node_count + joint; }
   int variable_of_closure(int closure) const { return node_count + joint_count + closure; }
+  int scalar_of(const Coordinate& coordinate) const {
+    return first[variable_of_joint(coordinate.joint)] + coordinate.component;
+  }
 
   int node_count = 0, joint_count = 0;
   std::vector<int> size;      ///< per variable: scalars

@@ -12,6 +12,7 @@
 #include "clock_publisher.h"
 #include "command_interface.h"
 #include "diagnostics.h"
+#include "flexarm/scene/scene_description.h"
 #include "flexarm/simulation/simulation.h"
 #include "frame_watch.h"
 #include "marker_publisher.h"

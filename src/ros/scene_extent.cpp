@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <vector>
 
+#include "flexarm/scene/scene_description.h"
+
 namespace flexarm::node {
 
 SceneExtent scene_extent(const Simulation& simulation) {

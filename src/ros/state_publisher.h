@@ -12,6 +12,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "flexarm/scene/scene_description.h"
 #include "flexarm/simulation/simulation.h"
 #include "publication_schedule.h"
 #include "run_state.h"

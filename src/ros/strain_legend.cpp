@@ -1,5 +1,6 @@
 #include "strain_legend.h"
 
+#include <cmath>
 #include <cstdio>
 #include <string>
 

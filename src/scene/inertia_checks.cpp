@@ -15,11 +15,6 @@ constexpr double kRoundOff = 1e-9;
 /// Radius of gyration below which a body of this mass is a point: what exporters leave of a zero. [m]
 constexpr double kSmallestRadius = 1e-6;
 
-/// In increasing order.
-Vector3 principal_moments(const Matrix3& inertia) {
-  return Eigen::SelfAdjointEigenSolver<Matrix3>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
-}
-
 double round_off(const Vector3& moments) {
   return kRoundOff * moments.cwiseAbs().maxCoeff();
 }
@@ -91,6 +86,10 @@ class RigidGroups {
 };
 
 }  // namespace
+
+Vector3 principal_moments(const Matrix3& inertia) {
+  return Eigen::SelfAdjointEigenSolver<Matrix3>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
+}
 
 void check_inertias(const SceneDescription& scene, Findings& findings) {
   const RigidGroups groups(scene);

@@ -4,7 +4,8 @@
 
 #include <fmt/format.h>
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+
+#include "scene/inertia_checks.h"
 
 namespace flexarm::scene {
 namespace {
@@ -118,9 +119,7 @@ bool is_inertia(const Matrix6& matrix) {
   if (!small(coupling + coupling.transpose(), coupling_scale)) return false;
   if (!small(matrix.topRightCorner<3, 3>() + coupling, coupling_scale)) return false;
   if (!small(rotary - rotary.transpose(), rotary_scale)) return false;
-  const Matrix3 central = rotary + coupling * coupling / mass;
-  const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(central, Eigen::EigenvaluesOnly);
-  return eigen.eigenvalues()[0] >= -kMatrixTolerance * rotary_scale;
+  return principal_moments(rotary + coupling * coupling / mass)[0] >= -kMatrixTolerance * rotary_scale;
 }
 
 std::optional<Section> read_section_matrix(const XmlElement& section) {

@@ -22,6 +22,17 @@ std::string listed(std::initializer_list<const char*> names) {
   return text.empty() ? "nothing" : text;
 }
 
+/// The words of a text; nothing where one is not a finite number or there are more than `most`.
+std::optional<std::vector<double>> parse_numbers(std::string_view text, std::size_t most) {
+  std::vector<double> numbers;
+  for (std::string_view word = next_word(text); !word.empty(); word = next_word(text)) {
+    const std::optional<double> number = parse_number(word);
+    if (!number || numbers.size() == most) return std::nullopt;
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
 }  // namespace
 
 XmlElement::XmlElement(const tinyxml2::XMLElement& xml, std::string description, std::string owner, Findings& findings)
@@ -125,23 +136,13 @@ std::optional<std::vector<double>> XmlElement::numbers(const char* attribute, st
                                                        const NumberRange& range) const {
   const std::optional<std::string> value = text(attribute);
   if (!value) return std::nullopt;
-  std::vector<double> numbers;
-  std::string_view rest = *value;
-  std::size_t words = 0;
-  bool in_range = true;
-  for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
-    if (++words > count) break;
-    if (const std::optional<double> number = parse_number(word)) {
-      numbers.push_back(*number);
-      in_range = in_range && range.holds(*number);
-    }
-  }
-  if (words != count || numbers.size() != count) {
+  const std::optional<std::vector<double>> numbers = parse_numbers(*value, count);
+  if (!numbers || numbers->size() != count) {
     attribute_error(attribute, std::string(attribute) + " must be " +
                                    (count == 1 ? "a finite number" : std::to_string(count) + " finite numbers"));
     return std::nullopt;
   }
-  if (!in_range) {
+  if (!std::all_of(numbers->begin(), numbers->end(), [&](double number) { return range.holds(number); })) {
     attribute_error(attribute, std::string(attribute) + " must be " + range.text);
     return std::nullopt;
   }
@@ -151,17 +152,9 @@ std::optional<std::vector<double>> XmlElement::numbers(const char* attribute, st
 std::optional<std::vector<double>> XmlElement::all_numbers(const char* attribute, std::size_t most) const {
   const std::optional<std::string> value = text(attribute);
   if (!value) return std::nullopt;
-  std::vector<double> numbers;
-  std::string_view rest = *value;
-  for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
-    const std::optional<double> number = parse_number(word);
-    if (!number || numbers.size() == most) {
-      attribute_error(attribute,
-                      std::string(attribute) + " must be at most " + std::to_string(most) + " finite numbers");
-      return std::nullopt;
-    }
-    numbers.push_back(*number);
-  }
+  std::optional<std::vector<double>> numbers = parse_numbers(*value, most);
+  if (!numbers)
+    attribute_error(attribute, std::string(attribute) + " must be at most " + std::to_string(most) + " finite numbers");
   return numbers;
 }
 

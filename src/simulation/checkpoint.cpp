@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "simulation/fingerprint.h"
+#include "simulation/inside.h"
 #include "simulation/scene_identity.h"
 #include "simulation/state_numbers.h"
 
@@ -30,7 +31,7 @@ std::string checksum_line(const std::string& text) {
 
 /// What must agree for a state to fit a simulation, one thing per line.
 std::string identity(const Simulation& simulation) {
-  const State& state = simulation.state();
+  const State& state = state_of(simulation);
   return scene_identity(simulation.scene()) +
          fmt::format("nodes {} joints {} mass_points {} coordinates {}\n", state.nodes.size() - state.left_lines.size(),
                      state.released.size(), state.mass_points.size(), state.commands.size());
@@ -144,8 +145,8 @@ void read_counts(Reader& reader, State& state) {
 }  // namespace
 
 void write_checkpoint(const Simulation& simulation, const std::string& path) {
-  std::string text = fmt::format("{}\n{}{}", kHeader, identity(simulation), counts_line(simulation.state()));
-  for_each_number(simulation.state(), [&](const char*, double value) { text += hexadecimal(value) + "\n"; });
+  std::string text = fmt::format("{}\n{}{}", kHeader, identity(simulation), counts_line(state_of(simulation)));
+  for_each_number(state_of(simulation), [&](const char*, double value) { text += hexadecimal(value) + "\n"; });
   text += checksum_line(text);
   const auto fail = [&](const std::string& what) { throw std::runtime_error("checkpoint '" + path + "': " + what); };
   const std::string temporary = path + ".partial";
@@ -159,12 +160,12 @@ void write_checkpoint(const Simulation& simulation, const std::string& path) {
 void read_checkpoint(Simulation& simulation, const std::string& path) {
   Reader reader(path);
   reader.require_identity(identity(simulation));
-  State state = simulation.state();
+  State state = state_of(simulation);
   read_counts(reader, state);
   for_each_number(state, [&](const char* what, double& value) { value = reader.number(what); });
   if (const std::string line = reader.next(); line.rfind("checksum ", 0) != 0) reader.fail_line(line, "the checksum");
   try {
-    simulation.restore(state);
+    restore(simulation, state);
   } catch (const std::invalid_argument& error) {
     reader.fail(error.what());
   }

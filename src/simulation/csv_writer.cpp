@@ -7,7 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "csv_fields.h"
+#include "flexarm/scene/scene_description.h"
+#include "simulation/csv_fields.h"
 
 namespace flexarm {
 namespace {

@@ -1,15 +1,15 @@
-#include "flexarm/simulation/held_joints.h"
+#include "simulation/inside.h"
 
 #include <set>
 
 namespace flexarm {
 
-scene::Diagnostics held_joints(const Simulation& simulation) {
-  const scene::SceneDescription& scene = simulation.scene();
+scene::Diagnostics Simulation::held_joints() const {
+  const scene::SceneDescription& scene = this->scene();
   std::set<std::string> driven;
   for (const scene::PrescribedMotion& motion : scene.motions) driven.insert(motion.coordinate);
   std::set<std::string> held;
-  for (const Coordinate& coordinate : simulation.model().coordinates)
+  for (const Coordinate& coordinate : model_of(*this).coordinates)
     if (coordinate.motion >= 0 && driven.count(coordinate.name) == 0) held.insert(coordinate.name);
   scene::Diagnostics findings;
   for (const scene::JointDescription& joint : scene.joints)

@@ -1,4 +1,4 @@
-#include "flexarm/simulation/observables.h"
+#include "simulation/observables.h"
 
 #include <algorithm>
 #include <limits>

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "elements/nodal_inertia.h"
 #include "joints/joint_kinematics.h"
-#include "math/cayley.h"
+#include "math/pi.h"
 
 namespace flexarm {
 namespace {
@@ -13,15 +14,10 @@ namespace {
 /// motion: one is at most twice the other.
 constexpr double kSmooth = 1.0 / 3;
 /// Turns that are larger have no tangent-scaled increment to speak of [rad].
-constexpr double kLargestTurn = 0.5 * M_PI;
+constexpr double kLargestTurn = 0.5 * kPi;
 
-/// The rotation of a step as the scheme's rule for angular velocities counts it, from the tangent-scaled one.
-Vector3 counted_rotation(const TimeRule& rule, const Vector3& tangent_scaled) {
-  return rule.body_rotation == RotationRule::TangentScaled ? tangent_scaled
-                                                           : cayley::to_rotation_vector(tangent_scaled);
-}
-
-/// The same for the increment of a scalar coordinate. A motion is what its function says.
+/// The increment of a scalar coordinate as the rule for angular velocities counts it. A motion is what its function
+/// says.
 double counted_increment(const TimeRule& rule, const JointMap& joint, const Coordinate& coordinate, double increment) {
   const double rotation = joint.kind == JointMapKind::Scalar ? joint.rotation.norm() : 0, turn = rotation * increment;
   const bool counts = rule.body_rotation == RotationRule::TangentScaled && coordinate.motion < 0 && rotation > 0 &&
@@ -86,7 +82,7 @@ void OutputVelocities::set_rates(const Model& model, const DegreesOfFreedom& dof
                                  const State& state) {
   // What a coordinate made of a step that ended at `end`; a prescribed one is no unknown, but its motion is known.
   const auto increment = [&](const Coordinate& coordinate, int k, double end) {
-    const int equation = dof.equation[dof.first[dof.variable_of_joint(coordinate.joint)] + coordinate.component];
+    const int equation = dof.equation[dof.scalar_of(coordinate)];
     if (equation >= 0) return state.history.increments[k][equation];
     if (coordinate.motion < 0) return 0.0;
     const TimeFunction& motion = model.histories[coordinate.motion];

@@ -3,13 +3,20 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
+#include "analysis/modes.h"
 #include "analysis/statics.h"
+#include "building/model_builder.h"
+#include "integrators/balance.h"
+#include "integrators/stepper.h"
 #include "math/so3.h"
 #include "model/line_release.h"
 #include "schemes/slide_scheme.h"
+#include "simulation/inside.h"
+#include "simulation/observables.h"
 #include "simulation/output_velocities.h"
 #include "simulation/state_flaw.h"
 
@@ -114,6 +121,19 @@ struct Simulation::Implementation {
     if (!built) built = std::make_unique<const Model>(model);
     set_model(std::move(changed));
   }
+
+  void set_state(const State& other) {
+    fit_to_state(other);
+    state = other;
+    velocities_hold = false;
+    stepper->invalidate();
+  }
+
+  void restore(const State& other) {
+    const std::string flaw = state_flaw(built ? *built : model, initial, settings.max_halvings, other);
+    if (!flaw.empty()) throw std::invalid_argument("not a state of this scene: " + flaw);
+    set_state(other);
+  }
 };
 
 Simulation::Simulation(scene::SceneDescription scene, const SimulationOptions& options)
@@ -125,12 +145,6 @@ Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 const scene::SceneDescription& Simulation::scene() const {
   return implementation_->scene;
 }
-const Model& Simulation::model() const {
-  return implementation_->model;
-}
-const State& Simulation::state() const {
-  return implementation_->state;
-}
 
 StepResult Simulation::step() {
   const StepResult result = implementation_->stepper->advance(implementation_->state);
@@ -140,20 +154,15 @@ StepResult Simulation::step() {
 }
 
 void Simulation::reset() {
-  implementation_->fit_to_state(implementation_->initial);
-  implementation_->state = implementation_->initial;
-  implementation_->velocities_hold = false;
-  implementation_->stepper->invalidate();
+  implementation_->set_state(implementation_->initial);
 }
 
-void Simulation::restore(const State& state) {
-  const std::string flaw = state_flaw(implementation_->built ? *implementation_->built : implementation_->model,
-                                      implementation_->initial, implementation_->settings.max_halvings, state);
-  if (!flaw.empty()) throw std::invalid_argument("not a state of this scene: " + flaw);
-  implementation_->fit_to_state(state);
-  implementation_->state = state;
-  implementation_->velocities_hold = false;
-  implementation_->stepper->invalidate();
+Snapshot Simulation::snapshot() const {
+  return Snapshot(std::make_shared<const State>(implementation_->state));
+}
+
+void Simulation::restore(const Snapshot& snapshot) {
+  implementation_->restore(*snapshot.state_);
 }
 
 double Simulation::time() const {
@@ -276,8 +285,24 @@ std::size_t Simulation::node_count() const {
 std::size_t Simulation::degrees_of_freedom() const {
   return implementation_->stepper->degrees_of_freedom().unknowns;
 }
-const std::vector<double>& Simulation::update_norms() const {
-  return implementation_->stepper->update_norms();
+
+// ---------------------------------------------------------------- the inside
+
+struct Inside {
+  static Simulation::Implementation& of(const Simulation& simulation) { return *simulation.implementation_; }
+};
+
+const Model& model_of(const Simulation& simulation) {
+  return Inside::of(simulation).model;
+}
+const State& state_of(const Simulation& simulation) {
+  return Inside::of(simulation).state;
+}
+const std::vector<double>& update_norms_of(const Simulation& simulation) {
+  return Inside::of(simulation).stepper->update_norms();
+}
+void restore(Simulation& simulation, const State& state) {
+  Inside::of(simulation).restore(state);
 }
 
 }  // namespace flexarm

@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
+#include "joints/closure_maps.h"
 #include "joints/joint_map.h"
-#include "joints/loop_closure.h"
 #include "joints/slide_map.h"
 #include "model/degrees_of_freedom.h"
 

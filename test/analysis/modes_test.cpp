@@ -3,16 +3,15 @@
 
 #include <gtest/gtest.h>
 
-#include "flexarm/simulation/observables.h"
-#include "model/model_builder.h"
+#include "building/model_builder.h"
+#include "math/pi.h"
+#include "simulation/observables.h"
 #include "support/scene_builder.h"
 
 namespace flexarm {
 namespace {
 
 using namespace test;
-
-constexpr double kPi = 3.14159265358979323846;
 
 TEST(NaturalModes, PendulumAboutItsEquilibrium) {
   SceneBuilder builder;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <set>
 
 #include "bench/effort_schedule.h"
@@ -168,21 +169,22 @@ TEST(SpeedReport, HasEveryProblemAndFiniteNumbers) {
 // ---------------------------------------------------------------- efforts
 
 TEST(EffortSchedule, OfTheDemoIsRead) {
-  const std::vector<EffortPulse> pulses = read_effort_schedule(kConfig + "/demo_commands.yaml");
+  const EffortSchedule schedule = read_effort_schedule(kConfig + "/demo_commands.yaml");
+  EXPECT_EQ(schedule.period, 26);
+  const std::vector<EffortPulse>& pulses = schedule.pulses;
   ASSERT_EQ(pulses.size(), 2u * (1 + 8 + 7 + 1 + 1 + 1));
   EXPECT_EQ(pulses[0].joint, "shoulder_yaw");
   EXPECT_EQ(pulses[0].effort, 1000);
   EXPECT_EQ(pulses.back().joint, "elbow_pitch");
   EXPECT_EQ(pulses.back().begin, 14);
   EXPECT_EQ(pulses.back().end, 16);
+  EXPECT_EQ(pulses.back().effort, -180);
 }
 
 TEST(EffortSchedule, SaysWhatItDoesNotUnderstand) {
   const std::string path = testing::TempDir() + "flexarm_speed_schedule.yaml";
-  const auto error_of = [&](const char* text) -> std::string {
-    std::FILE* file = std::fopen(path.c_str(), "w");
-    std::fputs(text, file);
-    std::fclose(file);
+  const auto error_of = [&](const std::string& text) -> std::string {
+    std::ofstream(path) << text;
     try {
       read_effort_schedule(path);
     } catch (const std::runtime_error& error) {
@@ -190,15 +192,21 @@ TEST(EffortSchedule, SaysWhatItDoesNotUnderstand) {
     }
     return "";
   };
-  const char* const good = "- {time: 1, names: [a, b], efforts: [1, -2.5], duration: 0.5}\n";
-  EXPECT_EQ(error_of(good), "");
-  for (const char* bad : {"- {time: 1, names: [a, b], efforts: [1], duration: 0.5}\n",
-                          "- {time: 1, names: [a], efforts: [one], duration: 0.5}\n",
-                          "- {names: [a], efforts: [1], duration: 0.5}\n", "- {time: 1, names: [a], efforts: [1]}\n"})
-    EXPECT_NE(error_of((std::string("# two\n") + bad).c_str()).find(path + ":2: expected {time: s, "),
-              std::string::npos)
-        << bad;
+  const std::string head = "# two\ncommands:\n";
+  EXPECT_EQ(error_of(head + "- {time: 1, names: [a, b], efforts: [1, -2.5], duration: 0.5}\n"), "");
+  EXPECT_EQ(error_of(head + "- time: 1\n  names: [a]\n  efforts: [1]\n  duration: 0.5\n"), "") << "YAML as it comes";
+  for (const char* bad :
+       {"{time: 1, names: [a, b], efforts: [1], duration: 0.5}", "{time: 1, names: [a], efforts: [one], duration: 0.5}",
+        "{time: 1, names: [a], efforts: [1], duration: 0.5, repeat: often}",
+        "{names: [a], efforts: [1], duration: 0.5}", "{time: 1, names: [a], efforts: [1]}", "word"}) {
+    const std::string error = error_of(head + "- " + bad + "\n");
+    EXPECT_NE(error.find(path + ":3: expected {time: s, "), std::string::npos) << bad << ": " << error;
+    EXPECT_NE(error.find("got '" + std::string(bad) + "'"), std::string::npos) << error;
+  }
   EXPECT_NE(error_of("period: 3\n").find("at least one command"), std::string::npos);
+  EXPECT_NE(error_of("period: long\n").find(path + ":1: "), std::string::npos);
+  EXPECT_NE(error_of("a: 1\ncommands: [\n").find(path + ":"), std::string::npos) << "no YAML";
+  EXPECT_THROW(read_effort_schedule(path + "/missing"), std::runtime_error);
 }
 
 TEST(EffortPlayer, KeepsTheImpulseWhateverTheStep) {

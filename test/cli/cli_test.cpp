@@ -2,6 +2,7 @@
 #include <filesystem>
 
 #include "cli/program.h"
+#include "math/pi.h"
 
 namespace flexarm::cli {
 namespace {
@@ -182,7 +183,7 @@ TEST(Static, FindsTheEquilibrium) {
   EXPECT_EQ(columns.count("solver/step"), 0u);
   // The strain energy of a clamped beam under its weight q per length: q^2 L^5 / (40 EI), here to within the shear (a
   // share of 20/3 EI / (GA L^2) < 1e-3) and the change of geometry (deflection squared < 1e-3).
-  const double q = 2700 * M_PI * 1e-4 * 9.81, ei = 70e9 * M_PI * 1e-8 / 4;
+  const double q = 2700 * kPi * 1e-4 * 9.81, ei = 70e9 * kPi * 1e-8 / 4;
   EXPECT_NEAR(columns["energy/strain"][0], q * q / (40 * ei), 2e-3 * q * q / (40 * ei));
 }
 

@@ -29,7 +29,7 @@ struct AdditiveStep {
   }
   ElementSystem<Nodes> internal(const ElementNodes<Nodes>& nodes, const NewmarkRule* rule, bool with_tangent,
                                 std::array<PointKinematics, Nodes - 1>* points = nullptr) const {
-    return evaluate(additive_internal<Nodes>, nodes, rule, with_tangent, points);
+    return evaluate(endpoint_internal<Nodes, AdditiveForm>, nodes, rule, with_tangent, points);
   }
   double strain_energy(const ElementNodes<Nodes>& nodes) const {
     std::array<PointKinematics, Nodes - 1> points;

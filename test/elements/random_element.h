@@ -3,10 +3,11 @@
 
 #include <random>
 
+#include "building/beam_mesh.h"
 #include "elements/beam_point.h"
 #include "math/cayley.h"
+#include "math/pi.h"
 #include "math/so3.h"
-#include "model/beam_mesh.h"
 #include "model/state.h"
 #include "schemes/time_rule.h"
 
@@ -44,7 +45,7 @@ inline Vector3 nearest_vector(const Quaternion& relative, const Vector3& other) 
   const Vector3 theta = so3::log(relative);
   const double angle = theta.norm();
   if (angle < 1e-3) return theta;
-  const Vector3 around = (1 - 2 * M_PI / angle) * theta;
+  const Vector3 around = (1 - 2 * kPi / angle) * theta;
   return (theta - other).norm() <= (around - other).norm() ? theta : around;
 }
 

@@ -6,12 +6,12 @@
 
 #include <gtest/gtest.h>
 
+#include "building/beam_mesh.h"
 #include "elements/average_rotary.h"
 #include "elements/conserving_kernel.h"
 #include "elements/differences.h"
 #include "elements/endpoint_beam.h"
 #include "elements/nodal_inertia.h"
-#include "model/beam_mesh.h"
 #include "schemes/scheme.h"
 #include "support/source_path.h"
 

@@ -1,10 +1,10 @@
 #pragma once
 /// One mechanism with everything in it, and random states of any model.
 
+#include "building/model_builder.h"
 #include "elements/random_element.h"
-#include "flexarm/simulation/observables.h"
 #include "joints/joint_kinematics.h"
-#include "model/model_builder.h"
+#include "simulation/observables.h"
 #include "support/loops.h"
 
 namespace flexarm::test {

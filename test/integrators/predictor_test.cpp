@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "simulation/inside.h"
 #include "support/scene_builder.h"
 
 namespace flexarm::test {
@@ -27,9 +28,9 @@ TEST(Predictor, ForeseesFreeFall) {
   builder.scene.gravity = {0, 0, -9.81};
   builder.scene.initial_links.push_back({"ball", {1, 2, 3}, Vector3::Zero(), {}});
   const Simulation simulation = after_some_steps(builder);
-  EXPECT_GE(simulation.state().history.order, 1);
+  EXPECT_GE(state_of(simulation).history.order, 1);
   // A place of one metre to 64 roundings; the last velocity repeated would miss by g h^2 = 1e-3.
-  EXPECT_LT(simulation.update_norms().front(), 64 * std::numeric_limits<double>::epsilon());
+  EXPECT_LT(update_norms_of(simulation).front(), 64 * std::numeric_limits<double>::epsilon());
 }
 
 // A mode that is far too fast for the step changes its sign from step to step: extrapolation would blow that up.
@@ -39,7 +40,7 @@ TEST(Predictor, RepeatsWhatIsRough) {
   builder.joint("clamp", scene::JointKind::Fixed, "world", "bar", Vector3::Zero());
   builder.scene.gravity.setZero();
   builder.scene.initial_links.push_back({"bar", {1, 0, 0}, Vector3::Zero(), {}});
-  EXPECT_EQ(after_some_steps(builder).state().history.order, 0);
+  EXPECT_EQ(state_of(after_some_steps(builder)).history.order, 0);
 }
 
 }  // namespace

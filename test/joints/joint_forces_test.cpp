@@ -5,6 +5,7 @@
 
 #include "elements/differences.h"
 #include "elements/random_element.h"
+#include "math/pi.h"
 
 namespace flexarm {
 namespace {
@@ -204,7 +205,7 @@ TEST(StopPenalty, ContactTimeAndRestitution) {
   coordinate.limit->inertia = 2;
   const auto [k, c] = stop_penalty(coordinate, 1e-2);
   const double omega = std::sqrt(k / 2);
-  EXPECT_NEAR(omega, M_PI / 1e-2, 1e-9 * omega);
+  EXPECT_NEAR(omega, kPi / 1e-2, 1e-9 * omega);
   // m x'' = min(0, -k x - c x'), hit at unit speed: integrated finely until the force vanishes.
   double x = 0, v = 1;
   const double h = 1e-8;

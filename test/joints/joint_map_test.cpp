@@ -5,6 +5,7 @@
 
 #include "elements/differences.h"
 #include "elements/random_element.h"
+#include "math/pi.h"
 
 namespace flexarm {
 namespace {
@@ -278,10 +279,10 @@ INSTANTIATE_TEST_SUITE_P(All, JointMapsOnANode,
 TEST(SlavePose, RevoluteJointTurnsAboutItsAxis) {
   JointMap joint;
   joint.kind = JointMapKind::Scalar;
-  joint.origin = {Vector3(1, 0, 0), so3::exp_quaternion(Vector3(0, 0, M_PI / 2))};
+  joint.origin = {Vector3(1, 0, 0), so3::exp_quaternion(Vector3(0, 0, kPi / 2))};
   joint.rotation = Vector3::UnitX();  // = y of the world
   Released released;
-  released.displacement[0] = M_PI / 2;
+  released.displacement[0] = kPi / 2;
   const NodePose slave = slave_pose(joint, NodePose(), released);
   EXPECT_LE((slave.position - Vector3(1, 0, 0)).norm(), 1e-15);
   EXPECT_LE((slave.rotation * Vector3::UnitX() - Vector3::UnitY()).norm(), 1e-15);
@@ -293,7 +294,7 @@ TEST(SlavePose, RevoluteJointTurnsAboutItsAxis) {
 TEST(SlavePose, PrismaticJointShiftsAlongItsAxis) {
   JointMap joint;
   joint.kind = JointMapKind::Scalar;
-  joint.origin = {Vector3(1, 0, 0), so3::exp_quaternion(Vector3(0, 0, M_PI / 2))};
+  joint.origin = {Vector3(1, 0, 0), so3::exp_quaternion(Vector3(0, 0, kPi / 2))};
   joint.translation = Vector3::UnitX();
   Released released;
   released.displacement[0] = 3;
@@ -308,7 +309,7 @@ TEST(SlavePose, AnglesMayExceedATurn) {
   joint.rotation = Vector3::UnitZ();
   Released one, many;
   one.displacement[0] = 0.3;
-  many.displacement[0] = 0.3 + 20 * M_PI;
+  many.displacement[0] = 0.3 + 20 * kPi;
   EXPECT_LE((slave_pose(joint, NodePose(), one).rotation - slave_pose(joint, NodePose(), many).rotation).norm(), 1e-13);
 }
 

@@ -1,4 +1,5 @@
 #include "flexarm/math/cam_profile.h"
+#include "math/pi.h"
 
 #include <cmath>
 #include <functional>
@@ -8,8 +9,6 @@
 
 namespace flexarm {
 namespace {
-
-constexpr double kPi = 3.141592653589793;
 
 CamProfile table() {
   return CamProfile::periodic({0.3, 1.0, 2.2, 3.0, 4.4, 5.9}, {0.1, 0.4, 0.2, -0.3, 0.05, -0.1});

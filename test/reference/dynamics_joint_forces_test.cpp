@@ -2,6 +2,7 @@
 #include "joints/joint_forces.h"
 #include "reference/dynamics_runs.h"
 #include "schemes/scheme.h"
+#include "simulation/inside.h"
 
 namespace flexarm::test {
 namespace {
@@ -104,7 +105,7 @@ TEST(JointLimit, HoldsAgainstAnEffort) {
   run(simulation, 2000, [&] { deepest = std::max(deepest, simulation.position(0)); });
   EXPECT_NEAR(simulation.velocity(0), 0, 1e-6);
   const scene::JointLimits limits = *b.scene.joints[0].limits;
-  const double stiffness = stop_penalty(simulation.model().coordinates[0], kContactSteps * 1e-3).stiffness;
+  const double stiffness = stop_penalty(model_of(simulation).coordinates[0], kContactSteps * 1e-3).stiffness;
   EXPECT_NEAR(simulation.position(0), limits.upper + 5 / stiffness, 1e-6) << "rests where the penalty balances it";
 }
 
@@ -174,7 +175,7 @@ TEST(PrescribedMotion, FollowsItsFunctionAndBalancesInverseDynamics) {
     error[k] = 0;
     run(simulation, 200 << k, [&] {
       ASSERT_NEAR(simulation.position(0), amplitude * (1 - std::cos(rate * simulation.time())), 1e-14);
-      if (simulation.state().steps < 3) return;
+      if (state_of(simulation).steps < 3) return;
       const double phase = rate * simulation.time();
       const double angle = amplitude * (1 - std::cos(phase)), acceleration = amplitude * rate * rate * std::cos(phase);
       const double torque = (about_center + mass * arm * arm) * acceleration + mass * 9.81 * arm * std::sin(angle);

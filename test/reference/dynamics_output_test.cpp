@@ -4,6 +4,7 @@
 
 #include "reference/documented_arms.h"
 #include "reference/dynamics_joint_chain.h"
+#include "schemes/scheme.h"
 
 namespace flexarm::test {
 namespace {

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "simulation/inside.h"
 #include "support/scene_builder.h"
 
 namespace flexarm::test {
@@ -37,7 +38,7 @@ inline void run(Simulation& simulation, int steps) {
 
 inline double total_mass(const Simulation& simulation) {
   double mass = 0;
-  for (const NodalInertia& inertia : simulation.model().inertias) mass += inertia.total_mass;
+  for (const NodalInertia& inertia : model_of(simulation).inertias) mass += inertia.total_mass;
   return mass;
 }
 

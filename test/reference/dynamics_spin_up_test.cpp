@@ -1,6 +1,7 @@
 // Spin-up of a flexible beam (Kane; Simo and Vu-Quoc), reference case D6, without numerical damping.
 #include <cstdio>
 
+#include "math/pi.h"
 #include "reference/dynamics_runs.h"
 
 namespace flexarm::test {
@@ -53,7 +54,7 @@ TEST_P(SpinUp, CompletesAndKeepsTheSteadyStretch) {
   double mean = 0, deflection = 0;
   int n = 0;
   run(simulation, steady, [&] {
-    const double window = 1 - std::cos(2 * M_PI * ++n / steady);  // its mean is 1; suppresses the ends of the interval
+    const double window = 1 - std::cos(2 * kPi * ++n / steady);  // its mean is 1; suppresses the ends of the interval
     mean += window * stretch(simulation) / steady;
     deflection = std::max(deflection, std::abs(tip_in_hub(simulation).y()));
   });

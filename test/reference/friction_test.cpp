@@ -1,5 +1,6 @@
 // Dry friction: sticking, stopping, and friction that grows with the force on the joint, against closed formulas.
 #include "reference/dynamics_joint_chain.h"
+#include "simulation/inside.h"
 
 namespace flexarm::test {
 namespace {
@@ -368,7 +369,7 @@ TEST(RubbingArm, BudgetClosesToRoundOff) {
           ASSERT_TRUE(result.converged) << scheme << " " << to_string(result.reason) << " at " << simulation.time();
           iterations += result.iterations;
           drift.observe();
-          for (const double rest : simulation.state().rests) held += rest > 0;
+          for (const double rest : state_of(simulation).rests) held += rest > 0;
           ASSERT_GE(simulation.energies().dissipated, dissipated);
           dissipated = simulation.energies().dissipated;
         }

@@ -1,4 +1,5 @@
 // What must not change the answer: the orientation of the scene in space, and a weld in a beam.
+#include "math/pi.h"
 #include "reference/dynamics_joint_chain.h"
 
 namespace flexarm::test {
@@ -40,7 +41,7 @@ class Rotated : public ::testing::TestWithParam<std::tuple<std::string, bool>> {
 TEST_P(Rotated, SceneGivesTheRotatedAnswer) {
   const auto [scheme, hung_up] = GetParam();
   for (const Vector3& axis : {Vector3(1, 2, -2), Vector3(0, 0, 1), Vector3(1, 0, 0)}) {
-    const Quaternion rotation(Eigen::AngleAxisd(axis.x() == 0 ? M_PI : 2.3, axis.normalized()));
+    const Quaternion rotation(Eigen::AngleAxisd(axis.x() == 0 ? kPi : 2.3, axis.normalized()));
     Simulation plain(turned_scene(Quaternion::Identity(), hung_up).scene, options(scheme, 0.02, 1e-11));
     Simulation turned(turned_scene(rotation, hung_up).scene, options(scheme, 0.02, 1e-11));
     for (int n = 0; n < 150; ++n) {
@@ -74,7 +75,7 @@ void quarter_piece(SceneBuilder& b, const std::string& name, double from, double
 /// The quarter circle in one piece, or welded from two at a third of its length.
 SceneBuilder curved_beam(bool welded, JointKind root, int order) {
   SceneBuilder b;
-  const double split = M_PI / 6, end = M_PI / 2;
+  const double split = kPi / 6, end = kPi / 2;
   const Vector3 tip(2, 2, 0), border(2 * std::sin(split), 2 - 2 * std::cos(split), 0);
   b.scene.gravity = {0, 0, -1};
   if (welded) {

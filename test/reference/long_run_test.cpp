@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "reference/dynamics_joint_chain.h"
+#include "simulation/inside.h"
 
 namespace flexarm::test {
 namespace {
@@ -58,14 +59,14 @@ TEST(LongRun, RoundOffOfAMillionSteps) {
   SimulationOptions set = options("em", kStep, 1e-10);
   set.reuse_factorisation = false;
   Simulation simulation(two_links().scene, set);
-  expect_slow_drift(simulation, 1000000, kEpsilon * simulation.model().length_scale);
+  expect_slow_drift(simulation, 1000000, kEpsilon * model_of(simulation).length_scale);
 }
 
 // Kept factors let Newton's method stop where the next update would be below 1e-15 of the mechanism's size. What it
 // leaves out points in the direction in which it converges: measured is N.
 TEST(LongRun, RemainderOfNewtonsMethod) {
   Simulation simulation(two_links().scene, options("em", kStep, 1e-10));
-  expect_slow_drift(simulation, 100000, (kEpsilon + 1e-15) * simulation.model().length_scale);
+  expect_slow_drift(simulation, 100000, (kEpsilon + 1e-15) * model_of(simulation).length_scale);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // at different places.
 #include <cmath>
 
+#include "math/pi.h"
 #include "reference/dynamics_runs.h"
 #include "support/loops.h"
 
@@ -10,7 +11,6 @@ namespace {
 
 using scene::JointKind;
 
-constexpr double kPi = 3.14159265358979323846;
 const Vector3 kAcross(0, 1, 0);
 
 scene::DirectSection soft() {

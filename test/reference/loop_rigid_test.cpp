@@ -1,9 +1,11 @@
 // Loops of rigid links, closed by multipliers: closed-form motions, invariants, constraints.
 #include <cmath>
 
-#include "joints/loop_closure.h"
+#include "joints/closure_maps.h"
+#include "math/pi.h"
 #include "reference/dynamics_runs.h"
 #include "reference/ode.h"
+#include "simulation/inside.h"
 #include "support/closed_ring.h"
 
 namespace flexarm::test {
@@ -75,8 +77,8 @@ TEST(RigidLoop, ParallelogramIsAPendulum) {
 double opening(const Simulation& s) {
   double largest = 0;
   std::vector<NodePose> poses;
-  for (const NodeState& node : s.state().nodes) poses.push_back(node_pose(node));
-  for (const LoopClosure& closure : s.model().closures)
+  for (const NodeState& node : state_of(s).nodes) poses.push_back(node_pose(node));
+  for (const LoopClosure& closure : model_of(s).closures)
     for (const auto* list : {&closure.constraints, &closure.implied})
       for (const ClosureConstraint& constraint : *list)
         largest = std::max(
@@ -130,7 +132,7 @@ TEST(RigidLoop, NaturalFrequencyOfTheParallelogram) {
   const Simulation simulation(parallelogram(0).scene);
   const std::vector<Mode> modes = simulation.natural_modes(5);
   ASSERT_EQ(modes.size(), 1u);
-  const double expected = std::sqrt(9.81 * kMoment / kInertia) / (2 * 3.14159265358979323846);
+  const double expected = std::sqrt(9.81 * kMoment / kInertia) / (2 * kPi);
   EXPECT_NEAR(modes[0].frequency / expected, 1, 1e-9);
 }
 
@@ -143,7 +145,7 @@ TEST(RigidLoop, EquilibriumOfTheParallelogram) {
 
 // At rest on one line with its cranks the coupler may turn either way: the loop does not say which constraints hold.
 TEST(RigidLoop, SingularAtTheStart) {
-  Simulation simulation(parallelogram(0.5 * 3.14159265358979323846).scene, options("em", 0.01));
+  Simulation simulation(parallelogram(0.5 * kPi).scene, options("em", 0.01));
   StepResult result;
   for (int n = 0; n < 200 && (result = simulation.step()).converged; ++n) {
   }

@@ -5,8 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "model/beam_mesh.h"
+#include "building/beam_mesh.h"
 #include "reference_plane_scene.h"
+#include "simulation/inside.h"
 
 namespace flexarm::test {
 namespace {
@@ -42,7 +43,7 @@ TEST(AutomaticMesh, IsUsedWhereTheSceneGivesNoNumberOfElements) {
     SceneBuilder builder = plane_scene(beam, kClamped, kFree, 1, order);
     builder.scene.links.back().beam->elements.reset();
     const int elements = automatic_element_count(order, 0);
-    EXPECT_EQ(Simulation(builder.scene).model().links[1].beam->elements.size(), std::size_t(elements));
+    EXPECT_EQ(model_of(Simulation(builder.scene)).links[1].beam->elements.size(), std::size_t(elements));
     EXPECT_EQ(Simulation(builder.scene).degrees_of_freedom(), std::size_t(6 * order * elements));
   }
 }

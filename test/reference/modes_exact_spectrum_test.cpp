@@ -4,12 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include "math/pi.h"
 #include "reference_spectrum.h"
 
 namespace flexarm::test {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 TEST(ExactSpectrum, RootsOfBernoullisBeam) {
   struct Case {

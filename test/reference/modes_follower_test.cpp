@@ -6,14 +6,13 @@
 
 #include <gtest/gtest.h>
 
+#include "math/pi.h"
 #include "support/scene_builder.h"
 
 namespace flexarm::test {
 namespace {
 
 using Complex = std::complex<double>;
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// lambda near `guess` for which EI (1 + eta lambda) w,xxxx + P w,xx + m lambda^2 w = 0 has a solution with
 /// w = w,x = 0 at the root and w,xx = w,xxx = 0 at the tip; EI = m = L = 1.

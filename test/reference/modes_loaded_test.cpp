@@ -7,12 +7,11 @@
 
 #include <gtest/gtest.h>
 
+#include "math/pi.h"
 #include "reference_plane_scene.h"
 
 namespace flexarm::test {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// omega^2 of the lowest mode of the equilibrium, negative where it grows.
 double lowest_square(const SceneBuilder& builder) {

@@ -5,13 +5,13 @@
 
 #include <gtest/gtest.h>
 
+#include "math/pi.h"
 #include "reference_cantilever.h"
 #include "support/scene_builder.h"
 
 namespace flexarm::test {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 /// EI / (EA R^2), EI / (GA R^2) and rotary inertia over m R^2.
 constexpr double kSlenderness = 1e-6;
 constexpr double kTorsion = 0.5;  ///< GJ [N m^2]

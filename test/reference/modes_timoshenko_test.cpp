@@ -5,13 +5,13 @@
 
 #include <gtest/gtest.h>
 
+#include "math/pi.h"
 #include "reference_cantilever.h"
 #include "reference_plane_scene.h"
+#include "simulation/inside.h"
 
 namespace flexarm::test {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// omega sqrt(m L^4 / EI) for rotary inertia j / (m L^2) and shear compliance EI / (GA L^2): Rayleigh-Ritz with
 /// Legendre polynomials, all digits converged.
@@ -137,7 +137,7 @@ TEST(PinnedTimoshenkoBeam, ModesAreSines) {
     // Amplitudes {w, theta} of {sin k x, cos k x} from k GA (k w - theta) = omega^2 m w, k = n pi.
     const double k = n * kPi, w = 1, theta = k - exact[n - 1] * exact[n - 1] * beam.shear_compliance / k;
     double scale = 0;  // from the root's rotation
-    std::vector<NodeState> nodes = simulation.state().nodes;
+    std::vector<NodeState> nodes = state_of(simulation).nodes;
     nodes.resize(4 * 16 + 1);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       const double x = nodes[i].position.x();

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "reference/dynamics_joint_chain.h"
+#include "simulation/inside.h"
 
 namespace flexarm::test {
 namespace {
@@ -86,13 +87,13 @@ double extent(const State& state) {
 
 /// Velocity that the round-off of positions r makes in v_1 = 2 Delta r / h - v_0; ten operations each.
 double velocity_round_off(const Simulation& simulation, double step) {
-  return 10 * kEpsilon * 2 * extent(simulation.state()) / step;
+  return 10 * kEpsilon * 2 * extent(state_of(simulation)) / step;
 }
 
 /// Round-off of the energy of a step: that of the velocities, and that of strains times the stress; the latter is at
 /// most that of all the strain energy in tension over a length of 1 m.
 double energy_round_off(const Simulation& simulation, const HardCase& c) {
-  const double refined = std::ldexp(c.step, -simulation.state().halving_level);
+  const double refined = std::ldexp(c.step, -state_of(simulation).halving_level);
   const Energies e = simulation.energies();
   const double momentum = std::sqrt(2 * total_mass(simulation) * e.kinetic);
   return momentum * velocity_round_off(simulation, refined) +

@@ -9,6 +9,7 @@
 
 #include "reference/dynamics_runs.h"
 #include "schemes/scheme.h"
+#include "simulation/inside.h"
 
 namespace flexarm::test {
 namespace {
@@ -123,19 +124,19 @@ Simulation bar(const Case& c) {
 }
 
 int tip_node(const Simulation& simulation) {
-  return std::get<BeamGroup<2>>(simulation.model().beams).elements.front().nodes[1];
+  return std::get<BeamGroup<2>>(model_of(simulation).beams).elements.front().nodes[1];
 }
 
 /// Starts on the mode x = Re(u z^n) of the root p.
 void start_on(Simulation& simulation, const Oscillator& o, const Complex& p, const Complex& u) {
-  State state = simulation.state();
+  State state = state_of(simulation);
   NodeState& tip = state.nodes[tip_node(simulation)];
   StrainMemory& memory = state.strain_memory.front();
   tip.position.x() = 1 + u.real();
   tip.velocity.x() = memory.rate[0] = (2.0 * p * u).real() / kStep;
   memory.delayed_rate[0] = (2.0 * p * u / (1.0 + 2.0 * p)).real() / kStep;
   memory.average[0] = o.nu == 0 ? 0 : (o.nu * 2.0 * p * u / (2.0 * p + o.nu * (1.0 - p))).real();
-  simulation.restore(state);
+  restore(simulation, state);
 }
 
 class Spectrum : public ::testing::TestWithParam<Case> {};
@@ -162,7 +163,7 @@ TEST_P(Spectrum, MotionFollowsTheSlowestRoot) {
   Complex u = amplitude;
   run(simulation, steps, [&] {
     u *= z;
-    defect = std::max(defect, std::abs(simulation.state().nodes[tip_node(simulation)].position.x() - 1 - u.real()));
+    defect = std::max(defect, std::abs(state_of(simulation).nodes[tip_node(simulation)].position.x() - 1 - u.real()));
   });
   const double round_off = 10 * kEpsilon * steps * (1 + 1 / c.frequency);
   EXPECT_LT(defect, round_off) << c;

@@ -5,6 +5,7 @@
 
 #include "elements/beam_point.h"
 #include "reference/dynamics_joint_chain.h"
+#include "simulation/inside.h"
 
 namespace flexarm::test {
 namespace {
@@ -59,7 +60,7 @@ double round_off(const Simulation& simulation, const State& begin, double stiffn
   double work = 0;
   const double h = simulation.step_size(), inertia = 4 * total_mass(simulation) / (h * h);
   for (std::size_t i = 0; i < begin.nodes.size(); ++i) {
-    const NodeState &a = begin.nodes[i], &b = simulation.state().nodes[i];
+    const NodeState &a = begin.nodes[i], &b = state_of(simulation).nodes[i];
     const double increment = (b.position - a.position).norm() + b.orientation.angularDistance(a.orientation);
     work += increment * (stiffness + inertia * (1 + b.position.norm()));
   }
@@ -85,14 +86,14 @@ struct Identity {
 template <class Predict>
 Identity check_identity(Simulation simulation, const Predict& predict) {
   Identity out;
-  State before = simulation.state();
+  State before = state_of(simulation);
   double energy = simulation.energies().total();
   run(simulation, 200, [&] {
     const double gain = simulation.energies().total() - energy, unit = round_off(simulation, before, 2e3);
-    const double predicted = predict(energy_increment(simulation.model(), before, simulation.state()));
+    const double predicted = predict(energy_increment(model_of(simulation), before, state_of(simulation)));
     out.largest_defect = std::max(out.largest_defect, std::abs(gain - predicted) / unit);
     out.largest_gain = std::max(out.largest_gain, std::abs(predicted) / unit);
-    before = simulation.state();
+    before = state_of(simulation);
     energy = simulation.energies().total();
   });
   return out;
@@ -139,13 +140,13 @@ Simulation vibrating(const std::string& scheme, double step, double amplitude) {
   SimulationOptions set = options(scheme, step, 1e-10);
   set.reuse_factorisation = false;
   Simulation simulation(b.scene, set);
-  State state = simulation.state();
+  State state = state_of(simulation);
   for (NodeState& node : state.nodes) {
     const double x = node.position.x();
     node.velocity = amplitude * Vector3(x, 1.5 * (x * x - 1.0 / 3), 0);
     node.angular_velocity = amplitude * Vector3(0, 0, 3 * x);
   }
-  for_each_element(simulation.model().beams, [&](const auto& element) {
+  for_each_element(model_of(simulation).beams, [&](const auto& element) {
     for (std::size_t k = 0; k < element.mass_points.size(); ++k) {
       Vector3& W = state.mass_points[element.first_mass_point + k].angular_velocity;
       W.setZero();
@@ -153,7 +154,7 @@ Simulation vibrating(const std::string& scheme, double step, double amplitude) {
         W += element.mass_points[k].shape[i] * state.nodes[element.nodes[i]].angular_velocity;
     }
   });
-  simulation.restore(state);
+  restore(simulation, state);
   return simulation;
 }
 
@@ -165,14 +166,14 @@ TEST(EnergyOfM2, FallsInEveryStepOfASmallVibration) {
   Simulation m2 = vibrating("m2", 2e-3, 1e-2), m1 = vibrating("m1", 2e-3, 1e-2);
   const double begin = m2.energies().total();
   double energy = begin, others = 0, drift_of_m1 = 0;
-  State before = m2.state();
+  State before = state_of(m2);
   run(m2, 500, [&] {
-    const EnergyIncrement e = energy_increment(m2.model(), before, m2.state());
+    const EnergyIncrement e = energy_increment(model_of(m2), before, state_of(m2));
     const double now = m2.energies().total();
     EXPECT_LT(now, energy) << "t = " << m2.time();
     others = std::max(others, std::abs((e.unscaled + e.lever) / e.backward));
     energy = now;
-    before = m2.state();
+    before = state_of(m2);
   });
   run(m1, 500, [&] { drift_of_m1 = std::max(drift_of_m1, std::abs(m1.energies().total() - begin)); });
   std::printf("M2 loses %.1f %%, largest part of the other terms %.1e; M1 changes by %.1e\n",
@@ -204,10 +205,10 @@ TEST(EnergyOfM2, LossPerStepIsHalfTheSquareOfStepTimesAcceleration) {
   run(start, 50);
   const auto loss = [&](const std::string& scheme, double h, double& backward) {
     Simulation simulation = vibrating(scheme, h, 0);
-    simulation.restore(start.state());
+    restore(simulation, state_of(start));
     const double energy = simulation.energies().total();
     run(simulation, 1);
-    backward = energy_increment(simulation.model(), start.state(), simulation.state()).backward;
+    backward = energy_increment(model_of(simulation), state_of(start), state_of(simulation)).backward;
     return energy - simulation.energies().total();
   };
   double backward = 0;
@@ -280,9 +281,9 @@ CurvatureChange turned_curvature(const Model& model, const State& begin, const S
 TEST(EnergyOfStd, ItsStrainsAreNotInvariant) {
   Simulation simulation(tumbling_beam().scene, options("std", 0.05, 1e-10));
   run(simulation, 20);
-  const State before = simulation.state();
+  const State before = state_of(simulation);
   run(simulation, 1);
-  const CurvatureChange change = turned_curvature(simulation.model(), before, simulation.state(),
+  const CurvatureChange change = turned_curvature(model_of(simulation), before, state_of(simulation),
                                                   Quaternion(Eigen::AngleAxisd(0.5, Vector3(1, 2, -2) / 3)));
   std::printf("rigid turn by 0.5 rad: curvature changes by %.1e (STD), %.1e (local)\n", change.tangent_scaled,
               change.local);

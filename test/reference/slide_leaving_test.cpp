@@ -4,6 +4,7 @@
 
 #include "flexarm/simulation/checkpoint.h"
 #include "reference/dynamics_joint_chain.h"
+#include "simulation/inside.h"
 
 namespace flexarm::test {
 namespace {
@@ -46,7 +47,7 @@ TEST_P(LeavingSlide, KeepsEnergyAndMomenta) {
     run(simulation, 150, [&] { drift.observe(); });
     EXPECT_GT(simulation.degrees_of_freedom(), unknowns) << "it has not left";
     EXPECT_LE(simulation.position(*simulation.find_coordinate(GetParam() == JointKind::Fixed ? "run" : "run/s")),
-              simulation.model().slide_lines[0].end() + 0.1);
+              model_of(simulation).slide_lines[0].end() + 0.1);
     EXPECT_LT(drift.energy(), 1e-10) << scheme;
     EXPECT_LT(drift.momentum(), 1e-11) << scheme;
     EXPECT_LT(drift.angular_momentum(), 1e-11) << scheme;
@@ -88,11 +89,11 @@ TEST(SlideEnd, ResetRestoreAndCheckpointsKnowWhoHasLeft) {
     SimulationOptions bitwise = options(scheme, 0.01);
     bitwise.reuse_factorisation = false;
     Simulation simulation(b.scene, bitwise);
-    const State start = simulation.state();
+    const State start = state_of(simulation);
     run(simulation, 20);
-    const State on_line = simulation.state();
+    const State on_line = state_of(simulation);
     run(simulation, 80);
-    const State flying = simulation.state();
+    const State flying = state_of(simulation);
     ASSERT_EQ(flying.left_lines.size(), 1u) << scheme;
     const std::string path =
         (std::filesystem::temp_directory_path() / ("flexarm_leaving_" + std::string(scheme))).string();
@@ -100,15 +101,15 @@ TEST(SlideEnd, ResetRestoreAndCheckpointsKnowWhoHasLeft) {
     run(simulation, 20);
     const Vector3 last = simulation.link_pose(3).position;
 
-    simulation.restore(on_line);
+    restore(simulation, on_line);
     run(simulation, 100);
     EXPECT_LT((simulation.link_pose(3).position - last).norm(), 1e-6) << scheme;
-    simulation.restore(flying);
+    restore(simulation, flying);
     run(simulation, 20);
     EXPECT_EQ(simulation.link_pose(3).position, last) << scheme;
     simulation.reset();
-    EXPECT_TRUE(simulation.state().left_lines.empty());
-    EXPECT_EQ(simulation.state().nodes.size(), start.nodes.size());
+    EXPECT_TRUE(state_of(simulation).left_lines.empty());
+    EXPECT_EQ(state_of(simulation).nodes.size(), start.nodes.size());
     run(simulation, 120);
     EXPECT_LT((simulation.link_pose(3).position - last).norm(), 1e-6) << scheme;
 
@@ -118,7 +119,7 @@ TEST(SlideEnd, ResetRestoreAndCheckpointsKnowWhoHasLeft) {
     EXPECT_EQ(other.link_pose(3).position, last) << scheme;
     State wrong = flying;
     wrong.left_lines[0] = 0;
-    EXPECT_THROW(simulation.restore(wrong), std::invalid_argument);
+    EXPECT_THROW(restore(simulation, wrong), std::invalid_argument);
     std::filesystem::remove(path);
   }
 }

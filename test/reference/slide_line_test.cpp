@@ -1,6 +1,7 @@
 // Lines over several links: welded beams are one line, kinks end it.
-#include "model/model_builder.h"
+#include "building/model_builder.h"
 #include "reference/dynamics_joint_chain.h"
+#include "simulation/inside.h"
 
 namespace flexarm::test {
 namespace {
@@ -34,7 +35,7 @@ SceneBuilder welded(int links, double speed) {
 }
 
 double place(const Simulation& simulation) {
-  return simulation.position(*simulation.find_coordinate("run/s")) - simulation.model().slide_lines[0].begin();
+  return simulation.position(*simulation.find_coordinate("run/s")) - model_of(simulation).slide_lines[0].begin();
 }
 
 // The same mesh in one link, in two and in four; past welds in both directions. A plain line in two links, none of
@@ -53,8 +54,8 @@ TEST(SlideLine, WeldedBeamsAreOneLine) {
       Simulation one = simulation(1, smooth), two = simulation(2, smooth), four = simulation(4, smooth),
                  other = simulation(1, !smooth);
       InvariantDrift drift_of_two(two), drift_of_four(four);
-      EXPECT_NEAR(four.model().slide_lines[0].begin(), -2, 1e-15);
-      EXPECT_NEAR(four.model().slide_lines[0].end(), 2, 1e-15);
+      EXPECT_NEAR(model_of(four).slide_lines[0].begin(), -2, 1e-15);
+      EXPECT_NEAR(model_of(four).slide_lines[0].end(), 2, 1e-15);
       double least = 1e9, most = -1e9, weld_of_two = 0, weld_of_four = 0, error = 0;
       run(one, 150, [&] {
         for (Simulation* other_one : {&two, &four, &other}) ASSERT_TRUE(other_one->step().converged);

@@ -1,9 +1,10 @@
 // The thesis's algorithms for sliders: what each of them keeps, on a runner in free flight and in the example 12.2.
 #include <cstdio>
 
+#include "building/model_builder.h"
 #include "joints/joint_kinematics.h"
-#include "model/model_builder.h"
 #include "reference/slide_scenes.h"
+#include "simulation/inside.h"
 
 namespace flexarm::test {
 namespace {
@@ -25,7 +26,7 @@ Simulation runner(const std::string& slide, JointKind rotation, double step, boo
 /// What is known of a slider before and after a step.
 struct Contact {
   explicit Contact(const Simulation& simulation) : simulation_(simulation) {
-    const Model& model = simulation.model();
+    const Model& model = model_of(simulation);
     for (joint_ = 0; model.joints[joint_].kind != JointMapKind::Slide;) ++joint_;
     observe();
   }
@@ -34,13 +35,13 @@ struct Contact {
     before_ = poses_;
     slave_before_ = slave_;
     from_ = to_;
-    const State& state = simulation_.state();
+    const State& state = state_of(simulation_);
     poses_.clear();
     for (const NodeState& node : state.nodes) poses_.push_back(node_pose(node));
-    slave_ = poses_[simulation_.model().joints[joint_].slave].position;
+    slave_ = poses_[model_of(simulation_).joints[joint_].slave].position;
     to_ = state.released[joint_].displacement[0];
   }
-  const SlideLine& line() const { return simulation_.model().slide_lines[simulation_.model().joints[joint_].line]; }
+  const SlideLine& line() const { return model_of(simulation_).slide_lines[model_of(simulation_).joints[joint_].line]; }
   bool crossed() const { return line().piece_at(from_) != line().piece_at(to_); }
   /// Distance of the slave from the line at the end of the step [m].
   double at_end() const { return (slave_ - slide_pose(line(), poses_, to_).position).norm(); }
@@ -74,7 +75,7 @@ TEST_P(SlideSchemes, HoldTheirContactConditions) {
       const std::string name = slide;
       int crossings = 0;
       for (int i = 0; i < 120; ++i) {
-        const int level = simulation.state().halving_level;
+        const int level = state_of(simulation).halving_level;
         const StepResult result = simulation.step();
         if (!result.converged && name == "alg4") break;  // as in the thesis: its transitions excite the line
         ASSERT_TRUE(result.converged) << slide;
@@ -134,7 +135,7 @@ TEST_P(SlideSchemes, Alg3LosesAngularMomentumInThirdOrder) {
   run(start, 20);
   const auto jump = [&](double step) {
     Simulation simulation = runner("alg3", GetParam(), step);
-    simulation.restore(start.state());
+    restore(simulation, state_of(start));
     const Vector3 before = simulation.angular_momentum();
     EXPECT_TRUE(simulation.step().converged);
     return (simulation.angular_momentum() - before).norm();

@@ -5,14 +5,15 @@
 
 #include <gtest/gtest.h>
 
-#include "model/beam_mesh.h"
+#include "building/beam_mesh.h"
+#include "math/pi.h"
 #include "reference_cantilever.h"
 #include "reference_shooting.h"
 
 namespace flexarm::test {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846, kAccuracy = 0.01;
+constexpr double kAccuracy = 0.01;
 
 /// Largest turning per element [rad], from a line with so many turns that nothing else counts.
 double turning_per_element(int order) {

@@ -4,13 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include "math/pi.h"
 #include "reference_cantilever.h"
 #include "reference_shooting.h"
 
 namespace flexarm::test {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kRadius = 100, kYoung = 1e7, kShear = 5e6;
 
 /// Square section of width w: shear area factor k and torsion constant J = torsion w^4.

@@ -8,6 +8,7 @@
 #include "math/so3.h"
 #include "reference_cantilever.h"
 #include "reference_shooting.h"
+#include "simulation/inside.h"
 
 namespace flexarm::test {
 namespace {
@@ -184,7 +185,7 @@ TEST(Statics, NewtonConvergesQuadraticallyOnALargeRotation) {
   const StepResult result = simulation.solve_static(1);
   ASSERT_TRUE(result.converged);
   EXPECT_GT(so3::log(simulation.probe(0).pose.orientation).norm(), 0.8);
-  const std::vector<double>& norms = simulation.update_norms();
+  const std::vector<double>& norms = update_norms_of(simulation);
   std::printf("Newton updates:");
   for (const double norm : norms) std::printf(" %.1e", norm);
   std::printf("\n");

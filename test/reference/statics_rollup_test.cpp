@@ -5,12 +5,12 @@
 
 #include <gtest/gtest.h>
 
+#include "math/pi.h"
 #include "reference_cantilever.h"
 
 namespace flexarm::test {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kLength = 3, kBending = 2;
 
 Cantilever roll_up(double turns) {

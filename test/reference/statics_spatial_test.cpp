@@ -7,14 +7,13 @@
 #include <gtest/gtest.h>
 #include <Eigen/LU>
 
+#include "math/pi.h"
 #include "math/so3.h"
 #include "reference_cantilever.h"
 #include "reference_shooting.h"
 
 namespace flexarm::test {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// A blade: bending stiffnesses a factor of nine apart, so that twist matters.
 scene::DirectSection blade() {

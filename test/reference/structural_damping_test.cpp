@@ -4,6 +4,7 @@
 
 #include "flexarm/scene/urdf_reader.h"
 #include "reference/dynamics_runs.h"
+#include "simulation/inside.h"
 
 namespace flexarm::test {
 namespace {
@@ -43,11 +44,11 @@ scene::SceneDescription guide_arm() {
 /// least: of what the jump at 1 s has started, exp(-25) is left.
 std::vector<double> velocities_after_jump(const std::string& scheme, int refinement) {
   Simulation simulation(guide_arm(), options(scheme, 1e-3 / refinement));
-  const int shoulder = simulation.model().joints[simulation.model().coordinates.front().joint].slave;
+  const int shoulder = model_of(simulation).joints[model_of(simulation).coordinates.front().joint].slave;
   std::vector<double> velocities;
   for (int n = 1; n <= 1500; ++n) {
     run(simulation, refinement);
-    const NodeState& node = simulation.state().nodes[shoulder];
+    const NodeState& node = state_of(simulation).nodes[shoulder];
     if (n >= 1050) velocities.push_back((node.orientation * node.angular_velocity).z());
   }
   return velocities;
@@ -87,9 +88,9 @@ TEST_P(StructuralDamping, AccountIsExactInHalvedSteps) {
   InvariantDrift drift(simulation);
   double dissipated = 0;
   for (int n = 0; n < 200; ++n) {
-    State state = simulation.state();
+    State state = state_of(simulation);
     state.halving_level = n % 4;
-    simulation.restore(state);
+    restore(simulation, state);
     ASSERT_TRUE(simulation.step().converged);
     drift.observe();
     EXPECT_GE(simulation.energies().dissipated, dissipated);

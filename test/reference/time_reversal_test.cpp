@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "reference/dynamics_joint_chain.h"
+#include "simulation/inside.h"
 
 namespace flexarm::test {
 namespace {
@@ -47,18 +48,18 @@ struct Return {
 /// of all steps in one direction.
 Return there_and_back(const SceneBuilder& scene, const std::string& scheme, double h, int steps) {
   Simulation simulation(scene.scene, options(scheme, h, 1e-10));
-  const State begin = simulation.state();
+  const State begin = state_of(simulation);
   run_whole(simulation, steps);
-  const State turn = simulation.state();
+  const State turn = state_of(simulation);
   Return out;
   out.path = distance(begin, turn);
-  simulation.restore(reversed(turn));
+  restore(simulation, reversed(turn));
   run_whole(simulation, steps);
-  const State back = simulation.state();
+  const State back = state_of(simulation);
   out.defect = distance(begin, back);
-  simulation.restore(reversed(turn, 1 + 1e-7));
+  restore(simulation, reversed(turn, 1 + 1e-7));
   run_whole(simulation, steps);
-  const double growth = distance(simulation.state(), back) / 1e-7;
+  const double growth = distance(state_of(simulation), back) / 1e-7;
   double extent = 0;
   for (const NodeState& node : turn.nodes) extent = std::max(extent, node.position.norm());
   const double speed = std::sqrt(2 * simulation.energies().kinetic / total_mass(simulation));

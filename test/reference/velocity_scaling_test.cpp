@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "reference/dynamics_joint_chain.h"
+#include "simulation/inside.h"
 
 namespace flexarm::test {
 namespace {
@@ -53,10 +54,10 @@ TEST_P(VelocityScaling, KeepsEnergyAndTheMomentaOfTheSupport) {
     about_axis = std::max(about_axis, std::abs(kAxis.dot(simulation.angular_momentum() - angular)));
     along_axis = std::max(along_axis, std::abs(kAxis.dot(simulation.momentum() - linear)));
     about_origin = std::max(about_origin, (simulation.angular_momentum() - angular).norm());
-    EXPECT_EQ(simulation.state().energy_defect, 0);
+    EXPECT_EQ(state_of(simulation).energy_defect, 0);
   });
   double extent = 0;
-  for (const NodeState& node : simulation.state().nodes) extent = std::max(extent, node.position.norm());
+  for (const NodeState& node : state_of(simulation).nodes) extent = std::max(extent, node.position.norm());
   const double mass = total_mass(simulation), velocity = 10 * 2 * extent * kEpsilon / kStep;
   const double bound = kSteps * mass * velocity;
   std::printf("%s: energy %.1e (em0: %.1e), angular momentum about the axis %.1e, momentum along it %.1e of %.1e\n",

@@ -1,8 +1,8 @@
 // The table of schemes.
 #include "schemes/scheme.h"
 
+#include "building/model_builder.h"
 #include "flexarm/schemes/integrator_description.h"
-#include "model/model_builder.h"
 
 #include <set>
 #include <string>

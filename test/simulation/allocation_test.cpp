@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "simulation/everything_scene.h"
+#include "simulation/inside.h"
 #include "support/closed_ring.h"
 
 // Interposes the allocator of the whole program, libraries included; it only counts, glibc does the work.
@@ -126,7 +127,7 @@ TEST_F(Allocation, NoneWhereFrictionSticks) {
       EXPECT_EQ(allocations_in([&] {
                   for (int n = 0; n < 300; ++n) {
                     converged += simulation.step().converged;
-                    for (const double rest : simulation.state().rests) held += rest;
+                    for (const double rest : state_of(simulation).rests) held += rest;
                   }
                 }),
                 0)
@@ -162,7 +163,7 @@ TEST_F(Allocation, OfSlidersOnlyAtBordersOfElements) {
   b.scene.integrator.step = 0.005;
   Simulation simulation(b.scene);
   ASSERT_TRUE(simulation.step().converged);
-  const SlideLine& line = simulation.model().slide_lines[0];
+  const SlideLine& line = model_of(simulation).slide_lines[0];
   int borders = 0, allocating_steps = 0;
   while (simulation.position(0) < 3.6 && simulation.time() < 3) {
     const int before = line.piece_at(simulation.position(0));

@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "flexarm/simulation/checkpoint.h"
+#include "schemes/scheme.h"
 #include "simulation/everything_scene.h"
+#include "simulation/inside.h"
 #include "simulation/same_bits.h"
 
 namespace flexarm::test {
@@ -33,37 +35,38 @@ TEST_P(Checkpoint, ResetReproducesTheRun) {
     options.scheme = GetParam();
     options.reuse_factorisation = reuse;
     Simulation simulation(everything_scene().scene, options);
-    const State initial = simulation.state();
+    const State initial = state_of(simulation);
     simulation.command_effort(*simulation.find_coordinate("elbow"), 0.5);
     run(simulation, 60);
     simulation.reset();
-    EXPECT_TRUE(same_bits(simulation.state(), initial));
+    EXPECT_TRUE(same_bits(state_of(simulation), initial));
     run(simulation, 60);
-    const State first = simulation.state();
+    const State first = state_of(simulation);
     simulation.reset();
     run(simulation, 60);
-    EXPECT_TRUE(same_bits(simulation.state(), first)) << "reuse " << reuse;
+    EXPECT_TRUE(same_bits(state_of(simulation), first)) << "reuse " << reuse;
     Simulation fresh(everything_scene().scene, options);
     run(fresh, 60);
-    EXPECT_TRUE(same_bits(fresh.state(), first)) << "commands are forgotten; reuse " << reuse;
+    EXPECT_TRUE(same_bits(state_of(fresh), first)) << "commands are forgotten; reuse " << reuse;
   }
 }
 
 TEST_P(Checkpoint, SnapshotContinuesBitForBit) {
   Simulation simulation = this->simulation();
   run(simulation, 40);
-  const State snapshot = simulation.state();
+  const Snapshot snapshot = simulation.snapshot();
+  const State then = state_of(simulation);
   run(simulation, 40);
-  const State later = simulation.state();
+  const State later = state_of(simulation);
   run(simulation, 13);
   simulation.restore(snapshot);
-  EXPECT_TRUE(same_bits(simulation.state(), snapshot));
+  EXPECT_TRUE(same_bits(state_of(simulation), then));
   run(simulation, 40);
-  EXPECT_TRUE(same_bits(simulation.state(), later));
+  EXPECT_TRUE(same_bits(state_of(simulation), later));
   Simulation other = this->simulation();
   other.restore(snapshot);
   run(other, 40);
-  EXPECT_TRUE(same_bits(other.state(), later)) << "also in another instance";
+  EXPECT_TRUE(same_bits(state_of(other), later)) << "also in another instance";
 }
 
 TEST_P(Checkpoint, FileContinuesBitForBit) {
@@ -75,7 +78,7 @@ TEST_P(Checkpoint, FileContinuesBitForBit) {
   Simulation resumed = this->simulation();
   read_checkpoint(resumed, path_);
   run(resumed, 40);
-  EXPECT_TRUE(same_bits(resumed.state(), simulation.state()));
+  EXPECT_TRUE(same_bits(state_of(resumed), state_of(simulation)));
   EXPECT_EQ(resumed.effort(*resumed.find_coordinate("elbow")), 0.3) << "commands are part of the state";
 }
 
@@ -92,9 +95,9 @@ TEST_P(Checkpoint, FileKeepsWhatSticks) {
   write_checkpoint(simulation, path_);
   run(simulation, 40);
   read_checkpoint(resumed, path_);
-  EXPECT_GT(*std::max_element(resumed.state().rests.begin(), resumed.state().rests.end()), 0);
+  EXPECT_GT(*std::max_element(state_of(resumed).rests.begin(), state_of(resumed).rests.end()), 0);
   run(resumed, 40);
-  EXPECT_TRUE(same_bits(resumed.state(), simulation.state()));
+  EXPECT_TRUE(same_bits(state_of(resumed), state_of(simulation)));
 }
 
 // With kept factors (the default) the converged steps agree to Newton's remainder, not to the last bit.
@@ -108,7 +111,7 @@ TEST_P(Checkpoint, ContinuesToRoundOffWithKeptFactors) {
       for (scene::JointDescription& joint : *joints) joint.friction = 0, joint.friction_law = {};
   Simulation simulation(builder.scene, options);
   run(simulation, 40);
-  const State snapshot = simulation.state();
+  const Snapshot snapshot = simulation.snapshot();
   run(simulation, 40);
   const Vector3 tip = simulation.probe(0).pose.position;
   simulation.restore(snapshot);
@@ -126,7 +129,7 @@ TEST_P(Checkpoint, OfAnotherModelOrSchemeIsRefused) {
   b.joint("clamp", scene::JointKind::Fixed, "world", "arm");
   Simulation other(b.scene);
   EXPECT_THROW(read_checkpoint(other, path_), std::runtime_error);
-  EXPECT_THROW(other.restore(simulation.state()), std::invalid_argument);
+  EXPECT_THROW(other.restore(simulation.snapshot()), std::invalid_argument);
   EXPECT_TRUE(other.step().converged) << "unharmed";
 
   SimulationOptions options;

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "math/pi.h"
 #include "math/so3.h"
 
 namespace flexarm {
@@ -61,7 +62,7 @@ TEST(RateAtEnd, IsTheMeanAfterAJump) {
 
 /// What rings with amplitude 1 in the mean rates rings no more in the result.
 TEST(RateAtEnd, DoesNotAmplifyWhatRings) {
-  const auto ringing = [](double t) { return 0.05 * std::cos(M_PI * t / 0.1); };  // mean rates +-1
+  const auto ringing = [](double t) { return 0.05 * std::cos(kPi * t / 0.1); };  // mean rates +-1
   for (const double end : {1.0, 1.1}) EXPECT_NEAR(std::abs(rate(ringing, end, {0.1, 0.1, 0.1})), 1, kRoundOff / 0.1);
 }
 

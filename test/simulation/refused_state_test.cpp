@@ -11,6 +11,7 @@
 #include "flexarm/simulation/checkpoint.h"
 #include "simulation/everything_scene.h"
 #include "simulation/fingerprint.h"
+#include "simulation/inside.h"
 #include "simulation/same_bits.h"
 
 namespace flexarm::test {
@@ -102,7 +103,7 @@ TEST(CheckpointOfAChangedScene, IsReadWithOtherProbesAndLimits) {
   b.scene.integrator.max_halvings = 10;
   Simulation other(b.scene);
   read_checkpoint(other, path);
-  EXPECT_TRUE(same_bits(other.state(), simulation.state()));
+  EXPECT_TRUE(same_bits(state_of(other), state_of(simulation)));
   std::remove(path.c_str());
 }
 
@@ -139,16 +140,16 @@ TEST(RestoredState, WithImpossibleValuesIsRefused) {
       {"number of reactions", [](State& s) { s.reactions.pop_back(); }},
   };
   for (const auto& [told, change] : changes) {
-    const State before = simulation.state();
+    const State before = state_of(simulation);
     State state = before;
     change(state);
     try {
-      simulation.restore(state);
+      restore(simulation, state);
       ADD_FAILURE() << told << ": was restored";
     } catch (const std::invalid_argument& error) {
       EXPECT_NE(std::string(error.what()).find(told), std::string::npos) << told << ": " << error.what();
     }
-    EXPECT_TRUE(same_bits(simulation.state(), before)) << told;
+    EXPECT_TRUE(same_bits(state_of(simulation), before)) << told;
   }
 }
 
@@ -180,7 +181,7 @@ class DamagedCheckpoint : public ::testing::Test {
   /// Reading `text` fails with an error that names the file and says `told`; the simulation is as before.
   void expect_refused(const std::string& text, const std::string& what, const std::string& told = "") {
     std::ofstream(path_, std::ios::binary) << text;
-    const State before = simulation_->state();
+    const State before = state_of(*simulation_);
     try {
       read_checkpoint(*simulation_, path_);
       ADD_FAILURE() << what << ": was read";
@@ -188,7 +189,7 @@ class DamagedCheckpoint : public ::testing::Test {
       EXPECT_NE(std::string(error.what()).find(path_), std::string::npos) << error.what();
       EXPECT_NE(std::string(error.what()).find(told), std::string::npos) << what << ": " << error.what();
     }
-    EXPECT_TRUE(same_bits(simulation_->state(), before)) << what;
+    EXPECT_TRUE(same_bits(state_of(*simulation_), before)) << what;
   }
 
   const std::string path_ = ::testing::TempDir() + "flexarm_damaged_checkpoint_test.state";

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "flexarm/schemes/integrator_description.h"
+#include "math/pi.h"
 #include "simulation/everything_scene.h"
+#include "simulation/inside.h"
 
 namespace flexarm::test {
 namespace {
@@ -29,7 +31,7 @@ class SmallArm : public ::testing::Test {
  protected:
   SmallArm() {
     SceneBuilder b = small_arm();
-    b.scene.initial_joints.push_back({"hinge", M_PI / 2, 0.5, {}});
+    b.scene.initial_joints.push_back({"hinge", kPi / 2, 0.5, {}});
     b.scene.initial_joints.push_back({"rail", 0.1, -0.2, {}});
     b.scene.initial_joints.push_back({"ball/rz", 0.3, 0, {}});
     b.probe("tip", "boom", {1, 0, 0});
@@ -56,14 +58,14 @@ TEST_F(SmallArm, NamesItsCoordinatesAndLinks) {
 
 TEST_F(SmallArm, StartsWhereTheSceneSays) {
   const Simulation s(scene_);
-  EXPECT_DOUBLE_EQ(s.position(0), M_PI / 2);
+  EXPECT_DOUBLE_EQ(s.position(0), kPi / 2);
   EXPECT_DOUBLE_EQ(s.position(1), 0.1);
   EXPECT_NEAR(s.position(4), 0.3, 1e-15);
   EXPECT_NEAR(s.velocity(0), 0.5, 1e-14);
   EXPECT_NEAR(s.velocity(1), -0.2, 1e-14);
   EXPECT_LT((s.link_pose(2).position - Vector3(0, 0.3, 0.5)).norm(), 1e-15);
   EXPECT_LT((s.tip_pose(2).position - Vector3(0, 1.3, 0.5)).norm(), 1e-15);
-  const Quaternion quarter(Eigen::AngleAxisd(M_PI / 2, Vector3::UnitZ()));
+  const Quaternion quarter(Eigen::AngleAxisd(kPi / 2, Vector3::UnitZ()));
   EXPECT_LT(s.link_pose(2).orientation.angularDistance(quarter), 1e-7);
   EXPECT_LT(s.tip_pose(2).orientation.angularDistance(quarter), 1e-7) << "axes as the link's";
   EXPECT_LT(s.link_pose(3).orientation.angularDistance(quarter * Quaternion(Eigen::AngleAxisd(0.3, Vector3::UnitZ()))),
@@ -201,7 +203,7 @@ TEST(Simulation, TimeCountsWholeSteps) {
   Simulation s(everything_scene().scene);
   for (int n = 0; n < 100; ++n) ASSERT_TRUE(s.step().converged);
   EXPECT_NEAR(s.time(), 0.2, 1e-14);
-  EXPECT_EQ(s.state().steps, 100);
+  EXPECT_EQ(state_of(s).steps, 100);
 }
 
 TEST(Simulation, MomentaAreThoseOfTheMotion) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "flexarm/schemes/integrator_description.h"
+#include "simulation/inside.h"
 #include "support/scene_builder.h"
 
 namespace flexarm::test {
@@ -45,8 +46,8 @@ TEST(StepControl, HalvesAndRecoversToTheFullStep) {
     if (n > 90) late_halvings += result.halvings;
   }
   EXPECT_EQ(late_halvings, 0);
-  EXPECT_EQ(simulation.state().halving_level, 0);
-  EXPECT_EQ(simulation.state().steps, 100);
+  EXPECT_EQ(state_of(simulation).halving_level, 0);
+  EXPECT_EQ(state_of(simulation).steps, 100);
 }
 
 TEST(StepControl, FailureLeavesTheLastGoodState) {
@@ -58,13 +59,13 @@ TEST(StepControl, FailureLeavesTheLastGoodState) {
   EXPECT_NE(result.reason, StepResult::Reason::None);
   EXPECT_EQ(result.halvings, 2);
   EXPECT_DOUBLE_EQ(simulation.time(), 0);
-  EXPECT_TRUE(is_finite(simulation.state()));
+  EXPECT_TRUE(is_finite(state_of(simulation)));
   EXPECT_DOUBLE_EQ(simulation.velocity(0), 1000);
   // It fails again in the same way, and a reset does not cure it; neither does any harm.
   EXPECT_FALSE(simulation.step().converged);
   simulation.reset();
   EXPECT_FALSE(simulation.step().converged);
-  EXPECT_TRUE(is_finite(simulation.state()));
+  EXPECT_TRUE(is_finite(state_of(simulation)));
 }
 
 TEST(StepControl, NonFiniteLoadFailsWithoutSpoilingTheState) {
@@ -81,7 +82,7 @@ TEST(StepControl, NonFiniteLoadFailsWithoutSpoilingTheState) {
     const StepResult result = simulation.step();
     EXPECT_FALSE(result.converged) << scheme;
     EXPECT_EQ(result.reason, StepResult::Reason::NotFinite) << to_string(result.reason);
-    EXPECT_TRUE(is_finite(simulation.state())) << scheme;
+    EXPECT_TRUE(is_finite(state_of(simulation))) << scheme;
     EXPECT_GE(simulation.time(), 0.5 - 1e-12);
     EXPECT_LE(simulation.time(), 0.55);
     EXPECT_TRUE(std::isfinite(simulation.energies().total()));
@@ -98,7 +99,7 @@ TEST(StepControl, StaticFailureLeavesTheStateUntouched) {
   const Vector3 before = simulation.probe(0).pose.position;
   EXPECT_FALSE(simulation.solve_static(1).converged) << "a free beam has no equilibrium under a force";
   EXPECT_EQ(simulation.probe(0).pose.position, before);
-  EXPECT_TRUE(is_finite(simulation.state()));
+  EXPECT_TRUE(is_finite(state_of(simulation)));
 }
 
 }  // namespace

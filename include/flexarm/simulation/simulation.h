@@ -1,29 +1,45 @@
 #pragma once
 /// The one façade of the core: load a scene, step it, look at it, reset it.
 
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "analysis/modes.h"
 #include "flexarm/math/pose.h"
-#include "flexarm/scene/scene_description.h"
-#include "flexarm/simulation/observables.h"
-#include "integrators/stepper.h"
-#include "model/model_builder.h"
+#include "flexarm/model/model_error.h"
+#include "flexarm/model/results.h"
+#include "flexarm/scene/diagnostic.h"
 
 namespace flexarm {
+
+namespace scene {
+struct SceneDescription;  // flexarm/scene/scene_description.h
+}
+struct State;
 
 /// Options that override the scene's <integrator>.
 struct SimulationOptions {
   std::optional<std::string> scheme;
   std::optional<double> step;  ///< [s]
   std::optional<double> tolerance;
-  bool reuse_factorisation = true;  ///< see StepSettings
+  /// Keep the factors of the tangent while the iteration contracts well (modified Newton). The result agrees with that
+  /// of full Newton to far below the tolerance; off: quadratic convergence, and a restored state continues bit for bit.
+  bool reuse_factorisation = true;
 };
 
+/// What a simulation was like at one time, to go back to it: a value, cheap to copy.
+class Snapshot {
+ private:
+  friend class Simulation;
+  explicit Snapshot(std::shared_ptr<const State> state) : state_(std::move(state)) {}
+  std::shared_ptr<const State> state_;
+};
+
+/// A scene in motion. Simulations share nothing that changes: each may run in a thread of its own. What asks for a
+/// coordinate, link or probe by its index throws std::out_of_range where there is none.
 class Simulation {
  public:
   /// @throws ModelError if the scene cannot be built (unknown scheme, massless free link, ...).
@@ -32,18 +48,20 @@ class Simulation {
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
 
-  const scene::SceneDescription& scene() const;
-  const Model& model() const;
-  const State& state() const;
+  const scene::SceneDescription& scene() const;  ///< with the scheme and the step in use
+  /// A warning for each joint coordinate that massless="lock" holds where it starts because it moves nothing that has
+  /// inertia, in the scene's order. Only the model knows which these are.
+  scene::Diagnostics held_joints() const;
 
   /// Advances by one step, in smaller sub-steps where Newton asks for it. On failure the state is that of the last good
   /// sub-step. Allocates nothing after its first call, but when a slider enters another element of its line.
   StepResult step();
   /// Back to the scene's initial state; commands are forgotten.
   void reset();
-  /// Replaces the state, e.g. by a copy of state() taken before. @throws std::invalid_argument if it is not one of
-  /// this.
-  void restore(const State& state);
+  Snapshot snapshot() const;
+  /// Back to what it was like then, commands included.
+  /// @throws std::invalid_argument if the snapshot is another scene's or scheme's.
+  void restore(const Snapshot& snapshot);
 
   double time() const;         ///< [s]
   double step_size() const;    ///< [s]
@@ -59,7 +77,9 @@ class Simulation {
   /// Effort applied in the last step; where a motion is prescribed, what drives it at time(), of second order [N or N
   /// m].
   double effort(std::size_t coordinate) const;
-  /// Commands an effort from the next step on, in place of the scene's <effort>; saturates at the joint's effort limit.
+  /// Commands an effort [N or N m] from the next step on, in place of the scene's <effort>; saturates at the joint's
+  /// effort limit.
+  /// @throws std::invalid_argument if it is not finite, or the coordinate not commandable.
   void command_effort(std::size_t coordinate, double effort);
   /// Back to the scene's <effort> history (zero where there is none).
   void release_command(std::size_t coordinate);
@@ -69,33 +89,34 @@ class Simulation {
   const std::vector<std::string>& link_names() const;
   Pose link_pose(std::size_t link) const;  ///< in the world (= root link) frame
   bool is_flexible(std::size_t link) const;
-  Pose tip_pose(
-      std::size_t link) const;  ///< end section of a flexible link, axes as the link's in the undeformed state
+  /// End section of a flexible link in the world, axes as the link's in the undeformed state; else the link's pose.
+  Pose tip_pose(std::size_t link) const;
   /// Points at every node and `between` equally spaced points inside each pair of nodes; appended to `points`.
   void beam_points(std::size_t link, int between, std::vector<BeamPoint>& points) const;
-  /// Largest distance of the section's edge from the centreline, for display [m].
+  /// Largest distance of the section's edge from the centreline, for display [m]; 0: the link is rigid.
   double beam_radius(std::size_t link) const;
 
   // ---- observables
   Energies energies() const;
-  Vector3 momentum() const;                   ///< [kg m/s]
+  Vector3 momentum() const;                   ///< world axes [kg m/s]
   Vector3 angular_momentum() const;           ///< about the world origin [kg m^2/s]
   ProbeState probe(std::size_t index) const;  ///< in the order of scene().probes
 
   /// Statics: loads and gravity grow from zero in `load_steps` equal steps; prescribed motions are held at t = 0,
   /// other released coordinates are solved for. On success the state is the equilibrium, at rest.
+  /// @throws std::invalid_argument if `load_steps` < 1.
   StepResult solve_static(int load_steps);
 
   /// Modes about the current configuration, taken to be at rest: growing ones first, then by |lambda|.
+  /// @throws std::invalid_argument if `count` < 1; std::runtime_error if the eigenvalue problem cannot be solved.
   std::vector<Mode> natural_modes(int count) const;
 
   std::size_t node_count() const;
   std::size_t degrees_of_freedom() const;  ///< unknowns of the Newton iteration
-  /// Update norms of the last Newton solve, for tests of the rate of convergence.
-  const std::vector<double>& update_norms() const;
 
  private:
   struct Implementation;
+  friend struct Inside;  // simulation/inside.h, beside the source
   std::unique_ptr<Implementation> implementation_;
 };
 

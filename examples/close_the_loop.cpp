@@ -1,0 +1,84 @@
+// Holds joints of an arm at given angles with PD controllers that run at 1 kHz, for four seconds, and prints where the
+// tips of its flexible links are and how much energy is where:
+//
+//   close_the_loop config/examples/flexible_two_link_arm.urdf shoulder 0.8 elbow -0.5
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+#include <optional>
+#include <vector>
+
+#include "flexarm/scene/urdf_reader.h"
+#include "flexarm/simulation/simulation.h"
+
+namespace {
+
+constexpr double kPeriod = 1e-3, kUntil = 4;      // [s]
+constexpr double kStiffness = 40, kDamping = 12;  // [N m/rad], [N m s/rad]
+constexpr int kReports = 8;                       // lines printed
+
+struct Controller {
+  std::size_t coordinate;
+  double goal;  // [rad]
+
+  double effort(const flexarm::Simulation& simulation) const {
+    return kStiffness * (goal - simulation.position(coordinate)) - kDamping * simulation.velocity(coordinate);
+  }
+};
+
+void print(const flexarm::Simulation& simulation) {
+  std::printf("%.3f s", simulation.time());
+  for (std::size_t link = 0; link < simulation.link_names().size(); ++link) {
+    if (!simulation.is_flexible(link)) continue;
+    const flexarm::Vector3 tip = simulation.tip_pose(link).position;
+    std::printf(", %s (%.4f %.4f %.4f) m", simulation.link_names()[link].c_str(), tip.x(), tip.y(), tip.z());
+  }
+  const flexarm::Energies energies = simulation.energies();
+  std::printf(", kinetic %.4f J, strain %.4f J\n", energies.kinetic, energies.strain);
+}
+
+/// One step of the simulation for each period of the controllers. @return false if a step fails
+bool run(flexarm::Simulation& simulation, const std::vector<Controller>& controllers) {
+  const int periods = static_cast<int>(kUntil / kPeriod + 0.5);
+  for (int period = 1; period <= periods; ++period) {
+    for (const Controller& controller : controllers)
+      simulation.command_effort(controller.coordinate, controller.effort(simulation));
+    const flexarm::StepResult result = simulation.step();
+    if (!result.converged) {
+      std::cerr << "at " << simulation.time() << " s: " << to_string(result.reason) << "\n";
+      return false;
+    }
+    if (period % (periods / kReports) == 0) print(simulation);
+  }
+  return true;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 4 || argc % 2 != 0) {
+    std::cerr << "usage: close_the_loop SCENE JOINT ANGLE [JOINT ANGLE ...]\n";
+    return 2;
+  }
+  const flexarm::scene::ReadResult read = flexarm::scene::read_scene_file(argv[1]);
+  std::cerr << to_text(read.diagnostics);  // errors and warnings, by file and line
+  if (!read.scene) return 2;
+  try {
+    flexarm::SimulationOptions options;
+    options.step = kPeriod;
+    flexarm::Simulation simulation(*read.scene, options);
+    std::vector<Controller> controllers;
+    for (int i = 2; i < argc; i += 2) {
+      const std::optional<std::size_t> coordinate = simulation.find_coordinate(argv[i]);
+      if (!coordinate || !simulation.is_commandable(*coordinate)) {
+        std::cerr << "no joint '" << argv[i] << "' to be commanded\n";
+        return 2;
+      }
+      controllers.push_back({*coordinate, std::atof(argv[i + 1])});
+    }
+    return run(simulation, controllers) ? 0 : 1;
+  } catch (const flexarm::ModelError& error) {  // impossible as a mechanism
+    std::cerr << error.what() << "\n";
+    return 2;
+  }
+}

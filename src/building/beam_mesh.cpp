@@ -1,0 +1,180 @@
+#include "building/beam_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <queue>
+
+#include "elements/beam_point.h"
+#include "math/quadrature.h"
+#include "math/shape_functions.h"
+
+namespace flexarm {
+namespace {
+
+/// Element counts for the frequency rule and largest turning per element [rad], by order.
+constexpr int kFrequencyElements[] = {0, 45, 9, 5, 3};
+constexpr double kTurningPerElement[] = {0, 0.139, 1.05, 1.58, 3.15};
+
+/// Arc length of node i of an element; exactly `to` for the last one.
+double at_node(double from, double to, int order, int i) {
+  const double xi = node_coordinate(order + 1, i);
+  return 0.5 * (1 - xi) * from + 0.5 * (1 + xi) * to;
+}
+
+/// Element borders: both ends, piece borders exactly where they are (a kink is looked for there), and attachments that
+/// do not coincide with one of them.
+std::vector<double> borders(const Centreline& centreline, const std::vector<double>& attachments) {
+  std::vector<double> fixed = centreline.piece_ends(), sorted = attachments, all;
+  fixed.push_back(0);
+  std::sort(fixed.begin(), fixed.end());
+  std::sort(sorted.begin(), sorted.end());
+  const double tolerance = 1e-9 * centreline.length();
+  const auto is_fixed = [&](double s) {
+    const auto next = std::lower_bound(fixed.begin(), fixed.end(), s - tolerance);
+    return next != fixed.end() && *next <= s + tolerance;
+  };
+  for (const double s : sorted)
+    if (!is_fixed(s) && (all.empty() || s > all.back() + tolerance)) all.push_back(s);
+  const auto middle = all.insert(all.end(), fixed.begin(), fixed.end());
+  std::inplace_merge(all.begin(), middle, all.end());
+  return all;
+}
+
+/// Distributes `count` elements over intervals in proportion to `demand`, at least one each (largest remainder).
+std::vector<int> distribute(int count, const std::vector<double>& demand) {
+  std::vector<int> elements(demand.size(), 1);
+  if (!(std::accumulate(demand.begin(), demand.end(), 0.0) > 0)) return elements;
+  const auto is_less_needy = [&](std::size_t a, std::size_t b) {
+    const double of_a = demand[a] / elements[a], of_b = demand[b] / elements[b];
+    return of_a < of_b || (of_a == of_b && a > b);
+  };
+  std::priority_queue<std::size_t, std::vector<std::size_t>, decltype(is_less_needy)> intervals(is_less_needy);
+  for (std::size_t i = 0; i < demand.size(); ++i) intervals.push(i);
+  for (int rest = count - static_cast<int>(demand.size()); rest > 0; --rest) {
+    const std::size_t neediest = intervals.top();
+    intervals.pop();
+    ++elements[neediest];
+    intervals.push(neediest);
+  }
+  return elements;
+}
+
+}  // namespace
+
+int automatic_element_count(int order, double turning) {
+  return std::max(kFrequencyElements[order], static_cast<int>(std::ceil(turning / kTurningPerElement[order])));
+}
+
+int BeamMesh::node_at(double arc_length) const {
+  // Arc lengths ascend; of the two nodes of a kink the first is meant, and of two that are equally near.
+  const auto first_from = [&](double s) {
+    return std::lower_bound(nodes.begin(), nodes.end(), s,
+                            [](const MeshNode& node, double value) { return node.arc_length < value; });
+  };
+  auto best = first_from(arc_length);
+  if (best != nodes.begin()) {
+    const auto before = first_from(std::prev(best)->arc_length);
+    const double distance = arc_length - before->arc_length;
+    if (best == nodes.end() || !(best->arc_length - arc_length < distance * (1 - 1e-12))) best = before;
+  }
+  return static_cast<int>(best - nodes.begin());
+}
+
+BeamMesh mesh_beam(const scene::BeamDescription& beam, const Centreline& centreline,
+                   const std::vector<double>& attachments) {
+  BeamMesh mesh;
+  const SectionProperties section = section_properties(beam.section);
+  mesh.section = referred_to_center_of_mass(section);
+  mesh.centroid = section.center_of_mass;
+  mesh.order = beam.order;
+
+  const std::vector<double> border = borders(centreline, attachments);
+  std::vector<double> length;
+  std::vector<int> counts;
+  for (std::size_t k = 0; k + 1 < border.size(); ++k) length.push_back(border[k + 1] - border[k]);
+  if (beam.elements) {
+    counts = distribute(*beam.elements, length);
+  } else {
+    const int straight = automatic_element_count(beam.order, 0);
+    for (std::size_t k = 0; k < length.size(); ++k) {
+      const int share = static_cast<int>(std::ceil(straight * length[k] / centreline.length() - 1e-9));
+      const double turning = centreline.turning(border[k], border[k + 1]);
+      counts.push_back(std::max({1, share, static_cast<int>(std::ceil(turning / kTurningPerElement[beam.order]))}));
+    }
+  }
+
+  const auto add_node = [&](double s, bool before, int welded_to) {
+    Pose pose = centreline.at(s, before);
+    pose.position += pose.orientation * mesh.centroid;
+    mesh.nodes.push_back({s, pose, welded_to});
+    return static_cast<int>(mesh.nodes.size()) - 1;
+  };
+  int last = add_node(0, false, -1);
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    if (k > 0 && centreline.is_kink(border[k])) last = add_node(border[k], false, last);
+    for (int e = 0; e < counts[k]; ++e) {
+      // The interval's end exactly: a bit beyond a kink the section has another frame.
+      const double from = border[k] + length[k] * e / counts[k];
+      const double to = e + 1 < counts[k] ? border[k] + length[k] * (e + 1) / counts[k] : border[k + 1];
+      MeshElement element;
+      element.nodes.push_back(last);
+      for (int i = 1; i <= beam.order; ++i)
+        element.nodes.push_back(last = add_node(at_node(from, to, beam.order, i), true, -1));
+      element.end = to;
+      mesh.elements.push_back(element);
+    }
+  }
+  return mesh;
+}
+
+template <int Nodes>
+BeamElement<Nodes> beam_element(const BeamMesh& mesh, const MeshElement& element, const scene::BeamDescription& beam) {
+  BeamElement<Nodes> out;
+  out.stiffness = mesh.section.stiffness;
+  out.inertia = mesh.section.inertia;
+  out.stiffness_damping = beam.stiffness_proportional_damping;
+  out.mass_damping = beam.mass_proportional_damping;
+
+  std::array<Vector3, Nodes> centroid, reference;
+  std::array<Quaternion, Nodes> orientation;
+  for (int i = 0; i < Nodes; ++i) {
+    const Pose& pose = mesh.nodes[element.nodes[i]].pose;
+    centroid[i] = pose.position;
+    reference[i] = pose.position - pose.orientation * mesh.centroid;
+    orientation[i] = pose.orientation;
+  }
+  const LocalRotations<Nodes> local(orientation);
+  // Weights and derivatives in arc length of the reference line, which is what stiffness and inertia are per length of.
+  const auto point = [&](double xi, double weight, NodalValues<Nodes>& shape, NodalValues<Nodes>& derivative,
+                         double& out_weight) {
+    const ShapeFunctions<Nodes> functions = lagrange<Nodes>(xi);
+    const double jacobian = interpolate<Nodes>(functions.derivatives, reference).norm();
+    shape = functions.values;
+    derivative = functions.derivatives / jacobian;
+    out_weight = weight * jacobian;
+  };
+  using Stiffness = GaussLegendre<Nodes - 1>;
+  using Mass = GaussLegendre<Nodes>;
+  for (int k = 0; k < Nodes - 1; ++k) {
+    auto& p = out.stiffness_points[k];
+    point(Stiffness::points[k], Stiffness::weights[k], p.shape, p.derivative, p.weight);
+    p.reference_strain = point_kinematics(local.evaluate(p.shape, p.derivative),
+                                          interpolate<Nodes>(p.derivative, centroid), Vector6::Zero())
+                             .strain;
+  }
+  out.mass.setZero();
+  for (int k = 0; k < Nodes; ++k) {
+    auto& p = out.mass_points[k];
+    point(Mass::points[k], Mass::weights[k], p.shape, p.derivative, p.weight);
+    out.mass += mesh.section.mass * p.weight * p.shape * p.shape.transpose();
+  }
+  return out;
+}
+
+template BeamElement<2> beam_element<2>(const BeamMesh&, const MeshElement&, const scene::BeamDescription&);
+template BeamElement<3> beam_element<3>(const BeamMesh&, const MeshElement&, const scene::BeamDescription&);
+template BeamElement<4> beam_element<4>(const BeamMesh&, const MeshElement&, const scene::BeamDescription&);
+template BeamElement<5> beam_element<5>(const BeamMesh&, const MeshElement&, const scene::BeamDescription&);
+
+}  // namespace flexarm

@@ -1,0 +1,143 @@
+#include "building/closure_builder.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "building/closure_jacobian.h"
+#include "building/model_builder.h"
+#include "math/least_squares.h"
+
+namespace flexarm {
+namespace {
+
+using Kind = ClosureConstraint::Kind;
+
+/// Scaled constraints are independent if a pivot is larger than this part of the largest one of its group.
+constexpr double kIndependent = 1e-6;
+
+/// Makes constraints from vectors in the world, at the start.
+class ConstraintMaker {
+ public:
+  ConstraintMaker(const Pose& parent, const Pose& child, LoopClosure& closure)
+      : parent_(parent), child_(child), closure_(closure) {}
+
+  void gap(const Vector3& normal) {
+    closure_.constraints.push_back({Kind::Gap, parent_.orientation.conjugate() * normal, Vector3::Zero(), 0});
+  }
+  /// The angle between a direction of the child and a normal of the parent stays as it is.
+  void direction(const Vector3& of_child, const Vector3& normal) {
+    closure_.constraints.push_back({Kind::Direction, parent_.orientation.conjugate() * normal,
+                                    child_.orientation.conjugate() * of_child, of_child.dot(normal)});
+  }
+
+ private:
+  Pose parent_, child_;
+  LoopClosure& closure_;
+};
+
+/// What a kind of joint holds, about its axis (world, at the start); false where that is not quadratic.
+bool add_constraints(const scene::JointDescription& joint, const Quaternion& frame, ConstraintMaker& maker) {
+  using scene::JointKind;
+  const Vector3 axis = frame * joint.axis.normalized(), second = frame * joint.axis2.normalized();
+  const Vector3 y = axis.unitOrthogonal(), z = axis.cross(y);
+  const auto point = [&] { maker.gap(axis), maker.gap(y), maker.gap(z); };
+  const auto parallel_axes = [&] { maker.direction(axis, y), maker.direction(axis, z); };
+  const auto no_turn = [&] { parallel_axes(), maker.direction(y, z); };
+  switch (joint.kind) {
+    case JointKind::Fixed:
+      return point(), no_turn(), true;
+    case JointKind::Revolute:
+    case JointKind::Continuous:
+      return point(), parallel_axes(), true;
+    case JointKind::Prismatic:
+      return maker.gap(y), maker.gap(z), no_turn(), true;
+    case JointKind::Cylindrical:
+      return maker.gap(y), maker.gap(z), parallel_axes(), true;
+    case JointKind::Planar:
+      return maker.gap(axis), parallel_axes(), true;
+    case JointKind::Spherical:
+      return point(), true;
+    case JointKind::Universal:
+      return point(), maker.direction(second, axis), true;
+    default:
+      return false;
+  }
+}
+
+Eigen::Index rank_of(const ConstraintRows& jacobian) {
+  std::size_t rank = 0;
+  for (const ConstraintGroup& group : independent_groups(jacobian))
+    rank += independent_rows(group.block, kIndependent).size();
+  return static_cast<Eigen::Index>(rank);
+}
+
+/// What is not held otherwise: unknowns without multipliers.
+std::vector<bool> free_scalars(const DegreesOfFreedom& dof) {
+  std::vector<bool> is_free(static_cast<std::size_t>(dof.scalar_count), false);
+  for (int scalar = 0; scalar < dof.first[dof.variable_of_closure(0)]; ++scalar)
+    is_free[scalar] = dof.equation[scalar] >= 0;
+  return is_free;
+}
+
+}  // namespace
+
+LoopClosure loop_closure(const ScenePlan& plan, const Mechanism& mechanism, const scene::JointDescription& joint,
+                         Attachment parent, Attachment child, const Pose& frame) {
+  const std::string where = at(joint.location, "<loop_joint> '" + joint.name + "'");
+  if (joint.damping != 0 || joint.friction != 0 || joint.friction_law.coefficient != 0 || joint.limits)
+    throw ModelError(where +
+                     "closes a loop of rigid links, where it has no coordinate that could have damping, friction or "
+                     "limits (type 'continuous' has none): put them on another joint of the loop, or cut it there");
+  if (parent.node == child.node)
+    throw ModelError(where + (joint.parent == joint.child && plan.meshes[plan.links[joint.child]]
+                                  ? "both places are the same section of link '" + joint.child +
+                                        "': join two places of its line, or let the line end where it begins (within "
+                                        "1e-6 of its length) for a ring"
+                                  : std::string("both places belong to the same rigid body")));
+  if (child.node < 0) std::swap(parent, child);
+  LoopClosure closure;
+  closure.name = joint.name;
+  closure.parent = parent.node;
+  closure.child = child.node;
+  closure.parent_arm = (mechanism.pose_of(parent.node).inverse() * frame).position;
+  closure.child_arm = (mechanism.pose_of(child.node).inverse() * frame).position;
+  ConstraintMaker maker(mechanism.pose_of(parent.node), mechanism.pose_of(child.node), closure);
+  if (!add_constraints(joint, frame.orientation, maker))
+    throw ModelError(where +
+                     "a joint of this kind cannot close a loop of rigid links: cut the loop at another joint, or let a "
+                     "flexible link's free end be one of the joined places");
+  return closure;
+}
+
+SolvableMechanism choose_constraints(const ScenePlan& plan, DrivenMechanism mechanism) {
+  Model& model = mechanism.model;
+  if (model.closures.empty()) return {std::move(mechanism)};
+  const DegreesOfFreedom dof(model);
+  std::vector<bool> is_free = free_scalars(dof);
+  const ConstraintRows jacobian = with_columns(closure_jacobian(model, dof), is_free);
+  std::vector<bool> is_kept(static_cast<std::size_t>(jacobian.rows()), false);
+  for (const ConstraintGroup& group : independent_groups(jacobian))
+    for (const Eigen::Index row : independent_rows(group.block, kIndependent)) is_kept[group.rows[row]] = true;
+  const auto rank = std::count(is_kept.begin(), is_kept.end(), true);
+  const bool is_driven = std::any_of(model.coordinates.begin(), model.coordinates.end(),
+                                     [](const Coordinate& coordinate) { return coordinate.motion >= 0; });
+  if (rank == std::count(is_free.begin(), is_free.end(), true) && !is_driven)
+    throw ModelError(plan.scene.file + ": the loop joints leave the mechanism no motion ('" +
+                     model.closures.front().name + "' and others): nothing is left to compute");
+  for (const Coordinate& coordinate : model.coordinates)
+    if (coordinate.sticks) is_free[dof.scalar_of(coordinate)] = false;
+  if (rank_of(with_columns(jacobian, is_free)) < rank)
+    throw ModelError(plan.scene.file + ": more joints of the rigid loop that '" + model.closures.front().name +
+                     "' closes may stick (<friction law=\"coulomb\">) than it has freedoms, and the force that holds "
+                     "each would be undetermined: give some of them the law 'smooth'");
+  std::size_t row = 0;
+  for (LoopClosure& closure : model.closures) {
+    std::vector<ClosureConstraint> all;
+    std::swap(all, closure.constraints);
+    for (const ClosureConstraint& constraint : all)
+      (is_kept[row++] ? closure.constraints : closure.implied).push_back(constraint);
+  }
+  return {std::move(mechanism)};
+}
+
+}  // namespace flexarm

@@ -1,0 +1,17 @@
+#pragma once
+/// What joints of the scene are made of (internal to building/).
+
+#include <string>
+#include <vector>
+
+#include "flexarm/scene/scene_description.h"
+#include "model/joint.h"
+
+namespace flexarm {
+
+/// The chain of elementary joints that makes up a joint: none of a fixed one, of a slide none but its rotation.
+std::vector<JointMap> elementary_joints(const scene::JointDescription& joint);
+/// Names of a joint's coordinates, in the order of its chain.
+std::vector<std::string> coordinate_names(const scene::JointDescription& joint);
+
+}  // namespace flexarm

@@ -1,0 +1,125 @@
+#include "building/inertia_builder.h"
+
+#include <map>
+#include <utility>
+
+#include "math/shape_functions.h"
+#include "math/so3.h"
+
+namespace flexarm {
+namespace {
+
+/// Rigid bodies carried by one node, in its frame.
+struct Body {
+  double mass = 0;
+  Vector3 center = Vector3::Zero();
+  Matrix3 inertia = Matrix3::Zero();  ///< about the centre
+
+  void operator+=(const Body& other) {
+    const double sum = mass + other.mass;
+    const Vector3 joint_center = sum > 0 ? Vector3((mass * center + other.mass * other.center) / sum) : other.center;
+    const auto shifted = [&](const Body& body) {
+      const Matrix3 d = so3::hat(Vector3(body.center - joint_center));
+      return Matrix3(body.inertia - body.mass * d * d);
+    };
+    inertia = shifted(*this) + shifted(other);
+    mass += other.mass;
+    center = joint_center;
+  }
+};
+
+/// The root link, then the joints' children.
+std::vector<int> links_root_to_leaf(const ScenePlan& plan) {
+  std::vector<int> links = {plan.tree.root};
+  for (const scene::JointDescription* joint : plan.tree.joints) links.push_back(plan.links[joint->child]);
+  return links;
+}
+
+template <int Nodes>
+void add_elements(const ScenePlan& plan, int link, Model& model) {
+  const BeamMesh& mesh = plan.meshes[link]->mesh;
+  const int first_node = model.links[link].frame.node;
+  std::vector<BeamElement<Nodes>>& group = std::get<BeamGroup<Nodes>>(model.beams).elements;
+  BeamLink& beam = *model.links[link].beam;
+  for (const MeshElement& element : mesh.elements) {
+    BeamElement<Nodes> out = beam_element<Nodes>(mesh, element, *plan.scene.links[link].beam);
+    NodalValues<Nodes> weights = NodalValues<Nodes>::Zero();
+    for (const auto& point : out.mass_points) weights += point.weight * point.shape;
+    for (int i = 0; i < Nodes; ++i) {
+      out.nodes[i] = first_node + element.nodes[i];
+      NodalInertia& inertia = model.inertias[out.nodes[i]];
+      inertia.total_mass += out.mass.row(i).sum();
+      inertia.beam_rotary += weights[i] * out.inertia;
+      inertia.rotary_damping += out.mass_damping * weights[i] * out.inertia;
+    }
+    beam.elements.push_back(static_cast<int>(group.size()));
+    beam.element_ends.push_back(element.end);
+    group.push_back(out);
+  }
+}
+
+void add_beams(const ScenePlan& plan, Model& model) {
+  for (const int link : links_root_to_leaf(plan))
+    if (plan.meshes[link])
+      for_each_group(model.beams, [&](const auto& group) {
+        constexpr int kNodes = std::decay_t<decltype(group)>::kNodes;
+        if (plan.meshes[link]->mesh.order + 1 == kNodes) add_elements<kNodes>(plan, link, model);
+      });
+  int stiffness_point = 0, mass_point = 0, block = 0;
+  for_each_element(model.beams, [&](auto& element) {
+    using Element = std::decay_t<decltype(element)>;
+    element.first_stiffness_point = stiffness_point;
+    element.first_mass_point = mass_point;
+    element.first_block = block;
+    stiffness_point += Element::kStiffnessPoints;
+    mass_point += Element::kMassPoints;
+    block += Element::kNodes * Element::kNodes;
+  });
+  model.stiffness_point_count = stiffness_point;
+  model.mass_point_count = mass_point;
+}
+
+void add_bodies(const ScenePlan& plan, Mechanism& mechanism) {
+  std::map<int, Body> bodies;  // by node
+  for (const int link : links_root_to_leaf(plan)) {
+    const std::optional<scene::RigidInertia>& inertial = plan.scene.links[link].inertial;
+    const Attachment& frame = mechanism.model.links[link].frame;
+    if (plan.meshes[link] || !inertial || frame.node < 0) continue;
+    const Matrix3 rotation = frame.offset.orientation.toRotationMatrix();
+    bodies[frame.node] +=
+        {inertial->mass, frame.offset * inertial->center_of_mass, rotation * inertial->inertia * rotation.transpose()};
+  }
+  for (const auto& [node, body] : bodies) {
+    const bool centred = body.center.norm() < 1e-15;
+    const int at = centred ? node : mechanism.add_rigid(node, {body.center, Quaternion::Identity()});
+    NodalInertia& inertia = mechanism.model.inertias[at];
+    inertia.mass += body.mass;
+    inertia.total_mass += body.mass;
+    inertia.rotary += body.inertia;
+  }
+}
+
+}  // namespace
+
+WeightyTree add_inertia(const ScenePlan& plan, PlacedTree tree) {
+  add_beams(plan, tree.model);
+  add_bodies(plan, tree);
+  return {std::move(tree)};
+}
+
+std::vector<double> length_weights(const ScenePlan& plan, const Model& model, int link) {
+  const LinkFrame& frame = model.links[link];
+  std::vector<double> weights(plan.meshes[link]->mesh.nodes.size(), 0.0);
+  for_each_group(model.beams, [&](const auto& group) {
+    constexpr int kNodes = std::decay_t<decltype(group)>::kNodes;
+    if (kNodes != frame.beam->order + 1) return;
+    for (const int e : frame.beam->elements) {
+      const auto& element = group.elements[e];
+      for (const auto& point : element.mass_points)
+        for (int i = 0; i < kNodes; ++i) weights[element.nodes[i] - frame.frame.node] += point.weight * point.shape[i];
+    }
+  });
+  return weights;
+}
+
+}  // namespace flexarm

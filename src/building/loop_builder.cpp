@@ -1,0 +1,222 @@
+#include "building/loop_builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_set>
+#include <utility>
+
+#include "building/closure_builder.h"
+#include "building/elementary_joints.h"
+#include "building/model_builder.h"
+#include "joints/joint_kinematics.h"
+
+namespace flexarm {
+namespace {
+
+/// Gap between the frames of a closing joint, relative to the extent of the mechanism, that is taken for rounding of
+/// the scene's numbers.
+constexpr double kLargestGap = 1e-6;
+
+/// Nodes from whose poses a joint computes its slave's; none for the world.
+std::vector<int> masters(const Model& model, const JointMap& joint) {
+  if (joint.kind == JointMapKind::Slide) return model.slide_lines[joint.line].nodes;
+  return joint.master < 0 ? std::vector<int>() : std::vector<int>{joint.master};
+}
+
+/// Turns a map round: its master's pose from its slave's, as a function of the same coordinate. False where that is no
+/// elementary joint.
+bool invert(JointMap& map) {
+  // Travel and turn must commute: T(t) R(a) backwards is R(-a) T(-t).
+  const double across = map.translation.cross(map.rotation).norm();
+  if (map.kind != JointMapKind::Scalar || !map.origin.position.isZero(0) ||
+      across > 1e-12 * map.translation.norm() * map.rotation.norm())
+    return false;
+  map.translation = -map.translation;
+  map.rotation = -map.rotation;
+  return true;
+}
+
+class LoopBuilder {
+ public:
+  LoopBuilder(const ScenePlan& plan, Mechanism& mechanism)
+      : plan_(plan), mechanism_(mechanism), model_(mechanism.model), largest_gap_(kLargestGap * mechanism.extent()) {}
+
+  void add(const scene::JointDescription& joint);
+
+ private:
+  /// The same frame, seen from the node at the root of the rigid body to which it is fixed.
+  Attachment carrier(Attachment frame) const;
+  /// The node is free, and `master` does not follow from it.
+  bool can_become_slave(int node, int master) const;
+  /// Of the child's place. Where a flexible link is joined to itself at the beginning of a closed line, that is its
+  /// end.
+  Attachment child_place(const scene::JointDescription& joint) const;
+  /// From `master` through `maps`, the first at `frame` (world), to the existing node `slave`.
+  void add_chain(const scene::JointDescription& joint, const std::vector<JointMap>& maps,
+                 const std::vector<std::string>& names, int master, int slave, const Pose& frame);
+
+  const ScenePlan& plan_;
+  Mechanism& mechanism_;
+  Model& model_;
+  double largest_gap_;  // between a joint's frames at the start [m]
+};
+
+Attachment LoopBuilder::carrier(Attachment frame) const {
+  while (frame.node >= 0 && mechanism_.slave_joint[frame.node] >= 0) {
+    const JointMap& map = model_.joints[mechanism_.slave_joint[frame.node]];
+    if (map.kind != JointMapKind::Rigid) break;
+    frame.offset = map.origin * Pose{Vector3::Zero(), map.slave_orientation} * frame.offset;
+    frame.node = map.master;
+  }
+  return frame;
+}
+
+bool LoopBuilder::can_become_slave(int node, int master) const {
+  if (node < 0 || mechanism_.slave_joint[node] >= 0) return false;
+  std::unordered_set<int> seen;
+  std::vector<int> stack(master < 0 ? 0 : 1, master);  // nodes whose poses the master's depends on
+  while (!stack.empty()) {
+    const int above = stack.back();
+    stack.pop_back();
+    if (above == node) return false;
+    if (!seen.insert(above).second || mechanism_.slave_joint[above] < 0) continue;
+    const std::vector<int> next = masters(model_, model_.joints[mechanism_.slave_joint[above]]);
+    stack.insert(stack.end(), next.begin(), next.end());
+  }
+  return true;
+}
+
+Attachment LoopBuilder::child_place(const scene::JointDescription& joint) const {
+  const Attachment nearest = attachment(plan_, model_, joint.child, joint.child_origin.position);
+  const int link = plan_.links[joint.child];
+  const std::optional<LinkMesh>& beam = plan_.meshes[link];
+  if (!beam || joint.parent != joint.child || !beam->centreline.is_closed()) return nearest;
+  const int first_node = model_.links[link].frame.node;
+  if (nearest.node != first_node || attachment(plan_, model_, joint.parent, joint.origin.position).node != nearest.node)
+    return nearest;
+  const int end = beam->mesh.node_at(beam->centreline.length());
+  return {first_node + end, beam->mesh.nodes[end].pose.inverse()};
+}
+
+void LoopBuilder::add(const scene::JointDescription& joint) {
+  const std::string where = at(joint.location, "<loop_joint> '" + joint.name + "'");
+  if (joint.kind == scene::JointKind::Slide || joint.kind == scene::JointKind::Floating || joint.mimic)
+    throw ModelError(where + "a loop cannot be closed by a slide, a free or a mimicking joint");
+  const Attachment parent = carrier(attachment(plan_, model_, joint.parent, joint.origin.position));
+  const Attachment child = carrier(child_place(joint));
+  const Pose frame = mechanism_.pose_of(parent.node) * parent.offset * joint.origin;
+  std::vector<JointMap> maps = elementary_joints(joint);
+  NodePose meeting{frame.position, frame.orientation, frame.orientation.toRotationMatrix()};
+  for (const JointMap& map : maps) meeting = slave_pose(map, meeting, Released());
+  const Pose child_frame = mechanism_.pose_of(child.node) * child.offset * joint.child_origin;
+  const double gap = (meeting.position - child_frame.position).norm();
+  if (!(gap <= largest_gap_))
+    throw ModelError(where + "the loop is open at the start: the joint's frames in parent and child are " +
+                     std::to_string(gap) + " m apart");
+
+  const bool onto_child = can_become_slave(child.node, parent.node);
+  if (!onto_child && !can_become_slave(parent.node, child.node)) {
+    model_.closures.push_back(loop_closure(plan_, mechanism_, joint, parent, child, frame));
+    return;
+  }
+  std::vector<std::string> names = coordinate_names(joint);
+  for (const std::string& name : names)
+    if (plan_.initial_positions.of(name) != 0)
+      throw ModelError(where + "its coordinates are 0 at the start; '" + name + "' cannot start elsewhere");
+  if (!onto_child) {
+    std::reverse(maps.begin(), maps.end());
+    std::reverse(names.begin(), names.end());
+    for (JointMap& map : maps)
+      if (!invert(map))
+        throw ModelError(where +
+                         "only the parent's end is free, and this kind of joint needs the child's: exchange <parent> "
+                         "and <child>");
+  }
+  add_chain(joint, maps, names, onto_child ? parent.node : child.node, onto_child ? child.node : parent.node,
+            onto_child ? frame : Pose{meeting.position, frame.orientation});
+}
+
+void LoopBuilder::add_chain(const scene::JointDescription& joint, const std::vector<JointMap>& maps,
+                            const std::vector<std::string>& names, int master, int slave, const Pose& frame) {
+  const JointChain chain{&joint, static_cast<int>(model_.joints.size()), static_cast<int>(maps.size()) + 1, slave};
+  int node = master;
+  std::size_t name = 0;
+  for (std::size_t k = 0; k < maps.size(); ++k) {
+    JointMap map = maps[k];
+    map.master = node;
+    if (k == 0) map.origin = mechanism_.pose_of(master).inverse() * frame * map.origin;
+    node = mechanism_.add_map(map, Released());
+    const std::size_t count = released_count(map.kind);
+    mechanism_.add_coordinates(joint, {names.begin() + name, names.begin() + name + count});
+    name += count;
+  }
+  if (!names.empty() && names != coordinate_names(joint)) {
+    // The chain is turned round; coordinates are numbered as their names are.
+    const std::size_t first = model_.coordinates.size() - names.size();
+    std::reverse(model_.coordinates.begin() + static_cast<std::ptrdiff_t>(first), model_.coordinates.end());
+    for (std::size_t i = first; i < model_.coordinates.size(); ++i)
+      model_.first_coordinate[model_.coordinates[i].joint] = static_cast<int>(i);
+  }
+  // The slave as it stands at the start: zero of the coordinates is the initial configuration.
+  const Pose offset = mechanism_.pose_of(node).inverse() * mechanism_.pose_of(slave);
+  JointMap rigid;
+  rigid.master = node;
+  rigid.slave = slave;
+  rigid.origin.position = offset.position;
+  rigid.slave_orientation = offset.orientation;
+  mechanism_.slave_joint[slave] = static_cast<int>(model_.joints.size());
+  model_.joints.push_back(rigid);
+  model_.initial_released.push_back(Released());
+  model_.first_coordinate.push_back(static_cast<int>(model_.coordinates.size()));
+  mechanism_.loop_joints.push_back(chain);
+}
+
+/// Sorts elementary joints from the root to the leaves.
+void sort_joints(Mechanism& mechanism) {
+  Model& model = mechanism.model;
+  std::vector<int>& slave_joint = mechanism.slave_joint;
+  std::vector<int> order, place(model.joints.size(), -1);
+  for (std::size_t j = 0; j < model.joints.size(); ++j) {
+    std::vector<int> stack = {static_cast<int>(j)};
+    while (!stack.empty()) {
+      const int next = stack.back();
+      const std::size_t waiting = stack.size();
+      if (place[next] < 0)
+        for (const int master : masters(model, model.joints[next]))
+          if (slave_joint[master] >= 0 && place[slave_joint[master]] < 0) stack.push_back(slave_joint[master]);
+      if (stack.size() > waiting) continue;
+      stack.pop_back();
+      if (place[next] >= 0) continue;
+      place[next] = static_cast<int>(order.size());
+      order.push_back(next);
+    }
+  }
+  const auto permute = [&](auto& values) {
+    const auto before = values;
+    for (std::size_t k = 0; k < order.size(); ++k) values[k] = before[order[k]];
+  };
+  for (int& joint : slave_joint)
+    if (joint >= 0) joint = place[joint];
+  permute(model.joints);
+  permute(model.initial_released);
+  permute(model.first_coordinate);
+  for (JointMap& joint : model.joints)
+    if (joint.leaving >= 0) joint.leaving = place[joint.leaving];
+  for (Coordinate& coordinate : model.coordinates) coordinate.joint = place[coordinate.joint];
+  // A chain stays together: nothing but its next joint hangs on a node inside it.
+  for (auto* chains : {&mechanism.tree_joints, &mechanism.loop_joints})
+    for (JointChain& chain : *chains)
+      if (chain.map_count > 0) chain.first_map = place[chain.first_map];
+}
+
+}  // namespace
+
+ClosedMechanism close_loops(const ScenePlan& plan, StartingTree tree) {
+  LoopBuilder loops(plan, tree);
+  for (const scene::JointDescription& joint : plan.scene.loop_joints) loops.add(joint);
+  if (!plan.scene.loop_joints.empty()) sort_joints(tree);
+  tree.model.length_scale = tree.extent();
+  return {std::move(tree)};
+}
+
+}  // namespace flexarm

@@ -1,0 +1,122 @@
+#include "building/mass_properties.h"
+
+#include <unordered_set>
+
+#include "math/so3.h"
+
+namespace flexarm {
+namespace {
+
+/// Mass, first moment and inertia about the world origin of everything outboard of a node, initial configuration.
+struct Composite {
+  double mass = 0;
+  Vector3 moment = Vector3::Zero();
+  Matrix3 inertia = Matrix3::Zero();
+
+  void operator+=(const Composite& other) {
+    mass += other.mass;
+    moment += other.moment;
+    inertia += other.inertia;
+  }
+  /// Inertia about the line through `point` along the unit vector `axis`.
+  double about(const Vector3& point, const Vector3& axis) const {
+    const Matrix3 p = so3::hat(point), s = so3::hat(moment);
+    const Matrix3 shifted = inertia + s * p + p * s - mass * p * p;
+    return axis.dot(shifted * axis);
+  }
+};
+
+/// The innermost node that a loop's slave, but not its master, hangs on.
+int start_of_loop(const std::vector<int>& parents, const JointMap& joint) {
+  std::unordered_set<int> carriers;  // of the master
+  for (int node = joint.master; node >= 0; node = parents[node]) carriers.insert(node);
+  int start = joint.slave;
+  while (parents[start] >= 0 && carriers.count(parents[start]) == 0) start = parents[start];
+  return start;
+}
+
+std::vector<Composite> composites(const std::vector<int>& parents, const Model& model) {
+  std::vector<Composite> out(model.nodes.size());
+  for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+    const NodalInertia& inertia = model.inertias[i];
+    const NodePose& pose = model.nodes[i];
+    const Matrix3 r = so3::hat(pose.position);
+    out[i].mass = inertia.total_mass;
+    out[i].moment = inertia.total_mass * pose.position;
+    out[i].inertia =
+        pose.rotation * (inertia.rotary + inertia.beam_rotary) * pose.rotation.transpose() - inertia.total_mass * r * r;
+  }
+  for (int i = static_cast<int>(out.size()) - 1; i >= 0; --i)
+    if (parents[i] >= 0) out[parents[i]] += out[i];  // parents come before their children
+  // A joint that closes a loop moves what hangs in it; the nodes of its chain carry nothing themselves.
+  for (std::size_t j = model.joints.size(); j-- > 0;) {
+    const JointMap& joint = model.joints[j];
+    if (joint.master < 0 || out[joint.master].mass != 0) continue;
+    const bool closes = parents[joint.slave] != joint.master && joint.kind != JointMapKind::Slide;
+    out[joint.master] = out[closes ? start_of_loop(parents, joint) : joint.slave];
+  }
+  return out;
+}
+
+/// What a coordinate moves, at the start.
+struct MovedInertia {
+  double inertia;    ///< m |t|^2 + J |r|^2 [kg or kg m^2]
+  bool is_anything;  ///< more than round-off
+};
+
+MovedInertia moved_inertia(const Model& model, const Coordinate& coordinate, const std::vector<Composite>& outboard) {
+  const JointMap& joint = model.joints[coordinate.joint];
+  const NodePose world;
+  const NodePose& master = joint.master < 0 ? world : model.nodes[joint.master];
+  const Matrix3 frame = master.rotation * joint.origin.orientation.toRotationMatrix();
+  Vector3 translation = joint.translation, rotation = joint.rotation;
+  if (joint.profile) translation *= joint.profile->derivative(model.initial_released[coordinate.joint].displacement[0]);
+  if (joint.kind != JointMapKind::Scalar) {
+    const Vector3 unit = Vector3::Unit(coordinate.component % 3);
+    translation = coordinate.is_angle ? Vector3::Zero() : unit;
+    rotation = coordinate.is_angle ? unit : Vector3::Zero();
+  }
+  const Composite& body = outboard[joint.slave];
+  // Screw-like couplings have no cross term about their axis.
+  double inertia = body.mass * translation.squaredNorm();
+  const Vector3& point = model.nodes[joint.slave].position;
+  if (rotation.norm() > 0) inertia += body.about(point, frame * rotation.normalized()) * rotation.squaredNorm();
+  // Nothing is what the shift to the axis leaves by round-off.
+  const double terms = body.mass * (translation.squaredNorm() + point.squaredNorm() * rotation.squaredNorm()) +
+                       body.inertia.trace() * rotation.squaredNorm();
+  return {inertia, inertia > 1e-13 * terms};
+}
+
+/// Adds what coordinates that move nothing themselves move through those that follow them.
+void add_followers(const Model& model, std::vector<MovedInertia>& moved) {
+  const std::vector<MovedInertia> own = moved;
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    const Coordinate& follower = model.coordinates[i];
+    if (follower.mimicked < 0 || !own[i].is_anything || own[follower.mimicked].is_anything) continue;
+    MovedInertia& leader = moved[follower.mimicked];
+    const int joint = model.coordinates[follower.mimicked].joint;
+    const double ratio = follower.mimic.derivative(model.initial_released[joint].displacement[0]);
+    leader.inertia = (leader.is_anything ? leader.inertia : 0) + ratio * ratio * own[i].inertia;
+    leader.is_anything = leader.inertia > 0;
+  }
+}
+
+}  // namespace
+
+std::vector<int> finish_mass_properties(const std::vector<int>& parents, Model& model) {
+  const std::vector<Composite> outboard = composites(parents, model);
+  std::vector<MovedInertia> moved;
+  for (const Coordinate& coordinate : model.coordinates) moved.push_back(moved_inertia(model, coordinate, outboard));
+  add_followers(model, moved);
+  std::vector<int> massless;
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    Coordinate& coordinate = model.coordinates[i];
+    // A driven or following coordinate needs none.
+    if (!moved[i].is_anything && coordinate.motion < 0 && coordinate.mimicked < 0)
+      massless.push_back(static_cast<int>(i));
+    if (coordinate.limit) coordinate.limit->inertia = moved[i].inertia;
+  }
+  return massless;
+}
+
+}  // namespace flexarm

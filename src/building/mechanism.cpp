@@ -1,0 +1,82 @@
+#include "building/mechanism.h"
+
+#include <algorithm>
+
+#include "joints/joint_kinematics.h"
+
+namespace flexarm {
+
+Pose Mechanism::pose_of(int node) const {
+  return node < 0 ? Pose() : Pose{model.nodes[node].position, model.nodes[node].orientation};
+}
+
+double Mechanism::extent() const {
+  double extent = 0;
+  for (const LinkFrame& link : model.links)
+    if (link.beam) extent = std::max(extent, link.beam->length);
+  for (const NodePose& a : model.nodes) extent = std::max(extent, (a.position - model.nodes.front().position).norm());
+  return extent > 0 ? extent : 1.0;
+}
+
+int Mechanism::add_node(const Pose& pose, int parent) {
+  NodePose node;
+  node.position = pose.position;
+  node.orientation = pose.orientation.normalized();
+  node.rotation = node.orientation.toRotationMatrix();
+  model.nodes.push_back(node);
+  model.inertias.emplace_back();
+  node_parents.push_back(parent);
+  slave_joint.push_back(-1);
+  return static_cast<int>(model.nodes.size()) - 1;
+}
+
+int Mechanism::add_map(JointMap map, const Released& released) {
+  const int joint = static_cast<int>(model.joints.size());
+  model.joints.push_back(map);
+  const NodePose slave = slave_pose(model, joint, model.nodes, released);
+  map.slave = model.joints[joint].slave = add_node({slave.position, slave.orientation}, map.master);
+  model.initial_released.push_back(released);
+  model.first_coordinate.push_back(static_cast<int>(model.coordinates.size()));
+  slave_joint[map.slave] = joint;
+  return map.slave;
+}
+
+int Mechanism::add_rigid(int master, const Pose& offset) {
+  JointMap map;
+  map.master = master;
+  map.origin.position = offset.position;
+  map.slave_orientation = offset.orientation;
+  return add_map(map, Released());
+}
+
+void Mechanism::add_coordinates(const scene::JointDescription& joint, const std::vector<std::string>& names) {
+  const int map = static_cast<int>(model.joints.size()) - 1;
+  const JointMapKind kind = model.joints[map].kind;
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    Coordinate coordinate;
+    coordinate.name = names[c];
+    coordinate.joint = map;
+    coordinate.component = static_cast<int>(c);
+    coordinate.is_angle = kind == JointMapKind::Spherical || (kind == JointMapKind::Free && c >= 3);
+    coordinate.damping = joint.damping;
+    coordinate.friction = joint.friction;
+    coordinate.sticks = joint.friction_law.law == scene::FrictionDescription::Law::Coulomb;
+    if (kind == JointMapKind::Scalar || kind == JointMapKind::Slide)
+      coordinate.friction_coefficient =
+          joint.friction_law.coefficient * (model.joints[map].rotation.isZero(0) ? 1.0 : joint.friction_law.radius);
+    coordinate.effort_limit = joint.effort_limit;
+    if (joint.limits) coordinate.limit = LimitStop{joint.limits->lower, joint.limits->upper};
+    model.coordinates.push_back(coordinate);
+  }
+}
+
+Attachment attachment(const ScenePlan& plan, const Model& model, const std::string& link, const Vector3& point) {
+  const int index = plan.links[link];
+  const Attachment& frame = model.links[index].frame;
+  if (!plan.meshes[index]) return frame;
+  const auto& [centreline, mesh] = *plan.meshes[index];
+  const int node = mesh.node_at(centreline.nearest(point));
+  return {frame.node + node, mesh.nodes[node].pose.inverse()};
+}
+
+}  // namespace flexarm

@@ -1,0 +1,51 @@
+#pragma once
+/// A mechanism under construction, and the stages through which the passes of build_model() take it (internal to
+/// building/).
+
+#include <string>
+#include <vector>
+
+#include "building/scene_plan.h"
+#include "flexarm/scene/scene_description.h"
+#include "model/model.h"
+
+namespace flexarm {
+
+/// A joint of the scene and the chain of elementary ones that it is made of.
+struct JointChain {
+  const scene::JointDescription* joint;
+  int first_map, map_count;  ///< into Model::joints
+  int closed_node = -1;      ///< of a joint that closes a loop: the beam's node that its last map moves
+};
+
+struct Mechanism {
+  Model model;
+  std::vector<int> node_parents;  ///< node that a node moves with when the joints outboard move; -1: world
+  std::vector<int> slave_joint;   ///< per node: joint of which it is the slave, or -1
+  std::vector<JointChain> tree_joints, loop_joints;  ///< root to leaf
+
+  /// Of a node, or the world (-1).
+  Pose pose_of(int node) const;
+  /// As it starts [m].
+  double extent() const;
+
+  int add_node(const Pose& pose, int parent);
+  /// Adds an elementary joint with its slave node; returns the node.
+  int add_map(JointMap map, const Released& released);
+  int add_rigid(int master, const Pose& offset);
+  /// Those of the elementary joint added last.
+  void add_coordinates(const scene::JointDescription& joint, const std::vector<std::string>& names);
+};
+
+// Each stage has all that those before it have: a pass cannot be called before those that it needs.
+struct PlacedTree : Mechanism {};         ///< nodes, elementary joints and coordinates of the tree
+struct WeightyTree : Mechanism {};        ///< elements of beams, rigid bodies
+struct StartingTree : Mechanism {};       ///< poses at the start, those of mimicking coordinates included
+struct ClosedMechanism : Mechanism {};    ///< joints and constraints that close loops; all nodes
+struct DrivenMechanism : Mechanism {};    ///< motions and efforts
+struct SolvableMechanism : Mechanism {};  ///< of the constraints those that are independent
+
+/// Node and link frame seen from it, for a point of the link (link frame): the nearest cross-section's node.
+Attachment attachment(const ScenePlan& plan, const Model& model, const std::string& link, const Vector3& point);
+
+}  // namespace flexarm

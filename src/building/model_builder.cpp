@@ -1,0 +1,93 @@
+#include "building/model_builder.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "building/closure_builder.h"
+#include "building/coordinate_builder.h"
+#include "building/elementary_joints.h"
+#include "building/inertia_builder.h"
+#include "building/initial_velocity.h"
+#include "building/load_builder.h"
+#include "building/loop_builder.h"
+#include "building/mass_properties.h"
+#include "building/tree_builder.h"
+
+namespace flexarm {
+namespace {
+
+/// A model, and its coordinates that move nothing that has inertia: their accelerations would be undetermined.
+struct BuiltModel {
+  Model model;
+  std::vector<int> massless;
+};
+
+BuiltModel build(const scene::SceneDescription& scene) {
+  const ScenePlan plan(scene);
+  PlacedTree placed = place_tree(plan);
+  WeightyTree weighty = add_inertia(plan, std::move(placed));
+  StartingTree starting = follow_mimics(plan, std::move(weighty));
+  ClosedMechanism closed = close_loops(plan, std::move(starting));
+  DrivenMechanism driven = connect_drives(plan, std::move(closed));
+  SolvableMechanism solvable = choose_constraints(plan, std::move(driven));
+
+  std::vector<Vector6> velocity = initial_velocity(plan, solvable);
+  PlacedLoads placed_loads = place_loads(plan, solvable.model);
+  Model model = std::move(solvable.model);
+  model.initial_velocity = std::move(velocity);
+  model.loads = std::move(placed_loads.loads);
+  model.histories = std::move(placed_loads.histories);
+  model.probes = place_probes(plan, model);
+  model.gravity = scene.gravity;
+  std::vector<int> massless = finish_mass_properties(solvable.node_parents, model);
+  return {std::move(model), std::move(massless)};
+}
+
+[[noreturn]] void refuse_massless(const scene::SceneDescription& scene, const BuiltModel& built) {
+  std::map<std::string, const scene::JointDescription*> joints;  // by coordinate
+  for (const auto* list : {&scene.joints, &scene.loop_joints})
+    for (const scene::JointDescription& joint : *list)
+      for (const std::string& name : coordinate_names(joint)) joints.emplace(name, &joint);
+  std::string text;
+  for (const int index : built.massless) {
+    const std::string& name = built.model.coordinates[index].name;
+    text +=
+        at(joints.at(name)->location, "<joint>") + "joint coordinate '" + name + "' moves nothing that has inertia\n";
+  }
+  throw ModelError(text + scene.file +
+                   ": give the links outboard of these joints an <inertial> or a <beam>, or hold those with one "
+                   "coordinate where they are by massless=\"lock\" of <simulation> (--massless lock)");
+}
+
+/// The scene with constant motions of these coordinates in place of everything else that it says of them.
+scene::SceneDescription with_locked(scene::SceneDescription scene, const BuiltModel& built) {
+  std::set<std::string> locked;
+  for (const int index : built.massless) {
+    const Coordinate& coordinate = built.model.coordinates[index];
+    if (coordinate.is_angle) continue;  // of a free rotation, which no motion can prescribe
+    locked.insert(coordinate.name);
+    const Released& start = built.model.initial_released[coordinate.joint];
+    scene.motions.push_back({coordinate.name, TimeFunction(start.displacement[coordinate.component]), {scene.file}});
+  }
+  const auto drop = [&](auto& entries) {
+    entries.erase(std::remove_if(entries.begin(), entries.end(),
+                                 [&](const auto& entry) { return locked.count(entry.coordinate) > 0; }),
+                  entries.end());
+  };
+  drop(scene.initial_joints);
+  drop(scene.efforts);
+  return scene;
+}
+
+}  // namespace
+
+Model build_model(const scene::SceneDescription& scene) {
+  BuiltModel built = build(scene);
+  if (scene.lock_massless && !built.massless.empty()) built = build(with_locked(scene, built));
+  if (!built.massless.empty()) refuse_massless(scene, built);
+  return std::move(built.model);
+}
+
+}  // namespace flexarm

@@ -1,0 +1,96 @@
+#include "building/scene_plan.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "building/model_builder.h"
+
+namespace flexarm {
+namespace {
+
+/// Meshes with element borders wherever a joint or a load attaches.
+LinkMeshes mesh_links(const scene::SceneDescription& scene, const LinkNames& links) {
+  LinkMeshes meshes(scene.links.size());
+  for (std::size_t i = 0; i < scene.links.size(); ++i) {
+    if (!scene.links[i].beam) continue;
+    const scene::BeamDescription& beam = *scene.links[i].beam;
+    if (beam.order < 1 || beam.order > 4) throw ModelError(at(beam.location, "<beam>") + "order must be 1 to 4");
+    try {
+      meshes[i] = LinkMesh{Centreline(beam.centreline, beam.section_y), {}};
+    } catch (const std::invalid_argument& error) {
+      throw ModelError(at(beam.location, "<centerline> of link '" + scene.links[i].name + "'") + error.what());
+    }
+  }
+  std::vector<std::vector<double>> borders(scene.links.size());  // arc lengths
+  const auto attach = [&](const std::string& link, const Vector3& point) {
+    const int index = links[link];
+    if (meshes[index]) borders[index].push_back(meshes[index]->centreline.nearest(point));
+  };
+  for (const scene::JointDescription& joint : scene.joints) attach(joint.parent, joint.origin.position);
+  for (const scene::JointDescription& joint : scene.loop_joints) {
+    attach(joint.parent, joint.origin.position);
+    attach(joint.child, joint.child_origin.position);
+  }
+  for (const scene::PointLoad& load : scene.loads) attach(load.link, load.at);
+  for (std::size_t i = 0; i < meshes.size(); ++i)
+    if (meshes[i]) meshes[i]->mesh = mesh_beam(*scene.links[i].beam, meshes[i]->centreline, borders[i]);
+  return meshes;
+}
+
+}  // namespace
+
+std::string at(const scene::SourceLocation& location, const std::string& element) {
+  return location.file + ":" + std::to_string(location.line) + ": " + element + ": ";
+}
+
+LinkNames::LinkNames(const scene::SceneDescription& scene) : file_(scene.file) {
+  for (std::size_t i = 0; i < scene.links.size(); ++i)
+    if (!indices_.emplace(scene.links[i].name, static_cast<int>(i)).second)
+      throw ModelError(scene.file + ": two links are named '" + scene.links[i].name + "'");
+}
+
+int LinkNames::operator[](const std::string& name) const {
+  const auto found = indices_.find(name);
+  if (found == indices_.end()) throw ModelError(file_ + ": there is no link '" + name + "'");
+  return found->second;
+}
+
+JointTree::JointTree(const scene::SceneDescription& scene, const LinkNames& links)
+    : root(links[scene.root_link]), above(scene.links.size(), nullptr), below(scene.links.size()) {
+  for (const scene::JointDescription& joint : scene.joints) {
+    const int child = links[joint.child];
+    if (above[child]) throw ModelError(at(joint.location, "<joint>") + "link '" + joint.child + "' has two parents");
+    above[child] = &joint;
+    below[links[joint.parent]].push_back(&joint);
+  }
+  // What slides comes after the beams that are welded to the line.
+  for (auto& list : below)
+    std::stable_partition(list.begin(), list.end(),
+                          [](const scene::JointDescription* joint) { return joint->kind != scene::JointKind::Slide; });
+  // Depth first: nodes of a branch stand together, which keeps the matrix banded.
+  std::vector<const scene::JointDescription*> stack(below[root].rbegin(), below[root].rend());
+  while (!stack.empty()) {
+    const scene::JointDescription* joint = stack.back();
+    stack.pop_back();
+    joints.push_back(joint);
+    const auto& next = below[links[joint->child]];
+    stack.insert(stack.end(), next.rbegin(), next.rend());
+  }
+  if (joints.size() + 1 != scene.links.size())
+    throw ModelError(scene.file + ": not every link is connected to the root link '" + scene.root_link + "'");
+}
+
+InitialPositions::InitialPositions(const scene::SceneDescription& scene) {
+  for (const scene::InitialJoint& initial : scene.initial_joints) positions_[initial.coordinate] = initial.position;
+  for (const scene::PrescribedMotion& motion : scene.motions) positions_[motion.coordinate] = motion.position(0.0);
+}
+
+double InitialPositions::of(const std::string& coordinate, double otherwise) const {
+  const auto found = positions_.find(coordinate);
+  return found == positions_.end() ? otherwise : found->second;
+}
+
+ScenePlan::ScenePlan(const scene::SceneDescription& scene)
+    : scene(scene), links(scene), tree(scene, links), meshes(mesh_links(scene, links)), initial_positions(scene) {}
+
+}  // namespace flexarm

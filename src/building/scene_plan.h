@@ -1,0 +1,73 @@
+#pragma once
+/// What is known of a scene before anything of it has a place (internal to building/).
+
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "building/beam_mesh.h"
+#include "building/centreline.h"
+#include "flexarm/scene/scene_description.h"
+
+namespace flexarm {
+
+/// "file:line: element: ", with which messages about an element begin.
+std::string at(const scene::SourceLocation& location, const std::string& element);
+
+/// Links of a scene by name.
+class LinkNames {
+ public:
+  /// @throws ModelError where two links have the same name.
+  explicit LinkNames(const scene::SceneDescription& scene);
+  /// Index into SceneDescription::links.
+  /// @throws ModelError where there is none.
+  int operator[](const std::string& name) const;
+
+ private:
+  std::string file_;
+  std::unordered_map<std::string, int> indices_;
+};
+
+/// The tree that links and joints form.
+struct JointTree {
+  /// @throws ModelError where a link has two parents or is not connected to the root link.
+  JointTree(const scene::SceneDescription& scene, const LinkNames& links);
+
+  int root;                                                        ///< link
+  std::vector<const scene::JointDescription*> joints;              ///< root to leaf, each branch in one piece
+  std::vector<const scene::JointDescription*> above;               ///< per link; null above the root
+  std::vector<std::vector<const scene::JointDescription*>> below;  ///< per link; what slides on it comes last
+};
+
+/// A flexible link, undeformed.
+struct LinkMesh {
+  Centreline centreline;
+  BeamMesh mesh;
+};
+/// Per link; empty for rigid ones.
+using LinkMeshes = std::vector<std::optional<LinkMesh>>;
+
+/// Where the scene lets joint coordinates start.
+class InitialPositions {
+ public:
+  explicit InitialPositions(const scene::SceneDescription& scene);
+  /// What the scene gives, else `otherwise` [m or rad].
+  double of(const std::string& coordinate, double otherwise = 0) const;
+
+ private:
+  std::unordered_map<std::string, double> positions_;
+};
+
+struct ScenePlan {
+  /// @throws ModelError
+  explicit ScenePlan(const scene::SceneDescription& scene);
+
+  const scene::SceneDescription& scene;
+  LinkNames links;
+  JointTree tree;
+  LinkMeshes meshes;
+  InitialPositions initial_positions;
+};
+
+}  // namespace flexarm

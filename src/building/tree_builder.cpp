@@ -1,0 +1,151 @@
+#include "building/tree_builder.h"
+
+#include "building/elementary_joints.h"
+#include "building/slide_builder.h"
+#include "math/so3.h"
+
+namespace flexarm {
+namespace {
+
+/// Of a map with these coordinates, at the start.
+Released initial_released(JointMapKind kind, const std::vector<std::string>& names, const InitialPositions& positions) {
+  Released out;
+  std::vector<double> values;
+  for (const std::string& name : names) values.push_back(positions.of(name));
+  if (kind == JointMapKind::Scalar || kind == JointMapKind::Slide) {
+    out.displacement[0] = values[0];
+  } else if (kind != JointMapKind::Rigid) {
+    if (kind == JointMapKind::Free) out.displacement = Vector3(values[0], values[1], values[2]);
+    const std::size_t n = values.size();
+    out.rotation = so3::exp_quaternion(Vector3(values[n - 3], values[n - 2], values[n - 1]));
+  }
+  return out;
+}
+
+class TreeBuilder {
+ public:
+  explicit TreeBuilder(const ScenePlan& plan) : plan_(plan), model_(tree_.model), slides_(plan, tree_) {}
+
+  PlacedTree build() {
+    for (const scene::LinkDescription& link : plan_.scene.links) model_.links.push_back({link.name, {}, std::nullopt});
+    place_link(plan_.tree.root, {-1, Pose()});
+    for (const scene::JointDescription* joint : plan_.tree.joints)
+      tree_.tree_joints.push_back(joint->kind == scene::JointKind::Slide ? add_slide(*joint) : add_joint(*joint));
+    return std::move(tree_);
+  }
+
+ private:
+  JointChain add_joint(const scene::JointDescription& joint) {
+    const int first = next_map(), child = plan_.links[joint.child];
+    Attachment frame = attachment(plan_, model_, joint.parent, joint.origin.position);
+    frame.offset = frame.offset * joint.origin;
+    if (joint.kind == scene::JointKind::Fixed) {
+      place_link(child, frame);
+      return {&joint, first, 0};
+    }
+    const int node = add_maps(joint, coordinate_names(joint), frame);
+    const int end = next_map();
+    place_child(child, node);
+    return {&joint, first, end - first};
+  }
+
+  /// A section that slides, and what turns on it.
+  JointChain add_slide(const scene::JointDescription& joint) {
+    const int slide = next_map(), child = plan_.links[joint.child];
+    Attachment frame = slides_.add(joint);
+    const bool leaves = joint.slide->on_end == scene::SlideDescription::End::Free;
+    scene::JointDescription released = joint;
+    released.kind = joint.slide->rotation;
+    if (released.kind == scene::JointKind::Fixed) {
+      // What leaves the line needs a node of its own.
+      if (leaves) {
+        model_.joints[slide].leaving = slide + 1;
+        frame = {tree_.add_rigid(frame.node, frame.offset), Pose()};
+      }
+      place_link(child, frame);
+      return {&joint, slide, 1};
+    }
+    released.limits.reset();
+    released.direction = joint.origin.orientation.conjugate() * Vector3::UnitX();  // of the line
+    std::vector<std::string> names = coordinate_names(joint);
+    names.erase(names.begin());  // the slide's own
+    const int node = add_maps(released, names, frame);
+    if (scene::has_dependent_travel(released.kind)) slides_.couple(released);
+    const int end = next_map();
+    if (leaves) model_.joints[slide].leaving = end - 1;
+    place_child(child, node);
+    return {&joint, slide, end - slide};
+  }
+
+  /// The chain of a joint whose coordinates have these names; returns its last node, which moves the child.
+  int add_maps(const scene::JointDescription& joint, const std::vector<std::string>& names, const Attachment& frame) {
+    const std::optional<LinkMesh>& child = plan_.meshes[plan_.links[joint.child]];
+    std::vector<JointMap> maps = elementary_joints(joint);
+    maps.front().origin = frame.offset * maps.front().origin;
+    if (is_first_node(child)) maps.back().slave_orientation = child->mesh.nodes[0].pose.orientation;
+    int node = frame.node;
+    auto name = names.begin();
+    for (JointMap& map : maps) {
+      map.master = node;
+      const std::vector<std::string> own(name, name + released_count(map.kind));
+      name += released_count(map.kind);
+      node = tree_.add_map(map, initial_released(map.kind, own, plan_.initial_positions));
+      tree_.add_coordinates(joint, own);
+    }
+    return node;
+  }
+
+  /// The node that a joint moves is the first one of the child's mesh where its section lies in the link's origin.
+  static bool is_first_node(const std::optional<LinkMesh>& child) { return child && child->mesh.centroid.isZero(0); }
+
+  void place_child(int link, int node) {
+    if (is_first_node(plan_.meshes[link]))
+      place_beam(link, node);
+    else
+      place_link(link, {node, Pose()});
+  }
+
+  void place_link(int link, const Attachment& base) {
+    if (plan_.meshes[link])
+      place_beam(link, tree_.add_rigid(base.node, base.offset * plan_.meshes[link]->mesh.nodes[0].pose));
+    else
+      model_.links[link].frame = base;
+  }
+
+  void place_beam(int link, int first_node) {
+    const auto& [centreline, mesh] = *plan_.meshes[link];
+    const Pose origin = tree_.pose_of(first_node) * mesh.nodes[0].pose.inverse();
+    for (std::size_t i = 1; i < mesh.nodes.size(); ++i) {
+      const MeshNode& node = mesh.nodes[i];
+      if (node.welded_to >= 0)
+        tree_.add_rigid(first_node + node.welded_to, mesh.nodes[node.welded_to].pose.inverse() * node.pose);
+      else
+        tree_.add_node(origin * node.pose, first_node);
+    }
+    BeamLink beam;
+    beam.order = mesh.order;
+    beam.centroid = mesh.centroid;
+    beam.tip = {first_node + static_cast<int>(mesh.nodes.size()) - 1,
+                Pose{-mesh.centroid, mesh.nodes.back().pose.orientation.conjugate()}};
+    beam.length = centreline.length();
+    beam.mass = beam.length * mesh.section.mass;
+    beam.radius = mesh.section.radius;
+    model_.links[link].beam = beam;
+    model_.links[link].frame = {first_node, mesh.nodes[0].pose.inverse()};
+  }
+
+  int next_map() const { return static_cast<int>(model_.joints.size()); }
+
+  const ScenePlan& plan_;
+  PlacedTree tree_;
+  Model& model_;
+  SlideBuilder slides_;
+};
+
+}  // namespace
+
+PlacedTree place_tree(const ScenePlan& plan) {
+  return TreeBuilder(plan).build();
+}
+
+}  // namespace flexarm

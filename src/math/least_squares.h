@@ -1,0 +1,21 @@
+#pragma once
+/// Dense systems of equations that need not be square. Kept in a file of its own: Eigen's pivoting factorisations take
+/// long to compile.
+
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace flexarm {
+
+/// x that makes |matrix x - right| least; for a matrix of full column rank.
+Eigen::VectorXd least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
+
+/// Of all x that make |matrix x - right| least the smallest; for a matrix of any rank.
+Eigen::VectorXd smallest_least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
+
+/// Rows of a matrix that are linearly independent, the one with the largest pivot first: those whose pivots are larger
+/// than `threshold`, and than this part of the largest.
+std::vector<Eigen::Index> independent_rows(const Eigen::MatrixXd& matrix, double threshold);
+
+}  // namespace flexarm

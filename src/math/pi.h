@@ -1,0 +1,8 @@
+#pragma once
+/// The circle constant.
+
+namespace flexarm {
+
+constexpr double kPi = 3.14159265358979323846;
+
+}  // namespace flexarm

@@ -1,0 +1,22 @@
+#pragma once
+/// The inside of a simulation, for the core's own rooms, tests and benchmarks; users of the library see nothing of it.
+
+#include <vector>
+
+#include "flexarm/scene/scene_description.h"
+#include "flexarm/simulation/simulation.h"
+#include "model/model.h"
+#include "model/state.h"
+
+namespace flexarm {
+
+const Model& model_of(const Simulation& simulation);
+const State& state_of(const Simulation& simulation);
+/// Update norms of the last Newton solve, for tests of the rate of convergence.
+const std::vector<double>& update_norms_of(const Simulation& simulation);
+
+/// Replaces the state by any that the simulator could have come to, as one read from a file.
+/// @throws std::invalid_argument if it is not one of this simulation's; which is as before then
+void restore(Simulation& simulation, const State& state);
+
+}  // namespace flexarm

@@ -1,0 +1,71 @@
+// What scripts/run shows: config/demo_arm.urdf, driven by the schedule of config/demo_commands.yaml.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "bench/effort_schedule.h"
+#include "flexarm/scene/urdf_reader.h"
+#include "flexarm/simulation/simulation.h"
+#include "support/source_path.h"
+
+namespace flexarm::test {
+namespace {
+
+/// Distance of a boom's end from the straight line along the axis of its root [m].
+double deflection(const Simulation& simulation, std::size_t boom) {
+  const Pose root = simulation.link_pose(boom);
+  const Vector3 end = root.orientation.conjugate() * (simulation.tip_pose(boom).position - root.position);
+  return end.tail<2>().norm();
+}
+
+class Demo : public ::testing::Test {
+ protected:
+  Demo()
+      : scene_(scene::read_scene_file(source_path("config/demo_arm.urdf"))),
+        schedule_(bench::read_effort_schedule(source_path("config/demo_commands.yaml"))) {}
+
+  scene::ReadResult scene_;
+  bench::EffortSchedule schedule_;
+};
+
+TEST_F(Demo, SceneIsReadWithoutAnyFinding) {
+  EXPECT_TRUE(scene_.scene);
+  EXPECT_TRUE(scene_.diagnostics.empty()) << to_text(scene_.diagnostics);
+}
+
+TEST_F(Demo, HasTheSixJointsOfTheShuttlesArm) {
+  ASSERT_TRUE(scene_.scene);
+  EXPECT_EQ(Simulation(*scene_.scene).coordinate_names(),
+            (std::vector<std::string>{"shoulder_yaw", "shoulder_pitch", "elbow_pitch", "wrist_pitch", "wrist_yaw",
+                                      "wrist_roll"}));
+}
+
+TEST_F(Demo, BoomsSwingByDecimetresAndTheEnergyAccountBalances) {
+  ASSERT_TRUE(scene_.scene);
+  Simulation simulation(*scene_.scene);
+  const bench::EffortPlayer player(schedule_.pulses, simulation);
+  const std::size_t upper = 2, lower = 4;
+  ASSERT_EQ(simulation.link_names().at(upper), "upper_arm");
+  ASSERT_EQ(simulation.link_names().at(lower), "lower_arm");
+
+  double upper_swing = 0, lower_swing = 0, imbalance = 0;
+  while (simulation.time() < schedule_.period) {
+    player.command(simulation);
+    const StepResult result = simulation.step();
+    ASSERT_TRUE(result.converged) << "at " << simulation.time() << " s: " << to_string(result.reason);
+    ASSERT_EQ(result.halvings, 0) << "at " << simulation.time() << " s";
+    upper_swing = std::max(upper_swing, deflection(simulation, upper));
+    lower_swing = std::max(lower_swing, deflection(simulation, lower));
+    const Energies energies = simulation.energies();  // at rest in the beginning: the account starts with zero
+    imbalance = std::max(imbalance, std::abs(energies.total() - energies.work + energies.dissipated));
+  }
+  EXPECT_GT(upper_swing, 0.1);
+  EXPECT_GT(lower_swing, 0.1);
+  EXPECT_LT(imbalance, 1e-6 * simulation.energies().work) << "only what Newton leaves unsolved may leak";
+}
+
+}  // namespace
+}  // namespace flexarm::test

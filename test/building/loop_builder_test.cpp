@@ -1,0 +1,332 @@
+// Models with loops that flexible links close.
+#include <gtest/gtest.h>
+
+#include "building/expect_model_error.h"
+#include "building/model_builder.h"
+#include "joints/closure_maps.h"
+#include "joints/joint_kinematics.h"
+#include "support/loops.h"
+
+namespace flexarm::test {
+namespace {
+
+using scene::JointKind;
+
+/// A crank (rigid), a coupler (flexible) and a rocker (rigid) that hangs from the world; hinges about y. The loop is
+/// closed between the coupler's tip, which is free, and the rocker's end.
+SceneBuilder crank_rocker() {
+  SceneBuilder b;
+  b.body("crank", 1, {0, 0, 0.2}, Matrix3::Identity());
+  b.beam("coupler", {{1, 0, 0.2}}, section(1e4, 1e4, 100, 100, 1, 0.1, 0.1), 2, 2);
+  b.body("rocker", 1, {0, 0, 0.3}, Matrix3::Identity());
+  b.joint("ground", JointKind::Continuous, "world", "crank", {0, 0, 0}, {0, 1, 0});
+  b.joint("knee", JointKind::Continuous, "crank", "coupler", {0, 0, 0.4}, {0, 1, 0});
+  b.joint("foot", JointKind::Continuous, "world", "rocker", {1, 0, 0}, {0, 1, 0});
+  return b;
+}
+
+SceneBuilder closed_crank_rocker() {
+  SceneBuilder b = crank_rocker();
+  close_loop(b, "hip", JointKind::Continuous, "rocker", "coupler", {1, 0, 0.2}, {0, 1, 0}).location = {"s.urdf", 17};
+  return b;
+}
+
+const Coordinate& coordinate(const Model& model, const std::string& name) {
+  for (const Coordinate& c : model.coordinates)
+    if (c.name == name) return c;
+  ADD_FAILURE() << name;
+  return model.coordinates.front();
+}
+
+/// Every joint's master is known before its slave, and no node is a slave twice.
+void expect_root_to_leaf(const Model& model) {
+  std::vector<bool> is_slave(model.nodes.size(), false), is_known(model.nodes.size(), false);
+  for (const JointMap& joint : model.joints) {
+    EXPECT_FALSE(is_slave[joint.slave]);
+    is_slave[joint.slave] = true;
+  }
+  for (const JointMap& joint : model.joints) {
+    EXPECT_TRUE(joint.master < 0 || is_known[joint.master] || !is_slave[joint.master]);
+    is_known[joint.slave] = true;
+  }
+  std::vector<NodePose> poses = model.nodes;
+  for (std::size_t j = 0; j < model.joints.size(); ++j) {
+    const NodePose pose = slave_pose(model, static_cast<int>(j), poses, model.initial_released[j]);
+    EXPECT_LT((pose.position - model.nodes[model.joints[j].slave].position).norm(), 1e-15);
+    EXPECT_LT((pose.rotation - model.nodes[model.joints[j].slave].rotation).norm(), 1e-15);
+  }
+}
+
+TEST(LoopBuilder, TipBecomesASlave) {
+  const Model open = build_model(crank_rocker().scene), model = build_model(closed_crank_rocker().scene);
+  EXPECT_EQ(model.nodes.size(), open.nodes.size() + 1) << "the node in the moved joint frame";
+  EXPECT_EQ(model.joints.size(), open.joints.size() + 2);
+  expect_root_to_leaf(model);
+  ASSERT_EQ(model.coordinates.size(), 4u);
+  EXPECT_EQ(model.coordinates.back().name, "hip");
+  for (std::size_t i = 0; i < model.coordinates.size(); ++i) {
+    const Coordinate& c = model.coordinates[i];
+    EXPECT_EQ(model.joints[c.joint].kind, JointMapKind::Scalar);
+    EXPECT_EQ(model.first_coordinate[c.joint], static_cast<int>(i));
+  }
+  const JointMap& hip = model.joints[coordinate(model, "hip").joint];
+  EXPECT_EQ(hip.master, model.links[3].frame.node);
+  EXPECT_EQ(hip.rotation, Vector3::UnitY());
+}
+
+// What stands on the tip moves with it: its joints come after the closing one, whatever the order in the scene.
+TEST(LoopBuilder, JointsAreSortedRootToLeaf) {
+  SceneBuilder b = crank_rocker();
+  b.body("lamp", 1, {0.1, 0, 0.1}, Matrix3::Identity());
+  b.joint("lamp", JointKind::Universal, "coupler", "lamp", {1, 0, 0.3}).axis2 = Vector3::UnitX();
+  std::rotate(b.scene.joints.begin(), b.scene.joints.begin() + 2, b.scene.joints.end());  // the rocker comes last
+  std::swap(b.scene.joints[0], b.scene.joints[3]);
+  close_loop(b, "hip", JointKind::Cylindrical, "rocker", "coupler", {1, 0, 0.2}, {0, 1, 0});
+  const Model model = build_model(b.scene);
+  expect_root_to_leaf(model);
+  for (const char* name : {"lamp/2", "hip/1", "hip/2"}) EXPECT_EQ(coordinate(model, name).name, name);
+  EXPECT_LT(coordinate(model, "hip/2").joint, coordinate(model, "lamp/1").joint);
+  EXPECT_EQ(coordinate(model, "hip/1").joint + 1, coordinate(model, "hip/2").joint);
+  EXPECT_EQ(model.joints[coordinate(model, "hip/1").joint].translation, Vector3::UnitY());
+}
+
+// A rigid body fixed to the tip, and one fixed to that, hold the tip's node.
+TEST(LoopBuilder, BodiesFixedToATipAreHeldByItsNode) {
+  SceneBuilder b = crank_rocker();
+  b.body("arm", 1, {0.1, 0, 0.1}, Matrix3::Identity());
+  b.body("hand", 1, {0.1, 0, 0.1}, Matrix3::Identity());
+  b.joint("arm", JointKind::Fixed, "coupler", "arm", {1, 0.2, 0.2}).origin.orientation =
+      Eigen::AngleAxisd(0.7, Vector3(0.6, 0.8, 0));
+  b.joint("hand", JointKind::Fixed, "arm", "hand", {0, 0, 0.3});
+  const int tip = build_model(b.scene).links[2].beam->tip.node;
+  for (const bool exchanged : {false, true}) {
+    SceneBuilder closed = b;
+    scene::JointDescription& loop = close_loop(closed, "hip", JointKind::Revolute, "rocker", "hand", {0.1, 0.1, 0.1});
+    if (exchanged) {
+      std::swap(loop.parent, loop.child);
+      std::swap(loop.origin, loop.child_origin);
+    }
+    const Model model = build_model(closed.scene);
+    expect_root_to_leaf(model);
+    const JointMap& hip = model.joints[coordinate(model, "hip").joint];
+    EXPECT_EQ(hip.master, model.links[3].frame.node);
+    // In the parent's frame, turned backwards where the parent follows.
+    if (exchanged)
+      EXPECT_EQ(hip.rotation, -Vector3::UnitZ());
+    else
+      EXPECT_EQ(hip.rotation, Vector3::UnitZ());
+    int held = -1;
+    for (const JointMap& joint : model.joints)
+      if (joint.master == hip.slave) held = joint.slave;
+    EXPECT_EQ(held, tip);
+  }
+}
+
+TEST(LoopBuilder, VelocitiesOfTheStartAgreeWithTheLoop) {
+  SceneBuilder b = closed_crank_rocker();
+  b.scene.initial_joints.push_back({"ground", 0, 2, {}});
+  for (const bool given : {false, true}) {
+    if (given) b.scene.initial_joints.push_back({"hip", 0, -3, {}});
+    const Model model = build_model(b.scene);
+    std::vector<double> rates;
+    for (std::size_t j = 0; j < model.joints.size(); ++j) {
+      const JointMap& joint = model.joints[j];
+      Vector6 remainder;
+      const ReleasedVector rate =
+          released_rates(joint, joint.master < 0 ? NodePose() : model.nodes[joint.master], model.initial_released[j],
+                         joint.master < 0 ? Vector6(Vector6::Zero()) : model.initial_velocity[joint.master],
+                         model.initial_velocity[joint.slave], &remainder);
+      EXPECT_LT(remainder.norm(), 1e-14);
+      for (const double r : rate) rates.push_back(r);
+    }
+    const auto rate = [&](const char* name) { return rates[coordinate(model, name).joint]; };
+    EXPECT_NEAR(rates[0], 2, 1e-14);
+    // Without a word on it, the tip goes on turning with its beam.
+    const int j = coordinate(model, "hip").joint;
+    const Vector6& tip = model.initial_velocity[model.joints[j].slave];
+    EXPECT_NEAR(tip[4], given ? -3 : 2, 1e-14);
+    (void)rate;
+  }
+}
+
+TEST(LoopBuilder, OpenAtTheStart) {
+  SceneBuilder b = closed_crank_rocker();
+  b.scene.loop_joints[0].origin.position.x() += 0.02;
+  expect_error(b.scene,
+               "s.urdf:17: <loop_joint> 'hip': the loop is open at the start: the joint's frames in parent and child "
+               "are 0.020000 m apart");
+  b.scene.loop_joints[0].origin.position.x() -= 0.02 - 1e-7;
+  EXPECT_NO_THROW(build_model(b.scene));
+}
+
+TEST(LoopBuilder, NothingStartsElsewhere) {
+  SceneBuilder b = closed_crank_rocker();
+  b.scene.initial_joints.push_back({"hip", 0.1, 0, {}});
+  expect_error(b.scene, "its coordinates are 0 at the start; 'hip' cannot start elsewhere");
+}
+
+TEST(LoopBuilder, KindsThatCloseNothing) {
+  for (const JointKind kind : {JointKind::Slide, JointKind::Floating}) {
+    SceneBuilder b = closed_crank_rocker();
+    b.scene.loop_joints[0].kind = kind;
+    b.scene.loop_joints[0].slide.emplace();
+    expect_error(b.scene, "a loop cannot be closed by");
+  }
+}
+
+// Travel across the axis cannot be turned round.
+TEST(LoopBuilder, PinionNeedsTheChildsEnd) {
+  SceneBuilder b = crank_rocker();
+  scene::JointDescription& loop =
+      close_loop(b, "hip", JointKind::RackAndPinion, "rocker", "coupler", {1, 0, 0.2}, {0, 1, 0});
+  loop.ratio = 0.1;
+  loop.direction = Vector3::UnitX();
+  loop.origin.position -= 0.1 * loop.direction.cross(loop.axis);
+  EXPECT_NO_THROW(build_model(b.scene));
+  std::swap(loop.parent, loop.child);
+  std::swap(loop.origin, loop.child_origin);
+  loop.child_origin.position += 0.1 * loop.direction.cross(loop.axis);
+  loop.origin.position -= 0.1 * loop.direction.cross(loop.axis);
+  expect_error(b.scene, "exchange <parent> and <child>");
+}
+
+// ---------------------------------------------------------------- loops of rigid links
+
+/// The crank-rocker with a rigid coupler.
+SceneBuilder rigid_crank_rocker(JointKind closing = JointKind::Continuous) {
+  SceneBuilder b = crank_rocker();
+  b.scene.links[2].beam.reset();
+  b.scene.links[2].inertial = scene::RigidInertia{1, {0.5, 0, 0.1}, Matrix3::Identity()};
+  close_loop(b, "hip", closing, "rocker", "coupler", {1, 0, 0.2}, {0, 1, 0}).location = {"s.urdf", 17};
+  return b;
+}
+
+TEST(RigidLoopBuilder, KeepsIndependentConstraints) {
+  const std::tuple<JointKind, int, int> kinds[] = {
+      {JointKind::Continuous, 2, 5}, {JointKind::Spherical, 2, 3}, {JointKind::Universal, 2, 4}};
+  for (const auto& [kind, kept, all] : kinds) {
+    SceneBuilder b = rigid_crank_rocker(kind);
+    const Model model = build_model(b.scene);
+    ASSERT_EQ(model.closures.size(), 1u);
+    EXPECT_EQ(model.closures[0].constraints.size(), static_cast<std::size_t>(kept));
+    EXPECT_EQ(model.closures[0].implied.size(), static_cast<std::size_t>(all - kept));
+    EXPECT_EQ(model.coordinates.size(), 3u) << "the closing joint has none";
+    for (const auto* list : {&model.closures[0].constraints, &model.closures[0].implied})
+      for (const ClosureConstraint& constraint : *list)
+        EXPECT_NEAR(closure_value(model.closures[0], constraint,
+                                  {model.nodes[model.closures[0].parent], model.nodes[model.closures[0].child]}),
+                    0, 1e-15);
+  }
+}
+
+TEST(RigidLoopBuilder, RatesOfTheOtherJointsFollow) {
+  SceneBuilder b = rigid_crank_rocker();
+  b.scene.initial_joints.push_back({"ground", 0, 2, {}});
+  const Model model = build_model(b.scene);
+  // Crank's end at (0, 0.4), rocker's at (1, 0.6) from (1, 0), in the plane x, z: v = w x r about +y.
+  const LoopClosure& closure = model.closures[0];
+  const Vector6 &rocker = model.initial_velocity[closure.parent], &coupler = model.initial_velocity[closure.child];
+  EXPECT_NEAR((rocker.head<3>() + Vector3(rocker.tail<3>()).cross(Vector3(0, 0, 0.6)) -
+               (coupler.head<3>() + Vector3(coupler.tail<3>()).cross(Vector3(1, 0, 0.2))))
+                  .norm(),
+              0, 1e-12);
+  // v = (0.8, 0) + w (0.2, -1) = W (0.6, 0): the coupler turns with w = 0.
+  EXPECT_NEAR(coupler[4], 0, 1e-12);
+  EXPECT_NEAR(rocker[4], 0.8 / 0.6, 1e-12);
+  b.scene.initial_joints.push_back({"foot", 0, 1, {}});
+  expect_error(b.scene, "the initial velocities of the joints do not agree with the loop that 'hip' closes");
+}
+
+TEST(RigidLoopBuilder, EachOfSeveralLoopsIsClosedAsIfAlone) {
+  // A second linkage beside the first: on the world, where the loops have nothing in common, and on the first coupler.
+  for (const char* base : {"world", "coupler"}) {
+    SceneBuilder b = rigid_crank_rocker();
+    const scene::SceneDescription one = b.scene;
+    const auto second = [&](const std::string& link) { return link == "world" ? std::string(base) : link + "2"; };
+    for (scene::LinkDescription link : one.links)
+      if (link.name != one.root_link) link.name += "2", b.scene.links.push_back(link);
+    for (const auto& [from, to] : {std::pair(&one.joints, &b.scene.joints), {&one.loop_joints, &b.scene.loop_joints}})
+      for (scene::JointDescription joint : *from) {
+        joint.name += "2";
+        joint.parent = second(joint.parent), joint.child = second(joint.child);
+        to->push_back(joint);
+      }
+    b.scene.initial_joints = {{"ground", 0, 2, {}}, {"ground2", 0, -1, {}}};
+    const Model model = build_model(b.scene);
+    ASSERT_EQ(model.closures.size(), 2u) << base;
+    for (std::size_t k = 0; k < 2; ++k) {
+      EXPECT_EQ(model.closures[k].constraints.size(), 2u) << base << k;
+      EXPECT_EQ(model.closures[k].implied.size(), 3u) << base << k;
+    }
+    // As of one: v = (0.8, 0) + w (0.2, -1) = W (0.6, 0) for a crank that turns with 2; the coupler does not turn.
+    for (const auto& [closure, rate] : {std::pair(model.closures[0], 2.0), {model.closures[1], -1.0}}) {
+      EXPECT_NEAR(model.initial_velocity[closure.child][4], 0, 1e-12) << base;
+      EXPECT_NEAR(model.initial_velocity[closure.parent][4], rate * 0.4 / 0.6, 1e-12) << base;
+    }
+    b.scene.initial_joints.push_back({"foot2", 0, 1, {}});
+    expect_error(b.scene, "the initial velocities of the joints do not agree with the loop that 'hip' closes");
+  }
+}
+
+TEST(RigidLoopBuilder, WhatHasNoCoordinateIsRefused) {
+  const auto expect = [](const auto& change, const std::string& message) {
+    SceneBuilder b = rigid_crank_rocker();
+    change(b.scene);
+    expect_error(b.scene, message);
+  };
+  const std::string no_coordinate =
+      "s.urdf:17: <loop_joint> 'hip': closes a loop of rigid links, where it has no "
+      "coordinate that could have damping, friction or limits";
+  expect([](auto& scene) { scene.loop_joints[0].damping = 0.1; }, no_coordinate);
+  expect([](auto& scene) { scene.loop_joints[0].friction = 0.1; }, no_coordinate);
+  expect([](auto& scene) { scene.loop_joints[0].limits = scene::JointLimits{-1, 1}; }, no_coordinate);
+  expect(
+      [](auto& scene) {
+        scene.efforts.push_back({"hip", TimeFunction(1), {"s.urdf", 20}});
+      },
+      "s.urdf:20: <effort>: joint 'hip' closes a loop of rigid links and has no coordinate there");
+  expect(
+      [](auto& scene) {
+        scene.motions.push_back({"hip", TimeFunction::parse("t"), {"s.urdf", 20}});
+      },
+      "joint 'hip' closes a loop of rigid links and has no coordinate there");
+  expect(
+      [](auto& scene) {
+        scene.initial_joints.push_back({"hip", 0, 1, {"s.urdf", 20}});
+      },
+      "joint 'hip' closes a loop of rigid links and has no coordinate there");
+  expect(
+      [](auto& scene) {
+        scene.loop_joints[0].kind = JointKind::Screw;
+        scene.loop_joints[0].ratio = 1;
+      },
+      "a joint of this kind cannot close a loop of rigid links");
+  expect([](auto& scene) { scene.loop_joints[0].origin.position.z() += 0.01; }, "0.010000 m apart");
+  expect(
+      [](auto& scene) {
+        scene.loop_joints[0].parent = "coupler";
+        scene.loop_joints[0].origin = scene.loop_joints[0].child_origin;
+      },
+      "both places belong to the same rigid body");
+  const auto stick = [](auto& scene, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      scene.joints[i].friction = 1;
+      scene.joints[i].friction_law.law = scene::FrictionDescription::Law::Coulomb;
+    }
+  };
+  expect([&](auto& scene) { stick(scene, 2); }, "more joints of the rigid loop that 'hip' closes may stick");
+  SceneBuilder one = rigid_crank_rocker();
+  stick(one.scene, 1);
+  EXPECT_NO_THROW(build_model(one.scene));
+  expect([](auto& scene) { scene.loop_joints[0].kind = JointKind::Fixed; },
+         "the loop joints leave the mechanism no motion");
+}
+
+TEST(LoopBuilder, OutsideOfTheScene) {
+  SceneBuilder b = closed_crank_rocker();
+  b.scene.loop_joints[0].child = "nobody";
+  expect_error(b.scene, "there is no link 'nobody'");
+}
+
+}  // namespace
+}  // namespace flexarm::test

@@ -1,0 +1,215 @@
+// Scenes that are impossible as mechanisms.
+#include <gtest/gtest.h>
+
+#include "building/expect_model_error.h"
+#include "building/model_builder.h"
+#include "elements/random_element.h"
+#include "support/scene_builder.h"
+
+namespace flexarm {
+namespace {
+
+using namespace test;
+using scene::JointKind;
+
+/// A hinged body "arm" on joint "hinge".
+SceneBuilder arm() {
+  SceneBuilder builder;
+  builder.body("arm", 1, Vector3(0.5, 0, 0), Matrix3::Identity());
+  builder.joint("hinge", JointKind::Revolute, "world", "arm").location = {"s.urdf", 12};
+  return builder;
+}
+
+TEST(ModelErrors, TheArmItselfIsFine) {
+  EXPECT_NO_THROW(build_model(arm().scene));
+}
+
+TEST(ModelErrors, NothingOutboardHasInertia) {
+  SceneBuilder builder = arm();
+  builder.scene.links.push_back({"ghost", {}, {}, {}});
+  builder.joint("idle", JointKind::Revolute, "arm", "ghost");
+  expect_error(builder.scene, "'idle' moves nothing");
+  builder.scene.motions.push_back({"idle", TimeFunction(0.3), {}});
+  EXPECT_NO_THROW(build_model(builder.scene));  // driven, it needs none
+}
+
+TEST(ModelErrors, AllMasslessJointsAreNamedAtOnce) {
+  SceneBuilder builder = arm();
+  builder.scene.links.push_back({"ghost", {}, {}, {}});
+  builder.scene.links.push_back({"shadow", {}, {}, {}});
+  builder.joint("idle", JointKind::Revolute, "arm", "ghost").location = {"s.urdf", 13};
+  builder.joint("loose", JointKind::Universal, "ghost", "shadow").location = {"s.urdf", 14};
+  for (const char* text :
+       {"s.urdf:13: <joint>: joint coordinate 'idle' moves nothing that has inertia\n",
+        "s.urdf:14: <joint>: joint coordinate 'loose/1' moves nothing that has inertia\n",
+        "s.urdf:14: <joint>: joint coordinate 'loose/2' moves nothing", "or hold those with one coordinate"})
+    expect_error(builder.scene, text);
+}
+
+TEST(ModelErrors, MasslessJointsAreHeldWhereTheyStartOnDemand) {
+  SceneBuilder builder = arm();
+  builder.scene.links.push_back({"ghost", {}, {}, {}});
+  scene::JointDescription& idle = builder.joint("idle", JointKind::Revolute, "arm", "ghost");
+  idle.limits = scene::JointLimits{-1, 1};
+  builder.scene.initial_joints.push_back({"idle", 0.3, 2, {}, true});
+  builder.scene.efforts.push_back({"idle", TimeFunction(5), {}});
+  builder.scene.lock_massless = true;
+  const Model model = build_model(builder.scene);
+  ASSERT_EQ(model.coordinates.size(), 2u);
+  EXPECT_LT(model.coordinates[0].motion, 0);  // the hinge moves the arm
+  const Coordinate& held = model.coordinates[1];
+  ASSERT_GE(held.motion, 0);
+  EXPECT_EQ(model.histories[held.motion](1.0), 0.3);
+  EXPECT_EQ(model.initial_released[held.joint].displacement[0], 0.3);
+  EXPECT_LT(held.effort, 0);
+  EXPECT_FALSE(held.limit);
+  EXPECT_TRUE(model.initial_velocity.back().isZero(0));
+}
+
+TEST(ModelErrors, AFreeRotationWithoutInertiaCannotBeHeld) {
+  SceneBuilder builder = arm();
+  builder.scene.links.push_back({"ghost", {}, {}, {}});
+  builder.joint("idle", JointKind::Spherical, "arm", "ghost");
+  builder.scene.lock_massless = true;
+  expect_error(builder.scene, "'idle/rx' moves nothing");
+}
+
+TEST(ModelErrors, WhatFollowsAJointIsMovedByIt) {
+  SceneBuilder builder = arm();
+  builder.scene.links.push_back({"handle", {}, {}, {}});
+  builder.joint("crank", JointKind::Revolute, "world", "handle").limits = scene::JointLimits{-1, 1};
+  expect_error(builder.scene, "'crank' moves nothing");
+  builder.scene.joints[0].mimic = scene::Mimic{"crank", 3, 0};
+  const Model model = build_model(builder.scene);
+  // The stop of the crank feels the arm, J + m l^2 about the hinge, by the square of the ratio.
+  SceneBuilder alone = arm();
+  alone.scene.joints[0].limits = scene::JointLimits{-1, 1};
+  const double inertia = build_model(alone.scene).coordinates[0].limit->inertia;
+  EXPECT_NEAR(model.coordinates[1].limit->inertia, 9 * inertia, 1e-12 * inertia);
+}
+
+TEST(ModelErrors, PointMassOnTheAxis) {
+  RandomSource random(1);
+  for (int repeat = 0; repeat < 10; ++repeat) {
+    SceneBuilder builder;
+    const Vector3 axis = random.unit();
+    builder.body("bead", 1, 0.7 * axis, Matrix3::Zero());
+    builder.joint("spin", JointKind::Continuous, "world", "bead", 3 * random.vector(), axis);
+    expect_error(builder.scene, "'spin' moves nothing");
+  }
+}
+
+TEST(ModelErrors, TwoParents) {
+  SceneBuilder builder = arm();
+  builder.joint("second", JointKind::Fixed, "world", "arm").location = {"s.urdf", 15};
+  expect_error(builder.scene, "s.urdf:15: <joint>: link 'arm' has two parents");
+}
+
+TEST(ModelErrors, TwoLinksOfOneName) {
+  SceneBuilder builder = arm();
+  builder.body("arm", 1, Vector3::Zero(), Matrix3::Identity());
+  expect_error(builder.scene, "two links are named 'arm'");
+}
+
+TEST(ModelErrors, UnconnectedLinksAndCircles) {
+  SceneBuilder builder = arm();
+  builder.body("lost", 1, Vector3::Zero(), Matrix3::Identity());
+  expect_error(builder.scene, "not every link is connected");
+  builder.body("twin", 1, Vector3::Zero(), Matrix3::Identity());
+  builder.joint("there", JointKind::Fixed, "lost", "twin");
+  builder.joint("back", JointKind::Fixed, "twin", "lost");
+  expect_error(builder.scene, "not every link is connected");
+}
+
+TEST(ModelErrors, UnknownNames) {
+  const auto with = [](auto&& change) {
+    SceneBuilder builder = arm();
+    change(builder);
+    return builder.scene;
+  };
+  expect_error(with([](SceneBuilder& b) { b.joint("j", JointKind::Fixed, "nowhere", "arm"); }), "two parents");
+  expect_error(with([](SceneBuilder& b) { b.joint("j", JointKind::Fixed, "arm", "nobody"); }), "no link 'nobody'");
+  expect_error(with([](SceneBuilder& b) { b.load("nobody", Vector3::Zero(), Vector3::UnitX()); }), "no link 'nobody'");
+  expect_error(with([](SceneBuilder& b) { b.probe("p", "nobody", Vector3::Zero()); }), "no link 'nobody'");
+  expect_error(with([](SceneBuilder& b) { b.scene.root_link = "nobody"; }), "no link 'nobody'");
+  expect_error(with([](SceneBuilder& b) {
+                 b.scene.initial_links.push_back({"nobody", {}, {}, {}});
+               }),
+               "no link 'nobody'");
+  expect_error(with([](SceneBuilder& b) {
+                 b.scene.initial_joints.push_back({"knee", 0, 0, {"s.urdf", 3}});
+               }),
+               "s.urdf:3: <initial>: there is no joint coordinate 'knee'");
+  expect_error(with([](SceneBuilder& b) {
+                 b.scene.motions.push_back({"knee", TimeFunction(), {"s.urdf", 4}});
+               }),
+               "s.urdf:4: <motion>: there is no joint coordinate 'knee'");
+  expect_error(with([](SceneBuilder& b) {
+                 b.scene.efforts.push_back({"knee", TimeFunction(), {"s.urdf", 5}});
+               }),
+               "s.urdf:5: <effort>: there is no joint coordinate 'knee'");
+  expect_error(with([](SceneBuilder& b) {
+                 b.scene.joints[0].mimic = scene::Mimic{"knee", 1, 0};
+               }),
+               "there is no joint coordinate 'knee'");
+}
+
+TEST(ModelErrors, MimicsInACircle) {
+  SceneBuilder builder = arm();
+  builder.body("hand", 1, Vector3(0.5, 0, 0), Matrix3::Identity());
+  builder.joint("wrist", JointKind::Revolute, "arm", "hand").mimic = scene::Mimic{"hinge", 1, 0};
+  EXPECT_NO_THROW(build_model(builder.scene));
+  builder.scene.joints[0].mimic = scene::Mimic{"wrist", 1, 0};
+  expect_error(builder.scene, "the mimicked joints form a circle");
+  builder.scene.joints[0].mimic = scene::Mimic{"hinge", 1, 0};
+  expect_error(builder.scene, "the mimicked joints form a circle");
+}
+
+TEST(ModelErrors, MimicOfAJointWithSeveralCoordinates) {
+  SceneBuilder builder = arm();
+  builder.body("hand", 1, Vector3(0.5, 0, 0), Matrix3::Identity());
+  builder.joint("wrist", JointKind::Spherical, "arm", "hand");
+  builder.scene.joints[0].mimic = scene::Mimic{"wrist", 1, 0};
+  expect_error(builder.scene, "wrist");
+  builder.scene.joints[0].mimic = scene::Mimic{"wrist/rx", 1, 0};
+  expect_error(builder.scene, "only a joint with one coordinate can be mimicked");
+}
+
+TEST(ModelErrors, PrescribedComponentOfAFreeRotation) {
+  SceneBuilder builder = arm();
+  builder.body("hand", 1, Vector3(0.5, 0, 0), Matrix3::Identity());
+  builder.joint("wrist", JointKind::Floating, "arm", "hand");
+  builder.scene.motions.push_back({"wrist/x", TimeFunction(0.1), {}});
+  EXPECT_NO_THROW(build_model(builder.scene));
+  builder.scene.motions.push_back({"wrist/rx", TimeFunction(0.1), {"s.urdf", 9}});
+  expect_error(builder.scene, "s.urdf:9: <motion>: a component of a free rotation cannot be prescribed");
+}
+
+TEST(ModelErrors, LoadOnTheWorld) {
+  SceneBuilder builder = arm();
+  builder.load("world", Vector3::Zero(), Vector3::UnitX());
+  expect_error(builder.scene, "link 'world' is fixed to the world");
+}
+
+TEST(ModelErrors, DistributedLoadOnARigidLink) {
+  SceneBuilder builder = arm();
+  builder.scene.distributed_loads.push_back({"arm", Vector3::UnitX(), scene::LoadFrame::World, TimeFunction(), {}});
+  expect_error(builder.scene, "link 'arm' has no <beam>");
+}
+
+TEST(ModelErrors, ImpossibleBeams) {
+  SceneBuilder builder;
+  builder.beam("beam", {Vector3(1, 0, 0), Vector3(0.5, 0, 0)}, section(1, 1, 1, 1, 1, 1, 1), 2, 2).location = {"s.urdf",
+                                                                                                               5};
+  builder.joint("clamp", JointKind::Fixed, "world", "beam");
+  expect_error(builder.scene, "s.urdf:5: <centerline> of link 'beam': centreline reverses");
+  builder.scene.links.back().beam->centreline.pop_back();
+  EXPECT_NO_THROW(build_model(builder.scene));
+  for (const int order : {0, 5}) {
+    builder.scene.links.back().beam->order = order;
+    expect_error(builder.scene, "order must be 1 to 4");
+  }
+}
+
+}  // namespace
+}  // namespace flexarm

@@ -1,0 +1,152 @@
+// Cross-sections against handbook values and independent formulas.
+#include "building/section.h"
+
+#include <gtest/gtest.h>
+
+#include "elements/differences.h"
+#include "elements/random_element.h"
+#include "math/pi.h"
+
+namespace flexarm {
+namespace {
+
+using namespace test;
+
+const scene::Material kSteel{2.1e11, 0.3, 7850};
+const double kShearModulus = 2.1e11 / 2.6;
+
+SectionProperties of(const scene::SectionShape& shape) {
+  return section_properties(scene::GeometricSection{shape, kSteel});
+}
+/// Shear correction factor along section axis 1 (y) or 2 (z).
+double shear_factor(const SectionProperties& s, int axis) {
+  return s.stiffness(axis, axis) / kShearModulus * 2.1e11 / s.stiffness(0, 0);
+}
+
+void expect_diagonal(const SectionProperties& s) {
+  EXPECT_EQ(largest(s.stiffness - Matrix6(s.stiffness.diagonal().asDiagonal())), 0);
+  EXPECT_EQ(largest(s.inertia - Matrix3(s.inertia.diagonal().asDiagonal())), 0);
+  EXPECT_TRUE(s.center_of_mass.isZero(0));
+  // Polar second moment = sum of both; the same for stiffness and inertia.
+  EXPECT_NEAR(s.inertia(0, 0), s.inertia(1, 1) + s.inertia(2, 2), 1e-12 * s.inertia(0, 0));
+  EXPECT_NEAR(s.inertia(1, 1) / s.stiffness(4, 4), 7850 / 2.1e11, 1e-12 * 7850 / 2.1e11);
+}
+
+TEST(Section, Circle) {
+  const SectionProperties s = of(scene::Circle{0.02});
+  expect_diagonal(s);
+  const double area = kPi * 0.02 * 0.02, second = kPi * std::pow(0.04, 4) / 64;
+  EXPECT_NEAR(s.stiffness(0, 0), 2.1e11 * area, 1e-3);
+  EXPECT_NEAR(s.stiffness(4, 4), 2.1e11 * second, 1e-8);
+  EXPECT_NEAR(s.stiffness(3, 3), kShearModulus * 2 * second, 1e-8);
+  EXPECT_NEAR(s.mass, 7850 * area, 1e-12);
+  EXPECT_NEAR(shear_factor(s, 1), 0.886, 5e-4);  // Cowper (1966), table for nu = 0.3
+  EXPECT_NEAR(shear_factor(s, 2), 0.886, 5e-4);
+  EXPECT_EQ(s.radius, 0.02);
+}
+
+TEST(Section, Tube) {
+  const SectionProperties s = of(scene::Tube{0.05, 0.04});
+  expect_diagonal(s);
+  const double second = kPi * (std::pow(0.1, 4) - std::pow(0.08, 4)) / 64;
+  EXPECT_NEAR(s.stiffness(0, 0), 2.1e11 * kPi * (0.05 * 0.05 - 0.04 * 0.04), 1e-3);
+  EXPECT_NEAR(s.stiffness(5, 5), 2.1e11 * second, 1e-6);
+  EXPECT_NEAR(s.stiffness(3, 3), kShearModulus * 2 * second, 1e-6);
+  EXPECT_NEAR(shear_factor(of(scene::Tube{1.0, 0.9999}), 1), 0.531, 5e-4);  // Cowper, thin-walled, nu = 0.3
+  EXPECT_NEAR(shear_factor(of(scene::Tube{1.0, 0.0}), 1), 0.886, 5e-4);     // no hole: the circle's
+}
+
+/// Saint-Venant's series for the torsion constant, long side a, short side b.
+double torsion_constant(double a, double b) {
+  double sum = 0;
+  for (int n = 1; n < 200; n += 2) sum += std::tanh(n * kPi * a / (2 * b)) / std::pow(n, 5);
+  return a * b * b * b / 3 * (1 - 192 / std::pow(kPi, 5) * b / a * sum);
+}
+
+TEST(Section, Rectangle) {
+  const SectionProperties s = of(scene::Rectangle{0.02, 0.06});
+  expect_diagonal(s);
+  EXPECT_NEAR(s.stiffness(4, 4), 2.1e11 * 0.02 * std::pow(0.06, 3) / 12, 1e-7);  // about y: height counts cubed
+  EXPECT_NEAR(s.stiffness(5, 5), 2.1e11 * 0.06 * std::pow(0.02, 3) / 12, 1e-7);
+  EXPECT_NEAR(shear_factor(s, 1), 0.850, 5e-4);
+  EXPECT_NEAR(s.radius, std::hypot(0.01, 0.03), 1e-15);
+  for (const double height : {0.02, 0.03, 0.06, 0.2, 2.0}) {
+    const double exact = kShearModulus * torsion_constant(height, 0.02);
+    // The polynomial is good to half a percent.
+    EXPECT_NEAR(of(scene::Rectangle{0.02, height}).stiffness(3, 3), exact, 5e-3 * exact) << height;
+    EXPECT_NEAR(of(scene::Rectangle{height, 0.02}).stiffness(3, 3), exact, 5e-3 * exact) << height;
+  }
+}
+
+TEST(Section, BoxTube) {
+  const SectionProperties s = of(scene::BoxTube{0.04, 0.08, 0.002});
+  expect_diagonal(s);
+  EXPECT_NEAR(s.stiffness(0, 0), 2.1e11 * (0.04 * 0.08 - 0.036 * 0.076), 1e-3);
+  EXPECT_NEAR(s.stiffness(4, 4), 2.1e11 * (0.04 * std::pow(0.08, 3) - 0.036 * std::pow(0.076, 3)) / 12, 1e-6);
+  EXPECT_NEAR(s.stiffness(5, 5), 2.1e11 * (0.08 * std::pow(0.04, 3) - 0.076 * std::pow(0.036, 3)) / 12, 1e-6);
+  const double enclosed = 0.038 * 0.078, perimeter = 2 * (0.038 + 0.078);
+  EXPECT_NEAR(s.stiffness(3, 3), kShearModulus * 4 * enclosed * enclosed * 0.002 / perimeter, 1e-6);  // Bredt
+
+  const SectionProperties square = of(scene::BoxTube{0.1, 0.1, 1e-4});
+  EXPECT_NEAR(shear_factor(square, 1), 20 * 1.3 / (48 + 39 * 0.3), 1e-12);  // Cowper, thin square tube
+  EXPECT_NEAR(shear_factor(square, 1), shear_factor(square, 2), 1e-14);
+  // Turned by a quarter turn the factors change places; along the long walls more area carries the shear.
+  const SectionProperties turned = of(scene::BoxTube{0.08, 0.04, 0.002});
+  EXPECT_NEAR(shear_factor(s, 1), shear_factor(turned, 2), 1e-14);
+  EXPECT_GT(shear_factor(s, 2), shear_factor(s, 1));
+  // Webs only: a rectangle.
+  EXPECT_NEAR(shear_factor(of(scene::BoxTube{0.002, 1, 0.001}), 2), 0.850, 5e-3);
+}
+
+TEST(Section, DirectStiffnesses) {
+  const SectionProperties s = section_properties(scene::DirectSection{1, 2, 3, 4, 5, 6, 7, 8, 9, 10});
+  for (int k = 0; k < 6; ++k) EXPECT_EQ(s.stiffness(k, k), k + 1);
+  EXPECT_EQ(s.mass, 7);
+  EXPECT_EQ(s.inertia.diagonal(), Vector3(8, 9, 10));
+}
+
+scene::MatrixSection matrix_section(RandomSource& random, double mass, const Vector3& center, const Matrix3& inertia) {
+  scene::MatrixSection section;
+  section.stiffness = random.positive_definite<6>();
+  // Momenta of points of mass dm: l = int (v + w x Y) dm, and moments of momentum about the reference line.
+  const Matrix3 d = so3::hat(center);
+  section.inertia << mass * Matrix3::Identity(), -mass * d, mass * d, inertia - mass * d * d;
+  return section;
+}
+
+TEST(Section, MatrixInertiaIsReferredToItsCentre) {
+  RandomSource random(1);
+  const Vector3 center(0, 0.03, -0.02);
+  const Matrix3 inertia = random.positive_definite<3>();
+  const SectionProperties s = section_properties(matrix_section(random, 2.5, center, inertia));
+  EXPECT_NEAR(s.mass, 2.5, 1e-15);
+  EXPECT_LE((s.center_of_mass - center).norm(), 1e-15);
+  EXPECT_LE(largest(s.inertia - inertia), 1e-14);
+}
+
+// The strain energy of a deformed piece is the same for strains of the reference line and of the line of centroids.
+TEST(Section, ReferringToTheCentroidKeepsTheStrainEnergy) {
+  RandomSource random(2);
+  const Vector3 center(0, 0.3, -0.2);
+  const SectionProperties s = section_properties(matrix_section(random, 2.5, center, Matrix3::Identity()));
+  const SectionProperties moved = referred_to_center_of_mass(s);
+  EXPECT_TRUE(moved.center_of_mass.isZero(0));
+  EXPECT_LE(largest(moved.stiffness - moved.stiffness.transpose()), 1e-14);
+  const Quaternion start = random.rotation(2);
+  const Vector3 turning = random.vector(), slope = random.vector();
+  const auto rotation = [&](double arc) {
+    return Matrix3((so3::exp_quaternion(Vector3(arc * turning)) * start).toRotationMatrix());
+  };
+  const auto strain = [&](const Vector3& in_section) {  // of the line through a point of the section; straight at first
+    Vector6 out;
+    const Vector3 tangent =
+        difference([&](double arc) { return Vector3(arc * slope + arc * arc * turning + rotation(arc) * in_section); });
+    out << rotation(0).transpose() * tangent - Vector3::UnitX(), rotation(0).transpose() * turning;
+    return out;
+  };
+  const Vector6 at_reference = strain(Vector3::Zero()), at_center = strain(center);
+  EXPECT_NEAR(at_reference.dot(s.stiffness * at_reference), at_center.dot(moved.stiffness * at_center), 1e-9);
+}
+
+}  // namespace
+}  // namespace flexarm
