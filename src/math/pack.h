@@ -91,8 +91,10 @@ template <class Far>
 
 }  // namespace flexarm
 
+namespace Eigen {
+
 template <>
-struct Eigen::NumTraits<flexarm::Pack> : Eigen::GenericNumTraits<double> {
+struct NumTraits<flexarm::Pack> : GenericNumTraits<double> {
   using Real = double;
   using NonInteger = flexarm::Pack;
   using Nested = flexarm::Pack;
@@ -108,8 +110,13 @@ struct Eigen::NumTraits<flexarm::Pack> : Eigen::GenericNumTraits<double> {
   };
 };
 
+namespace internal {
+
 // A pack aligns itself; Eigen would ask for 16 bytes, which is less and refused by clang.
 template <int Size>
-struct Eigen::internal::compute_default_alignment<flexarm::Pack, Size> {
+struct compute_default_alignment<flexarm::Pack, Size> {
   enum { value = 0 };
 };
+
+}  // namespace internal
+}  // namespace Eigen
