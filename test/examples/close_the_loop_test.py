@@ -30,10 +30,12 @@ class CloseTheLoop(unittest.TestCase):
         last = result.stdout.splitlines()[-1]
         self.assertTrue(last.startswith("4.000 s"), last)
         upper, fore = (
-            [float(x) for x in re.search(link + r" \((.*?)\)", last).group(1).split()] for link in ("upper_arm", "forearm")
+            [float(x) for x in re.search(link + r" \((.*?)\)", last).group(1).split()]
+            for link in ("upper_arm", "forearm")
         )
         # The slowest motion, the stretched arm (3 kg m^2 at most) on the shoulder's spring and damper, has decayed by
-        # exp(-12 / (2 * 3) * 4) = 3e-4 of its first radian; bending by gravity shortens the 1 m of a link by its square.
+        # exp(-12 / (2 * 3) * 4) = 3e-4 of its first radian; bending by gravity shortens the 1 m of a link by its
+        # square.
         self.assertAlmostEqual(math.atan2(upper[1], upper[0]), SHOULDER, delta=0.01)
         self.assertAlmostEqual(math.atan2(fore[1] - upper[1], fore[0] - upper[0]), SHOULDER + ELBOW, delta=0.01)
         kinetic, strain = (float(re.search(kind + r" (\S+) J", last).group(1)) for kind in ("kinetic", "strain"))
