@@ -9,7 +9,7 @@ namespace flexarm {
 
 class SlideBuilder {
  public:
-  /// Both outlive it.
+  /// The plan and the mechanism must outlive it.
   SlideBuilder(const ScenePlan& plan, Mechanism& mechanism)
       : plan_(plan), mechanism_(mechanism), model_(mechanism.model) {}
 

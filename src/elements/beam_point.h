@@ -28,7 +28,7 @@ struct ElementNodes {
   std::array<Quaternion, Nodes> orientation;  ///< at the end
   std::array<Vector3, Nodes> increment;       ///< tangent-scaled rotation increments, Lambda_{n+1} = cay(w) Lambda_n
   std::array<Matrix3, Nodes> increment_inverse_tangent;  ///< S(w)^{-1}: dw = S^{-1} spin
-  std::array<Vector3, Nodes> velocity, acceleration;     ///< at the begin [m/s, m/s^2]
+  std::array<Vector3, Nodes> velocity, acceleration;     ///< at the beginning [m/s, m/s^2]
   /// Of the interpolations that measure rotations from a reference; the local one has none.
   std::array<Vector3, Nodes> rotation_vector;
   RotationParameters parameters = RotationParameters::Unscaled;

@@ -121,7 +121,7 @@ void set_translation(const ConservingElement<Nodes, S>& element, const BeamNodes
 /// numerical dissipation and damped elements; without either they may be null. Rotary inertia is added elsewhere.
 ///
 /// The moment rows are tested with, and the increments interpolated by, generalised shape functions of about the middle
-/// of the step: `functions` are these (MidFunctions::Explicit) or those of the begin (Symmetric), which are averaged
+/// of the step: `functions` are these (MidFunctions::Explicit) or those of the beginning (Symmetric), averaged
 /// with those of the end; then the tangent, which leaves their variation out, makes Newton converge linearly, by a
 /// factor that falls with the step. Any of them conserve momenta (sum I_g = 1) and, with the multiplier, energy; those
 /// of the middle make Delta(strain) - s third order in the step. With the Lagrange functions (beyond.md 1.1) it is

@@ -23,7 +23,7 @@ enum class SlideStep {
   EndContact,   ///< SM1-NTb: contact at the end, exact work; within an element
   EnterMid,     ///< SM1-Ta: from one element into another one, exact momentum, off the line at the end
   EnterEnd,     ///< SM1-Tb, and with M2 SM2-Tb: the same, on the line, exact work
-  BeginWeights  ///< SM2-NT: with weights of the begin, for M2: exact contact, momentum and work; within an element
+  BeginWeights  ///< SM2-NT: with weights of the beginning, for M2: exact contact, momentum and work; within an element
 };
 
 /// Its choice within an element and over borders.
@@ -57,6 +57,16 @@ struct SlideLine {
   NodeRange support(int first, int last) const {
     const int reach = smooth ? 1 : 0, most = static_cast<int>(pieces.size()) - 1;
     return {pieces[std::max(first - reach, 0)].first_node, pieces[std::min(last + reach, most)].end_node()};
+  }
+  /// Most nodes on which the sections of a step depend.
+  std::size_t most_active_nodes() const {
+    const int count = static_cast<int>(pieces.size());
+    int most = 0;
+    for (int p = 0; p < count; ++p) {
+      const NodeRange active = support(p, std::min(p + kMostPieces, count) - 1);
+      most = std::max(most, active.end - active.first);
+    }
+    return static_cast<std::size_t>(most);
   }
   /// How far it lies beyond the ends, relative to the length of the element there; 0 on the line.
   double overshoot(double arc_length) const {

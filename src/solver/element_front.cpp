@@ -6,16 +6,10 @@
 
 #include "math/pack.h"
 #include "math/simd.h"
-
-// Vectors are passed between functions that are always inlined only: that their passing differs between processors does
-// not matter.
-#pragma GCC diagnostic ignored "-Wpsabi"
+#include "solver/front_lanes.h"
 
 namespace flexarm {
 namespace {
-
-/// Four numbers; two instructions where the processor has vectors of two.
-using Lanes = double __attribute__((vector_size(32)));
 
 using LaneMask = long long __attribute__((vector_size(32)));
 
@@ -23,20 +17,8 @@ using LaneMask = long long __attribute__((vector_size(32)));
 constexpr LaneMask kBehind[] = {{0, -1, -1, -1}, {0, 0, -1, -1}, {0, 0, 0, -1}, {0, 0, 0, 0}};
 constexpr LaneMask kBefore[] = {{0, 0, 0, 0}, {-1, 0, 0, 0}, {-1, -1, 0, 0}, {-1, -1, -1, 0}};
 
-[[gnu::always_inline]] inline Lanes load(const double* from) {
-  Lanes lanes;
-  std::memcpy(&lanes, from, sizeof(lanes));
-  return lanes;
-}
-[[gnu::always_inline]] inline Lanes broadcast(double value) {
-  return Lanes{value, value, value, value};
-}
 [[gnu::always_inline]] inline Lanes kept(const Lanes& lanes, const LaneMask& mask) {
   return reinterpret_cast<Lanes>(reinterpret_cast<LaneMask>(lanes) & mask);
-}
-
-constexpr int lanes_for(int count) {
-  return (count + 3) / 4;
 }
 
 /// Sizes of a front. Factors: columns of L and U in one matrix (unit diagonal of L left out, reciprocal diagonal of U),

@@ -38,125 +38,114 @@ void move_rows(const Vector3& lever, Eigen::Matrix<double, 6, Columns>& rows) {
 
 }  // namespace
 
-std::vector<TreeTangent::Part> TreeTangent::parts_of(const Model& model, const DegreesOfFreedom& dof) {
-  std::vector<std::vector<Part>> outboard(model.nodes.size());  // elements by their first node
-  std::size_t pivots = 0, parts_in_all = model.joints.size();
-  for_each_element(model.beams, [&](const auto& element) {
-    constexpr int kNodes = std::decay_t<decltype(element)>::kNodes;
-    Part part;
-    part.node_count = kNodes;
-    std::copy(element.nodes.begin(), element.nodes.end(), part.nodes.begin());
-    part.first_block = element.first_block;
-    part.first_pivot = pivots;
-    pivots += ElementFront<kNodes>::kEliminated;
-    outboard[element.nodes[0]].push_back(part);
-    ++parts_in_all;
-  });
-  std::vector<char> reached(model.nodes.size(), false);
-  std::vector<Part> parts, line;
-  for (std::size_t j = 0; j < model.joints.size(); ++j) {
-    const JointMap& joint = model.joints[j];
-    if (joint.master >= 0 && !reached[joint.master]) return {};
-    if (reached[joint.slave]) return {};
-    reached[joint.slave] = true;
-    parts.emplace_back();
-    parts.back().joint = static_cast<int>(j);
-    line = outboard[joint.slave];
-    while (!line.empty()) {
-      const Part part = line.back();
-      line.pop_back();
-      parts.push_back(part);
-      for (int i = 1; i < part.node_count; ++i) {
-        const int node = part.nodes[i];
-        if (reached[node] || dof.slave_joint[node] >= 0) return {};
-        reached[node] = true;
-        line.insert(line.end(), outboard[node].begin(), outboard[node].end());
-      }
-    }
-  }
-  const bool all_reached = std::all_of(reached.begin(), reached.end(), [](char is_reached) { return is_reached; });
-  return all_reached && parts.size() == parts_in_all ? parts : std::vector<Part>();
-}
-
 bool TreeTangent::suits(const Model& model, const DegreesOfFreedom& dof) {
-  const bool has_slides = std::any_of(model.joints.begin(), model.joints.end(),
-                                      [](const JointMap& joint) { return joint.kind == JointMapKind::Slide; });
-  return !has_slides && model.closures.empty() && dof.mimics.empty() && !model.joints.empty() &&
-         !parts_of(model, dof).empty();
+  return TreeOrder(model, dof).is_complete();
 }
 
 TreeTangent::TreeTangent(const Model& model, const DegreesOfFreedom& dof)
-    : parts_(parts_of(model, dof)),
+    : model_(model),
+      dof_(dof),
+      blocks_(model, dof),
+      order_(model, dof),
+      bordered_(model, dof, order_, blocks_),
       joints_(model.joints.size()),
-      diagonals_(36 * dof.size.size()),
-      right_hand_sides_(6 * model.nodes.size()) {
-  for (std::size_t i = 0; i < model.nodes.size(); ++i)
-    first_equation_.push_back(dof.slave_joint[i] >= 0 ? -1 : dof.equation[dof.first[i]]);
+      values_(dof.scalar_count) {
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     JointFront& front = joints_[j];
     front.slave = model.joints[j].slave;
     front.master = model.joints[j].master;
     front.variable = dof.variable_of_joint(static_cast<int>(j));
     for (int k = 0; k < dof.size[front.variable]; ++k) {
-      const int equation = dof.equation[dof.first[front.variable] + k];
-      if (equation < 0) continue;
+      const int scalar = dof.first[front.variable] + k;
+      if (dof.equation[scalar] < 0) continue;
       front.components[front.count] = k;
-      front.equations[front.count++] = equation;
+      front.scalars[front.count++] = scalar;
     }
   }
-  std::size_t blocks = 0, pivots = 0;
-  for (const Part& part : parts_) {
-    blocks = std::max(blocks, part.first_block + static_cast<std::size_t>(part.node_count * part.node_count));
-    if (part.node_count > 0) pivots = std::max<std::size_t>(pivots, part.first_pivot + 6 * (part.node_count - 1));
+  std::size_t pivots = 0;
+  for (const TreePart& part : order_.parts()) {
+    first_pivot_.push_back(pivots);
+    if (part.node_count > 0) pivots += 6 * (part.node_count - 1);
   }
-  elements_.resize(36 * blocks);
   pivots_.resize(pivots);
-  for (std::size_t v = 0; v < dof.size.size(); ++v) diagonal_blocks_.push_back(diagonals_.data() + 36 * v);
-  for (std::size_t b = 0; b < blocks; ++b) element_blocks_.push_back(elements_.data() + 36 * b);
+  for (std::size_t v = 0; v < dof.size.size(); ++v) diagonal_blocks_.push_back(blocks_.diagonal(static_cast<int>(v)));
+  for (std::size_t at = 0; at < blocks_.elements.size(); at += 36) element_blocks_.push_back(&blocks_.elements[at]);
 }
 
 double TreeTangent::cost_of_factors() const {
-  return 2.2;  // bench_kernels --benchmark_filter=step_shares, counter "new/kept"
+  // bench_kernels --benchmark_filter=step_shares, counter "new/kept"
+  const std::vector<TreePart>& parts = order_.parts();
+  return std::any_of(parts.begin(), parts.end(), [](const TreePart& part) { return part.has_border; }) ? 3 : 2.2;
 }
 
 void TreeTangent::set_zero() {
-  std::fill(diagonals_.begin(), diagonals_.end(), 0.0);
-  std::fill(elements_.begin(), elements_.end(), 0.0);
+  std::fill(blocks_.diagonals.begin(), blocks_.diagonals.end(), 0.0);
+  std::fill(blocks_.elements.begin(), blocks_.elements.end(), 0.0);
+  for (Eigen::MatrixXd& closure : blocks_.closures) closure.setZero();
+  blocks_.held.clear();
+}
+
+void TreeTangent::add_closure(int closure, int index, double multiplier, const ClosureMaps& maps) {
+  Eigen::MatrixXd& values = blocks_.closures[closure];
+  const int own = 12 + index;
+  values.block<6, 6>(0, 0) += multiplier * maps.child_child;
+  values.block<6, 6>(0, 6) += multiplier * maps.child_parent;
+  values.block<6, 6>(6, 0) += multiplier * maps.parent_child;
+  values.block<6, 6>(6, 6) += multiplier * maps.parent_parent;
+  values.col(own).segment<6>(0) += maps.left.child;
+  values.col(own).segment<6>(6) += maps.left.parent;
+  values.row(own).segment<6>(0) += maps.right.child;
+  values.row(own).segment<6>(6) += maps.right.parent;
+}
+
+void TreeTangent::fold(int joint, const SlideMaps& maps) {
+  blocks_.slide_maps[joint] = maps;
+  order_.set_window(joint, {maps.first, maps.first + maps.count});
 }
 
 void TreeTangent::hold_row(int joint, int component, int first, const ReleasedVector& coefficients) {
-  JointFront& front = joints_[joint];
-  const int size = static_cast<int>(front.maps.left.cols());
-  front.maps.left.col(component).setZero();
-  if (front.master >= 0) front.maps.released_master.row(component).setZero();
-  Eigen::Map<ReleasedSquare>(diagonal_block(front.variable), size, size).row(component).setZero();
-  front.maps.released_released.row(component).setZero();
-  front.maps.released_released.row(component).segment(first, coefficients.size()) = coefficients.transpose();
+  blocks_.held.push_back({joint, component, first, coefficients});
+}
+
+/// In the maps and blocks of joints without a border; the others replace rows in their fronts.
+void TreeTangent::hold_rows() {
+  for (const auto& [joint, component, first, coefficients] : blocks_.held) {
+    const JointFront& front = joints_[joint];
+    if (order_.parts()[order_.completion(front.variable)].has_border) continue;
+    FoldMaps& maps = blocks_.maps[joint];
+    const int size = static_cast<int>(maps.left.cols());
+    maps.left.col(component).setZero();
+    if (front.master >= 0) maps.released_master.row(component).setZero();
+    Eigen::Map<ReleasedSquare>(diagonal_block(front.variable), size, size).row(component).setZero();
+    maps.released_released.row(component).setZero();
+    maps.released_released.row(component).segment(first, coefficients.size()) = coefficients.transpose();
+  }
 }
 
 // ---------------------------------------------------------------- factors
 
-template <class Pointer, class Values>
-std::array<Pointer, 5> TreeTangent::node_blocks(const Part& part, Values& values, int size) const {
-  std::array<Pointer, 5> blocks{};
+std::array<double*, 5> TreeTangent::node_values(const TreePart& part, std::vector<double>& values, int size) const {
+  std::array<double*, 5> blocks{};
   for (int i = 0; i < part.node_count; ++i) blocks[i] = values.data() + static_cast<std::size_t>(size) * part.nodes[i];
   return blocks;
 }
 
-bool TreeTangent::eliminate(const Part& part) {
-  const std::array<double*, 5> diagonals = node_blocks<double*>(part, diagonals_, 36);
+bool TreeTangent::eliminate_element(int p) {
+  const TreePart& part = order_.parts()[p];
+  const std::array<double*, 5> diagonals = node_values(part, blocks_.diagonals, 36);
   return with_front(part.node_count, [&](auto front) {
-    return front.eliminate(elements_.data() + 36 * part.first_block, diagonals.data(),
-                           pivots_.data() + part.first_pivot);
+    return front.eliminate(blocks_.elements.data() + 36 * part.first_block, diagonals.data(),
+                           pivots_.data() + first_pivot_[p]);
   });
 }
 
 template <int Size>
-bool TreeTangent::eliminate_released(JointFront& front) {
+bool TreeTangent::eliminate_released(int joint) {
   using Square = Eigen::Matrix<double, Size, Size>;
   using Columns = Eigen::Matrix<double, 6, Size>;
   using Rows = Eigen::Matrix<double, Size, 6>;
-  const FoldMaps& maps = front.maps;
+  JointFront& front = joints_[joint];
+  const FoldMaps& maps = blocks_.maps[joint];
   const Eigen::Map<const Matrix6> tangent(diagonal_block(front.slave));
   const int size = static_cast<int>(maps.left.cols());
   const Eigen::Map<const ReleasedSquare> own(diagonal_block(front.variable), size, size);
@@ -190,83 +179,102 @@ bool TreeTangent::eliminate_released(JointFront& front) {
   front.coupling.template leftCols<Size>() = moved;
   move_rows(maps.lever_left, at_master);
   at_master.noalias() -= moved.lazyProduct(elimination);
-  add_to_master(front, at_master);
+  add_to_master(joint, at_master);
   return true;
 }
 
-void TreeTangent::add_to_master(const JointFront& front, const Matrix6& tangent) {
-  Eigen::Map<Matrix6>(diagonal_block(front.master)) += tangent + front.maps.master_master;
+void TreeTangent::add_to_master(int joint, const Matrix6& tangent) {
+  Eigen::Map<Matrix6>(diagonal_block(joints_[joint].master)) += tangent + blocks_.maps[joint].master_master;
 }
 
-bool TreeTangent::eliminate(JointFront& front) {
-  if (front.count == 1) return eliminate_released<1>(front);
-  if (front.count > 1) return eliminate_released<6>(front);
+bool TreeTangent::eliminate_joint(int joint) {
+  const JointFront& front = joints_[joint];
+  if (front.count == 1) return eliminate_released<1>(joint);
+  if (front.count > 1) return eliminate_released<6>(joint);
   if (front.master < 0) return true;
-  Matrix6 at_master = columns_at_master(Eigen::Map<const Matrix6>(diagonal_block(front.slave)), front.maps.lever_right);
-  move_rows(front.maps.lever_left, at_master);
-  add_to_master(front, at_master);
+  const FoldMaps& maps = blocks_.maps[joint];
+  Matrix6 at_master = columns_at_master(Eigen::Map<const Matrix6>(diagonal_block(front.slave)), maps.lever_right);
+  move_rows(maps.lever_left, at_master);
+  add_to_master(joint, at_master);
   return true;
 }
 
 bool TreeTangent::factorise() {
-  for (auto part = parts_.rbegin(); part != parts_.rend(); ++part)
-    if (!(part->joint >= 0 ? eliminate(joints_[part->joint]) : eliminate(*part))) return false;
+  order_.update();
+  hold_rows();
+  bordered_.begin();
+  const std::vector<TreePart>& parts = order_.parts();
+  for (int p = 0; p < static_cast<int>(parts.size()); ++p)
+    if (!(parts[p].has_border   ? bordered_.eliminate(p)
+          : parts[p].joint >= 0 ? eliminate_joint(parts[p].joint)
+                                : eliminate_element(p)))
+      return false;
   return true;
 }
 
 // ---------------------------------------------------------------- solution
 
-void TreeTangent::forward(const Part& part) {
-  const std::array<double*, 5> r = node_blocks<double*>(part, right_hand_sides_, 6);
+void TreeTangent::forward_element(int p) {
+  const TreePart& part = order_.parts()[p];
+  const std::array<double*, 5> r = node_values(part, values_, 6);
   with_front(part.node_count, [&](auto front) {
-    front.forward(elements_.data() + 36 * part.first_block, pivots_.data() + part.first_pivot, r.data());
+    front.forward(blocks_.elements.data() + 36 * part.first_block, pivots_.data() + first_pivot_[p], r.data());
   });
 }
 
-void TreeTangent::backward(const Part& part) {
-  const std::array<double*, 5> r = node_blocks<double*>(part, right_hand_sides_, 6);
-  with_front(part.node_count, [&](auto front) { front.backward(elements_.data() + 36 * part.first_block, r.data()); });
+void TreeTangent::backward_element(int p) {
+  const TreePart& part = order_.parts()[p];
+  const std::array<double*, 5> r = node_values(part, values_, 6);
+  with_front(part.node_count,
+             [&](auto front) { front.backward(blocks_.elements.data() + 36 * part.first_block, r.data()); });
 }
 
-void TreeTangent::forward(const JointFront& front, Eigen::VectorXd& b) {
-  const Eigen::Map<const Vector6> slave(right_hand_sides_.data() + 6 * static_cast<std::size_t>(front.slave));
+void TreeTangent::forward_joint(int joint) {
+  const JointFront& front = joints_[joint];
+  const Eigen::Map<const Vector6> slave(values_.data() + 6 * static_cast<std::size_t>(front.slave));
   const int count = front.count;
   ReleasedVector released(count);
-  for (int k = 0; k < count; ++k) released[k] = b[front.equations[k]] + front.left.col(k).dot(slave);
+  for (int k = 0; k < count; ++k) released[k] = values_[front.scalars[k]] + front.left.col(k).dot(slave);
   released = front.inverse.topLeftCorner(count, count).lazyProduct(released).eval();
-  for (int k = 0; k < count; ++k) b[front.equations[k]] = released[k];
+  for (int k = 0; k < count; ++k) values_[front.scalars[k]] = released[k];
   if (front.master < 0) return;
-  Eigen::Map<Vector6> master(right_hand_sides_.data() + 6 * static_cast<std::size_t>(front.master));
+  Eigen::Map<Vector6> master(values_.data() + 6 * static_cast<std::size_t>(front.master));
   master += slave;
-  master.tail<3>() += front.maps.lever_left.cross(slave.head<3>());
+  master.tail<3>() += blocks_.maps[joint].lever_left.cross(slave.head<3>());
   for (int k = 0; k < count; ++k) master -= released[k] * front.coupling.col(k);
 }
 
-void TreeTangent::backward(const JointFront& front, Eigen::VectorXd& b) {
-  Eigen::Map<Vector6> slave(right_hand_sides_.data() + 6 * static_cast<std::size_t>(front.slave));
+void TreeTangent::backward_joint(int joint) {
+  const JointFront& front = joints_[joint];
+  Eigen::Map<Vector6> slave(values_.data() + 6 * static_cast<std::size_t>(front.slave));
   Vector6 moved = Vector6::Zero();
   if (front.master >= 0) {
-    const Eigen::Map<const Vector6> master(right_hand_sides_.data() + 6 * static_cast<std::size_t>(front.master));
-    for (int k = 0; k < front.count; ++k) b[front.equations[k]] -= front.elimination.row(k).dot(master);
+    const Eigen::Map<const Vector6> master(values_.data() + 6 * static_cast<std::size_t>(front.master));
+    for (int k = 0; k < front.count; ++k) values_[front.scalars[k]] -= front.elimination.row(k).dot(master);
     moved = master;
-    moved.head<3>() += master.tail<3>().cross(front.maps.lever_right);
+    moved.head<3>() += master.tail<3>().cross(blocks_.maps[joint].lever_right);
   }
-  for (int k = 0; k < front.count; ++k) moved += b[front.equations[k]] * front.right.col(k);
+  for (int k = 0; k < front.count; ++k) moved += values_[front.scalars[k]] * front.right.col(k);
   slave = moved;
 }
 
 bool TreeTangent::solve(Eigen::VectorXd& b) {
-  const auto node_values = [&](std::size_t i) { return Eigen::Map<Vector6>(right_hand_sides_.data() + 6 * i); };
-  for (std::size_t i = 0; i < first_equation_.size(); ++i)
-    if (first_equation_[i] < 0)
-      node_values(i).setZero();
-    else
-      node_values(i) = b.segment<6>(first_equation_[i]);
-  for (auto part = parts_.rbegin(); part != parts_.rend(); ++part)
-    part->joint >= 0 ? forward(joints_[part->joint], b) : forward(*part);
-  for (const Part& part : parts_) part.joint >= 0 ? backward(joints_[part.joint], b) : backward(part);
-  for (std::size_t i = 0; i < first_equation_.size(); ++i)
-    if (first_equation_[i] >= 0) b.segment<6>(first_equation_[i]) = node_values(i);
+  const std::vector<TreePart>& parts = order_.parts();
+  const int part_count = static_cast<int>(parts.size());
+  for (int scalar = 0; scalar < dof_.scalar_count; ++scalar) {
+    const int equation = dof_.equation[scalar];
+    values_[scalar] = equation >= 0 ? b[equation] : 0.0;
+  }
+  for (int p = 0; p < part_count; ++p)
+    parts[p].has_border   ? bordered_.forward(p, b, values_)
+    : parts[p].joint >= 0 ? forward_joint(parts[p].joint)
+                          : forward_element(p);
+  for (int p = part_count - 1; p >= 0; --p)
+    parts[p].has_border   ? bordered_.backward(p, values_)
+    : parts[p].joint >= 0 ? backward_joint(parts[p].joint)
+                          : backward_element(p);
+  for (int scalar = 0; scalar < dof_.scalar_count; ++scalar)
+    if (dof_.equation[scalar] >= 0) b[dof_.equation[scalar]] = values_[scalar];
   return b.allFinite();
 }
 

@@ -1,5 +1,6 @@
 // The residual and the reduced tangent of a whole step, for a mechanism with everything in it.
 #include "analysis/statics.h"
+#include "integrators/balance.h"
 #include "integrators/scheme_step.h"
 #include "integrators/stepper.h"
 #include "joints/joint_forces.h"

@@ -1,0 +1,341 @@
+#include "solver/bordered_elimination.h"
+
+#include <algorithm>
+
+namespace flexarm {
+namespace {
+
+/// Calls visit(node, index) for the nodes into which a joint's slave is folded.
+template <class Visit>
+void for_each_master(const Model& model, const JointMap& joint, NodeRange window, const Visit& visit) {
+  if (joint.kind == JointMapKind::Slide) {
+    const std::vector<int>& nodes = model.slide_lines[joint.line].nodes;
+    for (int k = window.first; k < window.end; ++k) visit(nodes[k], k - window.first);
+  } else if (joint.master >= 0) {
+    visit(joint.master, 0);
+  }
+}
+
+/// What a rigid arm makes of the master's motion: d{r, spin} = {dr_m + spin_m x lever, spin_m}.
+Matrix6 arm_columns(const Vector3& lever) {
+  Matrix6 out = Matrix6::Identity();
+  out.topRightCorner<3, 3>() << 0, lever.z(), -lever.y(), -lever.z(), 0, lever.x(), lever.y(), -lever.x(), 0;
+  return out;
+}
+
+}  // namespace
+
+BorderedElimination::BorderedElimination(const Model& model, const DegreesOfFreedom& dof, const TreeOrder& order,
+                                         TreeBlocks& blocks)
+    : model_(model),
+      dof_(dof),
+      order_(order),
+      blocks_(blocks),
+      front_(dof.scalar_count),
+      is_placed_(dof.scalar_count, false),
+      factors_(order.parts().size()) {
+  std::fill_n(is_placed_.begin(), 6 * dof.node_count, true);
+  for (int scalar = 0; scalar < dof.scalar_count; ++scalar)
+    if (dof.equation[scalar] >= 0) is_placed_[scalar] = true;
+  for (const DegreesOfFreedom::Mimic& mimic : dof.mimics) is_placed_[dof.first[mimic.slave_variable]] = true;
+  reserve();
+}
+
+/// For any windows; more is allocated where pivots are passed on again and again.
+void BorderedElimination::reserve() {
+  std::size_t scalars = 0, fours = 0;
+  int most = 0;
+  for (std::size_t p = 0; p < factors_.size(); ++p) {
+    const int riders = order_.most_riders(static_cast<int>(p));
+    const TreePart& part = order_.parts()[p];
+    if (riders == 0 && !part.has_border) continue;
+    int own = 12;  // a slave and a master, or an inboard node
+    for (const int variable : part.complete) own += dof_.size[variable];
+    for (const int e : part.elements) own += 6 * order_.parts()[e].node_count;
+    const int size = own + riders, lanes = lanes_for(size);
+    most = std::max(most, size);
+    scalars += 4 * static_cast<std::size_t>(size);
+    fours += static_cast<std::size_t>(lanes) * (3 * own + 16 + riders);
+  }
+  scalars_.reserve(scalars);
+  memory_.resize(fours);
+  runs_.reserve(most);
+  work_.resize(lanes_for(most));
+  front_.reserve(most);
+}
+
+void BorderedElimination::begin() {
+  scalars_.clear();
+  used_ = 0;
+}
+
+std::size_t BorderedElimination::allocate(int numbers) {
+  const std::size_t at = used_;
+  used_ += lanes_for(numbers);
+  if (used_ > memory_.size()) memory_.resize(2 * used_);
+  return at;
+}
+
+bool BorderedElimination::eliminate(int index) {
+  const TreePart& part = order_.parts()[index];
+  Factors& factors = factors_[index] = {};
+  lay_out(index);
+  assemble(index);
+  if (part.joint >= 0) fold_slave(part, factors);
+  fold_mimics(part, factors);
+  hold_rows(index, factors);
+  const int pivots = front_.eliminate(candidates_, certain_, part.passes_node);
+  if (pivots < 0) return false;
+  keep(pivots, factors);
+  pass_on(part, factors);
+  return true;
+}
+
+// ---------------------------------------------------------------- the front of a part
+
+void BorderedElimination::add_scalars(int variable) {
+  for (int k = 0; k < dof_.size[variable]; ++k) {
+    const int scalar = dof_.first[variable] + k;
+    if (!is_placed_[scalar]) continue;
+    front_.rows.push_back(scalar);
+    front_.columns.push_back(scalar);
+  }
+}
+
+/// Nodes that are complete, what was passed on without a pivot, coordinates and multipliers that are complete; what
+/// rides along; what is folded.
+void BorderedElimination::lay_out(int index) {
+  const TreePart& part = order_.parts()[index];
+  const auto is_folded = [&](int variable) {
+    return variable < dof_.node_count ? dof_.slave_joint[variable] >= 0
+                                      : std::any_of(part.mimics.begin(), part.mimics.end(),
+                                                    [&](int i) { return dof_.mimics[i].slave_variable == variable; });
+  };
+  front_.clear();
+  for (const int variable : part.complete)
+    if (variable < dof_.node_count && !is_folded(variable)) add_scalars(variable);
+  certain_ = front_.size();
+  for (int child = part.first_child; child >= 0; child = order_.parts()[child].next_sibling) {
+    const Factors& f = factors_[child];
+    const auto rows = scalars_.begin() + f.rows + f.pivots, columns = scalars_.begin() + f.columns + f.pivots;
+    front_.rows.insert(front_.rows.end(), rows, rows + f.delayed);
+    front_.columns.insert(front_.columns.end(), columns, columns + f.delayed);
+  }
+  for (const int variable : part.complete)
+    if (variable >= dof_.node_count && !is_folded(variable)) add_scalars(variable);
+  candidates_ = front_.size();
+  const int* border = order_.border(part);
+  for (int i = 0; i < part.border_count; ++i)
+    if (order_.completion(border[i]) > index) add_scalars(border[i]);
+  const int active = front_.size();
+  for (const int variable : part.complete)
+    if (is_folded(variable)) add_scalars(variable);
+  front_.start(active);
+}
+
+void BorderedElimination::assemble(int index) {
+  const TreePart& part = order_.parts()[index];
+  for (int child = part.first_child; child >= 0; child = order_.parts()[child].next_sibling)
+    add_remainder(factors_[child]);
+  for (const int e : part.elements) {
+    const TreePart& element = order_.parts()[e];
+    for (int i = 0; i < element.node_count; ++i)
+      for (int j = 0; j < element.node_count; ++j)
+        front_.add(6 * element.nodes[i], 6 * element.nodes[j],
+                   blocks_.element(element.first_block + i * element.node_count + j), 6, 6, 6);
+  }
+  for (const int closure : part.closures) add_closure(closure);
+  for (const int variable : part.complete) add_diagonal(variable);
+}
+
+void BorderedElimination::add_diagonal(int variable) {
+  const int first = dof_.first[variable], size = dof_.size[variable];
+  if (variable >= dof_.node_count + dof_.joint_count) return;  // multipliers have none
+  for (int r = 0; r < size; ++r)
+    for (int c = 0; c < size; ++c)
+      if (is_placed_[first + r] && is_placed_[first + c])
+        front_.row(front_.row_place(first + r))[front_.column_place(first + c)] +=
+            blocks_.diagonal(variable)[size * c + r];
+}
+
+void BorderedElimination::add_closure(int k) {
+  const LoopClosure& closure = model_.closures[k];
+  const Eigen::MatrixXd& values = blocks_.closures[k];
+  const int variable = dof_.variable_of_closure(k), distance = static_cast<int>(values.rows());
+  const std::array<int, 3> first{6 * closure.child, 6 * closure.parent, dof_.first[variable]}, place{0, 6, 12},
+      count{6, closure.parent < 0 ? 0 : 6, dof_.size[variable]};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      if (count[i] > 0 && count[j] > 0)
+        front_.add(first[i], first[j], &values(place[i], place[j]), count[i], count[j], distance);
+}
+
+void BorderedElimination::add_remainder(const Factors& f) {
+  const int size = f.size - f.pivots;
+  const double* values = memory(f.remainder);
+  runs_.clear();  // of columns that follow each other here, too
+  for (int k = 0; k < size; ++k) {
+    const int place = front_.column_place(scalars_[f.columns + f.pivots + k]);
+    if (runs_.empty() || runs_.back().place + k - runs_.back().from != place) runs_.push_back({k, place, 0});
+    ++runs_.back().count;
+  }
+  for (int i = 0; i < size; ++i, values += size) {
+    double* to = front_.row(front_.row_place(scalars_[f.rows + f.pivots + i]));
+    for (const Run& run : runs_)
+      Eigen::Map<Eigen::VectorXd>(to + run.place, run.count) +=
+          Eigen::Map<const Eigen::VectorXd>(values + run.from, run.count);
+  }
+}
+
+// ---------------------------------------------------------------- folds
+
+void BorderedElimination::fold_slave(const TreePart& part, Factors& factors) {
+  const JointMap& joint = model_.joints[part.joint];
+  set_targets(joint, part.joint, factors);
+  set_maps(joint, part.joint, factors);
+  const int distance = 4 * lanes_for(factors.target_count);
+  front_.fold(6 * joint.slave, 6, memory(factors.left), memory(factors.right), distance,
+              scalars_.data() + factors.targets, factors.target_count);
+  add_geometric(joint, part.joint);
+}
+
+void BorderedElimination::set_targets(const JointMap& joint, int j, Factors& factors) {
+  const int variable = dof_.variable_of_joint(j);
+  factors.targets = scalars_.size();
+  for (int k = 0; k < dof_.size[variable]; ++k)
+    if (is_placed_[dof_.first[variable] + k]) scalars_.push_back(dof_.first[variable] + k);
+  for_each_master(model_, joint, order_.window(j), [&](int node, int) {
+    for (int k = 0; k < 6; ++k) scalars_.push_back(6 * node + k);
+  });
+  factors.target_count = static_cast<int>(scalars_.size() - factors.targets);
+  const int lanes = lanes_for(factors.target_count);
+  factors.left = allocate(4 * lanes * 6);
+  factors.right = allocate(4 * lanes * 6);
+}
+
+void BorderedElimination::set_maps(const JointMap& joint, int j, const Factors& factors) {
+  const int variable = dof_.variable_of_joint(j), distance = 4 * lanes_for(factors.target_count);
+  double *left = memory(factors.left), *right = memory(factors.right);
+  int target = 0;
+  const auto set_column = [&](const auto& of_left, const auto& of_right) {
+    for (int k = 0; k < 6; ++k) left[distance * k + target] = of_left[k], right[distance * k + target] = of_right[k];
+    ++target;
+  };
+  const auto set_node = [&](const Matrix6& of_left, const Matrix6& of_right) {
+    for (int k = 0; k < 6; ++k) set_column(of_left.col(k), of_right.col(k));
+  };
+  const bool slides = joint.kind == JointMapKind::Slide;
+  const FoldMaps& maps = blocks_.maps[j];
+  const SlideMaps& slide = blocks_.slide_maps[j];
+  for (int k = 0; k < dof_.size[variable]; ++k) {
+    if (!is_placed_[dof_.first[variable] + k]) continue;
+    if (slides)
+      set_column(slide.released_left, slide.released_right);
+    else
+      set_column(maps.left.col(k), maps.right.col(k));
+  }
+  for_each_master(model_, joint, order_.window(j), [&](int, int i) {
+    if (slides)
+      set_node(slide.left[i], slide.right[i]);
+    else
+      set_node(arm_columns(maps.lever_left), arm_columns(maps.lever_right));
+  });
+}
+
+void BorderedElimination::add_geometric(const JointMap& joint, int j) {
+  const bool slides = joint.kind == JointMapKind::Slide;
+  const FoldMaps& maps = blocks_.maps[j];
+  const SlideMaps& slide = blocks_.slide_maps[j];
+  const int variable = dof_.variable_of_joint(j), size = dof_.size[variable], first = dof_.first[variable];
+  for (int r = 0; r < size; ++r) {
+    if (!is_placed_[first + r]) continue;
+    for (int c = 0; c < size; ++c)
+      if (is_placed_[first + c])
+        front_.row(front_.row_place(first + r))[front_.column_place(first + c)] +=
+            slides ? slide.released_released : maps.released_released(r, c);
+    for_each_master(model_, joint, order_.window(j), [&](int node, int i) {
+      const Vector6 row = slides ? slide.released_master[i] : Vector6(maps.released_master.row(r).transpose());
+      const Vector6 column = slides ? slide.master_released[i] : Vector6(maps.master_released.col(r));
+      front_.add(first + r, 6 * node, row.data(), 1, 6, 1);
+      front_.add(6 * node, first + r, column.data(), 6, 1, 6);
+    });
+  }
+  for_each_master(model_, joint, order_.window(j), [&](int node, int i) {
+    if (!slides) return front_.add(6 * node, 6 * node, maps.master_master.data(), 6, 6, 6);
+    for_each_master(model_, joint, order_.window(j), [&](int other, int k) {
+      front_.add(6 * node, 6 * other, slide.master_master[i * slide.count + k].data(), 6, 6, 6);
+    });
+  });
+}
+
+void BorderedElimination::fold_mimics(const TreePart& part, Factors& factors) {
+  factors.mimics = allocate(2 * static_cast<int>(part.mimics.size()));
+  for (std::size_t i = 0; i < part.mimics.size(); ++i) {
+    const DegreesOfFreedom::Mimic& mimic = dof_.mimics[part.mimics[i]];
+    const MimicMap& map = blocks_.mimics[part.mimics[i]];
+    double* factor = memory(factors.mimics) + 2 * i;
+    factor[0] = map.left;
+    factor[1] = map.right;
+    const int master = dof_.first[mimic.master_variable];
+    if (!is_placed_[master]) continue;
+    front_.fold(dof_.first[mimic.slave_variable], 1, &map.left, &map.right, 1, &master, 1);
+    front_.add(master, master, &map.geometric, 1, 1, 1);
+  }
+}
+
+void BorderedElimination::hold_rows(int index, Factors& factors) {
+  factors.held = scalars_.size();
+  for (const TreeBlocks::HeldRow& held : blocks_.held) {
+    const int variable = dof_.variable_of_joint(held.joint);
+    if (order_.completion(variable) != index) continue;
+    const int scalar = dof_.first[variable] + held.component;
+    scalars_.push_back(scalar);
+    front_.clear_row(scalar);
+    for (int k = 0; k < held.coefficients.size(); ++k)
+      if (is_placed_[dof_.first[variable] + held.first + k])
+        front_.row(front_.row_place(scalar))[front_.column_place(dof_.first[variable] + held.first + k)] =
+            held.coefficients[k];
+  }
+  factors.held_count = static_cast<int>(scalars_.size() - factors.held);
+}
+
+// ---------------------------------------------------------------- factors
+
+void BorderedElimination::keep(int pivots, Factors& f) {
+  f.size = front_.active();
+  f.pivots = pivots;
+  f.delayed = candidates_ - pivots;
+  f.stride = 4 * lanes_for(f.size);
+  f.rows = scalars_.size();
+  scalars_.insert(scalars_.end(), front_.rows.begin(), front_.rows.begin() + f.size);
+  f.columns = scalars_.size();
+  scalars_.insert(scalars_.end(), front_.columns.begin(), front_.columns.begin() + f.size);
+  f.lower = allocate(f.stride * pivots);
+  f.upper = allocate(f.stride * pivots);
+  if (work_.size() < static_cast<std::size_t>(f.stride / 4)) work_.resize(f.stride / 4);
+  f.reciprocals = allocate(pivots);
+  f.forwarded = allocate(pivots);
+  for (int k = 0; k < pivots; ++k) {
+    const double* row = front_.row(k);
+    std::copy_n(front_.lower(k), f.stride, memory(f.lower) + f.stride * k);
+    std::copy_n(row, f.stride, memory(f.upper) + f.stride * k);
+    std::fill_n(memory(f.upper) + f.stride * k, k + 1, 0.0);
+    std::fill_n(memory(f.upper) + f.stride * k + f.size, f.stride - f.size, 0.0);
+    memory(f.reciprocals)[k] = front_.reciprocal(k);
+  }
+}
+
+void BorderedElimination::pass_on(const TreePart& part, Factors& f) {
+  const int size = f.size - f.pivots;
+  if (!part.passes_node) {
+    f.remainder = allocate(size * size);
+    for (int i = 0; i < size; ++i)
+      std::copy_n(front_.row(f.pivots + i) + f.pivots, size, memory(f.remainder) + size * i);
+  } else if (part.border_count > 0) {
+    double* diagonal = blocks_.diagonal(*order_.border(part));
+    for (int r = 0; r < 6; ++r)
+      for (int c = 0; c < 6; ++c) diagonal[6 * c + r] += front_.row(f.pivots + r)[f.pivots + c];
+  }
+}
+
+}  // namespace flexarm

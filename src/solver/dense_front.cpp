@@ -1,0 +1,236 @@
+#include "solver/dense_front.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "math/simd.h"
+
+namespace flexarm {
+namespace {
+
+/// A pivot that may wait is taken if it is so large beside its column: growth by its inverse leaves twelve digits.
+constexpr double kThreshold = 1e-4;
+/// A pivot below that, beside what its column was made of, is round-off.
+constexpr double kRoundOff = 8 * std::numeric_limits<double>::epsilon();
+
+/// target -= factor * source.
+[[gnu::always_inline]] inline void subtract(double* target, double factor, const double* source, int first, int last) {
+  const Lanes factors = broadcast(factor);
+  for (int v = first; v < last; ++v) store(load(target + 4 * v) - factors * load(source + 4 * v), target + 4 * v);
+}
+
+[[gnu::always_inline]] inline Lanes absolute(const Lanes& value) {
+  return value < 0 ? -value : value;
+}
+
+/// Largest absolute value.
+[[gnu::always_inline]] inline double largest(const double* values, int lanes) {
+  Lanes most = {};
+  for (int v = 0; v < lanes; ++v) {
+    const Lanes size = absolute(load(values + 4 * v));
+    most = size > most ? size : most;
+  }
+  return std::max(std::max(most[0], most[1]), std::max(most[2], most[3]));
+}
+
+/// What DenseFront::eliminate() works on; in a loop that simd::run() compiles as a whole.
+struct Elimination {
+  int active, candidates, stride;
+  double *values, *lower, *column_sizes, *scales, *reciprocals;
+  int *row_names, *column_names;
+  int pivots = 0;
+
+  [[gnu::always_inline]] inline double* row(int i) { return values + static_cast<std::size_t>(stride) * i; }
+  [[gnu::always_inline]] inline bool scale();
+  [[gnu::always_inline]] inline bool take_pivots(int certain, bool all);
+
+ private:
+  [[gnu::always_inline]] inline double largest_entry(int column, int first, int last, int& at);
+  [[gnu::always_inline]] inline bool take_pivot(int column, bool must);
+  [[gnu::always_inline]] inline void swap_rows(int a, int b);
+  [[gnu::always_inline]] inline void swap_columns(int a, int b);
+};
+
+bool Elimination::scale() {
+  const int lanes = lanes_for(active), candidate_lanes = lanes_for(candidates);
+  for (int i = 0; i < active; ++i) {
+    double* own = row(i);
+    for (int k = active; k < 4 * lanes; ++k) own[k] = 0;  // of what was folded
+    const double size = largest(own, lanes);
+    if (!std::isfinite(size)) return false;
+    scales[i] = size > 0 ? 1 / size : 0.0;
+    const Lanes scale = broadcast(scales[i]);
+    for (int v = 0; v < candidate_lanes; ++v) {
+      const Lanes old = load(column_sizes + 4 * v), scaled = scale * absolute(load(own + 4 * v));
+      store(scaled > old ? scaled : old, column_sizes + 4 * v);
+    }
+  }
+  return true;
+}
+
+void Elimination::swap_rows(int a, int b) {
+  if (a == b) return;
+  for (int v = 0; v < stride; v += 4) {
+    const Lanes kept = load(row(a) + v);
+    store(load(row(b) + v), row(a) + v);
+    store(kept, row(b) + v);
+  }
+  for (int k = 0; k < pivots; ++k) std::swap(lower[stride * k + a], lower[stride * k + b]);
+  std::swap(scales[a], scales[b]);
+  std::swap(row_names[a], row_names[b]);
+}
+
+void Elimination::swap_columns(int a, int b) {
+  if (a == b) return;
+  for (int i = 0; i < active; ++i) std::swap(row(i)[a], row(i)[b]);
+  std::swap(column_sizes[a], column_sizes[b]);
+  std::swap(column_names[a], column_names[b]);
+}
+
+/// Of a column among rows, scaled by rows.
+double Elimination::largest_entry(int column, int first, int last, int& at) {
+  double most = 0;
+  at = first;
+  for (int i = first; i < last; ++i) {
+    const double size = scales[i] * std::abs(row(i)[column]);
+    if (size > most) most = size, at = i;
+  }
+  return most;
+}
+
+/// Takes a pivot in the column, if one is good enough.
+bool Elimination::take_pivot(int column, bool must) {
+  int pivot_row, other;
+  const double size = largest_entry(column, pivots, candidates, pivot_row);
+  if (!(size > kRoundOff * column_sizes[column])) return false;
+  if (!must && size < kThreshold * largest_entry(column, candidates, active, other)) return false;
+  swap_rows(pivot_row, pivots);
+  swap_columns(column, pivots);
+  const double* pivot_values = row(pivots);
+  const double reciprocal = reciprocals[pivots] = 1 / pivot_values[pivots];
+  double* multipliers = lower + static_cast<std::size_t>(stride) * pivots;
+  for (int i = pivots / 4 * 4; i <= pivots; ++i) multipliers[i] = 0;
+  for (int i = active; i < stride; ++i) multipliers[i] = 0;
+  for (int i = pivots + 1; i < active; ++i) {
+    double* own = row(i);
+    const double multiplier = own[pivots] * reciprocal;
+    multipliers[i] = multiplier;
+    if (multiplier != 0) subtract(own, multiplier, pivot_values, pivots / 4, lanes_for(active));
+  }
+  ++pivots;
+  return true;
+}
+
+bool Elimination::take_pivots(int certain, bool all) {
+  for (int k = 0; k < certain; ++k)
+    if (!take_pivot(k, true)) return false;
+  // A column that had no pivot may have one after others. Where all must go, the best come first.
+  for (const bool must : {false, true}) {
+    if (must && !all) break;
+    for (int before = -1; before != pivots && pivots < candidates;) {
+      before = pivots;
+      for (int k = pivots; k < candidates; ++k) take_pivot(k, must);
+    }
+  }
+  return !all || pivots == candidates;
+}
+
+}  // namespace
+
+void DenseFront::reserve(int size) {
+  const std::size_t lanes = lanes_for(size);
+  for (std::vector<int>* labels : {&rows, &columns}) labels->reserve(size);
+  for (std::vector<double>* numbers : {&scales_, &reciprocals_}) numbers->reserve(size);
+  column_sizes_.reserve(lanes);
+  for (FrontMemory* memory : {&values_, &lower_}) memory->reserve(lanes * size);
+  right_.reserve(6 * lanes);
+}
+
+void DenseFront::clear() {
+  for (const int scalar : rows) row_place_[scalar] = -1;
+  for (const int scalar : columns) column_place_[scalar] = -1;
+  rows.clear();
+  columns.clear();
+}
+
+void DenseFront::start(int active) {
+  active_ = active;
+  const int lanes = lanes_for(size());
+  stride_ = 4 * lanes;
+  const std::size_t fours = static_cast<std::size_t>(lanes) * size();
+  if (values_.size() < fours) values_.resize(fours);
+  std::fill_n(values_.data()->lane, 4 * fours, 0.0);
+  for (int i = 0; i < size(); ++i) {
+    row_place_[rows[i]] = i;
+    column_place_[columns[i]] = i;
+  }
+}
+
+void DenseFront::add(int row, int column, const double* values, int row_count, int column_count, int distance) {
+  const int first_row = row_place_[row], first_column = column_place_[column];
+  if (row_count == 6 && column_count == 6 && distance == 6) {  // most of them: loops that are unrolled
+    for (int r = 0; r < 6; ++r) {
+      double* to = this->row(first_row + r) + first_column;
+      for (int c = 0; c < 6; ++c) to[c] += values[6 * c + r];
+    }
+    return;
+  }
+  for (int r = 0; r < row_count; ++r) {
+    double* to = this->row(first_row + r) + first_column;
+    for (int c = 0; c < column_count; ++c) to[c] += values[distance * c + r];
+  }
+}
+
+void DenseFront::fold(int slave, int count, const double* left, const double* right, int distance, const int* targets,
+                      int target_count) {
+  const int place = column_place_[slave], slave_row = row_place_[slave], lanes = lanes_for(size()),
+            rows_in_all = size();
+  right_.assign(static_cast<std::size_t>(lanes) * count, {});  // by columns of the front
+  double *columns_of = right_.data()->lane, *values = values_.data()->lane;
+  for (int k = 0; k < count; ++k)
+    for (int t = 0; t < target_count; ++t)
+      columns_of[stride_ * k + column_place_[targets[t]]] = right[distance * k + t];
+  const int* places = row_place_.data();
+  const int stride = stride_;
+  simd::run([&] {
+    for (int i = 0; i < rows_in_all; ++i) {
+      double* own = values + stride * i;
+      for (int k = 0; k < count; ++k)
+        if (own[place + k] != 0) subtract(own, -own[place + k], columns_of + stride * k, 0, lanes);
+    }
+    for (int t = 0; t < target_count; ++t) {
+      double* own = values + stride * places[targets[t]];
+      for (int k = 0; k < count; ++k)
+        if (left[distance * k + t] != 0)
+          subtract(own, -left[distance * k + t], values + stride * (slave_row + k), 0, lanes);
+    }
+  });
+}
+
+void DenseFront::clear_row(int scalar) {
+  std::fill_n(row(row_place_[scalar]), stride_, 0.0);
+}
+
+int DenseFront::eliminate(int candidates, int certain, bool all) {
+  lower_.resize(std::max(lower_.size(), static_cast<std::size_t>(stride_ / 4) * candidates));
+  scales_.resize(active_);
+  column_sizes_.assign(lanes_for(candidates), {});
+  reciprocals_.resize(candidates);
+  Elimination elimination{active_,
+                          candidates,
+                          stride_,
+                          values_.data()->lane,
+                          lower_.data()->lane,
+                          column_sizes_.data()->lane,
+                          scales_.data(),
+                          reciprocals_.data(),
+                          rows.data(),
+                          columns.data()};
+  bool done = false;
+  simd::run([&] { done = elimination.scale() && elimination.take_pivots(certain, all); });
+  return done ? elimination.pivots : -1;
+}
+
+}  // namespace flexarm

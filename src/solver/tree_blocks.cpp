@@ -1,0 +1,28 @@
+#include "solver/tree_blocks.h"
+
+#include <algorithm>
+
+namespace flexarm {
+
+TreeBlocks::TreeBlocks(const Model& model, const DegreesOfFreedom& dof)
+    : diagonals(36 * dof.size.size()),
+      maps(model.joints.size()),
+      slide_maps(model.joints.size()),
+      mimics(dof.mimics.size()) {
+  held.reserve(model.coordinates.size());
+  std::size_t blocks = 0;
+  for_each_element(model.beams, [&](const auto& element) {
+    const std::size_t count = element.nodes.size() * element.nodes.size();
+    blocks = std::max(blocks, static_cast<std::size_t>(element.first_block) + count);
+  });
+  elements.resize(36 * blocks);
+  for (std::size_t j = 0; j < model.joints.size(); ++j)
+    if (model.joints[j].kind == JointMapKind::Slide)
+      slide_maps[j] = SlideMaps(model.slide_lines[model.joints[j].line].most_active_nodes());
+  for (std::size_t k = 0; k < model.closures.size(); ++k) {
+    const int size = 12 + dof.size[dof.variable_of_closure(static_cast<int>(k))];
+    closures.push_back(Eigen::MatrixXd::Zero(size, size));
+  }
+}
+
+}  // namespace flexarm

@@ -1,0 +1,33 @@
+#pragma once
+/// What a step writes of its tangent, as the elimination along the tree takes it.
+
+#include <vector>
+
+#include "solver/tangent_backend.h"
+
+namespace flexarm {
+
+/// Blocks and maps before anything is folded.
+struct TreeBlocks {
+  /// A row of a released coordinate that is replaced by `coefficients` in the joint's components from `first` on.
+  struct HeldRow {
+    int joint, component, first;
+    ReleasedVector coefficients;
+  };
+
+  TreeBlocks(const Model& model, const DegreesOfFreedom& dof);
+
+  std::vector<double> diagonals, elements;  ///< 36 per variable and per block of two nodes
+  std::vector<FoldMaps> maps;               ///< per joint
+  std::vector<SlideMaps> slide_maps;        ///< per joint; empty but for sliders
+  /// Per closure, by rows: {child, parent, multipliers} with each other.
+  std::vector<Eigen::MatrixXd> closures;
+  std::vector<MimicMap> mimics;
+  std::vector<HeldRow> held;
+
+  double* diagonal(int variable) { return diagonals.data() + 36 * static_cast<std::size_t>(variable); }
+  const double* diagonal(int variable) const { return diagonals.data() + 36 * static_cast<std::size_t>(variable); }
+  const double* element(std::size_t block) const { return elements.data() + 36 * block; }
+};
+
+}  // namespace flexarm

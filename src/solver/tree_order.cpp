@@ -1,0 +1,240 @@
+#include "solver/tree_order.h"
+
+#include <algorithm>
+
+namespace flexarm {
+
+TreeOrder::TreeOrder(const Model& model, const DegreesOfFreedom& dof)
+    : model_(model),
+      dof_(dof),
+      completion_(dof.size.size(), -1),
+      windows_(model.joints.size(), {0, 0}),
+      visited_(dof.size.size(), -1) {
+  order_parts();
+  if (parts_.empty()) return;
+  place_variables();
+  place_mimics();
+  for (std::size_t v = 0; v < completion_.size(); ++v)
+    if (completion_[v] >= 0) parts_[completion_[v]].complete.push_back(static_cast<int>(v));
+  last_ = completion_;
+  place_closures();
+  for (std::size_t j = 0; j < model_.joints.size(); ++j) {
+    if (model_.joints[j].kind != JointMapKind::Slide) continue;
+    const SlideLine& line = model_.slide_lines[model_.joints[j].line];
+    const int piece = line.piece_at(model_.initial_released[j].displacement[0]);
+    windows_[j] = line.support(piece, piece);
+  }
+  count_riders();
+  complete_ = true;
+  update();
+}
+
+/// From the root to the leaves, each joint with the elements that hang on its slave; then turned round. Empty where
+/// that does not reach every node once.
+void TreeOrder::order_parts() {
+  std::vector<std::vector<TreePart>> outboard(model_.nodes.size());  // elements by their first node
+  std::size_t parts_in_all = model_.joints.size();
+  for_each_element(model_.beams, [&](const auto& element) {
+    TreePart part;
+    part.node_count = std::decay_t<decltype(element)>::kNodes;
+    std::copy(element.nodes.begin(), element.nodes.end(), part.nodes.begin());
+    part.first_block = element.first_block;
+    outboard[element.nodes[0]].push_back(part);
+    ++parts_in_all;
+  });
+  std::vector<char> reached(model_.nodes.size(), false);
+  std::vector<TreePart> line;
+  for (std::size_t j = 0; j < model_.joints.size(); ++j) {
+    const JointMap& joint = model_.joints[j];
+    if (joint.master >= 0 && !reached[joint.master]) return parts_.clear();
+    reached[joint.slave] = true;
+    parts_.emplace_back();
+    parts_.back().joint = static_cast<int>(j);
+    line = outboard[joint.slave];
+    while (!line.empty()) {
+      const TreePart part = line.back();
+      line.pop_back();
+      parts_.push_back(part);
+      for (int i = 1; i < part.node_count; ++i) {
+        const int node = part.nodes[i];
+        if (dof_.slave_joint[node] >= 0) continue;  // goes on from its joint
+        if (reached[node]) return parts_.clear();
+        reached[node] = true;
+        line.insert(line.end(), outboard[node].begin(), outboard[node].end());
+      }
+    }
+  }
+  const bool all_reached = std::all_of(reached.begin(), reached.end(), [](char is_reached) { return is_reached; });
+  if (!all_reached || parts_.size() != parts_in_all) parts_.clear();
+  std::reverse(parts_.begin(), parts_.end());
+}
+
+void TreeOrder::place_variables() {
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    const TreePart& part = parts_[p];
+    if (part.joint >= 0) {
+      completion_[model_.joints[part.joint].slave] = completion_[dof_.variable_of_joint(part.joint)] =
+          static_cast<int>(p);
+      continue;
+    }
+    for (int i = 1; i < part.node_count; ++i)
+      if (dof_.slave_joint[part.nodes[i]] < 0) completion_[part.nodes[i]] = static_cast<int>(p);
+  }
+  // An element's tangent is needed as soon as one of its nodes is eliminated.
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    const TreePart& part = parts_[p];
+    if (part.joint >= 0) continue;
+    int first = completion_[part.nodes[0]];
+    for (int i = 1; i < part.node_count; ++i) first = std::min(first, completion_[part.nodes[i]]);
+    parts_[first].elements.push_back(static_cast<int>(p));
+  }
+}
+
+/// A coordinate that others follow is complete once all of them are folded into it. No entry's master is the slave of
+/// an earlier one.
+void TreeOrder::place_mimics() {
+  for (std::size_t i = 0; i < dof_.mimics.size(); ++i) {
+    const auto& [slave, master, coordinate] = dof_.mimics[i];
+    int& completion = completion_[master];
+    completion = std::max(completion, completion_[slave]);
+  }
+  for (std::size_t i = 0; i < dof_.mimics.size(); ++i)
+    parts_[completion_[dof_.mimics[i].slave_variable]].mimics.push_back(static_cast<int>(i));
+}
+
+std::vector<int> TreeOrder::path_to_root(int node) const {
+  std::vector<int> path;
+  while (node >= 0) {
+    path.push_back(completion_[node]);
+    const TreePart& part = parts_[path.back()];
+    node = part.joint < 0 ? part.nodes[0] : model_.joints[part.joint].master;
+  }
+  return path;
+}
+
+int TreeOrder::last_part_of_line(const SlideLine& line) const {
+  int last = -1;
+  for (std::size_t i = 1; i < line.nodes.size(); ++i) last = std::max(last, completion_[line.nodes[i]]);
+  return last;
+}
+
+/// The branches of a loop have met once all parts of the way from one of its nodes to the other are eliminated, and the
+/// lines of the sliders on that way.
+void TreeOrder::place_closures() {
+  for (std::size_t k = 0; k < model_.closures.size(); ++k) {
+    const LoopClosure& closure = model_.closures[k];
+    const int variable = dof_.variable_of_closure(static_cast<int>(k));
+    std::vector<int> child = path_to_root(closure.child), parent = path_to_root(closure.parent), way;
+    completion_[variable] = parent.empty() ? child[0] : std::min(child[0], parent[0]);
+    std::sort(child.begin(), child.end());
+    std::sort(parent.begin(), parent.end());
+    std::set_symmetric_difference(child.begin(), child.end(), parent.begin(), parent.end(), std::back_inserter(way));
+    int last = completion_[variable];
+    for (const int p : way) {
+      last = std::max(last, p);
+      const int joint = parts_[p].joint;
+      if (joint >= 0 && model_.joints[joint].kind == JointMapKind::Slide)
+        last = std::max(last, last_part_of_line(model_.slide_lines[model_.joints[joint].line]));
+    }
+    last_[variable] = last;
+    TreePart& part = parts_[completion_[variable]];
+    part.closures.push_back(static_cast<int>(k));
+    part.complete.push_back(variable);
+  }
+}
+
+void TreeOrder::set_window(int joint, NodeRange window) {
+  NodeRange& old = windows_[joint];
+  if (old.first == window.first && old.end == window.end) return;
+  old = window;
+  old_ = true;
+}
+
+void TreeOrder::update() {
+  if (old_) find_borders();
+  old_ = false;
+}
+
+/// Beside the inboard node a slider brings as many nodes into borders as a step may touch, a closure a node and its
+/// multipliers with the coordinates that wait for them, a mimic a coordinate, a beam between two joints a node; each on
+/// the way from where it comes in to where it is eliminated.
+void TreeOrder::count_riders() {
+  const int end = static_cast<int>(parts_.size()) - 1;
+  most_riders_.assign(parts_.size(), 0);
+  const auto ride = [&](int from, int to, std::size_t scalars) {
+    for (int p = from; p <= to; ++p) most_riders_[p] += static_cast<int>(scalars);
+  };
+  for (std::size_t j = 0; j < model_.joints.size(); ++j) {
+    const JointMap& joint = model_.joints[j];
+    if (joint.kind != JointMapKind::Slide) continue;
+    const SlideLine& line = model_.slide_lines[joint.line];
+    ride(completion_[joint.slave], last_part_of_line(line), 6 * line.most_active_nodes());
+  }
+  for (std::size_t k = 0; k < model_.closures.size(); ++k) {
+    const int variable = dof_.variable_of_closure(static_cast<int>(k));
+    ride(completion_[variable], last_[variable], 6 + 2 * dof_.size[variable]);
+  }
+  for (const auto& [slave, master, coordinate] : dof_.mimics)
+    ride(0, std::max(completion_[slave], completion_[master]), 1);
+  for (const TreePart& part : parts_)
+    for (int i = 1; i < part.node_count; ++i)
+      if (dof_.slave_joint[part.nodes[i]] >= 0) ride(completion_[part.nodes[i]], end, 6);
+  std::size_t variables = parts_.size();
+  for (const int riders : most_riders_) variables += riders;  // a node has six, a coordinate one
+  border_.reserve(variables);
+}
+
+void TreeOrder::find_borders() {
+  border_.clear();
+  std::fill(visited_.begin(), visited_.end(), -1);
+  for (TreePart& part : parts_) part.first_child = part.next_sibling = -1;
+  for (std::size_t p = 0; p < parts_.size(); ++p) find_border(static_cast<int>(p));
+}
+
+template <class Visit>
+void TreeOrder::for_each_coupled(const TreePart& part, const Visit& visit) const {
+  for (int child = part.first_child; child >= 0; child = parts_[child].next_sibling)
+    std::for_each_n(border(parts_[child]), parts_[child].border_count, visit);
+  for (const int e : part.elements) std::for_each_n(parts_[e].nodes.begin(), parts_[e].node_count, visit);
+  for (const int k : part.closures) {
+    const LoopClosure& closure = model_.closures[k];
+    if (closure.parent >= 0) visit(closure.parent);
+    visit(closure.child);
+  }
+  std::for_each(part.complete.begin(), part.complete.end(), visit);
+  if (part.joint >= 0) {
+    const JointMap& joint = model_.joints[part.joint];
+    const int variable = dof_.variable_of_joint(part.joint);
+    if (dof_.size[variable] > 0) visit(variable);
+    if (joint.kind == JointMapKind::Slide) {
+      const std::vector<int>& nodes = model_.slide_lines[joint.line].nodes;
+      std::for_each(nodes.begin() + windows_[part.joint].first, nodes.begin() + windows_[part.joint].end, visit);
+    } else if (joint.master >= 0) {
+      visit(joint.master);
+    }
+  }
+  for (const int i : part.mimics) visit(dof_.mimics[i].master_variable);
+}
+
+void TreeOrder::find_border(int index) {
+  TreePart& part = parts_[index];
+  part.first_border = static_cast<int>(border_.size());
+  int next = static_cast<int>(parts_.size());
+  for_each_coupled(part, [&](int variable) {
+    if (visited_[variable] == index || last_[variable] <= index) return;
+    visited_[variable] = index;
+    border_.push_back(variable);
+    next = std::min(next, last_[variable]);
+  });
+  part.border_count = static_cast<int>(border_.size()) - part.first_border;
+  part.passes_node = part.border_count == 0 || (part.border_count == 1 && border_[part.first_border] < dof_.node_count);
+  const bool has_own_element =
+      part.joint >= 0 ? part.elements.empty() : part.elements.size() == 1 && part.elements[0] == index;
+  part.has_border =
+      part.first_child >= 0 || !part.passes_node || !part.closures.empty() || !part.mimics.empty() || !has_own_element;
+  if (part.passes_node) return;
+  part.next_sibling = parts_[next].first_child;
+  parts_[next].first_child = index;
+}
+
+}  // namespace flexarm
