@@ -34,7 +34,9 @@ Matrix3 joint_rotation(const JointMap& joint, const NodePose& master) {
 
 /// The slave's lever arm from the master node, Lambda_m b + B (displacement), world axes.
 Vector3 lever_arm(const JointMap& joint, const NodePose& master, const Released& released) {
-  if (joint.kind == JointMapKind::Rigid) return master.rotation * joint.origin.position;
+  const bool travels =
+      joint.kind != JointMapKind::Rigid && (joint.kind != JointMapKind::Scalar || !joint.translation.isZero(0));
+  if (!travels) return master.rotation * joint.origin.position;
   return master.rotation * (joint.origin.position + joint.origin.orientation * displacement(joint, released));
 }
 
@@ -59,6 +61,48 @@ ScaledRate scaled_rate(double x) {
   }
   const double t = std::tan(0.5 * x);
   return {2 * t / x, ((1 + t * t) - 2 * t / x) / x};
+}
+
+/// Joints with one coordinate, without lever arms: the formulas of incremental_maps() for all joints, in which matrices
+/// act on the axis of rotation and the direction of travel alone.
+void incremental_scalar_maps(const JointMap& joint, const NodePose& master_begin, const NodePose& master_end,
+                             const Released& begin, const Released& end, const Vector6& g, FoldMaps& maps,
+                             bool with_tangent, double arm_weight) {
+  const auto in_world = [&](const NodePose& master, const Vector3& v) {
+    return Vector3(master.rotation * (joint.origin.orientation * v));
+  };
+  const Vector3 axis = in_world(master_begin, joint.rotation), direction = in_world(master_begin, joint.translation);
+  const Vector3 w = cayley::increment(master_begin.orientation, master_end.orientation);
+  const auto transposed_inverse_tangent = [&](const Vector3& v) {  // S(w)^-T v
+    return Vector3(v + 0.5 * w.cross(v) + (0.25 * w.dot(v)) * w);
+  };
+  const double step = end.displacement[0] - begin.displacement[0], angle = joint.rotation.norm();
+  const ScaledRate rate = scaled_rate(step * angle);
+  const Vector3 turn = rate.value * step * axis;
+  const double c = 1 / (1 - 0.25 * w.dot(turn));
+  const Vector3 left_axis = c * transposed_inverse_tangent(axis), left_direction = direction + 0.5 * w.cross(direction);
+  const TravelRate travel_of = travel_rate(joint, begin.displacement[0], end.displacement[0]);
+  maps.left.resize(6, 1);
+  maps.left.col(0) << travel_of.secant * left_direction, rate.value * left_axis;
+  if (!with_tangent) return;
+
+  const Vector3 force = g.head<3>(), moment = g.tail<3>();
+  const Vector3 travel = travel_of.slope * in_world(master_end, joint.translation);
+  maps.right.resize(6, 1);
+  maps.right.col(0) << travel, in_world(master_end, joint.rotation);
+  const double axis_moment = left_axis.dot(moment), turned = w.dot(axis);
+  maps.released_released.resize(1, 1);
+  maps.released_released(0, 0) = rate.derivative * angle * axis_moment +
+                                 rate.value * axis_moment * 0.25 * c * turned * (1 + 0.25 * turn.squaredNorm()) +
+                                 travel_of.secant_derivative * force.dot(left_direction);
+  const Vector3 varied = 0.5 * moment.cross(axis) - (0.25 * turned) * moment - (0.25 * w.dot(moment)) * axis;
+  maps.released_master.resize(1, 6);
+  maps.released_master.row(0) << 0, 0, 0,
+      transposed_inverse_tangent(0.5 * travel_of.secant * direction.cross(force) +
+                                 (rate.value * c) * (0.25 * axis_moment * turn - varied))
+          .transpose();
+  maps.master_released.resize(6, 1);
+  maps.master_released.col(0) << 0, 0, 0, -arm_weight * force.cross(travel);
 }
 
 }  // namespace
@@ -144,65 +188,44 @@ void incremental_maps(const JointMap& joint, const NodePose& master_begin, const
   const Vector3 lever = lever_arm(joint, master_end, end);
   maps.lever_left = (1 - arm_weight) * lever_arm(joint, master_begin, begin) + arm_weight * lever;
   maps.lever_right = lever;
-  if (with_tangent)
-    set_sizes(count, maps);
-  else
-    maps.left.setZero(6, count);
   const Vector3 force = g.head<3>(), moment = g.tail<3>();
-  if (with_tangent) maps.master_master.bottomRightCorner<3, 3>() = arm_weight * hat(force) * hat(lever);
-  if (joint.kind == JointMapKind::Rigid) return;
+  if (joint.kind == JointMapKind::Scalar) {
+    if (with_tangent) maps.master_master.setZero();
+    incremental_scalar_maps(joint, master_begin, master_end, begin, end, g, maps, with_tangent, arm_weight);
+  } else if (with_tangent) {
+    set_sizes(count, maps);
+  } else {
+    maps.left.setZero(6, count);
+  }
+  if (with_tangent)
+    maps.master_master.bottomRightCorner<3, 3>() =
+        arm_weight * (lever * force.transpose()) - (arm_weight * force.dot(lever)) * Matrix3::Identity();
+  if (joint.kind == JointMapKind::Rigid || joint.kind == JointMapKind::Scalar) return;
 
   // Rows conjugate to the relative translation and to the tangent-scaled relative rotation, joint frame.
-  const bool scalar = joint.kind == JointMapKind::Scalar;
   const Matrix3 B0 = joint_rotation(joint, master_begin);
   const Vector3 w = cayley::increment(master_begin.orientation, master_end.orientation);
   const Matrix3 S_inverse = cayley::inverse_tangent(w);
-  const Matrix3 N11 = B0 + 0.5 * hat(w) * B0;
-  const ReleasedVector step = released_increment(joint, begin, end);
-  const ScaledRate rate = scalar ? scaled_rate(step[0] * joint.rotation.norm()) : ScaledRate{1, 0};
-  const Vector3 turn = scalar ? Vector3(rate.value * step[0] * joint.rotation) : Vector3(step.tail<3>());
-  const Vector3 turn_world = B0 * turn;
+  const Vector3 turn = released_increment(joint, begin, end).tail<3>(), turn_world = B0 * turn;
   const double c = 1 / (1 - 0.25 * w.dot(turn_world));
   const Matrix3 N22 = c * S_inverse.transpose() * B0;
-  const TravelRate travel_of = scalar ? travel_rate(joint, begin.displacement[0], end.displacement[0]) : TravelRate();
-  if (scalar) {
-    maps.left.col(0) << travel_of.secant * (N11 * joint.translation), rate.value * (N22 * joint.rotation);
-  } else {
-    if (joint.kind == JointMapKind::Free) maps.left.topLeftCorner<3, 3>() = N11;
-    maps.left.bottomRightCorner<3, 3>() = N22;
-  }
+  if (joint.kind == JointMapKind::Free) maps.left.topLeftCorner<3, 3>() = B0 + 0.5 * hat(w) * B0;
+  maps.left.bottomRightCorner<3, 3>() = N22;
   if (!with_tangent) return;
 
   const Matrix3 rotation = joint_rotation(joint, master_end);
-  const Matrix3 row_r_master = 0.5 * B0.transpose() * hat(force) * S_inverse;
-  const Vector3 row_phi = N22.transpose() * moment;
-  const Matrix3 row_phi_master =
-      (c * B0.transpose() * cayley::xi_inverse_tangent(w, moment) + 0.25 * c * row_phi * turn_world.transpose()) *
-      S_inverse;
-  const Vector3 w_joint = B0.transpose() * w;
-  if (scalar) {
-    const Vector3 travel = travel_of.slope * (rotation * joint.translation);
-    maps.right.col(0) << travel, rotation * joint.rotation;
-    const double axis_moment = joint.rotation.dot(row_phi);
-    // d(rate)/du at constant row_phi, and row_phi through c: d(turn)/du = (1 + |turn|^2/4) rotation.
-    maps.released_released(0, 0) =
-        rate.derivative * joint.rotation.norm() * axis_moment +
-        rate.value * axis_moment * 0.25 * c * w_joint.dot(joint.rotation) * (1 + 0.25 * turn.squaredNorm()) +
-        travel_of.secant_derivative * force.dot(N11 * joint.translation);
-    maps.released_master.row(0).tail<3>() = travel_of.secant * joint.translation.transpose() * row_r_master +
-                                            rate.value * joint.rotation.transpose() * row_phi_master;
-    maps.master_released.col(0).tail<3>() = -arm_weight * force.cross(travel);
-    return;
-  }
+  const Vector3 row_phi = N22.transpose() * moment, w_joint = B0.transpose() * w;
   if (joint.kind == JointMapKind::Free) {
     maps.right.topLeftCorner<3, 3>() = rotation;
-    maps.released_master.topRightCorner<3, 3>() = row_r_master;
+    maps.released_master.topRightCorner<3, 3>() = 0.5 * B0.transpose() * hat(force) * S_inverse;
     maps.master_released.bottomLeftCorner<3, 3>() = -arm_weight * hat(force) * rotation;
   }
   maps.right.bottomRightCorner<3, 3>() = rotation;
   maps.released_released.bottomRightCorner<3, 3>() =
       0.25 * c * row_phi * w_joint.transpose() * cayley::inverse_tangent(turn);
-  maps.released_master.bottomRightCorner<3, 3>() = row_phi_master;
+  maps.released_master.bottomRightCorner<3, 3>() =
+      (c * B0.transpose() * cayley::xi_inverse_tangent(w, moment) + 0.25 * c * row_phi * turn_world.transpose()) *
+      S_inverse;
 }
 
 Vector6 slave_velocity(const JointMap& joint, const NodePose& master, const Released& released,
