@@ -1,3 +1,5 @@
+#include <cassert>
+
 #include "elements/beam_point.h"
 
 namespace flexarm {
@@ -19,6 +21,7 @@ InterpolatedRotation<double> ElementRotations<Nodes>::evaluate(const NodalValues
                                                                GeneralisedShapeFunctions<Nodes>& generalised) const {
   if (variation_) return variation_->evaluate(shape, derivative, generalised);
   if (local_) return local_->evaluate(shape, derivative);
+  assert(reference);
   return referenced_->evaluate(shape, derivative, *reference, generalised);
 }
 

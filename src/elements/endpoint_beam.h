@@ -2,6 +2,8 @@
 /// Beam residual and tangent at one configuration: statics, natural modes and the Newmark family
 /// (beam.md 2.2, 2.5, 3.1).
 
+#include <cassert>
+
 #include "elements/beam_point.h"
 #include "math/so3.h"
 
@@ -88,6 +90,8 @@ template <int Nodes, class Form = SpinForm>
 void endpoint_internal(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const NewmarkRule* rule,
                        const PointKinematics* begin, const Vector6* strain_rates, bool with_tangent,
                        PointKinematics* end, Vector6* new_strain_rates, ElementSystem<Nodes>& system) {
+  assert(end && new_strain_rates);
+  assert(!rule || (begin && strain_rates && rule->step != 0));
   const ElementRotations<Nodes> rotations(nodes, with_tangent && Form::kVariesSpins);
   for (int k = 0; k < BeamElement<Nodes>::kStiffnessPoints; ++k) {
     const auto& constants = element.stiffness_points[k];

@@ -1,5 +1,6 @@
 #include "elements/momentum_beam.h"
 
+#include <cassert>
 #include <cmath>
 
 namespace flexarm {
@@ -211,6 +212,7 @@ template <int Nodes>
 void momentum_beam(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const TimeRule& rule,
                    const PointKinematics* begin, double step, const RotaryTerm<Nodes>& rotary, bool with_tangent,
                    PointKinematics* end, ElementSystem<Nodes>& system) {
+  assert(step != 0 && begin && end && rotary);
   const bool is_corrected = rule.correction != EnergyCorrection::None;
   system.set_zero();
   std::array<Point<Nodes>, BeamElement<Nodes>::kStiffnessPoints> points;

@@ -34,8 +34,8 @@ struct Swing {
   }
 };
 
-// What a solve leaves is at most the square of the tolerance, also where an earlier one has been taken at its word; in n
-// steps that adds up to n^2 of it, since what is left in a step is left in its velocities, too.
+// What a solve leaves is at most the square of the tolerance, also where an earlier one has been taken at its word; in
+// n steps that adds up to n^2 of it, since what is left in a step is left in its velocities, too.
 TEST(NewtonIteration, OneUpdateIsEnoughWhereItHasBeenShownToBe) {
   Swing quick({kStep, kTolerance}), full({kStep, 1e-10, 20, 5, false});
   for (int step = 0; step < kSteps; ++step) {

@@ -247,7 +247,7 @@ def algorithmic_rows(element, step, k, stress, is_backward=False):
 
 
 def strains(element, step, k):
-    """At the begin and at the end."""
+    """At the beginning and at the end."""
     point = element.stiffness_points[k]
     return (element.strain(k, step.r0, interpolated(point, step.R0)),
             element.strain(k, step.r1, interpolated(point, step.R1)))
