@@ -1,7 +1,9 @@
-// Holds joints of an arm at given angles with PD controllers that run at 1 kHz, for four seconds, and prints where the
-// tips of its flexible links are and how much energy is where:
+// Moves joints of an arm to given angles with PD controllers that run at 1 kHz, and prints where the tips of its
+// flexible links are and how much energy is where. For each joint: its name, the angle [rad], stiffness [N m/rad] and
+// damping [N m s/rad] of its controller.
 //
-//   close_the_loop config/examples/flexible_two_link_arm.urdf shoulder 0.8 elbow -0.5
+//   close_the_loop arm.urdf shoulder 0.8 200 2
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
@@ -13,16 +15,19 @@
 
 namespace {
 
-constexpr double kPeriod = 1e-3, kUntil = 4;      // [s]
-constexpr double kStiffness = 40, kDamping = 12;  // [N m/rad], [N m s/rad]
-constexpr int kReports = 8;                       // lines printed
+constexpr double kPeriod = 1e-3, kMove = 3, kUntil = 5;  // [s]
+constexpr int kReports = 10;                             // lines printed
 
 struct Controller {
   std::size_t coordinate;
-  double goal;  // [rad]
+  double start, goal, stiffness, damping;
 
   double effort(const flexarm::Simulation& simulation) const {
-    return kStiffness * (goal - simulation.position(coordinate)) - kDamping * simulation.velocity(coordinate);
+    // On the way from start to goal without a jump of the speed, which would make the links ring.
+    const double part = std::min(simulation.time() / kMove, 1.0);
+    const double angle = start + (goal - start) * part * part * (3 - 2 * part);
+    const double speed = (goal - start) * 6 * part * (1 - part) / kMove;
+    return stiffness * (angle - simulation.position(coordinate)) + damping * (speed - simulation.velocity(coordinate));
   }
 };
 
@@ -56,8 +61,8 @@ bool run(flexarm::Simulation& simulation, const std::vector<Controller>& control
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 4 || argc % 2 != 0) {
-    std::cerr << "usage: close_the_loop SCENE JOINT ANGLE [JOINT ANGLE ...]\n";
+  if (argc < 2 || (argc - 2) % 4 != 0) {
+    std::cerr << "usage: close_the_loop SCENE [JOINT ANGLE STIFFNESS DAMPING]...\n";
     return 2;
   }
   const flexarm::scene::ReadResult read = flexarm::scene::read_scene_file(argv[1]);
@@ -68,13 +73,14 @@ int main(int argc, char** argv) {
     options.step = kPeriod;
     flexarm::Simulation simulation(*read.scene, options);
     std::vector<Controller> controllers;
-    for (int i = 2; i < argc; i += 2) {
+    for (int i = 2; i < argc; i += 4) {
       const std::optional<std::size_t> coordinate = simulation.find_coordinate(argv[i]);
       if (!coordinate || !simulation.is_commandable(*coordinate)) {
         std::cerr << "no joint '" << argv[i] << "' to be commanded\n";
         return 2;
       }
-      controllers.push_back({*coordinate, std::atof(argv[i + 1])});
+      controllers.push_back({*coordinate, simulation.position(*coordinate), std::atof(argv[i + 1]),
+                             std::atof(argv[i + 2]), std::atof(argv[i + 3])});
     }
     return run(simulation, controllers) ? 0 : 1;
   } catch (const flexarm::ModelError& error) {  // impossible as a mechanism

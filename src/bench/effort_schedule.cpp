@@ -1,4 +1,5 @@
 #include "bench/effort_schedule.h"
+#include "flexarm/scene/scene_description.h"
 
 #include <algorithm>
 #include <stdexcept>

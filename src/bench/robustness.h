@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bench/run.h"
+#include "flexarm/scene/scene_description.h"
 
 namespace flexarm::bench {
 

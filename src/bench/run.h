@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "bench/variants.h"
+#include "flexarm/scene/scene_description.h"
 #include "flexarm/simulation/simulation.h"
 
 namespace flexarm::bench {

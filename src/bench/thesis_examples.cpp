@@ -1,5 +1,6 @@
 // The runs of Muñoz 2004, chapter 12, with what its text says of them; the scenes are in config/thesis.
 #include "bench/thesis.h"
+#include "flexarm/scene/scene_description.h"
 #include "math/so3.h"
 
 namespace flexarm::bench {

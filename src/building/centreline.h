@@ -35,11 +35,11 @@ class Centreline {
  private:
   struct Piece {
     double begin = 0, end = 0;        // arc length
-    Vector3 start, tangent;           // at begin
+    Vector3 start, tangent;           // where it begins
     Vector3 axis = Vector3::UnitZ();  // of the arc
     double curvature = 0;             // 0: line
     double twist_rate = 0;            // [rad/m]
-    Quaternion frame;                 // section frame at begin
+    Quaternion frame;                 // of the section, where it begins
     Vector3 point(double s) const;
     Pose pose(double s) const;
   };

@@ -10,7 +10,7 @@ namespace flexarm {
 LoopClosure loop_closure(const ScenePlan& plan, const Mechanism& mechanism, const scene::JointDescription& joint,
                          Attachment parent, Attachment child, const Pose& frame);
 
-/// Of the closures' constraints those that are independent, by pivoting at the start; the others are implied.
+/// Keeps of the closures' constraints those that are independent, by pivoting at the start; the others are implied.
 /// @throws ModelError where nothing is left to move, or where friction would hold more than there is freedom.
 SolvableMechanism choose_constraints(const ScenePlan& plan, DrivenMechanism mechanism);
 

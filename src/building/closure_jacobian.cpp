@@ -31,7 +31,7 @@ class SparseRow {
   std::map<int, double> entries_;
 };
 
-/// One row, from the leaves to the root.
+/// Folds the entries of slaves in a row into their masters, from the leaves to the root.
 class RowFolder {
  public:
   RowFolder(const Model& model, const DegreesOfFreedom& dof)

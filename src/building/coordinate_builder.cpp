@@ -33,14 +33,14 @@ class CoordinateNames {
   std::unordered_map<std::string, int> indices_;
 };
 
-/// Where each mimic leads at the end of its chain: what the coordinate there is to it.
+/// Follows chains of joints that mimic each other.
 class MimicChains {
  public:
   explicit MimicChains(const std::vector<JointChain>& joints) {
     for (const JointChain& chain : joints)
       if (chain.joint->mimic) mimics_[chain.joint->name] = *chain.joint->mimic;
   }
-  /// Of the coordinate that none mimics.
+  /// The law by which a joint follows the one at the end of its chain, which mimics none.
   scene::Mimic resolved(const std::string& joint, const std::string& where) {
     scene::Mimic& mimic = mimics_.at(joint);
     std::size_t depth = 0;
@@ -83,7 +83,7 @@ int add_history(const TimeFunction& function, Model& model) {
 
 }  // namespace
 
-StartingTree follow_mimics(const ScenePlan& plan, WeightyTree tree) {
+TreeAtStart follow_mimics(const ScenePlan& plan, MassiveTree tree) {
   Model& model = tree.model;
   const CoordinateNames names(model);
   MimicChains chains(tree.tree_joints);

@@ -7,7 +7,7 @@ namespace flexarm {
 
 /// Lets mimicking coordinates follow, and puts all nodes where they are at the start.
 /// @throws ModelError
-StartingTree follow_mimics(const ScenePlan& plan, WeightyTree tree);
+TreeAtStart follow_mimics(const ScenePlan& plan, MassiveTree tree);
 
 /// Gives coordinates, those of joints that close loops included, the scene's motions and efforts.
 /// @throws ModelError

@@ -29,7 +29,7 @@ JointMap map_of_kind(JointMapKind kind) {
   return map;
 }
 
-/// Of a joint whose travel depends on its angle.
+/// The travel of a joint whose travel depends on its angle.
 struct DependentTravel {
   double ratio;  // travel per angle, or per travel of the profile
   Vector3 direction, offset;

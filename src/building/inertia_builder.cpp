@@ -101,7 +101,7 @@ void add_bodies(const ScenePlan& plan, Mechanism& mechanism) {
 
 }  // namespace
 
-WeightyTree add_inertia(const ScenePlan& plan, PlacedTree tree) {
+MassiveTree add_inertia(const ScenePlan& plan, PlacedTree tree) {
   add_beams(plan, tree.model);
   add_bodies(plan, tree);
   return {std::move(tree)};

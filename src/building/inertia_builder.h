@@ -8,7 +8,7 @@
 namespace flexarm {
 
 /// Lumps rigid bodies on nodes; each gets one in its centre of mass.
-WeightyTree add_inertia(const ScenePlan& plan, PlacedTree tree);
+MassiveTree add_inertia(const ScenePlan& plan, PlacedTree tree);
 
 /// int I^i ds of the nodes of a flexible link [m].
 std::vector<double> length_weights(const ScenePlan& plan, const Model& model, int link);

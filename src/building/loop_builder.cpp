@@ -48,7 +48,7 @@ class LoopBuilder {
   Attachment carrier(Attachment frame) const;
   /// The node is free, and `master` does not follow from it.
   bool can_become_slave(int node, int master) const;
-  /// Of the child's place. Where a flexible link is joined to itself at the beginning of a closed line, that is its
+  /// Where the child is held. Where a flexible link is joined to itself at the beginning of a closed line, that is its
   /// end.
   Attachment child_place(const scene::JointDescription& joint) const;
   /// From `master` through `maps`, the first at `frame` (world), to the existing node `slave`.
@@ -211,7 +211,7 @@ void sort_joints(Mechanism& mechanism) {
 
 }  // namespace
 
-ClosedMechanism close_loops(const ScenePlan& plan, StartingTree tree) {
+ClosedMechanism close_loops(const ScenePlan& plan, TreeAtStart tree) {
   LoopBuilder loops(plan, tree);
   for (const scene::JointDescription& joint : plan.scene.loop_joints) loops.add(joint);
   if (!plan.scene.loop_joints.empty()) sort_joints(tree);

@@ -24,9 +24,9 @@ struct Mechanism {
   std::vector<int> slave_joint;   ///< per node: joint of which it is the slave, or -1
   std::vector<JointChain> tree_joints, loop_joints;  ///< root to leaf
 
-  /// Of a node, or the world (-1).
+  /// Of a node, or of the world (-1) [m].
   Pose pose_of(int node) const;
-  /// As it starts [m].
+  /// Size of the mechanism as it starts; 1 where that is nothing [m].
   double extent() const;
 
   int add_node(const Pose& pose, int parent);
@@ -39,8 +39,8 @@ struct Mechanism {
 
 // Each stage has all that those before it have: a pass cannot be called before those that it needs.
 struct PlacedTree : Mechanism {};         ///< nodes, elementary joints and coordinates of the tree
-struct WeightyTree : Mechanism {};        ///< elements of beams, rigid bodies
-struct StartingTree : Mechanism {};       ///< poses at the start, those of mimicking coordinates included
+struct MassiveTree : Mechanism {};        ///< elements of beams, rigid bodies
+struct TreeAtStart : Mechanism {};        ///< poses at the start, those of mimicking coordinates included
 struct ClosedMechanism : Mechanism {};    ///< joints and constraints that close loops; all nodes
 struct DrivenMechanism : Mechanism {};    ///< motions and efforts
 struct SolvableMechanism : Mechanism {};  ///< of the constraints those that are independent

@@ -27,9 +27,9 @@ struct BuiltModel {
 BuiltModel build(const scene::SceneDescription& scene) {
   const ScenePlan plan(scene);
   PlacedTree placed = place_tree(plan);
-  WeightyTree weighty = add_inertia(plan, std::move(placed));
-  StartingTree starting = follow_mimics(plan, std::move(weighty));
-  ClosedMechanism closed = close_loops(plan, std::move(starting));
+  MassiveTree massive = add_inertia(plan, std::move(placed));
+  TreeAtStart at_start = follow_mimics(plan, std::move(massive));
+  ClosedMechanism closed = close_loops(plan, std::move(at_start));
   DrivenMechanism driven = connect_drives(plan, std::move(closed));
   SolvableMechanism solvable = choose_constraints(plan, std::move(driven));
 

@@ -9,7 +9,7 @@
 namespace flexarm {
 namespace {
 
-/// Of poses that are equal: relative to the distance from the origin, and in radians.
+/// Poses that differ by less count as equal: relative to the distance from the origin, and in radians.
 constexpr double kSamePlace = 1e-9, kSameDirection = 1e-6;
 
 }  // namespace

@@ -7,7 +7,7 @@
 namespace flexarm {
 namespace {
 
-/// Of a map with these coordinates, at the start.
+/// Values at the start of the coordinates of these names, which belong to one elementary joint.
 Released initial_released(JointMapKind kind, const std::vector<std::string>& names, const InitialPositions& positions) {
   Released out;
   std::vector<double> values;

@@ -8,6 +8,8 @@
 /// in world axes: the linearisation of a point has few of them that are not zero, and fewer still where the section
 /// couples no forces with curvatures.
 
+#include <cassert>
+
 #include "elements/conserving_point.h"
 #include "elements/strain_dampers.h"
 #include "math/cayley.h"
@@ -121,7 +123,7 @@ void set_translation(const ConservingElement<Nodes, S>& element, const BeamNodes
 /// numerical dissipation and damped elements; without either they may be null. Rotary inertia is added elsewhere.
 ///
 /// The moment rows are tested with, and the increments interpolated by, generalised shape functions of about the middle
-/// of the step: `functions` are these (MidFunctions::Explicit) or those of the begin (Symmetric), which are averaged
+/// of the step: `functions` are these (MidFunctions::Explicit) or those of the beginning (Symmetric), averaged
 /// with those of the end; then the tangent, which leaves their variation out, makes Newton converge linearly, by a
 /// factor that falls with the step. Any of them conserve momenta (sum I_g = 1) and, with the multiplier, energy; those
 /// of the middle make Delta(strain) - s third order in the step. With the Lagrange functions (beyond.md 1.1) it is
@@ -137,6 +139,8 @@ void conserving_beam(const ConservingElement<Nodes, S>& element, const BeamNodes
   const bool is_symmetric = rule.mid_functions == MidFunctions::Symmetric;
   const bool is_corrected = rule.correction == EnergyCorrection::Multiplier;
   const bool has_memory = rule.dissipation.any() || element.has_stiffness_damping;
+  assert(step != 0 && begin && end);
+  assert(!has_memory || (memory && end_memory));
   conserving::set_translation<Nodes, S>(element, nodes, rule.velocity_factor(), step, with_tangent, system);
 
   std::array<Point<Nodes, S>, kPoints> points;

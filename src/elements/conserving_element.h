@@ -77,7 +77,7 @@ struct BeamNodes {
   std::array<Vector3T<S>, Nodes> begin, end;      ///< positions [m]
   std::array<QuaternionT<S>, Nodes> orientation;  ///< at the end
   std::array<Vector3T<S>, Nodes> increment;       ///< tangent-scaled, Lambda_{n+1} = cay(w) Lambda_n
-  std::array<Vector3T<S>, Nodes> velocity;        ///< at the begin [m/s]
+  std::array<Vector3T<S>, Nodes> velocity;        ///< at the beginning [m/s]
 };
 
 /// Generalised shape functions at the stiffness points of an element.

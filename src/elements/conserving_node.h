@@ -20,7 +20,7 @@ struct NodeMotion {
   Vector3T<S> displacement;                ///< [m]
   Vector3T<S> increment;                   ///< of rotation: tangent-scaled or not
   Matrix3T<S> inverse_tangent;             ///< of the increment; with the tangent only
-  Vector3T<S> velocity, angular_velocity;  ///< at the begin; the latter material
+  Vector3T<S> velocity, angular_velocity;  ///< at the beginning; the latter material
 };
 
 /// (1/h) m (v_1 - v_0), (1/h) (Lambda J W)_1 - (Lambda J W)_0, with v_1 = factor Delta r / h - (factor - 1) v_0 and the

@@ -13,11 +13,11 @@ namespace flexarm {
 struct NodeStep {
   const NodePose& begin;
   const NodePose& end;
-  const NodeState& state;                   ///< at the begin
+  const NodeState& state;                   ///< at the beginning
   const Vector3& increment;                 ///< tangent-scaled
   const Matrix3& inverse_tangent;           ///< S(increment)^{-1}
   double step;                              ///< [s]
-  Vector3 momentum_rate = Vector3::Zero();  ///< d(Lambda J W)/dt at the begin; Hilber-Hughes-Taylor family [N m]
+  Vector3 momentum_rate = Vector3::Zero();  ///< d(Lambda J W)/dt at the beginning; Hilber-Hughes-Taylor family [N m]
 };
 
 /// The rotation of a step as the scheme's rule for the angular velocities of nodes counts it, from the tangent-scaled

@@ -23,6 +23,10 @@ constexpr double kAstray = 10;
 /// Updates by new factors that no longer shrink below this are the round-off of a stiff system: its condition, up to
 /// 1e4 in the test scenes of stiff bodies, times that of a double.
 constexpr double kStagnation = 1e-12;
+/// Solves that may end after one update, because an earlier one has shown what it leaves, until one more shows it anew.
+constexpr int kTrust = 8;
+/// By how much the next solve may do worse than the one that was watched.
+constexpr double kCaution = 3;
 /// Scaled updates cannot be expected to become smaller than this.
 constexpr double kRoundOff = 1e-15;
 
@@ -31,7 +35,6 @@ constexpr double kRoundOff = 1e-15;
 NewtonIteration::NewtonIteration(StepSystem& system, const StepSettings& settings)
     : system_(system),
       settings_(settings),
-      factors_(system.configuration(), system.tangent()),
       factor_reuse_(system.tangent().cost_of_factors()),
       update_(system.degrees_of_freedom().unknowns) {
   norms_.reserve(settings.max_iterations + 1);
@@ -40,6 +43,7 @@ NewtonIteration::NewtonIteration(StepSystem& system, const StepSettings& setting
 void NewtonIteration::forget_factors() {
   factorised_step_ = 0;
   factor_reuse_.reset();
+  fresh_start_ = kept_start_ = {};
 }
 
 bool NewtonIteration::solve(Updates updates, Factors factors, StepResult& result) {
@@ -75,7 +79,7 @@ StepResult::Reason NewtonIteration::iterate(Updates updates, Factors factors, St
     if (factorise) {
       enter(StepPhase::Factorise);
       ++result.factorisations;
-      if (!factors_.make()) return Reason::SingularTangent;
+      if (!system_.tangent().factorise()) return Reason::SingularTangent;
       factorised_step_ = step;
     }
     progress.with_kept = !factorise;
@@ -100,8 +104,7 @@ StepResult::Reason NewtonIteration::iterate(Updates updates, Factors factors, St
 StepResult::Reason NewtonIteration::find_update(Updates updates, Progress& progress) {
   enter(StepPhase::Solve);
   update_ = -system_.residual();
-  const bool is_solved = progress.with_kept ? factors_.solve(update_) : factors_.solve(update_);
-  if (!is_solved) return Reason::SingularTangent;
+  if (!system_.tangent().solve(update_)) return Reason::SingularTangent;
   enter(StepPhase::Update);
   const double rotation = system_.scales().largest_rotation(update_);
   if (updates == Updates::Limited && rotation > kLargestRotationUpdate) update_ *= kLargestRotationUpdate / rotation;
@@ -110,6 +113,7 @@ StepResult::Reason NewtonIteration::find_update(Updates updates, Progress& progr
   progress.contraction =
       progress.since_revision == 0 ? 1.0 : progress.norm / std::max(norms_.back(), std::numeric_limits<double>::min());
   norms_.push_back(progress.norm);
+  learn(progress);
   return Reason::None;
 }
 
@@ -127,8 +131,23 @@ bool NewtonIteration::stalls(const Progress& progress) const {
   return system_.configuration().step() != 0 && progress.since_revision >= kPatience && progress.contraction > kStalled;
 }
 
-/// By the rate of the last two updates: new factors square the error, kept ones contract it.
+/// The second update of a solve is what the first one left.
+void NewtonIteration::learn(const Progress& progress) {
+  if (progress.iteration == 0) started_with_kept_ = progress.with_kept;
+  FirstUpdate& start = started_with_kept_ ? kept_start_ : fresh_start_;
+  if (progress.iteration == 0) ++start.age;
+  if (progress.iteration == 1) start = {norms_.front(), progress.contraction, 0, progress.since_revision > 0};
+}
+
+/// By the rate of the last two updates, or of the first two of an earlier solve: new factors square the error, kept
+/// ones contract it.
 double NewtonIteration::remainder_after(const Progress& progress) const {
+  if (progress.iteration == 0) {
+    const FirstUpdate& start = progress.with_kept ? kept_start_ : fresh_start_;
+    if (!start.is_known || start.age > kTrust) return progress.norm;
+    const double growth = std::max(1.0, progress.norm / start.norm);  // new factors: of the contraction, too
+    return progress.norm * std::min(1.0, kCaution * growth * start.contraction);
+  }
   const double rate = std::min(progress.contraction, 1.0);
   // Symmetric middle functions are not in the tangent: they leave linear convergence with new factors, too.
   const bool squares = !progress.with_kept && system_.configuration().scheme().mid_functions == MidFunctions::Explicit;

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "flexarm/model/results.h"
-#include "integrators/corotated_factors.h"
 #include "integrators/factor_reuse.h"
 #include "integrators/step_observer.h"
 #include "integrators/step_settings.h"
@@ -46,6 +45,13 @@ class NewtonIteration {
     double contraction = 1;  // its ratio to the one before; 1 where there is none
   };
 
+  /// How a solve went on after its first update: what is to be expected of the next one that starts alike.
+  struct FirstUpdate {
+    double norm = 0, contraction = 1;
+    int age = 0;  // solves since, that did without a second update
+    bool is_known = false;
+  };
+
   Reason iterate(Updates updates, Factors factors, StepResult& result);
   Reason evaluate(bool with_tangent);
   Reason find_update(Updates updates, Progress& progress);
@@ -54,17 +60,19 @@ class NewtonIteration {
   bool stalls(const Progress& progress) const;
   bool has_converged(const Progress& progress, Factors factors) const;
   double remainder_after(const Progress& progress) const;
+  void learn(const Progress& progress);
   void enter(StepPhase phase) {
     if (observer_) observer_->enter(phase);
   }
 
   StepSystem& system_;
   const StepSettings& settings_;
-  CorotatedFactors factors_;
   FactorReuse factor_reuse_;
   double factorised_step_ = 0;  // for which the factors hold; 0: none
   Eigen::VectorXd update_;
   std::vector<double> norms_;
+  FirstUpdate fresh_start_, kept_start_;  // by the factors of the first update
+  bool started_with_kept_ = false;
   StepObserver* observer_ = nullptr;
 };
 

@@ -10,7 +10,7 @@ namespace flexarm {
 ///
 /// With the capacity F and the increment x_r with which the coordinate comes to rest at the end of the step, x_r > 0:
 ///   -F  for x < 0,    [-F, 0]  at x = 0,    0  for 0 < x < x_r,    [0, F]  at x = x_r,    F  for x > x_r;
-/// mirrored for x_r < 0, and the plain law F Sign(x) where the coordinate rests at the begin, x_r = 0. At x = 0 it
+/// mirrored for x_r < 0, and the plain law F Sign(x) where the coordinate rests at the beginning, x_r = 0. At x = 0 it
 /// sticks. At x = x_r it stops, with an effort that takes exactly the kinetic energy left. The law F Sign(x) alone
 /// would let conserving schemes come to a halt with x = 0, hence with all that energy, and velocities that ring for
 /// ever.
@@ -21,7 +21,7 @@ class StickSlip {
   /// Along the staircase.
   enum Branch { SlipBack, HeldLow, Free, HeldHigh, SlipForth };
 
-  /// `rest_increment`: x_r; the coordinate is expected to go on as its `rate` at the begin says.
+  /// `rest_increment`: x_r; the coordinate is expected to go on as its `rate` at the beginning says.
   void begin(double rest_increment, double rate);
   /// Corrects the branch for the increment and the effort against it that it has led to; true if it was another one.
   /// `slack`: relative to the capacity, by which an effort may exceed it.

@@ -45,7 +45,7 @@ void variational_maps(const JointMap& joint, const NodePose& master, const Relea
 /// Incremental maps N_Delta over a step from `_begin` to `_end` (joints.md 1.3): the slave's {Delta r, tangent-scaled
 /// rotation increment} equals left du + {..} exactly, so the joint does no work and conserves momenta.
 /// Without `with_tangent` only the left maps are set. `arm_weight`: of the end in the lever arm by which the slave's
-/// force turns the master; 1/2 where momenta are measured with mean arms, 0 with those of the begin (M2, whose joints
+/// force turns the master; 1/2 where momenta are measured with mean arms, 0 with those of the beginning (M2, its joints
 /// then do a little work).
 void incremental_maps(const JointMap& joint, const NodePose& master_begin, const NodePose& master_end,
                       const Released& begin, const Released& end, const Vector6& g, FoldMaps& maps,

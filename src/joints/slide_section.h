@@ -106,7 +106,7 @@ std::array<S, kMostNodes> lagrange_differences(const SlidePiece& piece, double f
   return out;
 }
 
-/// Cubics of a piece that are 0 at both ends and have the slope 1 at the begin, or at the end.
+/// Cubics of a piece that are 0 at both ends and have the slope 1 at the beginning, or at the end.
 struct Hermite {
   double begin, length;
   bool at_end;

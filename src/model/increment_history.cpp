@@ -5,7 +5,7 @@
 
 namespace flexarm {
 namespace {
-/// Of the sum of the weights' magnitudes; extrapolation of order two over equal steps has 3 + 3 + 1.
+/// Largest sum of the weights' magnitudes; extrapolation of order two over equal steps has 3 + 3 + 1.
 constexpr double kLargestSum = 7.5;
 }  // namespace
 
@@ -27,7 +27,7 @@ std::vector<double>& IncrementHistory::push(double step, std::size_t unknowns) {
 IncrementHistory::Weights IncrementHistory::weights(int order, int first, double step) const {
   Weights out{};
   if (first + order >= count) return out;
-  // Times of the ends, and the begin of the oldest step; the increment to come is the polynomial's from 0 to `step`.
+  // Times of the ends, and where the oldest step begins; the increment to come is the polynomial's from 0 to `step`.
   std::array<double, kLength + 1> times{};
   for (int i = 0; i <= order; ++i) times[i + 1] = times[i] - steps[first + i];
   double sum = 0;

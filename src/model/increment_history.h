@@ -24,8 +24,8 @@ struct IncrementHistory {
   bool holds_for(std::size_t unknowns) const;
   /// Makes room for the increments of a step, to be written into the vector that is returned.
   std::vector<double>& push(double step, std::size_t unknowns);
-  /// Of `increments[first], ...` in the extrapolation of that order to the step that follows them. All zero where the
-  /// history is too short, or the extrapolation would blow up what is rough in it.
+  /// Weights of `increments[first], ...` in the extrapolation of that order to the step that follows them. All zero
+  /// where the history is too short, or the extrapolation would blow up what is rough in it.
   Weights weights(int order, int first, double step) const;
 };
 

@@ -23,7 +23,7 @@ enum class SlideStep {
   EndContact,   ///< SM1-NTb: contact at the end, exact work; within an element
   EnterMid,     ///< SM1-Ta: from one element into another one, exact momentum, off the line at the end
   EnterEnd,     ///< SM1-Tb, and with M2 SM2-Tb: the same, on the line, exact work
-  BeginWeights  ///< SM2-NT: with weights of the begin, for M2: exact contact, momentum and work; within an element
+  BeginWeights  ///< SM2-NT: with weights of the beginning, for M2: exact contact, momentum and work; within an element
 };
 
 /// Its choice within an element and over borders.

@@ -5,7 +5,7 @@
 
 namespace flexarm::scene {
 
-/// Into `description`, whose kind is known.
+/// Reads <friction> into `description`, whose kind is known.
 void read_friction(const XmlElement& friction, JointDescription& description);
 
 }  // namespace flexarm::scene

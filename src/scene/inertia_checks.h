@@ -6,7 +6,7 @@
 
 namespace flexarm::scene {
 
-/// Of a symmetric matrix, in increasing order.
+/// Principal moments of a symmetric inertia matrix, in increasing order.
 Vector3 principal_moments(const Matrix3& inertia);
 
 /// Records principal moments that no body has: negative ones are errors where something would move with them, and

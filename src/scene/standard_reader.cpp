@@ -52,7 +52,7 @@ void judge_alone(const XmlElement& element, const std::string& elements) {
     element.warning("programs that use urdfdom cannot read it", quoted(result.errors.front()));
 }
 
-/// Of <origin> and <child_origin>.
+/// Reads <origin> or <child_origin>.
 Pose read_pose(const XmlElement& origin) {
   const Vector3 xyz = origin.vector("xyz", Vector3::Zero()), rpy = origin.vector("rpy", Vector3::Zero());
   urdf::Rotation rotation;
@@ -199,7 +199,8 @@ std::string read_link_name(const XmlElement& joint, const char* tag) {
   return child ? child->text("link").value_or("") : "";
 }
 
-/// As a <joint> between stand-ins for its links, which keep urdfdom from complaining about the rest of the file.
+/// Text of a joint as a <joint> between stand-ins for its links, which keep urdfdom from complaining about the rest of
+/// the file.
 std::string printed_joint(const XmlElement& joint) {
   tinyxml2::XMLDocument document;
   tinyxml2::XMLElement* copy = joint.xml().DeepClone(&document)->ToElement();

@@ -6,6 +6,7 @@
 #include "elements/differences.h"
 #include "math/pi.h"
 #include "math/shape_functions.h"
+#include "math/so3.h"
 #include "support/scene_builder.h"
 
 namespace flexarm {

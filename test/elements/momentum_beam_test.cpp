@@ -156,7 +156,7 @@ TYPED_TEST(MomentumBeam, EnergyBalanceIsExact) {
       expect_energy_balance<TypeParam::value>(name, 0.3, 0.2, random, interpolation);
 }
 
-// Resultant force and moment are the rates of the momenta, with the arms of the middle, or of the begin (M2).
+// Resultant force and moment are the rates of the momenta, with the arms of the middle, or of the beginning (M2).
 TYPED_TEST(MomentumBeam, MomentaBalance) {
   constexpr int N = TypeParam::value;
   RandomSource random(5);
@@ -205,14 +205,7 @@ TYPED_TEST(MomentumBeam, ForcesTurnWithTheObserver) {
     step.element.stiffness_damping = 0.1;
     const ElementSystem<N> before = momentum.evaluate();
     const Quaternion turn = random.rotation(3);
-    for (int i = 0; i < N; ++i) {
-      step.nodes.begin[i] = turn * step.nodes.begin[i];
-      step.nodes.end[i] = turn * step.nodes.end[i];
-      step.nodes.velocity[i] = turn * step.nodes.velocity[i];
-      step.begin_orientation[i] = turn * step.begin_orientation[i];
-      step.set_orientation(i, turn * step.nodes.orientation[i]);
-    }
-    step.set_begin_points();
+    step.turn(turn);
     const ElementSystem<N> after = momentum.evaluate();
     for (int row = 0; row < 6 * N; row += 3)
       EXPECT_LE((after.residual.template segment<3>(row) - turn * before.residual.template segment<3>(row)).norm(),

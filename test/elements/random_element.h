@@ -93,7 +93,7 @@ struct RandomStep {
   RandomStep(const RandomStep&) = delete;
   RandomStep& operator=(const RandomStep&) = delete;
 
-  /// Measures rotations from a reference: the undeformed element (total), the begin (incremental) or the end of the
+  /// Measures rotations from a reference: the undeformed element (total), the beginning (incremental) or the end of the
   /// step (iterative). The latter two depend on the past, which gives every point a rotation of its own.
   void set_interpolation(RandomSource& random, Interpolation chosen,
                          RotationParameters parameters = RotationParameters::Unscaled) {
@@ -122,7 +122,7 @@ struct RandomStep {
     set_begin_points();
   }
 
-  /// The interpolation at the begin.
+  /// The interpolation at the beginning.
   ElementNodes<Nodes> nodes_at_begin() const {
     ElementNodes<Nodes> out = nodes;
     out.end = out.begin;
@@ -146,6 +146,17 @@ struct RandomStep {
     }
   }
 
+  /// The same step as an observer in a turned frame sees it.
+  void turn(const Quaternion& rotation) {
+    for (int i = 0; i < Nodes; ++i) {
+      nodes.begin[i] = rotation * nodes.begin[i];
+      nodes.end[i] = rotation * nodes.end[i];
+      nodes.velocity[i] = rotation * nodes.velocity[i];
+      begin_orientation[i] = rotation * begin_orientation[i];
+      set_orientation(i, rotation * nodes.orientation[i]);
+    }
+    set_begin_points();
+  }
   void set_orientation(int i, const Quaternion& orientation) { set_orientation(i, orientation, nodes); }
   void set_orientation(int i, const Quaternion& orientation, ElementNodes<Nodes>& of) const {
     of.orientation[i] = orientation.normalized();
@@ -189,7 +200,7 @@ struct RandomStep {
   ElementNodes<Nodes> nodes;
   std::array<PointKinematics, Element::kStiffnessPoints> begin_points;
   std::array<Matrix3, Element::kMassPoints> begin_mass_rotations;
-  std::array<MassPointState, Element::kMassPoints> mass_points;  ///< at the begin
+  std::array<MassPointState, Element::kMassPoints> mass_points;  ///< at the beginning
   Interpolation interpolation = Interpolation::Local;
   std::array<Quaternion, Nodes> reference_orientation;
   std::array<InterpolatedRotation<double>, Element::kStiffnessPoints> stiffness_reference;

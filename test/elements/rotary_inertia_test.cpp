@@ -15,7 +15,7 @@ template <class Count>
 class RotaryInertia : public ::testing::Test {};
 TYPED_TEST_SUITE(RotaryInertia, NodeCounts);
 
-/// `rate(k, begin, end)`: of mass point k, from its rotation at the begin and at the end.
+/// `rate(k, begin, end)`: of mass point k, from its rotation at the beginning and at the end.
 template <int Nodes, class Rate>
 ElementSystem<Nodes> evaluate(const RandomStep<Nodes>& step, const ElementNodes<Nodes>& nodes, const Rate& rate,
                               bool with_tangent, std::array<Matrix3, Nodes>* rotations = nullptr) {

@@ -95,8 +95,8 @@ struct Travel {
   }
 };
 
-/// Arc lengths at the begin and the end: within an element, on a border, over one border and over two, both ways, and
-/// no travel at all.
+/// Arc lengths at the beginning and the end: within an element, on a border, over one border and over two, both ways,
+/// and no travel at all.
 const std::pair<double, double> kTravels[] = {
     {0.5, 0.8}, {0.8, 0.5}, {0.3, 0.45},       {0.45, 0.3},       {0.1, 1.3}, {1.3, 0.1},        {0.4, 0.7},
     {0.7, 0.4}, {0.6, 0.6}, {0.6, 0.6 + 1e-7}, {0.4, 0.4 + 1e-9}, {0, 1.5},   {0.399999, 0.4001}};

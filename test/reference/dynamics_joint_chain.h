@@ -54,6 +54,21 @@ inline SceneBuilder free_beam_tree() {
   return b;
 }
 
+/// A flexible arm with a revolute shoulder, a spherical elbow and, fixed to its end, a gripper with offset mass; weak
+/// gravity.
+inline SceneBuilder flexible_arm(const scene::DirectSection& section, int fore_elements) {
+  using scene::JointKind;
+  SceneBuilder b;
+  b.beam("upper", {{1, 0, 0}, {1.5, 0.3, 0}}, section, 1, 2);
+  b.beam("fore", {{0, 1, 0.2}}, section, fore_elements, 2);
+  b.body("gripper", 0.8, {0.1, 0.05, -0.1}, 0.2 * body_inertia());
+  b.joint("shoulder", JointKind::Revolute, "world", "upper", {0, 0, 0}, Vector3(1, 2, 2) / 3);
+  b.joint("elbow", JointKind::Spherical, "upper", "fore", {1.5, 0.3, 0});
+  b.joint("wrist", JointKind::Fixed, "fore", "gripper", {0, 1, 0.2});
+  b.scene.gravity = {0, 0, -2};
+  return b;
+}
+
 /// A bent, flexible beam that tumbles about no principal axis, so that it must bend and twist.
 inline SceneBuilder tumbling_beam() {
   SceneBuilder b;

@@ -39,18 +39,9 @@ Problem flying_spaghetti() {
   return {"flying_spaghetti", b, 4, 0.05};
 }
 
-/// A flexible arm with a revolute shoulder, a spherical elbow and a gripper with offset mass, thrown in space and
-/// pushed by a follower force.
+/// Thrown in space and pushed by a follower force.
 Problem arm_with_joints() {
-  using scene::JointKind;
-  SceneBuilder b;
-  b.beam("upper", {{1, 0, 0}, {1.5, 0.3, 0}}, soft_section(), 1, 2);
-  b.beam("fore", {{0, 1, 0.2}}, soft_section(), 2, 2);
-  b.body("gripper", 0.8, {0.1, 0.05, -0.1}, 0.2 * body_inertia());
-  b.joint("shoulder", JointKind::Revolute, "world", "upper", {0, 0, 0}, Vector3(1, 2, 2) / 3);
-  b.joint("elbow", JointKind::Spherical, "upper", "fore", {1.5, 0.3, 0});
-  b.joint("wrist", JointKind::Fixed, "fore", "gripper", {0, 1, 0.2});
-  b.scene.gravity = {0, 0, -2};
+  SceneBuilder b = flexible_arm(soft_section(), 2);
   b.load("fore", {0, 1, 0.2}, {3, 0, 2}, {0, 0.5, 0}, "1-cos(t)", scene::LoadFrame::Follower);
   initial_joint(b, "shoulder", 0.3, 1.5);
   initial_joint(b, "elbow/rx", 0.2, -1);

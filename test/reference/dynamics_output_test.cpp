@@ -11,19 +11,10 @@ namespace {
 
 constexpr double kCoarsestStep = 0.02, kUntil = 1;
 
-/// A flexible arm with two joints and a body that is fixed to it beside its end; so much rotary inertia that the steps
-/// resolve its fastest modes.
+/// So much rotary inertia that the steps resolve its fastest modes.
 SceneBuilder arm() {
-  using scene::JointKind;
   const scene::DirectSection slow{2e3, 1e3, 1e3, 80, 100, 120, 4, 4, 4, 4};
-  SceneBuilder b;
-  b.beam("upper", {{1, 0, 0}, {1.5, 0.3, 0}}, slow, 1, 2);
-  b.beam("fore", {{0, 1, 0.2}}, slow, 1, 2);
-  b.body("gripper", 0.8, {0.1, 0.05, -0.1}, 0.2 * body_inertia());
-  b.joint("shoulder", JointKind::Revolute, "world", "upper", {0, 0, 0}, Vector3(1, 2, 2) / 3);
-  b.joint("elbow", JointKind::Spherical, "upper", "fore", {1.5, 0.3, 0});
-  b.joint("wrist", JointKind::Fixed, "fore", "gripper", {0, 1, 0.2});
-  b.scene.gravity = {0, 0, -2};
+  SceneBuilder b = flexible_arm(slow, 1);
   initial_joint(b, "elbow/rx", 0.2, -1);
   b.probe("hand", "gripper", {0.2, 0, 0});
   b.probe("span", "upper", {0.4, 0.1, 0});
