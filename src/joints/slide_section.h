@@ -206,47 +206,64 @@ struct Frame {
   Matrix3T<S> rotation;
   Vector3T<S> spatial_curvature;
 };
+/// Local rotations of a piece's nodes, of which all its frames are made.
+template <typename S>
+struct PieceRotations {
+  Matrix3T<S> reference;
+  std::array<Vector3T<S>, kMostNodes> vectors;
+};
 template <typename S, class Poses>
-Frame<S> element_frame(const SlidePiece& piece, const S& arc_length, const Poses& poses) {
-  const LagrangeWeights<S> w = lagrange_weights(piece, arc_length);
-  Frame<S> out;
+PieceRotations<S> piece_rotations(const SlidePiece& piece, const Poses& poses) {
+  PieceRotations<S> out;
   with_node_count(piece.node_count, [&](auto count) {
     constexpr int N = decltype(count)::value;
     std::array<QuaternionT<S>, N> orientation;
     for (int i = 0; i < N; ++i) orientation[i] = poses(piece.first_node + i).orientation;
     const LocalRotations<N, S> local(orientation);
-    Vector3T<S> theta = Vector3T<S>::Zero(), slope = Vector3T<S>::Zero();
-    for (int i = 0; i < N; ++i) {
-      theta += w.values[i] * local.rotation_vectors()[i];
-      slope += w.derivatives[i] * local.rotation_vectors()[i];
-    }
-    const so3::ExponentialMap<S> map(theta);
-    out.rotation = map.rotation() * local.reference_rotation();
-    // Local vectors are kept in space, so T theta' is the spin per arc length in space.
-    out.spatial_curvature = map.tangent() * slope;
+    for (int i = 0; i < N; ++i) out.vectors[i] = local.rotation_vectors()[i];
+    out.reference = local.reference_rotation();
   });
   return out;
 }
 
-/// Shares of the jumps of k at the smoothed borders of a piece, in their order: what the smoothing of its frames is
-/// made of, wherever they are.
 template <typename S>
-using CurvatureJumps = std::array<Vector3T<S>, 2>;
+Frame<S> element_frame(const SlidePiece& piece, const S& arc_length, const PieceRotations<S>& rotations) {
+  const LagrangeWeights<S> w = lagrange_weights(piece, arc_length);
+  Vector3T<S> theta = Vector3T<S>::Zero(), slope = Vector3T<S>::Zero();
+  for (int i = 0; i < w.count; ++i) {
+    theta += w.values[i] * rotations.vectors[i];
+    slope += w.derivatives[i] * rotations.vectors[i];
+  }
+  const so3::ExponentialMap<S> map(theta);
+  // Local vectors are kept in space, so T theta' is the spin per arc length in space.
+  return {map.rotation() * rotations.reference, map.tangent() * slope};
+}
+
+/// What all frames of a line in a piece are made of: its local rotations, and shares of the jumps of k at its smoothed
+/// borders, in their order.
+template <typename S>
+struct PieceFrames {
+  PieceRotations<S> rotations;
+  std::array<Vector3T<S>, 2> jumps;
+};
 template <typename S, class Poses>
-CurvatureJumps<S> curvature_jumps(const SlideLine& line, int index, const Poses& poses) {
-  CurvatureJumps<S> jumps;
+PieceFrames<S> piece_frames(const SlideLine& line, int index, const Poses& poses) {
+  PieceFrames<S> out;
+  out.rotations = piece_rotations<S>(line.pieces[index], poses);
   int count = 0;
   for_each_smoothed_border(line, index, [&](int neighbour, double border, double share, const Hermite&) {
-    jumps[count++] = S(share) * (element_frame(line.pieces[neighbour], S(border), poses).spatial_curvature -
-                                 element_frame(line.pieces[index], S(border), poses).spatial_curvature);
+    const SlidePiece& other = line.pieces[neighbour];
+    out.jumps[count++] =
+        S(share) * (element_frame(other, S(border), piece_rotations<S>(other, poses)).spatial_curvature -
+                    element_frame(line.pieces[index], S(border), out.rotations).spatial_curvature);
   });
-  return jumps;
+  return out;
 }
 
 /// What a smooth line's frame is turned by, psi = sum H (jump of k), and its derivative over the arc length.
 template <typename S>
 std::pair<Vector3T<S>, Vector3T<S>> frame_smoothing(const SlideLine& line, int index, const S& arc_length,
-                                                    const CurvatureJumps<S>& jumps) {
+                                                    const std::array<Vector3T<S>, 2>& jumps) {
   Vector3T<S> turn = Vector3T<S>::Zero(), slope = Vector3T<S>::Zero();
   int count = 0;
   for_each_smoothed_border(line, index, [&](int, double, double, const Hermite& hermite) {
@@ -259,22 +276,22 @@ std::pair<Vector3T<S>, Vector3T<S>> frame_smoothing(const SlideLine& line, int i
 
 }  // namespace slide
 
-/// Rotation and curvature only, in the piece `index`; `poses(i)`: PoseT<S> of the line's node i.
-template <typename S, class Poses>
-slide::Frame<S> frame_at(const SlideLine& line, int index, const S& arc_length, const Poses& poses,
-                         const slide::CurvatureJumps<S>& jumps) {
-  slide::Frame<S> frame = slide::element_frame(line.pieces[index], arc_length, poses);
+/// Rotation and curvature only, in the piece `index`.
+template <typename S>
+slide::Frame<S> frame_at(const SlideLine& line, int index, const S& arc_length, const slide::PieceFrames<S>& frames) {
+  slide::Frame<S> frame = slide::element_frame(line.pieces[index], arc_length, frames.rotations);
   if (!line.smooth) return frame;
-  const auto [turn, slope] = slide::frame_smoothing(line, index, arc_length, jumps);
+  const auto [turn, slope] = slide::frame_smoothing(line, index, arc_length, frames.jumps);
   const so3::ExponentialMap<S> map(turn);
   const Matrix3T<S> rotation = map.rotation();
   frame.rotation = (rotation * frame.rotation).eval();
   frame.spatial_curvature = (map.tangent() * slope + rotation * frame.spatial_curvature).eval();
   return frame;
 }
+/// `poses(i)`: PoseT<S> of the line's node i.
 template <typename S, class Poses>
 slide::Frame<S> frame_at(const SlideLine& line, int index, const S& arc_length, const Poses& poses) {
-  return frame_at(line, index, arc_length, poses, slide::curvature_jumps<S>(line, index, poses));
+  return frame_at(line, index, arc_length, slide::piece_frames<S>(line, index, poses));
 }
 
 /// The section at arc length X.

@@ -10,11 +10,11 @@ namespace flexarm {
 struct FrameVariation {
   template <class Poses>
   FrameVariation(const SlideLine& line, int index, double arc_length, const Poses& poses)
-      : FrameVariation(line, index, arc_length, poses, slide::curvature_jumps<double>(line, index, poses)) {}
+      : FrameVariation(line, index, arc_length, poses, slide::piece_frames<double>(line, index, poses)) {}
 
   template <class Poses>
   FrameVariation(const SlideLine& line, int index, double arc_length, const Poses& poses,
-                 const slide::CurvatureJumps<double>& jumps) {
+                 const slide::PieceFrames<double>& frames) {
     const NodeRange support = line.support(index, index);
     first = support.first;
     count = support.end - support.first;
@@ -26,7 +26,7 @@ struct FrameVariation {
       add(plain, Matrix3::Identity(), Matrix3::Zero());
       return;
     }
-    const auto [turn, slope] = slide::frame_smoothing(line, index, arc_length, jumps);
+    const auto [turn, slope] = slide::frame_smoothing(line, index, arc_length, frames.jumps);
     const so3::ExponentialMap<double> map(turn);
     const Matrix3 tangent = map.tangent(), turned = map.rotation(), tangent_derivative = map.tangent_derivative(slope);
     const Vector3 slope_spin = tangent * slope;
