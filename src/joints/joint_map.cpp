@@ -61,6 +61,94 @@ ScaledRate scaled_rate(double x) {
   return {2 * t / x, ((1 + t * t) - 2 * t / x) / x};
 }
 
+/// hat(a) hat(b).
+Matrix3 twice_crossed(const Vector3& a, const Vector3& b) {
+  Matrix3 result = b * a.transpose();
+  result.diagonal().array() -= a.dot(b);
+  return result;
+}
+
+/// S(w)^-T a.
+Vector3 by_transposed_inverse_tangent(const Vector3& w, const Vector3& a) {
+  return a + 0.5 * w.cross(a) + (0.25 * w.dot(a)) * w;
+}
+
+/// What a joint does over a step.
+struct JointStep {
+  const NodePose &master_begin, &master_end;
+  const Released &begin, &end;
+  double arm_weight;
+
+  Vector3 master_increment() const { return cayley::increment(master_begin.orientation, master_end.orientation); }
+};
+
+/// incremental_maps of Scalar: one column, so that axes take the place of the joint frame's matrices.
+void set_scalar_maps(const JointMap& joint, const JointStep& step, const Vector6& g, FoldMaps& maps,
+                     bool with_tangent) {
+  const double from = step.begin.displacement[0], to = step.end.displacement[0], du = to - from;
+  const Vector3 w = step.master_increment();
+  // Axes at the beginning, fixed to the master and in the world.
+  const Vector3 travel_axis = joint.origin.orientation * joint.translation,
+                turn_axis = joint.origin.orientation * joint.rotation;
+  const Vector3 travel = step.master_begin.rotation * travel_axis, turn = step.master_begin.rotation * turn_axis;
+  const double angle = joint.rotation.norm();
+  const ScaledRate rate = scaled_rate(du * angle);
+  const double scaled_du = rate.value * du;
+  const double c = 1 / (1 - 0.25 * scaled_du * w.dot(turn));
+  const TravelRate travel_of = travel_rate(joint, from, to);
+  const Vector3 mean_travel = travel + 0.5 * w.cross(travel);
+  const Vector3 mean_turn = c * by_transposed_inverse_tangent(w, turn);
+  maps.left.col(0) << travel_of.secant * mean_travel, rate.value * mean_turn;
+  if (!with_tangent) return;
+
+  const Vector3 force = g.head<3>(), moment = g.tail<3>();
+  const Vector3 end_travel = travel_of.slope * (step.master_end.rotation * travel_axis);
+  maps.right.col(0) << end_travel, step.master_end.rotation * turn_axis;
+  // d(rate)/du at constant moment about the axis, and that moment through c: d(scaled_du)/du = 1 + |turned|^2/4.
+  const double axis_moment = mean_turn.dot(moment);
+  maps.released_released(0, 0) =
+      axis_moment * (rate.derivative * angle +
+                     rate.value * 0.25 * c * w.dot(turn) * (1 + 0.25 * scaled_du * scaled_du * angle * angle)) +
+      travel_of.secant_derivative * force.dot(mean_travel);
+  // By the master's scaled increment, then by its spin.
+  const Vector3 moment_by_increment = c * (0.5 * turn.cross(moment) + (0.25 * w.dot(turn)) * moment +
+                                           (0.25 * (w.dot(moment) + scaled_du * axis_moment)) * turn);
+  const Vector3 by_increment = (0.5 * travel_of.secant) * travel.cross(force) + rate.value * moment_by_increment;
+  maps.released_master.row(0).tail<3>() = by_transposed_inverse_tangent(w, by_increment).transpose();
+  maps.master_released.col(0).tail<3>() = -step.arm_weight * force.cross(end_travel);
+}
+
+/// incremental_maps of Spherical and Free.
+void set_rotational_maps(const JointMap& joint, const JointStep& step, const Vector6& g, FoldMaps& maps,
+                         bool with_tangent) {
+  // Rows conjugate to the relative translation and to the tangent-scaled relative rotation, joint frame.
+  const Vector3 force = g.head<3>(), moment = g.tail<3>();
+  const Matrix3 B0 = joint_rotation(joint, step.master_begin);
+  const Vector3 w = step.master_increment();
+  const Matrix3 S_inverse = cayley::inverse_tangent(w);
+  const Vector3 turn = cayley::increment(step.begin.rotation, step.end.rotation);
+  const Vector3 turn_world = B0 * turn;
+  const double c = 1 / (1 - 0.25 * w.dot(turn_world));
+  const Matrix3 N22 = c * S_inverse.transpose() * B0;
+  if (joint.kind == JointMapKind::Free) maps.left.topLeftCorner<3, 3>() = B0 + 0.5 * hat(w) * B0;
+  maps.left.bottomRightCorner<3, 3>() = N22;
+  if (!with_tangent) return;
+
+  const Matrix3 rotation = joint_rotation(joint, step.master_end);
+  const Vector3 row_phi = N22.transpose() * moment;
+  if (joint.kind == JointMapKind::Free) {
+    maps.right.topLeftCorner<3, 3>() = rotation;
+    maps.released_master.topRightCorner<3, 3>() = 0.5 * B0.transpose() * hat(force) * S_inverse;
+    maps.master_released.bottomLeftCorner<3, 3>() = -step.arm_weight * hat(force) * rotation;
+  }
+  maps.right.bottomRightCorner<3, 3>() = rotation;
+  maps.released_released.bottomRightCorner<3, 3>() =
+      0.25 * c * row_phi * (B0.transpose() * w).transpose() * cayley::inverse_tangent(turn);
+  maps.released_master.bottomRightCorner<3, 3>() =
+      (c * B0.transpose() * cayley::xi_inverse_tangent(w, moment) + 0.25 * c * row_phi * turn_world.transpose()) *
+      S_inverse;
+}
+
 }  // namespace
 
 NodePose slave_pose(const JointMap& joint, const NodePose& master, const Released& released) {
@@ -107,7 +195,7 @@ void variational_maps(const JointMap& joint, const NodePose& master, const Relea
   const Vector3 force = g.head<3>(), moment = g.tail<3>();
   set_sizes(count, maps);
   maps.lever_left = maps.lever_right = lever;
-  maps.master_master.bottomRightCorner<3, 3>() = hat(force) * hat(lever);
+  maps.master_master.bottomRightCorner<3, 3>() = twice_crossed(force, lever);
 
   switch (joint.kind) {
     case JointMapKind::Rigid:
@@ -141,68 +229,18 @@ void incremental_maps(const JointMap& joint, const NodePose& master_begin, const
                       const Released& begin, const Released& end, const Vector6& g, FoldMaps& maps, bool with_tangent,
                       double arm_weight) {
   const int count = released_count(joint.kind);
-  const Vector3 lever = lever_arm(joint, master_end, end);
-  maps.lever_left = (1 - arm_weight) * lever_arm(joint, master_begin, begin) + arm_weight * lever;
-  maps.lever_right = lever;
   if (with_tangent)
     set_sizes(count, maps);
   else
     maps.left.setZero(6, count);
-  const Vector3 force = g.head<3>(), moment = g.tail<3>();
-  if (with_tangent) maps.master_master.bottomRightCorner<3, 3>() = arm_weight * hat(force) * hat(lever);
-  if (joint.kind == JointMapKind::Rigid) return;
-
-  // Rows conjugate to the relative translation and to the tangent-scaled relative rotation, joint frame.
-  const bool scalar = joint.kind == JointMapKind::Scalar;
-  const Matrix3 B0 = joint_rotation(joint, master_begin);
-  const Vector3 w = cayley::increment(master_begin.orientation, master_end.orientation);
-  const Matrix3 S_inverse = cayley::inverse_tangent(w);
-  const Matrix3 N11 = B0 + 0.5 * hat(w) * B0;
-  const ReleasedVector step = released_increment(joint, begin, end);
-  const ScaledRate rate = scalar ? scaled_rate(step[0] * joint.rotation.norm()) : ScaledRate{1, 0};
-  const Vector3 turn = scalar ? Vector3(rate.value * step[0] * joint.rotation) : Vector3(step.tail<3>());
-  const Vector3 turn_world = B0 * turn;
-  const double c = 1 / (1 - 0.25 * w.dot(turn_world));
-  const Matrix3 N22 = c * S_inverse.transpose() * B0;
-  const TravelRate travel_of = scalar ? travel_rate(joint, begin.displacement[0], end.displacement[0]) : TravelRate();
-  if (scalar) {
-    maps.left.col(0) << travel_of.secant * (N11 * joint.translation), rate.value * (N22 * joint.rotation);
-  } else {
-    if (joint.kind == JointMapKind::Free) maps.left.topLeftCorner<3, 3>() = N11;
-    maps.left.bottomRightCorner<3, 3>() = N22;
-  }
-  if (!with_tangent) return;
-
-  const Matrix3 rotation = joint_rotation(joint, master_end);
-  const Matrix3 row_r_master = 0.5 * B0.transpose() * hat(force) * S_inverse;
-  const Vector3 row_phi = N22.transpose() * moment;
-  const Matrix3 row_phi_master =
-      (c * B0.transpose() * cayley::xi_inverse_tangent(w, moment) + 0.25 * c * row_phi * turn_world.transpose()) *
-      S_inverse;
-  const Vector3 w_joint = B0.transpose() * w;
-  if (scalar) {
-    const Vector3 travel = travel_of.slope * (rotation * joint.translation);
-    maps.right.col(0) << travel, rotation * joint.rotation;
-    const double axis_moment = joint.rotation.dot(row_phi);
-    // d(rate)/du at constant row_phi, and row_phi through c: d(turn)/du = (1 + |turn|^2/4) rotation.
-    maps.released_released(0, 0) =
-        rate.derivative * joint.rotation.norm() * axis_moment +
-        rate.value * axis_moment * 0.25 * c * w_joint.dot(joint.rotation) * (1 + 0.25 * turn.squaredNorm()) +
-        travel_of.secant_derivative * force.dot(N11 * joint.translation);
-    maps.released_master.row(0).tail<3>() = travel_of.secant * joint.translation.transpose() * row_r_master +
-                                            rate.value * joint.rotation.transpose() * row_phi_master;
-    maps.master_released.col(0).tail<3>() = -arm_weight * force.cross(travel);
-    return;
-  }
-  if (joint.kind == JointMapKind::Free) {
-    maps.right.topLeftCorner<3, 3>() = rotation;
-    maps.released_master.topRightCorner<3, 3>() = row_r_master;
-    maps.master_released.bottomLeftCorner<3, 3>() = -arm_weight * hat(force) * rotation;
-  }
-  maps.right.bottomRightCorner<3, 3>() = rotation;
-  maps.released_released.bottomRightCorner<3, 3>() =
-      0.25 * c * row_phi * w_joint.transpose() * cayley::inverse_tangent(turn);
-  maps.released_master.bottomRightCorner<3, 3>() = row_phi_master;
+  const Vector3 lever = lever_arm(joint, master_end, end);
+  maps.lever_left = (1 - arm_weight) * lever_arm(joint, master_begin, begin) + arm_weight * lever;
+  maps.lever_right = lever;
+  if (with_tangent) maps.master_master.bottomRightCorner<3, 3>() = arm_weight * twice_crossed(g.head<3>(), lever);
+  if (joint.kind == JointMapKind::Scalar)
+    set_scalar_maps(joint, {master_begin, master_end, begin, end, arm_weight}, g, maps, with_tangent);
+  else if (joint.kind != JointMapKind::Rigid)
+    set_rotational_maps(joint, {master_begin, master_end, begin, end, arm_weight}, g, maps, with_tangent);
 }
 
 Vector6 slave_velocity(const JointMap& joint, const NodePose& master, const Released& released,
