@@ -12,16 +12,15 @@ std::vector<PeerRun> mujoco_runs(PeerProblem, const std::vector<double>&, bool, 
 
 #else
 
-#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <memory>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
-#include <mujoco/mujoco.h>
 
-#include "bench/processor_time.h"
+#include "bench/mujoco_motion.h"
 #include "math/pi.h"
 
 namespace flexarm::bench {
@@ -31,8 +30,6 @@ namespace {
 constexpr double kHubRatio = 1e6;
 /// Angle between segments with which a motion counts as blown up [rad].
 constexpr double kLargestBend = kPi / 2;
-/// Simulated time after which that is looked at [s].
-constexpr double kCheckInterval = 1e-2;
 
 struct PlaneProblem {
   int beams;
@@ -104,46 +101,22 @@ std::string mjcf(const PlaneProblem& problem, const Variant& variant) {
   return text + "</worldbody></mujoco>";
 }
 
-struct ModelDeleter {
-  void operator()(mjModel* model) const { mj_deleteModel(model); }
-};
-struct DataDeleter {
-  void operator()(mjData* data) const { mj_deleteData(data); }
-};
-
-std::unique_ptr<mjModel, ModelDeleter> compiled(const std::string& text) {
+MujocoModel compiled(const std::string& text) {
   const auto files = std::make_unique<mjVFS>();  // of megabytes
   mj_defaultVFS(files.get());
   const int place = mj_makeEmptyFileVFS(files.get(), "chain.xml", static_cast<int>(text.size()));
   if (place < 0) throw std::runtime_error("MuJoCo: no file in memory");
   std::memcpy(files->filedata[place], text.data(), text.size());
-  char error[1000] = "";
-  std::unique_ptr<mjModel, ModelDeleter> model(mj_loadXML("chain.xml", files.get(), error, sizeof error));
+  MujocoModel model = mujoco_model("chain.xml", files.get());
   mj_deleteVFS(files.get());
-  if (!model) throw std::runtime_error(std::string("MuJoCo: ") + error);
   return model;
 }
 
-/// MuJoCo's global callbacks while runs go on: the hub's torque, and no log file in the working directory.
-class Callbacks {
- public:
-  Callbacks() : control_(mjcb_control), warning_(mju_user_warning) {
-    mju_user_warning = [](const char*) {};
-  }
-  ~Callbacks() { mjcb_control = control_, mju_user_warning = warning_; }
-  Callbacks(const Callbacks&) = delete;
-  Callbacks& operator=(const Callbacks&) = delete;
-
-  void drive_hub() {
-    mjcb_control = [](const mjModel* model, mjData* data) {
-      data->qfrc_applied[0] = model->dof_armature[0] * hub_acceleration(data->time);
-    };
-  }
-
- private:
-  mjfGeneric control_;
-  void (*warning_)(const char*);
-};
+void drive_hub() {
+  mjcb_control = [](const mjModel* model, mjData* data) {
+    data->qfrc_applied[0] = model->dof_armature[0] * hub_acceleration(data->time);
+  };
+}
 
 class Chain {
  public:
@@ -151,9 +124,7 @@ class Chain {
       : problem_(problem),
         segments_(variant.segments),
         model_(compiled(mjcf(problem, variant))),
-        data_(mj_makeData(model_.get())) {
-    if (!data_) throw std::runtime_error("MuJoCo: out of memory");
-  }
+        data_(mujoco_data(model_.get())) {}
 
   void advance(long steps) {
     for (long i = 0; i < steps; ++i) {
@@ -165,10 +136,8 @@ class Chain {
     }
   }
 
-  /// MuJoCo starts from the beginning where a number is not finite, and counts that as a warning.
   bool is_sound() const {
-    for (const int kind : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC})
-      if (data_->warning[kind].number > 0) return false;
+    if (has_warned(data_.get())) return false;
     for (int i = 0; i < model_->nq; ++i)
       if (i % (segments_ + 1) != 0 && !(std::abs(data_->qpos[i]) < kLargestBend)) return false;
     return true;
@@ -186,8 +155,8 @@ class Chain {
  private:
   const PlaneProblem& problem_;
   int segments_;
-  std::unique_ptr<mjModel, ModelDeleter> model_;
-  std::unique_ptr<mjData, DataDeleter> data_;
+  MujocoModel model_;
+  MujocoData data_;
 };
 
 PeerRun run(const PlaneProblem& problem, const Variant& variant, const std::vector<double>& times) {
@@ -195,21 +164,7 @@ PeerRun run(const PlaneProblem& problem, const Variant& variant, const std::vect
       std::string("MuJoCo ") + mj_versionString(), variant.integrator, variant.segments, variant.step, 0, false, {}};
   if (variant.damping > 0) out.variant += ", damping h/2 EI/l";
   Chain chain(problem, variant);
-  const long stride = std::max(1L, std::lround(kCheckInterval / variant.step));
-  long done = 0;
-  for (const double time : times) {
-    for (const long goal = std::lround(time / variant.step); done < goal;) {
-      const long steps = std::min(stride, goal - done);
-      const double begin = processor_seconds();
-      chain.advance(steps);
-      out.seconds += processor_seconds() - begin;
-      done += steps;
-      if (!chain.is_sound()) return out;
-    }
-    out.probe.push_back(chain.tip());
-  }
-  out.completed = true;
-  return out;
+  return recorded(chain, std::move(out), times);
 }
 
 }  // namespace
@@ -217,8 +172,8 @@ PeerRun run(const PlaneProblem& problem, const Variant& variant, const std::vect
 std::vector<PeerRun> mujoco_runs(PeerProblem problem, const std::vector<double>& times, bool quick,
                                  const std::function<void()>& advance_progress) {
   const PlaneProblem plane = plane_problem(problem);
-  Callbacks callbacks;
-  if (plane.is_driven) callbacks.drive_hub();
+  const MujocoCallbacks callbacks;
+  if (plane.is_driven) drive_hub();
   const std::vector<int> meshes = quick ? std::vector<int>{4} : std::vector<int>{4, 8, 16, 32};
   const std::vector<double> steps =
       quick ? std::vector<double>{1e-2, 1e-3} : std::vector<double>{1e-2, 2e-3, 5e-4, 1e-4};

@@ -1,11 +1,13 @@
 #pragma once
-/// Flexible beams as roboticists substitute them: chains of rigid segments with springs in their joints, by MuJoCo.
+/// Runs of MuJoCo: of rigid mechanisms, and of flexible beams as roboticists substitute them, chains of rigid segments
+/// with springs in their joints.
 
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "flexarm/math/pose.h"
+#include "flexarm/scene/scene_description.h"
 
 namespace flexarm::bench {
 
@@ -21,7 +23,7 @@ enum class PeerProblem { SpinUp, DoublePendulum };
 /// A run of another program.
 struct PeerRun {
   std::string program, variant;  ///< "MuJoCo 2.2.2"; its integrator, and damping where it needs some
-  int segments;                  ///< per beam
+  int segments;                  ///< per beam; 0: all is rigid
   double step;                   ///< [s]
   double seconds;                ///< of the processor for its steps, in one thread [s]
   bool completed;                ///< false where the motion has blown up
@@ -41,5 +43,11 @@ struct PeerRun {
 /// nothing.
 std::vector<PeerRun> mujoco_runs(PeerProblem problem, const std::vector<double>& times, bool quick,
                                  const std::function<void()>& advance_progress);
+
+/// Runs of MuJoCo with all its integrators and steps from 2e-2 s to 1e-5 s of a scene that was read from a file of
+/// rigid links, joints of one coordinate and nothing but gravity; of the first probe. All else as above; `times`:
+/// multiples of 2e-2 s.
+/// @throws std::runtime_error if MuJoCo does not understand the file.
+std::vector<PeerRun> mujoco_runs_of(const scene::SceneDescription& scene, const std::vector<double>& times, bool quick);
 
 }  // namespace flexarm::bench

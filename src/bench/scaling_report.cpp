@@ -1,8 +1,10 @@
 // The scaling measurements as text.
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
+#include "bench/markdown_table.h"
 #include "bench/scaling.h"
 
 namespace flexarm::bench {
@@ -18,10 +20,11 @@ struct Quantity {
   double ScalingPoint::*value;
   double scale;  ///< from the table's unit to SI
 };
-constexpr Quantity kQuantities[] = {{"read [ms]", &ScalingPoint::read_seconds, 1e3},
-                                    {"build [ms]", &ScalingPoint::build_seconds, 1e3},
-                                    {"step [ms]", &ScalingPoint::step_seconds, 1e3},
-                                    {"memory [MB]", &ScalingPoint::bytes, 1e-6}};
+constexpr Quantity kRead = {"read [ms]", &ScalingPoint::read_seconds, 1e3},
+                   kBuild = {"build [ms]", &ScalingPoint::build_seconds, 1e3},
+                   kStep = {"step [ms]", &ScalingPoint::step_seconds, 1e3},
+                   kMemory = {"memory [MB]", &ScalingPoint::bytes, 1e-6};
+constexpr Quantity kQuantities[] = {kRead, kBuild, kStep, kMemory};
 
 /// Over the sizes from `part` of the largest one on.
 double slope_of(const ScalingSeries& series, double ScalingPoint::*value, double part) {
@@ -47,6 +50,23 @@ std::string slope_table(const ScalingReport& report) {
       text += fmt::format(" {}, {} |", slope_cell(slope_of(series, quantity.value, 0)),
                           slope_cell(slope_of(series, quantity.value, kUpperPart)));
     text += "\n";
+  }
+  return text;
+}
+
+/// The steepest of all scenes over the upper decades, against what counts as linear.
+std::string target_table(const ScalingReport& report) {
+  std::string text = head({"slope over the two upper decades", "target", "steepest", "verdict"});
+  for (const Quantity& quantity : {kBuild, kStep}) {
+    double steepest = -std::numeric_limits<double>::infinity();
+    std::string name = "–";
+    for (const ScalingSeries& series : report.series) {
+      const double slope = slope_of(series, quantity.value, kUpperPart);
+      if (slope > steepest) steepest = slope, name = series.family.name;
+    }
+    if (std::isfinite(steepest))
+      text += row({quantity.name, fmt::format("{:g}", kLinear), fmt::format("{:.2f}: {}", steepest, name),
+                   steepest <= kLinear ? "met" : "missed"});
   }
   return text;
 }
@@ -85,7 +105,7 @@ std::string to_markdown(const ScalingReport& report, const std::string& picture)
       "millisecond, says little.\n"
       "- Where memory outgrows the processor's caches, and from where on the system hands out fresh pages for each "
       "simulation, the same work takes longer, which bends the curves upwards in the middle.\n\n" +
-      slope_table(report);
+      target_table(report) + "\n" + slope_table(report);
   if (!picture.empty()) text += fmt::format("\n![Time per step, time to build and memory over size]({})\n", picture);
   for (const ScalingSeries& series : report.series)
     text += fmt::format("\n## {}\n\n{}\n\n{}", series.family.name, series.family.description, point_table(series));

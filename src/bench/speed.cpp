@@ -5,6 +5,7 @@
 #include <map>
 
 #include "bench/mujoco.h"
+#include "flexarm/scene/urdf_reader.h"
 
 namespace flexarm::bench {
 namespace {
@@ -64,7 +65,8 @@ SpeedRun compute_reference(const std::string& folder, SpeedMeasurement& out, con
   };
   SpeedRun reference = complete(d);
   const Trajectory& trajectory = reference.trajectory;
-  out.mesh_error = trajectory_error(complete(with_half_the_elements(d)).trajectory, trajectory);
+  if (out.problem.has_beams())
+    out.mesh_error = trajectory_error(complete(with_half_the_elements(d)).trajectory, trajectory);
   out.step_error = trajectory_error(complete(with_twice_the_step(d)).trajectory, trajectory);
   out.largest_displacement = largest_displacement(trajectory);
   out.reference = {d, reference, 1, 0};
@@ -95,17 +97,43 @@ void measure_runs(const std::string& folder, SpeedMeasurement& out, const Trajec
 }
 
 /// Runs of the same problem by other programs, where they are built in.
-std::vector<PeerOutcome> measure_peers(const SpeedProblem& problem, const SpeedRun& reference, bool quick,
-                                       const std::function<void()>& advance) {
+std::vector<PeerRun> peer_runs(const std::string& folder, const SpeedProblem& problem, const std::vector<double>& times,
+                               bool quick, const std::function<void()>& advance) {
+  if (!problem.has_beams()) {
+    const scene::ReadResult read = scene::read_scene_file(folder + "/" + problem.scene);
+    std::vector<PeerRun> runs = mujoco_runs_of(read.scene.value(), times, quick);
+    advance();
+    return runs;
+  }
   const std::map<std::string, PeerProblem> known = {{"spin_up", PeerProblem::SpinUp},
                                                     {"double_pendulum", PeerProblem::DoublePendulum}};
   const auto found = known.find(problem.name);
   if (found == known.end()) return {};
+  return mujoco_runs(found->second, times, quick, advance);
+}
+
+/// Rigid mechanisms take milliseconds: their times are medians, too.
+std::vector<PeerRun> timed_peer_runs(const std::string& folder, const SpeedProblem& problem,
+                                     const std::vector<double>& times, bool quick,
+                                     const std::function<void()>& advance) {
+  std::vector<PeerRun> runs = peer_runs(folder, problem, times, quick, advance);
+  if (problem.has_beams() || quick) return runs;
+  std::vector<std::vector<double>> seconds(runs.size());
+  for (int repetition = 0; repetition < kRepetitions; ++repetition) {
+    if (repetition > 0) runs = peer_runs(folder, problem, times, quick, advance);
+    for (std::size_t i = 0; i < runs.size(); ++i) seconds[i].push_back(runs[i].seconds);
+  }
+  for (std::size_t i = 0; i < runs.size(); ++i) runs[i].seconds = median(seconds[i]);
+  return runs;
+}
+
+std::vector<PeerOutcome> measure_peers(const std::string& folder, const SpeedProblem& problem,
+                                       const SpeedRun& reference, bool quick, const std::function<void()>& advance) {
   std::vector<double> times;
   for (std::size_t i = 0; i < reference.trajectory.size(); ++i)
     times.push_back(static_cast<double>(i) * problem.interval);
   std::vector<PeerOutcome> outcomes;
-  for (PeerRun& run : mujoco_runs(found->second, times, quick, advance)) {
+  for (PeerRun& run : timed_peer_runs(folder, problem, times, quick, advance)) {
     for (std::size_t i = 0; i < reference.frames.size() && i < run.probe.size(); ++i)
       run.probe[i] = in_frame(reference.frames[i], run.probe[i]);
     outcomes.push_back({run.program, run.variant, run.segments, run.step, run.seconds, run.completed,
@@ -136,13 +164,30 @@ std::vector<IterationCost> measure_iterations(const std::string& folder, bool qu
   return costs;
 }
 
-SpeedRun measure_demo(const std::string& folder, SpeedProblem problem, bool quick) {
-  problem.interval = 0.1;
-  const int repetitions = quick ? 1 : kRepetitions;
-  std::vector<SpeedRun> runs;
-  for (int i = 0; i < repetitions; ++i) runs.push_back(run_speed(folder, problem, {"auto", 0, 0, 1e-3}));
-  std::sort(runs.begin(), runs.end(), [](const SpeedRun& a, const SpeedRun& b) { return a.seconds < b.seconds; });
-  return runs[runs.size() / 2];
+SpeedRun run_real_time(const std::string& folder, const RealTimeScene& scene) {
+  SpeedProblem problem{scene.title, scene.title, scene.scene, scene.commands, scene.probe, scene.until,
+                       scene.until, {},          {}};
+  SpeedRun run = run_speed(folder, problem, {scene.scheme, 0, 0, 1e-3});
+  if (run.failure) throw std::runtime_error(scene.title + ": " + to_string(run.failure->reason));
+  return run;
+}
+
+std::vector<RealTimeOutcome> measure_real_time(const std::string& folder, bool quick) {
+  std::vector<RealTimeScene> scenes = real_time_scenes();
+  std::vector<std::vector<SpeedRun>> runs(scenes.size());
+  for (int repetition = 0; repetition < (quick ? 1 : kRepetitions); ++repetition)
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+      if (quick) scenes[i] = shortened(scenes[i]);
+      runs[i].push_back(run_real_time(folder, scenes[i]));
+    }
+  std::vector<RealTimeOutcome> outcomes;
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    const auto middle = runs[i].begin() + static_cast<long>(runs[i].size()) / 2;
+    std::nth_element(runs[i].begin(), middle, runs[i].end(),
+                     [](const SpeedRun& a, const SpeedRun& b) { return a.seconds < b.seconds; });
+    outcomes.push_back({scenes[i], std::move(*middle)});
+  }
+  return outcomes;
 }
 
 }  // namespace
@@ -173,6 +218,28 @@ const SpeedOutcome* SpeedMeasurement::fastest(double error, const std::string& s
   return best;
 }
 
+const PeerOutcome* SpeedMeasurement::fastest_peer(double error, const std::string& variant) const {
+  const PeerOutcome* best = nullptr;
+  for (const PeerOutcome& peer : peers)
+    if (peer.completed && peer.variant == variant && error_bound(peer.error) <= error &&
+        (!best || peer.seconds < best->seconds))
+      best = &peer;
+  return best;
+}
+
+double RealTimeOutcome::measured() const {
+  const double steps = static_cast<double>(run.steps), microseconds = 1e6 * run.seconds;
+  switch (scene.unit) {
+    case RealTimeScene::Unit::TimesRealTime:
+      return scene.until / run.seconds;
+    case RealTimeScene::Unit::MicrosecondsPerStep:
+      return microseconds / steps;
+    case RealTimeScene::Unit::MicrosecondsPerTwoIterations:
+      return 2 * microseconds / static_cast<double>(run.iterations);
+  }
+  return 0;
+}
+
 SpeedReport measure_speed(const std::string& folder, const std::vector<SpeedProblem>& problems, bool quick,
                           const std::function<void(double, const std::string&)>& progress) {
   SpeedReport report;
@@ -182,7 +249,7 @@ SpeedReport measure_speed(const std::string& folder, const std::vector<SpeedProb
   const auto reference_cost = [](const SpeedProblem& p) { return cost_of(p, p.reference); };
   for (const SpeedProblem& problem : problems) {
     all.push_back(quick ? shortened(problem) : problem);
-    whole += 3 * reference_cost(all.back());
+    whole += (problem.has_beams() ? 3 : 2) * reference_cost(all.back());
     for (const Discretisation& d : all.back().runs) whole += (quick ? 1 : kRepetitions) * cost_of(all.back(), d);
   }
   for (const SpeedProblem& problem : all) {
@@ -192,12 +259,12 @@ SpeedReport measure_speed(const std::string& folder, const std::vector<SpeedProb
     const SpeedRun reference = compute_reference(folder, measurement, [&] { advance(reference_cost(problem)); });
     measure_runs(folder, measurement, reference.trajectory, quick,
                  [&](const Discretisation& d) { advance(cost_of(problem, d)); });
-    measurement.peers =
-        measure_peers(problem, reference, quick, [&] { progress(done / whole, problem.name + ", other programs"); });
+    measurement.peers = measure_peers(folder, problem, reference, quick,
+                                      [&] { progress(done / whole, problem.name + ", other programs"); });
     if (problem.name == "right_angle_cantilever") report.iteration_costs = measure_iterations(folder, quick);
-    if (problem.name == "demo_arm") report.demo = measure_demo(folder, problem, quick);
     report.measurements.push_back(std::move(measurement));
   }
+  report.real_time = measure_real_time(folder, quick);
   return report;
 }
 

@@ -20,7 +20,7 @@ struct Discretisation {
   double step;   ///< [s]
   double tolerance = IntegratorDescription().tolerance;  ///< of Newton's method
 
-  std::string mesh() const;  ///< "8 x 2": elements and their order
+  std::string mesh() const;  ///< "8 x 2": elements and their order; "–": the scene file's
 };
 
 struct SpeedProblem {
@@ -33,6 +33,8 @@ struct SpeedProblem {
   std::vector<Discretisation> runs;
   std::string note = {};   ///< what the reader of the report should know
   std::string frame = {};  ///< link in whose frame the probe is compared; empty: the world
+
+  bool has_beams() const { return reference.elements > 0; }
 };
 
 /// A figure that flexarm shall reach, and the best of the public programs: tuned for this error, on one machine in one
@@ -45,10 +47,30 @@ struct SpeedTarget {
   std::string public_model;               ///< what was fastest there
 };
 
+/// Of MuJoCo's time for the same motion at the same error.
+struct PeerTarget {
+  std::string problem, variant;  ///< "RK4"
+  double error, ratio;           ///< flexarm's time over MuJoCo's, at most
+};
+
+/// A scene as it is, with its own mesh, in steps of 1 ms: how fast is it for somebody who just runs it?
+struct RealTimeScene {
+  enum class Unit { TimesRealTime, MicrosecondsPerStep, MicrosecondsPerTwoIterations };
+
+  std::string title, scene, commands, probe;  ///< see SpeedProblem
+  std::string scheme;
+  double until;  ///< [s]
+  Unit unit;     ///< of the target
+  double target;
+};
+
 std::vector<SpeedProblem> speed_problems();
 std::vector<SpeedTarget> speed_targets();
+PeerTarget peer_target();
+std::vector<RealTimeScene> real_time_scenes();
 /// Short runs, few of them: a test of the command, not a measurement.
 SpeedProblem shortened(SpeedProblem problem);
+RealTimeScene shortened(RealTimeScene scene);
 
 // ---------------------------------------------------------------- runs
 
@@ -97,7 +119,7 @@ struct SpeedOutcome {
 /// A run by another program.
 struct PeerOutcome {
   std::string program, variant;
-  int segments;          ///< per beam
+  int segments;          ///< per beam; 0: all is rigid
   double step, seconds;  ///< step; of the processor, for stepping [s]
   bool completed;
   double error;  ///< undefined unless completed
@@ -122,6 +144,8 @@ struct SpeedMeasurement {
   /// The fastest run whose error surely is at most so large, by this scheme (empty: any); null if there is none. That
   /// of the next finer run must be, too: else errors of mesh and step happened to cancel.
   const SpeedOutcome* fastest(double error, const std::string& scheme = {}) const;
+  /// The fastest of the other programs' runs whose error surely is at most so large; null if there is none.
+  const PeerOutcome* fastest_peer(double error, const std::string& variant) const;
 };
 
 /// Time per element and full Newton iteration, all included: steps of 0.05 s of the right-angle cantilever.
@@ -131,10 +155,19 @@ struct IterationCost {
   double seconds;  ///< of the processor
 };
 
+/// The run of median time.
+struct RealTimeOutcome {
+  RealTimeScene scene;
+  SpeedRun run;
+
+  /// In the scene's unit.
+  double measured() const;
+};
+
 struct SpeedReport {
   std::vector<SpeedMeasurement> measurements;
   std::vector<IterationCost> iteration_costs;
-  std::optional<SpeedRun> demo;  ///< with the scene's own mesh, scheme and step, 1 ms
+  std::vector<RealTimeOutcome> real_time;
   bool quick = false;
 };
 

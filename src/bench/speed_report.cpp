@@ -106,17 +106,20 @@ std::vector<PeerOutcome> peer_front(const SpeedMeasurement& m) {
 std::string peer_table(const SpeedMeasurement& m) {
   const long failed =
       std::count_if(m.peers.begin(), m.peers.end(), [](const PeerOutcome& peer) { return !peer.completed; });
-  std::string text = fmt::format(
-      "Other programs (`src/bench/mujoco.h`): chains of rigid segments with hinges, which have neither stretch nor "
-      "shear, so that their error tends to that of this model. Of {} runs, of which {} did not come to their end, "
-      "those than which none is both faster and more accurate:\n\n",
+  std::string text = "Other programs (`src/bench/mujoco.h`): ";
+  text += m.problem.has_beams() ? "chains of rigid segments with hinges, which have neither stretch nor shear, so that "
+                                  "their error tends to that of this model. "
+                                : "the same mechanism. ";
+  text += fmt::format(
+      "Of {} runs, of which {} did not come to their end, those than which none is both faster and more accurate:\n\n",
       m.peers.size(), failed);
   text += head({"program", "variant", "segments per beam", "step [s]", "error", "time [ms]",
                 "flexarm at that error [ms]", "how many times faster"});
   for (const PeerOutcome& peer : peer_front(m)) {
     const SpeedOutcome* best = m.fastest(peer.error);
-    text += row({peer.program, peer.variant, fmt::format("{}", peer.segments), fmt::format("{:g}", peer.step),
-                 error_text(m, peer.error), milliseconds(peer.seconds), best ? milliseconds(best->run.seconds) : "–",
+    text += row({peer.program, peer.variant, peer.segments > 0 ? fmt::format("{}", peer.segments) : "–",
+                 fmt::format("{:g}", peer.step), error_text(m, peer.error), milliseconds(peer.seconds),
+                 best ? milliseconds(best->run.seconds) : "–",
                  best ? fmt::format("{:.2g}", peer.seconds / best->run.seconds) : "–"});
   }
   return text;
@@ -160,6 +163,40 @@ std::string target_row(const SpeedMeasurement& m, const SpeedTarget& target) {
   return row(cells);
 }
 
+std::string real_time_row(const RealTimeOutcome& outcome) {
+  using Unit = RealTimeScene::Unit;
+  const RealTimeScene& scene = outcome.scene;
+  const bool more_is_better = scene.unit == Unit::TimesRealTime;
+  const char* unit = more_is_better                            ? "times real time"
+                     : scene.unit == Unit::MicrosecondsPerStep ? "µs per step"
+                                                               : "µs per two iterations";
+  const double measured = outcome.measured(), ratio = measured / scene.target;
+  const double steps = static_cast<double>(outcome.run.steps);
+  return row({fmt::format("{} [{}]", scene.title, unit), "–", fmt::format("{:g}", scene.target),
+              fmt::format("{:.3g}", measured), fmt::format("{:.2g}", ratio),
+              fmt::format("{}: {:.2f} iterations per step", verdict(more_is_better ? 1 / ratio : ratio),
+                          static_cast<double>(outcome.run.iterations) / steps)});
+}
+
+std::string peer_target_row(const SpeedMeasurement& m) {
+  const PeerTarget target = peer_target();
+  const SpeedOutcome* best = m.fastest(target.error);
+  const PeerOutcome* peer = m.fastest_peer(target.error, target.variant);
+  std::vector<std::string> cells = {
+      fmt::format("{}, {:g} s [time over MuJoCo {}'s]", target.problem, m.problem.until, target.variant),
+      fmt::format("{:g}", target.error), fmt::format("{:g}", target.ratio)};
+  if (!best || !peer) {
+    cells.insert(cells.end(), {"–", "–", peer ? "missed: no run is so accurate" : "no run of MuJoCo to compare with"});
+    return row(cells);
+  }
+  const double measured = best->run.seconds / peer->seconds, ratio = measured / target.ratio;
+  cells.insert(cells.end(),
+               {fmt::format("{:.3g}", measured), fmt::format("{:.2g}", ratio),
+                fmt::format("{}: {} ms, {}; {} ms, {:g} s", verdict(ratio), milliseconds(best->run.seconds),
+                            discretisation_text(best->discretisation), milliseconds(peer->seconds), peer->step)});
+  return row(cells);
+}
+
 std::string target_table(const SpeedReport& report) {
   std::string text = head({"what", "error", "target", "measured", "measured / target", "verdict"});
   for (const SpeedTarget& target : speed_targets())
@@ -172,13 +209,9 @@ std::string target_table(const SpeedReport& report) {
                  fmt::format("{:g}", 1e6 * target), fmt::format("{:.3g}", 1e6 * cost.seconds),
                  fmt::format("{:.2g}", ratio), verdict(ratio)});
   }
-  if (report.demo) {
-    constexpr double kTargetFactor = 40, kDemoStep = 1e-3;
-    const double factor = kDemoStep * static_cast<double>(report.demo->steps) / report.demo->seconds;
-    text += row({"demo arm at 1 kHz [times real time]", "–", fmt::format("{:g}", kTargetFactor),
-                 fmt::format("{:.3g}", factor), fmt::format("{:.2g}", factor / kTargetFactor),
-                 verdict(kTargetFactor / factor)});
-  }
+  for (const RealTimeOutcome& outcome : report.real_time) text += real_time_row(outcome);
+  for (const SpeedMeasurement& m : report.measurements)
+    if (m.problem.name == peer_target().problem) text += peer_target_row(m);
   return text;
 }
 

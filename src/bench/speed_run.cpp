@@ -79,7 +79,7 @@ Vector3 in_frame(const Pose& frame, const Vector3& point) {
 }
 
 std::string Discretisation::mesh() const {
-  return fmt::format("{} x {}", elements, order);
+  return elements > 0 ? fmt::format("{} x {}", elements, order) : "–";
 }
 
 double largest_displacement(const Trajectory& trajectory) {

@@ -142,6 +142,33 @@ TEST(Fastest, IsAccurateSurelyAndNotByChance) {
   EXPECT_EQ(m.fastest(4.5e-3), nullptr) << "the next finer run fails";
 }
 
+TEST(FastestPeer, IsAccurateSurelyAndOfTheVariant) {
+  SpeedMeasurement m;
+  m.step_error = 1e-4;
+  m.peers = {{"other", "RK4", 0, 0.1, 1, true, 1e-3},
+             {"other", "RK4", 0, 0.05, 2, true, 5e-4},
+             {"other", "Euler", 0, 0.01, 0.5, true, 1e-5},
+             {"other", "RK4", 0, 0.02, 0.1, false, 0}};
+  EXPECT_EQ(m.fastest_peer(1e-3, "RK4"), &m.peers[1]) << "the reference may be wrong by 1e-4";
+  EXPECT_EQ(m.fastest_peer(1e-2, "RK4"), &m.peers[0]);
+  EXPECT_EQ(m.fastest_peer(1e-4, "RK4"), nullptr);
+}
+
+TEST(RealTime, IsToldInTheUnitOfTheTarget) {
+  RealTimeOutcome outcome;
+  outcome.scene.until = 2;
+  outcome.run.seconds = 0.01;
+  outcome.run.steps = 2000;
+  outcome.run.iterations = 5000;
+  using Unit = RealTimeScene::Unit;
+  for (const auto& [unit, expected] : {std::pair{Unit::TimesRealTime, 200.0},
+                                       {Unit::MicrosecondsPerStep, 5.0},
+                                       {Unit::MicrosecondsPerTwoIterations, 4.0}}) {
+    outcome.scene.unit = unit;
+    EXPECT_NEAR(outcome.measured(), expected, 1e-12 * expected);
+  }
+}
+
 TEST(SpeedReport, HasEveryProblemAndFiniteNumbers) {
   double last = 0;
   const SpeedReport report = measure_speed(kConfig, speed_problems(), true, [&](double part, const std::string&) {
@@ -156,7 +183,9 @@ TEST(SpeedReport, HasEveryProblemAndFiniteNumbers) {
   }
   for (const SpeedTarget& target : speed_targets())
     EXPECT_NE(text.find("\n| " + target.problem + ", "), std::string::npos) << target.problem;
-  EXPECT_NE(text.find("\n| demo arm at 1 kHz "), std::string::npos);
+  for (const RealTimeScene& scene : real_time_scenes())
+    EXPECT_NE(text.find("\n| " + scene.title + " ["), std::string::npos) << scene.title;
+  EXPECT_NE(text.find("\n| six_joint_arm, 0.06 s [time over MuJoCo RK4's] "), std::string::npos);
   EXPECT_NE(text.find("](speed.png)"), std::string::npos);
   for (const std::string& output : {text, data})
     for (const char* word : {"nan", "inf"}) EXPECT_EQ(output.find(word), std::string::npos) << word;

@@ -17,7 +17,7 @@ constexpr int kSteps = 100, kJump = 50;
 
 /// Arms that swing freely; at step kJump a torque starts.
 struct Swing {
-  Model model = build_model(*scene::read_scene_file(source_path("config/examples/flexible_two_link_arm.urdf")).scene);
+  Model model = build_model(*scene::read_scene_file(test::source_path("config/examples/flexible_two_link_arm.urdf")).scene);
   Stepper stepper;
   State state = initial_state(model);
   int iterations = 0;

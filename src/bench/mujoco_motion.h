@@ -1,0 +1,82 @@
+#pragma once
+/// What all runs of MuJoCo share; only where flexarm is built with it.
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <mujoco/mujoco.h>
+
+#include "bench/mujoco.h"
+#include "bench/processor_time.h"
+
+namespace flexarm::bench {
+
+struct MujocoDeleter {
+  void operator()(mjModel* model) const { mj_deleteModel(model); }
+  void operator()(mjData* data) const { mj_deleteData(data); }
+};
+using MujocoModel = std::unique_ptr<mjModel, MujocoDeleter>;
+using MujocoData = std::unique_ptr<mjData, MujocoDeleter>;
+
+/// @throws std::runtime_error if the file, on disk or in memory, is none.
+inline MujocoModel mujoco_model(const std::string& file, const mjVFS* memory = nullptr) {
+  char error[1000] = "";
+  MujocoModel model(mj_loadXML(file.c_str(), memory, error, sizeof error));
+  if (!model) throw std::runtime_error(std::string("MuJoCo: ") + error);
+  return model;
+}
+
+inline MujocoData mujoco_data(const mjModel* model) {
+  MujocoData data(mj_makeData(model));
+  if (!data) throw std::runtime_error("MuJoCo: out of memory");
+  return data;
+}
+
+/// MuJoCo's global callbacks while runs go on; no log file in the working directory.
+class MujocoCallbacks {
+ public:
+  MujocoCallbacks() : control_(mjcb_control), warning_(mju_user_warning) {
+    mju_user_warning = [](const char*) {};
+  }
+  ~MujocoCallbacks() { mjcb_control = control_, mju_user_warning = warning_; }
+  MujocoCallbacks(const MujocoCallbacks&) = delete;
+  MujocoCallbacks& operator=(const MujocoCallbacks&) = delete;
+
+ private:
+  mjfGeneric control_;
+  void (*warning_)(const char*);
+};
+
+/// MuJoCo starts from the beginning where a number is not finite, and counts that as a warning.
+inline bool has_warned(const mjData* data) {
+  const auto warned = [&](int kind) { return data->warning[kind].number > 0; };
+  return warned(mjWARN_BADQPOS) || warned(mjWARN_BADQVEL) || warned(mjWARN_BADQACC);
+}
+
+/// Moves `motion`, which has advance(steps), is_sound() and tip(), through the times and records its tip; `run` has
+/// been filled in as to what it is.
+template <class Motion>
+PeerRun recorded(Motion& motion, PeerRun run, const std::vector<double>& times) {
+  constexpr double kCheckInterval = 1e-2;  // simulated time after which the motion is looked at [s]
+  const long stride = std::max(1L, std::lround(kCheckInterval / run.step));
+  long done = 0;
+  for (const double time : times) {
+    for (const long goal = std::lround(time / run.step); done < goal;) {
+      const long steps = std::min(stride, goal - done);
+      const double begin = processor_seconds();
+      motion.advance(steps);
+      run.seconds += processor_seconds() - begin;
+      done += steps;
+      if (!motion.is_sound()) return run;
+    }
+    run.probe.push_back(motion.tip());
+  }
+  run.completed = true;
+  return run;
+}
+
+}  // namespace flexarm::bench
