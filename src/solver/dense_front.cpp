@@ -37,7 +37,8 @@ constexpr double kRoundOff = 8 * std::numeric_limits<double>::epsilon();
 }
 
 [[gnu::always_inline]] inline Lanes absolute(const Lanes& value) {
-  return value < 0 ? -value : value;
+  const Lanes zero = {};
+  return value < zero ? -value : value;
 }
 
 /// Largest absolute value.
