@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """Prints the numbers of docs/demo.md.
 
-It makes variants of config/demo_arm.urdf (braked joints; the torques of config/demo_commands.yaml as <effort>), hands them
-to the command line program, and evaluates what comes out.
+It makes variants of config/demo_arm.urdf (braked joints; the torques of config/demo_commands.yaml as <effort>), hands
+them to the command line program, and evaluates what comes out.
 """
 
 import argparse
@@ -73,7 +73,8 @@ def commanded(commands):
 def run(program, tree, command, *options):
     with tempfile.NamedTemporaryFile(suffix=".urdf") as scene:
         tree.write(scene.name)
-        return subprocess.run([program, command, scene.name, *options], check=True, stdout=subprocess.PIPE, text=True).stdout
+        command_line = [program, command, scene.name, *options]
+        return subprocess.run(command_line, check=True, stdout=subprocess.PIPE, text=True).stdout
 
 
 def frequencies(program, tree, count):
@@ -81,7 +82,8 @@ def frequencies(program, tree, count):
     for element in tree.getroot().iter():
         for damping in element.findall("damping") + element.findall("dynamics"):
             element.remove(damping)
-    return [float(f) for f in re.findall(r"^mode \d+: (\S+) Hz", run(program, tree, "modes", "--count", str(count)), re.M)]
+    modes = run(program, tree, "modes", "--count", str(count))
+    return [float(f) for f in re.findall(r"^mode \d+: (\S+) Hz", modes, re.M)]
 
 
 def cross(a, b):
@@ -124,8 +126,8 @@ def show_manoeuvre(program, schedule):
     rows, duration = simulate(program, schedule["commands"], schedule["period"])
     print("largest deflection of each boom's end from its root's axis, demo:")
     show_largest_deflections(rows)
-    print("%8s %13s %13s %12s %12s %12s %14s" % ("time [s]", "upper [mm]", "lower [mm]", "kinetic [J]", "strain [J]", "work [J]",
-                                                "dissipated [J]"))
+    print("%8s %13s %13s %12s %12s %12s %14s" % ("time [s]", "upper [mm]", "lower [mm]", "kinetic [J]", "strain [J]",
+                                                "work [J]", "dissipated [J]"))
     for row in rows:
         if abs(row["time"] / 2 - round(row["time"] / 2)) < 1e-6:
             values = [1e3 * deflection(row, link, probe) for link, probe in BOOMS.items()]
@@ -139,7 +141,8 @@ def show_manoeuvre(program, schedule):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--scene", action="store_true", help="print the demo with its torques as a scene, and nothing else")
+    parser.add_argument("--scene", action="store_true",
+                        help="print the demo with its torques as a scene, and nothing else")
     parser.add_argument("program", nargs="?", default=os.path.join(ROOT, "devel/lib/flexarm/flexarm"))
     arguments = parser.parse_args()
     program = arguments.program

@@ -24,10 +24,11 @@ clean_environment() {
   mkdir -p "$ROS_LOG_DIR" "$HOME"
 }
 
-# Installs the Debian packages of dependencies.txt that are missing, and nothing else.
+# install_dependencies run|test: installs the Debian packages of dependencies.txt that are missing, and nothing else.
 install_dependencies() {
-  local package missing=()
+  local purpose=$1 package missing=()
   while read -r package _; do
+    [[ $package == \#---- && $purpose == run ]] && break
     [[ -z $package || $package == \#* ]] && continue
     dpkg-query --show --showformat='${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed ||
       missing+=("$package")

@@ -4,8 +4,8 @@
 ctest knows every program that ran; a gtest or rostest left its single tests in DIRECTORY as JUnit XML (the test-name of
 test/ros/NAME.test is NAME, so that its file can be found). A program without such a file, or that failed although each
 of its tests passed, counts as one test. Skipped are the tests that say so themselves, and disabled ones; a program that
-could not be started has failed. The last line is `N passed, N failed, N skipped`; the exit status is 1 if a test failed,
-or if none passed.
+could not be started has failed. The last line is `N passed, N failed, N skipped`; the exit status is 1 if a test
+failed, or if none passed.
 """
 
 import os

@@ -10,8 +10,8 @@ where `repeat` (1) and `every` say how often a command comes again, or
 
     {names: [joint, ...], table: [[s, N m or N, ...], ...], every: s}
 
-efforts that are linear between the times of a table; a command with the mean comes every `every`. The schedule follows the simulated time of
-flexarm/status, so that it pauses, slows down and starts again together with the simulation.
+efforts that are linear between the times of a table; a command with the mean comes every `every`. The schedule follows
+the simulated time of flexarm/status, so that it pauses, slows down and starts again together with the simulation.
 """
 
 import threading

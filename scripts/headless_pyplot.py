@@ -9,4 +9,6 @@ except ImportError:
     sys.exit(f"{os.path.basename(sys.argv[0])}: python3-matplotlib is not installed")
 
 matplotlib.use("Agg")
-from matplotlib import pyplot  # noqa: E402, F401
+from matplotlib import pyplot  # noqa: E402
+
+__all__ = ["pyplot"]

@@ -61,8 +61,8 @@ def draw(axes, rows, colours):
         axes.plot(*zip(*((row["error"], row["seconds"]) for row in group)), ".", color=colour, markersize=2, alpha=0.3)
         points = front(group)
         if points:
-            axes.plot(*zip(*points), "--" if is_peer else "-", marker="s" if is_peer else "o", markersize=3, linewidth=1,
-                      color=colour, label=name)
+            axes.plot(*zip(*points), "--" if is_peer else "-", marker="s" if is_peer else "o", markersize=3,
+                      linewidth=1, color=colour, label=name)
     for program, marker in (("target", "*"), ("public", "X")):
         points = [(row["error"], row["seconds"]) for row in rows if row["program"] == program]
         if points:

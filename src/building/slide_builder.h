@@ -11,7 +11,7 @@ class SlideBuilder {
  public:
   /// The plan and the mechanism must outlive it.
   SlideBuilder(const ScenePlan& plan, Mechanism& mechanism)
-      : plan_(plan), scene_(plan.scene), mechanism_(mechanism), model_(mechanism.model) {}
+      : plan_(plan), mechanism_(mechanism), model_(mechanism.model) {}
 
   /// Adds the section that slides along the parent's line; what the joint moves hangs on it.
   /// @throws ModelError
@@ -30,7 +30,6 @@ class SlideBuilder {
   std::vector<int> welded_beams(int link) const;
 
   const ScenePlan& plan_;
-  const scene::SceneDescription& scene_;
   Mechanism& mechanism_;
   Model& model_;
 };

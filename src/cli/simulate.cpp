@@ -105,8 +105,8 @@ int simulate(const Arguments& arguments) {
         "t = {:.6g} s after {} steps ({}, {:.2f} iterations per step, {} halvings), {:.3g} s of computing, {:.3g} "
         "times real time\n",
         simulation.time(), result.steps, simulation.scheme(),
-        result.steps > 0 ? static_cast<double>(result.iterations) / result.steps : 0.0, result.halvings, result.seconds,
-        result.seconds > 0 ? (simulation.time() - begin) / result.seconds : 0.0);
+        result.steps > 0 ? static_cast<double>(result.iterations) / static_cast<double>(result.steps) : 0.0,
+        result.halvings, result.seconds, result.seconds > 0 ? (simulation.time() - begin) / result.seconds : 0.0);
   return kDone;
 }
 

@@ -50,26 +50,15 @@ struct ElementSystem {
   }
 };
 
-/// Interpolated rotations of an element, with their variation only where it is wanted.
+/// Interpolated rotations of an element, with their variation only where it is wanted. `Nodes`: 2 to 5.
 template <int Nodes>
 class ElementRotations {
  public:
-  ElementRotations(const ElementNodes<Nodes>& nodes, bool with_variation) {
-    if (nodes.stiffness_reference) {
-      referenced_.emplace(nodes.parameters, nodes.rotation_vector);
-    } else {
-      local_.emplace(nodes.orientation);
-      if (with_variation) variation_.emplace(*local_);
-    }
-  }
+  ElementRotations(const ElementNodes<Nodes>& nodes, bool with_variation);
   /// `reference` is used by the interpolations that have one.
   InterpolatedRotation<double> evaluate(const NodalValues<Nodes>& shape, const NodalValues<Nodes>& derivative,
                                         const InterpolatedRotation<double>* reference,
-                                        GeneralisedShapeFunctions<Nodes>& generalised) const {
-    if (variation_) return variation_->evaluate(shape, derivative, generalised);
-    if (local_) return local_->evaluate(shape, derivative);
-    return referenced_->evaluate(shape, derivative, *reference, generalised);
-  }
+                                        GeneralisedShapeFunctions<Nodes>& generalised) const;
 
  private:
   std::optional<LocalRotations<Nodes>> local_;

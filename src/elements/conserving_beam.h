@@ -8,6 +8,8 @@
 /// in world axes: the linearisation of a point has few of them that are not zero, and fewer still where the section
 /// couples no forces with curvatures.
 
+#include <cassert>
+
 #include "elements/conserving_point.h"
 #include "elements/strain_dampers.h"
 #include "math/cayley.h"
@@ -137,6 +139,8 @@ void conserving_beam(const ConservingElement<Nodes, S>& element, const BeamNodes
   const bool is_symmetric = rule.mid_functions == MidFunctions::Symmetric;
   const bool is_corrected = rule.correction == EnergyCorrection::Multiplier;
   const bool has_memory = rule.dissipation.any() || element.has_stiffness_damping;
+  assert(step != 0 && begin && end);
+  assert(!has_memory || (memory && end_memory));
   conserving::set_translation<Nodes, S>(element, nodes, rule.velocity_factor(), step, with_tangent, system);
 
   std::array<Point<Nodes, S>, kPoints> points;

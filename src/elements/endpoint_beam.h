@@ -2,6 +2,8 @@
 /// Beam residual and tangent at one configuration: statics, natural modes and the Newmark family
 /// (beam.md 2.2, 2.5, 3.1).
 
+#include <cassert>
+
 #include "elements/beam_point.h"
 #include "math/so3.h"
 
@@ -32,19 +34,8 @@ struct PointTangent {
 };
 
 /// `stress_slope`: d(stress)/d(strain) = stress_slope * stiffness (1, or more with damping).
-inline PointTangent point_tangent(const PointKinematics& point, const Matrix6& stiffness, double stress_slope,
-                                  const Vector3& n, const Vector3& m) {
-  const Matrix3& rotation = point.rotation;
-  const Eigen::Matrix<double, 6, 9> stress = stress_slope * stiffness.lazyProduct(strain_derivative(point));
-  PointTangent d;
-  d.resultants.topRows<3>().noalias() = rotation.lazyProduct(stress.topRows<3>());
-  d.resultants.bottomRows<3>().noalias() = rotation.lazyProduct(stress.bottomRows<3>());
-  d.resultants.block<3, 3>(0, 3) -= so3::hat(n);
-  d.resultants.block<3, 3>(3, 3) -= so3::hat(m);
-  d.couple = so3::hat(point.tangent) * d.resultants.topRows<3>();
-  d.couple.leftCols<3>() -= so3::hat(n);
-  return d;
-}
+PointTangent point_tangent(const PointKinematics& point, const Matrix6& stiffness, double stress_slope,
+                           const Vector3& n, const Vector3& m);
 
 /// Stress at a point with stiffness-proportional damping.
 struct PointStress {
@@ -86,19 +77,10 @@ struct SpinForm {
   static constexpr bool kVariesSpins = true;  ///< columns need the generalised shape functions
 
   /// Adds the virtual work of a stiffness point and its tangent.
-  template <int Nodes, class Constants>
-  static void add_point(const Constants& constants, const ElementNodes<Nodes>&,
+  template <int Nodes>
+  static void add_point(const typename BeamElement<Nodes>::StiffnessPoint& constants, const ElementNodes<Nodes>& nodes,
                         const GeneralisedShapeFunctions<Nodes>& generalised, const endpoint::PointForces& point,
-                        bool with_tangent, ElementSystem<Nodes>& system) {
-    const LagrangeTests<Nodes> tests{constants.shape, constants.derivative};
-    add_point_residual<Nodes>(constants.weight, constants.derivative, tests, point.n, point.m, point.kinematics.tangent,
-                              system.residual);
-    if (!with_tangent) return;
-    const endpoint::PointTangent d =
-        endpoint::point_tangent(point.kinematics, point.stiffness, point.stress_slope, point.n, point.m);
-    add_point_tangent<Nodes>(constants.weight, tests, {constants.derivative, generalised}, d.resultants, d.couple,
-                             system.tangent);
-  }
+                        bool with_tangent, ElementSystem<Nodes>& system);
 };
 
 /// Internal forces of one element at the end configuration; its stiffness points go to `end`. With a rule (dynamics):
@@ -108,6 +90,8 @@ template <int Nodes, class Form = SpinForm>
 void endpoint_internal(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const NewmarkRule* rule,
                        const PointKinematics* begin, const Vector6* strain_rates, bool with_tangent,
                        PointKinematics* end, Vector6* new_strain_rates, ElementSystem<Nodes>& system) {
+  assert(end && new_strain_rates);
+  assert(!rule || (begin && strain_rates && rule->step != 0));
   const ElementRotations<Nodes> rotations(nodes, with_tangent && Form::kVariesSpins);
   for (int k = 0; k < BeamElement<Nodes>::kStiffnessPoints; ++k) {
     const auto& constants = element.stiffness_points[k];
@@ -129,28 +113,11 @@ void endpoint_internal(const BeamElement<Nodes>& element, const ElementNodes<Nod
 /// Newmark translational inertia.
 template <int Nodes>
 void newmark_translation(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const NewmarkRule& rule,
-                         bool with_tangent, ElementSystem<Nodes>& system) {
-  std::array<Vector3, Nodes> acceleration;
-  for (int i = 0; i < Nodes; ++i)
-    acceleration[i] = rule.acceleration(nodes.end[i] - nodes.begin[i], nodes.velocity[i], nodes.acceleration[i]);
-  add_translational<Nodes>(element.mass, acceleration, rule.acceleration_slope(), with_tangent, system);
-}
+                         bool with_tangent, ElementSystem<Nodes>& system);
 
 /// Mass-proportional damping by the velocity at t_{n+1+alpha}.
 template <int Nodes>
 void newmark_mass_damping(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const NewmarkRule& rule,
-                          bool with_tangent, ElementSystem<Nodes>& system) {
-  if (element.mass_damping == 0) return;
-  std::array<Vector3, Nodes> force;
-  for (int i = 0; i < Nodes; ++i) {
-    const Vector3 a = rule.acceleration(nodes.end[i] - nodes.begin[i], nodes.velocity[i], nodes.acceleration[i]);
-    const Vector3 v = rule.velocity(nodes.velocity[i], nodes.acceleration[i], a);
-    force[i] = element.mass_damping * ((1 + rule.alpha) * v - rule.alpha * nodes.velocity[i]);
-    for (int j = 0; j < Nodes; ++j)
-      system.dissipated += element.mass(i, j) * force[i].dot(nodes.end[j] - nodes.begin[j]);
-  }
-  add_translational<Nodes>(element.mass, force, element.mass_damping * (1 + rule.alpha) * rule.velocity_slope(),
-                           with_tangent, system);
-}
+                          bool with_tangent, ElementSystem<Nodes>& system);
 
 }  // namespace flexarm

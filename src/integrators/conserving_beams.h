@@ -33,7 +33,7 @@ class ConservingBeams : public BeamFamily {
     std::array<int, Pack::kLanes> first_block, first_stiffness_point;
     ConservingElement<Nodes, Pack> element;
     ElementFunctions<Nodes, Pack> mid_functions;
-    std::array<std::array<PointKinematicsT<Pack>, Nodes - 1>, 2> points;  // at the begin and at the end
+    std::array<std::array<PointKinematicsT<Pack>, Nodes - 1>, 2> points;  // at the beginning and at the end
   };
   template <int Nodes>
   using PackGroup = std::vector<ElementPack<Nodes>>;

@@ -32,13 +32,7 @@ double scale_of(const Model& model, const Coordinate& coordinate) {
 
 std::size_t most_slide_nodes(const Model& model) {
   std::size_t most = 0;
-  for (const SlideLine& line : model.slide_lines) {
-    const int pieces = static_cast<int>(line.pieces.size());
-    for (int p = 0; p < pieces; ++p) {
-      const NodeRange active = line.support(p, std::min(p + SlideLine::kMostPieces, pieces) - 1);
-      most = std::max(most, static_cast<std::size_t>(active.end - active.first));
-    }
-  }
+  for (const SlideLine& line : model.slide_lines) most = std::max(most, line.most_active_nodes());
   return most;
 }
 

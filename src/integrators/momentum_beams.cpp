@@ -47,7 +47,7 @@ void MomentumBeams::add_forces(Balance& balance) {
       add_rotary(element, nodes, tangent, energy, sum);
     };
     momentum_beam<N>(element, nodes, configuration_.scheme(), &points_.begin_stiffness[first], configuration_.step(),
-                     rotary, balance.tangent != nullptr, &points_.end_stiffness[first], system);
+                     std::cref(rotary), balance.tangent != nullptr, &points_.end_stiffness[first], system);
     scatter(element, system, balance);
   });
 }

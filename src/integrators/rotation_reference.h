@@ -18,7 +18,7 @@ class RotationReference {
   bool is_used() const { return interpolation_ != Interpolation::Local; }
   /// Adds to a state what this interpolation keeps there, for the configuration of the model.
   void initialise(State& state) const;
-  /// The configuration at the begin of a step.
+  /// The configuration at the beginning of a step.
   void begin(const State& state);
   /// Rotation vectors of the trial configuration. The iterative interpolation moves its reference there.
   void set_trial(const std::vector<NodePose>& nodes);

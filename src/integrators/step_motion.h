@@ -9,7 +9,7 @@
 namespace flexarm {
 
 struct StepMotion {
-  const State& state;  ///< at the begin
+  const State& state;  ///< at the beginning
   const std::vector<NodePose>&begin, &end;
   const std::vector<Vector3>& increments;  ///< tangent-scaled
   double step;                             ///< [s]

@@ -132,6 +132,7 @@ std::vector<Vector6> StepSystem::nodal_forces(const State& state) {
   Balance balance{rows_, nullptr};
   add_forces(balance);
   std::vector<Vector6> forces;
+  forces.reserve(dof_.node_count);
   for (int i = 0; i < dof_.node_count; ++i) forces.push_back(rows_.node(i));
   return forces;
 }

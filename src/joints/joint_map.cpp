@@ -34,7 +34,9 @@ Matrix3 joint_rotation(const JointMap& joint, const NodePose& master) {
 
 /// The slave's lever arm from the master node, Lambda_m b + B (displacement), world axes.
 Vector3 lever_arm(const JointMap& joint, const NodePose& master, const Released& released) {
-  if (joint.kind == JointMapKind::Rigid) return master.rotation * joint.origin.position;
+  const bool travels =
+      joint.kind != JointMapKind::Rigid && (joint.kind != JointMapKind::Scalar || !joint.translation.isZero(0));
+  if (!travels) return master.rotation * joint.origin.position;
   return master.rotation * (joint.origin.position + joint.origin.orientation * displacement(joint, released));
 }
 
@@ -61,92 +63,46 @@ ScaledRate scaled_rate(double x) {
   return {2 * t / x, ((1 + t * t) - 2 * t / x) / x};
 }
 
-/// hat(a) hat(b).
-Matrix3 twice_crossed(const Vector3& a, const Vector3& b) {
-  Matrix3 result = b * a.transpose();
-  result.diagonal().array() -= a.dot(b);
-  return result;
-}
-
-/// S(w)^-T a.
-Vector3 by_transposed_inverse_tangent(const Vector3& w, const Vector3& a) {
-  return a + 0.5 * w.cross(a) + (0.25 * w.dot(a)) * w;
-}
-
-/// What a joint does over a step.
-struct JointStep {
-  const NodePose &master_begin, &master_end;
-  const Released &begin, &end;
-  double arm_weight;
-
-  Vector3 master_increment() const { return cayley::increment(master_begin.orientation, master_end.orientation); }
-};
-
-/// incremental_maps of Scalar: one column, so that axes take the place of the joint frame's matrices.
-void set_scalar_maps(const JointMap& joint, const JointStep& step, const Vector6& g, FoldMaps& maps,
-                     bool with_tangent) {
-  const double from = step.begin.displacement[0], to = step.end.displacement[0], du = to - from;
-  const Vector3 w = step.master_increment();
-  // Axes at the beginning, fixed to the master and in the world.
-  const Vector3 travel_axis = joint.origin.orientation * joint.translation,
-                turn_axis = joint.origin.orientation * joint.rotation;
-  const Vector3 travel = step.master_begin.rotation * travel_axis, turn = step.master_begin.rotation * turn_axis;
-  const double angle = joint.rotation.norm();
-  const ScaledRate rate = scaled_rate(du * angle);
-  const double scaled_du = rate.value * du;
-  const double c = 1 / (1 - 0.25 * scaled_du * w.dot(turn));
-  const TravelRate travel_of = travel_rate(joint, from, to);
-  const Vector3 mean_travel = travel + 0.5 * w.cross(travel);
-  const Vector3 mean_turn = c * by_transposed_inverse_tangent(w, turn);
-  maps.left.col(0) << travel_of.secant * mean_travel, rate.value * mean_turn;
+/// Joints with one coordinate, without lever arms: the formulas of incremental_maps() for all joints, in which matrices
+/// act on the axis of rotation and the direction of travel alone.
+void incremental_scalar_maps(const JointMap& joint, const NodePose& master_begin, const NodePose& master_end,
+                             const Released& begin, const Released& end, const Vector6& g, FoldMaps& maps,
+                             bool with_tangent, double arm_weight) {
+  const auto in_world = [&](const NodePose& master, const Vector3& v) {
+    return Vector3(master.rotation * (joint.origin.orientation * v));
+  };
+  const Vector3 axis = in_world(master_begin, joint.rotation), direction = in_world(master_begin, joint.translation);
+  const Vector3 w = cayley::increment(master_begin.orientation, master_end.orientation);
+  const auto transposed_inverse_tangent = [&](const Vector3& v) {  // S(w)^-T v
+    return Vector3(v + 0.5 * w.cross(v) + (0.25 * w.dot(v)) * w);
+  };
+  const double step = end.displacement[0] - begin.displacement[0], angle = joint.rotation.norm();
+  const ScaledRate rate = scaled_rate(step * angle);
+  const Vector3 turn = rate.value * step * axis;
+  const double c = 1 / (1 - 0.25 * w.dot(turn));
+  const Vector3 left_axis = c * transposed_inverse_tangent(axis), left_direction = direction + 0.5 * w.cross(direction);
+  const TravelRate travel_of = travel_rate(joint, begin.displacement[0], end.displacement[0]);
+  maps.left.resize(6, 1);
+  maps.left.col(0) << travel_of.secant * left_direction, rate.value * left_axis;
   if (!with_tangent) return;
 
   const Vector3 force = g.head<3>(), moment = g.tail<3>();
-  const Vector3 end_travel = travel_of.slope * (step.master_end.rotation * travel_axis);
-  maps.right.col(0) << end_travel, step.master_end.rotation * turn_axis;
-  // d(rate)/du at constant moment about the axis, and that moment through c: d(scaled_du)/du = 1 + |turned|^2/4.
-  const double axis_moment = mean_turn.dot(moment);
-  maps.released_released(0, 0) =
-      axis_moment * (rate.derivative * angle +
-                     rate.value * 0.25 * c * w.dot(turn) * (1 + 0.25 * scaled_du * scaled_du * angle * angle)) +
-      travel_of.secant_derivative * force.dot(mean_travel);
-  // By the master's scaled increment, then by its spin.
-  const Vector3 moment_by_increment = c * (0.5 * turn.cross(moment) + (0.25 * w.dot(turn)) * moment +
-                                           (0.25 * (w.dot(moment) + scaled_du * axis_moment)) * turn);
-  const Vector3 by_increment = (0.5 * travel_of.secant) * travel.cross(force) + rate.value * moment_by_increment;
-  maps.released_master.row(0).tail<3>() = by_transposed_inverse_tangent(w, by_increment).transpose();
-  maps.master_released.col(0).tail<3>() = -step.arm_weight * force.cross(end_travel);
-}
-
-/// incremental_maps of Spherical and Free.
-void set_rotational_maps(const JointMap& joint, const JointStep& step, const Vector6& g, FoldMaps& maps,
-                         bool with_tangent) {
-  // Rows conjugate to the relative translation and to the tangent-scaled relative rotation, joint frame.
-  const Vector3 force = g.head<3>(), moment = g.tail<3>();
-  const Matrix3 B0 = joint_rotation(joint, step.master_begin);
-  const Vector3 w = step.master_increment();
-  const Matrix3 S_inverse = cayley::inverse_tangent(w);
-  const Vector3 turn = cayley::increment(step.begin.rotation, step.end.rotation);
-  const Vector3 turn_world = B0 * turn;
-  const double c = 1 / (1 - 0.25 * w.dot(turn_world));
-  const Matrix3 N22 = c * S_inverse.transpose() * B0;
-  if (joint.kind == JointMapKind::Free) maps.left.topLeftCorner<3, 3>() = B0 + 0.5 * hat(w) * B0;
-  maps.left.bottomRightCorner<3, 3>() = N22;
-  if (!with_tangent) return;
-
-  const Matrix3 rotation = joint_rotation(joint, step.master_end);
-  const Vector3 row_phi = N22.transpose() * moment;
-  if (joint.kind == JointMapKind::Free) {
-    maps.right.topLeftCorner<3, 3>() = rotation;
-    maps.released_master.topRightCorner<3, 3>() = 0.5 * B0.transpose() * hat(force) * S_inverse;
-    maps.master_released.bottomLeftCorner<3, 3>() = -step.arm_weight * hat(force) * rotation;
-  }
-  maps.right.bottomRightCorner<3, 3>() = rotation;
-  maps.released_released.bottomRightCorner<3, 3>() =
-      0.25 * c * row_phi * (B0.transpose() * w).transpose() * cayley::inverse_tangent(turn);
-  maps.released_master.bottomRightCorner<3, 3>() =
-      (c * B0.transpose() * cayley::xi_inverse_tangent(w, moment) + 0.25 * c * row_phi * turn_world.transpose()) *
-      S_inverse;
+  const Vector3 travel = travel_of.slope * in_world(master_end, joint.translation);
+  maps.right.resize(6, 1);
+  maps.right.col(0) << travel, in_world(master_end, joint.rotation);
+  const double axis_moment = left_axis.dot(moment), turned = w.dot(axis);
+  maps.released_released.resize(1, 1);
+  maps.released_released(0, 0) = rate.derivative * angle * axis_moment +
+                                 rate.value * axis_moment * 0.25 * c * turned * (1 + 0.25 * turn.squaredNorm()) +
+                                 travel_of.secant_derivative * force.dot(left_direction);
+  const Vector3 varied = 0.5 * moment.cross(axis) - (0.25 * turned) * moment - (0.25 * w.dot(moment)) * axis;
+  maps.released_master.resize(1, 6);
+  maps.released_master.row(0) << 0, 0, 0,
+      transposed_inverse_tangent(0.5 * travel_of.secant * direction.cross(force) +
+                                 (rate.value * c) * (0.25 * axis_moment * turn - varied))
+          .transpose();
+  maps.master_released.resize(6, 1);
+  maps.master_released.col(0) << 0, 0, 0, -arm_weight * force.cross(travel);
 }
 
 }  // namespace
@@ -195,7 +151,7 @@ void variational_maps(const JointMap& joint, const NodePose& master, const Relea
   const Vector3 force = g.head<3>(), moment = g.tail<3>();
   set_sizes(count, maps);
   maps.lever_left = maps.lever_right = lever;
-  maps.master_master.bottomRightCorner<3, 3>() = twice_crossed(force, lever);
+  maps.master_master.bottomRightCorner<3, 3>() = hat(force) * hat(lever);
 
   switch (joint.kind) {
     case JointMapKind::Rigid:
@@ -229,18 +185,47 @@ void incremental_maps(const JointMap& joint, const NodePose& master_begin, const
                       const Released& begin, const Released& end, const Vector6& g, FoldMaps& maps, bool with_tangent,
                       double arm_weight) {
   const int count = released_count(joint.kind);
-  if (with_tangent)
-    set_sizes(count, maps);
-  else
-    maps.left.setZero(6, count);
   const Vector3 lever = lever_arm(joint, master_end, end);
   maps.lever_left = (1 - arm_weight) * lever_arm(joint, master_begin, begin) + arm_weight * lever;
   maps.lever_right = lever;
-  if (with_tangent) maps.master_master.bottomRightCorner<3, 3>() = arm_weight * twice_crossed(g.head<3>(), lever);
-  if (joint.kind == JointMapKind::Scalar)
-    set_scalar_maps(joint, {master_begin, master_end, begin, end, arm_weight}, g, maps, with_tangent);
-  else if (joint.kind != JointMapKind::Rigid)
-    set_rotational_maps(joint, {master_begin, master_end, begin, end, arm_weight}, g, maps, with_tangent);
+  const Vector3 force = g.head<3>(), moment = g.tail<3>();
+  if (joint.kind == JointMapKind::Scalar) {
+    if (with_tangent) maps.master_master.setZero();
+    incremental_scalar_maps(joint, master_begin, master_end, begin, end, g, maps, with_tangent, arm_weight);
+  } else if (with_tangent) {
+    set_sizes(count, maps);
+  } else {
+    maps.left.setZero(6, count);
+  }
+  if (with_tangent)
+    maps.master_master.bottomRightCorner<3, 3>() =
+        arm_weight * (lever * force.transpose()) - (arm_weight * force.dot(lever)) * Matrix3::Identity();
+  if (joint.kind == JointMapKind::Rigid || joint.kind == JointMapKind::Scalar) return;
+
+  // Rows conjugate to the relative translation and to the tangent-scaled relative rotation, joint frame.
+  const Matrix3 B0 = joint_rotation(joint, master_begin);
+  const Vector3 w = cayley::increment(master_begin.orientation, master_end.orientation);
+  const Matrix3 S_inverse = cayley::inverse_tangent(w);
+  const Vector3 turn = released_increment(joint, begin, end).tail<3>(), turn_world = B0 * turn;
+  const double c = 1 / (1 - 0.25 * w.dot(turn_world));
+  const Matrix3 N22 = c * S_inverse.transpose() * B0;
+  if (joint.kind == JointMapKind::Free) maps.left.topLeftCorner<3, 3>() = B0 + 0.5 * hat(w) * B0;
+  maps.left.bottomRightCorner<3, 3>() = N22;
+  if (!with_tangent) return;
+
+  const Matrix3 rotation = joint_rotation(joint, master_end);
+  const Vector3 row_phi = N22.transpose() * moment, w_joint = B0.transpose() * w;
+  if (joint.kind == JointMapKind::Free) {
+    maps.right.topLeftCorner<3, 3>() = rotation;
+    maps.released_master.topRightCorner<3, 3>() = 0.5 * B0.transpose() * hat(force) * S_inverse;
+    maps.master_released.bottomLeftCorner<3, 3>() = -arm_weight * hat(force) * rotation;
+  }
+  maps.right.bottomRightCorner<3, 3>() = rotation;
+  maps.released_released.bottomRightCorner<3, 3>() =
+      0.25 * c * row_phi * w_joint.transpose() * cayley::inverse_tangent(turn);
+  maps.released_master.bottomRightCorner<3, 3>() =
+      (c * B0.transpose() * cayley::xi_inverse_tangent(w, moment) + 0.25 * c * row_phi * turn_world.transpose()) *
+      S_inverse;
 }
 
 Vector6 slave_velocity(const JointMap& joint, const NodePose& master, const Released& released,

@@ -153,6 +153,8 @@ class IncrementalMaps {
         end_{travel.line, travel.end},
         piece_from_(line_.piece_at(travel.from)),
         piece_to_(line_.piece_at(travel.to)),
+        begin_jumps_(jumps(begin_)),
+        end_jumps_(jumps(end_)),
         change_(travel.to - travel.from),
         rule_(slide::contact_rule(travel.step(), travel.arm_weight)),
         force_(g.head<3>()),
@@ -161,8 +163,8 @@ class IncrementalMaps {
         weights_(travel, travel.to, first_active()) {
     slide::set_active(line_, piece_from_, piece_to_, with_tangent, maps);
     if (with_tangent) {
-      from_.emplace(line_, piece_from_, travel.from, end_);
-      to_.emplace(line_, piece_to_, travel.to, end_);
+      from_.emplace(line_, piece_from_, travel.from, end_, end_jumps_.from);
+      to_.emplace(line_, piece_to_, travel.to, end_, end_jumps_.to);
     }
     set_rows();
     if (!with_tangent) return;
@@ -172,6 +174,16 @@ class IncrementalMaps {
   }
 
  private:
+  /// At the borders of the pieces where the travel begins and ends, in one configuration.
+  struct Jumps {
+    slide::CurvatureJumps<double> from, to;
+  };
+  Jumps jumps(const slide::LineNodes& nodes) const {
+    Jumps out;
+    out.from = slide::curvature_jumps<double>(line_, piece_from_, nodes);
+    out.to = piece_to_ == piece_from_ ? out.from : slide::curvature_jumps<double>(line_, piece_to_, nodes);
+    return out;
+  }
   double contact(int j) const { return (1 - rule_.weight) * weights_.begin[j] + rule_.weight * weights_.end[j]; }
 
   int first_active() const {
@@ -184,16 +196,16 @@ class IncrementalMaps {
   double middle() const { return 0.5 * (travel_.from + travel_.to); }
 
   RotationSplit split_rotation() const {
-    const slide::Frame<double> at_00 = frame_at(line_, piece_from_, travel_.from, begin_),
-                               at_10 = frame_at(line_, piece_to_, travel_.to, begin_);
+    const slide::Frame<double> at_00 = frame_at(line_, piece_from_, travel_.from, begin_, begin_jumps_.from),
+                               at_10 = frame_at(line_, piece_to_, travel_.to, begin_, begin_jumps_.to);
     Frames frames{at_00.rotation, {}, at_10.rotation, {}, at_10.spatial_curvature, {}};
     if (from_) {
       frames.at_01 = from_->rotation;
       frames.at_11 = to_->rotation;
       frames.curvature_11 = to_->spatial_curvature;
     } else {
-      frames.at_01 = frame_at(line_, piece_from_, travel_.from, end_).rotation;
-      frames.at_11 = frame_at(line_, piece_to_, travel_.to, end_).rotation;
+      frames.at_01 = frame_at(line_, piece_from_, travel_.from, end_, end_jumps_.from).rotation;
+      frames.at_11 = frame_at(line_, piece_to_, travel_.to, end_, end_jumps_.to).rotation;
     }
     if (!is_short()) return {frames, rule_.weight, change_, false, Vector3::Zero(), Vector3::Zero()};
     const int piece = line_.piece_at(middle());
@@ -337,6 +349,7 @@ class IncrementalMaps {
   const SlideLine& line_;
   slide::LineNodes begin_, end_;
   int piece_from_, piece_to_;
+  Jumps begin_jumps_, end_jumps_;
   double change_;  // Delta X
   slide::ContactRule rule_;
   Vector3 force_, moment_;

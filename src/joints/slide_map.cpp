@@ -1,6 +1,7 @@
 #include "joints/slide_map.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "slide_step.h"
 
@@ -20,6 +21,7 @@ void slide::set_active(const SlideLine& line, int piece, int other_piece, bool w
   const NodeRange active = line.support(std::min(piece, other_piece), std::max(piece, other_piece));
   maps.first = active.first;
   maps.count = active.end - active.first;
+  assert(maps.first >= 0 && maps.count > 0);
   maps.left.assign(maps.count, Matrix6::Zero());
   maps.right.assign(maps.count, Matrix6::Zero());
   if (!with_tangent) return;

@@ -228,14 +228,29 @@ Frame<S> element_frame(const SlidePiece& piece, const S& arc_length, const Poses
   return out;
 }
 
-/// What a smooth line's frame is turned by, psi = sum H (jump of k), and its derivative over the arc length.
+/// Shares of the jumps of k at the smoothed borders of a piece, in their order: what the smoothing of its frames is
+/// made of, wherever they are.
+template <typename S>
+using CurvatureJumps = std::array<Vector3T<S>, 2>;
 template <typename S, class Poses>
+CurvatureJumps<S> curvature_jumps(const SlideLine& line, int index, const Poses& poses) {
+  CurvatureJumps<S> jumps;
+  int count = 0;
+  for_each_smoothed_border(line, index, [&](int neighbour, double border, double share, const Hermite&) {
+    jumps[count++] = S(share) * (element_frame(line.pieces[neighbour], S(border), poses).spatial_curvature -
+                                 element_frame(line.pieces[index], S(border), poses).spatial_curvature);
+  });
+  return jumps;
+}
+
+/// What a smooth line's frame is turned by, psi = sum H (jump of k), and its derivative over the arc length.
+template <typename S>
 std::pair<Vector3T<S>, Vector3T<S>> frame_smoothing(const SlideLine& line, int index, const S& arc_length,
-                                                    const Poses& poses) {
+                                                    const CurvatureJumps<S>& jumps) {
   Vector3T<S> turn = Vector3T<S>::Zero(), slope = Vector3T<S>::Zero();
-  for_each_smoothed_border(line, index, [&](int neighbour, double border, double share, const Hermite& hermite) {
-    const Vector3T<S> jump = S(share) * (element_frame(line.pieces[neighbour], S(border), poses).spatial_curvature -
-                                         element_frame(line.pieces[index], S(border), poses).spatial_curvature);
+  int count = 0;
+  for_each_smoothed_border(line, index, [&](int, double, double, const Hermite& hermite) {
+    const Vector3T<S>& jump = jumps[count++];
     turn += hermite.value(arc_length) * jump;
     slope += hermite.slope(arc_length) * jump;
   });
@@ -246,15 +261,20 @@ std::pair<Vector3T<S>, Vector3T<S>> frame_smoothing(const SlideLine& line, int i
 
 /// Rotation and curvature only, in the piece `index`; `poses(i)`: PoseT<S> of the line's node i.
 template <typename S, class Poses>
-slide::Frame<S> frame_at(const SlideLine& line, int index, const S& arc_length, const Poses& poses) {
+slide::Frame<S> frame_at(const SlideLine& line, int index, const S& arc_length, const Poses& poses,
+                         const slide::CurvatureJumps<S>& jumps) {
   slide::Frame<S> frame = slide::element_frame(line.pieces[index], arc_length, poses);
   if (!line.smooth) return frame;
-  const auto [turn, slope] = slide::frame_smoothing(line, index, arc_length, poses);
+  const auto [turn, slope] = slide::frame_smoothing(line, index, arc_length, jumps);
   const so3::ExponentialMap<S> map(turn);
   const Matrix3T<S> rotation = map.rotation();
   frame.rotation = (rotation * frame.rotation).eval();
   frame.spatial_curvature = (map.tangent() * slope + rotation * frame.spatial_curvature).eval();
   return frame;
+}
+template <typename S, class Poses>
+slide::Frame<S> frame_at(const SlideLine& line, int index, const S& arc_length, const Poses& poses) {
+  return frame_at(line, index, arc_length, poses, slide::curvature_jumps<S>(line, index, poses));
 }
 
 /// The section at arc length X.

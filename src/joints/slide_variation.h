@@ -9,7 +9,12 @@ namespace flexarm {
 /// curvature varies as d(k) = sum_i derivatives[i] spin_{first + i} + spin x k. They sum to I and to 0.
 struct FrameVariation {
   template <class Poses>
-  FrameVariation(const SlideLine& line, int index, double arc_length, const Poses& poses) {
+  FrameVariation(const SlideLine& line, int index, double arc_length, const Poses& poses)
+      : FrameVariation(line, index, arc_length, poses, slide::curvature_jumps<double>(line, index, poses)) {}
+
+  template <class Poses>
+  FrameVariation(const SlideLine& line, int index, double arc_length, const Poses& poses,
+                 const slide::CurvatureJumps<double>& jumps) {
     const NodeRange support = line.support(index, index);
     first = support.first;
     count = support.end - support.first;
@@ -21,7 +26,7 @@ struct FrameVariation {
       add(plain, Matrix3::Identity(), Matrix3::Zero());
       return;
     }
-    const auto [turn, slope] = slide::frame_smoothing(line, index, arc_length, poses);
+    const auto [turn, slope] = slide::frame_smoothing(line, index, arc_length, jumps);
     const so3::ExponentialMap<double> map(turn);
     const Matrix3 tangent = map.tangent(), turned = map.rotation(), tangent_derivative = map.tangent_derivative(slope);
     const Vector3 slope_spin = tangent * slope;

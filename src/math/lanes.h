@@ -34,7 +34,8 @@ auto get_lane(const Eigen::MatrixBase<From>& from, int lane) {
 /// targets[lane][i] += values[i][lane] for the first `lanes` lanes, Count consecutive numbers each: a transposition.
 template <int Count>
 [[gnu::always_inline]] inline void add_lanes(const Pack* values, int lanes, double* const* targets) {
-  using Unaligned = double __attribute__((vector_size(sizeof(Pack::Vector)), aligned(alignof(double)), may_alias));
+  // A typedef: clang does not heed the alignment of an alias by `using`.
+  typedef double Unaligned __attribute__((vector_size(sizeof(Pack::Vector)), aligned(alignof(double)), may_alias));
   constexpr int whole = Count / Pack::kLanes * Pack::kLanes;
   for (int i = 0; i < whole; i += Pack::kLanes) {
     const Pack::Vector &a = values[i].values(), &b = values[i + 1].values(), &c = values[i + 2].values(),

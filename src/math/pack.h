@@ -91,8 +91,10 @@ template <class Far>
 
 }  // namespace flexarm
 
+namespace Eigen {
+
 template <>
-struct Eigen::NumTraits<flexarm::Pack> : Eigen::GenericNumTraits<double> {
+struct NumTraits<flexarm::Pack> : GenericNumTraits<double> {
   using Real = double;
   using NonInteger = flexarm::Pack;
   using Nested = flexarm::Pack;
@@ -107,3 +109,14 @@ struct Eigen::NumTraits<flexarm::Pack> : Eigen::GenericNumTraits<double> {
     MulCost = 1
   };
 };
+
+namespace internal {
+
+// A pack aligns itself; Eigen would ask for 16 bytes, which is less and refused by clang.
+template <int Size>
+struct compute_default_alignment<flexarm::Pack, Size> {
+  enum { value = 0 };
+};
+
+}  // namespace internal
+}  // namespace Eigen

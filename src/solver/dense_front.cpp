@@ -21,6 +21,21 @@ constexpr double kRoundOff = 8 * std::numeric_limits<double>::epsilon();
   for (int v = first; v < last; ++v) store(load(target + 4 * v) - factors * load(source + 4 * v), target + 4 * v);
 }
 
+/// The same for four rows at once, which share the loads of the source.
+[[gnu::always_inline]] inline void subtract_four(double* rows, int stride, const double* factors, const double* source,
+                                                 int first, int last) {
+  const Lanes f0 = broadcast(factors[0]), f1 = broadcast(factors[1]), f2 = broadcast(factors[2]),
+              f3 = broadcast(factors[3]);
+  double *r0 = rows, *r1 = r0 + stride, *r2 = r1 + stride, *r3 = r2 + stride;
+  for (int v = 4 * first; v < 4 * last; v += 4) {
+    const Lanes values = load(source + v);
+    store(load(r0 + v) - f0 * values, r0 + v);
+    store(load(r1 + v) - f1 * values, r1 + v);
+    store(load(r2 + v) - f2 * values, r2 + v);
+    store(load(r3 + v) - f3 * values, r3 + v);
+  }
+}
+
 [[gnu::always_inline]] inline Lanes absolute(const Lanes& value) {
   return value < 0 ? -value : value;
 }
@@ -113,11 +128,19 @@ bool Elimination::take_pivot(int column, bool must) {
   double* multipliers = lower + static_cast<std::size_t>(stride) * pivots;
   for (int i = pivots / 4 * 4; i <= pivots; ++i) multipliers[i] = 0;
   for (int i = active; i < stride; ++i) multipliers[i] = 0;
-  for (int i = pivots + 1; i < active; ++i) {
-    double* own = row(i);
-    const double multiplier = own[pivots] * reciprocal;
-    multipliers[i] = multiplier;
-    if (multiplier != 0) subtract(own, multiplier, pivot_values, pivots / 4, lanes_for(active));
+  const int first = pivots / 4, last = lanes_for(active);
+  int i = pivots + 1;
+  for (; i + 4 <= active; i += 4) {
+    bool couples = false;  // a border has zeros where it has not come to be coupled yet
+    for (int k = i; k < i + 4; ++k) {
+      multipliers[k] = row(k)[pivots] * reciprocal;
+      couples = couples || multipliers[k] != 0;
+    }
+    if (couples) subtract_four(row(i), stride, multipliers + i, pivot_values, first, last);
+  }
+  for (; i < active; ++i) {
+    multipliers[i] = row(i)[pivots] * reciprocal;
+    subtract(row(i), multipliers[i], pivot_values, first, last);
   }
   ++pivots;
   return true;

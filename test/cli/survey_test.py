@@ -79,18 +79,20 @@ class Survey(unittest.TestCase):
 
     def test_summary(self):
         summary = self.finished.stdout.strip()
-        self.assertTrue(summary.startswith("5 files: 2 loaded, 2 refused, 0 failed on the way, 1 out of time, 0 crashed"))
+        outcomes = "5 files: 2 loaded, 2 refused, 0 failed on the way, 1 out of time, 0 crashed"
+        self.assertTrue(summary.startswith(outcomes))
         with open(self.tables + ".md", encoding="utf-8") as file:
             text = file.read()
         self.assertIn(summary, text)
         self.assertEqual(text.count("\n| "), len(SCENES))
 
     def test_options_of_the_program(self):
-        self.assertIn(": 3 loaded, 1 refused", self.survey(self.tables + "_2", "--start", "clamp", "--massless", "lock").stdout)
+        repaired = self.survey(self.tables + "_2", "--start", "clamp", "--massless", "lock")
+        self.assertIn(": 3 loaded, 1 refused", repaired.stdout)
 
     def test_no_directory(self):
-        run = subprocess.run([os.path.join(ROOT, "scripts", "survey"), "/no/such/folder"], capture_output=True, text=True,
-                             check=False)
+        program = os.path.join(ROOT, "scripts", "survey")
+        run = subprocess.run([program, "/no/such/folder"], capture_output=True, text=True, check=False)
         self.assertEqual(run.returncode, 2)
         self.assertIn("is no directory", run.stderr)
 

@@ -68,7 +68,8 @@ class BadScenes(unittest.TestCase):
         self.assert_refused(["_scene:=" + GOOD_SCENE, "_step:=0", "_tolerance:=x"], "step", "tolerance")
 
     def test_an_option_that_the_scheme_does_not_have(self):
-        self.assert_refused(["_scene:=" + GOOD_SCENE, "_scheme:=newmark", "_rho_infinity:=0.5"], "rho_infinity", "edmc1")
+        options = ["_scene:=" + GOOD_SCENE, "_scheme:=newmark", "_rho_infinity:=0.5"]
+        self.assert_refused(options, "rho_infinity", "edmc1")
 
     def test_choices(self):
         self.assert_refused(["_scene:=" + GOOD_SCENE, "_start:=lock", "_massless:=clamp"], "'clamp'", "'lock'")

@@ -57,8 +57,8 @@ class Manipulator(unittest.TestCase):
             self.assertTrue(arm.step(round(EVERY / STEP) - done).success)
         self.assertAlmostEqual(arm.status().time, 1.5, delta=1e-9)
         self.assertFalse(arm.status().failed)
-        # Efforts that are constant over pulses, with the mean of the linear ones, err by the square of the pulse; a late
-        # one acts in its place for a step. What remains is far less than the way, 0.4 m, 0.3 m and 1.4 rad.
+        # Efforts that are constant over pulses, with the mean of the linear ones, err by the square of the pulse; a
+        # late one acts in its place for a step. What remains is far less than the way, 0.4 m, 0.3 m and 1.4 rad.
         self.assertLess(late, 300)
         for name, expected in zip(COORDINATES, positions_under_the_scenes_own_loads()):
             self.assertAlmostEqual(arm.joint(name).position, expected, delta=0.02, msg=name)

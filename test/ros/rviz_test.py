@@ -47,7 +47,8 @@ class Rviz(unittest.TestCase):
         model = displays["rviz/RobotModel"]
         self.assertEqual(model["TF Prefix"], "left")
         robot = xml.etree.ElementTree.fromstring(rospy.get_param(model["Robot Description"]))
-        self.assertEqual({link.get("name") for link in robot.findall("link")}, {"world", "upper_arm", "forearm", "payload"})
+        links = {link.get("name") for link in robot.findall("link")}
+        self.assertEqual(links, {"world", "upper_arm", "forearm", "payload"})
 
     def test_shows_the_frames_of_what_has_no_shape(self):
         displays = {display["Class"]: display for display in self.manager["Displays"]}

@@ -127,7 +127,8 @@ class Services(ClockedArm):
         after = self.status()
         self.assertTrue(after.paused)
         self.assertGreater(after.header.stamp, before.header.stamp)
-        wait_until(lambda: self.log.last["/joint_states"].header.stamp > before.header.stamp, "the state after the reset")
+        wait_until(lambda: self.log.last["/joint_states"].header.stamp > before.header.stamp,
+                   "the state after the reset")
 
     def test_reset_while_running(self):
         wait_until(lambda: self.status().time > 0.5, "some time to pass")

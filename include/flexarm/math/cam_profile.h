@@ -15,15 +15,15 @@ class CamProfile {
   /// @throws std::invalid_argument saying what is wrong.
   static CamProfile periodic(const std::vector<double>& angles, const std::vector<double>& travels);
 
-  double value(double u) const;
-  double derivative(double u) const;
-  double second_derivative(double u) const;
-  /// (f(to) - f(from)) / (to - from), free of cancellation; the derivative where both are equal.
+  double value(double u) const;              ///< f [m]
+  double derivative(double u) const;         ///< f' [m/rad]
+  double second_derivative(double u) const;  ///< f'' [m/rad^2]
+  /// (f(to) - f(from)) / (to - from), free of cancellation; the derivative where both are equal [m/rad].
   double secant(double from, double to) const;
-  /// Its derivative with respect to `to`.
+  /// Its derivative with respect to `to` [m/rad^2].
   double secant_derivative(double from, double to) const;
-  /// All that defines it, to tell two profiles apart: radius and offset [m], then of each piece of the spline its begin
-  /// [rad] and its coefficients.
+  /// All that defines it, to tell two profiles apart: radius and offset [m], then of each piece of the spline where it
+  /// begins [rad] and its coefficients.
   std::vector<double> numbers() const;
 
  private:
@@ -31,7 +31,7 @@ class CamProfile {
   struct Piece {
     double begin, c[4];
   };
-  /// The piece of an angle and how much it lies behind that piece's begin; `turns` full turns are taken off.
+  /// The piece of an angle and how far it lies behind the start of that piece; `turns` full turns are taken off.
   const Piece& piece_at(double u, double& t, double& turns) const;
 
   double radius_ = 0, offset_ = 0;

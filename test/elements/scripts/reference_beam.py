@@ -1,9 +1,9 @@
 """Residuals of one geometrically exact beam element over one step, written from the formulas alone.
 
-A second implementation to hold the library to: dense numpy, nothing shared, no tangents, no speed. Formulas are those of
-docs/notes/beam.md and of Munoz 2004. Positions [m] and vectors are in the world unless they are called material; rotations
-are matrices from the section to the world, "nodal" arrays have one row (or matrix) per node. Residuals are {force [N],
-moment [N m]} of node 1, of node 2, ...; moments are conjugate to spatial spins.
+A second implementation to hold the library to: dense numpy, nothing shared, no tangents, no speed. Formulas are those
+of docs/notes/beam.md and of Munoz 2004. Positions [m] and vectors are in the world unless they are called material;
+rotations are matrices from the section to the world, "nodal" arrays have one row (or matrix) per node. Residuals are
+{force [N], moment [N m]} of node 1, of node 2, ...; moments are conjugate to spatial spins.
 """
 
 import dataclasses
@@ -155,8 +155,8 @@ class Element:
 
 @dataclasses.dataclass
 class Step:
-    """A step of the length `step` [s] from (r0, R0) to (r1, R1), and the motion at its beginning. Angular quantities of nodes
-    and mass points are material."""
+    """A step of the length `step` [s] from (r0, R0) to (r1, R1), and the motion at its beginning. Angular quantities of
+    nodes and mass points are material."""
 
     step: float
     r0: np.ndarray

@@ -18,7 +18,8 @@ from reference_beam import (Element, Step, beta1, energy_momentum, exp, material
 STEP = 0.3
 DAMPING = 0.05
 ALPHA = -0.1
-# Round-off of two machines over some hundred operations; the multiplier's numerator cancels three digits of the stresses.
+# Round-off of two machines over some hundred operations; the multiplier's numerator cancels three digits of the
+# stresses.
 TOLERANCE = 1e-12
 
 

@@ -1,0 +1,53 @@
+// How Newton's method judges that it has arrived.
+#include "integrators/newton.h"
+
+#include <gtest/gtest.h>
+
+#include "building/model_builder.h"
+#include "flexarm/scene/urdf_reader.h"
+#include "integrators/stepper.h"
+#include "simulation/observables.h"
+#include "support/source_path.h"
+
+namespace flexarm {
+namespace {
+
+constexpr double kStep = 1e-3, kTolerance = 1e-4;
+constexpr int kSteps = 100, kJump = 50;
+
+/// Arms that swing freely; at step kJump a torque starts.
+struct Swing {
+  Model model = build_model(*scene::read_scene_file(test::source_path("config/examples/flexible_two_link_arm.urdf")).scene);
+  Stepper stepper;
+  State state = initial_state(model);
+  int iterations = 0;
+
+  explicit Swing(const StepSettings& settings) : stepper(model, schemes().front(), settings) {
+    stepper.initialise(state);
+    state.commands.assign(state.commands.size(), 0.0);
+  }
+  void advance(int step) {
+    if (step == kJump) state.commands.assign(state.commands.size(), 1.0);
+    const StepResult result = stepper.advance(state);
+    ASSERT_TRUE(result.converged) << to_string(result.reason);
+    iterations += result.iterations;
+  }
+};
+
+// What a solve leaves is at most the square of the tolerance, also where an earlier one has been taken at its word; in
+// n steps that adds up to n^2 of it, since what is left in a step is left in its velocities, too.
+TEST(NewtonIteration, OneUpdateIsEnoughWhereItHasBeenShownToBe) {
+  Swing quick({kStep, kTolerance}), full({kStep, 1e-10, 20, 5, false});
+  for (int step = 0; step < kSteps; ++step) {
+    ASSERT_NO_FATAL_FAILURE(quick.advance(step));
+    ASSERT_NO_FATAL_FAILURE(full.advance(step));
+    const double bound = (step + 1) * (step + 1) * kTolerance * kTolerance * full.model.length_scale;
+    for (std::size_t i = 0; i < full.state.nodes.size(); ++i)
+      ASSERT_LE((quick.state.nodes[i].position - full.state.nodes[i].position).norm(), bound) << "step " << step;
+  }
+  // One in each step, and one more in each ninth to see how it goes on; some at the start and behind the jump.
+  EXPECT_LT(quick.iterations, 1.3 * kSteps);
+}
+
+}  // namespace
+}  // namespace flexarm

@@ -1,0 +1,42 @@
+// Built with the thread sanitizer, which ends the program with an error where threads share what one of them changes.
+#include <array>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "flexarm/scene/urdf_reader.h"
+#include "flexarm/simulation/simulation.h"
+#include "support/source_path.h"
+
+namespace flexarm {
+namespace {
+
+/// Where the coordinates of a scene are after some steps.
+std::vector<double> positions_after_steps(const scene::SceneDescription& scene) {
+  Simulation simulation(scene);
+  for (int n = 0; n < 3; ++n) EXPECT_TRUE(simulation.step().converged);
+  std::vector<double> positions;
+  for (std::size_t c = 0; c < simulation.coordinate_names().size(); ++c) positions.push_back(simulation.position(c));
+  return positions;
+}
+
+// Built and stepped at the same time, from one description: beams in packs, a closed loop, a slider, joints of each
+// kind.
+TEST(Simulations, RunEachInAThreadOfItsOwn) {
+  for (const char* name : {"flexible_two_link_arm", "four_bar", "sliding_arm", "joints"}) {
+    const scene::ReadResult read =
+        scene::read_scene_file(test::source_path("config/examples/" + std::string(name) + ".urdf"));
+    ASSERT_TRUE(read.scene) << name;
+    std::array<std::vector<double>, 3> positions;
+    std::array<std::thread, 3> threads;
+    for (std::size_t i = 0; i < threads.size(); ++i)
+      threads[i] = std::thread([&, i] { positions[i] = positions_after_steps(*read.scene); });
+    for (std::thread& thread : threads) thread.join();
+    EXPECT_FALSE(positions[0].empty()) << name;
+    EXPECT_EQ(positions[0], positions[1]) << name;
+    EXPECT_EQ(positions[0], positions[2]) << name;
+  }
+}
+
+}  // namespace
+}  // namespace flexarm
