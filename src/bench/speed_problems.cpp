@@ -23,7 +23,7 @@ void add_product(SpeedProblem& problem, const std::vector<const char*>& schemes,
           problem.runs.push_back({scheme, mesh.order, mesh.elements, problem.interval / part, tolerance});
 }
 
-/// em and its base, which has no dissipation to be upset by what iterations leave: with a rough tolerance, too.
+/// em and its base; this with a rough tolerance, too, by which some runs do not come to their end and others are fast.
 void add_em(SpeedProblem& problem, const std::vector<Mesh>& meshes, const std::vector<int>& parts) {
   add_product(problem, {"em", "em0"}, meshes, parts, {kTight, kLoose, kLoosest});
   add_product(problem, {"em0"}, meshes, parts, {kRough});

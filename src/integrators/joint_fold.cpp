@@ -36,8 +36,8 @@ void JointFold::add_efforts(int j, Balance& balance) {
   if (count == 0) return;
   const int variable = configuration_.degrees_of_freedom().variable_of_joint(j);
   double* residual = balance.residual.at(variable);
-  ReleasedVector change = ReleasedVector::Zero(count);
-  if (!configuration_.scheme().is_static) change = configuration_.increment_of(j);
+  const ReleasedVector change =
+      configuration_.scheme().is_static ? ReleasedVector(ReleasedVector::Zero(count)) : configuration_.increment_of(j);
   const double weight = friction_.effort_weight();
   for (int k = 0; k < count; ++k) {
     const std::size_t index = model.first_coordinate[j] + k;

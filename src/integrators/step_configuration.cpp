@@ -177,12 +177,11 @@ SlideTravel StepConfiguration::slide_travel(int j) const {
 }
 
 void StepConfiguration::joint_maps(int j, const Vector6& g, FoldMaps& maps, bool with_tangent) const {
-  const NodePose world;
   const JointMap& joint = model_.joints[j];
-  const NodePose& end = joint.master < 0 ? world : end_[joint.master];
+  const NodePose& end = master_pose(joint, end_);
   if (has_incremental_joints())
-    incremental_maps(joint, joint.master < 0 ? world : begin_[joint.master], end, state_->released[j], released_[j], g,
-                     maps, with_tangent, scheme_.arm_weight());
+    incremental_maps(joint, master_pose(joint, begin_), end, state_->released[j], released_[j], g, maps, with_tangent,
+                     scheme_.arm_weight());
   else
     variational_maps(joint, end, released_[j], g, maps);
 }

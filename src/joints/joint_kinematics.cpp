@@ -1,21 +1,11 @@
 #include "joints/joint_kinematics.h"
 
 namespace flexarm {
-namespace {
-
-const NodePose kWorld;
-
-const NodePose& master_of(const JointMap& joint, const std::vector<NodePose>& nodes) {
-  return joint.master < 0 ? kWorld : nodes[joint.master];
-}
-
-}  // namespace
-
 NodePose slave_pose(const Model& model, int j, const std::vector<NodePose>& nodes, const Released& released) {
   const JointMap& joint = model.joints[j];
   if (joint.kind == JointMapKind::Slide)
     return slide_pose(model.slide_lines[joint.line], nodes, released.displacement[0]);
-  return slave_pose(joint, master_of(joint, nodes), released);
+  return slave_pose(joint, master_pose(joint, nodes), released);
 }
 
 SlaveVelocity slave_velocity(const Model& model, int j, const std::vector<NodePose>& nodes, const Released& released,
@@ -31,7 +21,7 @@ SlaveVelocity slave_velocity(const Model& model, int j, const std::vector<NodePo
     out.columns = maps.released_right;
     return out;
   }
-  const NodePose& master = master_of(joint, nodes);
+  const NodePose& master = master_pose(joint, nodes);
   FoldMaps maps;
   variational_maps(joint, master, released, Vector6::Zero(), maps);
   out.columns = maps.right;
@@ -45,7 +35,7 @@ ReleasedVector released_rates(const Model& model, int j, const std::vector<NodeP
                               const std::vector<Vector6>& velocities) {
   const JointMap& joint = model.joints[j];
   if (joint.kind != JointMapKind::Slide)
-    return released_rates(joint, master_of(joint, nodes), released,
+    return released_rates(joint, master_pose(joint, nodes), released,
                           joint.master < 0 ? Vector6(Vector6::Zero()) : velocities[joint.master],
                           velocities[joint.slave]);
   const SlaveVelocity slave = slave_velocity(model, j, nodes, released, velocities);

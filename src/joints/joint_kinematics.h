@@ -7,6 +7,13 @@
 
 namespace flexarm {
 
+inline const NodePose kWorld;
+
+/// Pose of a joint's master.
+inline const NodePose& master_pose(const JointMap& joint, const std::vector<NodePose>& nodes) {
+  return joint.master < 0 ? kWorld : nodes[joint.master];
+}
+
 /// Pose of the slave of joint `j` from those of the other nodes.
 NodePose slave_pose(const Model& model, int j, const std::vector<NodePose>& nodes, const Released& released);
 
