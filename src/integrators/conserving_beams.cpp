@@ -112,7 +112,10 @@ void ConservingBeams::scatter(const ElementPack<Nodes>& pack, const BlockSystem<
     for (int j = 0; j < Nodes && balance.tangent; ++j) {
       for (int lane = 0; lane < pack.lanes; ++lane)
         targets[lane] = balance.tangent->element_block(pack.first_block[lane] + i * Nodes + j);
-      add_lanes<36>(system.tangent[i][j].data(), pack.lanes, targets.data());
+      if (balance.tangent->keeps_elements_apart())
+        add_lanes<36, true>(system.tangent[i][j].data(), pack.lanes, targets.data());
+      else
+        add_lanes<36>(system.tangent[i][j].data(), pack.lanes, targets.data());
     }
   }
 }

@@ -52,7 +52,7 @@ void EndpointBeams::add_forces(Balance& balance) {
     if (is_additive()) additive_to_spins(nodes, with_tangent, system);
     if (!is_static && !interpolates_kinematics()) newmark_mass_damping<N>(element, nodes, rule_, with_tangent, system);
     if (interpolation_) interpolation_->take(element, with_tangent, system);
-    scatter(element, system, balance);
+    scatter(element, system, balance, true);
   });
 }
 
@@ -92,7 +92,7 @@ void EndpointBeams::add_inertia(Balance& balance) {
     if (is_additive()) additive_to_spins(nodes, with_tangent, system);
     newmark_translation<N>(element, nodes, rule_, with_tangent, system);
     if (interpolates_kinematics()) newmark_mass_damping<N>(element, nodes, rule_, with_tangent, system);
-    scatter(element, system, balance);
+    scatter(element, system, balance, false);
   });
 }
 

@@ -48,7 +48,7 @@ void MomentumBeams::add_forces(Balance& balance) {
     };
     momentum_beam<N>(element, nodes, configuration_.scheme(), &points_.begin_stiffness[first], configuration_.step(),
                      std::cref(rotary), balance.tangent != nullptr, &points_.end_stiffness[first], system);
-    scatter(element, system, balance);
+    scatter(element, system, balance, true);
   });
 }
 

@@ -55,7 +55,6 @@ void StepConfiguration::extrapolate(int order) {
   const State& state = *state_;
   const IncrementHistory& history = state.history;
   const bool has_last = history.holds_for(dof_.unknowns);
-  if (history.interpolates(0, step_)) order = IncrementHistory::kHighestOrder;
   IncrementHistory::Weights weights = history.weights(order, 0, step_);
   if (weights[0] == 0) weights = history.weights(0, 0, step_);
   const auto entry = [&](int variable, int k) {

@@ -47,7 +47,6 @@ double UnknownScales::largest_rotation(const Eigen::VectorXd& increment) const {
 }
 
 void UnknownScales::choose_order(IncrementHistory& history) const {
-  if (history.interpolates(1, history.steps[0])) return;  // it says nothing of extrapolations
   double smallest = std::numeric_limits<double>::infinity();
   for (int order = 0; order <= IncrementHistory::kHighestOrder; ++order) {
     const IncrementHistory::Weights weights = history.weights(order, 1, history.steps[0]);

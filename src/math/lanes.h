@@ -32,7 +32,8 @@ auto get_lane(const Eigen::MatrixBase<From>& from, int lane) {
 }
 
 /// targets[lane][i] += values[i][lane] for the first `lanes` lanes, Count consecutive numbers each: a transposition.
-template <int Count>
+/// `set`: = in the place of +=.
+template <int Count, bool set = false>
 [[gnu::always_inline]] inline void add_lanes(const Pack* values, int lanes, double* const* targets) {
   // A typedef: clang does not heed the alignment of an alias by `using`.
   typedef double Unaligned __attribute__((vector_size(sizeof(Pack::Vector)), aligned(alignof(double)), may_alias));
@@ -49,11 +50,11 @@ template <int Count>
         __builtin_shufflevector(ab_even, cd_even, 2, 3, 6, 7), __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 6, 7)};
     for (int lane = 0; lane < lanes; ++lane) {
       Unaligned* target = reinterpret_cast<Unaligned*>(targets[lane] + i);
-      *target += rows[lane];
+      *target = set ? rows[lane] : *target + rows[lane];
     }
   }
   for (int lane = 0; lane < lanes; ++lane)
-    for (int i = whole; i < Count; ++i) targets[lane][i] += values[i][lane];
+    for (int i = whole; i < Count; ++i) targets[lane][i] = values[i][lane] + (set ? 0.0 : targets[lane][i]);
 }
 
 }  // namespace flexarm

@@ -42,14 +42,4 @@ IncrementHistory::Weights IncrementHistory::weights(int order, int first, double
   return std::isfinite(sum) && (order == 0 || sum <= kLargestSum) ? out : Weights{};
 }
 
-bool IncrementHistory::interpolates(int first, double step) const {
-  double time = 0, earliest = 0, latest = 0;  // of the ends
-  for (int i = first; i < count; ++i) {
-    time -= steps[i];
-    earliest = std::min(earliest, time);
-    latest = std::max(latest, time);
-  }
-  return earliest < step && step < latest;
-}
-
 }  // namespace flexarm

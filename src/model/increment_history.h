@@ -27,9 +27,6 @@ struct IncrementHistory {
   /// Weights of `increments[first], ...` in the extrapolation of that order to the step that follows them. All zero
   /// where the history is too short, or the extrapolation would blow up what is rough in it.
   Weights weights(int order, int first, double step) const;
-  /// True where the step that follows `increments[first], ...` ends between places that are known, as steps of a
-  /// composed scheme do that run backwards, or over a way that was gone before.
-  bool interpolates(int first, double step) const;
 };
 
 }  // namespace flexarm

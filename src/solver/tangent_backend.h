@@ -32,6 +32,9 @@ class TangentBackend {
   double* diagonal_block(int variable) { return diagonal_blocks_[variable]; }
   /// Block (node i, node j) of an element, 6 x 6, column-major; `index` = element.first_block + i * Nodes + j.
   double* element_block(int index) { return element_blocks_[index]; }
+  /// True where no two elements share a block. Then set_zero() leaves these blocks alone, and who writes first into
+  /// those of an element sets them; else all add.
+  bool keeps_elements_apart() const { return keeps_elements_apart_; }
   /// Adds constraint `index` of a closure with its multiplier, before joints are folded.
   virtual void add_closure(int closure, int index, double multiplier, const ClosureMaps& maps) = 0;
 
@@ -61,6 +64,7 @@ class TangentBackend {
 
  protected:
   std::vector<double*> diagonal_blocks_, element_blocks_;
+  bool keeps_elements_apart_ = false;
 };
 
 enum class BackendChoice {

@@ -68,6 +68,7 @@ TreeTangent::TreeTangent(const Model& model, const DegreesOfFreedom& dof)
     if (part.node_count > 0) pivots += 6 * (part.node_count - 1);
   }
   pivots_.resize(pivots);
+  keeps_elements_apart_ = true;
   for (std::size_t v = 0; v < dof.size.size(); ++v) diagonal_blocks_.push_back(blocks_.diagonal(static_cast<int>(v)));
   for (std::size_t at = 0; at < blocks_.elements.size(); at += 36) element_blocks_.push_back(&blocks_.elements[at]);
 }
@@ -79,8 +80,7 @@ double TreeTangent::cost_of_factors() const {
 }
 
 void TreeTangent::set_zero() {
-  std::fill(blocks_.diagonals.begin(), blocks_.diagonals.end(), 0.0);
-  std::fill(blocks_.elements.begin(), blocks_.elements.end(), 0.0);
+  for (std::size_t v = 0; v < dof_.size.size(); ++v) std::fill_n(diagonal_blocks_[v], dof_.size[v] * dof_.size[v], 0.0);
   for (Eigen::MatrixXd& closure : blocks_.closures) closure.setZero();
   blocks_.held.clear();
 }

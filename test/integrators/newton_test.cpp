@@ -17,7 +17,8 @@ constexpr int kSteps = 100, kJump = 50;
 
 /// Arms that swing freely; at step kJump a torque starts.
 struct Swing {
-  Model model = build_model(*scene::read_scene_file(test::source_path("config/examples/flexible_two_link_arm.urdf")).scene);
+  Model model =
+      build_model(*scene::read_scene_file(test::source_path("config/examples/flexible_two_link_arm.urdf")).scene);
   Stepper stepper;
   State state = initial_state(model);
   int iterations = 0;
@@ -45,8 +46,8 @@ TEST(NewtonIteration, OneUpdateIsEnoughWhereItHasBeenShownToBe) {
     for (std::size_t i = 0; i < full.state.nodes.size(); ++i)
       ASSERT_LE((quick.state.nodes[i].position - full.state.nodes[i].position).norm(), bound) << "step " << step;
   }
-  // One in each step, and one more in each ninth to see how it goes on; some at the start and behind the jump.
-  EXPECT_LT(quick.iterations, 1.3 * kSteps);
+  // Two in each step where every solve has to show by itself what it leaves.
+  EXPECT_LT(quick.iterations, 1.5 * kSteps);
 }
 
 }  // namespace
