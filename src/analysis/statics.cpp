@@ -7,7 +7,7 @@
 namespace flexarm {
 
 StepResult solve_static(const Model& model, const Scheme& scheme, const StepSettings& settings, int load_steps,
-                        State& state) {
+                        State& state, std::vector<double>* update_norms) {
   using Updates = NewtonIteration::Updates;
   StepSystem system(model, statics_of(scheme));
   NewtonIteration newton(system, settings);
@@ -25,7 +25,9 @@ StepResult solve_static(const Model& model, const Scheme& scheme, const StepSett
   const double smallest = std::ldexp(increment, -settings.max_halvings);
   while (factor < 1) {
     const double next = factor + increment > 1 - 1e-12 ? 1.0 : factor + increment;
-    if (solve(next)) {
+    const bool is_solved = solve(next);
+    if (update_norms) *update_norms = newton.update_norms();
+    if (is_solved) {
       system.accept(trial);
       factor = next;
     } else {

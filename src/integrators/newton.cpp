@@ -94,9 +94,12 @@ StepResult::Reason NewtonIteration::iterate(Updates updates, Factors factors, St
     ++progress.since_revision;
     if (!has_converged(progress, factors)) continue;
     if (const Reason failure = evaluate(false); failure != Reason::None) return failure;
-    if (!system_.revise_friction()) return Reason::None;
-    progress.since_revision = 0;
-    factorise = true;
+    if (system_.revise_friction()) {
+      progress.since_revision = 0;
+      factorise = true;
+    } else if (is_as_expected(progress)) {
+      return Reason::None;
+    }
   }
   return Reason::NoConvergence;
 }
@@ -135,8 +138,20 @@ bool NewtonIteration::stalls(const Progress& progress) const {
 void NewtonIteration::learn(const Progress& progress) {
   if (progress.iteration == 0) started_with_kept_ = progress.with_kept;
   FirstUpdate& start = started_with_kept_ ? kept_start_ : fresh_start_;
-  if (progress.iteration == 0) ++start.age;
-  if (progress.iteration == 1) start = {norms_.front(), progress.contraction, 0, progress.since_revision > 0};
+  const double residual = system_.residual().norm();
+  if (progress.iteration == 0) ++start.age, first_residual_ = residual;
+  if (progress.iteration == 1)
+    start = {norms_.front(), progress.contraction, first_residual_ > 0 ? residual / first_residual_ : 0.0, 0,
+             progress.since_revision > 0};
+}
+
+/// After an evaluation at what a first update has led to. The residual tells what no earlier solve could know: that a
+/// stop is touched, say.
+bool NewtonIteration::is_as_expected(const Progress& progress) const {
+  if (progress.iteration > 0) return true;
+  const FirstUpdate& start = progress.with_kept ? kept_start_ : fresh_start_;
+  const double growth = std::max(1.0, progress.norm / start.norm);
+  return system_.residual().norm() <= std::max(kCaution * growth * start.residual_ratio, kRoundOff) * first_residual_;
 }
 
 /// By the rate of the last two updates, or of the first two of an earlier solve: new factors square the error, kept

@@ -48,7 +48,8 @@ class NewtonIteration {
   /// How a solve went on after its first update: what is to be expected of the next one that starts alike.
   struct FirstUpdate {
     double norm = 0, contraction = 1;
-    int age = 0;  // solves since, that did without a second update
+    double residual_ratio = 1;  // of the residual after it to that before
+    int age = 0;                // solves since, that did without a second update
     bool is_known = false;
   };
 
@@ -61,6 +62,7 @@ class NewtonIteration {
   bool has_converged(const Progress& progress, Factors factors) const;
   double remainder_after(const Progress& progress) const;
   void learn(const Progress& progress);
+  bool is_as_expected(const Progress& progress) const;
   void enter(StepPhase phase) {
     if (observer_) observer_->enter(phase);
   }
@@ -73,6 +75,7 @@ class NewtonIteration {
   std::vector<double> norms_;
   FirstUpdate fresh_start_, kept_start_;  // by the factors of the first update
   bool started_with_kept_ = false;
+  double first_residual_ = 0;  // norm at the start of the solve
   StepObserver* observer_ = nullptr;
 };
 

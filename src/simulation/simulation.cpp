@@ -73,6 +73,7 @@ struct Simulation::Implementation {
   std::map<std::string, std::size_t, std::less<>> coordinate_indices;  ///< by name
   mutable OutputVelocities output_velocities;
   mutable bool velocities_hold = false;  // output_velocities are those of `state`
+  std::vector<double> static_norms;      // of the last solve for an equilibrium; empty after steps
 
   Implementation(scene::SceneDescription description, const SimulationOptions& options)
       : scene(with_options(std::move(description), options)),
@@ -150,6 +151,7 @@ StepResult Simulation::step() {
   const StepResult result = implementation_->stepper->advance(implementation_->state);
   implementation_->release_from_lines();
   implementation_->velocities_hold = false;
+  implementation_->static_norms.clear();
   return result;
 }
 
@@ -268,7 +270,7 @@ StepResult Simulation::solve_static(int load_steps) {
   if (load_steps < 1) throw std::invalid_argument("the number of load steps must be >= 1");
   implementation_->velocities_hold = false;
   Implementation& s = *implementation_;
-  const StepResult result = flexarm::solve_static(s.model, s.scheme, s.settings, load_steps, s.state);
+  const StepResult result = flexarm::solve_static(s.model, s.scheme, s.settings, load_steps, s.state, &s.static_norms);
   s.stepper->invalidate();
   return result;
 }
@@ -299,7 +301,8 @@ const State& state_of(const Simulation& simulation) {
   return Inside::of(simulation).state;
 }
 const std::vector<double>& update_norms_of(const Simulation& simulation) {
-  return Inside::of(simulation).stepper->update_norms();
+  const auto& inside = Inside::of(simulation);
+  return inside.static_norms.empty() ? inside.stepper->update_norms() : inside.static_norms;
 }
 void restore(Simulation& simulation, const State& state) {
   Inside::of(simulation).restore(state);

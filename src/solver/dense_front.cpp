@@ -59,107 +59,99 @@ struct Elimination {
   int pivots = 0;
 
   [[gnu::always_inline]] inline double* row(int i) { return values + static_cast<std::size_t>(stride) * i; }
-  [[gnu::always_inline]] inline bool scale();
-  [[gnu::always_inline]] inline bool take_pivots(int certain, bool all);
+  [[gnu::always_inline]] inline bool scale() {
+    const int lanes = lanes_for(active), candidate_lanes = lanes_for(candidates);
+    for (int i = 0; i < active; ++i) {
+      double* own = row(i);
+      for (int k = active; k < 4 * lanes; ++k) own[k] = 0;  // of what was folded
+      const double size = largest(own, lanes);
+      if (!std::isfinite(size)) return false;
+      scales[i] = size > 0 ? 1 / size : 0.0;
+      const Lanes scale = broadcast(scales[i]);
+      for (int v = 0; v < candidate_lanes; ++v) {
+        const Lanes old = load(column_sizes + 4 * v), scaled = scale * absolute(load(own + 4 * v));
+        store(scaled > old ? scaled : old, column_sizes + 4 * v);
+      }
+    }
+    return true;
+  }
+
+  [[gnu::always_inline]] inline bool take_pivots(int certain, bool all) {
+    for (int k = 0; k < certain; ++k)
+      if (!take_pivot(k, true)) return false;
+    // A column that had no pivot may have one after others. Where all must go, the best come first.
+    for (const bool must : {false, true}) {
+      if (must && !all) break;
+      for (int before = -1; before != pivots && pivots < candidates;) {
+        before = pivots;
+        for (int k = pivots; k < candidates; ++k) take_pivot(k, must);
+      }
+    }
+    return !all || pivots == candidates;
+  }
 
  private:
-  [[gnu::always_inline]] inline double largest_entry(int column, int first, int last, int& at);
-  [[gnu::always_inline]] inline bool take_pivot(int column, bool must);
-  [[gnu::always_inline]] inline void swap_rows(int a, int b);
-  [[gnu::always_inline]] inline void swap_columns(int a, int b);
+  /// Of a column among rows, scaled by rows.
+  [[gnu::always_inline]] inline double largest_entry(int column, int first, int last, int& at) {
+    double most = 0;
+    at = first;
+    for (int i = first; i < last; ++i) {
+      const double size = scales[i] * std::abs(row(i)[column]);
+      if (size > most) most = size, at = i;
+    }
+    return most;
+  }
+
+  /// Takes a pivot in the column, if one is good enough.
+  [[gnu::always_inline]] inline bool take_pivot(int column, bool must) {
+    int pivot_row, other;
+    const double size = largest_entry(column, pivots, candidates, pivot_row);
+    if (!(size > kRoundOff * column_sizes[column])) return false;
+    if (!must && size < kThreshold * largest_entry(column, candidates, active, other)) return false;
+    swap_rows(pivot_row, pivots);
+    swap_columns(column, pivots);
+    const double* pivot_values = row(pivots);
+    const double reciprocal = reciprocals[pivots] = 1 / pivot_values[pivots];
+    double* multipliers = lower + static_cast<std::size_t>(stride) * pivots;
+    for (int i = pivots / 4 * 4; i <= pivots; ++i) multipliers[i] = 0;
+    for (int i = active; i < stride; ++i) multipliers[i] = 0;
+    const int first = pivots / 4, last = lanes_for(active);
+    int i = pivots + 1;
+    for (; i + 4 <= active; i += 4) {
+      bool couples = false;  // a border has zeros where it has not come to be coupled yet
+      for (int k = i; k < i + 4; ++k) {
+        multipliers[k] = row(k)[pivots] * reciprocal;
+        couples = couples || multipliers[k] != 0;
+      }
+      if (couples) subtract_four(row(i), stride, multipliers + i, pivot_values, first, last);
+    }
+    for (; i < active; ++i) {
+      multipliers[i] = row(i)[pivots] * reciprocal;
+      subtract(row(i), multipliers[i], pivot_values, first, last);
+    }
+    ++pivots;
+    return true;
+  }
+
+  [[gnu::always_inline]] inline void swap_rows(int a, int b) {
+    if (a == b) return;
+    for (int v = 0; v < stride; v += 4) {
+      const Lanes kept = load(row(a) + v);
+      store(load(row(b) + v), row(a) + v);
+      store(kept, row(b) + v);
+    }
+    for (int k = 0; k < pivots; ++k) std::swap(lower[stride * k + a], lower[stride * k + b]);
+    std::swap(scales[a], scales[b]);
+    std::swap(row_names[a], row_names[b]);
+  }
+
+  [[gnu::always_inline]] inline void swap_columns(int a, int b) {
+    if (a == b) return;
+    for (int i = 0; i < active; ++i) std::swap(row(i)[a], row(i)[b]);
+    std::swap(column_sizes[a], column_sizes[b]);
+    std::swap(column_names[a], column_names[b]);
+  }
 };
-
-bool Elimination::scale() {
-  const int lanes = lanes_for(active), candidate_lanes = lanes_for(candidates);
-  for (int i = 0; i < active; ++i) {
-    double* own = row(i);
-    for (int k = active; k < 4 * lanes; ++k) own[k] = 0;  // of what was folded
-    const double size = largest(own, lanes);
-    if (!std::isfinite(size)) return false;
-    scales[i] = size > 0 ? 1 / size : 0.0;
-    const Lanes scale = broadcast(scales[i]);
-    for (int v = 0; v < candidate_lanes; ++v) {
-      const Lanes old = load(column_sizes + 4 * v), scaled = scale * absolute(load(own + 4 * v));
-      store(scaled > old ? scaled : old, column_sizes + 4 * v);
-    }
-  }
-  return true;
-}
-
-void Elimination::swap_rows(int a, int b) {
-  if (a == b) return;
-  for (int v = 0; v < stride; v += 4) {
-    const Lanes kept = load(row(a) + v);
-    store(load(row(b) + v), row(a) + v);
-    store(kept, row(b) + v);
-  }
-  for (int k = 0; k < pivots; ++k) std::swap(lower[stride * k + a], lower[stride * k + b]);
-  std::swap(scales[a], scales[b]);
-  std::swap(row_names[a], row_names[b]);
-}
-
-void Elimination::swap_columns(int a, int b) {
-  if (a == b) return;
-  for (int i = 0; i < active; ++i) std::swap(row(i)[a], row(i)[b]);
-  std::swap(column_sizes[a], column_sizes[b]);
-  std::swap(column_names[a], column_names[b]);
-}
-
-/// Of a column among rows, scaled by rows.
-double Elimination::largest_entry(int column, int first, int last, int& at) {
-  double most = 0;
-  at = first;
-  for (int i = first; i < last; ++i) {
-    const double size = scales[i] * std::abs(row(i)[column]);
-    if (size > most) most = size, at = i;
-  }
-  return most;
-}
-
-/// Takes a pivot in the column, if one is good enough.
-bool Elimination::take_pivot(int column, bool must) {
-  int pivot_row, other;
-  const double size = largest_entry(column, pivots, candidates, pivot_row);
-  if (!(size > kRoundOff * column_sizes[column])) return false;
-  if (!must && size < kThreshold * largest_entry(column, candidates, active, other)) return false;
-  swap_rows(pivot_row, pivots);
-  swap_columns(column, pivots);
-  const double* pivot_values = row(pivots);
-  const double reciprocal = reciprocals[pivots] = 1 / pivot_values[pivots];
-  double* multipliers = lower + static_cast<std::size_t>(stride) * pivots;
-  for (int i = pivots / 4 * 4; i <= pivots; ++i) multipliers[i] = 0;
-  for (int i = active; i < stride; ++i) multipliers[i] = 0;
-  const int first = pivots / 4, last = lanes_for(active);
-  int i = pivots + 1;
-  for (; i + 4 <= active; i += 4) {
-    bool couples = false;  // a border has zeros where it has not come to be coupled yet
-    for (int k = i; k < i + 4; ++k) {
-      multipliers[k] = row(k)[pivots] * reciprocal;
-      couples = couples || multipliers[k] != 0;
-    }
-    if (couples) subtract_four(row(i), stride, multipliers + i, pivot_values, first, last);
-  }
-  for (; i < active; ++i) {
-    multipliers[i] = row(i)[pivots] * reciprocal;
-    subtract(row(i), multipliers[i], pivot_values, first, last);
-  }
-  ++pivots;
-  return true;
-}
-
-bool Elimination::take_pivots(int certain, bool all) {
-  for (int k = 0; k < certain; ++k)
-    if (!take_pivot(k, true)) return false;
-  // A column that had no pivot may have one after others. Where all must go, the best come first.
-  for (const bool must : {false, true}) {
-    if (must && !all) break;
-    for (int before = -1; before != pivots && pivots < candidates;) {
-      before = pivots;
-      for (int k = pivots; k < candidates; ++k) take_pivot(k, must);
-    }
-  }
-  return !all || pivots == candidates;
-}
 
 }  // namespace
 

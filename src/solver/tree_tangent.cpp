@@ -43,8 +43,7 @@ bool TreeTangent::suits(const Model& model, const DegreesOfFreedom& dof) {
 }
 
 TreeTangent::TreeTangent(const Model& model, const DegreesOfFreedom& dof)
-    : model_(model),
-      dof_(dof),
+    : dof_(dof),
       blocks_(model, dof),
       order_(model, dof),
       bordered_(model, dof, order_, blocks_),

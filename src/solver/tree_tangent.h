@@ -63,7 +63,6 @@ class TreeTangent : public TangentBackend {
   void backward_joint(int joint);
   std::array<double*, 5> node_values(const TreePart& part, std::vector<double>& values, int size) const;
 
-  const Model& model_;
   const DegreesOfFreedom& dof_;
   TreeBlocks blocks_;
   TreeOrder order_;
