@@ -109,6 +109,7 @@ std::vector<Eigenpair> largest(Operation operation, int count, bool is_small, Cr
   std::sort(order.begin(), order.end(), [&](int a, int b) { return std::abs(values[a]) > std::abs(values[b]); });
   order.resize(std::min<std::size_t>(order.size(), count));
   std::vector<Eigenpair> pairs;
+  pairs.reserve(order.size());
   for (const int k : order) pairs.push_back({values[k], vectors.col(k)});
   return pairs;
 }

@@ -116,6 +116,7 @@ std::vector<Mode> natural_modes(const Model& model, const State& state, int coun
     pairs = undamped_pairs(system, shift, computed);
   }
   std::vector<Mode> modes;
+  modes.reserve(pairs.size());
   for (const Eigenpair& pair : pairs) modes.push_back(undamped_mode(system, shift, pair));
   if (system.is_damped()) {
     // Free motions are those of K alone, damped or not; they stay.

@@ -1,5 +1,7 @@
 #include "building/loop_builder.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <unordered_set>
@@ -87,7 +89,7 @@ bool LoopBuilder::can_become_slave(int node, int master) const {
 }
 
 Attachment LoopBuilder::child_place(const scene::JointDescription& joint) const {
-  const Attachment nearest = attachment(plan_, model_, joint.child, joint.child_origin.position);
+  Attachment nearest = attachment(plan_, model_, joint.child, joint.child_origin.position);
   const int link = plan_.links[joint.child];
   const std::optional<LinkMesh>& beam = plan_.meshes[link];
   if (!beam || joint.parent != joint.child || !beam->centreline.is_closed()) return nearest;
@@ -122,7 +124,7 @@ void LoopBuilder::add(const scene::JointDescription& joint) {
   std::vector<std::string> names = coordinate_names(joint);
   for (const std::string& name : names)
     if (plan_.initial_positions.of(name) != 0)
-      throw ModelError(where + "its coordinates are 0 at the start; '" + name + "' cannot start elsewhere");
+      throw ModelError(fmt::format("{}its coordinates are 0 at the start; '{}' cannot start elsewhere", where, name));
   if (!onto_child) {
     std::reverse(maps.begin(), maps.end());
     std::reverse(names.begin(), names.end());

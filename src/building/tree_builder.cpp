@@ -11,6 +11,7 @@ namespace {
 Released initial_released(JointMapKind kind, const std::vector<std::string>& names, const InitialPositions& positions) {
   Released out;
   std::vector<double> values;
+  values.reserve(names.size());
   for (const std::string& name : names) values.push_back(positions.of(name));
   if (kind == JointMapKind::Scalar || kind == JointMapKind::Slide) {
     out.displacement[0] = values[0];

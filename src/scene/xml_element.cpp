@@ -120,7 +120,7 @@ std::optional<std::string> XmlElement::text(const char* attribute) const {
 }
 
 std::optional<std::string> XmlElement::name(const char* attribute) const {
-  const std::optional<std::string> value = text(attribute);
+  std::optional<std::string> value = text(attribute);
   if (!value) return std::nullopt;
   const bool has_control =
       std::any_of(value->begin(), value->end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; });
@@ -136,7 +136,7 @@ std::optional<std::vector<double>> XmlElement::numbers(const char* attribute, st
                                                        const NumberRange& range) const {
   const std::optional<std::string> value = text(attribute);
   if (!value) return std::nullopt;
-  const std::optional<std::vector<double>> numbers = parse_numbers(*value, count);
+  std::optional<std::vector<double>> numbers = parse_numbers(*value, count);
   if (!numbers || numbers->size() != count) {
     attribute_error(attribute, std::string(attribute) + " must be " +
                                    (count == 1 ? "a finite number" : std::to_string(count) + " finite numbers"));

@@ -41,8 +41,8 @@ class BorderedElimination {
     int from, place, count;
   };
 
-  double* memory(std::size_t fours) { return memory_.data()->lane + 4 * fours; }
-  const double* memory(std::size_t fours) const { return memory_.data()->lane + 4 * fours; }
+  double* memory(std::size_t fours) { return numbers(memory_) + 4 * fours; }
+  const double* memory(std::size_t fours) const { return numbers(memory_) + 4 * fours; }
   std::size_t allocate(int numbers);
   void reserve();
   void lay_out(int index);

@@ -24,7 +24,7 @@ void BorderedElimination::forward(int index, const Eigen::VectorXd& b, std::vect
     const int scalar = scalars_[f.held + k];
     values[scalar] = b[dof_.equation[scalar]];
   }
-  double* r = work_.data()->lane;
+  double* r = numbers(work_);
   const int lanes = f.stride / 4;
   for (int i = 0; i < f.size; ++i) r[i] = values[scalars_[f.rows + i]];
   const double* lower = memory(f.lower);
@@ -42,7 +42,7 @@ void BorderedElimination::forward(int index, const Eigen::VectorXd& b, std::vect
 void BorderedElimination::backward(int index, std::vector<double>& values) const {
   const TreePart& part = order_.parts()[index];
   const Factors& f = factors_[index];
-  double* x = work_.data()->lane;
+  double* x = numbers(work_);
   const int lanes = f.stride / 4;
   std::fill_n(x, f.stride, 0.0);
   for (int i = f.pivots; i < f.size; ++i) x[i] = values[scalars_[f.columns + i]];

@@ -177,7 +177,7 @@ void DenseFront::start(int active) {
   stride_ = 4 * lanes;
   const std::size_t fours = static_cast<std::size_t>(lanes) * size();
   if (values_.size() < fours) values_.resize(fours);
-  std::fill_n(values_.data()->lane, 4 * fours, 0.0);
+  std::fill_n(numbers(values_), 4 * fours, 0.0);
   for (int i = 0; i < size(); ++i) {
     row_place_[rows[i]] = i;
     column_place_[columns[i]] = i;
@@ -204,7 +204,7 @@ void DenseFront::fold(int slave, int count, const double* left, const double* ri
   const int place = column_place_[slave], slave_row = row_place_[slave], lanes = lanes_for(size()),
             rows_in_all = size();
   right_.assign(static_cast<std::size_t>(lanes) * count, {});  // by columns of the front
-  double *columns_of = right_.data()->lane, *values = values_.data()->lane;
+  double *columns_of = numbers(right_), *values = numbers(values_);
   for (int k = 0; k < count; ++k)
     for (int t = 0; t < target_count; ++t)
       columns_of[stride_ * k + column_place_[targets[t]]] = right[distance * k + t];
@@ -234,16 +234,9 @@ int DenseFront::eliminate(int candidates, int certain, bool all) {
   scales_.resize(active_);
   column_sizes_.assign(lanes_for(candidates), {});
   reciprocals_.resize(candidates);
-  Elimination elimination{active_,
-                          candidates,
-                          stride_,
-                          values_.data()->lane,
-                          lower_.data()->lane,
-                          column_sizes_.data()->lane,
-                          scales_.data(),
-                          reciprocals_.data(),
-                          rows.data(),
-                          columns.data()};
+  Elimination elimination{
+      active_,        candidates,          stride_,     numbers(values_), numbers(lower_), numbers(column_sizes_),
+      scales_.data(), reciprocals_.data(), rows.data(), columns.data()};
   bool done = false;
   simd::run([&] { done = elimination.scale() && elimination.take_pivots(certain, all); });
   return done ? elimination.pivots : -1;

@@ -26,7 +26,7 @@ class DenseFront {
   int size() const { return static_cast<int>(rows.size()); }
   int active() const { return active_; }
   int stride() const { return stride_; }
-  double* row(int i) { return values_.data()->lane + static_cast<std::size_t>(stride_) * i; }
+  double* row(int i) { return numbers(values_) + static_cast<std::size_t>(stride_) * i; }
   /// Place of a scalar; -1: it is not in the front.
   int row_place(int scalar) const { return row_place_[scalar]; }
   int column_place(int scalar) const { return column_place_[scalar]; }
@@ -48,7 +48,7 @@ class DenseFront {
   /// taken has no correct digits.
   int eliminate(int candidates, int certain, bool all);
   /// Columns of L behind the diagonal, by columns, and reciprocal pivots.
-  const double* lower(int k) const { return lower_.data()->lane + static_cast<std::size_t>(stride_) * k; }
+  const double* lower(int k) const { return numbers(lower_) + static_cast<std::size_t>(stride_) * k; }
   double reciprocal(int k) const { return reciprocals_[k]; }
 
  private:

@@ -35,4 +35,12 @@ struct alignas(32) FourNumbers {
 };
 using FrontMemory = std::vector<FourNumbers>;
 
+/// All of them, one behind the other.
+inline double* numbers(FrontMemory& memory) {
+  return reinterpret_cast<double*>(memory.data());
+}
+inline const double* numbers(const FrontMemory& memory) {
+  return reinterpret_cast<const double*>(memory.data());
+}
+
 }  // namespace flexarm

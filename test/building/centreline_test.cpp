@@ -71,7 +71,9 @@ TEST(Centreline, SectionAxisIsTheTangentOfTheLine) {
 // In an untwisted arc the section does not turn about the tangent; twist does it, evenly.
 TEST(Centreline, TwistIsTheTurningAboutTheTangent) {
   const Centreline centreline(hook(), {});
-  for (const auto& [s, rate] : {std::pair(1.0, 0.0), std::pair(2.7, 0.4 / (kPi / 2)), std::pair(4.5, -0.7 / 1.5)}) {
+  for (const auto& [arc_length, rate] :
+       {std::pair(1.0, 0.0), std::pair(2.7, 0.4 / (kPi / 2)), std::pair(4.5, -0.7 / 1.5)}) {
+    const double s = arc_length;
     const Quaternion at = centreline.at(s).orientation;
     const Vector3 turning =
         difference([&](double h) { return cayley::increment(at, centreline.at(s + h).orientation); });
