@@ -43,7 +43,7 @@ NewtonIteration::NewtonIteration(StepSystem& system, const StepSettings& setting
 void NewtonIteration::forget_factors() {
   factorised_step_ = 0;
   factor_reuse_.reset();
-  fresh_start_ = kept_start_ = {};
+  starts_ = {};
 }
 
 bool NewtonIteration::solve(Updates updates, Factors factors, StepResult& result) {
@@ -135,30 +135,32 @@ bool NewtonIteration::stalls(const Progress& progress) const {
 }
 
 /// The second update of a solve is what the first one left.
-void NewtonIteration::learn(const Progress& progress) {
-  if (progress.iteration == 0) started_with_kept_ = progress.with_kept;
-  FirstUpdate& start = started_with_kept_ ? kept_start_ : fresh_start_;
-  const double residual = system_.residual().norm();
-  if (progress.iteration == 0) ++start.age, first_residual_ = residual;
-  if (progress.iteration == 1)
-    start = {norms_.front(), progress.contraction, first_residual_ > 0 ? residual / first_residual_ : 0.0, 0,
-             progress.since_revision > 0};
+void NewtonIteration::learn(Progress& progress) {
+  if (progress.iteration == 0) {
+    progress.started_with_kept = progress.with_kept;
+    progress.first_residual = system_.residual().norm();
+    ++starts_[progress.with_kept].age;
+  } else if (progress.iteration == 1) {
+    const double ratio = progress.first_residual > 0 ? system_.residual().norm() / progress.first_residual : 0.0;
+    starts_[progress.started_with_kept] = {norms_.front(), progress.contraction, ratio, 0, progress.since_revision > 0};
+  }
 }
 
 /// After an evaluation at what a first update has led to. The residual tells what no earlier solve could know: that a
 /// stop is touched, say.
 bool NewtonIteration::is_as_expected(const Progress& progress) const {
   if (progress.iteration > 0) return true;
-  const FirstUpdate& start = progress.with_kept ? kept_start_ : fresh_start_;
+  const FirstUpdate& start = starts_[progress.with_kept];
   const double growth = std::max(1.0, progress.norm / start.norm);
-  return system_.residual().norm() <= std::max(kCaution * growth * start.residual_ratio, kRoundOff) * first_residual_;
+  const double expected = std::max(kCaution * growth * start.residual_ratio, kRoundOff) * progress.first_residual;
+  return system_.residual().norm() <= expected;
 }
 
 /// By the rate of the last two updates, or of the first two of an earlier solve: new factors square the error, kept
 /// ones contract it.
 double NewtonIteration::remainder_after(const Progress& progress) const {
   if (progress.iteration == 0) {
-    const FirstUpdate& start = progress.with_kept ? kept_start_ : fresh_start_;
+    const FirstUpdate& start = starts_[progress.with_kept];
     if (!start.is_known || start.age > kTrust) return progress.norm;
     const double growth = std::max(1.0, progress.norm / start.norm);  // new factors: of the contraction, too
     return progress.norm * std::min(1.0, kCaution * growth * start.contraction);

@@ -1,6 +1,7 @@
 #pragma once
 /// Newton's method for the equations of a step.
 
+#include <array>
 #include <vector>
 
 #include "flexarm/model/results.h"
@@ -38,11 +39,13 @@ class NewtonIteration {
   using Reason = StepResult::Reason;
   /// What an update tells of how the iteration goes.
   struct Progress {
-    int iteration = 0;       // of the solve
-    int since_revision = 0;  // updates of the same equations before this one
-    bool with_kept = false;  // factors
-    double norm = 0;         // of the update
-    double contraction = 1;  // its ratio to the one before; 1 where there is none
+    int iteration = 0;               // of the solve
+    int since_revision = 0;          // updates of the same equations before this one
+    bool with_kept = false;          // factors
+    double norm = 0;                 // of the update
+    double contraction = 1;          // its ratio to the one before; 1 where there is none
+    bool started_with_kept = false;  // factors of the solve's first update
+    double first_residual = 0;       // norm before it
   };
 
   /// How a solve went on after its first update: what is to be expected of the next one that starts alike.
@@ -61,7 +64,7 @@ class NewtonIteration {
   bool stalls(const Progress& progress) const;
   bool has_converged(const Progress& progress, Factors factors) const;
   double remainder_after(const Progress& progress) const;
-  void learn(const Progress& progress);
+  void learn(Progress& progress);
   bool is_as_expected(const Progress& progress) const;
   void enter(StepPhase phase) {
     if (observer_) observer_->enter(phase);
@@ -73,9 +76,7 @@ class NewtonIteration {
   double factorised_step_ = 0;  // for which the factors hold; 0: none
   Eigen::VectorXd update_;
   std::vector<double> norms_;
-  FirstUpdate fresh_start_, kept_start_;  // by the factors of the first update
-  bool started_with_kept_ = false;
-  double first_residual_ = 0;  // norm at the start of the solve
+  std::array<FirstUpdate, 2> starts_;  // with fresh and with kept factors
   StepObserver* observer_ = nullptr;
 };
 
