@@ -171,7 +171,7 @@ SlideTravel StepConfiguration::slide_travel(int j) const {
           end_,
           state_->released[j].displacement[0],
           released_[j].displacement[0],
-          joint.algorithm,
+          scheme_.heeds_slide_schemes ? joint.algorithm : SlideAlgorithm(),
           scheme_.arm_weight()};
 }
 

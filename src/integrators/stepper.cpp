@@ -135,9 +135,8 @@ void Stepper::initialise_accelerations(State& state) {
   settings.step = h;
   Scheme scheme = *find_scheme("m1");
   scheme.contact_time = scheme_.contact_time;
-  Model model = model_;
-  for (JointMap& joint : model.joints) joint.algorithm = {};  // those of slides belong to other schemes
-  Stepper momentum(model, scheme, settings);
+  scheme.heeds_slide_schemes = false;  // they were chosen for another scheme
+  Stepper momentum(model_, scheme, settings);
   State moved = state;
   if (!momentum.advance(moved).converged) return;
   for (std::size_t i = 0; i < state.nodes.size(); ++i) {
