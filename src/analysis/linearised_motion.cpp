@@ -71,9 +71,9 @@ int LinearisedMotion::freedoms() const {
   return freedoms;
 }
 
-LinearisedMotion::Matrix LinearisedMotion::matrix(const SparseTangent& assembler) {
-  return Matrix(assembler.unknowns(), assembler.unknowns(), assembler.values().size(), assembler.column_starts().data(),
-                assembler.row_indices().data(), assembler.values().data());
+LinearisedMotion::Matrix LinearisedMotion::matrix(const SparseTangent& tangent) {
+  return Matrix(tangent.unknowns(), tangent.unknowns(), tangent.values().size(), tangent.column_starts().data(),
+                tangent.row_indices().data(), tangent.values().data());
 }
 
 bool LinearisedMotion::is_damped() const {
@@ -189,15 +189,15 @@ void LinearisedMotion::assemble_damping() {
   fold(damping_);
 }
 
-void LinearisedMotion::fold(SparseTangent& assembler) const {
+void LinearisedMotion::fold(SparseTangent& tangent) const {
   for (int j = static_cast<int>(model_.joints.size()) - 1; j >= 0; --j) {
     if (model_.joints[j].kind == JointMapKind::Slide)
-      assembler.fold(j, maps_.slides[j]);
+      tangent.fold(j, maps_.slides[j]);
     else
-      assembler.fold(j, maps_.folds[j]);
+      tangent.fold(j, maps_.folds[j]);
   }
-  assembler.fold_mimics(maps_.mimics);
-  assembler.finish();
+  tangent.fold_mimics(maps_.mimics);
+  tangent.finish();
 }
 
 // ---------------------------------------------------------------- motions

@@ -51,12 +51,12 @@ class LinearisedMotion {
   double round_off(const std::vector<ComplexVector6>& node_motion) const;
 
  private:
-  static Matrix matrix(const SparseTangent& assembler);
+  static Matrix matrix(const SparseTangent& tangent);
   void find_multipliers();
   void set_joint_maps();
   void assemble_mass();
   void assemble_damping();
-  void fold(SparseTangent& assembler) const;
+  void fold(SparseTangent& tangent) const;
   std::vector<double> scalars(const Eigen::VectorXd& vector) const;
   std::vector<Vector6> node_motion(const std::vector<double>& scalars) const;
 

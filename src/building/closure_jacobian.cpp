@@ -124,8 +124,7 @@ Eigen::VectorXd scalar_scales(const Model& model, const DegreesOfFreedom& dof) {
   Eigen::VectorXd scales = Eigen::VectorXd::Ones(dof.scalar_count);
   for (int i = 0; i < dof.node_count; ++i) scales.segment<3>(dof.first[i]).setConstant(model.length_scale);
   for (const Coordinate& coordinate : model.coordinates)
-    if (!coordinate.is_angle && model.joints[coordinate.joint].rotation.isZero(0))
-      scales[dof.scalar_of(coordinate)] = model.length_scale;
+    if (!is_rotation(model, coordinate)) scales[dof.scalar_of(coordinate)] = model.length_scale;
   return scales;
 }
 

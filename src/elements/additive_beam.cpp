@@ -1,5 +1,7 @@
 #include "elements/additive_beam.h"
 
+#include "elements/orders.h"
+
 namespace flexarm {
 namespace {
 
@@ -108,10 +110,7 @@ void additive_to_spins(const ElementNodes<Nodes>& nodes, bool with_tangent, Elem
   template decltype(AdditiveForm::add_point<Nodes>) AdditiveForm::add_point<Nodes>;   \
   template decltype(add_additive_rotary_rate<Nodes>) add_additive_rotary_rate<Nodes>; \
   template decltype(additive_to_spins<Nodes>) additive_to_spins<Nodes>;
-COMPILE_FOR(2)
-COMPILE_FOR(3)
-COMPILE_FOR(4)
-COMPILE_FOR(5)
+FLEXARM_FOR_EACH_ORDER(COMPILE_FOR)
 #undef COMPILE_FOR
 
 }  // namespace flexarm

@@ -1,5 +1,7 @@
 #include "elements/endpoint_beam.h"
 
+#include "elements/orders.h"
+
 namespace flexarm {
 
 endpoint::PointTangent endpoint::point_tangent(const PointKinematics& point, const Matrix6& stiffness,
@@ -60,10 +62,7 @@ void newmark_mass_damping(const BeamElement<Nodes>& element, const ElementNodes<
   template decltype(SpinForm::add_point<Nodes>) SpinForm::add_point<Nodes>; \
   template decltype(newmark_translation<Nodes>) newmark_translation<Nodes>; \
   template decltype(newmark_mass_damping<Nodes>) newmark_mass_damping<Nodes>;
-COMPILE_FOR(2)
-COMPILE_FOR(3)
-COMPILE_FOR(4)
-COMPILE_FOR(5)
+FLEXARM_FOR_EACH_ORDER(COMPILE_FOR)
 #undef COMPILE_FOR
 
 }  // namespace flexarm

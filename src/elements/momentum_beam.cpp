@@ -3,6 +3,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "elements/orders.h"
+
 namespace flexarm {
 namespace {
 
@@ -245,10 +247,7 @@ void momentum_beam(const BeamElement<Nodes>& element, const ElementNodes<Nodes>&
 
 // Compiled here once for each order of elements.
 #define COMPILE_FOR(Nodes) template decltype(momentum_beam<Nodes>) momentum_beam<Nodes>;
-COMPILE_FOR(2)
-COMPILE_FOR(3)
-COMPILE_FOR(4)
-COMPILE_FOR(5)
+FLEXARM_FOR_EACH_ORDER(COMPILE_FOR)
 #undef COMPILE_FOR
 
 }  // namespace flexarm

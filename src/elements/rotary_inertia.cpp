@@ -1,5 +1,7 @@
 #include "elements/rotary_inertia.h"
 
+#include "elements/orders.h"
+
 namespace flexarm {
 
 template <int Nodes>
@@ -62,10 +64,7 @@ RotaryRate momentum_rotary_rate(const Matrix3& inertia, const Matrix3& begin, co
 
 // Compiled here once for each order of elements.
 #define COMPILE_FOR(Nodes) template decltype(add_rotary_rate<Nodes>) add_rotary_rate<Nodes>;
-COMPILE_FOR(2)
-COMPILE_FOR(3)
-COMPILE_FOR(4)
-COMPILE_FOR(5)
+FLEXARM_FOR_EACH_ORDER(COMPILE_FOR)
 #undef COMPILE_FOR
 
 }  // namespace flexarm

@@ -24,17 +24,10 @@ Contact contact_of(const JointMap& joint) {
 
 /// Of increments: 1 rad, or the model's length.
 double scale_of(const Model& model, const Coordinate& coordinate) {
-  const bool turns = coordinate.is_angle || !model.joints[coordinate.joint].rotation.isZero(0);
-  return turns ? 1.0 : model.length_scale;
+  return is_rotation(model, coordinate) ? 1.0 : model.length_scale;
 }
 
 }  // namespace
-
-std::size_t most_slide_nodes(const Model& model) {
-  std::size_t most = 0;
-  for (const SlideLine& line : model.slide_lines) most = std::max(most, line.most_active_nodes());
-  return most;
-}
 
 DryFrictionStep::DryFrictionStep(StepConfiguration& configuration, const HhtInterpolation* interpolation)
     : configuration_(configuration),
@@ -42,7 +35,7 @@ DryFrictionStep::DryFrictionStep(StepConfiguration& configuration, const HhtInte
       model_(configuration.model()),
       carrier_of_(model_.coordinates.size(), -1),
       capacities_(model_.coordinates.size(), 0.0),
-      scratch_(most_slide_nodes(model_)) {
+      scratch_(most_active_nodes(model_.slide_lines)) {
   if (!configuration.scheme().is_static) find_carriers();
   tangent_branches_.assign(carriers_.size(), StickSlip::Free);
   if (!carriers_.empty()) configuration.keep_begin_rates();

@@ -68,7 +68,4 @@ class DryFrictionStep {
   int revisions_ = 0;  // in this solve
 };
 
-/// Most nodes that a slider of the model may touch in a step.
-std::size_t most_slide_nodes(const Model& model);
-
 }  // namespace flexarm

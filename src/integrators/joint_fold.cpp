@@ -13,7 +13,7 @@ JointFold::JointFold(const StepConfiguration& configuration, const StepHistories
       histories_(histories),
       friction_(friction),
       applied_(configuration.model().coordinates.size(), 0.0),
-      slide_maps_(most_slide_nodes(configuration.model())),
+      slide_maps_(most_active_nodes(configuration.model().slide_lines)),
       mimic_maps_(configuration.degrees_of_freedom().mimics.size()) {
   for (const Coordinate& coordinate : configuration.model().coordinates)
     stops_.push_back(stop_penalty(coordinate, configuration.scheme().contact_time));

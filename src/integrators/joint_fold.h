@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "integrators/dry_friction_step.h"
-#include "integrators/histories.h"
 #include "integrators/step_configuration.h"
+#include "integrators/step_histories.h"
 #include "solver/reduced_residual.h"
 
 namespace flexarm {

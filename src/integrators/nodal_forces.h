@@ -2,7 +2,7 @@
 /// Weights, loads and dampers at the nodes of a model over a step.
 
 #include "integrators/hht_interpolation.h"
-#include "integrators/histories.h"
+#include "integrators/step_histories.h"
 
 namespace flexarm {
 

@@ -6,9 +6,8 @@ namespace flexarm {
 
 StepSystem::StepSystem(const Model& model, const Scheme& scheme, BackendChoice backend)
     : model_(model),
-      scheme_(scheme),
       dof_(model),
-      configuration_(model, scheme_, dof_),
+      configuration_(model, scheme, dof_),
       histories_(model),
       beams_(make_beam_family(configuration_)),
       interpolation_(scheme.hht != HhtForm::None && !scheme.is_static
@@ -62,13 +61,13 @@ bool StepSystem::evaluate(bool with_tangent) {
   Balance balance{rows_, with_tangent ? tangent_.get() : nullptr};
   rows_.set_zero();
   if (with_tangent) tangent_->set_zero();
-  if (with_tangent && scheme_.stress != StressRule::Conjugate && !scheme_.is_static)
+  if (with_tangent && scheme().stress != StressRule::Conjugate && !scheme().is_static)
     configuration_.set_inverse_tangents();
 
   if (interpolation_) interpolation_->begin_evaluation();
   add_forces(balance);
   if (interpolation_) interpolation_->add_forces(balance);
-  if (!scheme_.is_static) {
+  if (!scheme().is_static) {
     bodies_.evaluate(balance);
     beams_->add_inertia(balance);
   }
@@ -93,7 +92,7 @@ void StepSystem::update(const Eigen::VectorXd& increment) {
 }
 
 void StepSystem::accept(State& state) {
-  if (scheme_.is_static) return accept_rest(state);
+  if (scheme().is_static) return accept_rest(state);
   joints_.find_drives(rows_, state.drives);
   friction_.accept(state);
   double work = 0;
@@ -143,7 +142,7 @@ void StepSystem::initialise(State& state) {
   beams_->initialise(state);
   if (!interpolation_) return;
   bodies_.initialise(state);
-  state.forces = StepSystem(model_, statics_of(scheme_)).nodal_forces(state);
+  state.forces = StepSystem(model_, statics_of(scheme())).nodal_forces(state);
 }
 
 }  // namespace flexarm

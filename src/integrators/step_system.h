@@ -17,12 +17,12 @@
 #include "integrators/beam_family.h"
 #include "integrators/bodies.h"
 #include "integrators/dry_friction_step.h"
-#include "integrators/histories.h"
 #include "integrators/joint_fold.h"
 #include "integrators/loop_multipliers.h"
 #include "integrators/nodal_forces.h"
 #include "integrators/smooth_reversals.h"
 #include "integrators/step_configuration.h"
+#include "integrators/step_histories.h"
 #include "integrators/unknown_scales.h"
 
 namespace flexarm {
@@ -70,11 +70,11 @@ class StepSystem {
   std::vector<Vector6> nodal_forces(const State& state);
 
  private:
+  const Scheme& scheme() const { return configuration_.scheme(); }
   void add_forces(Balance& balance);
   void accept_rest(State& state);
 
   const Model& model_;
-  Scheme scheme_;
   DegreesOfFreedom dof_;
   StepConfiguration configuration_;
   StepHistories histories_;

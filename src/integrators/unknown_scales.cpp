@@ -13,8 +13,7 @@ UnknownScales::UnknownScales(const Model& model, const DegreesOfFreedom& dof) : 
   }
   for (const Coordinate& coordinate : model.coordinates) {
     const int equation = dof.equation[dof.first[dof.variable_of_joint(coordinate.joint)] + coordinate.component];
-    const bool turns = coordinate.is_angle || !model.joints[coordinate.joint].rotation.isZero(0);
-    if (equation >= 0) unknowns_.push_back({equation, turns});
+    if (equation >= 0) unknowns_.push_back({equation, is_rotation(model, coordinate)});
   }
   for (const NodalInertia& inertia : model.inertias) mass_ += inertia.total_mass;
   for (std::size_t k = 0; k < model.closures.size(); ++k) {

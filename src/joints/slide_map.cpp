@@ -17,6 +17,12 @@ SlideMaps::SlideMaps(std::size_t most_nodes) {
   master_master.reserve(most_nodes * most_nodes);
 }
 
+std::size_t most_active_nodes(const std::vector<SlideLine>& lines) {
+  std::size_t most = 0;
+  for (const SlideLine& line : lines) most = std::max(most, line.most_active_nodes());
+  return most;
+}
+
 void slide::set_active(const SlideLine& line, int piece, int other_piece, bool with_tangent, SlideMaps& maps) {
   const NodeRange active = line.support(std::min(piece, other_piece), std::max(piece, other_piece));
   maps.first = active.first;

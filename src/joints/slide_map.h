@@ -24,6 +24,9 @@ struct SlideMaps {
   std::vector<Matrix6> master_master;                     ///< [i * count + j]
 };
 
+/// Most nodes of any of the lines on which the sections of a step depend; for SlideMaps of any slider.
+std::size_t most_active_nodes(const std::vector<SlideLine>& lines);
+
 /// What a step makes of a slider; refers to poses of all nodes of the model.
 struct SlideTravel {
   const SlideLine& line;

@@ -126,4 +126,9 @@ struct Model {
   std::vector<ProbePoint> probes;
 };
 
+/// True for coordinates that count in rad: free rotations, and scalars by which something turns.
+inline bool is_rotation(const Model& model, const Coordinate& coordinate) {
+  return coordinate.is_angle || !model.joints[coordinate.joint].rotation.isZero(0);
+}
+
 }  // namespace flexarm
