@@ -62,10 +62,10 @@ void JointFold::add_efforts(int j, Balance& balance) {
 
 void JointFold::fold_slide(int j, Balance& balance) {
   const Vector6 g = balance.residual.node(configuration_.model().joints[j].slave);
-  configuration_.slide_maps(j, g, slide_maps_, balance.tangent != nullptr);
-  friction_.add_normal(j, g, slide_maps_, balance);
-  balance.residual.fold(j, slide_maps_);
-  if (balance.tangent) balance.tangent->fold(j, slide_maps_);
+  SlideMaps& maps = balance.tangent ? balance.tangent->slide_maps(j) : slide_maps_;
+  configuration_.slide_maps(j, g, maps, balance.tangent != nullptr);
+  friction_.add_normal(j, g, maps, balance);
+  balance.residual.fold(j, maps);
 }
 
 void JointFold::evaluate(Balance& balance) {
@@ -80,8 +80,8 @@ void JointFold::evaluate(Balance& balance) {
       configuration_.joint_maps(j, g, maps, balance.tangent != nullptr);
       friction_.add_normal(j, g, maps, balance);
       balance.residual.fold(j, maps);
-      if (balance.tangent) balance.tangent->fold(j);
     }
+    if (balance.tangent) balance.tangent->fold(j);
     add_efforts(j, balance);
   }
   const std::vector<DegreesOfFreedom::Mimic>& mimics = configuration_.degrees_of_freedom().mimics;

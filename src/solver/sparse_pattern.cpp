@@ -133,7 +133,8 @@ class SparseTangent::PatternBuilder {
   std::vector<bool> folded_;
 };
 
-SparseTangent::SparseTangent(const Model& model, const DegreesOfFreedom& dof) : model_(model), dof_(dof) {
+SparseTangent::SparseTangent(const Model& model, const DegreesOfFreedom& dof)
+    : model_(model), dof_(dof), slide_maps_(most_active_nodes(model.slide_lines)) {
   build_pattern();
 }
 

@@ -56,6 +56,13 @@ void SparseTangent::add_closure(int closure, int index, double multiplier, const
   add_row(blocks.multiplier_parent, maps.right.parent);
 }
 
+void SparseTangent::fold(int j) {
+  if (model_.joints[j].kind == JointMapKind::Slide)
+    fold(j, slide_maps_);
+  else
+    fold(j, maps_);
+}
+
 void SparseTangent::fold(int j, const FoldMaps& maps) {
   const JointFold& fold = joint_folds_[j];
   fold_columns(fold, maps);

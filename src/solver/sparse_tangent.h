@@ -27,9 +27,10 @@ class SparseTangent : public TangentBackend {
   void set_zero() override;
   void add_closure(int closure, int index, double multiplier, const ClosureMaps& maps) override;
   FoldMaps& fold_maps(int) override { return maps_; }
-  void fold(int joint) override { fold(joint, maps_); }
+  SlideMaps& slide_maps(int) override { return slide_maps_; }
+  void fold(int joint) override;
   void fold(int joint, const FoldMaps& maps);
-  void fold(int joint, const SlideMaps& maps) override;
+  void fold(int joint, const SlideMaps& maps);
   void fold_mimics(const std::vector<MimicMap>& maps) override;
   void finish() override;
   void hold_row(int joint, int component, int first, const ReleasedVector& coefficients) override;
@@ -131,6 +132,7 @@ class SparseTangent : public TangentBackend {
   std::vector<Span> written_;  // of values_
   std::vector<int> column_starts_, row_indices_;
   FoldMaps maps_;
+  SlideMaps slide_maps_;
   std::optional<LinearSolver> solver_;  // once something is to be solved
 };
 

@@ -39,12 +39,11 @@ class TangentBackend {
   virtual void add_closure(int closure, int index, double multiplier, const ClosureMaps& maps) = 0;
 
   // ---- reduction
-  /// Where the maps of a joint are to be written, for fold().
+  /// Where the maps of a joint, or of one that slides, are to be written for fold().
   virtual FoldMaps& fold_maps(int joint) = 0;
-  /// Folds the slave of `joint` by the maps that stand in fold_maps(); leaf to root.
+  virtual SlideMaps& slide_maps(int joint) = 0;
+  /// Folds the slave of `joint` by the maps that stand there; leaf to root.
   virtual void fold(int joint) = 0;
-  /// The same for a slave that slides.
-  virtual void fold(int joint, const SlideMaps& maps) = 0;
   /// Folds coordinates that follow others; after all joints. `maps`: per entry of DegreesOfFreedom::mimics.
   virtual void fold_mimics(const std::vector<MimicMap>& maps) = 0;
   /// Everything is folded.

@@ -43,7 +43,8 @@ bool TreeTangent::suits(const Model& model, const DegreesOfFreedom& dof) {
 }
 
 TreeTangent::TreeTangent(const Model& model, const DegreesOfFreedom& dof)
-    : dof_(dof),
+    : model_(model),
+      dof_(dof),
       blocks_(model, dof),
       order_(model, dof),
       bordered_(model, dof, order_, blocks_),
@@ -97,8 +98,10 @@ void TreeTangent::add_closure(int closure, int index, double multiplier, const C
   values.row(own).segment<6>(6) += maps.right.parent;
 }
 
-void TreeTangent::fold(int joint, const SlideMaps& maps) {
-  blocks_.slide_maps[joint] = maps;
+/// Is left to the elimination, but for where sliders are.
+void TreeTangent::fold(int joint) {
+  if (model_.joints[joint].kind != JointMapKind::Slide) return;
+  const SlideMaps& maps = blocks_.slide_maps[joint];
   order_.set_window(joint, {maps.first, maps.first + maps.count});
 }
 

@@ -32,8 +32,8 @@ class TreeTangent : public TangentBackend {
   void set_zero() override;
   void add_closure(int closure, int index, double multiplier, const ClosureMaps& maps) override;
   FoldMaps& fold_maps(int joint) override { return blocks_.maps[joint]; }
-  void fold(int) override {}  // is left to the elimination
-  void fold(int joint, const SlideMaps& maps) override;
+  SlideMaps& slide_maps(int joint) override { return blocks_.slide_maps[joint]; }
+  void fold(int joint) override;
   void fold_mimics(const std::vector<MimicMap>& maps) override { blocks_.mimics = maps; }
   void finish() override {}
   void hold_row(int joint, int component, int first, const ReleasedVector& coefficients) override;
@@ -63,6 +63,7 @@ class TreeTangent : public TangentBackend {
   void backward_joint(int joint);
   std::array<double*, 5> node_values(const TreePart& part, std::vector<double>& values, int size) const;
 
+  const Model& model_;
   const DegreesOfFreedom& dof_;
   TreeBlocks blocks_;
   TreeOrder order_;
