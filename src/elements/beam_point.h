@@ -40,11 +40,13 @@ struct ElementNodes {
 template <int Nodes>
 struct ElementSystem {
   Eigen::Matrix<double, 6 * Nodes, 1> residual;
+  Eigen::Matrix<double, 6 * Nodes, 1> carried;  ///< what carried strains would add to it
   Eigen::Matrix<double, 6 * Nodes, 6 * Nodes> tangent;
   double dissipated = 0;  ///< over the step [J]
 
   void set_zero() {
     residual.setZero();
+    carried.setZero();
     tangent.setZero();
     dissipated = 0;
   }
@@ -65,6 +67,12 @@ class ElementRotations {
   std::optional<LocalRotationVariation<Nodes>> variation_;
   std::optional<ReferencedRotations<Nodes>> referenced_;
 };
+
+/// What the strains at an element's stiffness points become along a Newton update {dr, spin} of its nodes, to first
+/// order (docs/notes/newton.md).
+template <int Nodes>
+void carry_strains(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes,
+                   const std::array<Vector6, Nodes>& update, Vector6* strains);
 
 template <int Nodes, typename S = double>
 Vector3T<S> interpolate(const NodalValues<Nodes, S>& weights, const std::array<Vector3T<S>, Nodes>& values) {

@@ -59,11 +59,11 @@ struct Multiplier {
     Vector6T<S> defect;  // Delta Sigma - s
     defect.template head<3>() = p.average_rotation.transpose() * so3::cross(p.arm, Vector3T<S>(turn - p.increment));
     defect.template tail<3>() =
-        end.strain.template tail<3>() - begin.strain.template tail<3>() - p.conjugate_strain.template tail<3>();
-    numerator += weight * dot6(p.stress, defect);
-    denominator += weight * dot6(p.conjugate_strain, p.conjugate_stress);
-    reference += S(0.5) * weight * dot6(Vector6T<S>(end.strain + begin.strain), p.stress);
-    p.energy_stress = S(0.5) * stiffness.stress(defect) + p.stress;
+        end.strain.template tail<3>() - begin.strain.template tail<3>() - p.own.conjugate_strain.template tail<3>();
+    numerator += weight * dot6(p.seen.stress, defect);
+    denominator += weight * dot6(p.seen.conjugate_strain, p.seen.conjugate_stress);
+    reference += weight * dot6(p.seen.strain, p.seen.stress);
+    p.half_defect_stress = S(0.5) * stiffness.stress(defect);
   }
 
   /// lambda = num den / (den^2 + eps^2): the guard switches the correction off where the element does not deform.
@@ -73,13 +73,22 @@ struct Multiplier {
     return denominator * denominator + guard * guard;
   }
   S value() const { return numerator * denominator / guarded_square(); }
+  S of_numerator() const { return denominator / guarded_square(); }
+  S of_denominator() const {
+    const S q = guarded_square();
+    return (numerator / q) * (S(1) - S(2) * denominator * (denominator / q));
+  }
   /// d(lambda) as a linear form at a point.
   PointForm<S> form(const S& weight, const Point<Nodes, S>& p) const {
-    const S q = guarded_square();
-    const S of_numerator = weight * (denominator / q);
-    const S of_denominator = weight * (numerator / q) * (S(1) - S(2) * denominator * (denominator / q));
-    return strain_form<Nodes, S>(p, (S(2) * of_denominator) * p.conjugate_stress - of_numerator * p.stress,
-                                 of_numerator * p.energy_stress);
+    const S a = weight * of_numerator(), b = S(2) * weight * of_denominator();
+    return strain_form<Nodes, S>(p, b * p.seen.conjugate_stress - a * p.seen.stress,
+                                 a * (p.half_defect_stress + p.seen.stress));
+  }
+  /// What lambda gains to first order where the strains are the point's own instead of those seen.
+  S gain(const S& weight, const Point<Nodes, S>& p) const {
+    const S end = S(2) * dot6(p.half_defect_stress, Vector6T<S>(p.own.strain - p.seen.strain));
+    const S conjugate = dot6(p.seen.conjugate_stress, Vector6T<S>(p.own.conjugate_strain - p.seen.conjugate_strain));
+    return weight * (of_numerator() * end + S(2) * of_denominator() * conjugate);
   }
 };
 
@@ -116,6 +125,57 @@ void set_translation(const ConservingElement<Nodes, S>& element, const BeamNodes
   }
 }
 
+/// All stiffness points of an element over a step, at the trial configuration.
+template <int Nodes, typename S>
+struct StepPoints {
+  std::array<Point<Nodes, S>, Nodes - 1> points;
+  ElementFunctions<Nodes, S> averages;    // where the mid functions are symmetric
+  const ElementFunctions<Nodes, S>* mid;  // of about the middle of the step
+  Multiplier<Nodes, S> multiplier;        // where the rule has one
+
+  /// `end` receives the points at t_{n+1}. The generalised shape functions of the points are set `with_variation`, or
+  /// where the mid functions ask for them. `functions` must outlive this.
+  StepPoints(const ConservingElement<Nodes, S>& element, const BeamNodes<Nodes, S>& nodes, const TimeRule& rule,
+             const ElementFunctions<Nodes, S>& functions, const PointKinematicsT<S>* begin,
+             const CarriedStrains<Nodes, S>* carried, bool with_variation, PointKinematicsT<S>* end)
+      : mid(&functions) {
+    constexpr int kPoints = Nodes - 1;
+    const bool is_symmetric = rule.mid_functions == MidFunctions::Symmetric;
+    const LocalRotations<Nodes, S> rotations(nodes.orientation);
+    std::array<InterpolatedRotation<S>, kPoints> rotation;
+    if (with_variation || is_symmetric) {
+      const LocalRotationVariation<Nodes, S> variation(rotations);
+      for (int k = 0; k < kPoints; ++k)
+        rotation[k] = variation.evaluate(element.points[k].shape, element.points[k].derivative, points[k].generalised);
+    } else {
+      for (int k = 0; k < kPoints; ++k)
+        rotation[k] = rotations.evaluate(element.points[k].shape, element.points[k].derivative);
+    }
+    if (is_symmetric) {
+      for (int k = 0; k < kPoints; ++k)
+        for (int i = 0; i < Nodes; ++i) {
+          averages[k].values[i] = S(0.5) * (functions[k].values[i] + points[k].generalised.values[i]);
+          averages[k].derivatives[i] = S(0.5) * (functions[k].derivatives[i] + points[k].generalised.derivatives[i]);
+        }
+      mid = &averages;
+    }
+    for (int k = 0; k < kPoints; ++k) {
+      const auto& constants = element.points[k];
+      end[k] = point_kinematics(rotation[k], interpolate<Nodes>(constants.derivative, nodes.end),
+                                constants.reference_strain);
+      Point<Nodes, S>& p = points[k];
+      set_strains<Nodes, S>((*mid)[k], element.stiffness, nodes, begin[k], end[k], p);
+      p.seen = p.own;
+      if (carried)
+        p.seen = PointStress<S>(element.stiffness, begin[k].strain, carried->end[k],
+                                carried->has_conjugate ? carried->conjugate[k] : p.own.conjugate_strain);
+      if (rule.correction == EnergyCorrection::Multiplier)
+        multiplier.add(constants.weight, element.stiffness, begin[k], end[k], p);
+    }
+  }
+  StepPoints(const StepPoints&) = delete;  // `mid` may point to its own
+};
+
 }  // namespace conserving
 
 /// Internal forces, damping and translational inertia of one element over a step of length `step`, EM family. `begin`
@@ -129,50 +189,33 @@ void set_translation(const ConservingElement<Nodes, S>& element, const BeamNodes
 /// of the middle make Delta(strain) - s third order in the step. With the Lagrange functions (beyond.md 1.1) it is
 /// first order wherever an element is deformed, and the multiplier that makes up for it has no limit where the strain
 /// comes to rest.
+///
+/// With a tangent, strains may be carried along: `carried`, per point, are what its geometric part and the multiplier
+/// see instead of those of the trial configuration. Null: these. The residual with carried strains differs from the one
+/// without by what is second order in their difference, and only by the multiplier (docs/notes/newton.md).
 template <int Nodes, typename S>
 void conserving_beam(const ConservingElement<Nodes, S>& element, const BeamNodes<Nodes, S>& nodes, const TimeRule& rule,
                      const ElementFunctions<Nodes, S>& functions, const PointKinematicsT<S>* begin,
-                     const StrainMemoryT<S>* memory, double step, bool with_tangent, PointKinematicsT<S>* end,
-                     StrainMemoryT<S>* end_memory, BlockSystem<Nodes, S>& system) {
+                     const StrainMemoryT<S>* memory, double step, bool with_tangent,
+                     const CarriedStrains<Nodes, S>* carried, PointKinematicsT<S>* end, StrainMemoryT<S>* end_memory,
+                     BlockSystem<Nodes, S>& system) {
   constexpr int kPoints = Nodes - 1;
   using conserving::Point;
-  const bool is_symmetric = rule.mid_functions == MidFunctions::Symmetric;
   const bool is_corrected = rule.correction == EnergyCorrection::Multiplier;
   const bool has_memory = rule.dissipation.any() || element.has_stiffness_damping;
   assert(step != 0 && begin && end);
   assert(!has_memory || (memory && end_memory));
   conserving::set_translation<Nodes, S>(element, nodes, rule.velocity_factor(), step, with_tangent, system);
 
-  std::array<Point<Nodes, S>, kPoints> points;
-  ElementFunctions<Nodes, S> averages;
-  const LocalRotations<Nodes, S> rotations(nodes.orientation);
-  std::array<InterpolatedRotation<S>, kPoints> rotation;
-  if (with_tangent || is_symmetric) {
-    const LocalRotationVariation<Nodes, S> variation(rotations);
-    for (int k = 0; k < kPoints; ++k)
-      rotation[k] = variation.evaluate(element.points[k].shape, element.points[k].derivative, points[k].generalised);
-  } else {
-    for (int k = 0; k < kPoints; ++k)
-      rotation[k] = rotations.evaluate(element.points[k].shape, element.points[k].derivative);
-  }
-  for (int k = 0; k < kPoints && is_symmetric; ++k)
-    for (int i = 0; i < Nodes; ++i) {
-      averages[k].values[i] = S(0.5) * (functions[k].values[i] + points[k].generalised.values[i]);
-      averages[k].derivatives[i] = S(0.5) * (functions[k].derivatives[i] + points[k].generalised.derivatives[i]);
-    }
-  const ElementFunctions<Nodes, S>& mid = is_symmetric ? averages : functions;
-
-  conserving::Multiplier<Nodes, S> multiplier;
-  for (int k = 0; k < kPoints; ++k) {
-    const auto& constants = element.points[k];
-    end[k] =
-        point_kinematics(rotation[k], interpolate<Nodes>(constants.derivative, nodes.end), constants.reference_strain);
-    conserving::set_strains<Nodes, S>(mid[k], element.stiffness, nodes, begin[k], end[k], points[k]);
-    if (is_corrected) multiplier.add(constants.weight, element.stiffness, begin[k], end[k], points[k]);
-  }
+  const conserving::StepPoints<Nodes, S> at(element, nodes, rule, functions, begin, carried, with_tangent, end);
+  const ElementFunctions<Nodes, S>& mid = *at.mid;
+  const conserving::Multiplier<Nodes, S>& multiplier = at.multiplier;
 
   const conserving::DamperParts<S> damper_parts(element.stiffness_damping, rule.damping_relaxation);
   const S lambda = is_corrected ? multiplier.value() : S(0);
+  S lambda_gain = S(0);
+  for (int k = 0; k < kPoints && is_corrected && carried; ++k)
+    lambda_gain += multiplier.gain(element.points[k].weight, at.points[k]);
   std::array<Matrix3T<S>, Nodes> inverse_tangent;  // S(w)^{-1}: dw = S^{-1} spin
   std::array<Vector6T<S>, Nodes> conjugate_residual, multiplier_row;
   for (int i = 0; i < Nodes && with_tangent; ++i) {
@@ -180,34 +223,43 @@ void conserving_beam(const ConservingElement<Nodes, S>& element, const BeamNodes
     conjugate_residual[i].setConstant(S(0));
     multiplier_row[i].setConstant(S(0));
   }
+  for (int i = 0; i < Nodes && carried; ++i) system.carried[i].setConstant(S(0));
   for (int k = 0; k < kPoints; ++k) {
     const auto& constants = element.points[k];
-    const Point<Nodes, S>& p = points[k];
+    const Point<Nodes, S>& p = at.points[k];
     S factor = lambda;
-    Vector6T<S> stress = p.stress;
+    Vector6T<S> stress = p.own.stress, seen = p.seen.stress;
     if (rule.dissipation.any()) {
-      const conserving::NumericalDamper<S> damper(rule.dissipation, memory[k], p.conjugate_strain, element.stiffness,
-                                                  step);
+      const conserving::NumericalDamper<S> damper(rule.dissipation, memory[k], p.own.conjugate_strain,
+                                                  element.stiffness, step);
       factor += damper.factor;
       stress -= damper.remembered;
+      seen -= damper.remembered;
       system.dissipated += constants.weight * damper.dissipated;
       end_memory[k].average = damper.average;
     }
     if (element.has_stiffness_damping) {
-      const conserving::StructuralDamper<S> damper(damper_parts, rule.damping_relaxation, memory[k], p.conjugate_strain,
-                                                   p.conjugate_stress, element.stiffness, step);
+      const conserving::StructuralDamper<S> damper(damper_parts, rule.damping_relaxation, memory[k],
+                                                   p.own.conjugate_strain, p.own.conjugate_stress, element.stiffness,
+                                                   step);
       factor += damper.factor;
       stress -= damper.remembered;
+      seen -= damper.remembered;
       system.dissipated += constants.weight * damper.dissipated;
       end_memory[k].delayed_rate = damper.delayed_rate;
     }
-    if (has_memory) end_memory[k].rate = conserving::end_rate(memory[k], p.conjugate_strain, step);
-    stress += factor * p.conjugate_stress;
-    stress *= constants.weight;
-    const Vector3T<S> force = stress.template head<3>(), moment = stress.template tail<3>();
-    const Vector3T<S> n = p.average_rotation * force, m = p.average_rotation * moment;
-    conserving::add_residual<Nodes, S>(constants.derivative, mid[k], n, m, p.arm, system.residual);
+    if (has_memory) end_memory[k].rate = conserving::end_rate(memory[k], p.own.conjugate_strain, step);
+    stress += factor * p.own.conjugate_stress + lambda_gain * p.seen.conjugate_stress;
+    const Vector6T<S> weighted = constants.weight * stress;
+    conserving::add_residual<Nodes, S>(constants.derivative, mid[k], p.average_rotation * weighted.template head<3>(),
+                                       p.average_rotation * weighted.template tail<3>(), p.arm, system.residual);
     if (!with_tangent) continue;
+    seen = constants.weight * Vector6T<S>(seen + factor * p.seen.conjugate_stress);
+    if (carried) {
+      const Vector6T<S> more = seen - weighted;
+      conserving::add_residual<Nodes, S>(constants.derivative, mid[k], p.average_rotation * more.template head<3>(),
+                                         p.average_rotation * more.template tail<3>(), p.arm, system.carried);
+    }
 
     const bool is_coupled = element.stiffness.is_coupled;
     const conserving::SlopeBuilder<Nodes, S> slope(p, constants.weight, factor);
@@ -223,12 +275,13 @@ void conserving_beam(const ConservingElement<Nodes, S>& element, const BeamNodes
       dm.position.setConstant(S(0));
       dm.increment.setConstant(S(0));
     }
+    const Vector3T<S> force = seen.template head<3>();
     slope.add_turn(force, dn);
-    slope.add_turn(moment, dm);
-    conserving::add_tangent<Nodes, S>(constants.derivative, mid[k], p, inverse_tangent, is_coupled, n, dn, dm,
-                                      system.tangent);
+    slope.add_turn(seen.template tail<3>(), dm);
+    conserving::add_tangent<Nodes, S>(constants.derivative, mid[k], p, inverse_tangent, is_coupled,
+                                      p.average_rotation * force, dn, dm, system.tangent);
     if (!is_corrected) continue;
-    const Vector6T<S> conjugate = constants.weight * p.conjugate_stress;
+    const Vector6T<S> conjugate = constants.weight * p.seen.conjugate_stress;
     conserving::add_residual<Nodes, S>(constants.derivative, mid[k], p.average_rotation * conjugate.template head<3>(),
                                        p.average_rotation * conjugate.template tail<3>(), p.arm, conjugate_residual);
     conserving::add_form<Nodes, S>(multiplier.form(constants.weight, p), constants.derivative, p.generalised, mid[k],
@@ -237,6 +290,34 @@ void conserving_beam(const ConservingElement<Nodes, S>& element, const BeamNodes
   for (int i = 0; i < Nodes && is_corrected && with_tangent; ++i)
     for (int j = 0; j < Nodes; ++j)
       system.tangent[i][j] += conjugate_residual[i].lazyProduct(multiplier_row[j].transpose());
+}
+
+/// What the strains become along a Newton update {dr, spin} of the nodes, to first order. `end` is scratch.
+template <int Nodes, typename S>
+void carry_strains(const ConservingElement<Nodes, S>& element, const BeamNodes<Nodes, S>& nodes, const TimeRule& rule,
+                   const ElementFunctions<Nodes, S>& functions, const PointKinematicsT<S>* begin,
+                   const std::array<Vector6T<S>, Nodes>& update, PointKinematicsT<S>* end,
+                   CarriedStrains<Nodes, S>& carried) {
+  const conserving::StepPoints<Nodes, S> at(element, nodes, rule, functions, begin, nullptr, true, end);
+  std::array<Vector3T<S>, Nodes> displacement, spin, increment;
+  for (int i = 0; i < Nodes; ++i) {
+    displacement[i] = update[i].template head<3>();
+    spin[i] = update[i].template tail<3>();
+    increment[i] = cayley::inverse_tangent(nodes.increment[i]) * spin[i];
+  }
+  for (int k = 0; k < Nodes - 1; ++k) {
+    const conserving::Point<Nodes, S>& p = at.points[k];
+    conserving::PointVariation<S> variation;
+    variation.position = interpolate<Nodes>(element.points[k].derivative, displacement);
+    variation.spin = conserving::sum_of<Nodes, S>(p.generalised.values, spin);
+    variation.spin_derivative = conserving::sum_of<Nodes, S>(p.generalised.derivatives, spin);
+    variation.increment = conserving::sum_of<Nodes, S>((*at.mid)[k].values, increment);
+    variation.increment_derivative = conserving::sum_of<Nodes, S>((*at.mid)[k].derivatives, increment);
+    const conserving::StrainSlopes<S> slopes = conserving::strain_slopes<Nodes, S>(p, variation);
+    carried.end[k] = end[k].strain + slopes.end;
+    carried.conjugate[k] = p.own.conjugate_strain + slopes.conjugate;
+  }
+  carried.has_conjugate = true;
 }
 
 }  // namespace flexarm

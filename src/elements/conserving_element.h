@@ -84,6 +84,14 @@ struct BeamNodes {
 template <int Nodes, typename S = double>
 using ElementFunctions = std::array<GeneralisedShapeFunctions<Nodes, S>, Nodes - 1>;
 
+/// Strains at the stiffness points of an element that Newton's method carries along (docs/notes/newton.md).
+template <int Nodes, typename S = double>
+struct CarriedStrains {
+  std::array<Vector6T<S>, Nodes - 1> end;        ///< at the end of the step
+  std::array<Vector6T<S>, Nodes - 1> conjugate;  ///< s
+  bool has_conjugate = false;                    ///< else that of the trial configuration counts
+};
+
 /// Block (i, j): derivative of node i's {f, phi} with respect to node j's {dr, spin}.
 template <int Nodes, typename S>
 using BlockTangent = std::array<std::array<Matrix6T<S>, Nodes>, Nodes>;
@@ -92,6 +100,7 @@ using BlockTangent = std::array<std::array<Matrix6T<S>, Nodes>, Nodes>;
 template <int Nodes, typename S = double>
 struct BlockSystem {
   std::array<Vector6T<S>, Nodes> residual;
+  std::array<Vector6T<S>, Nodes> carried;  ///< what carried stresses would add to it; only where there are some
   BlockTangent<Nodes, S> tangent;
   S dissipated;  ///< over the step [J]
 };

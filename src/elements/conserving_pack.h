@@ -21,7 +21,13 @@ template <int Nodes>
 void conserving_beam(const ConservingElement<Nodes, Pack>& element, const BeamNodes<Nodes, Pack>& nodes,
                      const TimeRule& rule, const ElementFunctions<Nodes, Pack>& functions,
                      const PointKinematicsT<Pack>* begin, const StrainMemoryT<Pack>* memory, double step,
-                     bool with_tangent, PointKinematicsT<Pack>* end, StrainMemoryT<Pack>* end_memory,
-                     BlockSystem<Nodes, Pack>& system);
+                     bool with_tangent, const CarriedStrains<Nodes, Pack>* carried, PointKinematicsT<Pack>* end,
+                     StrainMemoryT<Pack>* end_memory, BlockSystem<Nodes, Pack>& system);
+
+template <int Nodes>
+void carry_strains(const ConservingElement<Nodes, Pack>& element, const BeamNodes<Nodes, Pack>& nodes,
+                   const TimeRule& rule, const ElementFunctions<Nodes, Pack>& functions,
+                   const PointKinematicsT<Pack>* begin, const std::array<Vector6T<Pack>, Nodes>& update,
+                   PointKinematicsT<Pack>* end, CarriedStrains<Nodes, Pack>& carried);
 
 }  // namespace flexarm::packs

@@ -5,5 +5,6 @@ namespace flexarm::packs {
 template decltype(element_functions<4>) element_functions<4>;
 template decltype(element_points<4>) element_points<4>;
 template decltype(conserving_beam<4>) conserving_beam<4>;
+template decltype(carry_strains<4>) carry_strains<4>;
 
 }  // namespace flexarm::packs

@@ -24,12 +24,20 @@ template <int Nodes>
 void conserving_beam(const ConservingElement<Nodes, Pack>& element, const BeamNodes<Nodes, Pack>& nodes,
                      const TimeRule& rule, const ElementFunctions<Nodes, Pack>& functions,
                      const PointKinematicsT<Pack>* begin, const StrainMemoryT<Pack>* memory, double step,
-                     bool with_tangent, PointKinematicsT<Pack>* end, StrainMemoryT<Pack>* end_memory,
-                     BlockSystem<Nodes, Pack>& system) {
+                     bool with_tangent, const CarriedStrains<Nodes, Pack>* carried, PointKinematicsT<Pack>* end,
+                     StrainMemoryT<Pack>* end_memory, BlockSystem<Nodes, Pack>& system) {
   simd::run([&] {
-    flexarm::conserving_beam<Nodes, Pack>(element, nodes, rule, functions, begin, memory, step, with_tangent, end,
-                                          end_memory, system);
+    flexarm::conserving_beam<Nodes, Pack>(element, nodes, rule, functions, begin, memory, step, with_tangent, carried,
+                                          end, end_memory, system);
   });
+}
+
+template <int Nodes>
+void carry_strains(const ConservingElement<Nodes, Pack>& element, const BeamNodes<Nodes, Pack>& nodes,
+                   const TimeRule& rule, const ElementFunctions<Nodes, Pack>& functions,
+                   const PointKinematicsT<Pack>* begin, const std::array<Vector6T<Pack>, Nodes>& update,
+                   PointKinematicsT<Pack>* end, CarriedStrains<Nodes, Pack>& carried) {
+  simd::run([&] { flexarm::carry_strains<Nodes, Pack>(element, nodes, rule, functions, begin, update, end, carried); });
 }
 
 }  // namespace flexarm::packs

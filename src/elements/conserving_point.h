@@ -26,6 +26,21 @@ Matrix3T<S> hat_times(const Vector3T<S>& v, const Matrix3T<S>& m) {
   return product;
 }
 
+/// Strains and elastic stresses of a stiffness point over a step.
+template <typename S>
+struct PointStress {
+  Vector6T<S> strain, stress;                      // means of both ends
+  Vector6T<S> conjugate_strain, conjugate_stress;  // s and C s
+
+  PointStress() = default;
+  PointStress(const SectionStiffness<S>& stiffness, const Vector6T<S>& begin, const Vector6T<S>& end,
+              const Vector6T<S>& conjugate)
+      : strain(S(0.5) * (begin + end)),
+        stress(stiffness.stress(strain)),
+        conjugate_strain(conjugate),
+        conjugate_stress(stiffness.stress(conjugate)) {}
+};
+
 /// A stiffness point over a step.
 template <int Nodes, typename S>
 struct Point {
@@ -34,9 +49,8 @@ struct Point {
   Vector3T<S> end_tangent, arm;                     // r'_{n+1}, (r'_n + r'_{n+1}) / 2
   Vector3T<S> increment, increment_derivative;      // interpolated w and w'
   Vector3T<S> stretch;                              // x = Delta r' + arm x w
-  Vector6T<S> stress;                               // average of both ends
-  Vector6T<S> conjugate_strain, conjugate_stress;   // s and C s
-  Vector6T<S> energy_stress;                        // C (Delta Sigma - s) / 2 + stress
+  PointStress<S> own, seen;                         // of the trial configuration, and of what is carried
+  Vector6T<S> half_defect_stress;                   // C (Delta Sigma - s) / 2
 };
 
 /// The averages of begin and end, and the conjugate strain s. `mid`: generalised shape functions at about the middle.
@@ -48,7 +62,6 @@ void set_strains(const GeneralisedShapeFunctions<Nodes, S>& mid, const SectionSt
   p.end_tangent = end.tangent;
   p.average_rotation = S(0.5) * (begin.rotation + end.rotation);
   p.arm = S(0.5) * (begin.tangent + end.tangent);
-  p.stress = stiffness.stress(S(0.5) * (begin.strain + end.strain));
   p.increment = mid.values[0] * nodes.increment[0];
   p.increment_derivative = mid.derivatives[0] * nodes.increment[0];
   for (int i = 1; i < Nodes; ++i) {
@@ -56,16 +69,58 @@ void set_strains(const GeneralisedShapeFunctions<Nodes, S>& mid, const SectionSt
     p.increment_derivative += mid.derivatives[i] * nodes.increment[i];
   }
   p.stretch = end.tangent - begin.tangent + so3::cross(p.arm, p.increment);
-  p.conjugate_strain.template head<3>() = p.average_rotation.transpose() * p.stretch;
-  p.conjugate_strain.template tail<3>() = p.average_rotation.transpose() * p.increment_derivative;
-  p.conjugate_stress = stiffness.stress(p.conjugate_strain);
+  Vector6T<S> conjugate;
+  conjugate.template head<3>() = p.average_rotation.transpose() * p.stretch;
+  conjugate.template tail<3>() = p.average_rotation.transpose() * p.increment_derivative;
+  p.own = PointStress<S>(stiffness, begin.strain, end.strain, conjugate);
 }
 
-/// A linear form of {dr', spin, spin', dw, dw'} of a point.
+/// A variation {dr', spin, spin', dw, dw'} of a point.
+template <typename S>
+struct PointVariation {
+  Vector3T<S> position, spin, spin_derivative, increment, increment_derivative;
+};
+
+/// A linear form of it.
 template <typename S>
 struct PointForm {
   Vector3T<S> position, spin, spin_derivative, increment, increment_derivative;
 };
+
+template <typename S>
+S value_of(const PointForm<S>& form, const PointVariation<S>& v) {
+  return so3::dot(form.position, v.position) + so3::dot(form.spin, v.spin) +
+         so3::dot(form.spin_derivative, v.spin_derivative) + so3::dot(form.increment, v.increment) +
+         so3::dot(form.increment_derivative, v.increment_derivative);
+}
+
+/// What a variation makes of the strain at the end and of the conjugate strain s.
+template <typename S>
+struct StrainSlopes {
+  Vector6T<S> end, conjugate;
+};
+
+template <int Nodes, typename S>
+StrainSlopes<S> strain_slopes(const Point<Nodes, S>& p, const PointVariation<S>& v) {
+  const Matrix3T<S> end = p.end_rotation.transpose(), average = p.average_rotation.transpose();
+  StrainSlopes<S> slopes;
+  slopes.end.template head<3>() = end * Vector3T<S>(v.position + so3::cross(p.end_tangent, v.spin));
+  slopes.end.template tail<3>() = end * v.spin_derivative;
+  const Vector3T<S> stretch =
+      v.position + S(0.5) * so3::cross(v.position, p.increment) + so3::cross(p.arm, v.increment);
+  slopes.conjugate.template head<3>() = average * stretch + end * Vector3T<S>(S(0.5) * so3::cross(p.stretch, v.spin));
+  slopes.conjugate.template tail<3>() =
+      average * v.increment_derivative + end * Vector3T<S>(S(0.5) * so3::cross(p.increment_derivative, v.spin));
+  return slopes;
+}
+
+/// sum_i functions_i values_i.
+template <int Nodes, typename S>
+Vector3T<S> sum_of(const std::array<Matrix3T<S>, Nodes>& functions, const std::array<Vector3T<S>, Nodes>& values) {
+  Vector3T<S> sum = functions[0] * values[0];
+  for (int i = 1; i < Nodes; ++i) sum += functions[i] * values[i];
+  return sum;
+}
 
 /// The form `conjugate`.ds + `end`.d(strain at the end) (beyond.md 1.3).
 template <int Nodes, typename S>

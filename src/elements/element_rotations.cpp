@@ -1,6 +1,7 @@
 #include <cassert>
 
 #include "elements/beam_point.h"
+#include "elements/orders.h"
 
 namespace flexarm {
 
@@ -25,9 +26,32 @@ InterpolatedRotation<double> ElementRotations<Nodes>::evaluate(const NodalValues
   return referenced_->evaluate(shape, derivative, *reference, generalised);
 }
 
-template class ElementRotations<2>;
-template class ElementRotations<3>;
-template class ElementRotations<4>;
-template class ElementRotations<5>;
+template <int Nodes>
+void carry_strains(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes,
+                   const std::array<Vector6, Nodes>& update, Vector6* strains) {
+  const ElementRotations<Nodes> rotations(nodes, true);
+  for (int k = 0; k < BeamElement<Nodes>::kStiffnessPoints; ++k) {
+    const auto& constants = element.stiffness_points[k];
+    GeneralisedShapeFunctions<Nodes> generalised;
+    const auto* reference = nodes.stiffness_reference ? nodes.stiffness_reference + k : nullptr;
+    const auto rotation = rotations.evaluate(constants.shape, constants.derivative, reference, generalised);
+    const PointKinematics point =
+        point_kinematics(rotation, interpolate<Nodes>(constants.derivative, nodes.end), constants.reference_strain);
+    Eigen::Matrix<double, 9, 1> variation = Eigen::Matrix<double, 9, 1>::Zero();  // {dr', spin, spin'}
+    for (int i = 0; i < Nodes; ++i) {
+      variation.head<3>() += constants.derivative[i] * update[i].template head<3>();
+      variation.segment<3>(3) += generalised.values[i] * update[i].template tail<3>();
+      variation.tail<3>() += generalised.derivatives[i] * update[i].template tail<3>();
+    }
+    strains[k] = point.strain + strain_derivative(point) * variation;
+  }
+}
+
+// Compiled here once for each order of elements.
+#define COMPILE_FOR(Nodes)                \
+  template class ElementRotations<Nodes>; \
+  template decltype(carry_strains<Nodes>) carry_strains<Nodes>;
+FLEXARM_FOR_EACH_ORDER(COMPILE_FOR)
+#undef COMPILE_FOR
 
 }  // namespace flexarm

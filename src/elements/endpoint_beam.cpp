@@ -27,7 +27,9 @@ void SpinForm::add_point(const typename BeamElement<Nodes>::StiffnessPoint& cons
                             system.residual);
   if (!with_tangent) return;
   const endpoint::PointTangent d =
-      endpoint::point_tangent(point.kinematics, point.stiffness, point.stress_slope, point.n, point.m);
+      endpoint::point_tangent(point.kinematics, point.stiffness, point.stress_slope, point.seen_n, point.seen_m);
+  add_point_residual<Nodes>(constants.weight, constants.derivative, tests, point.seen_n - point.n,
+                            point.seen_m - point.m, point.kinematics.tangent, system.carried);
   add_point_tangent<Nodes>(constants.weight, tests, {constants.derivative, generalised}, d.resultants, d.couple,
                            system.tangent);
 }

@@ -68,6 +68,7 @@ struct PointForces {
   const Matrix6& stiffness;
   double stress_slope;  ///< d(stress)/d(strain) = stress_slope * stiffness
   Vector3 n, m;
+  Vector3 seen_n, seen_m;  ///< by the geometric part of the tangent
 };
 
 }  // namespace endpoint
@@ -85,11 +86,13 @@ struct SpinForm {
 
 /// Internal forces of one element at the end configuration; its stiffness points go to `end`. With a rule (dynamics):
 /// stiffness-proportional damping from `begin`, the points at the beginning, and their strain rates; those at the end
-/// go to `new_strain_rates`. `Form`: SpinForm or AdditiveForm.
+/// go to `new_strain_rates`. `Form`: SpinForm or AdditiveForm. With a tangent of the former, `carried` are the strains
+/// that its geometric part sees; null: those of the configuration (docs/notes/newton.md).
 template <int Nodes, class Form = SpinForm>
 void endpoint_internal(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const NewmarkRule* rule,
                        const PointKinematics* begin, const Vector6* strain_rates, bool with_tangent,
-                       PointKinematics* end, Vector6* new_strain_rates, ElementSystem<Nodes>& system) {
+                       PointKinematics* end, Vector6* new_strain_rates, ElementSystem<Nodes>& system,
+                       const Vector6* carried = nullptr) {
   assert(end && new_strain_rates);
   assert(!rule || (begin && strain_rates && rule->step != 0));
   const ElementRotations<Nodes> rotations(nodes, with_tangent && Form::kVariesSpins);
@@ -103,9 +106,14 @@ void endpoint_internal(const BeamElement<Nodes>& element, const ElementNodes<Nod
     const endpoint::PointStress point = endpoint::point_stress(element, end[k].strain, rule, begin[k], strain_rates[k]);
     system.dissipated += constants.weight * point.dissipated;
     new_strain_rates[k] = point.strain_rate;
-    const endpoint::PointForces forces{end[k], element.stiffness, point.slope,
-                                       end[k].rotation * point.stress.template head<3>(),
-                                       end[k].rotation * point.stress.template tail<3>()};
+    const auto in_space = [&](const Vector3& material) -> Vector3 { return end[k].rotation * material; };
+    const Vector3 n = in_space(point.stress.template head<3>()), m = in_space(point.stress.template tail<3>());
+    endpoint::PointForces forces{end[k], element.stiffness, point.slope, n, m, n, m};
+    if (carried) {
+      const endpoint::PointStress seen = endpoint::point_stress(element, carried[k], rule, begin[k], strain_rates[k]);
+      forces.seen_n = in_space(seen.stress.template head<3>());
+      forces.seen_m = in_space(seen.stress.template tail<3>());
+    }
     Form::add_point(constants, nodes, generalised, forces, with_tangent, system);
   }
 }

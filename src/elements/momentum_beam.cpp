@@ -20,7 +20,7 @@ struct Point {
 
 /// Stress resultants' material values at a point, the map of the moment to space, and their derivatives.
 struct StressState {
-  Vector6 stress;
+  Vector6 stress, seen;                           // the latter by the geometric part of the tangent
   Eigen::Matrix<double, 6, 9> stress_derivative;  // columns {dr', spin, spin'}
   Matrix3 moment_map;                             // A
   Matrix3 moment_derivative = Matrix3::Zero();    // d(A a) / d(spin) at constant material moment a
@@ -38,10 +38,14 @@ void add_point(const typename BeamElement<Nodes>::StiffnessPoint& constants, con
   resultants.template topRows<3>().noalias() = average.lazyProduct(state.stress_derivative.template topRows<3>());
   resultants.template bottomRows<3>().noalias() =
       state.moment_map.lazyProduct(state.stress_derivative.template bottomRows<3>());
-  resultants.template block<3, 3>(0, 3) -= 0.5 * so3::hat(Vector3(p.end.rotation * state.stress.template head<3>()));
+  resultants.template block<3, 3>(0, 3) -= 0.5 * so3::hat(Vector3(p.end.rotation * state.seen.template head<3>()));
   resultants.template block<3, 3>(3, 3) += state.moment_derivative;
   Eigen::Matrix<double, 3, 9> couple = so3::hat(p.arm) * resultants.template topRows<3>();
-  couple.template leftCols<3>() -= p.arm_weight * so3::hat(n);
+  const Vector3 seen_n = average * state.seen.template head<3>(),
+                seen_m = state.moment_map * state.seen.template tail<3>();
+  couple.template leftCols<3>() -= p.arm_weight * so3::hat(seen_n);
+  add_point_residual<Nodes>(constants.weight, constants.derivative, tests, seen_n - n, seen_m - m, p.arm,
+                            system.carried);
   add_point_tangent<Nodes>(constants.weight, tests, {constants.derivative, p.generalised}, resultants, couple,
                            system.tangent);
 }
@@ -123,7 +127,7 @@ struct StressWeights {
 template <int Nodes>
 void add_stress(const BeamElement<Nodes>& element, StressRule rule, const StressWeights& weights,
                 const std::array<Point<Nodes>, BeamElement<Nodes>::kStiffnessPoints>& points,
-                const PointKinematics* begin, bool with_tangent, ElementSystem<Nodes>& system) {
+                const PointKinematics* begin, const Vector6* carried, bool with_tangent, ElementSystem<Nodes>& system) {
   for (int k = 0; k < BeamElement<Nodes>::kStiffnessPoints; ++k) {
     const auto& constants = element.stiffness_points[k];
     const Point<Nodes>& p = points[k];
@@ -132,10 +136,15 @@ void add_stress(const BeamElement<Nodes>& element, StressRule rule, const Stress
     if (weights.forces_only) state.stress.template tail<3>().setZero();
     const MomentMap map(rule, begin[k].rotation, p.end.rotation);
     state.moment_map = map.map();
+    state.seen = state.stress;
     if (with_tangent) {
+      if (carried) {
+        state.seen = element.stiffness * (weights.begin * begin[k].strain + weights.end * carried[k]);
+        if (weights.forces_only) state.seen.template tail<3>().setZero();
+      }
       state.stress_derivative.noalias() = weights.end * element.stiffness.lazyProduct(strain_derivative(p.end));
       if (weights.forces_only) state.stress_derivative.template bottomRows<3>().setZero();
-      state.moment_derivative = map.derivative(state.stress.template tail<3>());
+      state.moment_derivative = map.derivative(state.seen.template tail<3>());
     }
     add_point<Nodes>(constants, LagrangeTests<Nodes>{constants.shape, constants.derivative}, p, state, with_tangent,
                      system);
@@ -213,13 +222,13 @@ void correct_energy(const ElementNodes<Nodes>& nodes, const ElementEnergy<Nodes>
 template <int Nodes>
 void momentum_beam(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const TimeRule& rule,
                    const PointKinematics* begin, double step, const RotaryTerm<Nodes>& rotary, bool with_tangent,
-                   PointKinematics* end, ElementSystem<Nodes>& system) {
+                   PointKinematics* end, ElementSystem<Nodes>& system, const Vector6* carried) {
   assert(step != 0 && begin && end && rotary);
   const bool is_corrected = rule.correction != EnergyCorrection::None;
   system.set_zero();
   std::array<Point<Nodes>, BeamElement<Nodes>::kStiffnessPoints> points;
   evaluate_points<Nodes>(element, nodes, begin, rule.arm_weight(), with_tangent || is_corrected, points, end);
-  add_stress<Nodes>(element, rule.stress, {0.5, 0.5}, points, begin, with_tangent, system);
+  add_stress<Nodes>(element, rule.stress, {0.5, 0.5}, points, begin, carried, with_tangent, system);
   add_translational_inertia<Nodes>(element, nodes, rule.velocity_factor(), step, with_tangent, system);
   ElementEnergy<Nodes> energy;
   rotary(with_tangent, is_corrected ? &energy : nullptr, system);
@@ -229,15 +238,16 @@ void momentum_beam(const BeamElement<Nodes>& element, const ElementNodes<Nodes>&
     ElementSystem<Nodes> correction;
     correction.set_zero();
     add_stress<Nodes>(element, rule.stress, {-1, 1, rule.correction == EnergyCorrection::AxialBeta}, points, begin,
-                      with_tangent, correction);
+                      nullptr, with_tangent, correction);
     correct_energy<Nodes>(nodes, energy, correction, with_tangent, system);
   }
   if (element.stiffness_damping > 0) {
     const double viscosity = element.stiffness_damping / step;
     ElementSystem<Nodes> viscous;
     viscous.set_zero();
-    add_stress<Nodes>(element, rule.stress, {-viscosity, viscosity}, points, begin, with_tangent, viscous);
+    add_stress<Nodes>(element, rule.stress, {-viscosity, viscosity}, points, begin, carried, with_tangent, viscous);
     system.residual += viscous.residual;
+    system.carried += viscous.carried;
     system.tangent += viscous.tangent;
     // The work on the nodes, not eta C (change of strain)^2 / h, which it is up to the order of the scheme.
     system.dissipated += nodal_increments(nodes).dot(viscous.residual);

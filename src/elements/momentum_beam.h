@@ -25,10 +25,11 @@ struct ElementEnergy {
 template <int Nodes>
 using RotaryTerm = std::function<void(bool, ElementEnergy<Nodes>*, ElementSystem<Nodes>&)>;
 
-/// Internal forces, damping and inertia of one element over a step.
+/// Internal forces, damping and inertia of one element over a step. `carried`: strains at the end that the geometric
+/// part of the tangent sees; null: those of the trial configuration. (docs/notes/newton.md)
 template <int Nodes>
 void momentum_beam(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const TimeRule& rule,
                    const PointKinematics* begin, double step, const RotaryTerm<Nodes>& rotary, bool with_tangent,
-                   PointKinematics* end, ElementSystem<Nodes>& system);
+                   PointKinematics* end, ElementSystem<Nodes>& system, const Vector6* carried = nullptr);
 
 }  // namespace flexarm

@@ -22,6 +22,11 @@ class BeamFamily {
   virtual void add_forces(Balance& balance) = 0;
   /// What add_forces() leaves, once all forces are in the balance.
   virtual void add_inertia(Balance&) {}
+  /// After a tangent, before its solution moves the nodes, {dr, spin} in `update`, 6 numbers each: carries the stresses
+  /// along for the next tangent (docs/notes/newton.md).
+  virtual void carry_strains(const double*) {}
+  /// Whether the geometric part of the next tangent sees other stresses than the residual.
+  virtual bool carries_strains() const { return false; }
   /// Writes what the family keeps of the trial configuration, evaluated last, into the state.
   virtual void accept(State& state) = 0;
   /// The state was changed by somebody else: what was kept from the last step does not hold.

@@ -1,6 +1,7 @@
 #include "integrators/conserving_beams.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "integrators/gathered.h"
 #include "integrators/initial_strain_memory.h"
@@ -59,6 +60,13 @@ void ConservingBeams::begin() {
   if (!holds_begin_points_) set_begin_points();
   holds_begin_points_ = true;
   set_mid_functions();
+  for_each_group(groups_, [&](auto& packs) {
+    for (auto& pack : packs) {
+      for (std::size_t k = 0; k < pack.carried.end.size(); ++k) pack.carried.end[k] = pack.points[begin_][k].strain;
+      pack.carried.has_conjugate = false;
+    }
+  });
+  carries_strains_ = true;
 }
 
 void ConservingBeams::accept(State& state) {
@@ -109,6 +117,10 @@ void ConservingBeams::scatter(const ElementPack<Nodes>& pack, const BlockSystem<
   for (int i = 0; i < Nodes; ++i) {
     for (int lane = 0; lane < pack.lanes; ++lane) targets[lane] = balance.residual.at(pack.nodes[lane][i]);
     add_lanes<6>(system.residual[i].data(), pack.lanes, targets.data());
+    if (balance.carried) {
+      for (int lane = 0; lane < pack.lanes; ++lane) targets[lane] = balance.carried->at(pack.nodes[lane][i]);
+      add_lanes<6>(system.carried[i].data(), pack.lanes, targets.data());
+    }
     for (int j = 0; j < Nodes && balance.tangent; ++j) {
       for (int lane = 0; lane < pack.lanes; ++lane)
         targets[lane] = balance.tangent->element_block(pack.first_block[lane] + i * Nodes + j);
@@ -164,6 +176,24 @@ void ConservingBeams::set_mid_functions() {
   });
 }
 
+void ConservingBeams::carry_strains(const double* update) {
+  const StepMotion step = configuration_.motion();
+  for_each_group(groups_, [&](auto& packs) {
+    constexpr int N = std::decay_t<decltype(packs)>::value_type::kNodes;
+    simd::run([&] {
+      for (auto& pack : packs) {
+        std::array<Vector6T<Pack>, N> moved;
+        for (int i = 0; i < N; ++i)
+          moved[i] =
+              gathered_vector<6>([&](int lane) { return Eigen::Map<const Vector6>(update + 6 * pack.nodes[lane][i]); });
+        packs::carry_strains<N>(pack.element, gather<N>(pack, step), rule_, pack.mid_functions,
+                                pack.points[begin_].data(), moved, pack.points[1 - begin_].data(), pack.carried);
+      }
+    });
+  });
+  carries_strains_ = true;
+}
+
 void ConservingBeams::add_forces(Balance& balance) {
   const StepMotion step = configuration_.motion();
   double dissipated = 0;
@@ -177,8 +207,8 @@ void ConservingBeams::add_forces(Balance& balance) {
         if (has_memory_) gather<N>(pack, step.state.strain_memory, memory);
         packs::conserving_beam<N>(pack.element, gather<N>(pack, step), rule_, pack.mid_functions,
                                   pack.points[begin_].data(), has_memory_ ? memory.data() : nullptr, step.step,
-                                  balance.tangent != nullptr, pack.points[1 - begin_].data(),
-                                  has_memory_ ? new_memory.data() : nullptr, system);
+                                  balance.tangent != nullptr, balance.carried ? &pack.carried : nullptr,
+                                  pack.points[1 - begin_].data(), has_memory_ ? new_memory.data() : nullptr, system);
         if (has_memory_) scatter<N>(pack, new_memory, end_memory_);
         scatter<N>(pack, system, balance);
         for (int lane = 0; lane < pack.lanes; ++lane) dissipated += system.dissipated[lane];
@@ -186,6 +216,7 @@ void ConservingBeams::add_forces(Balance& balance) {
     });
   });
   balance.dissipated += dissipated;
+  if (balance.tangent) carries_strains_ = false;
 }
 
 }  // namespace flexarm

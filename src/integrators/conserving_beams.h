@@ -17,6 +17,8 @@ class ConservingBeams : public BeamFamily {
   void initialise(State& state) override;
   void begin() override;
   void add_forces(Balance& balance) override;
+  void carry_strains(const double* update) override;
+  bool carries_strains() const override { return carries_strains_; }
   void accept(State& state) override;
   void invalidate() override { holds_begin_points_ = false; }
 
@@ -33,6 +35,7 @@ class ConservingBeams : public BeamFamily {
     std::array<int, Pack::kLanes> first_block, first_stiffness_point;
     ConservingElement<Nodes, Pack> element;
     ElementFunctions<Nodes, Pack> mid_functions;
+    CarriedStrains<Nodes, Pack> carried;
     std::array<std::array<PointKinematicsT<Pack>, Nodes - 1>, 2> points;  // at the beginning and at the end
   };
   template <int Nodes>
@@ -54,8 +57,9 @@ class ConservingBeams : public BeamFamily {
   std::tuple<PackGroup<2>, PackGroup<3>, PackGroup<4>, PackGroup<5>> groups_;
   bool has_memory_ = false;               // numerical dissipation or structural damping keep State::strain_memory
   std::vector<StrainMemory> end_memory_;  // per stiffness point, where has_memory_
-  int begin_ = 0;                         // which of ElementPack::points
-  bool holds_begin_points_ = false;       // from the last step
+  bool carries_strains_ = false;
+  int begin_ = 0;                    // which of ElementPack::points
+  bool holds_begin_points_ = false;  // from the last step
 };
 
 }  // namespace flexarm

@@ -16,7 +16,7 @@ void EndpointBeams::initialise(State& state) {
   points_.reference.initialise(state);
   if (!interpolation_) return;
   points_.invalidate();
-  points_.begin();
+  points_.begin(false);
   for_each_element(configuration_.model().beams, [&](const auto& element) {
     for (std::size_t k = 0; k < element.mass_points.size(); ++k) {
       const int index = element.first_mass_point + static_cast<int>(k);
@@ -31,7 +31,7 @@ void EndpointBeams::begin() {
   const Scheme& scheme = configuration_.scheme();
   rule_ = newmark_rule(scheme, configuration_.step());
   if (scheme.is_static) points_.invalidate();
-  points_.begin();
+  points_.begin(may_carry());
 }
 
 void EndpointBeams::add_forces(Balance& balance) {
@@ -48,12 +48,13 @@ void EndpointBeams::add_forces(Balance& balance) {
     const auto internal = is_additive() ? endpoint_internal<N, AdditiveForm> : endpoint_internal<N>;
     internal(element, nodes, is_static ? nullptr : &rule_, &points_.begin_stiffness[first],
              configuration_.state().strain_rates.data() + first, with_tangent, &points_.end_stiffness[first],
-             &end_strain_rates_[first], system);
+             &end_strain_rates_[first], system, points_.carried(first, balance));
     if (is_additive()) additive_to_spins(nodes, with_tangent, system);
     if (!is_static && !interpolates_kinematics()) newmark_mass_damping<N>(element, nodes, rule_, with_tangent, system);
     if (interpolation_) interpolation_->take(element, with_tangent, system);
     scatter(element, system, balance, true);
   });
+  if (with_tangent) points_.drop_carried();
 }
 
 template <int Nodes>

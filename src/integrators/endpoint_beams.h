@@ -16,6 +16,8 @@ class EndpointBeams : public BeamFamily {
   void begin() override;
   void add_forces(Balance& balance) override;
   void add_inertia(Balance& balance) override;
+  void carry_strains(const double* update) override { points_.carry_strains(configuration_.end(), update); }
+  bool carries_strains() const override { return points_.carries_strains(); }
   void accept(State& state) override;
   void invalidate() override { points_.invalidate(); }
   const std::vector<Vector3>& total_rotations() const override { return points_.reference.total_rotations(); }
@@ -26,6 +28,8 @@ class EndpointBeams : public BeamFamily {
   void add_rotary(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, bool with_tangent,
                   ElementSystem<Nodes>& system);
   bool is_additive() const { return configuration_.scheme().weak_form == WeakForm::Additive; }
+  /// Strains of another instant, or a form with other unknowns, are not carried.
+  bool may_carry() const { return !is_additive() && !interpolates_kinematics(); }
   bool interpolates_kinematics() const { return interpolation_ && configuration_.scheme().hht == HhtForm::Kinematics; }
 
   const StepConfiguration& configuration_;

@@ -29,10 +29,10 @@ class FactorReuse {
   /// equations, and the update is more than round-off.
   bool renew(int iteration, bool was_kept, bool compares, double contraction) {
     const bool is_slow = compares && contraction > slow_;
-    // The first that shows what kept factors are worth.
-    if (compares && was_kept && iteration == std::max(planned_, 1)) {
+    if (compares && was_kept) {
+      // The first shows best what kept factors are worth, but may profit from an error that the new ones left small.
+      if (iteration == std::max(planned_, 1) && contraction < fast_) fresh_ = std::max(planned_ - 1, 0);
       if (is_slow) fresh_ = std::min(planned_ + 1, kMost);
-      if (contraction < fast_) fresh_ = std::max(planned_ - 1, 0);
       unjudged_ = 0;
     }
     return is_slow || iteration + 1 < planned_;

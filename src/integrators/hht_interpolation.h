@@ -43,6 +43,8 @@ class HhtInterpolation {
       } else {
         const Matrix3 slope = moment_slope(node);
         system.tangent.template middleRows<3>(6 * i) *= factor;
+        system.carried.template segment<3>(6 * i) *= factor;
+        system.carried.template segment<3>(6 * i + 3) = (slope * system.carried.template segment<3>(6 * i + 3)).eval();
         auto moment = system.tangent.template middleRows<3>(6 * i + 3);
         moment = (slope * moment).eval();
       }

@@ -11,12 +11,28 @@ IntegrationPoints::IntegrationPoints(const StepConfiguration& configuration)
       begin_rotations(configuration.model().mass_point_count),
       end_rotations(configuration.model().mass_point_count),
       end_motion(configuration.model().mass_point_count),
-      configuration_(configuration) {}
+      configuration_(configuration),
+      carried_strains_(configuration.model().stiffness_point_count) {}
 
-void IntegrationPoints::begin() {
+void IntegrationPoints::begin(bool carries) {
   reference.begin(configuration_.state());
   if (!hold_) set_begin_points();
   hold_ = true;
+  carries_ = holds_carried_ = carries;
+  for (std::size_t k = 0; k < carried_strains_.size(); ++k) carried_strains_[k] = begin_stiffness[k].strain;
+}
+
+void IntegrationPoints::carry_strains(const std::vector<NodePose>& end, const double* update) {
+  if (!carries_) return;
+  holds_carried_ = true;
+  for_each_element(configuration_.model().beams, [&](const auto& element) {
+    constexpr int N = std::decay_t<decltype(element)>::kNodes;
+    ElementNodes<N> nodes;
+    gather(element, end, nodes);
+    std::array<Vector6, N> moved;
+    for (int i = 0; i < N; ++i) moved[i] = Eigen::Map<const Vector6>(update + 6 * element.nodes[i]);
+    flexarm::carry_strains<N>(element, nodes, moved, &carried_strains_[element.first_stiffness_point]);
+  });
 }
 
 void IntegrationPoints::set_begin_points() {

@@ -15,10 +15,21 @@ class IntegrationPoints {
  public:
   explicit IntegrationPoints(const StepConfiguration& configuration);
 
-  /// Points of the configuration at the beginning, unless those of the last step's end still hold.
-  void begin();
+  /// Points of the configuration at the beginning, unless those of the last step's end still hold. `carries`: strains
+  /// are carried along for the tangents of the step.
+  void begin(bool carries);
   /// The state was changed by somebody else.
   void invalidate() { hold_ = false; }
+  /// The strains that the geometric part of the next tangent sees become those of an update of the nodes from the poses
+  /// `end`, 6 numbers each.
+  void carry_strains(const std::vector<NodePose>& end, const double* update);
+  /// Of the stiffness points from `first` on; null unless the balance's tangent is to see them.
+  const Vector6* carried(int first, const Balance& balance) const {
+    return balance.carried ? &carried_strains_[first] : nullptr;
+  }
+  bool carries_strains() const { return carries_ && holds_carried_; }
+  /// A tangent has seen them.
+  void drop_carried() { holds_carried_ = false; }
   /// The points at hand become those at the beginning of the next step, and the state's.
   void accept(State& state);
 
@@ -49,6 +60,8 @@ class IntegrationPoints {
 
   const StepConfiguration& configuration_;
   bool hold_ = false;
+  bool carries_ = false, holds_carried_ = false;
+  std::vector<Vector6> carried_strains_;  // of stiffness points
 };
 
 /// Adds an element's system to the balance. `is_first`: nothing else of this element has been added before.
@@ -58,6 +71,7 @@ void scatter(const BeamElement<Nodes>& element, const ElementSystem<Nodes>& syst
   balance.dissipated += system.dissipated;
   for (int i = 0; i < Nodes; ++i) {
     balance.residual.node(element.nodes[i]) += system.residual.template segment<6>(6 * i);
+    if (balance.carried) balance.carried->node(element.nodes[i]) += system.carried.template segment<6>(6 * i);
     for (int j = 0; j < Nodes && balance.tangent; ++j) {
       Eigen::Map<Matrix6> block(balance.tangent->element_block(element.first_block + i * Nodes + j));
       if (sets)

@@ -60,12 +60,21 @@ void JointFold::add_efforts(int j, Balance& balance) {
   }
 }
 
+/// What the geometric parts of a joint's maps see of the residual.
+Vector6 JointFold::force_on_slave(int j, const Balance& balance) const {
+  const int slave = configuration_.model().joints[j].slave;
+  const ReducedResidual& residual = balance.residual;
+  if (!balance.carried) return residual.node(slave);
+  return residual.node(slave) + balance.carried->node(slave);
+}
+
 void JointFold::fold_slide(int j, Balance& balance) {
-  const Vector6 g = balance.residual.node(configuration_.model().joints[j].slave);
+  const Vector6 g = force_on_slave(j, balance);
   SlideMaps& maps = balance.tangent ? balance.tangent->slide_maps(j) : slide_maps_;
   configuration_.slide_maps(j, g, maps, balance.tangent != nullptr);
   friction_.add_normal(j, g, maps, balance);
   balance.residual.fold(j, maps);
+  if (balance.carried) balance.carried->fold(j, maps);
 }
 
 void JointFold::evaluate(Balance& balance) {
@@ -75,11 +84,12 @@ void JointFold::evaluate(Balance& balance) {
     if (joints[j].kind == JointMapKind::Slide) {
       fold_slide(j, balance);
     } else {
-      const Vector6 g = balance.residual.node(joints[j].slave);
+      const Vector6 g = force_on_slave(j, balance);
       FoldMaps& maps = balance.tangent ? balance.tangent->fold_maps(j) : fold_maps_;
       configuration_.joint_maps(j, g, maps, balance.tangent != nullptr);
       friction_.add_normal(j, g, maps, balance);
       balance.residual.fold(j, maps);
+      if (balance.carried) balance.carried->fold(j, maps);
     }
     if (balance.tangent) balance.tangent->fold(j);
     add_efforts(j, balance);

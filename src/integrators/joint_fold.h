@@ -26,6 +26,7 @@ class JointFold {
   const std::vector<double>& efforts() const { return applied_; }
 
  private:
+  Vector6 force_on_slave(int joint, const Balance& balance) const;
   void fold_slide(int joint, Balance& balance);
   void add_efforts(int joint, Balance& balance);
   double effort_at(const Coordinate& coordinate, std::size_t index) const;

@@ -47,9 +47,11 @@ void MomentumBeams::add_forces(Balance& balance) {
       add_rotary(element, nodes, tangent, energy, sum);
     };
     momentum_beam<N>(element, nodes, configuration_.scheme(), &points_.begin_stiffness[first], configuration_.step(),
-                     std::cref(rotary), balance.tangent != nullptr, &points_.end_stiffness[first], system);
+                     std::cref(rotary), balance.tangent != nullptr, &points_.end_stiffness[first], system,
+                     points_.carried(first, balance));
     scatter(element, system, balance, true);
   });
+  if (balance.tangent) points_.drop_carried();
 }
 
 void MomentumBeams::accept(State& state) {

@@ -14,8 +14,11 @@ class MomentumBeams : public BeamFamily {
       : configuration_(configuration), points_(configuration) {}
 
   void initialise(State& state) override { points_.reference.initialise(state); }
-  void begin() override { points_.begin(); }
+  /// Energy corrections differentiate the tangent's own stresses: they carry nothing.
+  void begin() override { points_.begin(configuration_.scheme().correction == EnergyCorrection::None); }
   void add_forces(Balance& balance) override;
+  void carry_strains(const double* update) override { points_.carry_strains(configuration_.end(), update); }
+  bool carries_strains() const override { return points_.carries_strains(); }
   void accept(State& state) override;
   void invalidate() override { points_.invalidate(); }
 

@@ -89,10 +89,15 @@ StepResult::Reason NewtonIteration::iterate(Updates updates, Factors factors, St
     factorise =
         factor_reuse_.renew(progress.iteration, progress.with_kept, compares, progress.contraction) || always_fresh;
     if (is_led_astray(progress)) return Reason::NoConvergence;
-    if (stalls(progress)) update_ *= 0.5;
-    system_.update(update_);
+    if (stalls(progress)) {
+      update_ *= 0.5;
+      progress.fraction *= 0.5;
+    }
     ++progress.since_revision;
-    if (!has_converged(progress, factors)) continue;
+    const bool ends = has_converged(progress, factors);
+    if (factorise && !progress.with_kept && !ends) system_.carry_strains(progress.fraction);
+    system_.update(update_);
+    if (!ends) continue;
     if (const Reason failure = evaluate(false); failure != Reason::None) return failure;
     if (system_.revise_friction()) {
       progress.since_revision = 0;
@@ -110,7 +115,10 @@ StepResult::Reason NewtonIteration::find_update(Updates updates, Progress& progr
   if (!system_.tangent().solve(update_)) return Reason::SingularTangent;
   enter(StepPhase::Update);
   const double rotation = system_.scales().largest_rotation(update_);
-  if (updates == Updates::Limited && rotation > kLargestRotationUpdate) update_ *= kLargestRotationUpdate / rotation;
+  progress.fraction = 1;
+  if (updates == Updates::Limited && rotation > kLargestRotationUpdate)
+    progress.fraction = kLargestRotationUpdate / rotation;
+  update_ *= progress.fraction;
   progress.norm = system_.scales().norm(update_, system_.configuration().step());
   if (!std::isfinite(progress.norm)) return Reason::NotFinite;
   progress.contraction =

@@ -43,6 +43,7 @@ class NewtonIteration {
     int since_revision = 0;          // updates of the same equations before this one
     bool with_kept = false;          // factors
     double norm = 0;                 // of the update
+    double fraction = 1;             // of the solution that it is
     double contraction = 1;          // its ratio to the one before; 1 where there is none
     bool started_with_kept = false;  // factors of the solve's first update
     double first_residual = 0;       // norm before it

@@ -20,8 +20,10 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme, BackendChoice b
       joints_(configuration_, histories_, friction_),
       reversals_(configuration_),
       rows_(model, dof_),
+      carried_rows_(model, dof_),
       tangent_(make_tangent_backend(model, dof_, backend)),
       residual_(Eigen::VectorXd::Zero(dof_.unknowns)),
+      nodal_update_(6 * static_cast<std::size_t>(dof_.node_count)),
       scales_(model, dof_) {
   beams_->set_interpolation(interpolation_.get());
 }
@@ -33,7 +35,8 @@ void StepSystem::begin(const State& state, double step, Guess guess) {
   loops_.begin();
   friction_.begin();
   reversals_.begin();
-  if (guess != Guess::Unchanged) {
+  const bool stands = guess == Guess::Extrapolated && state.history.order == IncrementHistory::kNoMotion;
+  if (guess != Guess::Unchanged && !stands) {
     configuration_.extrapolate(guess == Guess::Extrapolated ? state.history.order : 0);
     if (state.history.holds_for(dof_.unknowns)) loops_.extrapolate();
   }
@@ -61,6 +64,10 @@ bool StepSystem::evaluate(bool with_tangent) {
   Balance balance{rows_, with_tangent ? tangent_.get() : nullptr};
   rows_.set_zero();
   if (with_tangent) tangent_->set_zero();
+  if (with_tangent && beams_->carries_strains()) {
+    carried_rows_.set_zero();
+    balance.carried = &carried_rows_;
+  }
   if (with_tangent && scheme().stress != StressRule::Conjugate && !scheme().is_static)
     configuration_.set_inverse_tangents();
 
@@ -80,6 +87,13 @@ bool StepSystem::evaluate(bool with_tangent) {
   rows_.gather(residual_);
   dissipated_ = balance.dissipated;
   return residual_.allFinite();
+}
+
+void StepSystem::carry_strains(double fraction) {
+  const double* solution = tangent_->expanded_solution();
+  if (!solution) return;
+  for (std::size_t i = 0; i < nodal_update_.size(); ++i) nodal_update_[i] = fraction * solution[i];
+  beams_->carry_strains(nodal_update_.data());
 }
 
 void StepSystem::update(const Eigen::VectorXd& increment) {

@@ -45,6 +45,9 @@ class StepSystem {
   /// Assembles residual (and tangent) of the trial configuration. False if something is not finite, or a slider is off
   /// its line.
   bool evaluate(bool with_tangent);
+  /// Before the update that the factors of the tangent evaluated last have given, if another tangent will follow:
+  /// what the geometric part of that one sees. `fraction` of the solution that will be taken.
+  void carry_strains(double fraction);
   /// Applies a Newton update (one entry per unknown) on the group; slaves follow their joints.
   void update(const Eigen::VectorXd& increment);
   /// After an evaluation at an updated configuration: decides anew which coordinates stick. True if that changes the
@@ -88,10 +91,11 @@ class StepSystem {
   JointFold joints_;
   SmoothReversals reversals_;
   // ---- the balance of what they add
-  ReducedResidual rows_;
+  ReducedResidual rows_, carried_rows_;
   std::unique_ptr<TangentBackend> tangent_;
   double dissipated_ = 0;  // over the step [J]
   Eigen::VectorXd residual_;
+  std::vector<double> nodal_update_;
   UnknownScales scales_;
 };
 

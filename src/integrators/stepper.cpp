@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/flush_subnormals.h"
+
 namespace flexarm {
 namespace {
 
@@ -90,6 +92,7 @@ bool Stepper::simple_step(State& state, double step, StepResult& result) {
 }
 
 StepResult Stepper::advance(State& state) {
+  const FlushSubnormals flush;
   StepResult result;
   const double begin = state.time;
   const int finest = settings_.max_halvings;

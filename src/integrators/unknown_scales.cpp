@@ -46,10 +46,11 @@ double UnknownScales::largest_rotation(const Eigen::VectorXd& increment) const {
 }
 
 void UnknownScales::choose_order(IncrementHistory& history) const {
+  if (history.count < 2) return;
   double smallest = std::numeric_limits<double>::infinity();
-  for (int order = 0; order <= IncrementHistory::kHighestOrder; ++order) {
+  for (int order = IncrementHistory::kNoMotion; order <= IncrementHistory::kHighestOrder; ++order) {
     const IncrementHistory::Weights weights = history.weights(order, 1, history.steps[0]);
-    if (weights[1] == 0) continue;
+    if (weights[1] == 0 && order > IncrementHistory::kNoMotion) continue;
     double error = 0;
     for (const Unknown& unknown : unknowns_) {
       double foreseen = 0;

@@ -9,9 +9,9 @@ namespace flexarm {
 /// Extrapolates by the polynomial through the ends of the last steps; these may differ in length, and run backwards.
 struct IncrementHistory {
   static constexpr int kLength = 4;
-  /// The order counts from repeating the last velocity, 0. The highest order wants kHighestOrder + 1 increments, and
-  /// one more to be judged by.
-  static constexpr int kHighestOrder = kLength - 2;
+  /// The order counts from repeating the last velocity, 0; below it is no motion at all, the best guess where a step is
+  /// longer than what moves. The highest order wants kHighestOrder + 1 increments, and one more to be judged by.
+  static constexpr int kNoMotion = -1, kHighestOrder = kLength - 2;
   using Weights = std::array<double, kLength>;
 
   std::array<std::vector<double>, kLength> increments;  ///< per equation, newest first [m or rad]

@@ -70,7 +70,8 @@ void check_sizes(const State& initial, const State& state, Flaw& flaw) {
 
 void check_history(const IncrementHistory& history, Flaw& flaw) {
   flaw.require_range("the number of past increments", history.count, 0, IncrementHistory::kLength);
-  flaw.require_range("the order of extrapolation", history.order, 0, IncrementHistory::kHighestOrder);
+  flaw.require_range("the order of extrapolation", history.order, IncrementHistory::kNoMotion,
+                     IncrementHistory::kHighestOrder);
   for (int i = 0; i < std::min<int>(history.count, history.steps.size()); ++i) {
     flaw.require(history.steps[i] != 0, "the length of a past step", history.steps[i], "another number than 0");
     flaw.require_size("the number of increments of a past step", history.increments[i].size(),

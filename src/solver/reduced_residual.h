@@ -41,7 +41,9 @@ class ReducedResidual {
 struct Balance {
   ReducedResidual& residual;
   TangentBackend* tangent;  ///< null where only the residual is asked for
-  double dissipated = 0;    ///< energy that has left over the step [J]
+  /// What carried stresses would add to the residual, for the geometric parts of the tangent; null: nothing.
+  ReducedResidual* carried = nullptr;
+  double dissipated = 0;  ///< energy that has left over the step [J]
 };
 
 }  // namespace flexarm

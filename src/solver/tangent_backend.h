@@ -57,6 +57,9 @@ class TangentBackend {
   virtual bool factorise() = 0;
   /// Replaces b, one entry per equation, by the solution with the factors made last. False if that is not finite.
   virtual bool solve(Eigen::VectorXd& b) = 0;
+  /// The last solution for all scalars (DegreesOfFreedom::first), slaves as the maps of the last factors move them.
+  /// Null if the backend does not know these.
+  virtual const double* expanded_solution() const = 0;
 
   /// An iteration with new factors costs about so much more than one with kept ones, see FactorReuse.
   virtual double cost_of_factors() const = 0;

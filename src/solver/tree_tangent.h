@@ -39,6 +39,7 @@ class TreeTangent : public TangentBackend {
   void hold_row(int joint, int component, int first, const ReleasedVector& coefficients) override;
   bool factorise() override;
   bool solve(Eigen::VectorXd& b) override;
+  const double* expanded_solution() const override { return values_.data(); }
   double cost_of_factors() const override;
 
  private:

@@ -103,7 +103,7 @@ struct AdditiveStep {
     ElementSystem<Nodes> system;
     system.set_zero();
     kernel(step.element, nodes, rule, step.begin_points.data(), strain_rates.data(), with_tangent, end.data(),
-           new_rates.data(), system);
+           new_rates.data(), system, nullptr);
     if (points) *points = end;
     return system;
   }

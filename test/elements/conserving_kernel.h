@@ -25,6 +25,7 @@ struct KernelData {
   std::array<PointKinematicsT<S>, Nodes - 1> begin, end;
   std::array<StrainMemoryT<S>, Nodes - 1> memory, end_memory;
   BlockSystem<Nodes, S> system;
+  const CarriedStrains<Nodes, S>* carried = nullptr;
 
   void set(int lane, const LaneInput<Nodes>& input) {
     set_lane(element, lane, input.element);
@@ -51,7 +52,7 @@ struct KernelData {
     }
   }
   void evaluate(const TimeRule& rule, double step, bool with_tangent) {
-    conserving_beam<Nodes, S>(element, nodes, rule, functions, begin.data(), memory.data(), step, with_tangent,
+    conserving_beam<Nodes, S>(element, nodes, rule, functions, begin.data(), memory.data(), step, with_tangent, carried,
                               end.data(), end_memory.data(), system);
   }
   void get(int lane, bool with_tangent, ElementSystem<Nodes>& out) const {

@@ -25,6 +25,7 @@ inline Eigen::MatrixXd dense(const SparseTangent& assembler) {
 
 /// Every column of the tangent against differences; `size`: over what update the residual changes its shape.
 inline void expect_consistent_tangent(StepSystem& system, double size) {
+  ASSERT_TRUE(system.evaluate(true));  // this one sees the strains at the beginning of the step
   ASSERT_TRUE(system.evaluate(true));
   const Eigen::MatrixXd tangent = dense(matrix_of(system));
   const double scale = std::max(largest(tangent), largest(system.residual()));

@@ -123,6 +123,7 @@ TEST(TreeTangent, SolvesWithTheTangentOfStatics) {
       system->update(update);
     }
     ASSERT_TRUE(matrix.evaluate(true));
+    ASSERT_TRUE(tree.evaluate(true));
     if (!dense(matrix_of(matrix)).fullPivLu().isInvertible()) continue;
     expect_equal_solutions(matrix, tree);
     ++regular;

@@ -129,7 +129,7 @@ TEST(RestoredState, WithImpossibleValuesIsRefused) {
       {"good steps is -1", [](State& s) { s.good_steps = -1; }},
       {"number of steps is -1", [](State& s) { s.steps = -1; }},
       {"past increments is 5, expected 0 to 4", [](State& s) { s.history.count = 5; }},
-      {"order of extrapolation is 3, expected 0 to 2", [](State& s) { s.history.order = 3; }},
+      {"order of extrapolation is 3, expected -1 to 2", [](State& s) { s.history.order = 3; }},
       {"length of a past step is 0", [](State& s) { s.history.steps[0] = 0; }},
       {"left its line is 2, expected one that may", [](State& s) { s.left_lines = {2}; }},
       {"left its line is 1000, expected one that may", [](State& s) { s.left_lines = {1000}; }},
