@@ -107,6 +107,8 @@ BeamMesh mesh_beam(const scene::BeamDescription& beam, const Centreline& centrel
   const auto add_node = [&](double s, bool before, int welded_to) {
     Pose pose = centreline.at(s, before);
     pose.position += pose.orientation * mesh.centroid;
+    if (!mesh.nodes.empty())
+      pose.orientation = so3::nearer_of_two(pose.orientation, mesh.nodes.back().pose.orientation);
     mesh.nodes.push_back({s, pose, welded_to});
     return static_cast<int>(mesh.nodes.size()) - 1;
   };

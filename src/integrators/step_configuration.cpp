@@ -126,6 +126,9 @@ void StepConfiguration::set_slaves() {
       end_[joint.slave] = slide_pose(slide_travel(static_cast<int>(j)), begin_[joint.slave].position);
     else
       end_[joint.slave] = slave_pose(model_, static_cast<int>(j), end_, released_[j]);
+    // Which of two opposite quaternions it is tells how far an element is bent (LocalRotations).
+    Quaternion& orientation = end_[joint.slave].orientation;
+    orientation = so3::nearer_of_two(orientation, begin_[joint.slave].orientation);
     if (slides) is_off_line_ = is_off_line_ || !is_on_line(joint, static_cast<int>(j));
   }
   if (scheme_.is_static) return;

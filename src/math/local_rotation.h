@@ -44,15 +44,16 @@ struct GeneralisedShapeFunctions {
   std::array<Matrix3T<S>, Nodes> derivatives;
 };
 
-/// What one element needs once to interpolate its rotations. Every node must be less than pi away from the reference,
-/// and the two reference nodes of an even element less than pi apart; elements that turn more must be divided.
+/// What one element needs once to interpolate its rotations. Every node must be less than 2 pi away from the reference,
+/// and the two reference nodes of an even element less than 2 pi apart; elements that turn more must be divided.
 template <int Nodes, typename S = double>
 class LocalRotations {
  public:
   static constexpr ReferenceNodes reference = reference_nodes<Nodes>();
   static constexpr bool has_middle_node = reference.first == reference.second;
 
-  /// From unit quaternions, section frame to world; signs do not matter.
+  /// From unit quaternions, section frame to world. One of opposite sign is a turn further: signs tell rotations beyond
+  /// pi from those the other way round.
   explicit LocalRotations(const std::array<QuaternionT<S>, Nodes>& rotations) {
     QuaternionT<S> middle = rotations[reference.first];
     quarter_tangent_.setZero();
@@ -62,12 +63,12 @@ class LocalRotations {
       local_[reference.first].setZero();
     for (int i = 0; i < Nodes; ++i) {
       if (i == reference.first || i == reference.second) continue;
-      local_[i] = so3::log(relative(rotations[i], middle));
+      local_[i] = so3::unfolded_log(relative(rotations[i], middle));
     }
     reference_rotation_ = middle.toRotationMatrix();
   }
 
-  /// From rotation matrices, section frame to world.
+  /// From rotation matrices, section frame to world, of nodes that are less than pi apart from one to the next.
   explicit LocalRotations(const std::array<Matrix3T<S>, Nodes>& rotations) : LocalRotations(quaternions(rotations)) {}
 
   /// R, the frame from which the local rotations are measured.
@@ -101,11 +102,8 @@ class LocalRotations {
   }
 
  private:
-  /// to from^-1 with q0 >= 0.
   static QuaternionT<S> relative(const QuaternionT<S>& to, const QuaternionT<S>& from) {
-    const QuaternionT<S> q = to * QuaternionT<S>(from.w(), -from.x(), -from.y(), -from.z());
-    const auto sign = sign_of(q.w());
-    return QuaternionT<S>(sign * q.w(), sign * q.x(), sign * q.y(), sign * q.z());
+    return to * QuaternionT<S>(from.w(), -from.x(), -from.y(), -from.z());
   }
 
   /// Local vectors of the reference pair; returns the rotation half-way. Half the rotation of a quaternion q is
@@ -113,7 +111,7 @@ class LocalRotations {
   QuaternionT<S> set_reference_pair(const QuaternionT<S>& first, const QuaternionT<S>& second) {
     using std::sqrt;
     QuaternionT<S> q = relative(second, first);
-    local_[reference.second] = S(0.5) * so3::log(q);
+    local_[reference.second] = S(0.5) * so3::unfolded_log(q);
     local_[reference.first] = -local_[reference.second];
     q.w() += S(1);
     quarter_tangent_ = Vector3T<S>(q.x(), q.y(), q.z()) / q.w();
@@ -124,6 +122,7 @@ class LocalRotations {
   static std::array<QuaternionT<S>, Nodes> quaternions(const std::array<Matrix3T<S>, Nodes>& rotations) {
     std::array<QuaternionT<S>, Nodes> result;
     for (std::size_t i = 0; i < Nodes; ++i) result[i] = so3::quaternion_from_matrix(rotations[i]);
+    for (std::size_t i = 1; i < Nodes; ++i) result[i] = so3::nearer_of_two(result[i], result[i - 1]);
     return result;
   }
 

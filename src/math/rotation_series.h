@@ -62,13 +62,14 @@ template <typename S>
   return atan(root) / root;
 }
 
-/// theta / sin(theta/2) for a quaternion of any norm with q0 = cos(theta/2) >= 0 and |q|^2 = sin^2(theta/2).
+/// theta / sin(theta/2), 0 <= theta < 2 pi, for a quaternion of any norm with q0 = cos(theta/2) and |q|^2 =
+/// sin^2(theta/2).
 template <typename S>
 [[gnu::always_inline]] inline S angle_per_sine(const S& q0, const S& square) {
   using std::atan;
   using std::sqrt;
   using Real = RealOf<S>;
-  if (std::real(square) < Real(3) * std::real(q0) * std::real(q0))  // |theta| < 2 pi / 3
+  if (std::real(q0) > Real(0) && std::real(square) < Real(3) * std::real(q0) * std::real(q0))  // theta < 2 pi / 3
     return Real(2) * arctangent_ratio<S>(square / (q0 * q0)) / q0;
   constexpr Real pi(3.141592653589793238462643383279502884L);
   const S sine = sqrt(square);
@@ -82,7 +83,7 @@ template <typename S>
 [[gnu::always_inline]] inline Pack angle_per_sine(const Pack& q0, const Pack& square) {
   const Pack q00 = q0 * q0;
   Pack result = Pack(2) * arctangent_series(Pack(square / q00)) / q0;
-  for_lanes_beyond(square, arctangent_series_limit * q00,
+  for_lanes_beyond(square, arctangent_series_limit * q0 * abs(q0),  // negative where theta > pi
                    [&](int lane) { result.set(lane, far_angle_per_sine(q0[lane], square[lane])); });
   return result;
 }

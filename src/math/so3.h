@@ -206,6 +206,13 @@ inline QuaternionT<typename M::Scalar> quaternion_from_matrix(const Eigen::Matri
   return QuaternionT<S>(sign * q0, sign * q[0], sign * q[1], sign * q[2]);
 }
 
+/// q or -q, which are the same rotation: the one less than pi away from another quaternion.
+template <typename S>
+inline QuaternionT<S> nearer_of_two(const QuaternionT<S>& q, const QuaternionT<S>& other) {
+  const auto sign = sign_of(q.w() * other.w() + q.x() * other.x() + q.y() * other.y() + q.z() * other.z());
+  return QuaternionT<S>(sign * q.w(), sign * q.x(), sign * q.y(), sign * q.z());
+}
+
 /// Rotation vector, |theta| <= pi, of a quaternion; accurate from 0 through pi. q and -q give the same result (up to
 /// the sign of theta at exactly pi), and so does any multiple of q: normalisation errors do not matter.
 template <typename Q>
@@ -216,6 +223,15 @@ inline Vector3T<typename Q::Scalar> log(const Eigen::QuaternionBase<Q>& quaterni
   const Vector3T<S> q(sign * quaternion.x(), sign * quaternion.y(), sign * quaternion.z());
   const S square = dot(q, q);
   return detail::angle_per_sine(q0, square) * q;
+}
+
+/// The rotation vector, |theta| < 2 pi, that a quaternion grows to from 1: beyond pi where q0 < 0. Of any multiple > 0
+/// of it.
+template <typename Q>
+inline Vector3T<typename Q::Scalar> unfolded_log(const Eigen::QuaternionBase<Q>& quaternion) {
+  using S = typename Q::Scalar;
+  const Vector3T<S> q(quaternion.x(), quaternion.y(), quaternion.z());
+  return detail::angle_per_sine(S(quaternion.w()), S(dot(q, q))) * q;
 }
 
 /// Rotation vector, |theta| <= pi, of a rotation matrix; accurate from 0 through pi.

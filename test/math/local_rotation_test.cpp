@@ -124,6 +124,43 @@ TYPED_TEST(LocalRotationTest, AgreesWithTheTheorysFormulas) {
   });
 }
 
+// An element bent uniformly to less than 2 pi between neighbouring reference nodes has a uniform curvature, and spins
+// of its nodes move its sections as differences say; beyond pi only the signs of the quaternions tell.
+TYPED_TEST(LocalRotationTest, BendsThroughPi) {
+  constexpr int nodes = TypeParam::value;
+  const Vector axis = this->samples_.of_length(1.0);
+  for (const double turn : {1.0, 3.1, 3.2, 4.5, 6.0}) {
+    std::array<QuaternionT<double>, nodes> rotations;
+    for (int i = 0; i < nodes; ++i)
+      rotations[i] = so3::exp_quaternion(Vector(0.5 * turn * (1 + node_coordinate<nodes>(i)) * axis));
+    const LocalRotations<nodes> local(rotations);
+    for (const double xi : {-0.77, 0.1, 0.9}) {
+      const ShapeFunctions<nodes> shape = lagrange<nodes>(xi);
+      GeneralisedShapeFunctions<nodes> generalised;
+      const InterpolatedRotation<> section =
+          LocalRotationVariation<nodes>(local).evaluate(shape.values, shape.derivatives, generalised);
+      // T^-1 and the tangent of a quarter of the angle grow towards 2 pi.
+      const double tolerance = roundoff * slope_sum(shape) / std::sin(0.5 * turn) * turn;
+      EXPECT_LT(distance(section.curvature, Vector(0.5 * turn * axis)), tolerance) << turn;
+      EXPECT_LT(distance(section.rotation, so3::exp(Vector(0.5 * turn * (1 + xi) * axis))), tolerance) << turn;
+      for (int i = 0; i < nodes; ++i)
+        for (int k = 0; k < 3; ++k) {
+          const auto moved = [&](double h) {
+            auto changed = rotations;
+            changed[i] = so3::exp_quaternion(Vector(h * Vector::Unit(k))) * rotations[i];
+            return LocalRotations<nodes>(changed).evaluate(shape.values, shape.derivatives).rotation;
+          };
+          // Truncation and round-off of central differences of third order: h^2 and epsilon / h.
+          const double h = 1e-5;
+          const Matrix difference = (moved(h) - moved(-h)) / (2 * h);
+          const Vector spin = so3::vee(Matrix(difference * section.rotation.transpose()));
+          EXPECT_LT(distance(spin, Vector(generalised.values[i].col(k))), 1e-9 / std::pow(std::sin(0.5 * turn), 2))
+              << turn;
+        }
+    }
+  }
+}
+
 TYPED_TEST(LocalRotationTest, PassesThroughTheNodes) {
   constexpr int nodes = TypeParam::value;
   const NodalMatrices<nodes> rotations = nodal_rotations<nodes>(this->samples_, 1.0);
@@ -213,20 +250,26 @@ TYPED_TEST(LocalRotationTest, SuperposedRotationChangesNoStrain) {
   });
 }
 
+/// Which of its two quaternions an element's frame has does not matter, which ones its nodes have beside each other
+/// does.
 TYPED_TEST(LocalRotationTest, QuaternionsOfEitherSignGiveTheSame) {
   constexpr int nodes = TypeParam::value;
-  const NodalMatrices<nodes> rotations = nodal_rotations<nodes>(this->samples_, 1.0);
+  const NodalMatrices<nodes> rotations = nodal_rotations<nodes>(this->samples_, 0.5);
   const LocalRotations<nodes> expected(rotations);
-  for (int flipped = 0; flipped < nodes; ++flipped) {
+  for (const int sign : {-1, 1}) {
     std::array<QuaternionT<double>, nodes> quaternions;
-    for (int i = 0; i < nodes; ++i) quaternions[i] = so3::quaternion_from_matrix(rotations[i]);
-    quaternions[flipped].coeffs() *= -1;
+    for (int i = 0; i < nodes; ++i) {
+      quaternions[i] = so3::quaternion_from_matrix(rotations[i]);
+      if (i > 0)
+        quaternions[i] = so3::nearer_of_two(quaternions[i], quaternions[i - 1]);
+      else
+        quaternions[i].coeffs() *= sign;
+    }
     const LocalRotations<nodes> local(quaternions);
     EXPECT_LT(distance(local.reference_rotation(), expected.reference_rotation()), roundoff);
     EXPECT_LT(distance(local.quarter_tangent(), expected.quarter_tangent()), roundoff);
-    for (int i = 0; i < nodes; ++i) {
+    for (int i = 0; i < nodes; ++i)
       EXPECT_LT(distance(local.rotation_vectors()[i], expected.rotation_vectors()[i]), roundoff);
-    }
   }
 }
 

@@ -76,7 +76,7 @@ TEST(Pack, RotationsAreThoseOfTheLanes) {
       Vector3T<Pack> vectors;
       for (int l = 0; l < Pack::kLanes; ++l) set_lane(vectors, l, (l == lane ? angle : 0.1 * l) * axis());
       QuaternionT<Pack> quaternion;
-      Vector3T<Pack> logarithm;
+      Vector3T<Pack> logarithm, unfolded;
       Matrix3T<Pack> rotation, tangent, inverse, derivative;
       simd::run([&] {
         const so3::ExponentialMap<Pack> map(vectors);
@@ -86,6 +86,8 @@ TEST(Pack, RotationsAreThoseOfTheLanes) {
         derivative = map.tangent_derivative(vectors);
         quaternion = so3::exp_quaternion(vectors);
         logarithm = so3::log(quaternion);
+        unfolded =
+            so3::unfolded_log(QuaternionT<Pack>(-quaternion.w(), -quaternion.x(), -quaternion.y(), -quaternion.z()));
       });
       for (int l = 0; l < Pack::kLanes; ++l) {
         const Vector3 vector = get_lane(vectors, l);
@@ -96,6 +98,9 @@ TEST(Pack, RotationsAreThoseOfTheLanes) {
         EXPECT_LE((get_lane(derivative, l) - map.tangent_derivative(vector)).norm(), kRoundOff);
         EXPECT_LE((get_lane(quaternion.coeffs(), l) - so3::exp_quaternion(vector).coeffs()).norm(), kRoundOff);
         EXPECT_LE((get_lane(logarithm, l) - vector).norm(), kRoundOff);
+        const Quaternion opposite(-so3::exp_quaternion(vector).coeffs());
+        if (vector.norm() > 0.01)  // else the axis is round-off
+          EXPECT_LE((get_lane(unfolded, l) - so3::unfolded_log(opposite)).norm(), 1e2 * kRoundOff) << vector.norm();
       }
     }
 }

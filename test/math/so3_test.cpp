@@ -119,6 +119,22 @@ TEST(So3, LogarithmIsAccurateFromZeroThroughPi) {
   }
 }
 
+TEST(So3, UnfoldedLogarithmIsAccurateFromZeroToTwoPi) {
+  Samples samples;
+  std::vector<double> angles = angles_to_pi();
+  for (double angle = 0.02; angle < 2 * pi - 0.01; angle += 0.02) angles.push_back(angle);
+  for (const double angle : angles)
+    for (const Vector& axis : samples.directions()) {
+      const Vector theta = angle * axis;
+      const QuaternionT<double> q = so3::exp_quaternion(theta.cast<long double>()).cast<double>();
+      // The axis is q_v over its norm, which falls towards 2 pi.
+      const double condition = angle < pi ? 1 : 1 / std::sin(0.5 * angle);
+      EXPECT_LE(distance(so3::unfolded_log(q), theta), 4 * epsilon * angle * condition) << "angle " << angle;
+      EXPECT_LE(distance(so3::unfolded_log(QuaternionT<double>(3 * q.w(), 3 * q.x(), 3 * q.y(), 3 * q.z())), theta),
+                roundoff * angle * condition);
+    }
+}
+
 /// Angles on both sides of pi, exact in long double: rounding the matrix or quaternion to double is all that is lost.
 /// As the four components determine the rotation with condition one, the bound does not grow towards pi.
 TEST(So3, ExtractionIsAccurateOnBothSidesOfPi) {

@@ -59,6 +59,16 @@ TEST(RollUp, TipOfAPartialTurnHasTheOrderOfGaussQuadrature) {
   }
 }
 
+// Its nodes' quaternions remember the way, so that an element may bend to nearly 2 pi between its reference nodes.
+TEST(RollUp, AnElementBendsBeyondPi) {
+  for (const double turns : {0.3, 0.6, 0.9})
+    for (int order = 1; order <= 4; ++order) {
+      const Pose tip = static_tip(roll_up(turns), 1, order, 16);
+      const Quaternion turned(Eigen::AngleAxisd(2 * kPi * turns, Vector3::UnitZ()));
+      EXPECT_LT(tip.orientation.angularDistance(turned), 1e-10) << turns << " turns, order " << order;
+    }
+}
+
 TEST(RollUp, SectionsAlongTheBeamLieOnTheCircle) {
   Simulation simulation(cantilever_scene(roll_up(2), 16, 4).scene);
   ASSERT_TRUE(simulation.solve_static(1).converged);
