@@ -43,6 +43,10 @@ void apply(const ProcessLimits& limits) {
 
 }  // namespace
 
+bool limits_memory() {
+  return kMayLimitMemory;
+}
+
 ChildEnd run_in_child(const std::function<void()>& work, const ProcessLimits& limits) {
   const pid_t child = fork();
   if (child < 0) throw std::runtime_error("no process can be made");

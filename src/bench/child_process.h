@@ -36,6 +36,9 @@ struct ProcessLimits {
   std::size_t bytes = std::size_t{2} << 30;  ///< of address space; not with the address or thread sanitizer
 };
 
+/// Whether memory can be limited in this program.
+bool limits_memory();
+
 /// How a child ended.
 struct ChildEnd {
   int signal = 0;                ///< that ended it; 0: it ended by itself

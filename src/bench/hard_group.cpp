@@ -39,6 +39,11 @@ Target coordinate_by_run(const std::string& coordinate, const std::string& scene
 std::vector<HardCase> hard_cases() {
   std::vector<HardCase> cases;
   add_beam_cases(cases);
+  add_motion_cases(cases);
+  add_slider_cases(cases);
+  add_joint_cases(cases);
+  add_mechanism_cases(cases);
+  add_static_cases(cases);
   return cases;
 }
 

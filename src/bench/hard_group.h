@@ -1,6 +1,7 @@
 #pragma once
 /// How the lists of hard cases are written down: group by group, each case with what a right run comes to.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,24 +14,30 @@ class HardGroup {
  public:
   HardGroup(std::vector<HardCase>& cases, std::string name) : cases_(cases), name_(std::move(name)) {}
 
-  /// The reference holds until the next case is added. [s]
-  HardCase& add(const std::string& name, const std::string& scene, double step, double until) {
+  /// What is returned may be changed until the next case is added. [s]
+  HardCase& add(const std::string& name, const std::string& scene, double step, double until,
+                const std::optional<Target>& target = {}) {
     HardCase hard;
     hard.group = name_;
     hard.name = name;
     hard.scene = scene;
     hard.step = step;
     hard.until = until;
+    hard.target = target;
     cases_.push_back(std::move(hard));
     return cases_.back();
   }
-  HardCase& add_unsound(const std::string& name, const std::string& scene, double step, double until) {
-    HardCase& hard = add(name, scene, step, until);
-    hard.is_sound = false;
-    return hard;
+  /// See HardCase::is_free.
+  void add_free(const std::string& name, const std::string& scene, double step, double until) {
+    add(name, scene, step, until).is_free = true;
   }
-  HardCase& add_static(const std::string& name, const std::string& scene, int load_steps) {
-    HardCase& hard = add(name, scene, 1e-3, 0);
+  /// See HardCase::is_sound.
+  void add_unsound(const std::string& name, const std::string& scene, double step, double until) {
+    add(name, scene, step, until).is_sound = false;
+  }
+  HardCase& add_static(const std::string& name, const std::string& scene, int load_steps,
+                       const std::optional<Target>& target = {}) {
+    HardCase& hard = add(name, scene, 1e-3, 0, target);
     hard.load_steps = load_steps;
     return hard;
   }
@@ -55,5 +62,10 @@ Target coordinate_by_run(const std::string& coordinate, const std::string& scene
 
 // The groups, in files of what they are about.
 void add_beam_cases(std::vector<HardCase>& cases);
+void add_motion_cases(std::vector<HardCase>& cases);
+void add_slider_cases(std::vector<HardCase>& cases);
+void add_joint_cases(std::vector<HardCase>& cases);
+void add_mechanism_cases(std::vector<HardCase>& cases);
+void add_static_cases(std::vector<HardCase>& cases);
 
 }  // namespace flexarm::bench

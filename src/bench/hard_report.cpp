@@ -85,10 +85,14 @@ std::string total_row(const HardReport& report, std::size_t s) {
     });
   };
   std::vector<double> iterations;
-  double seconds = 0;
+  double seconds = 0, energy_defect = 0, momentum_defect = 0;
   for (const HardRow& row : report.rows) {
-    seconds += row.outcomes[s].seconds;
-    if (is_right(row, s)) iterations.push_back(row.outcomes[s].iterations_per_step());
+    const HardOutcome& outcome = row.outcomes[s];
+    seconds += outcome.seconds;
+    if (!is_right(row, s)) continue;
+    if (row.hard.load_steps == 0) iterations.push_back(outcome.iterations_per_step());
+    energy_defect = std::max(energy_defect, outcome.energy_defect);
+    momentum_defect = std::fmax(momentum_defect, outcome.momentum_defect);  // some have none
   }
   return row({report.options.schemes[s], std::to_string(of(Verdict::Right)), std::to_string(of(Verdict::Wrong)),
               std::to_string(of(Verdict::Failed)), std::to_string(of(Verdict::Diagnosed)),
@@ -96,6 +100,7 @@ std::string total_row(const HardReport& report, std::size_t s) {
               std::to_string(ended(HardOutcome::End::OutOfTime)),
               std::to_string(ended(HardOutcome::End::Crashed) + ended(HardOutcome::End::OutOfMemory)),
               std::to_string(beats(s, 0)), std::to_string(beats(0, s)), number("{:.1f}", median(iterations)),
+              fmt::format("{:.0e}", energy_defect), fmt::format("{:.0e}", momentum_defect),
               fmt::format("{:.1f}", seconds)});
 }
 
@@ -105,7 +110,8 @@ std::string total_table(const HardReport& report) {
   std::string text = head({"scheme", fmt::format("right, of {} sound", sound), "completed, wrong", "failed",
                            fmt::format("diagnosed, of {} unsound", report.rows.size() - sound), "without a reason",
                            "unnoticed", "out of time", "crashed", fmt::format("completes, `{}` does not", first),
-                           fmt::format("`{}` completes, this does not", first), "iterations per step", "seconds"});
+                           fmt::format("`{}` completes, this does not", first), "iterations per step", "energy defect",
+                           "momentum defect", "seconds"});
   for (std::size_t s = 0; s < report.options.schemes.size(); ++s) text += total_row(report, s);
   return text;
 }
@@ -208,7 +214,12 @@ std::string to_markdown(const HardReport& report, const std::string& picture) {
       report.options.quick ? " `--quick`: first steps only" : "", report.rows.size(), report.options.limits.seconds,
       static_cast<double>(report.options.limits.bytes) / (1 << 30));
   text += total_table(report);
-  text += "\nIterations per step: the median over the right runs. Seconds: of the processor, all runs together.\n";
+  text +=
+      "\nOver the right runs in time: the median of the iterations per step, the largest change of the energy account "
+      "beside "
+      "the largest energy, and of the momenta of free motions beside their own size. Seconds: of the processor, all "
+      "runs "
+      "together.\n";
   if (!picture.empty()) text += fmt::format("\n![Cases and schemes]({})\n", picture);
   text += fmt::format("\n## Not right with `{}`\n\n{}", first, trouble_table(report));
   text +=

@@ -42,10 +42,15 @@ std::string circle(double radius, double young, double density) {
 
 std::string beam(const std::string& name, const Vector3& to, const std::string& section, int elements,
                  const std::string& more, int order) {
+  return beam_along(name, fmt::format("<line to=\"{}\"/>", triple(to)), section, elements, more, order);
+}
+
+std::string beam_along(const std::string& name, const std::string& pieces, const std::string& section, int elements,
+                       const std::string& more, int order) {
   return fmt::format(
-      "<link name=\"{}\"> <beam elements=\"{}\" order=\"{}\"> <centerline> <line to=\"{}\"/> </centerline>\n  {} {}"
+      "<link name=\"{}\"> <beam elements=\"{}\" order=\"{}\"> <centerline> {} </centerline>\n  {} {}"
       "</beam> </link>\n",
-      name, elements, order, triple(to), section, more);
+      name, elements, order, pieces, section, more);
 }
 
 std::string body(const std::string& name, double mass, double inertia, const Vector3& centre) {
@@ -96,6 +101,10 @@ std::string moment(const std::string& link, const Vector3& at, const Vector3& mo
 
 std::string initial(const std::string& joint, double position, double velocity) {
   return fmt::format("<initial joint=\"{}\" position=\"{}\" velocity=\"{}\"/>\n", joint, position, velocity);
+}
+
+std::string initial_field(const std::string& link, const Vector3& linear, const Vector3& angular) {
+  return fmt::format("<initial link=\"{}\" linear=\"{}\" angular=\"{}\"/>\n", link, triple(linear), triple(angular));
 }
 
 std::string motion(const std::string& joint, const std::string& position) {

@@ -19,6 +19,9 @@ std::string circle(double radius, double young = 2e11, double density = 7800);
 /// A flexible link along a straight line; `more`: other elements of <beam>.
 std::string beam(const std::string& name, const Vector3& to, const std::string& section, int elements,
                  const std::string& more = "", int order = 2);
+/// The same along a <centerline> of any pieces.
+std::string beam_along(const std::string& name, const std::string& pieces, const std::string& section, int elements,
+                       const std::string& more = "", int order = 2);
 /// A rigid link with its centre of mass in the link frame, and equal principal moments of inertia [kg, kg m^2, m].
 std::string body(const std::string& name, double mass, double inertia, const Vector3& centre = Vector3::Zero());
 /// The same with principal moments in link axes.
@@ -40,6 +43,8 @@ std::string load(const std::string& link, const Vector3& at, const Vector3& forc
                  const std::string& frame = "world");
 std::string moment(const std::string& link, const Vector3& at, const Vector3& moment, const std::string& history = "1");
 std::string initial(const std::string& joint, double position, double velocity);
+/// Velocity field of a link [m/s, rad/s].
+std::string initial_field(const std::string& link, const Vector3& linear, const Vector3& angular);
 std::string motion(const std::string& joint, const std::string& position);
 std::string effort(const std::string& joint, const std::string& history);
 std::string probe(const std::string& link, const Vector3& at);
