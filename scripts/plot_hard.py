@@ -14,6 +14,7 @@ from headless_pyplot import pyplot
 COLUMNS = 3
 FAILED, WRONG, DIAGNOSED = "#d62728", "#ff9f40", "#9ecae1"
 MOST_ITERATIONS = 50
+LONGEST_NAME = 50
 
 
 def read(path):
@@ -21,17 +22,18 @@ def read(path):
     cases, schemes = {}, []
     with open(path, newline="", encoding="utf-8") as file:
         for row in csv.DictReader(file):
-            cases.setdefault((row["group"], row["case"]), {})[row["scheme"]] = (row["verdict"], float(row["iterations"]))
+            results = cases.setdefault((row["group"], row["case"]), {})
+            results[row["scheme"]] = (row["verdict"], float(row["iterations"]))
             if row["scheme"] not in schemes:
                 schemes.append(row["scheme"])
     return cases, schemes
 
 
 def colour(verdict, iterations):
-    """Green is quick, yellow slow; what is not right has a colour of its own."""
+    """Green is quick, blue slow; what is not right has a colour of its own."""
     if verdict == "right":
         share = math.log(max(iterations, 1)) / math.log(MOST_ITERATIONS)
-        return pyplot.get_cmap("viridis")(1 - 0.75 * min(share, 1))
+        return pyplot.get_cmap("viridis")(0.8 - 0.55 * min(share, 1))
     return {"wrong": WRONG, "diagnosed": DIAGNOSED}.get(verdict, FAILED)
 
 
@@ -46,6 +48,10 @@ def lines(cases):
     return out
 
 
+def shortened(name):
+    return name if len(name) <= LONGEST_NAME else name[:LONGEST_NAME - 1] + "…"
+
+
 def draw(axes, part, schemes):
     for y, (name, results) in enumerate(part):
         if results is None:
@@ -54,13 +60,13 @@ def draw(axes, part, schemes):
         for x, scheme in enumerate(schemes):
             if scheme in results:
                 axes.add_patch(pyplot.Rectangle((x, y + 0.05), 0.95, 0.9, color=colour(*results[scheme]), linewidth=0))
-        axes.text(len(schemes) + 0.15, y + 0.8, name if len(name) < 46 else name[:44] + "…", fontsize=4.5)
+        axes.text(len(schemes) + 0.15, y + 0.8, shortened(name), fontsize=4.5)
     axes.set_xlim(0, len(schemes) + 14)
     axes.axis("off")
 
 
 def legend(figure):
-    entries = [(f"right, {n} iterations a step", colour("right", n)) for n in (2, 5, 15, 50)]
+    entries = [(f"right, {n} iterations a step", colour("right", n)) for n in (1, 3, 10, 50)]
     entries += [("completed, wrong", WRONG), ("failed, or unsound and not diagnosed", FAILED),
                 ("unsound, diagnosed", DIAGNOSED)]
     handles = [pyplot.Rectangle((0, 0), 1, 1, color=shade) for _, shade in entries]

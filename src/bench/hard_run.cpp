@@ -12,8 +12,9 @@ namespace flexarm::bench {
 namespace {
 
 constexpr int kQuickSteps = 5;
-/// Of energy from nowhere, beside the largest energy of the motion.
-constexpr double kLargestGain = 0.05;
+/// Of energy from nowhere, and the largest loss by dissipation of the scheme's own, beside the largest energy of the
+/// motion; of the momenta of a free motion, beside themselves.
+constexpr double kLargestGain = 0.05, kLargestLoss = 1, kLargestMomentumDefect = 0.05;
 
 void note(HardOutcome& outcome, HardOutcome::End end, const std::string& reason, bool says_why = true) {
   outcome.end = end;
@@ -203,6 +204,8 @@ std::string flaw(const HardCase& hard, const HardOutcome& outcome) {
   if (hard.target && !std::isnan(outcome.error) && !(outcome.error <= hard.target->tolerance)) return "off its target";
   if (hard.bound && !(outcome.bound <= 1)) return "out of bounds";
   if (!(outcome.energy_gain <= kLargestGain)) return "energy from nowhere";
+  if (!(outcome.energy_defect <= kLargestLoss)) return "more energy lost than there was";
+  if (hard.is_free && !(outcome.momentum_defect <= kLargestMomentumDefect)) return "momentum lost";
   return "";
 }
 
