@@ -16,7 +16,7 @@ namespace flexarm::bench {
 
 /// Where a run should have come to at its end.
 struct Target {
-  std::string what;  ///< "angle of the hinge: closed form"
+  std::string what;  ///< where it is from: "closed form"
   std::function<Vector3(const Simulation&)> observe;
   double scale = 1;                 ///< errors are relative to it, in units of what is observed
   double tolerance = 0;             ///< largest error of a right run, relative
@@ -27,7 +27,7 @@ struct Target {
 
 /// What may never be exceeded: measure(simulation) <= 1 after each step.
 struct Bound {
-  std::string what;  ///< "stop gives way by a tenth of the range"
+  std::string what;  ///< what is so if it is exceeded: "stop gives way by a tenth of the range"
   std::function<double(const Simulation&)> measure;
 };
 

@@ -96,10 +96,11 @@ void add_beck(HardGroup& group, double force) {
                              0.01, 10);
   const double end = hard.until - hard.step / 2;
   if (force < kFlutterLoad)
-    hard.bound = Bound{"deflection below a tenth of the length",
+    hard.bound = Bound{"deflection above a tenth of the length",
                        [](const Simulation& s) { return std::abs(s.probe(0).pose.position.z()) / 0.1; }};
   else
-    hard.bound = Bound{"at the end a hundred times the energy of the first pulse", [end](const Simulation& s) {
+    hard.bound = Bound{"does not flutter: at the end less than a hundred times the energy of the first pulse",
+                       [end](const Simulation& s) {
                          const Energies e = s.energies();
                          return s.time() < end ? 0 : 100 * kPulseEnergy / (e.kinetic + e.strain);
                        }};

@@ -201,8 +201,9 @@ std::optional<Vector3> find_target(const HardCase& hard, const HardOptions& opti
 
 std::string flaw(const HardCase& hard, const HardOutcome& outcome) {
   if (outcome.end != HardOutcome::End::Completed) return "";
-  if (hard.target && !std::isnan(outcome.error) && !(outcome.error <= hard.target->tolerance)) return "off its target";
-  if (hard.bound && !(outcome.bound <= 1)) return "out of bounds";
+  if (hard.target && !std::isnan(outcome.error) && !(outcome.error <= hard.target->tolerance))
+    return "off its target (" + hard.target->what + ")";
+  if (hard.bound && !(outcome.bound <= 1)) return hard.bound->what;
   if (!(outcome.energy_gain <= kLargestGain)) return "energy from nowhere";
   if (!(outcome.energy_defect <= kLargestLoss)) return "more energy lost than there was";
   if (hard.is_free && !(outcome.momentum_defect <= kLargestMomentumDefect)) return "momentum lost";

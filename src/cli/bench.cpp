@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -187,13 +188,17 @@ std::vector<bench::HardCase> chosen_cases(const Arguments& arguments) {
   return chosen;
 }
 
-/// Each with the command that runs it again.
+/// Each as a file that runs as the case does, but for the end time.
 int print_scenes(const std::vector<bench::HardCase>& cases) {
-  for (const bench::HardCase& hard : cases)
-    fmt::print("<!-- {}: {}\n     flexarm {} -->\n{}", hard.group, hard.name,
-               hard.load_steps > 0 ? fmt::format("static SCENE --load-steps {}", hard.load_steps)
-                                   : fmt::format("simulate SCENE --step {} --until {}", hard.step, hard.until),
-               hard.scene);
+  for (const bench::HardCase& hard : cases) {
+    std::string text = hard.scene;
+    text.insert(text.find("<simulation>") + std::strlen("<simulation>"),
+                fmt::format("\n<integrator step=\"{}\"/>", hard.step));
+    fmt::print("<!-- {}: {}; {} -->\n{}", hard.group, hard.name,
+               hard.load_steps > 0 ? fmt::format("static, {} steps of the load", hard.load_steps)
+                                   : fmt::format("until {} s", hard.until),
+               text);
+  }
   return kDone;
 }
 

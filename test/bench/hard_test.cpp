@@ -33,6 +33,7 @@ HardCase carriage() {
 
 Target rail_at(std::optional<double> expected) {
   Target target;
+  target.what = "test";
   target.observe = [](const Simulation& s) { return Vector3(s.position(0), 0, 0); };
   target.tolerance = 1e-6;
   if (expected) target.expected = Vector3(*expected, 0, 0);
@@ -84,12 +85,12 @@ TEST(HardRuns, OffTargetOrOutOfBoundsIsWrong) {
   hard.target = rail_at(1.1);
   HardOutcome outcome = run_once(hard);
   EXPECT_EQ(verdict(hard, outcome), Verdict::Wrong);
-  EXPECT_EQ(flaw(hard, outcome), "off its target");
+  EXPECT_EQ(flaw(hard, outcome), "off its target (test)");
   hard = carriage();
-  hard.bound = Bound{"half a metre", [](const Simulation& s) { return s.position(0) / 0.5; }};
+  hard.bound = Bound{"beyond half a metre", [](const Simulation& s) { return s.position(0) / 0.5; }};
   outcome = run_once(hard);
   EXPECT_NEAR(outcome.bound, 2, 1e-9);
-  EXPECT_EQ(flaw(hard, outcome), "out of bounds");
+  EXPECT_EQ(flaw(hard, outcome), "beyond half a metre");
 }
 
 TEST(HardRuns, EnergyFromNowhereIsWrong) {
@@ -217,7 +218,7 @@ TEST(HardReports, HaveARowForEachCaseAndSayWhatFailed) {
   EXPECT_EQ(parts.back(), 1);
   const std::string text = to_markdown(report, "");
   for (const char* line : {"\n| em | 1 | 1 | 0 |", "\n| newmark | 1 | 1 | 0 |",
-                           "\n| group: wrong carriage | off its target |", "\n| carriage | 0.1 | 10 | 1."})
+                           "\n| group: wrong carriage | off its target (test) |", "\n| carriage | 0.1 | 10 | 1."})
     EXPECT_NE(text.find(line), std::string::npos) << text;
   const std::string data = hard_to_csv(report);
   EXPECT_NE(data.find("\n\"group\",\"wrong carriage\",1,newmark,wrong,completed,1,"), std::string::npos) << data;
