@@ -85,7 +85,7 @@ def main(data, picture):
             axes.text(x + 0.6, -0.2, scheme, fontsize=5, rotation=90, ha="center", va="bottom")
     legend(figure)
     figure.subplots_adjust(left=0.02, right=0.99, top=0.99, bottom=0.05, wspace=0.02)
-    figure.savefig(picture, dpi=150, metadata={"Software": None})
+    figure.savefig(picture, dpi=120, metadata={"Software": None})
 
 
 if __name__ == "__main__":
