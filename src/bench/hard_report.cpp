@@ -10,6 +10,8 @@
 namespace flexarm::bench {
 namespace {
 
+constexpr int kManyIterations = 10;  // per step
+
 const char* to_string(HardOutcome::End end) {
   switch (end) {
     case HardOutcome::End::Completed:
@@ -185,6 +187,19 @@ std::string trouble_table(const HardReport& report) {
   return text;
 }
 
+/// Right runs of the first scheme that took more than kManyIterations a step.
+std::string dear_table(const HardReport& report) {
+  std::string text = head({"case", "iterations: mean, largest", "steps", "halvings"});
+  for (const HardRow& r : report.rows) {
+    const HardOutcome& outcome = r.outcomes.front();
+    if (verdict(r.hard, outcome) == Verdict::Right && outcome.iterations_per_step() > kManyIterations)
+      text += row({r.hard.group + ": " + r.hard.name,
+                   fmt::format("{:.1f}, {}", outcome.iterations_per_step(), outcome.most_iterations),
+                   std::to_string(outcome.steps), std::to_string(outcome.halvings)});
+  }
+  return text;
+}
+
 std::string quoted(std::string text) {
   std::replace(text.begin(), text.end(), '"', '\'');
   std::replace(text.begin(), text.end(), '\n', ' ');
@@ -224,6 +239,8 @@ std::string to_markdown(const HardReport& report, const std::string& picture) {
       "together.\n";
   if (!picture.empty()) text += fmt::format("\n![Cases and schemes]({})\n", picture);
   text += fmt::format("\n## Not right with `{}`\n\n{}", first, trouble_table(report));
+  text += fmt::format("\n## Right with `{}`, but with more than {} iterations a step\n\n{}", first, kManyIterations,
+                      dear_table(report));
   text +=
       "\nBelow: Newton iterations per step of right runs; how far the others came. Halvings, defects, errors, times "
       "and reasons of every run are in [hard.csv](hard.csv).\n";
