@@ -27,6 +27,9 @@ class HardGroup {
     cases_.push_back(std::move(hard));
     return cases_.back();
   }
+  void add_bounded(const std::string& name, const std::string& scene, double step, double until, const Bound& bound) {
+    add(name, scene, step, until).bound = bound;
+  }
   /// See HardCase::is_free.
   void add_free(const std::string& name, const std::string& scene, double step, double until) {
     add(name, scene, step, until).is_free = true;

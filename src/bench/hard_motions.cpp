@@ -79,14 +79,13 @@ void add_driven_turns(HardGroup& group) {
   const auto drive = [&](const std::string& what, const std::string& links, const std::string& simulation,
                          const std::string& driven, double angle) {
     const double rate = angle / kTurnStep, ramp = 0.5;
-    group
-        .add(fmt::format("driven {}, {:.3g} rad a step", what, angle),
-             scene(links, simulation + motion(driven, spun_up(rate, ramp))), kTurnStep, 1)
-        .bound = Bound{"published velocity off by 5 %", [=](const Simulation& s) {
-                         const double t = s.time(),
-                                      expected = t < ramp ? rate / 2 * (1 - std::cos(kPi * t / ramp)) : rate;
-                         return std::abs(s.velocity(*s.find_coordinate(driven)) - expected) / (0.05 * rate);
-                       }};
+    group.add_bounded(fmt::format("driven {}, {:.3g} rad a step", what, angle),
+                      scene(links, simulation + motion(driven, spun_up(rate, ramp))), kTurnStep, 1,
+                      Bound{"published velocity off by 5 %", [=](const Simulation& s) {
+                              const double t = s.time(),
+                                           expected = t < ramp ? rate / 2 * (1 - std::cos(kPi * t / ramp)) : rate;
+                              return std::abs(s.velocity(*s.find_coordinate(driven)) - expected) / (0.05 * rate);
+                            }});
   };
   const std::string elbow =
       joint("elbow", "continuous", "arm", "hand", {1, 0, 0}, axis({0, 1, 0})) + body("hand", 0.1, 1e-3);
