@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "bench/processor_time.h"
+#include "bench/urdf.h"
 #include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/simulation.h"
 
@@ -24,6 +25,8 @@ constexpr int kBatches = 5;
 constexpr int kStepsBefore = 2;
 /// Times that a scene is read and built.
 constexpr int kTries = 3;
+
+const Vector3 kDown(0, 0, -9.81);
 
 /// Bytes that malloc has given out.
 double allocated_bytes() {
@@ -53,51 +56,35 @@ std::vector<int> half_decades(int first, int largest) {
   return sizes;
 }
 
-std::string beam_link(const std::string& name, const std::string& to, int elements, int order) {
-  return fmt::format(
-      "<link name=\"{}\"><beam elements=\"{}\" order=\"{}\"><centerline><line to=\"{}\"/></centerline>"
-      "<section ea=\"1e5\" ga2=\"5e4\" ga3=\"5e4\" gj=\"20\" ei2=\"20\" ei3=\"20\" mass=\"1\" j1=\"2e-4\" j2=\"1e-4\" "
-      "j3=\"1e-4\"/></beam></link>\n",
-      name, elements, order, to);
-}
+const std::string kSection =
+    "<section ea=\"1e5\" ga2=\"5e4\" ga3=\"5e4\" gj=\"20\" ei2=\"20\" ei3=\"20\" mass=\"1\" j1=\"2e-4\" j2=\"1e-4\" "
+    "j3=\"1e-4\"/>";
 
-std::string joint(const std::string& name, const std::string& type, const std::string& parent, const std::string& child,
-                  const std::string& at, const std::string& inside = "") {
-  return fmt::format(
-      "<joint name=\"{}\" type=\"{}\"><parent link=\"{}\"/><child link=\"{}\"/><origin xyz=\"{}\"/>{}</joint>\n", name,
-      type, parent, child, at, inside);
-}
-
-std::string scene(const std::string& name, const std::string& body, const std::string& simulation,
-                  const std::string& gravity = "0 0 -9.81") {
-  return fmt::format(
-      "<robot name=\"{}\"><link name=\"world\"/>\n{}<simulation><gravity xyz=\"{}\"/>"
-      "<integrator scheme=\"em\" step=\"1e-3\"/>\n{}</simulation></robot>\n",
-      name, body, gravity, simulation);
+std::string scene(const std::string& links_and_joints, const std::string& simulation) {
+  return urdf::scene(links_and_joints, "<integrator scheme=\"em\" step=\"1e-3\"/>\n" + simulation);
 }
 
 /// Elements of 0.1 m that start to fall from the horizontal.
 std::string cantilever(int elements, int order) {
-  const double length = 0.1 * elements;
-  return scene("cantilever",
-               joint("clamp", "fixed", "world", "beam", "0 0 0") +
-                   beam_link("beam", fmt::format("{:g} 0 0", length), elements, order),
-               fmt::format("<load link=\"beam\" at=\"{:g} 0 0\" force=\"0 1 0\"/>", length));
+  const Vector3 tip(0.1 * elements, 0, 0);
+  return scene(urdf::joint("clamp", "fixed", "world", "beam") + urdf::beam("beam", tip, kSection, elements, "", order),
+               urdf::gravity(kDown) + urdf::load("beam", tip, {0, 1, 0}));
 }
 
 /// A trunk with an element of 1 m from branch to branch, and branches of 1 to 10 elements, every other one hinged.
 std::string tree(int branches) {
-  std::string body = joint("clamp", "fixed", "world", "trunk", "0 0 0") +
-                     beam_link("trunk", fmt::format("{} 0 0", branches), branches, 2);
+  std::string body = urdf::joint("clamp", "fixed", "world", "trunk") +
+                     urdf::beam("trunk", {static_cast<double>(branches), 0, 0}, kSection, branches);
   for (int i = 0; i < branches; ++i) {
     const int elements = 1 + i % 10;
-    const std::string name = fmt::format("branch{}", i), at = fmt::format("{} 0 0", i + 1);
-    body += beam_link(name, fmt::format("0 {:g} 0", 0.1 * elements), elements, 2) +
-            (i % 2 == 0 ? joint("fork" + name, "fixed", "trunk", name, at)
-                        : joint("fork" + name, "continuous", "trunk", name, at,
-                                "<axis xyz=\"1 0 0\"/><dynamics damping=\"0.1\"/>"));
+    const std::string name = fmt::format("branch{}", i);
+    const Vector3 at(i + 1, 0, 0);
+    body += urdf::beam(name, {0, 0.1 * elements, 0}, kSection, elements) +
+            (i % 2 == 0 ? urdf::joint("fork" + name, "fixed", "trunk", name, at)
+                        : urdf::joint("fork" + name, "continuous", "trunk", name, at,
+                                      urdf::axis({1, 0, 0}) + "<dynamics damping=\"0.1\"/>"));
   }
-  return scene("tree", body, "");
+  return scene(body, urdf::gravity(kDown));
 }
 
 /// Rods of 0.1 m from the world's origin on, with revolute joints about y and x in turn, each with an initial angle and
@@ -106,20 +93,15 @@ std::string rigid_chain(int links) {
   std::string body, simulation, parent = "world";
   for (int i = 0; i < links; ++i) {
     const std::string name = fmt::format("link{}", i), hinge = fmt::format("joint{}", i);
-    body += joint(hinge, "revolute", parent, name, i == 0 ? "0 0 0" : "0 0 -0.1",
-                  fmt::format("<axis xyz=\"{}\"/><limit lower=\"-3\" upper=\"3\" effort=\"10\" velocity=\"10\"/>"
-                              "<dynamics damping=\"0.01\"/>",
-                              i % 2 == 0 ? "0 1 0" : "1 0 0")) +
-            fmt::format(
-                "<link name=\"{}\"><inertial><origin xyz=\"0 0 -0.05\"/><mass value=\"0.1\"/>"
-                "<inertia ixx=\"1e-4\" ixy=\"0\" ixz=\"0\" iyy=\"1e-4\" iyz=\"0\" izz=\"1e-5\"/></inertial></link>\n",
-                name);
-    simulation +=
-        fmt::format("<initial joint=\"{}\" position=\"{}\"/><effort joint=\"{}\" history=\"0.1*sin(30*t)\"/>\n", hinge,
-                    i % 4 < 2 ? 0.01 : -0.01, hinge);
+    body += urdf::joint(hinge, "revolute", parent, name, i == 0 ? Vector3(0, 0, 0) : Vector3(0, 0, -0.1),
+                        urdf::axis(i % 2 == 0 ? Vector3(0, 1, 0) : Vector3(1, 0, 0)) +
+                            "<limit lower=\"-3\" upper=\"3\" effort=\"10\" velocity=\"10\"/>"
+                            "<dynamics damping=\"0.01\"/>") +
+            urdf::body(name, 0.1, Vector3(1e-4, 1e-4, 1e-5), {0, 0, -0.05});
+    simulation += urdf::initial(hinge, i % 4 < 2 ? 0.01 : -0.01, 0) + urdf::effort(hinge, "0.1*sin(30*t)");
     parent = name;
   }
-  return scene("rigid_chain", body, simulation, "0 0 0");
+  return scene(body, simulation);
 }
 
 }  // namespace

@@ -1,17 +1,20 @@
 #include <algorithm>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <map>
 
 #include <fmt/format.h>
 
+#include "bench/hard.h"
 #include "bench/report.h"
 #include "bench/scaling.h"
 #include "bench/speed.h"
 #include "bench/thesis.h"
 #include "cli/commands.h"
 #include "cli/progress_bar.h"
+#include "flexarm/schemes/integrator_description.h"
 
 namespace flexarm::cli {
 namespace {
@@ -21,6 +24,9 @@ namespace fs = std::filesystem;
 struct Arguments {
   std::string output = "docs/reports", scenes;
   std::vector<std::string> problems;
+  std::vector<std::string> cases, groups;  ///< of the hard ones
+  bench::HardOptions hard;
+  bool print_only = false;
   bool quick = false;
 };
 
@@ -164,10 +170,62 @@ int measure_speed(const Arguments& arguments) {
       bench::runs_to_csv);
 }
 
+bool is_in(const std::vector<std::string>& names, const std::string& name) {
+  return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Whether one of these is a part of the name; or there are none.
+bool is_meant(const std::vector<std::string>& parts, const std::string& name) {
+  return parts.empty() || std::any_of(parts.begin(), parts.end(),
+                                      [&](const std::string& part) { return name.find(part) != std::string::npos; });
+}
+
+std::vector<bench::HardCase> chosen_cases(const Arguments& arguments) {
+  std::vector<bench::HardCase> chosen;
+  for (bench::HardCase& hard : bench::hard_cases())
+    if (is_in(arguments.groups, hard.group) && is_meant(arguments.cases, hard.name)) chosen.push_back(std::move(hard));
+  if (chosen.empty()) throw std::runtime_error("there is no such case");
+  return chosen;
+}
+
+/// Each as a file that runs as the case does, but for the end time.
+int print_scenes(const std::vector<bench::HardCase>& cases) {
+  for (const bench::HardCase& hard : cases) {
+    std::string text = hard.scene;
+    text.insert(text.find("<simulation>") + std::strlen("<simulation>"),
+                fmt::format("\n<integrator step=\"{}\"/>", hard.step));
+    fmt::print("<!-- {}: {}; {} -->\n{}", hard.group, hard.name,
+               hard.load_steps > 0 ? fmt::format("static, {} steps of the load", hard.load_steps)
+                                   : fmt::format("until {} s", hard.until),
+               text);
+  }
+  return kDone;
+}
+
+int measure_hard(Arguments arguments) {
+  const std::vector<bench::HardCase> cases = chosen_cases(arguments);
+  if (arguments.print_only) return print_scenes(cases);
+  arguments.hard.quick = arguments.quick;
+  return write_report(
+      arguments, "hard", "hard",
+      [&](const auto& progress) { return bench::measure_hard(cases, arguments.hard, progress); }, bench::hard_to_csv);
+}
+
+std::vector<std::string> group_names() {
+  std::vector<std::string> names;
+  for (const bench::HardCase& hard : bench::hard_cases())
+    if (!std::count(names.begin(), names.end(), hard.group)) names.push_back(hard.group);
+  return names;
+}
+
 std::vector<std::string> problem_names() {
   std::vector<std::string> names;
   for (const bench::SpeedProblem& problem : bench::speed_problems()) names.push_back(problem.name);
   return names;
+}
+
+std::vector<std::string> scheme_choice() {
+  return {scheme_names().begin(), scheme_names().end()};
 }
 
 }  // namespace
@@ -193,6 +251,21 @@ void add_bench(CLI::App& app, int& status) {
   speed->add_option("--scenes", arguments->scenes, "folder of the scenes (default: config, which comes with flexarm)");
   speed->add_flag("--quick", arguments->quick, "short runs, few of them, to see that all of it works");
   speed->callback([arguments, &status] { status = measure_speed(*arguments); });
+  CLI::App* hard = command->add_subcommand("hard", "Scenes at which a simulator may break, as a report");
+  hard->add_option("--case", arguments->cases, "only those with this in their names; may be given more than once");
+  hard->add_option("--group", arguments->groups, "only this one; may be given more than once (default: all)")
+      ->check(CLI::IsMember(group_names()));
+  hard->add_option("--scheme", arguments->hard.schemes,
+                   "may be given more than once; the first is what others are compared with")
+      ->capture_default_str()
+      ->check(CLI::IsMember(scheme_choice()));
+  hard->add_option("--seconds", arguments->hard.limits.seconds, "of the processor, for each run")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  hard->add_option("--output", arguments->output, "folder for the report")->capture_default_str();
+  hard->add_flag("--print", arguments->print_only, "print the scenes, run nothing");
+  hard->add_flag("--quick", arguments->quick, "five steps of each, to see that all of it works");
+  hard->callback([arguments, &status] { status = measure_hard(*arguments); });
   CLI::App* scaling = command->add_subcommand("scaling", "Time and memory over the size of a mechanism, as a report");
   scaling->add_option("--output", arguments->output, "folder for the report")->capture_default_str();
   scaling->add_flag("--quick", arguments->quick, "small mechanisms, to see that all of it works");

@@ -6,8 +6,9 @@ namespace flexarm::cli {
 namespace {
 
 TEST(Bench, UsageErrors) {
-  for (const char* arguments : {"bench", "bench fly", "bench properties --fast", "bench thesis --fast",
-                                "bench speed --fast", "bench scaling --fast"})
+  for (const char* arguments :
+       {"bench", "bench fly", "bench properties --fast", "bench thesis --fast", "bench speed --fast",
+        "bench scaling --fast", "bench hard --fast", "bench hard --scheme guess", "bench hard --group soft"})
     EXPECT_EQ(shell(std::string("flexarm ") + arguments).status, 2) << arguments;
 }
 
@@ -78,6 +79,29 @@ TEST(Bench, ScalingReport) {
   const std::string data = read_file(folder + "/scaling.csv");
   EXPECT_EQ(data.substr(0, data.find('\n')), "family,unit,size,unknowns,read,build,step,bytes,iterations");
   EXPECT_EQ(report.find("scaling.png") != std::string::npos, std::filesystem::exists(folder + "/scaling.png"));
+}
+
+TEST(Bench, HardReport) {
+  const std::string folder = temporary("hard");
+  const Outcome outcome = shell(
+      "flexarm bench hard --quick --group mimic --group equilibrium --scheme em --scheme m1 --output '" + folder + "'");
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  const std::string report = read_file(folder + "/hard.md");
+  for (const char* line : {"\n| em |", "\n| m1 |", "\n## mimic\n", "\n## equilibrium\n", "\n| ratio 1e+06 |"})
+    EXPECT_NE(report.find(line), std::string::npos) << line;
+  const std::string data = read_file(folder + "/hard.csv");
+  EXPECT_EQ(data.substr(0, data.find("time")), "group,case,sound,scheme,verdict,end,part,");
+  EXPECT_EQ(report.find("hard.png") != std::string::npos, std::filesystem::exists(folder + "/hard.png"));
+}
+
+TEST(Bench, HardScenesCanBePrintedAndRun) {
+  const std::string file = temporary("hard.urdf");
+  ASSERT_EQ(shell("flexarm bench hard --print --case 'parallelogram started flat' > '" + file + "'").status, 0);
+  EXPECT_NE(read_file(file).find("<!-- dead point: parallelogram started flat; until 0.5 s -->"), std::string::npos);
+  EXPECT_EQ(shell("flexarm simulate --quiet --until 0.5 '" + file + "'").status, 1);
+  ASSERT_EQ(shell("flexarm bench hard --print --case 'door on two hinges' > '" + file + "'").status, 0);
+  EXPECT_EQ(shell("flexarm simulate --quiet --until 0.5 '" + file + "'").status, 0);
+  EXPECT_EQ(shell("flexarm bench hard --print --case 'no such case'").status, 1);
 }
 
 TEST(Bench, FolderThatCannotBeWritten) {

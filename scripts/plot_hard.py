@@ -1,0 +1,94 @@
+#!/usr/bin/python3
+"""Draws what `flexarm bench hard` found: a line per case, a column per scheme.
+
+plot_hard.py DATA.csv PICTURE
+"""
+
+import csv
+import math
+import sys
+
+from headless_pyplot import pyplot
+
+# Cases side by side in so many columns of panels, to fill one page.
+COLUMNS = 3
+FAILED, WRONG, DIAGNOSED = "#d62728", "#ff9f40", "#9ecae1"
+MOST_ITERATIONS = 50
+LONGEST_NAME = 50
+
+
+def read(path):
+    """Verdicts and iterations by case in the file's order, and the schemes."""
+    cases, schemes = {}, []
+    with open(path, newline="", encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            results = cases.setdefault((row["group"], row["case"]), {})
+            results[row["scheme"]] = (row["verdict"], float(row["iterations"]))
+            if row["scheme"] not in schemes:
+                schemes.append(row["scheme"])
+    return cases, schemes
+
+
+def colour(verdict, iterations):
+    """Green is quick, blue slow; what is not right has a colour of its own."""
+    if verdict == "right":
+        share = math.log(max(iterations, 1)) / math.log(MOST_ITERATIONS)
+        return pyplot.get_cmap("viridis")(0.8 - 0.55 * min(share, 1))
+    return {"wrong": WRONG, "diagnosed": DIAGNOSED}.get(verdict, FAILED)
+
+
+def lines(cases):
+    """Cases with a heading before each group: (heading, None) or (name, results)."""
+    out, last = [], None
+    for (group, name), results in cases.items():
+        if group != last:
+            out.append((group, None))
+            last = group
+        out.append((name, results))
+    return out
+
+
+def shortened(name):
+    return name if len(name) <= LONGEST_NAME else name[:LONGEST_NAME - 1] + "…"
+
+
+def draw(axes, part, schemes):
+    for y, (name, results) in enumerate(part):
+        if results is None:
+            axes.text(0, y + 0.85, name, fontsize=5.5, fontweight="bold")
+            continue
+        for x, scheme in enumerate(schemes):
+            if scheme in results:
+                axes.add_patch(pyplot.Rectangle((x, y + 0.05), 0.95, 0.9, color=colour(*results[scheme]), linewidth=0))
+        axes.text(len(schemes) + 0.15, y + 0.8, shortened(name), fontsize=4.5)
+    axes.set_xlim(0, len(schemes) + 14)
+    axes.axis("off")
+
+
+def legend(figure):
+    entries = [(f"right, {n} iterations a step", colour("right", n)) for n in (1, 3, 10, 50)]
+    entries += [("completed, wrong", WRONG), ("failed, or unsound and not diagnosed", FAILED),
+                ("unsound, diagnosed", DIAGNOSED)]
+    handles = [pyplot.Rectangle((0, 0), 1, 1, color=shade) for _, shade in entries]
+    figure.legend(handles, [text for text, _ in entries], loc="lower center", ncol=4, fontsize=6)
+
+
+def main(data, picture):
+    cases, schemes = read(data)
+    everything = lines(cases)
+    height = max(1, -(-len(everything) // COLUMNS))
+    figure, panels = pyplot.subplots(1, COLUMNS, figsize=(8.3, 11.7))
+    for i, axes in enumerate(panels):
+        draw(axes, everything[i * height:(i + 1) * height], schemes)
+        axes.set_ylim(height, -2.5)
+        for x, scheme in enumerate(schemes):
+            axes.text(x + 0.6, -0.2, scheme, fontsize=5, rotation=90, ha="center", va="bottom")
+    legend(figure)
+    figure.subplots_adjust(left=0.02, right=0.99, top=0.99, bottom=0.05, wspace=0.02)
+    figure.savefig(picture, dpi=120, metadata={"Software": None})
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    main(sys.argv[1], sys.argv[2])
