@@ -67,7 +67,7 @@ Attachment LoopBuilder::carrier(Attachment frame) const {
   while (frame.node >= 0 && mechanism_.slave_joint[frame.node] >= 0) {
     const JointMap& map = model_.joints[mechanism_.slave_joint[frame.node]];
     if (map.kind != JointMapKind::Rigid) break;
-    frame.offset = map.origin * Pose{Vector3::Zero(), map.slave_orientation} * frame.offset;
+    frame.offset = map.origin * Pose{map.slave_orientation * map.arm, map.slave_orientation} * frame.offset;
     frame.node = map.master;
   }
   return frame;

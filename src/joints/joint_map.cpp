@@ -32,8 +32,8 @@ Matrix3 joint_rotation(const JointMap& joint, const NodePose& master) {
   return master.rotation * joint.origin.orientation.toRotationMatrix();
 }
 
-/// The slave's lever arm from the master node, Lambda_m b + B (displacement), world axes.
-Vector3 lever_arm(const JointMap& joint, const NodePose& master, const Released& released) {
+/// From the master node to the origin of the moved joint frame, Lambda_m b + B (displacement), world axes.
+Vector3 lever_to_moved_frame(const JointMap& joint, const NodePose& master, const Released& released) {
   const bool travels =
       joint.kind != JointMapKind::Rigid && (joint.kind != JointMapKind::Scalar || !joint.translation.isZero(0));
   if (!travels) return master.rotation * joint.origin.position;
@@ -63,33 +63,64 @@ ScaledRate scaled_rate(double x) {
   return {2 * t / x, ((1 + t * t) - 2 * t / x) / x};
 }
 
+/// A force and a moment about the origin of the moved joint frame.
+struct Wrench {
+  Vector3 force, moment;
+};
+
+/// Adds lever arms to the maps of the wrench at the moved joint frame: the master's there, which stand in `maps`, and
+/// the slave's from there, `left` in the left maps and `right` at the end. That is what rigid joints before and behind
+/// it would do to them. `weight`: of the end in the left arms.
+void add_arms(const Vector3& left, const Vector3& right, const Vector3& force, bool with_tangent, double weight,
+              FoldMaps& maps) {
+  const Eigen::Index count = maps.left.cols();
+  // d(left x force) = moment_rate * spin, for the slave's arm and for both.
+  const auto moment_rate = [&](const Vector3& arm) {
+    return Matrix3(weight * (arm * force.transpose()) - (weight * force.dot(arm)) * Matrix3::Identity());
+  };
+  maps.lever_left += left;
+  maps.lever_right += right;
+  if (with_tangent) {
+    const Matrix3 rate = moment_rate(right);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const Vector3 spin = maps.right.col(k).tail<3>(), moment = rate * spin;
+      for (Eigen::Index i = 0; i < count; ++i) maps.released_released(i, k) += maps.left.col(i).tail<3>().dot(moment);
+      maps.released_master.row(k).tail<3>() += maps.left.col(k).tail<3>().transpose() * rate;
+      maps.master_released.col(k).tail<3>() += moment;
+      maps.right.col(k).head<3>() += spin.cross(right);
+    }
+    maps.master_master.bottomRightCorner<3, 3>() = moment_rate(maps.lever_right);
+  }
+  for (Eigen::Index k = 0; k < count; ++k) maps.left.col(k).head<3>() += maps.left.col(k).tail<3>().cross(left);
+}
+
 /// Joints with one coordinate, without lever arms: the formulas of incremental_maps() for all joints, in which matrices
 /// act on the axis of rotation and the direction of travel alone.
-void incremental_scalar_maps(const JointMap& joint, const NodePose& master_begin, const NodePose& master_end,
-                             const Released& begin, const Released& end, const Vector6& g, FoldMaps& maps,
-                             bool with_tangent, double arm_weight) {
+void incremental_scalar_maps(const JointMap& joint, const JointPose& begin, const JointPose& end, const Wrench& g,
+                             FoldMaps& maps, bool with_tangent, double arm_weight) {
+  const auto& [force, moment] = g;
+  const double from = begin.released.displacement[0], to = end.released.displacement[0];
   const auto in_world = [&](const NodePose& master, const Vector3& v) {
     return Vector3(master.rotation * (joint.origin.orientation * v));
   };
-  const Vector3 axis = in_world(master_begin, joint.rotation), direction = in_world(master_begin, joint.translation);
-  const Vector3 w = cayley::increment(master_begin.orientation, master_end.orientation);
+  const Vector3 axis = in_world(begin.master, joint.rotation), direction = in_world(begin.master, joint.translation);
+  const Vector3 w = cayley::increment(begin.master.orientation, end.master.orientation);
   const auto transposed_inverse_tangent = [&](const Vector3& v) {  // S(w)^-T v
     return Vector3(v + 0.5 * w.cross(v) + (0.25 * w.dot(v)) * w);
   };
-  const double step = end.displacement[0] - begin.displacement[0], angle = joint.rotation.norm();
+  const double step = to - from, angle = joint.rotation.norm();
   const ScaledRate rate = scaled_rate(step * angle);
   const Vector3 turn = rate.value * step * axis;
   const double c = 1 / (1 - 0.25 * w.dot(turn));
   const Vector3 left_axis = c * transposed_inverse_tangent(axis), left_direction = direction + 0.5 * w.cross(direction);
-  const TravelRate travel_of = travel_rate(joint, begin.displacement[0], end.displacement[0]);
+  const TravelRate travel_of = travel_rate(joint, from, to);
   maps.left.resize(6, 1);
   maps.left.col(0) << travel_of.secant * left_direction, rate.value * left_axis;
   if (!with_tangent) return;
 
-  const Vector3 force = g.head<3>(), moment = g.tail<3>();
-  const Vector3 travel = travel_of.slope * in_world(master_end, joint.translation);
+  const Vector3 travel = travel_of.slope * in_world(end.master, joint.translation);
   maps.right.resize(6, 1);
-  maps.right.col(0) << travel, in_world(master_end, joint.rotation);
+  maps.right.col(0) << travel, in_world(end.master, joint.rotation);
   const double axis_moment = left_axis.dot(moment), turned = w.dot(axis);
   maps.released_released.resize(1, 1);
   maps.released_released(0, 0) = rate.derivative * angle * axis_moment +
@@ -103,6 +134,43 @@ void incremental_scalar_maps(const JointMap& joint, const NodePose& master_begin
           .transpose();
   maps.master_released.resize(6, 1);
   maps.master_released.col(0) << 0, 0, 0, -arm_weight * force.cross(travel);
+  maps.master_master.setZero();
+}
+
+/// Joints without coordinates, or with free rotations; without lever arms.
+void incremental_matrix_maps(const JointMap& joint, const JointPose& begin, const JointPose& end, const Wrench& g,
+                             FoldMaps& maps, bool with_tangent, double arm_weight) {
+  const int count = released_count(joint.kind);
+  if (with_tangent)
+    set_sizes(count, maps);
+  else
+    maps.left.setZero(6, count);
+  if (joint.kind == JointMapKind::Rigid) return;
+
+  // Rows conjugate to the relative translation and to the tangent-scaled relative rotation, joint frame.
+  const Matrix3 B0 = joint_rotation(joint, begin.master);
+  const Vector3 w = cayley::increment(begin.master.orientation, end.master.orientation);
+  const Matrix3 S_inverse = cayley::inverse_tangent(w);
+  const Vector3 turn = released_increment(joint, begin.released, end.released).tail<3>(), turn_world = B0 * turn;
+  const double c = 1 / (1 - 0.25 * w.dot(turn_world));
+  const Matrix3 N22 = c * S_inverse.transpose() * B0;
+  if (joint.kind == JointMapKind::Free) maps.left.topLeftCorner<3, 3>() = B0 + 0.5 * hat(w) * B0;
+  maps.left.bottomRightCorner<3, 3>() = N22;
+  if (!with_tangent) return;
+
+  const Matrix3 rotation = joint_rotation(joint, end.master);
+  const Vector3 row_phi = N22.transpose() * g.moment, w_joint = B0.transpose() * w;
+  if (joint.kind == JointMapKind::Free) {
+    maps.right.topLeftCorner<3, 3>() = rotation;
+    maps.released_master.topRightCorner<3, 3>() = 0.5 * B0.transpose() * hat(g.force) * S_inverse;
+    maps.master_released.bottomLeftCorner<3, 3>() = -arm_weight * hat(g.force) * rotation;
+  }
+  maps.right.bottomRightCorner<3, 3>() = rotation;
+  maps.released_released.bottomRightCorner<3, 3>() =
+      0.25 * c * row_phi * w_joint.transpose() * cayley::inverse_tangent(turn);
+  maps.released_master.bottomRightCorner<3, 3>() =
+      (c * B0.transpose() * cayley::xi_inverse_tangent(w, g.moment) + 0.25 * c * row_phi * turn_world.transpose()) *
+      S_inverse;
 }
 
 }  // namespace
@@ -116,7 +184,7 @@ NodePose slave_pose(const JointMap& joint, const NodePose& master, const Release
   NodePose slave;
   slave.orientation = (turned * joint.slave_orientation).normalized();
   slave.rotation = slave.orientation.toRotationMatrix();
-  slave.position = master.position + lever_arm(joint, master, released);
+  slave.position = master.position + lever_to_moved_frame(joint, master, released) + slave.rotation * joint.arm;
   return slave;
 }
 
@@ -143,22 +211,19 @@ ReleasedVector released_increment(const JointMap& joint, const Released& from, c
   return out;
 }
 
-void variational_maps(const JointMap& joint, const NodePose& master, const Released& released, const Vector6& g,
-                      FoldMaps& maps) {
+void variational_maps(const JointMap& joint, const JointPose& pose, const Vector6& g, FoldMaps& maps) {
   const int count = released_count(joint.kind);
-  const Matrix3 rotation = joint_rotation(joint, master);
-  const Vector3 lever = lever_arm(joint, master, released);
-  const Vector3 force = g.head<3>(), moment = g.tail<3>();
+  const Matrix3 rotation = joint_rotation(joint, pose.master);
+  const Vector3 arm = pose.slave.rotation * joint.arm;
+  const Vector3 force = g.head<3>(), moment = g.tail<3>() + arm.cross(force);
   set_sizes(count, maps);
-  maps.lever_left = maps.lever_right = lever;
-  maps.master_master.bottomRightCorner<3, 3>() = hat(force) * hat(lever);
 
   switch (joint.kind) {
     case JointMapKind::Rigid:
     case JointMapKind::Slide:  // has maps of its own (slide_map.h)
       break;
     case JointMapKind::Scalar: {
-      const double u = released.displacement[0];
+      const double u = pose.released.displacement[0];
       const TravelRate rate = travel_rate(joint, u, u);
       const Vector3 direction = rotation * joint.translation, turn = rotation * joint.rotation;
       const Vector3 travel = rate.slope * direction;
@@ -179,74 +244,54 @@ void variational_maps(const JointMap& joint, const NodePose& master, const Relea
       break;
   }
   maps.left = maps.right;
+  maps.lever_left = maps.lever_right = lever_to_moved_frame(joint, pose.master, pose.released);
+  add_arms(arm, arm, force, true, 1, maps);
 }
 
-void incremental_maps(const JointMap& joint, const NodePose& master_begin, const NodePose& master_end,
-                      const Released& begin, const Released& end, const Vector6& g, FoldMaps& maps, bool with_tangent,
-                      double arm_weight) {
-  const int count = released_count(joint.kind);
-  const Vector3 lever = lever_arm(joint, master_end, end);
-  maps.lever_left = (1 - arm_weight) * lever_arm(joint, master_begin, begin) + arm_weight * lever;
-  maps.lever_right = lever;
-  const Vector3 force = g.head<3>(), moment = g.tail<3>();
-  if (joint.kind == JointMapKind::Scalar) {
-    if (with_tangent) maps.master_master.setZero();
-    incremental_scalar_maps(joint, master_begin, master_end, begin, end, g, maps, with_tangent, arm_weight);
-  } else if (with_tangent) {
-    set_sizes(count, maps);
-  } else {
-    maps.left.setZero(6, count);
-  }
-  if (with_tangent)
-    maps.master_master.bottomRightCorner<3, 3>() =
-        arm_weight * (lever * force.transpose()) - (arm_weight * force.dot(lever)) * Matrix3::Identity();
-  if (joint.kind == JointMapKind::Rigid || joint.kind == JointMapKind::Scalar) return;
-
-  // Rows conjugate to the relative translation and to the tangent-scaled relative rotation, joint frame.
-  const Matrix3 B0 = joint_rotation(joint, master_begin);
-  const Vector3 w = cayley::increment(master_begin.orientation, master_end.orientation);
-  const Matrix3 S_inverse = cayley::inverse_tangent(w);
-  const Vector3 turn = released_increment(joint, begin, end).tail<3>(), turn_world = B0 * turn;
-  const double c = 1 / (1 - 0.25 * w.dot(turn_world));
-  const Matrix3 N22 = c * S_inverse.transpose() * B0;
-  if (joint.kind == JointMapKind::Free) maps.left.topLeftCorner<3, 3>() = B0 + 0.5 * hat(w) * B0;
-  maps.left.bottomRightCorner<3, 3>() = N22;
-  if (!with_tangent) return;
-
-  const Matrix3 rotation = joint_rotation(joint, master_end);
-  const Vector3 row_phi = N22.transpose() * moment, w_joint = B0.transpose() * w;
-  if (joint.kind == JointMapKind::Free) {
-    maps.right.topLeftCorner<3, 3>() = rotation;
-    maps.released_master.topRightCorner<3, 3>() = 0.5 * B0.transpose() * hat(force) * S_inverse;
-    maps.master_released.bottomLeftCorner<3, 3>() = -arm_weight * hat(force) * rotation;
-  }
-  maps.right.bottomRightCorner<3, 3>() = rotation;
-  maps.released_released.bottomRightCorner<3, 3>() =
-      0.25 * c * row_phi * w_joint.transpose() * cayley::inverse_tangent(turn);
-  maps.released_master.bottomRightCorner<3, 3>() =
-      (c * B0.transpose() * cayley::xi_inverse_tangent(w, moment) + 0.25 * c * row_phi * turn_world.transpose()) *
-      S_inverse;
+void incremental_maps(const JointMap& joint, const JointPose& begin, const JointPose& end, const Vector6& g,
+                      FoldMaps& maps, bool with_tangent, double arm_weight) {
+  const auto mean = [&](const Vector3& at_begin, const Vector3& at_end) {
+    return Vector3((1 - arm_weight) * at_begin + arm_weight * at_end);
+  };
+  maps.lever_right = lever_to_moved_frame(joint, end.master, end.released);
+  maps.lever_left = mean(lever_to_moved_frame(joint, begin.master, begin.released), maps.lever_right);
+  const Vector3 arm_right = end.slave.rotation * joint.arm;
+  const Vector3 arm_left = mean(begin.slave.rotation * joint.arm, arm_right);
+  const Wrench at_frame{g.head<3>(), g.tail<3>() + arm_left.cross(g.head<3>())};
+  if (joint.kind == JointMapKind::Scalar)
+    incremental_scalar_maps(joint, begin, end, at_frame, maps, with_tangent, arm_weight);
+  else
+    incremental_matrix_maps(joint, begin, end, at_frame, maps, with_tangent, arm_weight);
+  add_arms(arm_left, arm_right, at_frame.force, with_tangent, arm_weight, maps);
 }
 
-Vector6 slave_velocity(const JointMap& joint, const NodePose& master, const Released& released,
-                       const Vector6& master_velocity, const Eigen::Ref<const ReleasedVector>& rates) {
+Vector6 slave_velocity(const JointMap& joint, const JointPose& pose, const Vector6& master_velocity,
+                       const Eigen::Ref<const ReleasedVector>& rates) {
   FoldMaps maps;
-  variational_maps(joint, master, released, Vector6::Zero(), maps);
+  variational_maps(joint, pose, Vector6::Zero(), maps);
   Vector6 velocity = master_velocity;
   velocity.head<3>() += master_velocity.tail<3>().cross(maps.lever_right);
   velocity.noalias() += maps.right * rates;
   return velocity;
 }
 
-ReleasedVector released_rates(const JointMap& joint, const NodePose& master, const Released& released,
-                              const Vector6& master_velocity, const Vector6& slave_velocity, Vector6* remainder) {
+ReleasedVector released_rates(const JointMap& joint, const JointPose& pose, const Vector6& master_velocity,
+                              const Vector6& slave_velocity, Vector6* remainder) {
   FoldMaps maps;
-  variational_maps(joint, master, released, Vector6::Zero(), maps);
+  variational_maps(joint, pose, Vector6::Zero(), maps);
   Vector6 relative = slave_velocity - master_velocity;
   relative.head<3>() -= master_velocity.tail<3>().cross(maps.lever_right);
-  // The columns of `right` are orthogonal in every kind.
-  ReleasedVector rates = maps.right.transpose() * relative;
-  for (int i = 0; i < rates.size(); ++i) rates[i] /= maps.right.col(i).squaredNorm();
+  // The columns are orthogonal in every kind at the moved frame's origin.
+  const Vector3 arm = pose.slave.rotation * joint.arm;
+  const auto at_frame = [&](Vector6 velocity) {
+    velocity.head<3>() -= velocity.tail<3>().cross(arm);
+    return velocity;
+  };
+  ReleasedVector rates(maps.right.cols());
+  for (int k = 0; k < rates.size(); ++k) {
+    const Vector6 column = at_frame(maps.right.col(k));
+    rates[k] = column.dot(at_frame(relative)) / column.squaredNorm();
+  }
   if (remainder) *remainder = relative - maps.right * rates;
   return rates;
 }

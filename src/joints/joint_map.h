@@ -38,28 +38,24 @@ Released updated(const JointMap& joint, const Released& released, const Eigen::R
 /// in the joint frame.
 ReleasedVector released_increment(const JointMap& joint, const Released& from, const Released& to);
 
-/// Variational maps N_delta at the configuration (master, released), for residual `g` on the slave (joints.md 1.2).
-void variational_maps(const JointMap& joint, const NodePose& master, const Released& released, const Vector6& g,
-                      FoldMaps& maps);
+/// Variational maps N_delta for residual `g` on the slave (joints.md 1.2).
+void variational_maps(const JointMap& joint, const JointPose& pose, const Vector6& g, FoldMaps& maps);
 
-/// Incremental maps N_Delta over a step from `_begin` to `_end` (joints.md 1.3): the slave's {Delta r, tangent-scaled
-/// rotation increment} equals left du + {..} exactly, so the joint does no work and conserves momenta.
-/// Without `with_tangent` only the left maps are set. `arm_weight`: of the end in the lever arm by which the slave's
-/// force turns the master; 1/2 where momenta are measured with mean arms, 0 with those of the beginning (M2, its joints
-/// then do a little work).
-void incremental_maps(const JointMap& joint, const NodePose& master_begin, const NodePose& master_end,
-                      const Released& begin, const Released& end, const Vector6& g, FoldMaps& maps,
-                      bool with_tangent = true, double arm_weight = 0.5);
+/// Incremental maps N_Delta over a step (joints.md 1.3): the slave's {Delta r, tangent-scaled rotation increment}
+/// equals left du + {..} exactly, so the joint does no work and conserves momenta. Without `with_tangent` only the left
+/// maps are set. `arm_weight`: of the end in the lever arm by which the slave's force turns the master; 1/2 where
+/// momenta are measured with mean arms, 0 with those of the beginning (M2, its joints then do a little work).
+void incremental_maps(const JointMap& joint, const JointPose& begin, const JointPose& end, const Vector6& g,
+                      FoldMaps& maps, bool with_tangent = true, double arm_weight = 0.5);
 
-/// Least-squares released rates {scalar, or translation and angular velocity in the joint frame} from spatial
-/// velocities {v, w} of master and slave; `remainder` gets the part of the slave's velocity that the joint does not
-/// allow.
-ReleasedVector released_rates(const JointMap& joint, const NodePose& master, const Released& released,
-                              const Vector6& master_velocity, const Vector6& slave_velocity,
-                              Vector6* remainder = nullptr);
+/// Released rates {scalar, or translation and angular velocity in the joint frame} from spatial velocities {v, w} of
+/// master and slave: least squares at the origin of the moved joint frame. `remainder` gets the part of the slave's
+/// velocity that the joint does not allow.
+ReleasedVector released_rates(const JointMap& joint, const JointPose& pose, const Vector6& master_velocity,
+                              const Vector6& slave_velocity, Vector6* remainder = nullptr);
 
 /// Spatial velocity {v, w} of the slave from the master's and the released rates.
-Vector6 slave_velocity(const JointMap& joint, const NodePose& master, const Released& released,
-                       const Vector6& master_velocity, const Eigen::Ref<const ReleasedVector>& rates);
+Vector6 slave_velocity(const JointMap& joint, const JointPose& pose, const Vector6& master_velocity,
+                       const Eigen::Ref<const ReleasedVector>& rates);
 
 }  // namespace flexarm

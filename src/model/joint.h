@@ -1,8 +1,9 @@
 #pragma once
 /// Constant data of elementary joints, the values of their released coordinates, and poses of nodes.
 ///
-/// Notation: B = Lambda_m A the joint frame, A its orientation in the master node's frame, b its origin there:
-///   r = r_m + Lambda_m b + B (displacement),   Lambda = B Lambda_J Lambda_0.
+/// Notation: B = Lambda_m A the joint frame, A its orientation in the master node's frame, b its origin there, a the
+/// arm from the moved frame's origin to the slave:
+///   r = r_m + Lambda_m b + B (displacement) + Lambda a,   Lambda = B Lambda_J Lambda_0.
 /// A joint with several scalar coordinates is a chain of elementary ones through massless nodes.
 
 #include <memory>
@@ -44,6 +45,7 @@ struct JointMap {
   int slave = -1;                                         ///< node
   Pose origin;                                            ///< joint frame in the master node's frame (b, A)
   Quaternion slave_orientation = Quaternion::Identity();  ///< Lambda_0: slave node's frame in the moved joint frame
+  Vector3 arm = Vector3::Zero();                          ///< a, in the slave node's frame [m]
   int line = -1;                                          ///< Slide: index into Model::slide_lines
   SlideAlgorithm algorithm;                               ///< Slide
   int leaving = -1;  ///< Slide: joint whose slave flies on beyond the line's ends; -1: it does not leave
@@ -64,5 +66,16 @@ struct NodePose {
   Quaternion orientation = Quaternion::Identity();
   Matrix3 rotation = Matrix3::Identity();
 };
+
+/// Where a joint's nodes and its released coordinates stand at an instant.
+struct JointPose {
+  const NodePose &master, &slave;
+  const Released& released;
+};
+
+/// The origin of the moved joint frame, from the pose of the slave.
+inline Vector3 moved_origin(const JointMap& joint, const NodePose& slave) {
+  return slave.position - slave.rotation * joint.arm;
+}
 
 }  // namespace flexarm
