@@ -82,12 +82,12 @@ class TreeBuilder {
   int add_maps(const scene::JointDescription& joint, const std::vector<std::string>& names, const Attachment& frame) {
     const std::optional<LinkMesh>& child = plan_.meshes[plan_.links[joint.child]];
     std::vector<JointMap> maps = elementary_joints(joint);
-    maps.front().origin = frame.offset * maps.front().origin;
     if (child) {
       const Pose& first_node = child->mesh.nodes[0].pose;
       maps.back().slave_orientation = first_node.orientation;
       maps.back().arm = first_node.orientation.conjugate() * first_node.position;
     }
+    place(maps.front(), frame.offset);
     int node = frame.node;
     auto name = names.begin();
     for (JointMap& map : maps) {

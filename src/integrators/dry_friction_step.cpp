@@ -139,7 +139,7 @@ void DryFrictionStep::add_normal(int j, const Vector6& g, FoldMaps& maps, Balanc
     FoldMaps of_arm;
     configuration_.joint_maps(j, arm, of_arm, true);
     maps.released_released += along * of_arm.released_released;
-    maps.released_master += along * of_arm.released_master;
+    maps.released_spin += along * of_arm.released_spin;
   };
   Vector6 left = maps.left.col(0);
   turn_row(j, g, left, add_derivative, balance);

@@ -10,8 +10,9 @@ namespace {
 
 using so3::hat;
 
+/// In the master node's frame.
 Vector3 displacement(const JointMap& joint, const Released& released) {
-  if (joint.kind != JointMapKind::Scalar) return released.displacement;
+  if (joint.kind != JointMapKind::Scalar) return joint.origin.orientation * released.displacement;
   const double u = released.displacement[0];
   return (joint.profile ? joint.profile->value(u) : u) * joint.translation;
 }
@@ -37,16 +38,15 @@ Vector3 lever_to_moved_frame(const JointMap& joint, const NodePose& master, cons
   const bool travels =
       joint.kind != JointMapKind::Rigid && (joint.kind != JointMapKind::Scalar || !joint.translation.isZero(0));
   if (!travels) return master.rotation * joint.origin.position;
-  return master.rotation * (joint.origin.position + joint.origin.orientation * displacement(joint, released));
+  return master.rotation * (joint.origin.position + displacement(joint, released));
 }
 
 void set_sizes(int count, FoldMaps& maps) {
   maps.left.setZero(6, count);
   maps.right.setZero(6, count);
   maps.released_released.setZero(count, count);
-  maps.released_master.setZero(count, 6);
-  maps.master_released.setZero(6, count);
-  maps.master_master.setZero();
+  maps.released_spin.setZero(count, 3);
+  maps.moment_released.setZero(3, count);
 }
 
 /// Tangent-scaled rotation per unit scalar increment, h = 2 tan(x/2)/x for a rotation x, and dh/dx.
@@ -85,11 +85,11 @@ void add_arms(const Vector3& left, const Vector3& right, const Vector3& force, b
     for (Eigen::Index k = 0; k < count; ++k) {
       const Vector3 spin = maps.right.col(k).tail<3>(), moment = rate * spin;
       for (Eigen::Index i = 0; i < count; ++i) maps.released_released(i, k) += maps.left.col(i).tail<3>().dot(moment);
-      maps.released_master.row(k).tail<3>() += maps.left.col(k).tail<3>().transpose() * rate;
-      maps.master_released.col(k).tail<3>() += moment;
+      maps.released_spin.row(k) += maps.left.col(k).tail<3>().transpose() * rate;
+      maps.moment_released.col(k) += moment;
       maps.right.col(k).head<3>() += spin.cross(right);
     }
-    maps.master_master.bottomRightCorner<3, 3>() = moment_rate(maps.lever_right);
+    maps.moment_spin = moment_rate(maps.lever_right);
   }
   for (Eigen::Index k = 0; k < count; ++k) maps.left.col(k).head<3>() += maps.left.col(k).tail<3>().cross(left);
 }
@@ -100,10 +100,7 @@ void incremental_scalar_maps(const JointMap& joint, const JointPose& begin, cons
                              FoldMaps& maps, bool with_tangent, double arm_weight) {
   const auto& [force, moment] = g;
   const double from = begin.released.displacement[0], to = end.released.displacement[0];
-  const auto in_world = [&](const NodePose& master, const Vector3& v) {
-    return Vector3(master.rotation * (joint.origin.orientation * v));
-  };
-  const Vector3 axis = in_world(begin.master, joint.rotation), direction = in_world(begin.master, joint.translation);
+  const Vector3 axis = begin.master.rotation * joint.rotation, direction = begin.master.rotation * joint.translation;
   const Vector3 w = cayley::increment(begin.master.orientation, end.master.orientation);
   const auto transposed_inverse_tangent = [&](const Vector3& v) {  // S(w)^-T v
     return Vector3(v + 0.5 * w.cross(v) + (0.25 * w.dot(v)) * w);
@@ -118,23 +115,21 @@ void incremental_scalar_maps(const JointMap& joint, const JointPose& begin, cons
   maps.left.col(0) << travel_of.secant * left_direction, rate.value * left_axis;
   if (!with_tangent) return;
 
-  const Vector3 travel = travel_of.slope * in_world(end.master, joint.translation);
+  const Vector3 travel = travel_of.slope * (end.master.rotation * joint.translation);
   maps.right.resize(6, 1);
-  maps.right.col(0) << travel, in_world(end.master, joint.rotation);
+  maps.right.col(0) << travel, end.master.rotation * joint.rotation;
   const double axis_moment = left_axis.dot(moment), turned = w.dot(axis);
   maps.released_released.resize(1, 1);
   maps.released_released(0, 0) = rate.derivative * angle * axis_moment +
                                  rate.value * axis_moment * 0.25 * c * turned * (1 + 0.25 * turn.squaredNorm()) +
                                  travel_of.secant_derivative * force.dot(left_direction);
   const Vector3 varied = 0.5 * moment.cross(axis) - (0.25 * turned) * moment - (0.25 * w.dot(moment)) * axis;
-  maps.released_master.resize(1, 6);
-  maps.released_master.row(0) << 0, 0, 0,
-      transposed_inverse_tangent(0.5 * travel_of.secant * direction.cross(force) +
-                                 (rate.value * c) * (0.25 * axis_moment * turn - varied))
-          .transpose();
-  maps.master_released.resize(6, 1);
-  maps.master_released.col(0) << 0, 0, 0, -arm_weight * force.cross(travel);
-  maps.master_master.setZero();
+  maps.released_spin.resize(1, 3);
+  maps.released_spin.row(0) = transposed_inverse_tangent(0.5 * travel_of.secant * direction.cross(force) +
+                                                         (rate.value * c) * (0.25 * axis_moment * turn - varied))
+                                  .transpose();
+  maps.moment_released.resize(3, 1);
+  maps.moment_released.col(0) = -arm_weight * force.cross(travel);
 }
 
 /// Joints without coordinates, or with free rotations; without lever arms.
@@ -162,30 +157,51 @@ void incremental_matrix_maps(const JointMap& joint, const JointPose& begin, cons
   const Vector3 row_phi = N22.transpose() * g.moment, w_joint = B0.transpose() * w;
   if (joint.kind == JointMapKind::Free) {
     maps.right.topLeftCorner<3, 3>() = rotation;
-    maps.released_master.topRightCorner<3, 3>() = 0.5 * B0.transpose() * hat(g.force) * S_inverse;
-    maps.master_released.bottomLeftCorner<3, 3>() = -arm_weight * hat(g.force) * rotation;
+    maps.released_spin.topRows<3>() = 0.5 * B0.transpose() * hat(g.force) * S_inverse;
+    maps.moment_released.leftCols<3>() = -arm_weight * hat(g.force) * rotation;
   }
   maps.right.bottomRightCorner<3, 3>() = rotation;
   maps.released_released.bottomRightCorner<3, 3>() =
       0.25 * c * row_phi * w_joint.transpose() * cayley::inverse_tangent(turn);
-  maps.released_master.bottomRightCorner<3, 3>() =
+  maps.released_spin.bottomRows<3>() =
       (c * B0.transpose() * cayley::xi_inverse_tangent(w, g.moment) + 0.25 * c * row_phi * turn_world.transpose()) *
       S_inverse;
 }
 
-}  // namespace
-
-NodePose slave_pose(const JointMap& joint, const NodePose& master, const Released& released) {
-  Quaternion turned = master.orientation * joint.origin.orientation;
+NodePose pose_at_arm(const JointMap& joint, const NodePose& master, const Released& released) {
+  Quaternion turned = master.orientation;
   if (joint.kind == JointMapKind::Scalar)
     turned = turned * so3::exp_quaternion(released.displacement[0] * joint.rotation);
-  else if (joint.kind != JointMapKind::Rigid)
-    turned = turned * released.rotation;
+  else
+    turned = turned * joint.origin.orientation * released.rotation;
   NodePose slave;
   slave.orientation = (turned * joint.slave_orientation).normalized();
   slave.rotation = slave.orientation.toRotationMatrix();
   slave.position = master.position + lever_to_moved_frame(joint, master, released) + slave.rotation * joint.arm;
   return slave;
+}
+
+void incremental_maps_with_arms(const JointMap& joint, const JointPose& begin, const JointPose& end, const Vector6& g,
+                                FoldMaps& maps, bool with_tangent, double arm_weight) {
+  const auto mean = [&](const Vector3& at_begin, const Vector3& at_end) {
+    return Vector3((1 - arm_weight) * at_begin + arm_weight * at_end);
+  };
+  maps.lever_right = lever_to_moved_frame(joint, end.master, end.released);
+  maps.lever_left = mean(lever_to_moved_frame(joint, begin.master, begin.released), maps.lever_right);
+  const Vector3 arm_right = end.slave.rotation * joint.arm;
+  const Vector3 arm_left = mean(begin.slave.rotation * joint.arm, arm_right);
+  const Wrench at_frame{g.head<3>(), g.tail<3>() + arm_left.cross(g.head<3>())};
+  if (joint.kind == JointMapKind::Scalar)
+    incremental_scalar_maps(joint, begin, end, at_frame, maps, with_tangent, arm_weight);
+  else
+    incremental_matrix_maps(joint, begin, end, at_frame, maps, with_tangent, arm_weight);
+  add_arms(arm_left, arm_right, at_frame.force, with_tangent, arm_weight, maps);
+}
+
+}  // namespace
+
+NodePose slave_pose(const JointMap& joint, const NodePose& master, const Released& released) {
+  return pose_at_arm(joint, master, released);
 }
 
 Released updated(const JointMap& joint, const Released& released, const Eigen::Ref<const ReleasedVector>& increment) {
@@ -229,18 +245,18 @@ void variational_maps(const JointMap& joint, const JointPose& pose, const Vector
       const Vector3 travel = rate.slope * direction;
       maps.right.col(0) << travel, turn;
       maps.released_released(0, 0) = rate.curvature * force.dot(direction);
-      maps.released_master.row(0).tail<3>() = -(force.cross(travel) + moment.cross(turn)).transpose();
-      maps.master_released.col(0).tail<3>() = -force.cross(travel);
+      maps.released_spin.row(0) = -(force.cross(travel) + moment.cross(turn)).transpose();
+      maps.moment_released.col(0) = -force.cross(travel);
       break;
     }
     case JointMapKind::Free:
       maps.right.topLeftCorner<3, 3>() = rotation;
-      maps.released_master.topRightCorner<3, 3>() = rotation.transpose() * hat(force);
-      maps.master_released.bottomLeftCorner<3, 3>() = -hat(force) * rotation;
+      maps.released_spin.topRows<3>() = rotation.transpose() * hat(force);
+      maps.moment_released.leftCols<3>() = -hat(force) * rotation;
       [[fallthrough]];
     case JointMapKind::Spherical:
       maps.right.bottomRightCorner<3, 3>() = rotation;
-      maps.released_master.bottomRightCorner<3, 3>() = rotation.transpose() * hat(moment);
+      maps.released_spin.bottomRows<3>() = rotation.transpose() * hat(moment);
       break;
   }
   maps.left = maps.right;
@@ -250,19 +266,7 @@ void variational_maps(const JointMap& joint, const JointPose& pose, const Vector
 
 void incremental_maps(const JointMap& joint, const JointPose& begin, const JointPose& end, const Vector6& g,
                       FoldMaps& maps, bool with_tangent, double arm_weight) {
-  const auto mean = [&](const Vector3& at_begin, const Vector3& at_end) {
-    return Vector3((1 - arm_weight) * at_begin + arm_weight * at_end);
-  };
-  maps.lever_right = lever_to_moved_frame(joint, end.master, end.released);
-  maps.lever_left = mean(lever_to_moved_frame(joint, begin.master, begin.released), maps.lever_right);
-  const Vector3 arm_right = end.slave.rotation * joint.arm;
-  const Vector3 arm_left = mean(begin.slave.rotation * joint.arm, arm_right);
-  const Wrench at_frame{g.head<3>(), g.tail<3>() + arm_left.cross(g.head<3>())};
-  if (joint.kind == JointMapKind::Scalar)
-    incremental_scalar_maps(joint, begin, end, at_frame, maps, with_tangent, arm_weight);
-  else
-    incremental_matrix_maps(joint, begin, end, at_frame, maps, with_tangent, arm_weight);
-  add_arms(arm_left, arm_right, at_frame.force, with_tangent, arm_weight, maps);
+  incremental_maps_with_arms(joint, begin, end, g, maps, with_tangent, arm_weight);
 }
 
 Vector6 slave_velocity(const JointMap& joint, const JointPose& pose, const Vector6& master_velocity,

@@ -10,21 +10,22 @@ namespace flexarm {
 
 /// Columns for the released coordinates of a joint, at most six; no heap.
 using ReleasedColumns = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
-using ReleasedRows = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::ColMajor, 6, 6>;
 using ReleasedSquare = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
 using ReleasedVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1>;
 
 /// How a slave folds: with g the slave's total residual {f, phi},
 ///   released rows  += left^T g,                 master rows += {f, lever_left x f + phi}
 ///   slave columns d{r, spin} = right du + {dr_m + spin_m x lever_right, spin_m}
-/// and the derivative of the left map at constant g (geometric blocks; u released, m master {r, spin}).
+/// and the derivative of the left map at constant g (geometric blocks), which of the master's displacement and of its
+/// force are zero: what remains is that of the released rows and of the master's moment with respect to u and to the
+/// master's spin.
 struct FoldMaps {
   ReleasedColumns left, right;
   Vector3 lever_left, lever_right;
   ReleasedSquare released_released;
-  ReleasedRows released_master;
-  ReleasedColumns master_released;
-  Matrix6 master_master;
+  Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor, 6, 3> released_spin;
+  Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, 6> moment_released;
+  Matrix3 moment_spin;
 };
 
 /// Slave pose from the master's and the released coordinates (7.1).

@@ -4,6 +4,7 @@
 /// Notation: B = Lambda_m A the joint frame, A its orientation in the master node's frame, b its origin there, a the
 /// arm from the moved frame's origin to the slave:
 ///   r = r_m + Lambda_m b + B (displacement) + Lambda a,   Lambda = B Lambda_J Lambda_0.
+/// Joints with one coordinate have A = I: axes stand in the master node's frame.
 /// A joint with several scalar coordinates is a chain of elementary ones through massless nodes.
 
 #include <memory>
@@ -49,10 +50,21 @@ struct JointMap {
   int line = -1;                                          ///< Slide: index into Model::slide_lines
   SlideAlgorithm algorithm;                               ///< Slide
   int leaving = -1;  ///< Slide: joint whose slave flies on beyond the line's ends; -1: it does not leave
-  Vector3 translation = Vector3::Zero();      ///< Scalar: travel per unit of f(coordinate), joint frame
+  Vector3 translation = Vector3::Zero();      ///< Scalar: travel per unit of f(coordinate)
   std::shared_ptr<const CamProfile> profile;  ///< Scalar: f; null: f(u) = u
-  Vector3 rotation = Vector3::Zero();         ///< Scalar: rotation vector per unit coordinate, joint frame
+  Vector3 rotation = Vector3::Zero();         ///< Scalar: rotation vector per unit coordinate
 };
+
+/// Puts the frame in which a joint was described at `frame` in the master node's frame.
+inline void place(JointMap& joint, const Pose& frame) {
+  joint.origin = frame * joint.origin;
+  if (joint.kind != JointMapKind::Scalar) return;
+  const Quaternion turn = joint.origin.orientation;
+  joint.origin.orientation.setIdentity();
+  joint.translation = turn * joint.translation;
+  joint.rotation = turn * joint.rotation;
+  joint.slave_orientation = turn * joint.slave_orientation;
+}
 
 /// Values of the released coordinates.
 struct Released {

@@ -117,7 +117,7 @@ void TreeTangent::hold_rows() {
     FoldMaps& maps = blocks_.maps[joint];
     const int size = static_cast<int>(maps.left.cols());
     maps.left.col(component).setZero();
-    if (front.master >= 0) maps.released_master.row(component).setZero();
+    if (front.master >= 0) maps.released_spin.row(component).setZero();
     Eigen::Map<ReleasedSquare>(diagonal_block(front.variable), size, size).row(component).setZero();
     maps.released_released.row(component).setZero();
     maps.released_released.row(component).segment(first, coefficients.size()) = coefficients.transpose();
@@ -173,8 +173,8 @@ bool TreeTangent::eliminate_released(int joint) {
   Rows row = left.transpose().lazyProduct(at_master);
   move_rows(maps.lever_left, moved);
   for (int k = 0; k < front.count; ++k) {
-    row.row(k) += maps.released_master.row(front.components[k]);
-    moved.col(k) += maps.master_released.col(front.components[k]);
+    row.row(k).template tail<3>() += maps.released_spin.row(front.components[k]);
+    moved.col(k).template tail<3>() += maps.moment_released.col(front.components[k]);
   }
   const Rows elimination = inverse.lazyProduct(row);
   front.elimination.template topRows<Size>() = elimination;
@@ -186,7 +186,9 @@ bool TreeTangent::eliminate_released(int joint) {
 }
 
 void TreeTangent::add_to_master(int joint, const Matrix6& tangent) {
-  Eigen::Map<Matrix6>(diagonal_block(joints_[joint].master)) += tangent + blocks_.maps[joint].master_master;
+  Eigen::Map<Matrix6> master(diagonal_block(joints_[joint].master));
+  master += tangent;
+  master.bottomRightCorner<3, 3>() += blocks_.maps[joint].moment_spin;
 }
 
 bool TreeTangent::eliminate_joint(int joint) {
@@ -235,10 +237,12 @@ void TreeTangent::forward_joint(int joint) {
   const JointFront& front = joints_[joint];
   const Eigen::Map<const Vector6> slave(values_.data() + 6 * static_cast<std::size_t>(front.slave));
   const int count = front.count;
-  ReleasedVector released(count);
-  for (int k = 0; k < count; ++k) released[k] = values_[front.scalars[k]] + front.left.col(k).dot(slave);
-  released = front.inverse.topLeftCorner(count, count).lazyProduct(released).eval();
-  for (int k = 0; k < count; ++k) values_[front.scalars[k]] = released[k];
+  std::array<double, 6> rows, released{};
+  for (int k = 0; k < count; ++k) rows[k] = values_[front.scalars[k]] + front.left.col(k).dot(slave);
+  for (int i = 0; i < count; ++i) {
+    for (int k = 0; k < count; ++k) released[i] += front.inverse(i, k) * rows[k];
+    values_[front.scalars[i]] = released[i];
+  }
   if (front.master < 0) return;
   Eigen::Map<Vector6> master(values_.data() + 6 * static_cast<std::size_t>(front.master));
   master += slave;

@@ -110,11 +110,12 @@ TEST(LoopBuilder, BodiesFixedToATipAreHeldByItsNode) {
     expect_root_to_leaf(model);
     const JointMap& hip = model.joints[coordinate(model, "hip").joint];
     EXPECT_EQ(hip.master, model.links[3].frame.node);
-    // In the parent's frame, turned backwards where the parent follows.
-    if (exchanged)
-      EXPECT_EQ(hip.rotation, -Vector3::UnitZ());
-    else
-      EXPECT_EQ(hip.rotation, Vector3::UnitZ());
+    // About the z axis of the joint's frame in the parent, backwards where the parent follows.
+    const LinkFrame& parent = model.links[exchanged ? 5 : 3];
+    ASSERT_EQ(parent.name, loop.parent);
+    const Quaternion frame = model.nodes[parent.frame.node].orientation * parent.frame.offset.orientation;
+    const Vector3 axis = frame * loop.origin.orientation * Vector3((exchanged ? -1 : 1) * Vector3::UnitZ());
+    EXPECT_LE((model.nodes[hip.master].rotation * hip.rotation - axis).norm(), 1e-15);
     int held = -1;
     for (const JointMap& joint : model.joints)
       if (joint.master == hip.slave) held = joint.slave;

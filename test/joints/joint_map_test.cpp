@@ -75,6 +75,7 @@ JointStep random_step(RandomSource& random, const KindOfJoint& kind, bool world,
   out.joint.arm = random.vector();
   if (kind.translates) out.joint.translation = 0.7 * random.unit();
   if (kind.rotates) out.joint.rotation = 1.2 * random.unit();
+  if (kind.kind == JointMapKind::Scalar) place(out.joint, Pose());
   if (kind.by_profile)  // analytic: differences must not cross knots
     out.joint.profile = std::make_shared<CamProfile>(CamProfile::eccentric(0.6, 0.1));
   if (!world) {
@@ -219,8 +220,11 @@ TEST_P(JointMaps, GeometricBlocksAreTheDerivativeOfTheFoldedResidual) {
       const Vector6 g = source.vector6();
       const FoldMaps maps = maps_of(step, g, form);
       const int count = step.released();
-      Eigen::MatrixXd blocks(count + 6, count + 6);
-      blocks << maps.released_released, maps.released_master, maps.master_released, maps.master_master;
+      Eigen::MatrixXd blocks = Eigen::MatrixXd::Zero(count + 6, count + 6);
+      blocks.topLeftCorner(count, count) = maps.released_released;
+      blocks.topRightCorner(count, 3) = maps.released_spin;
+      blocks.bottomLeftCorner(3, count) = maps.moment_released;
+      blocks.bottomRightCorner<3, 3>() = maps.moment_spin;
       for (int column = 0; column < step.columns(); ++column) {
         const Eigen::VectorXd expected =
             difference([&](double h) { return folded(step.perturbed(column, h), g, form); });
@@ -318,8 +322,8 @@ INSTANTIATE_TEST_SUITE_P(All, JointMapsOnANode,
 TEST(SlavePose, RevoluteJointTurnsAboutItsAxis) {
   JointMap joint;
   joint.kind = JointMapKind::Scalar;
-  joint.origin = {Vector3(1, 0, 0), so3::exp_quaternion(Vector3(0, 0, kPi / 2))};
-  joint.rotation = Vector3::UnitX();  // = y of the world
+  joint.rotation = Vector3::UnitX();
+  place(joint, {Vector3(1, 0, 0), so3::exp_quaternion(Vector3(0, 0, kPi / 2))});  // the axis is y of the world
   Released released;
   released.displacement[0] = kPi / 2;
   const NodePose slave = slave_pose(joint, NodePose(), released);
@@ -333,8 +337,8 @@ TEST(SlavePose, RevoluteJointTurnsAboutItsAxis) {
 TEST(SlavePose, PrismaticJointShiftsAlongItsAxis) {
   JointMap joint;
   joint.kind = JointMapKind::Scalar;
-  joint.origin = {Vector3(1, 0, 0), so3::exp_quaternion(Vector3(0, 0, kPi / 2))};
   joint.translation = Vector3::UnitX();
+  place(joint, {Vector3(1, 0, 0), so3::exp_quaternion(Vector3(0, 0, kPi / 2))});
   Released released;
   released.displacement[0] = 3;
   const NodePose slave = slave_pose(joint, NodePose(), released);
