@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "math/simd.h"
 #include "math/so3.h"
 #include "solver/element_front.h"
 
@@ -193,7 +194,11 @@ void TreeTangent::add_to_master(int joint, const Matrix6& tangent) {
 
 bool TreeTangent::eliminate_joint(int joint) {
   const JointFront& front = joints_[joint];
-  if (front.count == 1) return eliminate_released<1>(joint);
+  if (front.count == 1) {
+    bool done = false;
+    simd::run([&] { done = eliminate_released<1>(joint); });
+    return done;
+  }
   if (front.count > 1) return eliminate_released<6>(joint);
   if (front.master < 0) return true;
   const FoldMaps& maps = blocks_.maps[joint];
