@@ -37,6 +37,13 @@ void move_rows(const Vector3& lever, Eigen::Matrix<double, 6, Columns>& rows) {
   rows.template bottomRows<3>() += so3::hat(lever).lazyProduct(rows.template topRows<3>());
 }
 
+/// What a joint leaves at its master, whose block on the diagonal is `to`.
+void add_to_master(const Matrix6& tangent, const FoldMaps& maps, double* to) {
+  Eigen::Map<Matrix6> master(to);
+  master += tangent;
+  master.bottomRightCorner<3, 3>() += maps.moment_spin;
+}
+
 }  // namespace
 
 bool TreeTangent::suits(const Model& model, const DegreesOfFreedom& dof) {
@@ -182,14 +189,8 @@ bool TreeTangent::eliminate_released(int joint) {
   front.coupling.template leftCols<Size>() = moved;
   move_rows(maps.lever_left, at_master);
   at_master.noalias() -= moved.lazyProduct(elimination);
-  add_to_master(joint, at_master);
+  add_to_master(at_master, maps, diagonal_block(front.master));
   return true;
-}
-
-void TreeTangent::add_to_master(int joint, const Matrix6& tangent) {
-  Eigen::Map<Matrix6> master(diagonal_block(joints_[joint].master));
-  master += tangent;
-  master.bottomRightCorner<3, 3>() += blocks_.maps[joint].moment_spin;
 }
 
 bool TreeTangent::eliminate_joint(int joint) {
@@ -204,7 +205,7 @@ bool TreeTangent::eliminate_joint(int joint) {
   const FoldMaps& maps = blocks_.maps[joint];
   Matrix6 at_master = columns_at_master(Eigen::Map<const Matrix6>(diagonal_block(front.slave)), maps.lever_right);
   move_rows(maps.lever_left, at_master);
-  add_to_master(joint, at_master);
+  add_to_master(at_master, maps, diagonal_block(front.master));
   return true;
 }
 
