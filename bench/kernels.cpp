@@ -178,12 +178,13 @@ void interpolate_rotations(benchmark::State& state) {
   count_elements(state, 1);
 }
 
-/// Maps of a revolute joint over a step.
+/// Maps of a revolute joint over a step, with arms on both sides.
 void fold_maps(benchmark::State& state, bool with_tangent) {
   JointMap joint;
   joint.kind = JointMapKind::Scalar;
   joint.rotation = Vector3::UnitZ();
   joint.origin.position = Vector3(0.3, -0.2, 0.5);
+  joint.arm = Vector3(0.1, 0.4, -0.2);
   const auto pose = [](const Vector3& position, const Vector3& turn) {
     const Quaternion orientation = so3::exp_quaternion(turn);
     return NodePose{position, orientation, orientation.toRotationMatrix()};
@@ -191,12 +192,13 @@ void fold_maps(benchmark::State& state, bool with_tangent) {
   NodePose from = pose({0, 0, 0}, {0.1, 0.2, 0.3}), to = pose({0.01, 0.02, -0.01}, {0.12, 0.19, 0.33});
   Released released_from, released_to;
   released_to.displacement[0] = 0.02;
+  const NodePose slave_from = slave_pose(joint, from, released_from), slave_to = slave_pose(joint, to, released_to);
   Vector6 force;
   force << 1, 2, 3, 4, 5, 6;
   FoldMaps maps;
   for (auto _ : state) {
     benchmark::DoNotOptimize(to);
-    incremental_maps(joint, from, to, released_from, released_to, force, maps, with_tangent);
+    incremental_maps(joint, {from, slave_from, released_from}, {to, slave_to, released_to}, force, maps, with_tangent);
     benchmark::DoNotOptimize(maps);
   }
 }

@@ -9,6 +9,7 @@
 #include "elements/element_configuration.h"
 #include "elements/endpoint_beam.h"
 #include "joints/joint_forces.h"
+#include "joints/joint_kinematics.h"
 
 namespace flexarm {
 namespace {
@@ -122,8 +123,7 @@ void LinearisedMotion::set_joint_maps() {
       slide_variational_maps(model_.slide_lines[joint.line], nodes, state_.released[j].displacement[0], Vector6::Zero(),
                              maps_.slides[j]);
     else
-      variational_maps(joint, joint.master < 0 ? NodePose() : nodes[joint.master], state_.released[j], Vector6::Zero(),
-                       maps_.folds[j]);
+      variational_maps(joint, joint_pose(joint, nodes, state_.released[j]), Vector6::Zero(), maps_.folds[j]);
   }
   for (const DegreesOfFreedom::Mimic& mimic : dof_.mimics) {
     const Coordinate& following = model_.coordinates[mimic.coordinate];

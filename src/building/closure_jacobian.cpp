@@ -39,8 +39,7 @@ class RowFolder {
     for (std::size_t j = 0; j < model.joints.size(); ++j) {
       const JointMap& joint = model.joints[j];
       if (joint.kind != JointMapKind::Slide)
-        variational_maps(joint, joint.master < 0 ? NodePose() : model.nodes[joint.master], model.initial_released[j],
-                         Vector6::Zero(), maps_[j]);
+        variational_maps(joint, joint_pose(joint, model.nodes, model.initial_released[j]), Vector6::Zero(), maps_[j]);
     }
   }
 

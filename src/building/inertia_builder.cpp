@@ -79,6 +79,16 @@ void add_beams(const ScenePlan& plan, Model& model) {
   model.mass_point_count = mass_point;
 }
 
+/// Per node: a joint alone decides where it is, no beam and no line, so that it may be moved inside its rigid body.
+std::vector<bool> movable_nodes(const Mechanism& mechanism) {
+  std::vector<bool> is_movable(mechanism.model.nodes.size(), false);
+  for (const JointMap& joint : mechanism.model.joints) is_movable[joint.slave] = joint.kind != JointMapKind::Slide;
+  for_each_element(mechanism.model.beams, [&](const auto& element) {
+    for (const int node : element.nodes) is_movable[node] = false;
+  });
+  return is_movable;
+}
+
 void add_bodies(const ScenePlan& plan, Mechanism& mechanism) {
   std::map<int, Body> bodies;  // by node
   for (const int link : links_root_to_leaf(plan)) {
@@ -89,6 +99,12 @@ void add_bodies(const ScenePlan& plan, Mechanism& mechanism) {
     bodies[frame.node] +=
         {inertial->mass, frame.offset * inertial->center_of_mass, rotation * inertial->inertia * rotation.transpose()};
   }
+  // A joint's slave goes to the centre of mass of its body: one node and one joint for each rigid link.
+  const std::vector<bool> is_movable = movable_nodes(mechanism);
+  std::vector<Vector3> ways(is_movable.size(), Vector3::Zero());
+  for (auto& [node, body] : bodies)
+    if (is_movable[node]) std::swap(ways[node], body.center);
+  mechanism.move_nodes(ways);
   for (const auto& [node, body] : bodies) {
     const bool centred = body.center.norm() < 1e-15;
     const int at = centred ? node : mechanism.add_rigid(node, {body.center, Quaternion::Identity()});

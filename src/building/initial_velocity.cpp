@@ -36,7 +36,7 @@ class InitialVelocity {
   /// Rates that the scene gives or implies (motion, mimic); false if none is given.
   bool given_rates(const JointChain& chain, ReleasedVector& rates) const;
   double given_rate(const Coordinate& coordinate, bool& is_given) const;
-  /// Least-squares rates for the velocity that the child's field asks of the joint's last slave.
+  /// Least-squares rates for the velocity that the child's field asks of the joint's moved frame.
   ReleasedVector field_rates(const JointChain& chain, const Vector6& target);
   Vector6 field_velocity(const scene::InitialLink& field, int link, const Vector3& point) const;
   void check_field(const scene::InitialLink& field, int link) const;
@@ -159,7 +159,7 @@ void InitialVelocity::set_joint(const JointChain& chain) {
   const JointMap& last = model_.joints[chain.first_map + chain.map_count - 1];
   ReleasedVector rates;
   if (!given_rates(chain, rates) && fields_.count(child)) {
-    rates = field_rates(chain, field_velocity(*fields_[child], child, model_.nodes[last.slave].position));
+    rates = field_rates(chain, field_velocity(*fields_[child], child, moved_origin(last, model_.nodes[last.slave])));
     for (int c = 0; c < rates.size(); ++c) field_rates_[model_.first_coordinate[chain.first_map] + c] = rates[c];
   }
   for (int k = 0, used = 0; k < chain.map_count; ++k) {
@@ -230,21 +230,23 @@ double InitialVelocity::mimic_ratio(const Coordinate& coordinate) const {
 }
 
 ReleasedVector InitialVelocity::field_rates(const JointChain& chain, const Vector6& target) {
-  const int last = model_.joints[chain.first_map + chain.map_count - 1].slave;
-  const Vector3 point = model_.nodes[last].position;
+  const JointMap& last = model_.joints[chain.first_map + chain.map_count - 1];
+  const Vector3 point = moved_origin(last, model_.nodes[last.slave]);
+  const auto at_point = [&](Vector6 velocity, int node) {
+    velocity.head<3>() += Vector3(velocity.tail<3>()).cross(point - model_.nodes[node].position);
+    return velocity;
+  };
   ReleasedColumns columns(6, 0);
   for (int k = 0; k < chain.map_count; ++k) {
     const int j = chain.first_map + k;
     const SlaveVelocity slave = slave_velocity(model_, j, model_.nodes, model_.initial_released[j], velocity_);
     velocity_[model_.joints[j].slave] = slave.carried;  // carried along, at rest in the joint
     for (int c = 0; c < slave.columns.cols(); ++c) {
-      Vector6 column = slave.columns.col(c);
-      column.head<3>() += Vector3(column.tail<3>()).cross(point - model_.nodes[model_.joints[j].slave].position);
       columns.conservativeResize(6, columns.cols() + 1);
-      columns.col(columns.cols() - 1) = column;
+      columns.col(columns.cols() - 1) = at_point(slave.columns.col(c), model_.joints[j].slave);
     }
   }
-  const Vector6 relative = target - velocity_[last];
+  const Vector6 relative = target - at_point(velocity_[last.slave], last.slave);
   // The travel of a slide that follows an angle, which comes right after it, is a part of the angle's motion.
   const Coordinate& first = model_.coordinates[model_.first_coordinate[chain.first_map]];
   if (!first.is_coupled) return least_squares(columns, relative);

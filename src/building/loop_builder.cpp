@@ -67,7 +67,7 @@ Attachment LoopBuilder::carrier(Attachment frame) const {
   while (frame.node >= 0 && mechanism_.slave_joint[frame.node] >= 0) {
     const JointMap& map = model_.joints[mechanism_.slave_joint[frame.node]];
     if (map.kind != JointMapKind::Rigid) break;
-    frame.offset = map.origin * Pose{Vector3::Zero(), map.slave_orientation} * frame.offset;
+    frame.offset = map.origin * Pose{map.slave_orientation * map.arm, map.slave_orientation} * frame.offset;
     frame.node = map.master;
   }
   return frame;
@@ -146,7 +146,7 @@ void LoopBuilder::add_chain(const scene::JointDescription& joint, const std::vec
   for (std::size_t k = 0; k < maps.size(); ++k) {
     JointMap map = maps[k];
     map.master = node;
-    if (k == 0) map.origin = mechanism_.pose_of(master).inverse() * frame * map.origin;
+    if (k == 0) place(map, mechanism_.pose_of(master).inverse() * frame);
     node = mechanism_.add_map(map, Released());
     const std::size_t count = released_count(map.kind);
     mechanism_.add_coordinates(joint, {names.begin() + name, names.begin() + name + count});

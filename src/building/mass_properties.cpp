@@ -79,7 +79,7 @@ MovedInertia moved_inertia(const Model& model, const Coordinate& coordinate, con
   const Composite& body = outboard[joint.slave];
   // Screw-like couplings have no cross term about their axis.
   double inertia = body.mass * translation.squaredNorm();
-  const Vector3& point = model.nodes[joint.slave].position;
+  const Vector3 point = moved_origin(joint, model.nodes[joint.slave]);
   if (rotation.norm() > 0) inertia += body.about(point, frame * rotation.normalized()) * rotation.squaredNorm();
   // Nothing is what the shift to the axis leaves by round-off.
   const double terms = body.mass * (translation.squaredNorm() + point.squaredNorm() * rotation.squaredNorm()) +

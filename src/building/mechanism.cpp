@@ -14,7 +14,13 @@ double Mechanism::extent() const {
   double extent = 0;
   for (const LinkFrame& link : model.links)
     if (link.beam) extent = std::max(extent, link.beam->length);
-  for (const NodePose& a : model.nodes) extent = std::max(extent, (a.position - model.nodes.front().position).norm());
+  const auto joint_of = [&](std::size_t node) {  // where the joint is that moves the node, or the node itself
+    const int joint = slave_joint[node];
+    return joint < 0 ? model.nodes[node].position : moved_origin(model.joints[joint], model.nodes[node]);
+  };
+  for (std::size_t i = 0; i < model.nodes.size(); ++i)
+    for (const Vector3& point : {model.nodes[i].position, joint_of(i)})
+      extent = std::max(extent, (point - joint_of(0)).norm());
   return extent > 0 ? extent : 1.0;
 }
 
@@ -47,6 +53,16 @@ int Mechanism::add_rigid(int master, const Pose& offset) {
   map.origin.position = offset.position;
   map.slave_orientation = offset.orientation;
   return add_map(map, Released());
+}
+
+void Mechanism::move_nodes(const std::vector<Vector3>& ways) {
+  for (std::size_t i = 0; i < ways.size(); ++i) model.nodes[i].position += model.nodes[i].rotation * ways[i];
+  for (JointMap& joint : model.joints) {
+    joint.arm += ways[joint.slave];
+    if (joint.master >= 0) joint.origin.position -= ways[joint.master];
+  }
+  for (LinkFrame& link : model.links)
+    if (link.frame.node >= 0) link.frame.offset.position -= ways[link.frame.node];
 }
 
 void Mechanism::add_coordinates(const scene::JointDescription& joint, const std::vector<std::string>& names) {

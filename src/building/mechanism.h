@@ -33,6 +33,9 @@ struct Mechanism {
   /// Adds an elementary joint with its slave node; returns the node.
   int add_map(JointMap map, const Released& released);
   int add_rigid(int master, const Pose& offset);
+  /// Moves nodes inside the rigid bodies that they carry, by `ways` in their frames [m]. Of nodes that a joint places
+  /// and nothing but joints and frames of rigid links refers to.
+  void move_nodes(const std::vector<Vector3>& ways);
   /// Those of the elementary joint added last.
   void add_coordinates(const scene::JointDescription& joint, const std::vector<std::string>& names);
 };

@@ -82,8 +82,12 @@ class TreeBuilder {
   int add_maps(const scene::JointDescription& joint, const std::vector<std::string>& names, const Attachment& frame) {
     const std::optional<LinkMesh>& child = plan_.meshes[plan_.links[joint.child]];
     std::vector<JointMap> maps = elementary_joints(joint);
-    maps.front().origin = frame.offset * maps.front().origin;
-    if (is_first_node(child)) maps.back().slave_orientation = child->mesh.nodes[0].pose.orientation;
+    if (child) {
+      const Pose& first_node = child->mesh.nodes[0].pose;
+      maps.back().slave_orientation = first_node.orientation;
+      maps.back().arm = first_node.orientation.conjugate() * first_node.position;
+    }
+    place(maps.front(), frame.offset);
     int node = frame.node;
     auto name = names.begin();
     for (JointMap& map : maps) {
@@ -96,14 +100,12 @@ class TreeBuilder {
     return node;
   }
 
-  /// The node that a joint moves is the first one of the child's mesh where its section lies in the link's origin.
-  static bool is_first_node(const std::optional<LinkMesh>& child) { return child && child->mesh.centroid.isZero(0); }
-
+  /// Of a joint's last node: the first one of a beam, else the frame of a rigid link.
   void place_child(int link, int node) {
-    if (is_first_node(plan_.meshes[link]))
+    if (plan_.meshes[link])
       place_beam(link, node);
     else
-      place_link(link, {node, Pose()});
+      model_.links[link].frame = {node, Pose()};
   }
 
   void place_link(int link, const Attachment& base) {

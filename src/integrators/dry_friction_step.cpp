@@ -113,7 +113,6 @@ void DryFrictionStep::turn_row(int j, const Vector6& g, Eigen::Ref<Vector6> left
                                Balance& balance) {
   const int index = model_.first_coordinate[j];
   const Coordinate& coordinate = model_.coordinates[index];
-  if (coordinate.friction_coefficient <= 0 || configuration_.scheme().is_static) return;
   const NormalForce normal = normal_force(contact_of(model_.joints[j]), left, g.head<3>());
   const double capacity = coordinate.friction_coefficient * normal.magnitude;  // of the row
   capacities_[index] = capacity / effort_weight();
@@ -126,15 +125,21 @@ void DryFrictionStep::turn_row(int j, const Vector6& g, Eigen::Ref<Vector6> left
   if (balance.tangent) add_derivative(normal.arm, factor * normal.along, direction_now.slope * capacity);
 }
 
+bool DryFrictionStep::turns_row(int j) const {
+  const JointMapKind kind = model_.joints[j].kind;
+  return (kind == JointMapKind::Scalar || kind == JointMapKind::Slide) && !configuration_.scheme().is_static &&
+         model_.coordinates[model_.first_coordinate[j]].friction_coefficient > 0;
+}
+
 void DryFrictionStep::add_normal(int j, const Vector6& g, FoldMaps& maps, Balance& balance) {
-  if (model_.joints[j].kind != JointMapKind::Scalar) return;
+  if (!turns_row(j)) return;
   const auto add_derivative = [&](const Vector6& arm, double along, double slope) {
     maps.released_released(0, 0) += slope;
     if (along == 0) return;
     FoldMaps of_arm;
     configuration_.joint_maps(j, arm, of_arm, true);
     maps.released_released += along * of_arm.released_released;
-    maps.released_master += along * of_arm.released_master;
+    maps.released_spin += along * of_arm.released_spin;
   };
   Vector6 left = maps.left.col(0);
   turn_row(j, g, left, add_derivative, balance);
@@ -142,6 +147,7 @@ void DryFrictionStep::add_normal(int j, const Vector6& g, FoldMaps& maps, Balanc
 }
 
 void DryFrictionStep::add_normal(int j, const Vector6& g, SlideMaps& maps, Balance& balance) {
+  if (!turns_row(j)) return;
   const auto add_derivative = [&](const Vector6& arm, double along, double slope) {
     maps.released_released += slope;
     if (along == 0) return;

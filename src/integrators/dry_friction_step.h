@@ -52,6 +52,8 @@ class DryFrictionStep {
   void find_carriers();
   double direction(int coordinate) const;
   double travel_per_carrier(int coordinate) const;
+  /// The force on the joint presses, and friction grows with it.
+  bool turns_row(int joint) const;
   template <class AddDerivative>
   void turn_row(int joint, const Vector6& g, Eigen::Ref<Vector6> left, const AddDerivative& add_derivative,
                 Balance& balance);

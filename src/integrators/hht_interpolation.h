@@ -54,6 +54,8 @@ class HhtInterpolation {
   /// on configuration(), not on the end.
   void take(int node, const Vector6& force, Eigen::Matrix<double, 6, 3>& rotational, bool of_configuration,
             bool with_tangent);
+  /// A force that does not change.
+  void take(int node, const Vector3& force) { end_forces_[node].head<3>() += force; }
 
   /// Adds the forces of t_{n+1+alpha}; all have been taken.
   void add_forces(Balance& balance) const;

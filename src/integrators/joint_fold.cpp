@@ -42,8 +42,9 @@ void JointFold::add_efforts(int j, Balance& balance) {
   for (int k = 0; k < count; ++k) {
     const std::size_t index = model.first_coordinate[j] + k;
     const Coordinate& coordinate = model.coordinates[index];
-    const PassiveEffort passive =
-        passive_effort(coordinate, stops_[index], configuration_.coordinate_step(index, change[k]));
+    PassiveEffort passive;
+    if (resists(coordinate))
+      passive = passive_effort(coordinate, stops_[index], configuration_.coordinate_step(index, change[k]));
     balance.dissipated += passive.dissipated;
     applied_[index] = effort_at(coordinate, index);
     residual[k] -= weight * (applied_[index] + passive.effort);

@@ -6,6 +6,16 @@
 
 namespace flexarm {
 
+NodalForces::NodalForces(const StepConfiguration& configuration, const StepHistories& histories,
+                         HhtInterpolation* interpolation)
+    : configuration_(configuration), histories_(histories), interpolation_(interpolation) {
+  const std::vector<NodalInertia>& inertias = configuration.model().inertias;
+  for (std::size_t i = 0; i < inertias.size(); ++i) {
+    if (inertias[i].total_mass > 0) heavy_nodes_.push_back(static_cast<int>(i));
+    if (!inertias[i].rotary_damping.isZero(0)) damped_nodes_.push_back(static_cast<int>(i));
+  }
+}
+
 void NodalForces::add(int node, const Vector6& force, Eigen::Matrix<double, 6, 3> rotational, bool of_configuration,
                       bool with_tangent, Balance& balance) const {
   if (interpolation_)
@@ -15,30 +25,35 @@ void NodalForces::add(int node, const Vector6& force, Eigen::Matrix<double, 6, 3
   if (with_tangent) Eigen::Map<Matrix6>(balance.tangent->diagonal_block(node)).rightCols<3>() += rotational;
 }
 
+void NodalForces::add_weight(int node, Balance& balance) const {
+  const Model& model = configuration_.model();
+  const Vector3 weight = -histories_.factor * model.inertias[node].total_mass * model.gravity;
+  if (interpolation_)
+    interpolation_->take(node, weight);
+  else
+    balance.residual.node(node).head<3>() += weight;
+}
+
+void NodalForces::add_damping(int node, Balance& balance) const {
+  const StepConfiguration& step = configuration_;
+  const Vector3& increment = step.increments()[node];
+  const Matrix3 inverse_tangent = balance.tangent ? cayley::inverse_tangent(increment) : Matrix3::Identity();
+  const NodalAction damping = nodal_damping_action(
+      step.model().inertias[node], step.scheme(),
+      {step.begin()[node], step.end()[node], step.state().nodes[node], increment, inverse_tangent, step.step()});
+  Eigen::Matrix<double, 6, 3> rotational = Eigen::Matrix<double, 6, 3>::Zero();
+  rotational.bottomRows<3>() = damping.rotational;
+  add(node, damping.residual, rotational, false, balance.tangent != nullptr, balance);
+  balance.dissipated += damping.dissipated;
+}
+
 void NodalForces::evaluate(Balance& balance) const {
   const Model& model = configuration_.model();
   const Scheme& scheme = configuration_.scheme();
+  for (const int node : heavy_nodes_) add_weight(node, balance);
+  if (!scheme.is_static)
+    for (const int node : damped_nodes_) add_damping(node, balance);
   const std::vector<NodePose>&begin = configuration_.begin(), &end = configuration_.end();
-  const Eigen::Matrix<double, 6, 3> none = Eigen::Matrix<double, 6, 3>::Zero();
-  for (std::size_t i = 0; i < end.size(); ++i) {
-    const NodalInertia& inertia = model.inertias[i];
-    const int node = static_cast<int>(i);
-    if (inertia.total_mass > 0) {
-      Vector6 weight = Vector6::Zero();
-      weight.head<3>() = -histories_.factor * inertia.total_mass * model.gravity;
-      add(node, weight, none, true, false, balance);
-    }
-    if (scheme.is_static || inertia.rotary_damping.isZero(0)) continue;
-    const Vector3& increment = configuration_.increments()[i];
-    const Matrix3 inverse_tangent = balance.tangent ? cayley::inverse_tangent(increment) : Matrix3::Identity();
-    const NodalAction damping = nodal_damping_action(
-        inertia, scheme,
-        {begin[i], end[i], configuration_.state().nodes[i], increment, inverse_tangent, configuration_.step()});
-    Eigen::Matrix<double, 6, 3> rotational = none;
-    rotational.bottomRows<3>() = damping.rotational;
-    add(node, damping.residual, rotational, false, balance.tangent != nullptr, balance);
-    balance.dissipated += damping.dissipated;
-  }
   const LoadPoint point = scheme.is_incremental() ? LoadPoint::Mean : LoadPoint::End;
   const std::vector<NodePose>& loaded = interpolation_ ? interpolation_->configuration() : end;
   for (const NodalLoad& load : model.loads) {

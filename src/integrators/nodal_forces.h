@@ -9,20 +9,22 @@ namespace flexarm {
 class NodalForces {
  public:
   /// `interpolation`: null unless forces are interpolated in time.
-  NodalForces(const StepConfiguration& configuration, const StepHistories& histories, HhtInterpolation* interpolation)
-      : configuration_(configuration), histories_(histories), interpolation_(interpolation) {}
+  NodalForces(const StepConfiguration& configuration, const StepHistories& histories, HhtInterpolation* interpolation);
 
   void evaluate(Balance& balance) const;
   /// Adds the work of loads over the step to `work` [J]; that of weights is in the potential energy.
   void add_work(double& work) const;
 
  private:
+  void add_weight(int node, Balance& balance) const;
+  void add_damping(int node, Balance& balance) const;
   void add(int node, const Vector6& force, Eigen::Matrix<double, 6, 3> rotational, bool of_configuration,
            bool with_tangent, Balance& balance) const;
 
   const StepConfiguration& configuration_;
   const StepHistories& histories_;
   HhtInterpolation* interpolation_;
+  std::vector<int> heavy_nodes_, damped_nodes_;
 };
 
 }  // namespace flexarm

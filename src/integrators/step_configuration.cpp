@@ -180,12 +180,12 @@ SlideTravel StepConfiguration::slide_travel(int j) const {
 
 void StepConfiguration::joint_maps(int j, const Vector6& g, FoldMaps& maps, bool with_tangent) const {
   const JointMap& joint = model_.joints[j];
-  const NodePose& end = master_pose(joint, end_);
+  const JointPose end = joint_pose(joint, end_, released_[j]);
   if (has_incremental_joints())
-    incremental_maps(joint, master_pose(joint, begin_), end, state_->released[j], released_[j], g, maps, with_tangent,
+    incremental_maps(joint, joint_pose(joint, begin_, state_->released[j]), end, g, maps, with_tangent,
                      scheme_.arm_weight());
   else
-    variational_maps(joint, end, released_[j], g, maps);
+    variational_maps(joint, end, g, maps);
 }
 
 void StepConfiguration::slide_maps(int j, const Vector6& g, SlideMaps& maps, bool with_tangent) const {

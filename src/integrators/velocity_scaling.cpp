@@ -114,8 +114,9 @@ void VelocityScaling::project(const State& state) {
     for (const int index : tree.chain) {
       const JointMap& joint = model_.joints[index];
       const NodePose master = joint.master < 0 ? NodePose() : node_pose(state.nodes[joint.master]);
+      const NodePose slave = node_pose(state.nodes[joint.slave]);
       FoldMaps maps;
-      variational_maps(joint, master, state.released[index], Vector6::Zero(), maps);
+      variational_maps(joint, {master, slave, state.released[index]}, Vector6::Zero(), maps);
       for (int k = 0; k < maps.right.cols(); ++k, ++column) {  // of the slave's origin, then of the world's
         twists.col(column) = maps.right.col(k);
         twists.col(column).head<3>() += state.nodes[joint.slave].position.cross(Vector3(maps.right.col(k).tail<3>()));

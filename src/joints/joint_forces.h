@@ -39,6 +39,10 @@ StopPenalty stop_penalty(const Coordinate& coordinate, double contact_time);
 struct PassiveEffort {
   double effort = 0, slope = 0, dissipated = 0;
 };
+/// True where passive_effort() may be more than nothing.
+inline bool resists(const Coordinate& coordinate) {
+  return coordinate.damping > 0 || (coordinate.friction > 0 && !coordinate.sticks) || coordinate.limit;
+}
 /// Of damping, stops and smooth friction of constant capacity.
 PassiveEffort passive_effort(const Coordinate& coordinate, const StopPenalty& penalty, const CoordinateStep& change);
 

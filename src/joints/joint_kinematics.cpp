@@ -21,13 +21,13 @@ SlaveVelocity slave_velocity(const Model& model, int j, const std::vector<NodePo
     out.columns = maps.released_right;
     return out;
   }
-  const NodePose& master = master_pose(joint, nodes);
+  const JointPose pose = joint_pose(joint, nodes, released);
   FoldMaps maps;
-  variational_maps(joint, master, released, Vector6::Zero(), maps);
+  variational_maps(joint, pose, Vector6::Zero(), maps);
   out.columns = maps.right;
   if (joint.master >= 0)
-    out.carried = slave_velocity(joint, master, released, velocities[joint.master],
-                                 ReleasedVector::Zero(released_count(joint.kind)));
+    out.carried =
+        slave_velocity(joint, pose, velocities[joint.master], ReleasedVector::Zero(released_count(joint.kind)));
   return out;
 }
 
@@ -35,7 +35,7 @@ ReleasedVector released_rates(const Model& model, int j, const std::vector<NodeP
                               const std::vector<Vector6>& velocities) {
   const JointMap& joint = model.joints[j];
   if (joint.kind != JointMapKind::Slide)
-    return released_rates(joint, master_pose(joint, nodes), released,
+    return released_rates(joint, joint_pose(joint, nodes, released),
                           joint.master < 0 ? Vector6(Vector6::Zero()) : velocities[joint.master],
                           velocities[joint.slave]);
   const SlaveVelocity slave = slave_velocity(model, j, nodes, released, velocities);

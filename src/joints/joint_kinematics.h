@@ -14,6 +14,11 @@ inline const NodePose& master_pose(const JointMap& joint, const std::vector<Node
   return joint.master < 0 ? kWorld : nodes[joint.master];
 }
 
+/// Of a joint that is no slide.
+inline JointPose joint_pose(const JointMap& joint, const std::vector<NodePose>& nodes, const Released& released) {
+  return {master_pose(joint, nodes), nodes[joint.slave], released};
+}
+
 /// Pose of the slave of joint `j` from those of the other nodes.
 NodePose slave_pose(const Model& model, int j, const std::vector<NodePose>& nodes, const Released& released);
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "math/cayley.h"
+#include "math/simd.h"
 #include "math/so3.h"
 
 namespace flexarm {
@@ -10,8 +11,9 @@ namespace {
 
 using so3::hat;
 
+/// In the master node's frame.
 Vector3 displacement(const JointMap& joint, const Released& released) {
-  if (joint.kind != JointMapKind::Scalar) return released.displacement;
+  if (joint.kind != JointMapKind::Scalar) return joint.origin.orientation * released.displacement;
   const double u = released.displacement[0];
   return (joint.profile ? joint.profile->value(u) : u) * joint.translation;
 }
@@ -32,21 +34,20 @@ Matrix3 joint_rotation(const JointMap& joint, const NodePose& master) {
   return master.rotation * joint.origin.orientation.toRotationMatrix();
 }
 
-/// The slave's lever arm from the master node, Lambda_m b + B (displacement), world axes.
-Vector3 lever_arm(const JointMap& joint, const NodePose& master, const Released& released) {
+/// From the master node to the origin of the moved joint frame, Lambda_m b + B (displacement), world axes.
+Vector3 lever_to_moved_frame(const JointMap& joint, const NodePose& master, const Released& released) {
   const bool travels =
       joint.kind != JointMapKind::Rigid && (joint.kind != JointMapKind::Scalar || !joint.translation.isZero(0));
   if (!travels) return master.rotation * joint.origin.position;
-  return master.rotation * (joint.origin.position + joint.origin.orientation * displacement(joint, released));
+  return master.rotation * (joint.origin.position + displacement(joint, released));
 }
 
 void set_sizes(int count, FoldMaps& maps) {
   maps.left.setZero(6, count);
   maps.right.setZero(6, count);
   maps.released_released.setZero(count, count);
-  maps.released_master.setZero(count, 6);
-  maps.master_released.setZero(6, count);
-  maps.master_master.setZero();
+  maps.released_spin.setZero(count, 3);
+  maps.moment_released.setZero(3, count);
 }
 
 /// Tangent-scaled rotation per unit scalar increment, h = 2 tan(x/2)/x for a rotation x, and dh/dx.
@@ -63,60 +64,147 @@ ScaledRate scaled_rate(double x) {
   return {2 * t / x, ((1 + t * t) - 2 * t / x) / x};
 }
 
+/// A force and a moment about the origin of the moved joint frame.
+struct Wrench {
+  Vector3 force, moment;
+};
+
+/// Adds lever arms to the maps of the wrench at the moved joint frame: the master's there, which stand in `maps`, and
+/// the slave's from there, `left` in the left maps and `right` at the end. That is what rigid joints before and behind
+/// it would do to them. `weight`: of the end in the left arms.
+void add_arms(const Vector3& left, const Vector3& right, const Vector3& force, bool with_tangent, double weight,
+              FoldMaps& maps) {
+  const Eigen::Index count = maps.left.cols();
+  // d(left x force) = moment_rate * spin, for the slave's arm and for both.
+  const auto moment_rate = [&](const Vector3& arm) {
+    return Matrix3(weight * (arm * force.transpose()) - (weight * force.dot(arm)) * Matrix3::Identity());
+  };
+  maps.lever_left += left;
+  maps.lever_right += right;
+  if (with_tangent) {
+    const Matrix3 rate = moment_rate(right);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const Vector3 spin = maps.right.col(k).tail<3>(), moment = rate * spin;
+      for (Eigen::Index i = 0; i < count; ++i) maps.released_released(i, k) += maps.left.col(i).tail<3>().dot(moment);
+      maps.released_spin.row(k) += maps.left.col(k).tail<3>().transpose() * rate;
+      maps.moment_released.col(k) += moment;
+      maps.right.col(k).head<3>() += spin.cross(right);
+    }
+    maps.moment_spin = moment_rate(maps.lever_right);
+  }
+  for (Eigen::Index k = 0; k < count; ++k) maps.left.col(k).head<3>() += maps.left.col(k).tail<3>().cross(left);
+}
+
 /// Joints with one coordinate, without lever arms: the formulas of incremental_maps() for all joints, in which matrices
 /// act on the axis of rotation and the direction of travel alone.
-void incremental_scalar_maps(const JointMap& joint, const NodePose& master_begin, const NodePose& master_end,
-                             const Released& begin, const Released& end, const Vector6& g, FoldMaps& maps,
-                             bool with_tangent, double arm_weight) {
-  const auto in_world = [&](const NodePose& master, const Vector3& v) {
-    return Vector3(master.rotation * (joint.origin.orientation * v));
-  };
-  const Vector3 axis = in_world(master_begin, joint.rotation), direction = in_world(master_begin, joint.translation);
-  const Vector3 w = cayley::increment(master_begin.orientation, master_end.orientation);
+void incremental_scalar_maps(const JointMap& joint, const JointPose& begin, const JointPose& end, const Wrench& g,
+                             FoldMaps& maps, bool with_tangent, double arm_weight) {
+  const auto& [force, moment] = g;
+  const double from = begin.released.displacement[0], to = end.released.displacement[0];
+  const Vector3 axis = begin.master.rotation * joint.rotation, direction = begin.master.rotation * joint.translation;
+  const Vector3 w = cayley::increment(begin.master.orientation, end.master.orientation);
   const auto transposed_inverse_tangent = [&](const Vector3& v) {  // S(w)^-T v
     return Vector3(v + 0.5 * w.cross(v) + (0.25 * w.dot(v)) * w);
   };
-  const double step = end.displacement[0] - begin.displacement[0], angle = joint.rotation.norm();
+  const double step = to - from, angle = joint.rotation.norm();
   const ScaledRate rate = scaled_rate(step * angle);
   const Vector3 turn = rate.value * step * axis;
   const double c = 1 / (1 - 0.25 * w.dot(turn));
   const Vector3 left_axis = c * transposed_inverse_tangent(axis), left_direction = direction + 0.5 * w.cross(direction);
-  const TravelRate travel_of = travel_rate(joint, begin.displacement[0], end.displacement[0]);
+  const TravelRate travel_of = travel_rate(joint, from, to);
   maps.left.resize(6, 1);
   maps.left.col(0) << travel_of.secant * left_direction, rate.value * left_axis;
   if (!with_tangent) return;
 
-  const Vector3 force = g.head<3>(), moment = g.tail<3>();
-  const Vector3 travel = travel_of.slope * in_world(master_end, joint.translation);
+  const Vector3 travel = travel_of.slope * (end.master.rotation * joint.translation);
   maps.right.resize(6, 1);
-  maps.right.col(0) << travel, in_world(master_end, joint.rotation);
+  maps.right.col(0) << travel, end.master.rotation * joint.rotation;
   const double axis_moment = left_axis.dot(moment), turned = w.dot(axis);
   maps.released_released.resize(1, 1);
   maps.released_released(0, 0) = rate.derivative * angle * axis_moment +
                                  rate.value * axis_moment * 0.25 * c * turned * (1 + 0.25 * turn.squaredNorm()) +
                                  travel_of.secant_derivative * force.dot(left_direction);
   const Vector3 varied = 0.5 * moment.cross(axis) - (0.25 * turned) * moment - (0.25 * w.dot(moment)) * axis;
-  maps.released_master.resize(1, 6);
-  maps.released_master.row(0) << 0, 0, 0,
-      transposed_inverse_tangent(0.5 * travel_of.secant * direction.cross(force) +
-                                 (rate.value * c) * (0.25 * axis_moment * turn - varied))
-          .transpose();
-  maps.master_released.resize(6, 1);
-  maps.master_released.col(0) << 0, 0, 0, -arm_weight * force.cross(travel);
+  maps.released_spin.resize(1, 3);
+  maps.released_spin.row(0) = transposed_inverse_tangent(0.5 * travel_of.secant * direction.cross(force) +
+                                                         (rate.value * c) * (0.25 * axis_moment * turn - varied))
+                                  .transpose();
+  maps.moment_released.resize(3, 1);
+  maps.moment_released.col(0) = -arm_weight * force.cross(travel);
+}
+
+/// Joints without coordinates, or with free rotations; without lever arms.
+void incremental_matrix_maps(const JointMap& joint, const JointPose& begin, const JointPose& end, const Wrench& g,
+                             FoldMaps& maps, bool with_tangent, double arm_weight) {
+  const int count = released_count(joint.kind);
+  if (with_tangent)
+    set_sizes(count, maps);
+  else
+    maps.left.setZero(6, count);
+  if (joint.kind == JointMapKind::Rigid) return;
+
+  // Rows conjugate to the relative translation and to the tangent-scaled relative rotation, joint frame.
+  const Matrix3 B0 = joint_rotation(joint, begin.master);
+  const Vector3 w = cayley::increment(begin.master.orientation, end.master.orientation);
+  const Matrix3 S_inverse = cayley::inverse_tangent(w);
+  const Vector3 turn = released_increment(joint, begin.released, end.released).tail<3>(), turn_world = B0 * turn;
+  const double c = 1 / (1 - 0.25 * w.dot(turn_world));
+  const Matrix3 N22 = c * S_inverse.transpose() * B0;
+  if (joint.kind == JointMapKind::Free) maps.left.topLeftCorner<3, 3>() = B0 + 0.5 * hat(w) * B0;
+  maps.left.bottomRightCorner<3, 3>() = N22;
+  if (!with_tangent) return;
+
+  const Matrix3 rotation = joint_rotation(joint, end.master);
+  const Vector3 row_phi = N22.transpose() * g.moment, w_joint = B0.transpose() * w;
+  if (joint.kind == JointMapKind::Free) {
+    maps.right.topLeftCorner<3, 3>() = rotation;
+    maps.released_spin.topRows<3>() = 0.5 * B0.transpose() * hat(g.force) * S_inverse;
+    maps.moment_released.leftCols<3>() = -arm_weight * hat(g.force) * rotation;
+  }
+  maps.right.bottomRightCorner<3, 3>() = rotation;
+  maps.released_released.bottomRightCorner<3, 3>() =
+      0.25 * c * row_phi * w_joint.transpose() * cayley::inverse_tangent(turn);
+  maps.released_spin.bottomRows<3>() =
+      (c * B0.transpose() * cayley::xi_inverse_tangent(w, g.moment) + 0.25 * c * row_phi * turn_world.transpose()) *
+      S_inverse;
+}
+
+// What follows is most of a rigid arm's step; fused multiply-add saves a quarter of it.
+NodePose pose_at_arm(const JointMap& joint, const NodePose& master, const Released& released) {
+  Quaternion turned = master.orientation;
+  if (joint.kind == JointMapKind::Scalar)
+    turned = turned * so3::exp_quaternion(released.displacement[0] * joint.rotation);
+  else
+    turned = turned * joint.origin.orientation * released.rotation;
+  NodePose slave;
+  slave.orientation = (turned * joint.slave_orientation).normalized();
+  slave.rotation = slave.orientation.toRotationMatrix();
+  slave.position = master.position + lever_to_moved_frame(joint, master, released) + slave.rotation * joint.arm;
+  return slave;
+}
+
+void incremental_maps_with_arms(const JointMap& joint, const JointPose& begin, const JointPose& end, const Vector6& g,
+                                FoldMaps& maps, bool with_tangent, double arm_weight) {
+  const auto mean = [&](const Vector3& at_begin, const Vector3& at_end) {
+    return Vector3((1 - arm_weight) * at_begin + arm_weight * at_end);
+  };
+  maps.lever_right = lever_to_moved_frame(joint, end.master, end.released);
+  maps.lever_left = mean(lever_to_moved_frame(joint, begin.master, begin.released), maps.lever_right);
+  const Vector3 arm_right = end.slave.rotation * joint.arm;
+  const Vector3 arm_left = mean(begin.slave.rotation * joint.arm, arm_right);
+  const Wrench at_frame{g.head<3>(), g.tail<3>() + arm_left.cross(g.head<3>())};
+  if (joint.kind == JointMapKind::Scalar)
+    incremental_scalar_maps(joint, begin, end, at_frame, maps, with_tangent, arm_weight);
+  else
+    incremental_matrix_maps(joint, begin, end, at_frame, maps, with_tangent, arm_weight);
+  add_arms(arm_left, arm_right, at_frame.force, with_tangent, arm_weight, maps);
 }
 
 }  // namespace
 
 NodePose slave_pose(const JointMap& joint, const NodePose& master, const Released& released) {
-  Quaternion turned = master.orientation * joint.origin.orientation;
-  if (joint.kind == JointMapKind::Scalar)
-    turned = turned * so3::exp_quaternion(released.displacement[0] * joint.rotation);
-  else if (joint.kind != JointMapKind::Rigid)
-    turned = turned * released.rotation;
   NodePose slave;
-  slave.orientation = (turned * joint.slave_orientation).normalized();
-  slave.rotation = slave.orientation.toRotationMatrix();
-  slave.position = master.position + lever_arm(joint, master, released);
+  simd::run([&] { slave = pose_at_arm(joint, master, released); });
   return slave;
 }
 
@@ -143,110 +231,75 @@ ReleasedVector released_increment(const JointMap& joint, const Released& from, c
   return out;
 }
 
-void variational_maps(const JointMap& joint, const NodePose& master, const Released& released, const Vector6& g,
-                      FoldMaps& maps) {
+void variational_maps(const JointMap& joint, const JointPose& pose, const Vector6& g, FoldMaps& maps) {
   const int count = released_count(joint.kind);
-  const Matrix3 rotation = joint_rotation(joint, master);
-  const Vector3 lever = lever_arm(joint, master, released);
-  const Vector3 force = g.head<3>(), moment = g.tail<3>();
+  const Matrix3 rotation = joint_rotation(joint, pose.master);
+  const Vector3 arm = pose.slave.rotation * joint.arm;
+  const Vector3 force = g.head<3>(), moment = g.tail<3>() + arm.cross(force);
   set_sizes(count, maps);
-  maps.lever_left = maps.lever_right = lever;
-  maps.master_master.bottomRightCorner<3, 3>() = hat(force) * hat(lever);
 
   switch (joint.kind) {
     case JointMapKind::Rigid:
     case JointMapKind::Slide:  // has maps of its own (slide_map.h)
       break;
     case JointMapKind::Scalar: {
-      const double u = released.displacement[0];
+      const double u = pose.released.displacement[0];
       const TravelRate rate = travel_rate(joint, u, u);
       const Vector3 direction = rotation * joint.translation, turn = rotation * joint.rotation;
       const Vector3 travel = rate.slope * direction;
       maps.right.col(0) << travel, turn;
       maps.released_released(0, 0) = rate.curvature * force.dot(direction);
-      maps.released_master.row(0).tail<3>() = -(force.cross(travel) + moment.cross(turn)).transpose();
-      maps.master_released.col(0).tail<3>() = -force.cross(travel);
+      maps.released_spin.row(0) = -(force.cross(travel) + moment.cross(turn)).transpose();
+      maps.moment_released.col(0) = -force.cross(travel);
       break;
     }
     case JointMapKind::Free:
       maps.right.topLeftCorner<3, 3>() = rotation;
-      maps.released_master.topRightCorner<3, 3>() = rotation.transpose() * hat(force);
-      maps.master_released.bottomLeftCorner<3, 3>() = -hat(force) * rotation;
+      maps.released_spin.topRows<3>() = rotation.transpose() * hat(force);
+      maps.moment_released.leftCols<3>() = -hat(force) * rotation;
       [[fallthrough]];
     case JointMapKind::Spherical:
       maps.right.bottomRightCorner<3, 3>() = rotation;
-      maps.released_master.bottomRightCorner<3, 3>() = rotation.transpose() * hat(moment);
+      maps.released_spin.bottomRows<3>() = rotation.transpose() * hat(moment);
       break;
   }
   maps.left = maps.right;
+  maps.lever_left = maps.lever_right = lever_to_moved_frame(joint, pose.master, pose.released);
+  add_arms(arm, arm, force, true, 1, maps);
 }
 
-void incremental_maps(const JointMap& joint, const NodePose& master_begin, const NodePose& master_end,
-                      const Released& begin, const Released& end, const Vector6& g, FoldMaps& maps, bool with_tangent,
-                      double arm_weight) {
-  const int count = released_count(joint.kind);
-  const Vector3 lever = lever_arm(joint, master_end, end);
-  maps.lever_left = (1 - arm_weight) * lever_arm(joint, master_begin, begin) + arm_weight * lever;
-  maps.lever_right = lever;
-  const Vector3 force = g.head<3>(), moment = g.tail<3>();
-  if (joint.kind == JointMapKind::Scalar) {
-    if (with_tangent) maps.master_master.setZero();
-    incremental_scalar_maps(joint, master_begin, master_end, begin, end, g, maps, with_tangent, arm_weight);
-  } else if (with_tangent) {
-    set_sizes(count, maps);
-  } else {
-    maps.left.setZero(6, count);
-  }
-  if (with_tangent)
-    maps.master_master.bottomRightCorner<3, 3>() =
-        arm_weight * (lever * force.transpose()) - (arm_weight * force.dot(lever)) * Matrix3::Identity();
-  if (joint.kind == JointMapKind::Rigid || joint.kind == JointMapKind::Scalar) return;
-
-  // Rows conjugate to the relative translation and to the tangent-scaled relative rotation, joint frame.
-  const Matrix3 B0 = joint_rotation(joint, master_begin);
-  const Vector3 w = cayley::increment(master_begin.orientation, master_end.orientation);
-  const Matrix3 S_inverse = cayley::inverse_tangent(w);
-  const Vector3 turn = released_increment(joint, begin, end).tail<3>(), turn_world = B0 * turn;
-  const double c = 1 / (1 - 0.25 * w.dot(turn_world));
-  const Matrix3 N22 = c * S_inverse.transpose() * B0;
-  if (joint.kind == JointMapKind::Free) maps.left.topLeftCorner<3, 3>() = B0 + 0.5 * hat(w) * B0;
-  maps.left.bottomRightCorner<3, 3>() = N22;
-  if (!with_tangent) return;
-
-  const Matrix3 rotation = joint_rotation(joint, master_end);
-  const Vector3 row_phi = N22.transpose() * moment, w_joint = B0.transpose() * w;
-  if (joint.kind == JointMapKind::Free) {
-    maps.right.topLeftCorner<3, 3>() = rotation;
-    maps.released_master.topRightCorner<3, 3>() = 0.5 * B0.transpose() * hat(force) * S_inverse;
-    maps.master_released.bottomLeftCorner<3, 3>() = -arm_weight * hat(force) * rotation;
-  }
-  maps.right.bottomRightCorner<3, 3>() = rotation;
-  maps.released_released.bottomRightCorner<3, 3>() =
-      0.25 * c * row_phi * w_joint.transpose() * cayley::inverse_tangent(turn);
-  maps.released_master.bottomRightCorner<3, 3>() =
-      (c * B0.transpose() * cayley::xi_inverse_tangent(w, moment) + 0.25 * c * row_phi * turn_world.transpose()) *
-      S_inverse;
+void incremental_maps(const JointMap& joint, const JointPose& begin, const JointPose& end, const Vector6& g,
+                      FoldMaps& maps, bool with_tangent, double arm_weight) {
+  simd::run([&] { incremental_maps_with_arms(joint, begin, end, g, maps, with_tangent, arm_weight); });
 }
 
-Vector6 slave_velocity(const JointMap& joint, const NodePose& master, const Released& released,
-                       const Vector6& master_velocity, const Eigen::Ref<const ReleasedVector>& rates) {
+Vector6 slave_velocity(const JointMap& joint, const JointPose& pose, const Vector6& master_velocity,
+                       const Eigen::Ref<const ReleasedVector>& rates) {
   FoldMaps maps;
-  variational_maps(joint, master, released, Vector6::Zero(), maps);
+  variational_maps(joint, pose, Vector6::Zero(), maps);
   Vector6 velocity = master_velocity;
   velocity.head<3>() += master_velocity.tail<3>().cross(maps.lever_right);
   velocity.noalias() += maps.right * rates;
   return velocity;
 }
 
-ReleasedVector released_rates(const JointMap& joint, const NodePose& master, const Released& released,
-                              const Vector6& master_velocity, const Vector6& slave_velocity, Vector6* remainder) {
+ReleasedVector released_rates(const JointMap& joint, const JointPose& pose, const Vector6& master_velocity,
+                              const Vector6& slave_velocity, Vector6* remainder) {
   FoldMaps maps;
-  variational_maps(joint, master, released, Vector6::Zero(), maps);
+  variational_maps(joint, pose, Vector6::Zero(), maps);
   Vector6 relative = slave_velocity - master_velocity;
   relative.head<3>() -= master_velocity.tail<3>().cross(maps.lever_right);
-  // The columns of `right` are orthogonal in every kind.
-  ReleasedVector rates = maps.right.transpose() * relative;
-  for (int i = 0; i < rates.size(); ++i) rates[i] /= maps.right.col(i).squaredNorm();
+  // The columns are orthogonal in every kind at the moved frame's origin.
+  const Vector3 arm = pose.slave.rotation * joint.arm;
+  const auto at_frame = [&](Vector6 velocity) {
+    velocity.head<3>() -= velocity.tail<3>().cross(arm);
+    return velocity;
+  };
+  ReleasedVector rates(maps.right.cols());
+  for (int k = 0; k < rates.size(); ++k) {
+    const Vector6 column = at_frame(maps.right.col(k));
+    rates[k] = column.dot(at_frame(relative)) / column.squaredNorm();
+  }
   if (remainder) *remainder = relative - maps.right * rates;
   return rates;
 }

@@ -10,21 +10,22 @@ namespace flexarm {
 
 /// Columns for the released coordinates of a joint, at most six; no heap.
 using ReleasedColumns = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
-using ReleasedRows = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::ColMajor, 6, 6>;
 using ReleasedSquare = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
 using ReleasedVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1>;
 
 /// How a slave folds: with g the slave's total residual {f, phi},
 ///   released rows  += left^T g,                 master rows += {f, lever_left x f + phi}
 ///   slave columns d{r, spin} = right du + {dr_m + spin_m x lever_right, spin_m}
-/// and the derivative of the left map at constant g (geometric blocks; u released, m master {r, spin}).
+/// and the derivative of the left map at constant g (geometric blocks), which of the master's displacement and of its
+/// force are zero: what remains is that of the released rows and of the master's moment with respect to u and to the
+/// master's spin.
 struct FoldMaps {
   ReleasedColumns left, right;
   Vector3 lever_left, lever_right;
   ReleasedSquare released_released;
-  ReleasedRows released_master;
-  ReleasedColumns master_released;
-  Matrix6 master_master;
+  Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor, 6, 3> released_spin;
+  Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, 6> moment_released;
+  Matrix3 moment_spin;
 };
 
 /// Slave pose from the master's and the released coordinates (7.1).
@@ -38,28 +39,24 @@ Released updated(const JointMap& joint, const Released& released, const Eigen::R
 /// in the joint frame.
 ReleasedVector released_increment(const JointMap& joint, const Released& from, const Released& to);
 
-/// Variational maps N_delta at the configuration (master, released), for residual `g` on the slave (joints.md 1.2).
-void variational_maps(const JointMap& joint, const NodePose& master, const Released& released, const Vector6& g,
-                      FoldMaps& maps);
+/// Variational maps N_delta for residual `g` on the slave (joints.md 1.2).
+void variational_maps(const JointMap& joint, const JointPose& pose, const Vector6& g, FoldMaps& maps);
 
-/// Incremental maps N_Delta over a step from `_begin` to `_end` (joints.md 1.3): the slave's {Delta r, tangent-scaled
-/// rotation increment} equals left du + {..} exactly, so the joint does no work and conserves momenta.
-/// Without `with_tangent` only the left maps are set. `arm_weight`: of the end in the lever arm by which the slave's
-/// force turns the master; 1/2 where momenta are measured with mean arms, 0 with those of the beginning (M2, its joints
-/// then do a little work).
-void incremental_maps(const JointMap& joint, const NodePose& master_begin, const NodePose& master_end,
-                      const Released& begin, const Released& end, const Vector6& g, FoldMaps& maps,
-                      bool with_tangent = true, double arm_weight = 0.5);
+/// Incremental maps N_Delta over a step (joints.md 1.3): the slave's {Delta r, tangent-scaled rotation increment}
+/// equals left du + {..} exactly, so the joint does no work and conserves momenta. Without `with_tangent` only the left
+/// maps are set. `arm_weight`: of the end in the lever arm by which the slave's force turns the master; 1/2 where
+/// momenta are measured with mean arms, 0 with those of the beginning (M2, its joints then do a little work).
+void incremental_maps(const JointMap& joint, const JointPose& begin, const JointPose& end, const Vector6& g,
+                      FoldMaps& maps, bool with_tangent = true, double arm_weight = 0.5);
 
-/// Least-squares released rates {scalar, or translation and angular velocity in the joint frame} from spatial
-/// velocities {v, w} of master and slave; `remainder` gets the part of the slave's velocity that the joint does not
-/// allow.
-ReleasedVector released_rates(const JointMap& joint, const NodePose& master, const Released& released,
-                              const Vector6& master_velocity, const Vector6& slave_velocity,
-                              Vector6* remainder = nullptr);
+/// Released rates {scalar, or translation and angular velocity in the joint frame} from spatial velocities {v, w} of
+/// master and slave: least squares at the origin of the moved joint frame. `remainder` gets the part of the slave's
+/// velocity that the joint does not allow.
+ReleasedVector released_rates(const JointMap& joint, const JointPose& pose, const Vector6& master_velocity,
+                              const Vector6& slave_velocity, Vector6* remainder = nullptr);
 
 /// Spatial velocity {v, w} of the slave from the master's and the released rates.
-Vector6 slave_velocity(const JointMap& joint, const NodePose& master, const Released& released,
-                       const Vector6& master_velocity, const Eigen::Ref<const ReleasedVector>& rates);
+Vector6 slave_velocity(const JointMap& joint, const JointPose& pose, const Vector6& master_velocity,
+                       const Eigen::Ref<const ReleasedVector>& rates);
 
 }  // namespace flexarm

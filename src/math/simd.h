@@ -1,6 +1,6 @@
 #pragma once
-/// Runs loops over packs with the widest registers of the processor at hand. Results differ between processors with and
-/// without fused multiply-add by round-off.
+/// Runs loops over packs, and other long kernels, with the widest registers of the processor at hand. Results differ
+/// between processors with and without fused multiply-add by round-off.
 
 namespace flexarm::simd {
 

@@ -1,8 +1,10 @@
 #pragma once
 /// Constant data of elementary joints, the values of their released coordinates, and poses of nodes.
 ///
-/// Notation: B = Lambda_m A the joint frame, A its orientation in the master node's frame, b its origin there:
-///   r = r_m + Lambda_m b + B (displacement),   Lambda = B Lambda_J Lambda_0.
+/// Notation: B = Lambda_m A the joint frame, A its orientation in the master node's frame, b its origin there, a the
+/// arm from the moved frame's origin to the slave:
+///   r = r_m + Lambda_m b + B (displacement) + Lambda a,   Lambda = B Lambda_J Lambda_0.
+/// Joints with one coordinate have A = I: axes stand in the master node's frame.
 /// A joint with several scalar coordinates is a chain of elementary ones through massless nodes.
 
 #include <memory>
@@ -44,13 +46,25 @@ struct JointMap {
   int slave = -1;                                         ///< node
   Pose origin;                                            ///< joint frame in the master node's frame (b, A)
   Quaternion slave_orientation = Quaternion::Identity();  ///< Lambda_0: slave node's frame in the moved joint frame
+  Vector3 arm = Vector3::Zero();                          ///< a, in the slave node's frame [m]
   int line = -1;                                          ///< Slide: index into Model::slide_lines
   SlideAlgorithm algorithm;                               ///< Slide
   int leaving = -1;  ///< Slide: joint whose slave flies on beyond the line's ends; -1: it does not leave
-  Vector3 translation = Vector3::Zero();      ///< Scalar: travel per unit of f(coordinate), joint frame
+  Vector3 translation = Vector3::Zero();      ///< Scalar: travel per unit of f(coordinate)
   std::shared_ptr<const CamProfile> profile;  ///< Scalar: f; null: f(u) = u
-  Vector3 rotation = Vector3::Zero();         ///< Scalar: rotation vector per unit coordinate, joint frame
+  Vector3 rotation = Vector3::Zero();         ///< Scalar: rotation vector per unit coordinate
 };
+
+/// Puts the frame in which a joint was described at `frame` in the master node's frame.
+inline void place(JointMap& joint, const Pose& frame) {
+  joint.origin = frame * joint.origin;
+  if (joint.kind != JointMapKind::Scalar) return;
+  const Quaternion turn = joint.origin.orientation;
+  joint.origin.orientation.setIdentity();
+  joint.translation = turn * joint.translation;
+  joint.rotation = turn * joint.rotation;
+  joint.slave_orientation = turn * joint.slave_orientation;
+}
 
 /// Values of the released coordinates.
 struct Released {
@@ -64,5 +78,16 @@ struct NodePose {
   Quaternion orientation = Quaternion::Identity();
   Matrix3 rotation = Matrix3::Identity();
 };
+
+/// Where a joint's nodes and its released coordinates stand at an instant.
+struct JointPose {
+  const NodePose &master, &slave;
+  const Released& released;
+};
+
+/// The origin of the moved joint frame, from the pose of the slave.
+inline Vector3 moved_origin(const JointMap& joint, const NodePose& slave) {
+  return slave.position - slave.rotation * joint.arm;
+}
 
 }  // namespace flexarm

@@ -254,14 +254,17 @@ void BorderedElimination::add_geometric(const JointMap& joint, int j) {
         front_.row(front_.row_place(first + r))[front_.column_place(first + c)] +=
             slides ? slide.released_released : maps.released_released(r, c);
     for_each_master(model_, joint, order_.window(j), [&](int node, int i) {
-      const Vector6 row = slides ? slide.released_master[i] : Vector6(maps.released_master.row(r).transpose());
-      const Vector6 column = slides ? slide.master_released[i] : Vector6(maps.master_released.col(r));
-      front_.add(first + r, 6 * node, row.data(), 1, 6, 1);
-      front_.add(6 * node, first + r, column.data(), 6, 1, 6);
+      if (slides) {
+        front_.add(first + r, 6 * node, slide.released_master[i].data(), 1, 6, 1);
+        front_.add(6 * node, first + r, slide.master_released[i].data(), 6, 1, 6);
+      } else {
+        front_.add(first + r, 6 * node + 3, maps.released_spin.data() + r, 1, 3, size);
+        front_.add(6 * node + 3, first + r, maps.moment_released.data() + 3 * r, 3, 1, 3);
+      }
     });
   }
   for_each_master(model_, joint, order_.window(j), [&](int node, int i) {
-    if (!slides) return front_.add(6 * node, 6 * node, maps.master_master.data(), 6, 6, 6);
+    if (!slides) return front_.add(6 * node + 3, 6 * node + 3, maps.moment_spin.data(), 3, 3, 3);
     for_each_master(model_, joint, order_.window(j), [&](int other, int k) {
       front_.add(6 * node, 6 * other, slide.master_master[i * slide.count + k].data(), 6, 6, 6);
     });

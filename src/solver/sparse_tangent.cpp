@@ -153,17 +153,17 @@ void SparseTangent::fold_rows(const JointFold& fold, const FoldMaps& maps) {
 
 void SparseTangent::add_geometric(const Geometric& geometric, const FoldMaps& maps) {
   const int count = static_cast<int>(maps.left.cols());
-  const auto add = [&](int block, const auto& values) {
+  const auto add = [&](int block, int rows, int columns, const auto& corner) {  // the last rows and columns
     if (block < 0) return;
-    using Values = std::decay_t<decltype(values)>;
-    Eigen::Map<Values>(values_.data() + blocks_[block].offset, values.rows(), values.cols()) += values;
+    Eigen::Map<Eigen::MatrixXd> to(values_.data() + blocks_[block].offset, rows, columns);
+    to.bottomRightCorner(corner.rows(), corner.cols()) += corner;
   };
   if (count > 0) {
-    add(geometric.released_released, maps.released_released);
-    add(geometric.released_master, maps.released_master);
-    add(geometric.master_released, maps.master_released);
+    add(geometric.released_released, count, count, maps.released_released);
+    add(geometric.released_master, count, 6, maps.released_spin);
+    add(geometric.master_released, 6, count, maps.moment_released);
   }
-  add(geometric.master_master, maps.master_master);
+  add(geometric.master_master, 6, 6, maps.moment_spin);
 }
 
 void SparseTangent::fold_mimics(const std::vector<MimicMap>& maps) {

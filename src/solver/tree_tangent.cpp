@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "math/simd.h"
 #include "math/so3.h"
 #include "solver/element_front.h"
 
@@ -34,6 +35,13 @@ Matrix6 columns_at_master(const Matrix6& tangent, const Vector3& lever) {
 template <int Columns>
 void move_rows(const Vector3& lever, Eigen::Matrix<double, 6, Columns>& rows) {
   rows.template bottomRows<3>() += so3::hat(lever).lazyProduct(rows.template topRows<3>());
+}
+
+/// What a joint leaves at its master, whose block on the diagonal is `to`.
+void add_to_master(const Matrix6& tangent, const FoldMaps& maps, double* to) {
+  Eigen::Map<Matrix6> master(to);
+  master += tangent;
+  master.bottomRightCorner<3, 3>() += maps.moment_spin;
 }
 
 }  // namespace
@@ -117,7 +125,7 @@ void TreeTangent::hold_rows() {
     FoldMaps& maps = blocks_.maps[joint];
     const int size = static_cast<int>(maps.left.cols());
     maps.left.col(component).setZero();
-    if (front.master >= 0) maps.released_master.row(component).setZero();
+    if (front.master >= 0) maps.released_spin.row(component).setZero();
     Eigen::Map<ReleasedSquare>(diagonal_block(front.variable), size, size).row(component).setZero();
     maps.released_released.row(component).setZero();
     maps.released_released.row(component).segment(first, coefficients.size()) = coefficients.transpose();
@@ -173,31 +181,31 @@ bool TreeTangent::eliminate_released(int joint) {
   Rows row = left.transpose().lazyProduct(at_master);
   move_rows(maps.lever_left, moved);
   for (int k = 0; k < front.count; ++k) {
-    row.row(k) += maps.released_master.row(front.components[k]);
-    moved.col(k) += maps.master_released.col(front.components[k]);
+    row.row(k).template tail<3>() += maps.released_spin.row(front.components[k]);
+    moved.col(k).template tail<3>() += maps.moment_released.col(front.components[k]);
   }
   const Rows elimination = inverse.lazyProduct(row);
   front.elimination.template topRows<Size>() = elimination;
   front.coupling.template leftCols<Size>() = moved;
   move_rows(maps.lever_left, at_master);
   at_master.noalias() -= moved.lazyProduct(elimination);
-  add_to_master(joint, at_master);
+  add_to_master(at_master, maps, diagonal_block(front.master));
   return true;
-}
-
-void TreeTangent::add_to_master(int joint, const Matrix6& tangent) {
-  Eigen::Map<Matrix6>(diagonal_block(joints_[joint].master)) += tangent + blocks_.maps[joint].master_master;
 }
 
 bool TreeTangent::eliminate_joint(int joint) {
   const JointFront& front = joints_[joint];
-  if (front.count == 1) return eliminate_released<1>(joint);
+  if (front.count == 1) {
+    bool done = false;
+    simd::run([&] { done = eliminate_released<1>(joint); });
+    return done;
+  }
   if (front.count > 1) return eliminate_released<6>(joint);
   if (front.master < 0) return true;
   const FoldMaps& maps = blocks_.maps[joint];
   Matrix6 at_master = columns_at_master(Eigen::Map<const Matrix6>(diagonal_block(front.slave)), maps.lever_right);
   move_rows(maps.lever_left, at_master);
-  add_to_master(joint, at_master);
+  add_to_master(at_master, maps, diagonal_block(front.master));
   return true;
 }
 
@@ -235,10 +243,12 @@ void TreeTangent::forward_joint(int joint) {
   const JointFront& front = joints_[joint];
   const Eigen::Map<const Vector6> slave(values_.data() + 6 * static_cast<std::size_t>(front.slave));
   const int count = front.count;
-  ReleasedVector released(count);
-  for (int k = 0; k < count; ++k) released[k] = values_[front.scalars[k]] + front.left.col(k).dot(slave);
-  released = front.inverse.topLeftCorner(count, count).lazyProduct(released).eval();
-  for (int k = 0; k < count; ++k) values_[front.scalars[k]] = released[k];
+  std::array<double, 6> rows, released{};
+  for (int k = 0; k < count; ++k) rows[k] = values_[front.scalars[k]] + front.left.col(k).dot(slave);
+  for (int i = 0; i < count; ++i) {
+    for (int k = 0; k < count; ++k) released[i] += front.inverse(i, k) * rows[k];
+    values_[front.scalars[i]] = released[i];
+  }
   if (front.master < 0) return;
   Eigen::Map<Vector6> master(values_.data() + 6 * static_cast<std::size_t>(front.master));
   master += slave;

@@ -55,7 +55,6 @@ class TreeTangent : public TangentBackend {
   void hold_rows();
   template <int Size>
   bool eliminate_released(int joint);
-  void add_to_master(int joint, const Matrix6& tangent);
   bool eliminate_element(int part);
   bool eliminate_joint(int joint);
   void forward_element(int part);

@@ -110,11 +110,12 @@ TEST(LoopBuilder, BodiesFixedToATipAreHeldByItsNode) {
     expect_root_to_leaf(model);
     const JointMap& hip = model.joints[coordinate(model, "hip").joint];
     EXPECT_EQ(hip.master, model.links[3].frame.node);
-    // In the parent's frame, turned backwards where the parent follows.
-    if (exchanged)
-      EXPECT_EQ(hip.rotation, -Vector3::UnitZ());
-    else
-      EXPECT_EQ(hip.rotation, Vector3::UnitZ());
+    // About the z axis of the joint's frame in the parent, backwards where the parent follows.
+    const LinkFrame& parent = model.links[exchanged ? 5 : 3];
+    ASSERT_EQ(parent.name, loop.parent);
+    const Quaternion frame = model.nodes[parent.frame.node].orientation * parent.frame.offset.orientation;
+    const Vector3 axis = frame * loop.origin.orientation * Vector3((exchanged ? -1 : 1) * Vector3::UnitZ());
+    EXPECT_LE((model.nodes[hip.master].rotation * hip.rotation - axis).norm(), 1e-15);
     int held = -1;
     for (const JointMap& joint : model.joints)
       if (joint.master == hip.slave) held = joint.slave;
@@ -133,7 +134,7 @@ TEST(LoopBuilder, VelocitiesOfTheStartAgreeWithTheLoop) {
       const JointMap& joint = model.joints[j];
       Vector6 remainder;
       const ReleasedVector rate =
-          released_rates(joint, joint.master < 0 ? NodePose() : model.nodes[joint.master], model.initial_released[j],
+          released_rates(joint, joint_pose(joint, model.nodes, model.initial_released[j]),
                          joint.master < 0 ? Vector6(Vector6::Zero()) : model.initial_velocity[joint.master],
                          model.initial_velocity[joint.slave], &remainder);
       EXPECT_LT(remainder.norm(), 1e-14);
@@ -219,6 +220,12 @@ TEST(RigidLoopBuilder, KeepsIndependentConstraints) {
   }
 }
 
+/// Velocity of the point of a node that is at `arm` in its frame, at the start.
+Vector3 velocity_at(const Model& model, int node, const Vector3& arm) {
+  const Vector6& velocity = model.initial_velocity[node];
+  return velocity.head<3>() + Vector3(velocity.tail<3>()).cross(model.nodes[node].rotation * arm);
+}
+
 TEST(RigidLoopBuilder, RatesOfTheOtherJointsFollow) {
   SceneBuilder b = rigid_crank_rocker();
   b.scene.initial_joints.push_back({"ground", 0, 2, {}});
@@ -226,10 +233,10 @@ TEST(RigidLoopBuilder, RatesOfTheOtherJointsFollow) {
   // Crank's end at (0, 0.4), rocker's at (1, 0.6) from (1, 0), in the plane x, z: v = w x r about +y.
   const LoopClosure& closure = model.closures[0];
   const Vector6 &rocker = model.initial_velocity[closure.parent], &coupler = model.initial_velocity[closure.child];
-  EXPECT_NEAR((rocker.head<3>() + Vector3(rocker.tail<3>()).cross(Vector3(0, 0, 0.6)) -
-               (coupler.head<3>() + Vector3(coupler.tail<3>()).cross(Vector3(1, 0, 0.2))))
-                  .norm(),
-              0, 1e-12);
+  EXPECT_NEAR(
+      (velocity_at(model, closure.parent, closure.parent_arm) - velocity_at(model, closure.child, closure.child_arm))
+          .norm(),
+      0, 1e-12);
   // v = (0.8, 0) + w (0.2, -1) = W (0.6, 0): the coupler turns with w = 0.
   EXPECT_NEAR(coupler[4], 0, 1e-12);
   EXPECT_NEAR(rocker[4], 0.8 / 0.6, 1e-12);

@@ -152,6 +152,43 @@ TEST(BuildModel, BodiesOfALinkAreOneCompositeAtItsCentre) {
   EXPECT_EQ(carriers, 1);
 }
 
+// What hangs on rigid links, loads and probes included, keeps its place although nodes are moved to the centres of
+// mass.
+TEST(BuildModel, RigidLinksHaveOneNodeAndOneJointEach) {
+  RandomSource random(6);
+  SceneBuilder builder;
+  const char* names[] = {"first", "second", "third"};
+  std::string parent = "world";
+  std::vector<Vector3> centres;
+  Pose frame;
+  std::vector<Pose> frames;
+  for (const char* name : names) {
+    centres.push_back(random.vector());
+    builder.body(name, 1 + random.number(), centres.back(), random.positive_definite<3>());
+    scene::JointDescription& joint = builder.joint(std::string("to_") + name, JointKind::Continuous, parent, name);
+    joint.origin = random.pose(1, 2);
+    frame = frame * joint.origin;
+    frames.push_back(frame);
+    parent = name;
+  }
+  const Vector3 at = random.vector();
+  builder.load("second", at, random.vector());
+  builder.probe("probe", "third", at);
+  const Model model = build_model(builder.scene);
+  ASSERT_EQ(model.nodes.size(), std::size(names));
+  ASSERT_EQ(model.joints.size(), std::size(names));
+  for (std::size_t i = 0; i < std::size(names); ++i) {
+    const Pose link = link_pose(model, names[i]);
+    EXPECT_LE((link.position - frames[i].position).norm(), 1e-14);
+    EXPECT_LE(link.orientation.angularDistance(frames[i].orientation), 1e-7);
+    EXPECT_LE((model.nodes[i].position - link * centres[i]).norm(), 1e-14);
+  }
+  const NodePose& loaded = model.nodes[model.loads.at(0).node];
+  EXPECT_LE((loaded.position + loaded.rotation * model.loads[0].arm - frames[1] * at).norm(), 1e-14);
+  const ProbeState probe = probe_state(model, initial_state(model), model.initial_velocity, model.probes.at(0));
+  EXPECT_LE((probe.pose.position - frames[2] * at).norm(), 1e-14);
+}
+
 TEST(BuildModel, BeamMassIsThatOfItsLength) {
   const Model model = build_model(every_joint_scene(false));
   double beams = 0, nodes = 0, bodies = 0;

@@ -63,7 +63,8 @@ TEST(ModelErrors, MasslessJointsAreHeldWhereTheyStartOnDemand) {
   EXPECT_EQ(model.initial_released[held.joint].displacement[0], 0.3);
   EXPECT_LT(held.effort, 0);
   EXPECT_FALSE(held.limit);
-  EXPECT_TRUE(model.initial_velocity.back().isZero(0));
+  // Histories are differentiated by differences: round-off to the power 2/3.
+  EXPECT_LE(model.initial_velocity[model.joints[held.joint].slave].norm(), 4e-11);
 }
 
 TEST(ModelErrors, AFreeRotationWithoutInertiaCannotBeHeld) {

@@ -39,12 +39,12 @@ TEST_P(ConsistentTangent, TangentInsideAStop) {
   Model model = smooth_model();
   for (Coordinate& coordinate : model.coordinates)
     if (coordinate.limit) coordinate.limit = LimitStop{0.6, 3.0, 8.0};  // the slider's travel is about zero
-  RandomSource random(3);
+  RandomSource random(5);  // with which no slider is near the end of an element, where forces have a kink
   StepSystem system(model, scheme(), BackendChoice::Matrix);
   const State state = prepared(random_state(model, random, 0.1), system, random);
   system.begin(state, 0.2, Guess::Unchanged);
   system.update(random_update(system.degrees_of_freedom().unknowns, random, 0.1));
-  expect_consistent_tangent(system, 0.25);
+  expect_consistent_tangent(system, 0.15);
 }
 
 // A Newton update moves slaves with their joints, prescribed coordinates along their motion and mimics with their

@@ -23,6 +23,12 @@ struct JointStep {
   int columns() const { return released() + (joint.master < 0 ? 0 : 6); }
   NodePose slave_begin() const { return slave_pose(joint, master_begin, begin); }
   NodePose slave_end() const { return slave_pose(joint, master_end, end); }
+  /// The same joint without an arm.
+  JointStep without_arm() const {
+    JointStep out = *this;
+    out.joint.arm.setZero();
+    return out;
+  }
 
   /// The end displaced by h along one of columns().
   JointStep perturbed(int column, double h) const {
@@ -66,8 +72,10 @@ JointStep random_step(RandomSource& random, const KindOfJoint& kind, bool world,
   out.joint.slave = 1;
   out.joint.origin = random.pose(1, 3);
   out.joint.slave_orientation = random.rotation(3);
+  out.joint.arm = random.vector();
   if (kind.translates) out.joint.translation = 0.7 * random.unit();
   if (kind.rotates) out.joint.rotation = 1.2 * random.unit();
+  if (kind.kind == JointMapKind::Scalar) place(out.joint, Pose());
   if (kind.by_profile)  // analytic: differences must not cross knots
     out.joint.profile = std::make_shared<CamProfile>(CamProfile::eccentric(0.6, 0.1));
   if (!world) {
@@ -92,22 +100,27 @@ JointStep random_step(RandomSource& random, const KindOfJoint& kind, bool world,
 
 enum class Form { Variational, Incremental };
 
-FoldMaps maps_of(const JointStep& step, const Vector6& g, Form form, bool with_tangent = true) {
+FoldMaps maps_of(const JointStep& step, const Vector6& g, Form form, bool with_tangent = true,
+                 double arm_weight = 0.5) {
   FoldMaps maps;
+  const NodePose slave_begin = step.slave_begin(), slave_end = step.slave_end();
+  const JointPose begin{step.master_begin, slave_begin, step.begin}, end{step.master_end, slave_end, step.end};
   if (form == Form::Variational)
-    variational_maps(step.joint, step.master_end, step.end, g, maps);
+    variational_maps(step.joint, end, g, maps);
   else
-    incremental_maps(step.joint, step.master_begin, step.master_end, step.begin, step.end, g, maps, with_tangent);
+    incremental_maps(step.joint, begin, end, g, maps, with_tangent, arm_weight);
   return maps;
 }
 
 /// {released rows, master rows} of the slave's residual.
-Eigen::VectorXd folded(const JointStep& step, const Vector6& g, Form form) {
-  const FoldMaps maps = maps_of(step, g, form);
+Eigen::VectorXd folded(const FoldMaps& maps, const Vector6& g) {
   const Vector3 force = g.head<3>(), moment = g.tail<3>();
-  Eigen::VectorXd rows(step.released() + 6);
+  Eigen::VectorXd rows(maps.left.cols() + 6);
   rows << maps.left.transpose() * g, force, maps.lever_left.cross(force) + moment;
   return rows;
+}
+Eigen::VectorXd folded(const JointStep& step, const Vector6& g, Form form) {
+  return folded(maps_of(step, g, form), g);
 }
 
 /// Increments from tiny to large, on both sides of where a series hands over to a closed form (0.05 / 1.2).
@@ -153,6 +166,28 @@ TEST_P(JointMapsOnANode, FoldedForcesKeepTheirResultants) {
   }
 }
 
+// An arm is a rigid joint behind the joint: what the rigid one passes on is folded as without an arm. (joints.md 1.6)
+TEST_P(JointMaps, AnArmIsARigidJointBehind) {
+  for (const double arm_weight : {0.5, 0.0})
+    for (const Form form : {Form::Variational, Form::Incremental}) {
+      const JointStep step = random(0.3), bare = step.without_arm();
+      JointStep rigid;
+      rigid.joint.master = 1;
+      rigid.joint.origin.position = step.joint.slave_orientation * step.joint.arm;
+      rigid.joint.slave_orientation = step.joint.slave_orientation;
+      JointStep hinge = bare;
+      hinge.joint.slave_orientation = Quaternion::Identity();
+      rigid.master_begin = hinge.slave_begin();
+      rigid.master_end = hinge.slave_end();
+      EXPECT_LE((rigid.slave_end().position - step.slave_end().position).norm(), 1e-14);
+      EXPECT_LE((rigid.slave_end().rotation - step.slave_end().rotation).norm(), 1e-14);
+      const Vector6 g = source.vector6();
+      const Vector6 passed_on = folded(maps_of(rigid, g, form, true, arm_weight), g);
+      const Eigen::VectorXd expected = folded(maps_of(bare, passed_on, form, true, arm_weight), passed_on);
+      EXPECT_LE(largest(folded(maps_of(step, g, form, true, arm_weight), g) - expected), 1e-13);
+    }
+}
+
 TEST_P(JointMaps, ColumnsAreTheDerivativeOfTheSlave) {
   for (const Form form : {Form::Variational, Form::Incremental})
     for (const double size : kSizes) {
@@ -185,8 +220,11 @@ TEST_P(JointMaps, GeometricBlocksAreTheDerivativeOfTheFoldedResidual) {
       const Vector6 g = source.vector6();
       const FoldMaps maps = maps_of(step, g, form);
       const int count = step.released();
-      Eigen::MatrixXd blocks(count + 6, count + 6);
-      blocks << maps.released_released, maps.released_master, maps.master_released, maps.master_master;
+      Eigen::MatrixXd blocks = Eigen::MatrixXd::Zero(count + 6, count + 6);
+      blocks.topLeftCorner(count, count) = maps.released_released;
+      blocks.topRightCorner(count, 3) = maps.released_spin;
+      blocks.bottomLeftCorner(3, count) = maps.moment_released;
+      blocks.bottomRightCorner<3, 3>() = maps.moment_spin;
       for (int column = 0; column < step.columns(); ++column) {
         const Eigen::VectorXd expected =
             difference([&](double h) { return folded(step.perturbed(column, h), g, form); });
@@ -221,14 +259,14 @@ TEST_P(JointMaps, VelocitiesAndRatesAreInverse) {
   const Vector6 master = step.joint.master < 0 ? Vector6(Vector6::Zero()) : source.vector6();
   ReleasedVector rates(step.released());
   for (int k = 0; k < rates.size(); ++k) rates[k] = source.number();
-  const Vector6 slave = slave_velocity(step.joint, step.master_end, step.end, master, rates);
+  const NodePose pose = step.slave_end();
+  const Vector6 slave = slave_velocity(step.joint, {step.master_end, pose, step.end}, master, rates);
   Vector6 remainder;
-  const ReleasedVector found = released_rates(step.joint, step.master_end, step.end, master, slave, &remainder);
+  const ReleasedVector found = released_rates(step.joint, {step.master_end, pose, step.end}, master, slave, &remainder);
   EXPECT_LE(largest(found - rates), 1e-13);
   EXPECT_LE(largest(remainder), 1e-13);
 
   // Against the motion itself.
-  const NodePose pose = step.slave_end();
   const Vector6 expected = difference([&](double h) {
     const Vector3 spin = h * master.tail<3>();
     const NodePose moved_master =
@@ -241,16 +279,21 @@ TEST_P(JointMaps, VelocitiesAndRatesAreInverse) {
   EXPECT_LE(largest(slave - expected), difference_tolerance);
 }
 
-// A velocity that the joint does not allow: what remains is orthogonal to what it allows (least squares).
+// A velocity that the joint does not allow: what remains is orthogonal to what it allows (least squares), at the moved
+// joint frame's origin.
 TEST_P(JointMaps, RemainderIsOrthogonal) {
   const JointStep step = random(0.5);
   const Vector6 slave = source.vector6();
   Vector6 remainder;
+  const NodePose pose = step.slave_end();
   const ReleasedVector rates =
-      released_rates(step.joint, step.master_end, step.end, Vector6::Zero(), slave, &remainder);
+      released_rates(step.joint, {step.master_end, pose, step.end}, Vector6::Zero(), slave, &remainder);
   const FoldMaps maps = maps_of(step, Vector6::Zero(), Form::Variational);
-  EXPECT_LE(largest(maps.right.transpose() * remainder), 1e-13);
   EXPECT_LE(largest(maps.right * rates + remainder - slave), 1e-13);
+  Vector6 at_frame = remainder;
+  at_frame.head<3>() -= Vector3(remainder.tail<3>()).cross(pose.rotation * step.joint.arm);
+  const FoldMaps without_arm = maps_of(step.without_arm(), Vector6::Zero(), Form::Variational);
+  EXPECT_LE(largest(without_arm.right.transpose() * at_frame), 1e-13);
 }
 
 TEST_P(JointMaps, UpdatesAndIncrementsAgree) {
@@ -279,8 +322,8 @@ INSTANTIATE_TEST_SUITE_P(All, JointMapsOnANode,
 TEST(SlavePose, RevoluteJointTurnsAboutItsAxis) {
   JointMap joint;
   joint.kind = JointMapKind::Scalar;
-  joint.origin = {Vector3(1, 0, 0), so3::exp_quaternion(Vector3(0, 0, kPi / 2))};
-  joint.rotation = Vector3::UnitX();  // = y of the world
+  joint.rotation = Vector3::UnitX();
+  place(joint, {Vector3(1, 0, 0), so3::exp_quaternion(Vector3(0, 0, kPi / 2))});  // the axis is y of the world
   Released released;
   released.displacement[0] = kPi / 2;
   const NodePose slave = slave_pose(joint, NodePose(), released);
@@ -294,8 +337,8 @@ TEST(SlavePose, RevoluteJointTurnsAboutItsAxis) {
 TEST(SlavePose, PrismaticJointShiftsAlongItsAxis) {
   JointMap joint;
   joint.kind = JointMapKind::Scalar;
-  joint.origin = {Vector3(1, 0, 0), so3::exp_quaternion(Vector3(0, 0, kPi / 2))};
   joint.translation = Vector3::UnitX();
+  place(joint, {Vector3(1, 0, 0), so3::exp_quaternion(Vector3(0, 0, kPi / 2))});
   Released released;
   released.displacement[0] = 3;
   const NodePose slave = slave_pose(joint, NodePose(), released);

@@ -56,6 +56,16 @@ TEST_P(CamProfiles, SecantDerivative) {
   EXPECT_NEAR(profile.secant_derivative(0.7, 0.7), 0.5 * profile.second_derivative(0.7), 1e-15);
 }
 
+// Half the second derivative and a third of its change, up to the square of the change, 1e-10.
+TEST_P(CamProfiles, SecantDerivativeOverTinyChanges) {
+  const CamProfile& profile = GetParam();
+  for (double from = -7; from < 7; from += 0.31)
+    for (const double change : {9e-6, -9e-6}) {
+      const double begin = profile.second_derivative(from), end = profile.second_derivative(from + change);
+      EXPECT_NEAR(profile.secant_derivative(from, from + change), 0.5 * begin + (end - begin) / 3, 1e-10) << from;
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Kinds, CamProfiles, ::testing::Values(CamProfile::eccentric(0.4, 0.1), table()));
 
 TEST(CamProfile, EccentricTravel) {
