@@ -12,11 +12,14 @@ JointFold::JointFold(const StepConfiguration& configuration, const StepHistories
     : configuration_(configuration),
       histories_(histories),
       friction_(friction),
+      is_resisted_(configuration.model().joints.size(), false),
       applied_(configuration.model().coordinates.size(), 0.0),
       slide_maps_(most_active_nodes(configuration.model().slide_lines)),
       mimic_maps_(configuration.degrees_of_freedom().mimics.size()) {
-  for (const Coordinate& coordinate : configuration.model().coordinates)
+  for (const Coordinate& coordinate : configuration.model().coordinates) {
     stops_.push_back(stop_penalty(coordinate, configuration.scheme().contact_time));
+    if (resists(coordinate) || coordinate.sticks) is_resisted_[coordinate.joint] = true;
+  }
 }
 
 double JointFold::effort_at(const Coordinate& coordinate, std::size_t index) const {
@@ -34,6 +37,18 @@ void JointFold::add_efforts(int j, Balance& balance) {
   const Model& model = configuration_.model();
   const int count = released_count(model.joints[j].kind);
   if (count == 0) return;
+  double* residual = balance.residual.at(configuration_.degrees_of_freedom().variable_of_joint(j));
+  for (int k = 0; k < count; ++k) {
+    const std::size_t index = model.first_coordinate[j] + k;
+    applied_[index] = effort_at(model.coordinates[index], index);
+    residual[k] -= friction_.effort_weight() * applied_[index];
+  }
+  if (is_resisted_[j]) add_resistance(j, balance);
+}
+
+void JointFold::add_resistance(int j, Balance& balance) {
+  const Model& model = configuration_.model();
+  const int count = released_count(model.joints[j].kind);
   const int variable = configuration_.degrees_of_freedom().variable_of_joint(j);
   double* residual = balance.residual.at(variable);
   const ReleasedVector change =
@@ -42,12 +57,10 @@ void JointFold::add_efforts(int j, Balance& balance) {
   for (int k = 0; k < count; ++k) {
     const std::size_t index = model.first_coordinate[j] + k;
     const Coordinate& coordinate = model.coordinates[index];
-    PassiveEffort passive;
-    if (resists(coordinate))
-      passive = passive_effort(coordinate, stops_[index], configuration_.coordinate_step(index, change[k]));
+    const PassiveEffort passive =
+        passive_effort(coordinate, stops_[index], configuration_.coordinate_step(index, change[k]));
     balance.dissipated += passive.dissipated;
-    applied_[index] = effort_at(coordinate, index);
-    residual[k] -= weight * (applied_[index] + passive.effort);
+    residual[k] -= weight * passive.effort;
     friction_.add_constant(static_cast<int>(index), change[k], residual[k], balance);
     const double slope = weight * passive.slope;
     if (!balance.tangent || slope == 0) continue;

@@ -29,12 +29,14 @@ class JointFold {
   Vector6 force_on_slave(int joint, const Balance& balance) const;
   void fold_slide(int joint, Balance& balance);
   void add_efforts(int joint, Balance& balance);
+  void add_resistance(int joint, Balance& balance);
   double effort_at(const Coordinate& coordinate, std::size_t index) const;
 
   const StepConfiguration& configuration_;
   const StepHistories& histories_;
   DryFrictionStep& friction_;
   std::vector<StopPenalty> stops_;  // per coordinate
+  std::vector<bool> is_resisted_;   // per joint: damping, a stop or friction acts on a coordinate of it
   std::vector<double> applied_;
   FoldMaps fold_maps_;
   SlideMaps slide_maps_;

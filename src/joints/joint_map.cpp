@@ -95,42 +95,53 @@ void add_arms(const Vector3& left, const Vector3& right, const Vector3& force, b
   for (Eigen::Index k = 0; k < count; ++k) maps.left.col(k).head<3>() += maps.left.col(k).tail<3>().cross(left);
 }
 
+/// S(w)^-T v, of the tangent-scaled rotation increment w.
+Vector3 transposed_inverse_tangent(const Vector3& w, const Vector3& v) {
+  return v + 0.5 * w.cross(v) + (0.25 * w.dot(v)) * w;
+}
+
+/// Adds its travel to the maps of a joint with one coordinate; `w`: the master's rotation increment.
+void add_travel(const JointMap& joint, const JointPose& begin, const JointPose& end, const Vector3& w,
+                const Vector3& force, FoldMaps& maps, bool with_tangent, double arm_weight) {
+  const Vector3 direction = begin.master.rotation * joint.translation;
+  const Vector3 left_direction = direction + 0.5 * w.cross(direction);
+  const TravelRate rate = travel_rate(joint, begin.released.displacement[0], end.released.displacement[0]);
+  maps.left.col(0).head<3>() = rate.secant * left_direction;
+  if (!with_tangent) return;
+  const Vector3 travel = rate.slope * (end.master.rotation * joint.translation);
+  maps.right.col(0).head<3>() = travel;
+  maps.released_released(0, 0) += rate.secant_derivative * force.dot(left_direction);
+  maps.released_spin.row(0) += transposed_inverse_tangent(w, 0.5 * rate.secant * direction.cross(force)).transpose();
+  maps.moment_released.col(0) = -arm_weight * force.cross(travel);
+}
+
 /// Joints with one coordinate, without lever arms: the formulas of incremental_maps() for all joints, in which matrices
 /// act on the axis of rotation and the direction of travel alone.
 void incremental_scalar_maps(const JointMap& joint, const JointPose& begin, const JointPose& end, const Wrench& g,
                              FoldMaps& maps, bool with_tangent, double arm_weight) {
-  const auto& [force, moment] = g;
-  const double from = begin.released.displacement[0], to = end.released.displacement[0];
-  const Vector3 axis = begin.master.rotation * joint.rotation, direction = begin.master.rotation * joint.translation;
+  const Vector3 axis = begin.master.rotation * joint.rotation;
   const Vector3 w = cayley::increment(begin.master.orientation, end.master.orientation);
-  const auto transposed_inverse_tangent = [&](const Vector3& v) {  // S(w)^-T v
-    return Vector3(v + 0.5 * w.cross(v) + (0.25 * w.dot(v)) * w);
-  };
-  const double step = to - from, angle = joint.rotation.norm();
+  const double step = end.released.displacement[0] - begin.released.displacement[0], angle = joint.rotation.norm();
   const ScaledRate rate = scaled_rate(step * angle);
   const Vector3 turn = rate.value * step * axis;
   const double c = 1 / (1 - 0.25 * w.dot(turn));
-  const Vector3 left_axis = c * transposed_inverse_tangent(axis), left_direction = direction + 0.5 * w.cross(direction);
-  const TravelRate travel_of = travel_rate(joint, from, to);
+  const Vector3 left_axis = c * transposed_inverse_tangent(w, axis);
   maps.left.resize(6, 1);
-  maps.left.col(0) << travel_of.secant * left_direction, rate.value * left_axis;
-  if (!with_tangent) return;
-
-  const Vector3 travel = travel_of.slope * (end.master.rotation * joint.translation);
-  maps.right.resize(6, 1);
-  maps.right.col(0) << travel, end.master.rotation * joint.rotation;
-  const double axis_moment = left_axis.dot(moment), turned = w.dot(axis);
-  maps.released_released.resize(1, 1);
-  maps.released_released(0, 0) = rate.derivative * angle * axis_moment +
-                                 rate.value * axis_moment * 0.25 * c * turned * (1 + 0.25 * turn.squaredNorm()) +
-                                 travel_of.secant_derivative * force.dot(left_direction);
-  const Vector3 varied = 0.5 * moment.cross(axis) - (0.25 * turned) * moment - (0.25 * w.dot(moment)) * axis;
-  maps.released_spin.resize(1, 3);
-  maps.released_spin.row(0) = transposed_inverse_tangent(0.5 * travel_of.secant * direction.cross(force) +
-                                                         (rate.value * c) * (0.25 * axis_moment * turn - varied))
-                                  .transpose();
-  maps.moment_released.resize(3, 1);
-  maps.moment_released.col(0) = -arm_weight * force.cross(travel);
+  maps.left.col(0) << Vector3::Zero(), rate.value * left_axis;
+  if (with_tangent) {
+    const double axis_moment = left_axis.dot(g.moment), turned = w.dot(axis);
+    const Vector3 varied = 0.5 * g.moment.cross(axis) - (0.25 * turned) * g.moment - (0.25 * w.dot(g.moment)) * axis;
+    maps.right.resize(6, 1);
+    maps.right.col(0) << Vector3::Zero(), end.master.rotation * joint.rotation;
+    maps.released_released.resize(1, 1);
+    maps.released_released(0, 0) = rate.derivative * angle * axis_moment +
+                                   rate.value * axis_moment * 0.25 * c * turned * (1 + 0.25 * turn.squaredNorm());
+    maps.released_spin.resize(1, 3);
+    maps.released_spin.row(0) =
+        transposed_inverse_tangent(w, (rate.value * c) * (0.25 * axis_moment * turn - varied)).transpose();
+    maps.moment_released.setZero(3, 1);
+  }
+  if (!joint.translation.isZero(0)) add_travel(joint, begin, end, w, g.force, maps, with_tangent, arm_weight);
 }
 
 /// Joints without coordinates, or with free rotations; without lever arms.

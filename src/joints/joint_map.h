@@ -16,9 +16,9 @@ using ReleasedVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor,
 /// How a slave folds: with g the slave's total residual {f, phi},
 ///   released rows  += left^T g,                 master rows += {f, lever_left x f + phi}
 ///   slave columns d{r, spin} = right du + {dr_m + spin_m x lever_right, spin_m}
-/// and the derivative of the left map at constant g (geometric blocks), which of the master's displacement and of its
-/// force are zero: what remains is that of the released rows and of the master's moment with respect to u and to the
-/// master's spin.
+/// and the derivative of the left map at constant g (geometric blocks). Where the master is does not count, and its
+/// force does not vary: what remains is that of the released rows and of the master's moment, with respect to u and to
+/// the master's spin.
 struct FoldMaps {
   ReleasedColumns left, right;
   Vector3 lever_left, lever_right;

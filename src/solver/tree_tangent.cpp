@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "math/simd.h"
-#include "math/so3.h"
 #include "solver/element_front.h"
 
 namespace flexarm {
@@ -27,14 +26,16 @@ auto with_front(int node_count, Visitor&& visit) {
 /// K with the columns that a rigid arm to the master gives: d{r, spin} = {dr_m + spin_m x lever, spin_m}.
 Matrix6 columns_at_master(const Matrix6& tangent, const Vector3& lever) {
   Matrix6 out = tangent;
-  out.rightCols<3>().noalias() -= tangent.leftCols<3>().lazyProduct(so3::hat(lever));
+  out.col(3) += lever.y() * tangent.col(2) - lever.z() * tangent.col(1);
+  out.col(4) += lever.z() * tangent.col(0) - lever.x() * tangent.col(2);
+  out.col(5) += lever.x() * tangent.col(1) - lever.y() * tangent.col(0);
   return out;
 }
 
 /// Rows {f, phi} moved to the master: {f, lever x f + phi}.
 template <int Columns>
 void move_rows(const Vector3& lever, Eigen::Matrix<double, 6, Columns>& rows) {
-  rows.template bottomRows<3>() += so3::hat(lever).lazyProduct(rows.template topRows<3>());
+  for (int k = 0; k < Columns; ++k) rows.col(k).template tail<3>() += lever.cross(rows.col(k).template head<3>());
 }
 
 /// What a joint leaves at its master, whose block on the diagonal is `to`.
