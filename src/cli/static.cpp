@@ -1,3 +1,5 @@
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "cli/commands.h"
@@ -37,7 +39,8 @@ int solve(const Arguments& arguments) {
   Simulation simulation = load_simulation(arguments.scene);
   const StepResult result = simulation.solve_static(arguments.load_steps);
   if (!result.converged) {
-    fmt::print(stderr, "flexarm: {}\n", lack_of_equilibrium(simulation, result, initial_modes(simulation, 1)));
+    const std::vector<Mode> modes = are_modes_quick(simulation) ? initial_modes(simulation, 1) : std::vector<Mode>();
+    fmt::print(stderr, "flexarm: {}\n", lack_of_equilibrium(simulation, result, modes));
     return kFailed;
   }
   if (!is_standard_output(arguments.output)) print_equilibrium(simulation);

@@ -1,6 +1,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include <fmt/format.h>
+
 #include "cli/program.h"
 #include "math/pi.h"
 
@@ -13,8 +15,8 @@ TEST(CommandLine, UsageErrors) {
     EXPECT_EQ(outcome.output, "") << arguments;
   }
   const std::string scene = example("cantilever");
-  for (const char* option :
-       {"--step 0", "--step nan", "--step 1x", "--until -1", "--tolerance 0", "--every 0", "--scheme rk4"})
+  for (const char* option : {"--step 0", "--step nan", "--step 1x", "--until -1", "--tolerance 0", "--tolerance 1e300",
+                             "--every 0", "--scheme rk4"})
     EXPECT_EQ(shell("flexarm simulate " + scene + " " + option).status, 2) << option;
   EXPECT_EQ(shell("flexarm static " + scene + " --load-steps 0").status, 2);
   EXPECT_EQ(shell("flexarm modes " + scene + " --count 0").status, 2);
@@ -50,6 +52,27 @@ TEST(Check, DescribesTheModel) {
 TEST(Check, TakesEveryExample) {
   for (const auto& entry : std::filesystem::directory_iterator(test::source_path("config/examples")))
     EXPECT_EQ(shell("flexarm check " + entry.path().string()).status, 0) << entry.path();
+}
+
+// Cubic algorithms would take hours, quadratic ones minutes.
+TEST(Check, LargeScenesTakeSeconds) {
+  std::string chain = R"(<robot name="r"> <link name="l0"/>)";
+  for (int i = 1; i < 10000; ++i)
+    chain += fmt::format(R"(<joint name="j{0}" type="continuous"> <parent link="l{1}"/> <child link="l{0}"/>
+      <origin xyz="1 0 0"/> <axis xyz="0 1 0"/> </joint> <link name="l{0}"> <inertial> <mass value="1"/>
+      <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/> </inertial> </link>)",
+                         i, i - 1);
+  const std::string rod = R"(<robot name="r"> <link name="world"/> <link name="rod"> <beam elements="100000" order="1">
+    <centerline> <line to="2 0 0"/> </centerline> <circle radius="0.003"/>
+    <material young="70e9" poisson="0.33" density="2700"/> </beam> </link>
+    <joint name="clamp" type="fixed"> <parent link="world"/> <child link="rod"/> </joint> </robot>)";
+  for (const std::string& scene : {chain + "</robot>", rod}) {
+    const Outcome outcome = shell("ulimit -v 2000000; timeout 30 '" + program() + "' check " + scene_file(scene));
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    expect_contains(outcome.output, "natural frequencies are left out");
+  }
+  expect_contains(shell("timeout 30 '" + program() + "' static " + scene_file(chain + "</robot>")).errors,
+                  "no equilibrium found");
 }
 
 TEST(Simulate, WritesRowsAndASummary) {
