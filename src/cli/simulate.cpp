@@ -176,7 +176,7 @@ void add_simulate(CLI::App& app, int& status) {
   command->add_option("--until", arguments->until, "end time [s]")->capture_default_str()->check(check_non_negative);
   command->add_option("--step", arguments->options.step, "time step [s]")->check(check_positive);
   command->add_option("--scheme", arguments->options.scheme, "integration scheme");
-  command->add_option("--tolerance", arguments->options.tolerance, "of Newton's method")->check(check_positive);
+  command->add_option("--tolerance", arguments->options.tolerance, "of Newton's method")->check(check_tolerance);
   command->add_option("--output", arguments->output, "CSV file for the results; -: standard output");
   command->add_option("--every", arguments->every, "steps between rows of the output")
       ->capture_default_str()
