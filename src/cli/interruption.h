@@ -4,6 +4,7 @@
 namespace flexarm::cli {
 
 /// From now on SIGINT, SIGTERM and SIGHUP are only noted; a second one of the same kind ends the program as usual.
+/// What is ignored already, as nohup has it and shells for what runs in the background, stays so.
 void catch_interruptions();
 /// The number of the first signal that has come; 0: none.
 int interruption();

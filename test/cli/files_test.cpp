@@ -26,7 +26,7 @@ const std::string kShort = "flexarm simulate " + example("rigid_double_pendulum"
 
 /// Of a run that a shell's command ends a second after its start, the shell waiting for it.
 Outcome ended_by(const std::string& arguments, const std::string& command) {
-  return shell("'" + program() + "' " + arguments + " & sleep 1; " + command + "; wait $!");
+  return shell("env --default-signal '" + program() + "' " + arguments + " & sleep 1; " + command + "; wait $!");
 }
 
 }  // namespace
@@ -126,6 +126,12 @@ TEST(Simulate, SignalsLeaveResultsAndStateAndAStatus) {
     EXPECT_EQ(read_file(csv).back(), '\n');
     EXPECT_EQ(shell(kShort + "--resume " + state).status, 0);
   }
+}
+
+TEST(Simulate, IgnoredSignalsStayIgnored) {
+  const Outcome outcome =
+      shell("nohup '" + program() + "' " + kEndless + " & sleep 1; kill -HUP $!; sleep 0.5; kill -TERM $!; wait $!");
+  EXPECT_EQ(outcome.status, 143) << "not 129";
 }
 
 TEST(Simulate, KilledRunLeavesWholeRows) {
