@@ -45,6 +45,15 @@ void check_places(const Arguments& arguments) {
   refuse_overwriting("--checkpoint", arguments.checkpoint, arguments.scene.path);
 }
 
+/// Times of more steps than this could not be told apart.
+void check_duration(const Arguments& arguments, const Simulation& simulation) {
+  constexpr double kMostSteps = 1e15;
+  const double steps = (arguments.until - simulation.time()) / simulation.step_size();
+  if (steps > kMostSteps)
+    throw InputError(fmt::format("flexarm: {:.3g} steps of {} s to --until {} s are more than {:.0e}", steps,
+                                 simulation.step_size(), arguments.until, kMostSteps));
+}
+
 /// When checkpoints on the way are due, in simulated time.
 class CheckpointTimes {
  public:
@@ -153,6 +162,7 @@ int simulate(const Arguments& arguments) {
   options.reuse_factorisation = arguments.resume.empty() && arguments.checkpoint.empty();
   Simulation simulation = load_simulation(arguments.scene, options);
   prepare_files(arguments, simulation);
+  check_duration(arguments, simulation);
   const double begin = simulation.time();
   catch_interruptions();
   const Run result = run_and_keep(arguments, simulation);

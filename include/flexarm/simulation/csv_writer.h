@@ -44,7 +44,7 @@ class CsvWriter {
   std::unique_ptr<std::FILE, Closer> file_;
   Columns columns_;
   long written_ = 0;  // bytes of whole rows
-  int iterations_ = 0, halvings_ = 0;
+  long iterations_ = 0, halvings_ = 0;
 };
 
 }  // namespace flexarm
