@@ -37,6 +37,17 @@ bool is_finite(const Simulation& simulation) {
   return std::isfinite(sum);
 }
 
+/// Those that are asked for, and those that an automatic mesh needs where it is twisted.
+double elements_of(const scene::SceneDescription& scene) {
+  double count = 0;
+  for (const scene::LinkDescription& link : scene.links) {
+    if (!link.beam) continue;
+    if (link.beam->elements) count += *link.beam->elements;
+    for (const scene::CentrelinePiece& piece : link.beam->centreline) count += 1 + std::abs(piece.twist);
+  }
+  return count;
+}
+
 Trial run(scene::SceneDescription scene) {
   Simulation simulation(std::move(scene));
   for (int n = 0; n < kSteps; ++n) {
@@ -52,13 +63,13 @@ Trial run(scene::SceneDescription scene) {
 
 }  // namespace
 
-Trial try_scene(const std::string& text, const std::string& name) {
+Trial try_scene(const std::string& text, const std::string& name, double most_elements) {
   scene::ReadResult result = scene::read_scene_text(text, name);
   const std::string said = result.diagnostics.empty() ? "" : result.diagnostics.front().text();
   Trial trial{Trial::End::Refused, said, without_line(result.diagnostics)};
   if (result.scene.has_value() == scene::has_errors(result.diagnostics))
     trial.wrong = "a scene with errors, or none without";
-  if (!result.scene || !trial.wrong.empty()) return trial;
+  if (!result.scene || !trial.wrong.empty() || elements_of(*result.scene) > most_elements) return trial;
   try {
     return run(std::move(*result.scene));
   } catch (const ModelError& error) {

@@ -1,6 +1,7 @@
 #pragma once
 /// What every text must lead to: an error that says where it is, a run, or a failure that says why.
 
+#include <limits>
 #include <string>
 
 namespace flexarm::fuzz {
@@ -12,7 +13,9 @@ struct Trial {
   std::string wrong;  ///< what must not be; empty: nothing
 };
 
-/// Reads a scene called `name`, builds its model and takes three steps.
-Trial try_scene(const std::string& text, const std::string& name);
+/// Reads a scene called `name`, builds its model and takes three steps. A scene whose beams have more than about
+/// `most_elements` is only read: with sanitizers large ones, which are good, take minutes.
+Trial try_scene(const std::string& text, const std::string& name,
+                double most_elements = std::numeric_limits<double>::infinity());
 
 }  // namespace flexarm::fuzz
