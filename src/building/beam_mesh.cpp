@@ -4,6 +4,9 @@
 #include <cmath>
 #include <numeric>
 #include <queue>
+#include <stdexcept>
+
+#include <fmt/format.h>
 
 #include "elements/beam_point.h"
 #include "math/quadrature.h"
@@ -15,6 +18,14 @@ namespace {
 /// Element counts for the frequency rule and largest turning per element [rad], by order.
 constexpr int kFrequencyElements[] = {0, 45, 9, 5, 3};
 constexpr double kTurningPerElement[] = {0, 0.139, 1.05, 1.58, 3.15};
+
+/// More elements than any mesh may have.
+constexpr int kTooMany = 1000000000;
+
+/// The next whole number up to that.
+int rounded_up(double count) {
+  return static_cast<int>(std::min<double>(std::ceil(count), kTooMany));
+}
 
 /// Arc length of node i of an element; exactly `to` for the last one.
 double at_node(double from, double to, int order, int i) {
@@ -60,10 +71,53 @@ std::vector<int> distribute(int count, const std::vector<double>& demand) {
   return elements;
 }
 
+/// Numbers of input that are good each by itself may make a section too stiff, too weak or too heavy to compute with.
+void require_measurable(const SectionProperties& section, double length) {
+  const auto is_measurable = [](double value) { return value > 0 && std::isfinite(value); };
+  const auto diagonal = section.stiffness.diagonal();
+  if (!std::all_of(diagonal.begin(), diagonal.end(), is_measurable) || !section.stiffness.allFinite() ||
+      !section.inertia.allFinite() || !is_measurable(section.mass) || !is_measurable(section.mass * length))
+    throw std::invalid_argument(fmt::format(
+        "its section's stiffness and mass must be positive finite numbers (EA = {}, GA = {} and {}, GJ = {}, EI = {} "
+        "and {}, mass per length = {})",
+        diagonal[0], diagonal[1], diagonal[2], diagonal[3], diagonal[4], diagonal[5], section.mass));
+}
+
+/// Of each interval between borders.
+std::vector<int> automatic_element_counts(int order, const Centreline& centreline, const std::vector<double>& border,
+                                          const std::vector<double>& length) {
+  const int straight = automatic_element_count(order, 0);
+  std::vector<int> counts;
+  for (std::size_t k = 0; k < length.size(); ++k) {
+    const int share = rounded_up(straight * length[k] / centreline.length() - 1e-9);
+    const double turning = centreline.turning(border[k], border[k + 1]);
+    counts.push_back(std::max({1, share, rounded_up(turning / kTurningPerElement[order])}));
+  }
+  return counts;
+}
+
+/// The same, as the beam asks for.
+std::vector<int> element_counts(const scene::BeamDescription& beam, const Centreline& centreline,
+                                const std::vector<double>& border, const std::vector<double>& length, int most) {
+  const auto require_room = [&](double sum) {
+    if (sum > most)
+      throw std::invalid_argument(fmt::format("its mesh would have {}{} elements, and there is room for {}",
+                                              sum < kTooMany ? "" : "more than ", std::min<double>(sum, kTooMany),
+                                              most));
+  };
+  if (beam.elements) {
+    require_room(*beam.elements);
+    return distribute(*beam.elements, length);
+  }
+  std::vector<int> counts = automatic_element_counts(beam.order, centreline, border, length);
+  require_room(std::accumulate(counts.begin(), counts.end(), 0.0));
+  return counts;
+}
+
 }  // namespace
 
 int automatic_element_count(int order, double turning) {
-  return std::max(kFrequencyElements[order], static_cast<int>(std::ceil(turning / kTurningPerElement[order])));
+  return std::max(kFrequencyElements[order], rounded_up(turning / kTurningPerElement[order]));
 }
 
 int BeamMesh::node_at(double arc_length) const {
@@ -82,27 +136,18 @@ int BeamMesh::node_at(double arc_length) const {
 }
 
 BeamMesh mesh_beam(const scene::BeamDescription& beam, const Centreline& centreline,
-                   const std::vector<double>& attachments) {
+                   const std::vector<double>& attachments, int most) {
   BeamMesh mesh;
   const SectionProperties section = section_properties(beam.section);
+  require_measurable(section, centreline.length());
   mesh.section = referred_to_center_of_mass(section);
   mesh.centroid = section.center_of_mass;
   mesh.order = beam.order;
 
   const std::vector<double> border = borders(centreline, attachments);
   std::vector<double> length;
-  std::vector<int> counts;
   for (std::size_t k = 0; k + 1 < border.size(); ++k) length.push_back(border[k + 1] - border[k]);
-  if (beam.elements) {
-    counts = distribute(*beam.elements, length);
-  } else {
-    const int straight = automatic_element_count(beam.order, 0);
-    for (std::size_t k = 0; k < length.size(); ++k) {
-      const int share = static_cast<int>(std::ceil(straight * length[k] / centreline.length() - 1e-9));
-      const double turning = centreline.turning(border[k], border[k + 1]);
-      counts.push_back(std::max({1, share, static_cast<int>(std::ceil(turning / kTurningPerElement[beam.order]))}));
-    }
-  }
+  const std::vector<int> counts = element_counts(beam, centreline, border, length, most);
 
   const auto add_node = [&](double s, bool before, int welded_to) {
     Pose pose = centreline.at(s, before);

@@ -7,6 +7,7 @@
 #include "building/section.h"
 #include "flexarm/scene/scene_description.h"
 #include "model/beam_element.h"
+#include "scene/limits.h"
 
 namespace flexarm {
 
@@ -45,8 +46,9 @@ struct BeamMesh {
 int automatic_element_count(int order, double turning);
 
 /// Meshes a link with element borders at `attachments` (arc lengths), piece borders and kinks.
+/// @throws std::invalid_argument if that takes more than `most` elements.
 BeamMesh mesh_beam(const scene::BeamDescription& beam, const Centreline& centreline,
-                   const std::vector<double>& attachments);
+                   const std::vector<double>& attachments, int most = scene::kMostBeamElements);
 
 /// Constant data of an element from its nodes' undeformed poses; node indices, points' and blocks' offsets are left to
 /// the caller.

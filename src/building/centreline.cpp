@@ -95,9 +95,9 @@ Centreline::Centreline(const std::vector<scene::CentrelinePiece>& pieces, const 
 }
 
 const Centreline::Piece& Centreline::piece_at(double s, bool before) const {
-  for (const Piece& piece : pieces_)
-    if (before ? s <= piece.end : s < piece.end) return piece;
-  return pieces_.back();
+  const auto ends_too_early = [&](const Piece& piece, double at) { return before ? piece.end < at : piece.end <= at; };
+  const auto piece = std::lower_bound(pieces_.begin(), pieces_.end(), s, ends_too_early);
+  return piece == pieces_.end() ? pieces_.back() : *piece;
 }
 
 Pose Centreline::at(double s, bool before) const {

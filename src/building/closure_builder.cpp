@@ -122,13 +122,14 @@ SolvableMechanism choose_constraints(const ScenePlan& plan, DrivenMechanism mech
   const bool is_driven = std::any_of(model.coordinates.begin(), model.coordinates.end(),
                                      [](const Coordinate& coordinate) { return coordinate.motion >= 0; });
   if (rank == std::count(is_free.begin(), is_free.end(), true) && !is_driven)
-    throw ModelError(plan.scene.file + ": the loop joints leave the mechanism no motion ('" +
-                     model.closures.front().name + "' and others): nothing is left to compute");
+    throw ModelError(at_loop_joint(plan.scene, model.closures.front().name) +
+                     "it and other loop joints leave the mechanism no motion: nothing is left to compute");
   for (const Coordinate& coordinate : model.coordinates)
     if (coordinate.sticks) is_free[dof.scalar_of(coordinate)] = false;
   if (rank_of(with_columns(jacobian, is_free)) < rank)
-    throw ModelError(plan.scene.file + ": more joints of the rigid loop that '" + model.closures.front().name +
-                     "' closes may stick (<friction law=\"coulomb\">) than it has freedoms, and the force that holds "
+    throw ModelError(at_loop_joint(plan.scene, model.closures.front().name) +
+                     "more joints of the rigid loop that it closes may stick (<friction law=\"coulomb\">) than it has "
+                     "freedoms, and the force that holds "
                      "each would be undetermined: give some of them the law 'smooth'");
   std::size_t row = 0;
   for (LoopClosure& closure : model.closures) {

@@ -112,8 +112,8 @@ void InitialVelocity::satisfy_closures() {
     for (Eigen::Index k = 0; k < part.size(); ++k) change[group.columns[k]] = part[k];
   }
   if ((adjustable * change + opening).lpNorm<Eigen::Infinity>() > kAgrees * speed)
-    throw ModelError(plan_.scene.file + ": the initial velocities of the joints do not agree with the loop that '" +
-                     model_.closures.front().name + "' closes: give fewer of them");
+    throw ModelError(at_loop_joint(plan_.scene, model_.closures.front().name) +
+                     "the initial velocities of joints do not agree with the loop that it closes: give fewer of them");
   velocity = scales.cwiseProduct(velocity + change);
   for (int i = 0; i < dof.node_count; ++i)
     if (dof.slave_joint[i] < 0) velocity_[i] = velocity.segment<6>(dof.first[i]);

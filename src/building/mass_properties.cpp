@@ -7,7 +7,8 @@
 namespace flexarm {
 namespace {
 
-/// Mass, first moment and inertia about the world origin of everything outboard of a node, initial configuration.
+/// Mass, first moment and inertia of everything outboard of a node, about that node, world axes, initial configuration:
+/// round-off does not grow with the distance to the world's origin.
 struct Composite {
   double mass = 0;
   Vector3 moment = Vector3::Zero();
@@ -18,11 +19,10 @@ struct Composite {
     moment += other.moment;
     inertia += other.inertia;
   }
-  /// Inertia about the line through `point` along the unit vector `axis`.
-  double about(const Vector3& point, const Vector3& axis) const {
-    const Matrix3 p = so3::hat(point), s = so3::hat(moment);
-    const Matrix3 shifted = inertia + s * p + p * s - mass * p * p;
-    return axis.dot(shifted * axis);
+  /// About another point, which `here` is as far from.
+  Composite seen_from(const Vector3& here) const {
+    const Matrix3 p = so3::hat(here), s = so3::hat(moment);
+    return {mass, moment + mass * here, inertia - s * p - p * s - mass * p * p};
   }
 };
 
@@ -39,21 +39,21 @@ std::vector<Composite> composites(const std::vector<int>& parents, const Model& 
   std::vector<Composite> out(model.nodes.size());
   for (std::size_t i = 0; i < model.nodes.size(); ++i) {
     const NodalInertia& inertia = model.inertias[i];
-    const NodePose& pose = model.nodes[i];
-    const Matrix3 r = so3::hat(pose.position);
+    const Matrix3& rotation = model.nodes[i].rotation;
     out[i].mass = inertia.total_mass;
-    out[i].moment = inertia.total_mass * pose.position;
-    out[i].inertia =
-        pose.rotation * (inertia.rotary + inertia.beam_rotary) * pose.rotation.transpose() - inertia.total_mass * r * r;
+    out[i].inertia = rotation * (inertia.rotary + inertia.beam_rotary) * rotation.transpose();
   }
+  const auto seen_from = [&](int from, int node) {
+    return out[node].seen_from(model.nodes[node].position - model.nodes[from].position);
+  };
   for (int i = static_cast<int>(out.size()) - 1; i >= 0; --i)
-    if (parents[i] >= 0) out[parents[i]] += out[i];  // parents come before their children
+    if (parents[i] >= 0) out[parents[i]] += seen_from(parents[i], i);  // parents come before their children
   // A joint that closes a loop moves what hangs in it; the nodes of its chain carry nothing themselves.
   for (std::size_t j = model.joints.size(); j-- > 0;) {
     const JointMap& joint = model.joints[j];
     if (joint.master < 0 || out[joint.master].mass != 0) continue;
     const bool closes = parents[joint.slave] != joint.master && joint.kind != JointMapKind::Slide;
-    out[joint.master] = out[closes ? start_of_loop(parents, joint) : joint.slave];
+    out[joint.master] = seen_from(joint.master, closes ? start_of_loop(parents, joint) : joint.slave);
   }
   return out;
 }
@@ -76,14 +76,13 @@ MovedInertia moved_inertia(const Model& model, const Coordinate& coordinate, con
     translation = coordinate.is_angle ? Vector3::Zero() : unit;
     rotation = coordinate.is_angle ? unit : Vector3::Zero();
   }
-  const Composite& body = outboard[joint.slave];
+  const NodePose& slave = model.nodes[joint.slave];
+  const Composite body = outboard[joint.slave].seen_from(slave.position - moved_origin(joint, slave));
   // Screw-like couplings have no cross term about their axis.
-  double inertia = body.mass * translation.squaredNorm();
-  const Vector3 point = moved_origin(joint, model.nodes[joint.slave]);
-  if (rotation.norm() > 0) inertia += body.about(point, frame * rotation.normalized()) * rotation.squaredNorm();
-  // Nothing is what the shift to the axis leaves by round-off.
-  const double terms = body.mass * (translation.squaredNorm() + point.squaredNorm() * rotation.squaredNorm()) +
-                       body.inertia.trace() * rotation.squaredNorm();
+  const Vector3 about_axis = frame * rotation;
+  const double inertia = body.mass * translation.squaredNorm() + about_axis.dot(body.inertia * about_axis);
+  // Nothing is what is left by round-off.
+  const double terms = body.mass * translation.squaredNorm() + body.inertia.trace() * rotation.squaredNorm();
   return {inertia, inertia > 1e-13 * terms};
 }
 

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "building/model_builder.h"
+#include "scene/limits.h"
 
 namespace flexarm {
 namespace {
@@ -32,8 +33,18 @@ LinkMeshes mesh_links(const scene::SceneDescription& scene, const LinkNames& lin
     attach(joint.child, joint.child_origin.position);
   }
   for (const scene::PointLoad& load : scene.loads) attach(load.link, load.at);
-  for (std::size_t i = 0; i < meshes.size(); ++i)
-    if (meshes[i]) meshes[i]->mesh = mesh_beam(*scene.links[i].beam, meshes[i]->centreline, borders[i]);
+  int room = scene::kMostBeamNodes;  // of nodes
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    if (!meshes[i]) continue;
+    const scene::BeamDescription& beam = *scene.links[i].beam;
+    const int most = std::min(scene::kMostBeamElements, room / beam.order);
+    try {
+      meshes[i]->mesh = mesh_beam(beam, meshes[i]->centreline, borders[i], most);
+    } catch (const std::invalid_argument& error) {
+      throw ModelError(at(beam.location, "<beam> of link '" + scene.links[i].name + "'") + error.what());
+    }
+    room = std::max(0, room - static_cast<int>(meshes[i]->mesh.nodes.size()));
+  }
   return meshes;
 }
 
@@ -41,6 +52,12 @@ LinkMeshes mesh_links(const scene::SceneDescription& scene, const LinkNames& lin
 
 std::string at(const scene::SourceLocation& location, const std::string& element) {
   return location.file + ":" + std::to_string(location.line) + ": " + element + ": ";
+}
+
+std::string at_loop_joint(const scene::SceneDescription& scene, const std::string& name) {
+  const auto joint = std::find_if(scene.loop_joints.begin(), scene.loop_joints.end(),
+                                  [&](const scene::JointDescription& loop) { return loop.name == name; });
+  return at(joint->location, "<loop_joint> '" + name + "'");
 }
 
 LinkNames::LinkNames(const scene::SceneDescription& scene) : file_(scene.file) {

@@ -14,6 +14,8 @@ namespace flexarm {
 
 /// "file:line: element: ", with which messages about an element begin.
 std::string at(const scene::SourceLocation& location, const std::string& element);
+/// The same of the loop joint of this name, which the scene has.
+std::string at_loop_joint(const scene::SceneDescription& scene, const std::string& name);
 
 /// Links of a scene by name.
 class LinkNames {

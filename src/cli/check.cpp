@@ -106,6 +106,10 @@ void print_growth(const std::vector<Mode>& modes) {
 
 void print_frequencies(Simulation& simulation) {
   if (simulation.degrees_of_freedom() == 0) return;
+  if (!are_modes_quick(simulation)) {
+    fmt::print("\nnatural frequencies are left out, as they would take long here: flexarm modes\n");
+    return;
+  }
   // Free motions say nothing about the beams.
   const std::vector<Mode> modes =
       modes_about_equilibrium(simulation, kModes + static_cast<int>(simulation.coordinate_names().size()));

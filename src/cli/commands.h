@@ -7,7 +7,8 @@
 
 namespace flexarm::cli {
 
-enum ExitStatus { kDone = 0, kFailed = 1, kBadInput = 2 };
+/// A command that a signal has ended has the status that a shell gives to a program killed by it.
+enum ExitStatus { kDone = 0, kFailed = 1, kBadInput = 2, kInterrupted = 128 /* + the signal's number */ };
 
 /// What the user gave cannot be used; what() is printed and the exit status is kBadInput.
 class InputError : public std::runtime_error {

@@ -1,11 +1,15 @@
 #pragma once
-/// Ctrl-C as a question that a loop can ask.
+/// Signals that end a program, as a question that a loop can ask.
 
 namespace flexarm::cli {
 
-/// From now on SIGINT and SIGTERM only set a flag; a second one ends the program as usual.
+/// From now on SIGINT, SIGTERM and SIGHUP are only noted; a second one of the same kind ends the program as usual.
+/// What is ignored already, as nohup has it and shells for what runs in the background, stays so.
 void catch_interruptions();
-/// True once a signal has come.
-bool is_interrupted();
+/// The number of the first signal that has come; 0: none.
+int interruption();
+
+/// What cannot be written is an error of the function that writes, not a signal that ends the program.
+void ignore_signals_of_output();
 
 }  // namespace flexarm::cli

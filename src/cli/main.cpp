@@ -5,6 +5,7 @@
 
 #include "building/model_builder.h"
 #include "cli/commands.h"
+#include "cli/interruption.h"
 
 namespace {
 
@@ -42,6 +43,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  flexarm::cli::ignore_signals_of_output();
   const int status = run(argc, argv);
   if (std::fflush(stdout) == 0) return status;
   std::perror("flexarm: cannot write the output");

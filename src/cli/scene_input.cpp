@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "cli/commands.h"
+#include "flexarm/scene/scene_description.h"
 #include "math/parse_number.h"
 
 namespace flexarm::cli {
@@ -81,6 +82,12 @@ std::string check_non_negative(const std::string& text) {
   return number && *number >= 0 ? "" : "must be a number >= 0, got '" + text + "'";
 }
 
+std::string check_tolerance(const std::string& text) {
+  const std::optional<double> number = parse_number(text);
+  const bool is_good = number && *number > 0 && *number <= kLargestTolerance;
+  return is_good ? "" : fmt::format("must be a number > 0 and at most {}, got '{}'", kLargestTolerance, text);
+}
+
 std::vector<Mode> modes_about_equilibrium(Simulation& simulation, int count) {
   constexpr int kLoadSteps = 10;
   const StepResult result = simulation.solve_static(kLoadSteps);
@@ -89,6 +96,11 @@ std::vector<Mode> modes_about_equilibrium(Simulation& simulation, int count) {
   fmt::print(stderr, "flexarm: {}; the modes are those of the initial configuration\n",
              lack_of_equilibrium(simulation, result, modes));
   return modes;
+}
+
+bool are_modes_quick(const Simulation& simulation) {
+  constexpr std::size_t kMostUnknowns = 50000, kMostCoordinates = 300;
+  return simulation.degrees_of_freedom() <= kMostUnknowns && simulation.coordinate_names().size() <= kMostCoordinates;
 }
 
 std::vector<Mode> initial_modes(const Simulation& simulation, int count) {

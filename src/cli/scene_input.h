@@ -27,12 +27,16 @@ Simulation load_simulation(const SceneInput& input, const SimulationOptions& opt
 /// For options: a finite number > 0, or >= 0.
 std::string check_positive(const std::string& text);
 std::string check_non_negative(const std::string& text);
+/// The same for a tolerance of Newton's method.
+std::string check_tolerance(const std::string& text);
 
 /// Goes to the equilibrium if there is one that can be found; the `count` first modes about it. A mechanism that can
 /// move freely has none, which is said on the standard error output; then initial_modes().
 /// @throws std::runtime_error if the eigenvalue problem cannot be solved.
 std::vector<Mode> modes_about_equilibrium(Simulation& simulation, int count);
 
+/// Whether a few modes take seconds and no more: without springs, there is a free one for every joint coordinate.
+bool are_modes_quick(const Simulation& simulation);
 /// Modes about the present configuration: `count`, and as many more as there may be free motions.
 std::vector<Mode> initial_modes(const Simulation& simulation, int count);
 

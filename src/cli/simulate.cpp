@@ -1,10 +1,13 @@
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <limits>
 #include <optional>
 
 #include <fmt/format.h>
 
 #include "cli/commands.h"
+#include "cli/files.h"
 #include "cli/interruption.h"
 #include "cli/progress_bar.h"
 #include "cli/scene_input.h"
@@ -17,17 +20,55 @@ namespace {
 struct Arguments {
   SceneInput scene;
   std::string output, resume, checkpoint;
-  double until = 10;  // s
+  double until = 10;            // s
+  double checkpoint_every = 0;  // s; 0: at the end only
   int every = 1;
   bool quiet = false;
   SimulationOptions options;
 };
+
+/// Where what happened is told: not among the results.
+std::FILE* report_stream(const Arguments& arguments) {
+  return is_standard_output(arguments.output) ? stderr : stdout;
+}
 
 /// How a run went.
 struct Run {
   StepResult last;  // of the last step; converged unless the run failed
   long steps = 0, iterations = 0, halvings = 0;
   double seconds = 0;  // of the wall clock
+};
+
+void check_places(const Arguments& arguments) {
+  for (const std::string& other : {arguments.scene.path, arguments.resume, arguments.checkpoint})
+    refuse_overwriting("--output", arguments.output, other);
+  refuse_overwriting("--checkpoint", arguments.checkpoint, arguments.scene.path);
+}
+
+/// Times of more steps than this could not be told apart.
+void check_duration(const Arguments& arguments, const Simulation& simulation) {
+  constexpr double kMostSteps = 1e15;
+  const double steps = (arguments.until - simulation.time()) / simulation.step_size();
+  if (steps > kMostSteps)
+    throw InputError(fmt::format("flexarm: {:.3g} steps of {} s to --until {} s are more than {:.0e}", steps,
+                                 simulation.step_size(), arguments.until, kMostSteps));
+}
+
+/// When checkpoints on the way are due, in simulated time.
+class CheckpointTimes {
+ public:
+  CheckpointTimes(double begin, double every)
+      : every_(every), next_(every > 0 ? begin + every : std::numeric_limits<double>::infinity()) {}
+
+  /// At `time`, of a run in steps of `step` [s].
+  bool is_due(double time, double step) {
+    if (time < next_ - 0.5 * step) return false;
+    next_ = std::max(next_ + every_, time);
+    return true;
+  }
+
+ private:
+  double every_, next_;
 };
 
 std::optional<CsvWriter> open_output(const Arguments& arguments, const Simulation& simulation) {
@@ -40,8 +81,10 @@ std::optional<CsvWriter> open_output(const Arguments& arguments, const Simulatio
 }
 
 /// Steps to the end, to a failure or to an interruption; the output ends with the last good state.
+/// @throws std::runtime_error if results or a checkpoint on the way cannot be written.
 Run run(const Arguments& arguments, Simulation& simulation) {
   std::optional<CsvWriter> output = open_output(arguments, simulation);
+  CheckpointTimes checkpoints(simulation.time(), arguments.checkpoint_every);
   ProgressBar progress(simulation.time(), arguments.until, !arguments.quiet);
   const auto start = std::chrono::steady_clock::now();
   Run run;
@@ -50,12 +93,14 @@ Run run(const Arguments& arguments, Simulation& simulation) {
   double written = simulation.time();
   // A step that would only make up for round-off is not taken.
   const double end = arguments.until - 1e-6 * simulation.step_size();
-  while (run.last.converged && simulation.time() < end && !is_interrupted()) {
+  while (run.last.converged && simulation.time() < end && interruption() == 0) {
     run.last = simulation.step();
     ++run.steps;
     run.iterations += run.last.iterations;
     run.halvings += run.last.halvings;
     progress.show(simulation.time());
+    if (run.last.converged && checkpoints.is_due(simulation.time(), simulation.step_size()))
+      write_checkpoint(simulation, arguments.checkpoint);
     if (!output) continue;
     output->count(run.last);
     if (run.last.converged && run.steps % arguments.every != 0) continue;
@@ -66,6 +111,18 @@ Run run(const Arguments& arguments, Simulation& simulation) {
   if (output) output->close();
   run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return run;
+}
+
+/// The run; if it cannot be written, the state at which that was noticed is kept.
+Run run_and_keep(const Arguments& arguments, Simulation& simulation) {
+  try {
+    return run(arguments, simulation);
+  } catch (const InputError&) {
+    throw;  // nothing has happened yet
+  } catch (const std::runtime_error&) {
+    if (!arguments.checkpoint.empty()) write_checkpoint(simulation, arguments.checkpoint);
+    throw;
+  }
 }
 
 /// Says what went wrong and where the last good state is.
@@ -79,35 +136,45 @@ void report_failure(const Arguments& arguments, const Simulation& simulation, co
   fmt::print(stderr, "flexarm: the last good state is kept in '{}'\n", kept);
 }
 
+void print_summary(const Arguments& arguments, const Simulation& simulation, double begin, const Run& run) {
+  fmt::print(report_stream(arguments),
+             "t = {:.6g} s after {} steps ({}, {:.2f} iterations per step, {} halvings), {:.3g} s of computing, {:.3g} "
+             "times real time\n",
+             simulation.time(), run.steps, simulation.scheme(),
+             run.steps > 0 ? static_cast<double>(run.iterations) / static_cast<double>(run.steps) : 0.0, run.halvings,
+             run.seconds, run.seconds > 0 ? (simulation.time() - begin) / run.seconds : 0.0);
+}
+
+/// Whatever of the files can be found wrong before the run is an error of input.
+void prepare_files(const Arguments& arguments, Simulation& simulation) {
+  try {
+    if (!arguments.resume.empty()) read_checkpoint(simulation, arguments.resume);
+    if (!arguments.checkpoint.empty()) try_checkpoint(simulation, arguments.checkpoint);
+  } catch (const std::runtime_error& error) {
+    throw InputError("flexarm: " + std::string(error.what()));
+  }
+}
+
 int simulate(const Arguments& arguments) {
+  check_places(arguments);
   SimulationOptions options = arguments.options;
   // A run that is stopped and resumed gives the same numbers as one that is not.
   options.reuse_factorisation = arguments.resume.empty() && arguments.checkpoint.empty();
   Simulation simulation = load_simulation(arguments.scene, options);
-  if (!arguments.resume.empty()) {
-    try {
-      read_checkpoint(simulation, arguments.resume);
-    } catch (const std::runtime_error& error) {
-      throw InputError("flexarm: " + std::string(error.what()));
-    }
-  }
+  prepare_files(arguments, simulation);
+  check_duration(arguments, simulation);
   const double begin = simulation.time();
   catch_interruptions();
-  const Run result = run(arguments, simulation);
+  const Run result = run_and_keep(arguments, simulation);
   if (!result.last.converged) {
     report_failure(arguments, simulation, result);
     return kFailed;
   }
   if (!arguments.checkpoint.empty()) write_checkpoint(simulation, arguments.checkpoint);
-  if (is_interrupted()) fmt::print(stderr, "flexarm: interrupted at t = {:.17g} s\n", simulation.time());
-  if (!arguments.quiet)
-    fmt::print(
-        "t = {:.6g} s after {} steps ({}, {:.2f} iterations per step, {} halvings), {:.3g} s of computing, {:.3g} "
-        "times real time\n",
-        simulation.time(), result.steps, simulation.scheme(),
-        result.steps > 0 ? static_cast<double>(result.iterations) / static_cast<double>(result.steps) : 0.0,
-        result.halvings, result.seconds, result.seconds > 0 ? (simulation.time() - begin) / result.seconds : 0.0);
-  return kDone;
+  if (!arguments.quiet) print_summary(arguments, simulation, begin, result);
+  if (interruption() == 0) return kDone;
+  fmt::print(stderr, "flexarm: interrupted at t = {:.17g} s\n", simulation.time());
+  return kInterrupted + interruption();
 }
 
 }  // namespace
@@ -119,13 +186,17 @@ void add_simulate(CLI::App& app, int& status) {
   command->add_option("--until", arguments->until, "end time [s]")->capture_default_str()->check(check_non_negative);
   command->add_option("--step", arguments->options.step, "time step [s]")->check(check_positive);
   command->add_option("--scheme", arguments->options.scheme, "integration scheme");
-  command->add_option("--tolerance", arguments->options.tolerance, "of Newton's method")->check(check_positive);
-  command->add_option("--output", arguments->output, "CSV file for the results");
+  command->add_option("--tolerance", arguments->options.tolerance, "of Newton's method")->check(check_tolerance);
+  command->add_option("--output", arguments->output, "CSV file for the results; -: standard output");
   command->add_option("--every", arguments->every, "steps between rows of the output")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000000000));
   command->add_option("--resume", arguments->resume, "state file to start from");
-  command->add_option("--checkpoint", arguments->checkpoint, "state file to write at the end");
+  CLI::Option* checkpoint =
+      command->add_option("--checkpoint", arguments->checkpoint, "state file to write at the end");
+  command->add_option("--checkpoint-every", arguments->checkpoint_every, "simulated time between writings of it [s]")
+      ->check(check_positive)
+      ->needs(checkpoint);
   command->add_flag("--quiet", arguments->quiet, "no progress bar and no summary");
   command->callback([arguments, &status] { status = simulate(*arguments); });
 }

@@ -1,6 +1,9 @@
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "cli/commands.h"
+#include "cli/files.h"
 #include "cli/scene_input.h"
 #include "flexarm/simulation/csv_writer.h"
 
@@ -32,13 +35,15 @@ void print_equilibrium(const Simulation& simulation) {
 }
 
 int solve(const Arguments& arguments) {
+  refuse_overwriting("--output", arguments.output, arguments.scene.path);
   Simulation simulation = load_simulation(arguments.scene);
   const StepResult result = simulation.solve_static(arguments.load_steps);
   if (!result.converged) {
-    fmt::print(stderr, "flexarm: {}\n", lack_of_equilibrium(simulation, result, initial_modes(simulation, 1)));
+    const std::vector<Mode> modes = are_modes_quick(simulation) ? initial_modes(simulation, 1) : std::vector<Mode>();
+    fmt::print(stderr, "flexarm: {}\n", lack_of_equilibrium(simulation, result, modes));
     return kFailed;
   }
-  print_equilibrium(simulation);
+  if (!is_standard_output(arguments.output)) print_equilibrium(simulation);
   if (arguments.output.empty()) return kDone;
   CsvWriter output(arguments.output, simulation, CsvWriter::Columns::State);
   output.write_row(simulation);
@@ -55,7 +60,7 @@ void add_static(CLI::App& app, int& status) {
   command->add_option("--load-steps", arguments->load_steps, "steps in which gravity and loads grow")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000000));
-  command->add_option("--output", arguments->output, "CSV file for the equilibrium");
+  command->add_option("--output", arguments->output, "CSV file for the equilibrium; -: standard output");
   command->callback([arguments, &status] { status = solve(*arguments); });
 }
 

@@ -142,11 +142,15 @@ bool NewtonIteration::stalls(const Progress& progress) const {
   return system_.configuration().step() != 0 && progress.since_revision >= kPatience && progress.contraction > kStalled;
 }
 
-/// The second update of a solve is what the first one left.
+/// The second update of a solve is what the first one left. Without factors that are kept nothing is learned, either:
+/// then a step follows from the state alone, and a restored one continues bit for bit.
 void NewtonIteration::learn(Progress& progress) {
   if (progress.iteration == 0) {
     progress.started_with_kept = progress.with_kept;
     progress.first_residual = system_.residual().norm();
+  }
+  if (!settings_.reuse_factorisation) return;
+  if (progress.iteration == 0) {
     ++starts_[progress.with_kept].age;
   } else if (progress.iteration == 1) {
     const double ratio = progress.first_residual > 0 ? system_.residual().norm() / progress.first_residual : 0.0;

@@ -8,7 +8,7 @@ struct StepSettings {
   double step = 1e-3;       ///< [s]
   double tolerance = 1e-8;  ///< on the largest update: displacements over the model's length scale, rotations in rad
   int max_iterations = 20;
-  int max_halvings = 5;
+  int max_halvings = 14;
   /// Keep the factors of the tangent while the iteration contracts well (modified Newton). The result agrees with that
   /// of full Newton to far below the tolerance; off: quadratic convergence, and a restored state continues bit for bit.
   bool reuse_factorisation = true;

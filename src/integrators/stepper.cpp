@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "math/flush_subnormals.h"
 
@@ -104,8 +105,9 @@ StepResult Stepper::advance(State& state) {
     const int level = state.halving_level;
     if (sub_step(state, std::ldexp(settings_.step, -level), result)) {
       done += whole >> level;
+      state.good_steps = std::min(state.good_steps, std::numeric_limits<int>::max() - 1) + 1;
       // Doubling must keep sub-steps on the grid of the longer ones.
-      if (++state.good_steps >= kGoodStepsToDouble && level > 0 && done % (whole >> (level - 1)) == 0) {
+      if (state.good_steps >= kGoodStepsToDouble && level > 0 && done % (whole >> (level - 1)) == 0) {
         --state.halving_level;
         state.good_steps = 0;
       }

@@ -7,6 +7,7 @@ namespace flexarm::scene {
 
 constexpr std::size_t kLargestFile = 16u << 20;  ///< bytes
 constexpr int kDeepestNesting = 32;              ///< elements inside one another
+constexpr int kMostAttributes = 1000;            ///< of an element: parsing takes the square of their number
 constexpr std::size_t kMostLinks = 10000;
 constexpr std::size_t kMostJoints = 10000;
 constexpr std::size_t kMostSimulationEntries = 10000;  ///< children of <simulation>
@@ -14,6 +15,7 @@ constexpr std::size_t kMostCentrelinePieces = 10000;   ///< per beam
 constexpr double kLongestPiece = 1e9;                  ///< of a centreline, and radius of an arc [m]
 constexpr std::size_t kMostProfilePoints = 10000;      ///< of a cam
 constexpr int kMostBeamElements = 100000;              ///< per beam
+constexpr int kMostBeamNodes = 200000;                 ///< of all beams: 2 GB
 constexpr int kMostNewtonIterations = 1000;
 constexpr int kMostHalvings = 30;               ///< a step over 2^30
 constexpr std::size_t kLongestName = 256;       ///< bytes, of links, joints and probes

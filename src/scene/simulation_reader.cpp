@@ -12,6 +12,8 @@ namespace {
 
 constexpr NumberRange kUnitInterval{"from 0 to 1", [](double x) { return x >= 0 && x <= 1; }};
 
+constexpr NumberRange kTolerance{"> 0 and at most 1", [](double x) { return x > 0 && x <= kLargestTolerance; }};
+
 /// beta of Newmark's method divides: the explicit beta = 0 is another algorithm.
 constexpr NumberRange kHhtRange{"from -1/3 to 0", [](double x) { return x >= -1.0 / 3 && x <= 0; }};
 
@@ -53,12 +55,14 @@ void read_scheme(const XmlElement& integrator, IntegratorDescription& descriptio
     integrator.attribute_error(conflict.attribute.c_str(), conflict.message);
 }
 
-void read_integrator(const XmlElement& integrator, IntegratorDescription& description) {
+void read_integrator(const XmlElement& integrator, SceneDescription& scene) {
+  IntegratorDescription& description = scene.integrator;
+  scene.integrator_location = integrator.location();
   integrator.expect_only({"scheme", "step", "tolerance", "max_iterations", "max_halvings", "interpolation", "weak_form",
                           "beta", "gamma", "alpha", "rho_infinity"});
   read_scheme(integrator, description);
   description.step = integrator.number("step", kPositive, description.step);
-  description.tolerance = integrator.number("tolerance", kPositive, description.tolerance);
+  description.tolerance = integrator.number("tolerance", kTolerance, description.tolerance);
   if (integrator.has("max_iterations"))
     description.max_iterations = integrator.integer("max_iterations", 1, kMostNewtonIterations).value_or(1);
   if (integrator.has("max_halvings"))
@@ -173,7 +177,7 @@ void read_simulation(const XmlElement& unowned, SceneDescription& scene, StartRe
   for (const XmlElement& entry : entries) {
     const std::string tag = entry.tag();
     if (tag == "gravity") read_gravity(entry, scene);
-    if (tag == "integrator") read_integrator(entry, scene.integrator);
+    if (tag == "integrator") read_integrator(entry, scene);
     if (tag == "root") read_root(entry, start);
     if (tag == "initial") read_initial(entry, scene, start);
     if (tag == "load") read_load(entry, scene);

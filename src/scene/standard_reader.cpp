@@ -22,15 +22,15 @@ struct StandardAttribute {
 };
 
 constexpr StandardAttribute kInertialAttributes[] = {
-    {"origin", "xyz", 3, false, kAnyNumber},  {"origin", "rpy", 3, false, kAnyNumber},
-    {"mass", "value", 1, true, kNonNegative}, {"inertia", "ixx", 1, true, kAnyNumber},
-    {"inertia", "ixy", 1, true, kAnyNumber},  {"inertia", "ixz", 1, true, kAnyNumber},
-    {"inertia", "iyy", 1, true, kAnyNumber},  {"inertia", "iyz", 1, true, kAnyNumber},
-    {"inertia", "izz", 1, true, kAnyNumber},
+    {"origin", "xyz", 3, false, kModerate},   {"origin", "rpy", 3, false, kModerate},
+    {"mass", "value", 1, true, kNonNegative}, {"inertia", "ixx", 1, true, kModerate},
+    {"inertia", "ixy", 1, true, kModerate},   {"inertia", "ixz", 1, true, kModerate},
+    {"inertia", "iyy", 1, true, kModerate},   {"inertia", "iyz", 1, true, kModerate},
+    {"inertia", "izz", 1, true, kModerate},
 };
 
 constexpr StandardAttribute kJointAttributes[] = {
-    {"origin", "xyz", 3, false, kAnyNumber},         {"origin", "rpy", 3, false, kAnyNumber},
+    {"origin", "xyz", 3, false, kModerate},          {"origin", "rpy", 3, false, kModerate},
     {"limit", "lower", 1, false, kAnyNumber},        {"limit", "upper", 1, false, kAnyNumber},
     {"limit", "effort", 1, false, kNonNegative},     {"limit", "velocity", 1, false, kNonNegative},
     {"dynamics", "damping", 1, false, kNonNegative}, {"dynamics", "friction", 1, false, kNonNegative},

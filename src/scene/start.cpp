@@ -95,6 +95,17 @@ void check_start(const JointDescription& joint, double position, const SourceLoc
                    fmt::format("'{}'", position));
 }
 
+/// A velocity alone leaves a slider where its <slide> has it start.
+void start_sliders(const SceneDescription& scene, const std::set<std::string>& placed,
+                   const std::map<std::string, InitialJoint*>& initials) {
+  for (const JointDescription& joint : scene.joints) {
+    if (!joint.slide) continue;
+    const std::string travel = joint.name + coordinate_suffixes(joint).front();
+    const auto initial = initials.find(travel);
+    if (initial != initials.end() && placed.count(travel) == 0) initial->second->position = joint.slide->start;
+  }
+}
+
 }  // namespace
 
 void settle_root(SceneDescription& scene, const StartRequest& request, Findings& findings) {
@@ -122,6 +133,7 @@ void settle_positions(SceneDescription& scene, const StartRequest& request, cons
     if (unreadable.count(coordinate) == 0)
       check_limited(scene, coordinate, initials.at(coordinate)->location.line, findings);
 
+  start_sliders(scene, request.placed, initials);
   std::vector<InitialJoint> added;
   for (const JointDescription& joint : scene.joints) {
     if (!has_stops(joint, moved)) continue;

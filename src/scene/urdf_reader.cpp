@@ -72,14 +72,14 @@ class SceneReader {
       scene_.links.push_back(read_whole_link(child));
       if (findings_.error_count() > errors) unreadable_.insert(scene_.links.back().name);
     } else if (tag == "joint" && scene_.joints.size() <= kMostJoints) {
-      check_places(child);
       scene_.joints.push_back(read_joint(child));
+      check_places(child.with_name(scene_.joints.back().name));
       if (findings_.error_count() > errors) unreadable_.insert(scene_.joints.back().name);
     } else if (tag == "material") {
       judge_material(child);
     } else if (tag == "loop_joint" && scene_.loop_joints.size() <= kMostJoints) {
-      check_places(child);
       scene_.loop_joints.push_back(read_loop_joint(child));
+      check_places(child.with_name(scene_.loop_joints.back().name));
       if (findings_.error_count() > errors) unreadable_.insert(scene_.loop_joints.back().name);
     } else if (tag == "simulation") {
       read_simulation(child, scene_, start_);

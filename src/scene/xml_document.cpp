@@ -55,6 +55,25 @@ std::size_t find_declaration(const std::string& text) {
   return kEnd;
 }
 
+/// First tag with more attributes than it may have.
+std::size_t find_crowded_tag(const std::string& text) {
+  for (std::size_t i = text.find('<'); i != kEnd; i = text.find('<', i)) {
+    if (text.compare(i, 4, "<!--") == 0) {
+      i = after(text, "-->", i + 4);
+    } else if (text.compare(i, 9, "<![CDATA[") == 0) {
+      i = after(text, "]]>", i + 9);
+    } else {
+      const std::size_t tag = i;
+      for (int attributes = 0; i != kEnd && text[i] != '>'; i = text.find_first_of("='\">", i + 1)) {
+        if (text[i] == '=' && ++attributes > kMostAttributes) return tag;
+        if (text[i] == '"' || text[i] == '\'') i = text.find(text[i], i + 1);
+        if (i == kEnd) return kEnd;
+      }
+    }
+  }
+  return kEnd;
+}
+
 /// First element that lies too deep, walked without recursion.
 const tinyxml2::XMLElement* find_too_deep(const tinyxml2::XMLElement* root) {
   int depth = 1;
@@ -87,6 +106,13 @@ bool parse_xml(const std::string& text, tinyxml2::XMLDocument& document, Finding
   if (declaration != kEnd) {
     findings.error(line_of(text, declaration), "file", "document type and entity declarations are not allowed",
                    quoted(text.substr(declaration, 20)));
+    return false;
+  }
+  const std::size_t crowded = find_crowded_tag(text);
+  if (crowded != kEnd) {
+    findings.error(line_of(text, crowded), "file",
+                   "an element may have " + std::to_string(kMostAttributes) + " attributes",
+                   quoted(text.substr(crowded, 20)));
     return false;
   }
   if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {

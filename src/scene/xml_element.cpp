@@ -185,7 +185,7 @@ std::optional<int> XmlElement::integer(const char* attribute, int least, int mos
 }
 
 std::optional<Vector3> XmlElement::vector(const char* attribute) const {
-  const std::optional<std::vector<double>> values = numbers(attribute, 3, kAnyNumber);
+  const std::optional<std::vector<double>> values = numbers(attribute, 3, kModerate);
   if (!values) return std::nullopt;
   return Vector3((*values)[0], (*values)[1], (*values)[2]);
 }

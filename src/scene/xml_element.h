@@ -19,6 +19,8 @@ struct NumberRange {
   bool (*holds)(double);
 };
 constexpr NumberRange kAnyNumber{"a finite number", [](double) { return true; }};
+/// Of what is squared and multiplied: the product of three such numbers and two squares is finite.
+constexpr NumberRange kModerate{"at most 1e60 in absolute value", [](double x) { return -1e60 <= x && x <= 1e60; }};
 constexpr NumberRange kPositive{"> 0", [](double x) { return x > 0; }};
 constexpr NumberRange kNotZero{"different from 0", [](double x) { return x != 0; }};
 constexpr NumberRange kNonNegative{">= 0", [](double x) { return x >= 0; }};
@@ -72,6 +74,7 @@ class XmlElement {
   std::optional<std::vector<double>> all_numbers(const char* attribute, std::size_t most) const;
   /// `alternative` ends the message (" or 'auto'").
   std::optional<int> integer(const char* attribute, int least, int most, const char* alternative = "") const;
+  /// Of moderate numbers.
   std::optional<Vector3> vector(const char* attribute) const;
   Vector3 vector(const char* attribute, const Vector3& fallback) const;
   /// A vector of unit length from one of any length but zero.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <iterator>
 #include <sstream>
@@ -15,6 +14,7 @@
 #include "simulation/inside.h"
 #include "simulation/scene_identity.h"
 #include "simulation/state_numbers.h"
+#include "simulation/unfinished_file.h"
 
 namespace flexarm {
 namespace {
@@ -142,19 +142,30 @@ void read_counts(Reader& reader, State& state) {
   for (std::vector<double>& made : history.increments) made.assign(increments, 0.0);
 }
 
+std::string text_of(const Simulation& simulation) {
+  std::string text = fmt::format("{}\n{}{}", kHeader, identity(simulation), counts_line(state_of(simulation)));
+  for_each_number(state_of(simulation), [&](const char*, double value) { text += hexadecimal(value) + "\n"; });
+  return text + checksum_line(text);
+}
+
+/// Errors of `write` name the file.
+template <class Write>
+void naming(const std::string& path, const Write& write) {
+  try {
+    write();
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error("checkpoint '" + path + "' " + error.what());
+  }
+}
+
 }  // namespace
 
 void write_checkpoint(const Simulation& simulation, const std::string& path) {
-  std::string text = fmt::format("{}\n{}{}", kHeader, identity(simulation), counts_line(state_of(simulation)));
-  for_each_number(state_of(simulation), [&](const char*, double value) { text += hexadecimal(value) + "\n"; });
-  text += checksum_line(text);
-  const auto fail = [&](const std::string& what) { throw std::runtime_error("checkpoint '" + path + "': " + what); };
-  const std::string temporary = path + ".partial";
-  std::ofstream out(temporary, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) fail("cannot be written");
-  if (std::rename(temporary.c_str(), path.c_str()) != 0) fail("cannot be renamed from '" + temporary + "'");
+  naming(path, [&] { UnfinishedFile(path, text_of(simulation)).put_in_place(); });
+}
+
+void try_checkpoint(const Simulation& simulation, const std::string& path) {
+  naming(path, [&] { UnfinishedFile(path, text_of(simulation)); });
 }
 
 void read_checkpoint(Simulation& simulation, const std::string& path) {
@@ -164,11 +175,16 @@ void read_checkpoint(Simulation& simulation, const std::string& path) {
   read_counts(reader, state);
   for_each_number(state, [&](const char* what, double& value) { value = reader.number(what); });
   if (const std::string line = reader.next(); line.rfind("checksum ", 0) != 0) reader.fail_line(line, "the checksum");
+  const Snapshot before = simulation.snapshot();
   try {
     restore(simulation, state);
   } catch (const std::invalid_argument& error) {
     reader.fail(error.what());
   }
+  const Energies energies = simulation.energies();
+  if (std::isfinite(energies.total() + energies.work + energies.dissipated)) return;
+  simulation.restore(before);
+  reader.fail("not a state of this scene: its energies are not finite");
 }
 
 }  // namespace flexarm

@@ -5,6 +5,8 @@
 #include <initializer_list>
 #include <stdexcept>
 
+#include <unistd.h>
+
 #include <fmt/format.h>
 
 #include "flexarm/scene/scene_description.h"
@@ -15,8 +17,20 @@ namespace {
 
 using csv::append;
 
+bool is_standard_output(const std::string& path) {
+  return path == "-";
+}
+
 [[noreturn]] void fail(const std::string& path) {
-  throw std::runtime_error(fmt::format("cannot write '{}': {}", path, std::strerror(errno)));
+  const std::string place = is_standard_output(path) ? "the standard output" : "'" + path + "'";
+  throw std::runtime_error(fmt::format("cannot write {}: {}", place, std::strerror(errno)));
+}
+
+std::FILE* open(const std::string& path) {
+  std::FILE* file = is_standard_output(path) ? fdopen(dup(STDOUT_FILENO), "w") : std::fopen(path.c_str(), "w");
+  // Rows go out as a whole: a reader, or what is left when the process is killed, has no broken ones.
+  if (file) std::setvbuf(file, nullptr, _IONBF, 0);
+  return file;
 }
 
 // ---------------------------------------------------------------- header
@@ -74,7 +88,7 @@ void append_state(std::string& line, const Simulation& simulation) {
 }  // namespace
 
 CsvWriter::CsvWriter(const std::string& path, const Simulation& simulation, Columns columns)
-    : path_(path), file_(std::fopen(path.c_str(), "w")), columns_(columns) {
+    : path_(path), file_(open(path)), columns_(columns) {
   if (!file_) fail(path_);
   append_header(line_, simulation, columns_);
   write_line(line_);
@@ -102,9 +116,15 @@ void CsvWriter::close() {
 
 void CsvWriter::write_line(std::string& line) {
   line += '\n';
-  const bool is_written = std::fwrite(line.data(), 1, line.size(), file_.get()) == line.size();
+  if (std::fwrite(line.data(), 1, line.size(), file_.get()) != line.size()) {
+    const int reason = errno;
+    // The part of a row that still had room; of what is no regular file nothing can be taken back.
+    [[maybe_unused]] const int ignored = ftruncate(fileno(file_.get()), written_);
+    errno = reason;
+    fail(path_);
+  }
+  written_ += static_cast<long>(line.size());
   line.clear();  // keeps its memory for the next row
-  if (!is_written) fail(path_);
 }
 
 }  // namespace flexarm

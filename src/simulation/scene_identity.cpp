@@ -138,8 +138,8 @@ std::string named_lines(const char* kind, const Parts& parts) {
 }  // namespace
 
 std::string scene_identity(const scene::SceneDescription& scene) {
-  const auto& [name, file, root, links, joints, loop_joints, gravity, integrator, initial_joints, initial_links, loads,
-               distributed_loads, motions, efforts, probes, lock_massless] = scene;
+  const auto& [name, file, root, links, joints, loop_joints, gravity, integrator, integrator_location, initial_joints,
+               initial_links, loads, distributed_loads, motions, efforts, probes, lock_massless] = scene;
   return integrator_line(integrator) + "\n" + named_lines("link", links) + named_lines("joint", joints) +
          named_lines("loop_joint", loop_joints) +
          fmt::format("gravity {}\ninitial {}\nload {}\ndistributed_load {}\nmotion {}\neffort {}\n",

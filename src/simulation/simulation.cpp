@@ -23,6 +23,22 @@
 namespace flexarm {
 namespace {
 
+/// "file:line: ", of <integrator>, or of the file where it has none.
+std::string integrator_place(const scene::SceneDescription& scene) {
+  const scene::SourceLocation& place = scene.integrator_location;
+  return place.line > 0 ? fmt::format("{}:{}: ", place.file, place.line) : scene.file + ": ";
+}
+
+/// What `make` returns; what it finds wrong with <integrator> says where that is.
+template <class Make>
+auto made_for_integrator(const scene::SceneDescription& scene, const Make& make) {
+  try {
+    return make();
+  } catch (const ModelError& error) {
+    throw ModelError(integrator_place(scene) + error.what());
+  }
+}
+
 StepSettings settings_of(const scene::SceneDescription& scene, const SimulationOptions& options) {
   StepSettings settings;
   settings.step = options.step.value_or(scene.integrator.step);
@@ -30,11 +46,11 @@ StepSettings settings_of(const scene::SceneDescription& scene, const SimulationO
   settings.max_iterations = scene.integrator.max_iterations;
   settings.max_halvings = scene.integrator.max_halvings;
   settings.reuse_factorisation = options.reuse_factorisation;
-  const auto require = [](bool ok, const std::string& what) {
-    if (!ok) throw ModelError("<integrator>: " + what);
+  const auto require = [&](bool ok, const std::string& what) {
+    if (!ok) throw ModelError(integrator_place(scene) + "<integrator>: " + what);
   };
   require(std::isfinite(settings.step) && settings.step > 0, "step must be > 0");
-  require(std::isfinite(settings.tolerance) && settings.tolerance > 0, "tolerance must be > 0");
+  require(settings.tolerance > 0 && settings.tolerance <= kLargestTolerance, "tolerance must be > 0 and at most 1");
   require(settings.max_iterations >= 1, "max_iterations must be >= 1");
   require(settings.max_halvings >= 0 && settings.max_halvings <= 30, "max_halvings must be 0 to 30");
   return settings;
@@ -77,10 +93,10 @@ struct Simulation::Implementation {
 
   Implementation(scene::SceneDescription description, const SimulationOptions& options)
       : scene(with_options(std::move(description), options)),
-        scheme(make_scheme(scene.integrator)),
+        scheme(made_for_integrator(scene, [&] { return make_scheme(scene.integrator); })),
         settings(settings_of(scene, options)),
         model(build_model(scene)),
-        stepper(std::make_unique<Stepper>(model, scheme, settings)),
+        stepper(made_for_integrator(scene, [&] { return std::make_unique<Stepper>(model, scheme, settings); })),
         initial(initial_state(model)) {
     require_suitable_slides(scene, scheme);
     for (const Coordinate& coordinate : model.coordinates) {

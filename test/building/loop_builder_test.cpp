@@ -241,7 +241,8 @@ TEST(RigidLoopBuilder, RatesOfTheOtherJointsFollow) {
   EXPECT_NEAR(coupler[4], 0, 1e-12);
   EXPECT_NEAR(rocker[4], 0.8 / 0.6, 1e-12);
   b.scene.initial_joints.push_back({"foot", 0, 1, {}});
-  expect_error(b.scene, "the initial velocities of the joints do not agree with the loop that 'hip' closes");
+  expect_error(b.scene,
+               "<loop_joint> 'hip': the initial velocities of joints do not agree with the loop that it closes");
 }
 
 TEST(RigidLoopBuilder, EachOfSeveralLoopsIsClosedAsIfAlone) {
@@ -271,7 +272,8 @@ TEST(RigidLoopBuilder, EachOfSeveralLoopsIsClosedAsIfAlone) {
       EXPECT_NEAR(model.initial_velocity[closure.parent][4], rate * 0.4 / 0.6, 1e-12) << base;
     }
     b.scene.initial_joints.push_back({"foot2", 0, 1, {}});
-    expect_error(b.scene, "the initial velocities of the joints do not agree with the loop that 'hip' closes");
+    expect_error(b.scene,
+                 "<loop_joint> 'hip': the initial velocities of joints do not agree with the loop that it closes");
   }
 }
 
@@ -321,12 +323,12 @@ TEST(RigidLoopBuilder, WhatHasNoCoordinateIsRefused) {
       scene.joints[i].friction_law.law = scene::FrictionDescription::Law::Coulomb;
     }
   };
-  expect([&](auto& scene) { stick(scene, 2); }, "more joints of the rigid loop that 'hip' closes may stick");
+  expect([&](auto& scene) { stick(scene, 2); },
+         "<loop_joint> 'hip': more joints of the rigid loop that it closes may stick");
   SceneBuilder one = rigid_crank_rocker();
   stick(one.scene, 1);
   EXPECT_NO_THROW(build_model(one.scene));
-  expect([](auto& scene) { scene.loop_joints[0].kind = JointKind::Fixed; },
-         "the loop joints leave the mechanism no motion");
+  expect([](auto& scene) { scene.loop_joints[0].kind = JointKind::Fixed; }, "leave the mechanism no motion");
 }
 
 TEST(LoopBuilder, OutsideOfTheScene) {

@@ -1,4 +1,6 @@
 // Scenes that are impossible as mechanisms.
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include "building/expect_model_error.h"
@@ -98,6 +100,60 @@ TEST(ModelErrors, PointMassOnTheAxis) {
     builder.joint("spin", JointKind::Continuous, "world", "bead", 3 * random.vector(), axis);
     expect_error(builder.scene, "'spin' moves nothing");
   }
+}
+
+// Round-off is that of the mechanism, wherever it stands.
+TEST(ModelErrors, DistanceFromTheWorldsOriginIsNoInertia) {
+  for (const double distance : {1e4, 1e6, 1e9}) {
+    const Vector3 far = distance * Vector3(0.6, -0.48, 0.64);
+    SceneBuilder builder;
+    builder.body("finger", 0.1, Vector3(0.01, 0, 0), 1e-5 * Matrix3::Identity());
+    builder.joint("knuckle", JointKind::Continuous, "world", "finger", far, Vector3::UnitZ());
+    builder.scene.joints[0].limits = scene::JointLimits{-1, 1};
+    const Model model = build_model(builder.scene);
+    // About the axis J + m d^2; places are known to the round-off of the distance.
+    const double round_off = std::numeric_limits<double>::epsilon() * distance / 0.01;
+    EXPECT_NEAR(model.coordinates[0].limit->inertia, 2e-5, 4 * round_off * 2e-5) << distance;
+    builder.scene.links.push_back({"ghost", {}, {}, {}});
+    builder.joint("idle", JointKind::Continuous, "finger", "ghost", Vector3::UnitX(), Vector3::UnitZ());
+    expect_error(builder.scene, "'idle' moves nothing");
+  }
+}
+
+TEST(ModelErrors, MeshesThatAreTooLarge) {
+  for (const auto& [twist, count] :
+       {std::pair(1e6, "1000000"), std::pair(1e10, "more than 1000000000"), std::pair(1e300, "more than 1000000000")}) {
+    SceneBuilder builder;
+    scene::BeamDescription& beam = builder.beam("rod", {{1, 0, 0}}, section(1, 1, 1, 1, 1, 1, 1), 1, 2);
+    beam.elements.reset();
+    beam.location = {"s.urdf", 7};
+    beam.centreline[0].twist = twist;
+    builder.joint("clamp", JointKind::Fixed, "world", "rod");
+    expect_error(builder.scene, "s.urdf:7: <beam> of link 'rod': its mesh would have ");
+    expect_error(builder.scene, twist == 1e6 ? "952381 elements" : std::string(count) + " elements");
+    expect_error(builder.scene, ", and there is room for 100000");
+  }
+  SceneBuilder builder;
+  for (const std::string name : {"a", "b", "c"}) {
+    builder.beam(name, {{1, 0, 0}}, section(1, 1, 1, 1, 1, 1, 1), 99999, 1).location = {"s.urdf", name[0] - 'a'};
+    builder.joint("clamp_" + name, JointKind::Fixed, "world", name);
+  }
+  expect_error(builder.scene,
+               "s.urdf:2: <beam> of link 'c': its mesh would have 99999 elements, and there is room for 0");
+}
+
+TEST(ModelErrors, SectionsBeyondNumbers) {
+  const auto expect_refused = [](const scene::Section& section) {
+    SceneBuilder builder;
+    builder.beam("rod", {{1, 0, 0}}, section, 1, 2).location = {"s.urdf", 7};
+    builder.joint("clamp", JointKind::Fixed, "world", "rod");
+    expect_error(builder.scene,
+                 "s.urdf:7: <beam> of link 'rod': its section's stiffness and mass must be positive finite");
+  };
+  for (const double radius : {1e300, 1e100, 1e-100, 1e-300})
+    expect_refused(scene::GeometricSection{scene::Circle{radius}, {70e9, 0.3, 2700}});
+  expect_refused(scene::GeometricSection{scene::Circle{0.1}, {70e9, 0.3, 5e-324}});
+  expect_refused(section(1, 1, 1, 1, 1, std::numeric_limits<double>::infinity(), 1));
 }
 
 TEST(ModelErrors, TwoParents) {

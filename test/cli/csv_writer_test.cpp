@@ -92,13 +92,7 @@ TEST(CsvWriter, NamesWithSeparatorsStandInQuotes) {
 TEST(CsvWriter, ReportsErrors) {
   const Simulation cart = simulation("rail");
   EXPECT_THROW(CsvWriter("/no/such/folder/out.csv", cart, CsvWriter::Columns::State), std::runtime_error);
-  CsvWriter full("/dev/full", cart, CsvWriter::Columns::State);
-  EXPECT_THROW(
-      {
-        for (int i = 0; i < 1000; ++i) full.write_row(cart);
-        full.close();
-      },
-      std::runtime_error);
+  EXPECT_THROW(CsvWriter("/dev/full", cart, CsvWriter::Columns::State), std::runtime_error);
 }
 
 }  // namespace flexarm::cli

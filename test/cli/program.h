@@ -36,6 +36,17 @@ inline std::string example(const std::string& name) {
   return test::source_path("config/examples/" + name + ".urdf");
 }
 
+/// Writes a scene for this test alone and returns its path.
+inline std::string scene_file(const std::string& text) {
+  const std::string path = temporary("scene.urdf");
+  std::ofstream(path) << text;
+  return path;
+}
+
+inline void expect_contains(const std::string& text, const std::string& fragment) {
+  EXPECT_NE(text.find(fragment), std::string::npos) << "expected '" << fragment << "' in:\n" << text;
+}
+
 /// The path of the program.
 std::string program();
 

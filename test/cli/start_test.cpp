@@ -20,12 +20,6 @@ std::string leg(bool is_ghost = false) {
   <axis xyz="0 1 0"/> <limit lower="-2.5" upper="-0.75" effort="0" velocity="0"/> </joint> </robot>)";
 }
 
-std::string scene_file(const std::string& text) {
-  const std::string path = temporary("scene.urdf");
-  std::ofstream(path) << text;
-  return path;
-}
-
 bool contains(const std::string& text, const std::string& fragment) {
   return text.find(fragment) != std::string::npos;
 }

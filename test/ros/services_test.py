@@ -170,7 +170,7 @@ class Failure(ClockedArm):
         self.assertTrue(status.paused)
         self.assertEqual(status.message, self.answer.message)
         self.assertEqual(status.time, self.answer.time)
-        self.assertEqual(status.halvings - self.before.halvings, 5)  # max_halvings of the failed step
+        self.assertEqual(status.halvings - self.before.halvings, 14)  # max_halvings of the failed step
         wait_until(lambda: self.log.last["/joint_states"].header.stamp == status.header.stamp, "the last good state")
         states = self.log.last["/joint_states"]
         for number in (*states.position, *states.velocity):

@@ -64,6 +64,17 @@ TEST(HostileInput, Size) {
   expect_one_error(loads + "</simulation></robot>", 1, "at most 10000 entries are allowed");
 }
 
+TEST(HostileInput, Attributes) {
+  std::string text = "<robot name=\"r\">\n<link name=\"a\"";
+  for (int i = 0; i < 500000; ++i) text += " a" + std::to_string(i) + "='>'";
+  expect_one_error(text + "/></robot>", 2, "an element may have 1000 attributes, got '<link name=\"a\" a0='>'");
+  // What only looks like them.
+  const std::string equals(5000, '=');
+  EXPECT_TRUE(read("<robot name=\"r\"><!--<a " + equals + "--><link name=\"a\"><visual name=\"" + equals + "\"/><b>" +
+                   "<![CDATA[<a " + equals + "]]>" + equals + "</b></link></robot>")
+                  .scene);
+}
+
 TEST(HostileInput, LongChainsTakeSeconds) {
   std::string chain = "<robot name=\"r\"><link name=\"l0\"/>";
   for (int i = 1; i < 9000; ++i) {

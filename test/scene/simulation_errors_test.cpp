@@ -30,7 +30,9 @@ TEST(SimulationErrors, Structure) {
 TEST(SimulationErrors, Integrator) {
   expect_error(R"(scheme="edmc2")", R"(scheme="rk4")", 60, "scheme must be one of auto, em, em0,");
   expect_error(R"(step="0.002")", R"(step="0")", 60, "<integrator> of simulation: step must be > 0, got '0'");
-  expect_error(R"(tolerance="1e-9")", R"(tolerance="-1")", 60, "tolerance must be > 0");
+  for (const char* tolerance : {"-1", "0", "1.1", "1e300"})
+    expect_error(R"(tolerance="1e-9")", "tolerance=\"" + std::string(tolerance) + "\"", 60,
+                 "tolerance must be > 0 and at most 1, got '" + std::string(tolerance) + "'");
   expect_error(R"(max_iterations="11")", R"(max_iterations="0")", 60,
                "max_iterations must be a whole number from 1 to");
   expect_error(R"(max_halvings="3")", R"(max_halvings="31")", 60, "max_halvings must be a whole number from 0 to 30");

@@ -50,6 +50,21 @@ TEST(Start, OnALimitOrWithoutStopsIsNone) {
   expect_silent(read(mimicking));
 }
 
+TEST(Start, VelocityLeavesASliderAtItsStart) {
+  const auto runner = [](const std::string& initial) {
+    const ReadResult result = read(R"(<robot name="r"> <link name="world"/> <link name="line"> <beam>
+      <centerline> <line to="2 0 0"/> </centerline> <circle radius="0.01"/>
+      <material young="70e9" poisson="0.33" density="2700"/> </beam> </link> <link name="bead"/>
+      <joint name="clamp" type="fixed"> <parent link="world"/> <child link="line"/> </joint>
+      <joint name="run" type="floating"> <parent link="line"/> <child link="bead"/> <slide start="1.5"/> </joint>
+      <simulation>)" + initial + "</simulation> </robot>");
+    return initial_position(result.scene.value(), "run/s");
+  };
+  EXPECT_EQ(runner(R"(<initial joint="run/s" velocity="2"/>)"), 1.5);
+  EXPECT_EQ(runner(R"(<initial joint="run/s" position="0.5" velocity="2"/>)"), 0.5);
+  EXPECT_EQ(runner(R"(<initial joint="run/s" position="0" velocity="2"/>)"), 0);
+}
+
 TEST(Start, ClampOfOneJoint) {
   const ReadResult result = read(leg(R"(<initial joint="knee" position="clamp" velocity="1"/>)"));
   expect_silent(result);

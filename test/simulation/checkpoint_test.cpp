@@ -1,14 +1,18 @@
 // States that are kept, restored, written and read back continue as if nothing had happened.
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
+#include <limits>
 
 #include <gtest/gtest.h>
 
+#include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/checkpoint.h"
 #include "schemes/scheme.h"
 #include "simulation/everything_scene.h"
 #include "simulation/inside.h"
 #include "simulation/same_bits.h"
+#include "support/source_path.h"
 
 namespace flexarm::test {
 namespace {
@@ -143,6 +147,42 @@ INSTANTIATE_TEST_SUITE_P(Schemes, Checkpoint,
                                            "beta1", "beta2", "beta1_repaired", "beta2_repaired", "newmark", "hht1",
                                            "hht2", "hht3"),
                          [](const auto& info) { return info.param; });
+
+std::vector<std::string> scene_files() {
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(source_path("config")))
+    if (entry.path().extension() == ".urdf") files.push_back(entry.path().string());
+  return files;
+}
+
+// What two simulations come to from the same state is the same, wherever each of them was before.
+TEST(StateAlone, LeadsToTheNextStepsInEveryScene) {
+  constexpr int kStretches = 25, kSteps = 25;
+  SimulationOptions options;
+  options.reuse_factorisation = false;
+  for (const std::string& file : scene_files()) {
+    const scene::SceneDescription scene = scene::read_scene_file(file).scene.value();
+    Simulation runs_on(scene, options), restored(scene, options);
+    bool goes_on = true;
+    for (int stretch = 0; stretch < kStretches && goes_on; ++stretch) {
+      restored.restore(runs_on.snapshot());
+      for (int n = 0; n < kSteps && goes_on; ++n) {
+        goes_on = runs_on.step().converged;
+        EXPECT_EQ(restored.step().converged, goes_on);
+      }
+      ASSERT_TRUE(same_bits(state_of(restored), state_of(runs_on))) << file << ", from step " << stretch * kSteps;
+    }
+  }
+}
+
+TEST(StateAlone, CountsNoFurtherThanItMatters) {
+  Simulation simulation(everything_scene().scene);
+  State state = state_of(simulation);
+  state.good_steps = std::numeric_limits<int>::max();
+  restore(simulation, state);
+  ASSERT_TRUE(simulation.step().converged);
+  EXPECT_GT(state_of(simulation).good_steps, 0);
+}
 
 }  // namespace
 }  // namespace flexarm::test

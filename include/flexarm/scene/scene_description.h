@@ -252,6 +252,7 @@ struct SceneDescription {
   std::vector<JointDescription> loop_joints;  ///< close loops of the tree that `joints` form
   Vector3 gravity = Vector3(0, 0, -9.81);     ///< [m/s^2]
   IntegratorDescription integrator;
+  SourceLocation integrator_location;  ///< without line: the scene has no <integrator>
   std::vector<InitialJoint> initial_joints;
   std::vector<InitialLink> initial_links;
   std::vector<PointLoad> loads;

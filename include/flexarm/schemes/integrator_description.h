@@ -22,6 +22,9 @@ enum class WeakForm {
   Additive  ///< total rotation vectors: the static tangent is symmetric
 };
 
+/// Of Newton's method; with more there would be nothing left of it.
+constexpr double kLargestTolerance = 1;
+
 /// <integrator>. Options that are empty have the scheme's own values, in parentheses; docs/schemes.md says which scheme
 /// takes which.
 struct IntegratorDescription {
@@ -31,9 +34,10 @@ struct IntegratorDescription {
   std::optional<double> beta, gamma;           ///< of Newmark's rule, > 0 (1/4, 1/2)
   std::optional<double> alpha;                 ///< of Hilber, Hughes and Taylor's, in [-1/3, 0] (-0.05)
   double step = 1e-3;                          ///< [s]
-  double tolerance = 1e-8;                     ///< on the Newton update, relative to the scene's length and to 1 rad
+  double tolerance = 1e-8;  ///< on the Newton update, relative to the scene's length and to 1 rad, up to
+                            ///< kLargestTolerance
   int max_iterations = 20;
-  int max_halvings = 5;
+  int max_halvings = 14;
   std::optional<double> rho_infinity;  ///< of numerical dissipation: spectral radius at infinite frequency (0.8)
 };
 

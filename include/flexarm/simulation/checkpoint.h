@@ -9,9 +9,14 @@ namespace flexarm {
 
 /// Writes the state of a simulation: text, one number per token in hexadecimal floating point, so that a resumed run
 /// continues exactly if factors are not reused (SimulationOptions), else to within Newton's tolerance. The file is
-/// written beside its place and renamed, never left half-written.
-/// @throws std::runtime_error naming the file if it cannot be written.
+/// written beside its place (PATH.partial), synchronised to disk and renamed: what was there before stays until then.
+/// @throws std::runtime_error naming the file and the reason if it cannot be written.
 void write_checkpoint(const Simulation& simulation, const std::string& path);
+
+/// Does all that write_checkpoint() does but for the last: what is there stays. A long simulation can so find out
+/// before it begins that its state cannot be kept there.
+/// @throws std::runtime_error as write_checkpoint().
+void try_checkpoint(const Simulation& simulation, const std::string& path);
 
 /// Replaces the simulation's state by one written before from the same scene, scheme and step. Newton's tolerance and
 /// limits, and probes, may be others. On an error the simulation is as before.

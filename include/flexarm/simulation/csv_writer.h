@@ -22,15 +22,16 @@ class CsvWriter {
  public:
   enum class Columns { State, StateAndSolver };
 
-  /// Creates the file and writes the header.
-  /// @throws std::runtime_error naming the file if that fails; so do the other functions.
+  /// Creates the file and writes the header. The path "-" means the standard output.
+  /// @throws std::runtime_error naming the file and the reason if that fails; so do the other functions. Rows that were
+  ///   written before are then whole.
   CsvWriter(const std::string& path, const Simulation& simulation, Columns columns);
 
   /// Writes a row with the simulation's present state.
   void write_row(const Simulation& simulation);
   /// Adds the outcome of a step to the solver's counts in the next row.
   void count(const StepResult& result);
-  /// Writes what is still buffered. To be called at the end: the destructor cannot report that the disk is full.
+  /// To be called at the end: the destructor cannot report what a remote file system notices only then.
   void close();
 
  private:
@@ -42,7 +43,8 @@ class CsvWriter {
   std::string path_, line_;
   std::unique_ptr<std::FILE, Closer> file_;
   Columns columns_;
-  int iterations_ = 0, halvings_ = 0;
+  long written_ = 0;  // bytes of whole rows
+  long iterations_ = 0, halvings_ = 0;
 };
 
 }  // namespace flexarm

@@ -1,0 +1,16 @@
+#pragma once
+/// Files that commands write.
+
+#include <string>
+
+namespace flexarm::cli {
+
+/// @throws InputError if `output`, which is that of an option, is the file `input`. An empty path is no file.
+void refuse_overwriting(const std::string& option, const std::string& output, const std::string& input);
+
+/// Whether results go there, so that other text must not.
+inline bool is_standard_output(const std::string& path) {
+  return path == "-";
+}
+
+}  // namespace flexarm::cli

@@ -1,0 +1,27 @@
+#pragma once
+/// Files that are there as a whole, or are what they were before.
+
+#include <string>
+#include <string_view>
+
+namespace flexarm {
+
+/// Text that is on the disk beside the place that it is for, and is removed again unless it is put there.
+class UnfinishedFile {
+ public:
+  /// Writes `text` to where it outlives a loss of power.
+  /// @throws std::runtime_error saying why that cannot be, or why nothing can be put at `path`.
+  UnfinishedFile(const std::string& path, std::string_view text);
+  ~UnfinishedFile();
+  UnfinishedFile(const UnfinishedFile&) = delete;
+  UnfinishedFile& operator=(const UnfinishedFile&) = delete;
+
+  /// In the place of what is at `path`.
+  /// @throws std::runtime_error saying why that cannot be.
+  void put_in_place();
+
+ private:
+  std::string place_, temporary_;  // the one to be replaced, and that beside it; empty: there is none any more
+};
+
+}  // namespace flexarm
