@@ -35,8 +35,8 @@ struct HardCase {
   std::string group, name;
   std::string scene;           ///< URDF, without an integrator
   double step = 0, until = 0;  ///< [s]
-  /// The mechanism could be built and has one motion; else it is to be refused, or to fail with a reason that says more
-  /// than that the iteration did not converge.
+  /// The mechanism could be built and has one motion, which the mesh can describe; else it is to be refused, or to fail
+  /// with a reason that says more than that the iteration did not converge.
   bool is_sound = true;
   bool is_free = false;  ///< nothing acts on it from outside: momenta are kept
   int load_steps = 0;    ///< > 0: an equilibrium is asked for, with so many steps of the load

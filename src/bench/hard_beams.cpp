@@ -128,14 +128,14 @@ void add_blows(std::vector<HardCase>& cases) {
     group.add("gravity of " + exponent(g) + " m/s^2", cantilever(circle(0.01), gravity({0, 0, -g})), 1e-3, 0.1);
   group.add("follower force of 1000 EI/L^2 across the tip",
             unit_cantilever(1e5, load("beam", kTip, {0, 0, 1000}, "min(t, 1)", "follower")), 0.002, 0.5);
-  // From 2 pi on the mesh is too coarse for any interpolation of rotations from the element's middle: to be said.
-  for (const double bend : {1.5, 1.9, 2.5})
+  // Each half of an element is bent through half of that, and rotation vectors have their singularity at 2 pi.
+  for (const double bend : {1.5, 1.9, 2.5, 4.5})
     group
         .add(fmt::format("two elements, slowly bent through {:g} pi each", bend),
              scene(joint("clamp", "fixed", "world", "beam") + beam("beam", kTip, rod(1e5, 1, 1), 2),
                    moment("beam", kTip, {0, 2 * bend * kPi, 0}, "(1 - cos(_pi*min(t, 20)/20))/2")),
              0.02, 20)
-        .is_sound = bend <= 2;
+        .is_sound = bend < 4;
   group.add("bent far, then let go",
             cantilever(rod(2e5, 2, 0.5), load("beam", kTip, {0, 6, 10}, "t < 0.5 ? sin(3.14159265*t)^2 : 0")), 0.01, 2);
 }

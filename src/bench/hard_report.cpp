@@ -224,10 +224,9 @@ std::string to_markdown(const HardReport& report, const std::string& picture) {
       "A run is *right* if it completes, its end is where a closed form or a finer run says, it stays within the "
       "bounds "
       "of its case, its energy account gains less than 5 % of the motion's largest energy and loses no more than all "
-      "of it, "
-      "and the momenta of a free motion change by less than 5 %. *Unsound* mechanisms "
-      "(names in italics) cannot be built or have no definite motion; they are to be refused, or to end with a reason "
-      "that says more than that the iteration did not converge.\n\n",
+      "of it, and the momenta of a free motion change by less than 5 %. *Unsound* scenes (names in italics) cannot be "
+      "built, have no definite motion or far too coarse a mesh; they are to be refused, or to end with a reason that "
+      "says more than that the iteration did not converge.\n\n",
       report.options.quick ? " `--quick`: first steps only" : "", report.rows.size(), report.options.limits.seconds,
       static_cast<double>(report.options.limits.bytes) / (1 << 30));
   text += total_table(report);
