@@ -88,7 +88,9 @@ TEST_P(Allocation, NoneInAThousandSteps) {
   options.scheme = scheme;
   options.reuse_factorisation = reuse;
   scene::SceneDescription scene = everything_scene().scene;
-  if (scheme == "em_scaled") scene.motions.clear();  // refused with them
+  if (scheme == "em_scaled") scene.motions.clear();              // refused with them
+  const bool may_fail = scheme == "beta1" || scheme == "beta2";  // where the axial strain rests (beam.md 3.3)
+  if (may_fail) scene.integrator.max_halvings = 5;               // not deep, a thousand times
   Simulation simulation(scene, options);
   simulation.command_effort(*simulation.find_coordinate("elbow"), 0.1);
   ASSERT_TRUE(simulation.step().converged);
@@ -101,7 +103,6 @@ TEST_P(Allocation, NoneInAThousandSteps) {
               }
             }),
             0);
-  const bool may_fail = scheme == "beta1" || scheme == "beta2";  // where the axial strain rests (beam.md 3.3)
   EXPECT_GE(converged, may_fail ? 1 : 1000);
   if (!may_fail)
     EXPECT_GT(std::abs(simulation.position(*simulation.find_coordinate("hinge"))), 0.015) << "the stop must be reached";
@@ -180,6 +181,7 @@ TEST_F(Allocation, NoneInHalvedOrFailedSteps) {
   b.joint("shaft", scene::JointKind::Continuous, "world", "rotor", {0, 0, 0}, {0, 0, 1});
   b.scene.initial_joints.push_back({"shaft", 0, 10, {}});
   b.scene.integrator.step = 0.1;
+  b.scene.integrator.max_halvings = 5;
   Simulation simulation(b.scene);
   ASSERT_TRUE(simulation.step().converged);
   simulation.command_effort(0, 2000);
