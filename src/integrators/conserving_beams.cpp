@@ -66,7 +66,7 @@ void ConservingBeams::begin() {
       pack.carried.has_conjugate = false;
     }
   });
-  carries_strains_ = true;
+  carries_strains_ = configuration_.model().stiffness_point_count > 0;
 }
 
 void ConservingBeams::accept(State& state) {
@@ -191,7 +191,7 @@ void ConservingBeams::carry_strains(const double* update) {
       }
     });
   });
-  carries_strains_ = true;
+  carries_strains_ = configuration_.model().stiffness_point_count > 0;
 }
 
 void ConservingBeams::add_forces(Balance& balance) {

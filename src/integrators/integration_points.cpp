@@ -18,7 +18,7 @@ void IntegrationPoints::begin(bool carries) {
   reference.begin(configuration_.state());
   if (!hold_) set_begin_points();
   hold_ = true;
-  carries_ = holds_carried_ = carries;
+  carries_ = holds_carried_ = carries && !carried_strains_.empty();
   for (std::size_t k = 0; k < carried_strains_.size(); ++k) carried_strains_[k] = begin_stiffness[k].strain;
 }
 
