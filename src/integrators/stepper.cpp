@@ -16,6 +16,8 @@ constexpr double kOpenLoop = 1e-4;
 /// Suzuki's composition of order four: parts of a step, the middle one runs backwards.
 const double kOuterPart = 1 / (4 - std::cbrt(4.0));
 const double kComposition[] = {kOuterPart, kOuterPart, 1 - 4 * kOuterPart, kOuterPart, kOuterPart};
+/// A step that has been halved so often, and doubled again as often, does not come forward: it is given up.
+constexpr int kMostHalvings = 500;
 /// Converged sub-steps after which the step is doubled again.
 constexpr int kGoodStepsToDouble = 2;
 
@@ -114,7 +116,7 @@ StepResult Stepper::advance(State& state) {
       continue;
     }
     state.good_steps = 0;
-    if (level == finest) {
+    if (level == finest || result.halvings >= kMostHalvings) {
       invalidate();
       return result;
     }

@@ -1,5 +1,6 @@
 #include "fuzz/try_scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 
@@ -63,13 +64,15 @@ Trial run(scene::SceneDescription scene) {
 
 }  // namespace
 
-Trial try_scene(const std::string& text, const std::string& name, double most_elements) {
+Trial try_scene(const std::string& text, const std::string& name, const Limits& limits) {
   scene::ReadResult result = scene::read_scene_text(text, name);
   const std::string said = result.diagnostics.empty() ? "" : result.diagnostics.front().text();
   Trial trial{Trial::End::Refused, said, without_line(result.diagnostics)};
   if (result.scene.has_value() == scene::has_errors(result.diagnostics))
     trial.wrong = "a scene with errors, or none without";
-  if (!result.scene || !trial.wrong.empty() || elements_of(*result.scene) > most_elements) return trial;
+  if (!result.scene || !trial.wrong.empty() || elements_of(*result.scene) > limits.elements) return trial;
+  int& halvings = result.scene->integrator.max_halvings;
+  halvings = std::min(halvings, limits.halvings);
   try {
     return run(std::move(*result.scene));
   } catch (const ModelError& error) {

@@ -13,9 +13,13 @@ struct Trial {
   std::string wrong;  ///< what must not be; empty: nothing
 };
 
-/// Reads a scene called `name`, builds its model and takes three steps. A scene whose beams have more than about
-/// `most_elements` is only read: with sanitizers large ones, which are good, take minutes.
-Trial try_scene(const std::string& text, const std::string& name,
-                double most_elements = std::numeric_limits<double>::infinity());
+/// With sanitizers large scenes, which are good, take minutes, and so do steps that are halved often.
+struct Limits {
+  double elements = std::numeric_limits<double>::infinity();  ///< of all beams, about; a scene with more is only read
+  int halvings = std::numeric_limits<int>::max();             ///< at most, whatever the scene says
+};
+
+/// Reads a scene called `name`, builds its model and takes three steps.
+Trial try_scene(const std::string& text, const std::string& name, const Limits& limits = {});
 
 }  // namespace flexarm::fuzz
