@@ -151,7 +151,7 @@ void DryFrictionStep::add_normal(int j, const Vector6& g, SlideMaps& maps, Balan
   const auto add_derivative = [&](const Vector6& arm, double along, double slope) {
     maps.released_released += slope;
     if (along == 0) return;
-    configuration_.slide_maps(j, arm, scratch_, true);
+    configuration_.joint_maps(j, arm, scratch_, true);
     maps.released_released += along * scratch_.released_released;
     for (int i = 0; i < maps.count; ++i) maps.released_master[i] += along * scratch_.released_master[i];
   };

@@ -82,10 +82,10 @@ Vector6 JointFold::force_on_slave(int j, const Balance& balance) const {
   return residual.node(slave) + balance.carried->node(slave);
 }
 
-void JointFold::fold_slide(int j, Balance& balance) {
+template <class Maps>
+void JointFold::fold(int j, Maps& maps, Balance& balance) {
   const Vector6 g = force_on_slave(j, balance);
-  SlideMaps& maps = balance.tangent ? balance.tangent->slide_maps(j) : slide_maps_;
-  configuration_.slide_maps(j, g, maps, balance.tangent != nullptr);
+  configuration_.joint_maps(j, g, maps, balance.tangent != nullptr);
   friction_.add_normal(j, g, maps, balance);
   balance.residual.fold(j, maps);
   if (balance.carried) balance.carried->fold(j, maps);
@@ -95,16 +95,10 @@ void JointFold::evaluate(Balance& balance) {
   const std::vector<JointMap>& joints = configuration_.model().joints;
   friction_.begin_evaluation();
   for (int j = static_cast<int>(joints.size()) - 1; j >= 0; --j) {
-    if (joints[j].kind == JointMapKind::Slide) {
-      fold_slide(j, balance);
-    } else {
-      const Vector6 g = force_on_slave(j, balance);
-      FoldMaps& maps = balance.tangent ? balance.tangent->fold_maps(j) : fold_maps_;
-      configuration_.joint_maps(j, g, maps, balance.tangent != nullptr);
-      friction_.add_normal(j, g, maps, balance);
-      balance.residual.fold(j, maps);
-      if (balance.carried) balance.carried->fold(j, maps);
-    }
+    if (joints[j].kind == JointMapKind::Slide)
+      fold(j, balance.tangent ? balance.tangent->slide_maps(j) : slide_maps_, balance);
+    else
+      fold(j, balance.tangent ? balance.tangent->fold_maps(j) : fold_maps_, balance);
     if (balance.tangent) balance.tangent->fold(j);
     add_efforts(j, balance);
   }

@@ -27,7 +27,8 @@ class JointFold {
 
  private:
   Vector6 force_on_slave(int joint, const Balance& balance) const;
-  void fold_slide(int joint, Balance& balance);
+  template <class Maps>
+  void fold(int joint, Maps& maps, Balance& balance);
   void add_efforts(int joint, Balance& balance);
   void add_resistance(int joint, Balance& balance);
   double effort_at(const Coordinate& coordinate, std::size_t index) const;

@@ -188,7 +188,7 @@ void StepConfiguration::joint_maps(int j, const Vector6& g, FoldMaps& maps, bool
     variational_maps(joint, end, g, maps);
 }
 
-void StepConfiguration::slide_maps(int j, const Vector6& g, SlideMaps& maps, bool with_tangent) const {
+void StepConfiguration::joint_maps(int j, const Vector6& g, SlideMaps& maps, bool with_tangent) const {
   const SlideTravel travel = slide_travel(j);
   if (has_incremental_joints())
     slide_incremental_maps(travel, g, maps, with_tangent);

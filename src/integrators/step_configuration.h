@@ -65,7 +65,7 @@ class StepConfiguration {
   double increment_of(const Coordinate& coordinate) const;
   /// Maps of a joint for residual `g` on its slave.
   void joint_maps(int joint, const Vector6& g, FoldMaps& maps, bool with_tangent) const;
-  void slide_maps(int joint, const Vector6& g, SlideMaps& maps, bool with_tangent) const;
+  void joint_maps(int joint, const Vector6& g, SlideMaps& maps, bool with_tangent) const;
   MimicMap mimic_map(int coordinate) const;
   /// What passive efforts on a coordinate feel of the step.
   CoordinateStep coordinate_step(std::size_t coordinate, double increment) const;

@@ -41,16 +41,19 @@ std::size_t after(const std::string& text, const char* mark, std::size_t from) {
   return found == kEnd ? kEnd : found + std::string_view(mark).size();
 }
 
+/// The end of the comment or CDATA that begins at `i`; `i` where none does.
+std::size_t after_opaque(const std::string& text, std::size_t i) {
+  if (text.compare(i, 4, "<!--") == 0) return after(text, "-->", i + 4);
+  if (text.compare(i, 9, "<![CDATA[") == 0) return after(text, "]]>", i + 9);
+  return i;
+}
+
 /// First declaration "<!..." that is neither a comment nor CDATA: only these can define entities.
 std::size_t find_declaration(const std::string& text) {
   for (std::size_t i = text.find("<!"); i != kEnd; i = text.find("<!", i)) {
-    if (text.compare(i, 4, "<!--") == 0) {
-      i = after(text, "-->", i + 4);
-    } else if (text.compare(i, 9, "<![CDATA[") == 0) {
-      i = after(text, "]]>", i + 9);
-    } else {
-      return i;
-    }
+    const std::size_t end = after_opaque(text, i);
+    if (end == i) return i;
+    i = end;
   }
   return kEnd;
 }
@@ -58,10 +61,8 @@ std::size_t find_declaration(const std::string& text) {
 /// First tag with more attributes than it may have.
 std::size_t find_crowded_tag(const std::string& text) {
   for (std::size_t i = text.find('<'); i != kEnd; i = text.find('<', i)) {
-    if (text.compare(i, 4, "<!--") == 0) {
-      i = after(text, "-->", i + 4);
-    } else if (text.compare(i, 9, "<![CDATA[") == 0) {
-      i = after(text, "]]>", i + 9);
+    if (const std::size_t end = after_opaque(text, i); end != i) {
+      i = end;
     } else {
       const std::size_t tag = i;
       for (int attributes = 0; i != kEnd && text[i] != '>'; i = text.find_first_of("='\">", i + 1)) {

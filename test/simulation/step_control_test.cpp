@@ -102,5 +102,18 @@ TEST(StepControl, StaticFailureLeavesTheStateUntouched) {
   EXPECT_TRUE(is_finite(state_of(simulation)));
 }
 
+// Numbers on their way to zero would make a step ten times as long.
+TEST(StepControl, SubnormalNumbersAreZeros) {
+  SceneBuilder b;
+  b.body("ball", 1, Vector3::Zero(), Matrix3::Identity());
+  b.joint("free", scene::JointKind::Floating, "world", "ball");
+  b.scene.gravity.setZero();
+  b.scene.initial_links.push_back({"ball", {1e-310, 0, 0}, Vector3::Zero(), {}});
+  b.probe("center", "ball", Vector3::Zero());
+  Simulation simulation(b.scene);
+  ASSERT_TRUE(simulation.step().converged);
+  EXPECT_EQ(simulation.probe(0).pose.position.x(), 0);
+}
+
 }  // namespace
 }  // namespace flexarm::test

@@ -1,5 +1,6 @@
 // Newton's method does not feel how stiff a beam is against stretch and shear (docs/notes/newton.md).
 #include <cmath>
+#include <cstdio>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -26,6 +27,7 @@ double iterations_per_step(const SceneBuilder& builder, const std::string& schem
     EXPECT_EQ(result.halvings, 0) << "in step " << k;
     iterations += result.iterations;
   }
+  std::printf("%s: %.1f iterations a step\n", scheme.c_str(), static_cast<double>(iterations) / steps);
   return static_cast<double>(iterations) / steps;
 }
 
