@@ -18,7 +18,8 @@ struct StepResult {
     RotationTooLarge,
     EnergyDefect,
     OffTheLine,
-    OpenLoop
+    OpenLoop,
+    HitTooFast
   };
   bool converged = false;
   int iterations = 0;  ///< Newton iterations of all sub-steps
