@@ -18,6 +18,7 @@ struct StepResult {
     RotationTooLarge,
     EnergyDefect,
     OffTheLine,
+    DrivenOffTheLine,
     OpenLoop,
     HitTooFast
   };
