@@ -147,7 +147,7 @@ struct SlideDescription {
   std::string scheme = "sm_em";      ///< how the contact is carried over a step (docs/schemes.md)
   bool smooth = true;                ///< tangents of the line are continuous over the borders of elements
   Vector3 offset = Vector3::Zero();  ///< rigid segment from the line to the joint, in the joint's frame [m]
-  SourceLocation location;
+  SourceLocation location = {};
 };
 
 /// Dry friction of a joint's released coordinates, besides the constant effort of <dynamics friction>.
