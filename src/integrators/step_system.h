@@ -16,6 +16,7 @@
 
 #include "integrators/beam_family.h"
 #include "integrators/bodies.h"
+#include "integrators/drag.h"
 #include "integrators/dry_friction_step.h"
 #include "integrators/joint_fold.h"
 #include "integrators/loop_multipliers.h"
@@ -39,8 +40,8 @@ class StepSystem {
   /// values.
   void begin(const State& state, double step, Guess guess);
   /// Starts the search for an equilibrium, of a scheme made by statics_of(), from `state`: gravity and loads scaled by
-  /// `load_factor`, histories and motions at time 0.
-  void begin_equilibrium(const State& state, double load_factor);
+  /// `load_factor`, histories and motions at time 0. `drag`: see Drag::strength.
+  void begin_equilibrium(const State& state, double load_factor, double drag = 0);
 
   /// Assembles residual (and tangent) of the trial configuration. False if something is not finite, or a slider is off
   /// its line.
@@ -63,6 +64,7 @@ class StepSystem {
   const DegreesOfFreedom& degrees_of_freedom() const { return dof_; }
   const StepConfiguration& configuration() const { return configuration_; }
   const UnknownScales& scales() const { return scales_; }
+  const Drag& drag() const { return drag_; }
   const Eigen::VectorXd& residual() const { return residual_; }
   TangentBackend& tangent() { return *tangent_; }
   const TangentBackend& tangent() const { return *tangent_; }
@@ -86,6 +88,7 @@ class StepSystem {
   std::unique_ptr<HhtInterpolation> interpolation_;  // null unless forces are interpolated in time
   NodalForces forces_;
   Bodies bodies_;
+  Drag drag_;
   LoopMultipliers loops_;
   DryFrictionStep friction_;
   JointFold joints_;

@@ -282,11 +282,12 @@ ProbeState Simulation::probe(std::size_t index) const {
                      implementation_->model.probes.at(index));
 }
 
-StepResult Simulation::solve_static(int load_steps) {
+StaticResult Simulation::solve_static(int load_steps, Equilibrium wanted) {
   if (load_steps < 1) throw std::invalid_argument("the number of load steps must be >= 1");
   implementation_->velocities_hold = false;
   Implementation& s = *implementation_;
-  const StepResult result = flexarm::solve_static(s.model, s.scheme, s.settings, load_steps, s.state, &s.static_norms);
+  const StaticResult result =
+      flexarm::solve_static(s.model, s.scheme, s.settings, load_steps, wanted, s.state, &s.static_norms);
   s.stepper->invalidate();
   return result;
 }

@@ -2,6 +2,7 @@
 /// What a simulation gives back: values, in SI units.
 
 #include <complex>
+#include <string>
 #include <vector>
 
 #include "flexarm/math/pose.h"
@@ -18,13 +19,26 @@ struct StepResult {
     RotationTooLarge,
     EnergyDefect,
     OffTheLine,
-    OpenLoop
+    OpenLoop,
+    NeverRests
   };
   bool converged = false;
   int iterations = 0;  ///< Newton iterations of all sub-steps
   int halvings = 0;    ///< times that a sub-step had to be halved
   int factorisations = 0;
   Reason reason = Reason::None;  ///< why it failed
+};
+/// Outcome of the search for an equilibrium.
+struct StaticResult : StepResult {
+  /// The link that moves most when the equilibrium to which the loads lead is left; empty: it is stable.
+  std::string falling_link;
+  /// A link that may stand elsewhere as well, as on an upright hinge; empty: there is none.
+  std::string loose_link;
+};
+/// Which equilibrium is asked for.
+enum class Equilibrium {
+  Stable,  ///< that to which the loads lead or, where this is not stable, one to which the mechanism falls from it
+  UnderTheLoads  ///< that to which the loads lead, stable or not
 };
 /// In words, for people to read.
 const char* to_string(StepResult::Reason reason);

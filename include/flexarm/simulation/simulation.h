@@ -103,9 +103,9 @@ class Simulation {
   ProbeState probe(std::size_t index) const;  ///< in the order of scene().probes
 
   /// Statics: loads and gravity grow from zero in `load_steps` equal steps; prescribed motions are held at t = 0,
-  /// other released coordinates are solved for. On success the state is the equilibrium, at rest.
+  /// other released coordinates are solved for. On success the state is the equilibrium, at rest; else it is as before.
   /// @throws std::invalid_argument if `load_steps` < 1.
-  StepResult solve_static(int load_steps);
+  StaticResult solve_static(int load_steps, Equilibrium wanted = Equilibrium::Stable);
 
   /// Modes about the current configuration, taken to be at rest: growing ones first, then by |lambda|.
   /// @throws std::invalid_argument if `count` < 1; std::runtime_error if the eigenvalue problem cannot be solved.
