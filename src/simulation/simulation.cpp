@@ -116,6 +116,9 @@ struct Simulation::Implementation {
     return output_velocities;
   }
 
+  /// Of a pose about the model's origin.
+  Pose in_world(const Pose& pose) const { return {model.origin + pose.position, pose.orientation}; }
+
   void release_from_lines() {
     for (int slide; (slide = slide_beyond_end(model, state)) >= 0;) {
       State released = state_after_release(model, state, slide);
@@ -244,7 +247,7 @@ const std::vector<std::string>& Simulation::link_names() const {
 }
 
 Pose Simulation::link_pose(std::size_t link) const {
-  return attached_pose(implementation_->state, implementation_->model.links.at(link).frame);
+  return implementation_->in_world(attached_pose(implementation_->state, implementation_->model.links.at(link).frame));
 }
 
 bool Simulation::is_flexible(std::size_t link) const {
@@ -253,12 +256,16 @@ bool Simulation::is_flexible(std::size_t link) const {
 
 Pose Simulation::tip_pose(std::size_t link) const {
   const LinkFrame& frame = implementation_->model.links.at(link);
-  return frame.beam ? attached_pose(implementation_->state, frame.beam->tip) : link_pose(link);
+  return frame.beam ? implementation_->in_world(attached_pose(implementation_->state, frame.beam->tip))
+                    : link_pose(link);
 }
 
 void Simulation::beam_points(std::size_t link, int between, std::vector<BeamPoint>& points) const {
   const LinkFrame& frame = implementation_->model.links.at(link);
-  if (frame.beam) flexarm::beam_points(implementation_->model, implementation_->state, *frame.beam, between, points);
+  if (!frame.beam) return;
+  const std::size_t first = points.size();
+  flexarm::beam_points(implementation_->model, implementation_->state, *frame.beam, between, points);
+  for (std::size_t i = first; i < points.size(); ++i) points[i].pose = implementation_->in_world(points[i].pose);
 }
 
 double Simulation::beam_radius(std::size_t link) const {
@@ -275,11 +282,14 @@ Vector3 Simulation::momentum() const {
   return momenta(implementation_->model, implementation_->scheme, implementation_->state).linear;
 }
 Vector3 Simulation::angular_momentum() const {
-  return momenta(implementation_->model, implementation_->scheme, implementation_->state).angular;
+  const Momenta momenta = flexarm::momenta(implementation_->model, implementation_->scheme, implementation_->state);
+  return implementation_->model.origin.cross(momenta.linear) + momenta.angular;
 }
 ProbeState Simulation::probe(std::size_t index) const {
-  return probe_state(implementation_->model, implementation_->state, implementation_->velocities().nodes(),
-                     implementation_->model.probes.at(index));
+  ProbeState probe = probe_state(implementation_->model, implementation_->state, implementation_->velocities().nodes(),
+                                 implementation_->model.probes.at(index));
+  probe.pose = implementation_->in_world(probe.pose);
+  return probe;
 }
 
 StaticResult Simulation::solve_static(int load_steps, Equilibrium wanted) {

@@ -43,7 +43,8 @@ enum class Equilibrium {
 /// In words, for people to read.
 const char* to_string(StepResult::Reason reason);
 
-/// Energies of a state [J]; work and dissipation are path integrals since the start.
+/// Energies of a state [J]; work and dissipation are path integrals since the start. The potential is that of gravity:
+/// zero at the world's origin or, where a mechanism is far from it, at the first joint on its root link.
 struct Energies {
   double kinetic = 0, strain = 0, potential = 0, work = 0, dissipated = 0;
   double total() const { return kinetic + strain + potential; }
