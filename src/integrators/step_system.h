@@ -24,6 +24,7 @@
 #include "integrators/smooth_reversals.h"
 #include "integrators/step_configuration.h"
 #include "integrators/step_histories.h"
+#include "integrators/stop_contacts.h"
 #include "integrators/unknown_scales.h"
 
 namespace flexarm {
@@ -70,6 +71,8 @@ class StepSystem {
   const TangentBackend& tangent() const { return *tangent_; }
   /// See LoopMultipliers.
   double open_loop() const { return loops_.open_loop(); }
+  /// See StopContacts.
+  bool hits_too_fast() { return contacts_.hits_too_fast(); }
   /// Internal less external forces on all nodes in the configuration of `state`, before joints fold them; of a scheme
   /// made by statics_of().
   std::vector<Vector6> nodal_forces(const State& state);
@@ -93,6 +96,7 @@ class StepSystem {
   DryFrictionStep friction_;
   JointFold joints_;
   SmoothReversals reversals_;
+  StopContacts contacts_;
   // ---- the balance of what they add
   ReducedResidual rows_, carried_rows_;
   std::unique_ptr<TangentBackend> tangent_;

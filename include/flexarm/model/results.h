@@ -20,7 +20,8 @@ struct StepResult {
     EnergyDefect,
     OffTheLine,
     OpenLoop,
-    NeverRests
+    NeverRests,
+    HitTooFast
   };
   bool converged = false;
   int iterations = 0;  ///< Newton iterations of all sub-steps
