@@ -61,16 +61,17 @@ class EquilibriumSearch {
     return false;
   }
 
+  /// To one side of the motion or, where a line ends there, to the other one.
   bool leave(const UnstableMotion& motion) {
-    system_.begin_equilibrium(state_, 1);
-    system_.update(kPush * motion.direction);
-    if (!system_.evaluate(false)) {  // beyond a line's end: to the other side
+    for (const double push : {kPush, -kPush}) {
       system_.begin_equilibrium(state_, 1);
-      system_.update(-kPush * motion.direction);
-      if (!system_.evaluate(false)) return false;
+      system_.update(push * motion.direction);
+      if (!system_.evaluate(false)) continue;
+      system_.accept(state_);
+      return settling_.settle(state_, 1, -kDragOfFall * motion.curvature, result_);
     }
-    system_.accept(state_);
-    return settling_.settle(state_, 1, -kDragOfFall * motion.curvature, result_);
+    result_.reason = StepResult::Reason::OffTheLine;
+    return false;
   }
 
   const Model& model_;
