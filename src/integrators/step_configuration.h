@@ -56,7 +56,10 @@ class StepConfiguration {
   const std::vector<Matrix3>& inverse_tangents() const { return inverse_tangents_; }
   StepMotion motion() const { return {*state_, begin_, end_, increments_, step_}; }
   /// True where a slider has left its line, or goes over more elements than a step may.
-  bool is_off_line() const { return is_off_line_; }
+  bool is_off_line() const { return off_line_joint_ >= 0; }
+  int off_line_joint() const { return off_line_joint_; }  ///< the first of those, -1: none
+  /// True where a motion has driven it there, which no shorter step mends.
+  bool is_driven_off_line() const;
 
   // ---- joints over the step
   bool has_incremental_joints() const { return scheme_.is_incremental(); }
@@ -77,6 +80,7 @@ class StepConfiguration {
 
  private:
   SlideTravel slide_travel(int joint) const;
+  double largest_overshoot(const JointMap& joint) const;
   bool is_on_line(const JointMap& joint, int j) const;
 
   const Model& model_;
@@ -88,7 +92,7 @@ class StepConfiguration {
   std::vector<Released> released_;
   std::vector<Vector3> increments_;
   std::vector<Matrix3> inverse_tangents_;
-  bool is_off_line_ = false;
+  int off_line_joint_ = -1;
   bool keeps_begin_rates_ = false;
   std::vector<Vector6> begin_velocities_;  // per node, spatial
   std::vector<ReleasedVector> begin_rates_;
