@@ -85,8 +85,8 @@ void count(HardOutcome& outcome, const StepResult& result) {
   outcome.most_iterations = std::max(outcome.most_iterations, result.iterations);
 }
 
-void note_failure(HardOutcome& outcome, StepResult::Reason reason) {
-  note(outcome, HardOutcome::End::Failed, to_string(reason), reason != StepResult::Reason::NoConvergence);
+void note_failure(HardOutcome& outcome, const StepResult& result) {
+  note(outcome, HardOutcome::End::Failed, to_string(result.reason), result.reason != StepResult::Reason::NoConvergence);
 }
 
 /// What is done in the child.
@@ -119,7 +119,7 @@ class Play {
     const StepResult result = simulation.solve_static(hard_.load_steps);
     count(outcome_, result);
     outcome_.steps = hard_.load_steps;
-    if (!result.converged) note_failure(outcome_, result.reason);
+    if (!result.converged) note_failure(outcome_, result);
     watch(simulation);
     return result.converged;
   }
@@ -132,7 +132,7 @@ class Play {
       count(outcome_, result);
       outcome_.time = simulation.time();
       outcome_.seconds = processor_seconds() - begin_;
-      if (!result.converged) return note_failure(outcome_, result.reason), false;
+      if (!result.converged) return note_failure(outcome_, result), false;
       accounts.add(simulation, outcome_);
       watch(simulation);
     }

@@ -131,7 +131,7 @@ void report_failure(const Arguments& arguments, const Simulation& simulation, co
                                ? arguments.checkpoint
                                : std::filesystem::path(arguments.scene.path).stem().string() + ".last_good_state";
   fmt::print(stderr, "flexarm: simulation failed after t = {:.17g} s: {}\n", simulation.time(),
-             to_string(run.last.reason));
+             simulation.explain(run.last));
   write_checkpoint(simulation, kept);
   fmt::print(stderr, "flexarm: the last good state is kept in '{}'\n", kept);
 }

@@ -118,7 +118,7 @@ void StepConfiguration::set_slaves() {
       released_[coordinate.joint].displacement[coordinate.component] =
           coordinate.mimic.value(released_[master.joint].displacement[master.component]);
     }
-  is_off_line_ = false;
+  off_line_joint_ = -1;
   for (std::size_t j = 0; j < model_.joints.size(); ++j) {
     const JointMap& joint = model_.joints[j];
     const bool slides = joint.kind == JointMapKind::Slide;
@@ -129,7 +129,7 @@ void StepConfiguration::set_slaves() {
     // Which of two opposite quaternions it is tells how far an element is bent (LocalRotations).
     Quaternion& orientation = end_[joint.slave].orientation;
     orientation = so3::nearer_of_two(orientation, begin_[joint.slave].orientation);
-    if (slides) is_off_line_ = is_off_line_ || !is_on_line(joint, static_cast<int>(j));
+    if (slides && off_line_joint_ < 0 && !is_on_line(joint, static_cast<int>(j))) off_line_joint_ = static_cast<int>(j);
   }
   if (scheme_.is_static) return;
   for (std::size_t i = 0; i < end_.size(); ++i)

@@ -56,7 +56,8 @@ class StepConfiguration {
   const std::vector<Matrix3>& inverse_tangents() const { return inverse_tangents_; }
   StepMotion motion() const { return {*state_, begin_, end_, increments_, step_}; }
   /// True where a slider has left its line, or goes over more elements than a step may.
-  bool is_off_line() const { return is_off_line_; }
+  bool is_off_line() const { return off_line_joint_ >= 0; }
+  int off_line_joint() const { return off_line_joint_; }  ///< the first of those, -1: none
 
   // ---- joints over the step
   bool has_incremental_joints() const { return scheme_.is_incremental(); }
@@ -88,7 +89,7 @@ class StepConfiguration {
   std::vector<Released> released_;
   std::vector<Vector3> increments_;
   std::vector<Matrix3> inverse_tangents_;
-  bool is_off_line_ = false;
+  int off_line_joint_ = -1;
   bool keeps_begin_rates_ = false;
   std::vector<Vector6> begin_velocities_;  // per node, spatial
   std::vector<ReleasedVector> begin_rates_;

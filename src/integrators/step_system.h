@@ -67,7 +67,7 @@ class StepSystem {
   TangentBackend& tangent() { return *tangent_; }
   const TangentBackend& tangent() const { return *tangent_; }
   /// See LoopMultipliers.
-  double open_loop() const { return loops_.open_loop(); }
+  LoopMultipliers::Opening largest_opening() const { return loops_.largest_opening(); }
   /// Internal less external forces on all nodes in the configuration of `state`, before joints fold them; of a scheme
   /// made by statics_of().
   std::vector<Vector6> nodal_forces(const State& state);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "integrators/failure_place.h"
 #include "math/flush_subnormals.h"
 
 namespace flexarm {
@@ -65,7 +66,7 @@ bool Stepper::sub_step(State& state, double step, StepResult& result) {
 StepResult::Reason Stepper::flaw_of_solution() const {
   for (const Vector3& increment : system_.configuration().increments())
     if (increment.norm() > kLargestStepRotation) return StepResult::Reason::RotationTooLarge;
-  return system_.open_loop() > kOpenLoop ? StepResult::Reason::OpenLoop : StepResult::Reason::None;
+  return system_.largest_opening().size > kOpenLoop ? StepResult::Reason::OpenLoop : StepResult::Reason::None;
 }
 
 bool Stepper::simple_step(State& state, double step, StepResult& result) {
@@ -78,9 +79,11 @@ bool Stepper::simple_step(State& state, double step, StepResult& result) {
       {Guess::Extrapolated, settings_.reuse_factorisation ? Factors::MayBeKept : Factors::Fresh},
       {Guess::Repeated, Factors::Fresh},
       {Guess::Unchanged, Factors::Fresh}};
+  result.failure.guesses = 0;
   for (const Attempt& attempt : attempts) {
     const bool is_the_same = !settings_.reuse_factorisation && state.history.order == 0;
     if (attempt.guess == Guess::Repeated && is_the_same) continue;
+    ++result.failure.guesses;
     enter(StepPhase::Begin);
     system_.begin(state, step, attempt.guess);
     if (!newton_.solve(NewtonIteration::Updates::Limited, attempt.factors, result)) continue;
@@ -117,6 +120,7 @@ StepResult Stepper::advance(State& state) {
     }
     state.good_steps = 0;
     if (level == finest || result.halvings >= kMostHalvings) {
+      locate_failure(system_, result);
       invalidate();
       return result;
     }

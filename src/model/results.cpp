@@ -22,6 +22,8 @@ const char* to_string(StepResult::Reason reason) {
       return "a slider leaves its line, or passes too many elements in one step";
     case StepResult::Reason::OpenLoop:
       return "a loop joint opens: its loop was singular at the start, or more is prescribed than the loop allows";
+    case StepResult::Reason::BentTooFar:
+      return "an element is bent by nearly two turns, or more, within itself";
     case StepResult::Reason::EnergyDefect:
       return "the step's energy defect is too large to be closed by scaling the velocities";
   }

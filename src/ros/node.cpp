@@ -78,9 +78,7 @@ bool Node::advance() {
 
 void Node::fail(const StepResult& result) {
   run_.paused = true;
-  run_.failure = "step from t = " + std::to_string(simulation_.time()) + " s failed: " + to_string(result.reason) +
-                 " after " + std::to_string(result.iterations) + " iterations and " + std::to_string(result.halvings) +
-                 " halvings";
+  run_.failure = "step from t = " + std::to_string(simulation_.time()) + " s failed: " + simulation_.explain(result);
   ROS_ERROR_STREAM(run_.failure << "; paused at the last good state: " << private_node_.resolveName("resume")
                                 << " goes on from it, " << private_node_.resolveName("reset") << " starts again");
   clock_publisher_.advance();  // the last good sub-step may be news, and news need a stamp of their own

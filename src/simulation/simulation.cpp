@@ -15,6 +15,7 @@
 #include "math/so3.h"
 #include "model/line_release.h"
 #include "schemes/slide_scheme.h"
+#include "simulation/failure_text.h"
 #include "simulation/inside.h"
 #include "simulation/observables.h"
 #include "simulation/output_velocities.h"
@@ -169,6 +170,10 @@ StepResult Simulation::step() {
   implementation_->velocities_hold = false;
   implementation_->static_norms.clear();
   return result;
+}
+
+std::string Simulation::explain(const StepResult& result) const {
+  return failure_text(implementation_->model, implementation_->settings, result);
 }
 
 void Simulation::reset() {

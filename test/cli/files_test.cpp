@@ -57,6 +57,8 @@ TEST(Simulate, FailureKeepsAndNamesTheLastGoodState) {
       shell("flexarm simulate " + scene_file(kFailingScene) + " --checkpoint " + state + " --output " + csv);
   EXPECT_EQ(outcome.status, 1);
   expect_contains(outcome.errors, "simulation failed after t = 0 s: ");
+  expect_contains(outcome.errors, "joint coordinate 'hinge'");
+  expect_contains(outcome.errors, "What usually helps: ");
   expect_contains(outcome.errors, "the last good state is kept in '" + state + "'");
   EXPECT_TRUE(std::filesystem::exists(state));
   EXPECT_EQ(read_csv(csv)["time"].size(), 1u);

@@ -18,13 +18,44 @@ struct StepResult {
     RotationTooLarge,
     EnergyDefect,
     OffTheLine,
-    OpenLoop
+    OpenLoop,
+    BentTooFar
   };
+
+  /// A part of the mechanism; what is not known is -1.
+  struct Place {
+    int link = -1;                       ///< index into Simulation::link_names()
+    int element = -1;                    ///< of that link if it is flexible, counted from its beginning
+    int coordinate = -1;                 ///< index into Simulation::coordinate_names()
+    int loop = -1;                       ///< of those that a joint without coordinates closes
+    Vector3 position = Vector3::Zero();  ///< world axes [m]
+    bool is_known() const { return link >= 0 || coordinate >= 0 || loop >= 0; }
+  };
+
+  /// Where a step failed and what was tried. Numbers only; Simulation::explain() says it in words.
+  struct Failure {
+    /// What `amount` is.
+    enum class Quantity {
+      None,
+      Force,     ///< of what is not in balance, the largest part [N]
+      Moment,    ///< the same [N m]
+      Rotation,  ///< of a link in the smallest sub-step [rad]
+      Bending    ///< rotation within an element [rad]
+    };
+    double time = 0;  ///< at the beginning of the smallest sub-step [s]
+    double step = 0;  ///< length of that [s]
+    int guesses = 0;  ///< from which Newton's method was started in it
+    Place place;
+    Quantity quantity = Quantity::None;
+    double amount = 0;
+  };
+
   bool converged = false;
   int iterations = 0;  ///< Newton iterations of all sub-steps
   int halvings = 0;    ///< times that a sub-step had to be halved
   int factorisations = 0;
   Reason reason = Reason::None;  ///< why it failed
+  Failure failure;               ///< where; of a step that failed
 };
 /// In words, for people to read.
 const char* to_string(StepResult::Reason reason);

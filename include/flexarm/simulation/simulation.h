@@ -56,6 +56,9 @@ class Simulation {
   /// Advances by one step, in smaller sub-steps where Newton asks for it. On failure the state is that of the last good
   /// sub-step. Allocates nothing after its first call, but when a slider enters another element of its line.
   StepResult step();
+  /// Why a step has failed: what, at which element or joint, where and when, what was tried, and what usually helps.
+  /// One sentence for each, in one line. Empty if it has not failed.
+  std::string explain(const StepResult& result) const;
   /// Back to the scene's initial state; commands are forgotten.
   void reset();
   Snapshot snapshot() const;
