@@ -4,12 +4,13 @@
 #include <cmath>
 
 #include "elements/element_configuration.h"
+#include "integrators/dead_point.h"
 #include "math/pi.h"
+#include "model/place.h"
 
 namespace flexarm {
 namespace {
 
-using Place = StepResult::Place;
 using Quantity = StepResult::Failure::Quantity;
 using Reason = StepResult::Reason;
 
@@ -17,59 +18,8 @@ using Reason = StepResult::Reason;
 /// and fails, has failed at it [rad].
 constexpr double kNearlyATurn = 0.95 * 2 * kPi;
 
-// ---------------------------------------------------------------- from parts of the model to places
-
-/// The place of an element, by its index in the group of its order.
-Place place_of_element(const Model& model, const State& state, int order, int index, int node) {
-  Place place;
-  place.position = state.nodes[node].position;
-  for (std::size_t link = 0; link < model.links.size(); ++link) {
-    const std::optional<BeamLink>& beam = model.links[link].beam;
-    if (!beam || beam->order != order) continue;
-    const auto found = std::find(beam->elements.begin(), beam->elements.end(), index);
-    if (found == beam->elements.end()) continue;
-    place.link = static_cast<int>(link);
-    place.element = static_cast<int>(found - beam->elements.begin());
-  }
-  return place;
-}
-
-/// The first element that has the node, or the rigid link that is fixed to it.
-Place place_of_node(const Model& model, const State& state, int node) {
-  Place place;
-  for_each_group(model.beams, [&](const auto& group) {
-    constexpr int N = std::decay_t<decltype(group.elements)>::value_type::kNodes;
-    for (std::size_t e = 0; e < group.elements.size() && place.link < 0; ++e) {
-      const auto& nodes = group.elements[e].nodes;
-      if (std::find(nodes.begin(), nodes.end(), node) != nodes.end())
-        place = place_of_element(model, state, N - 1, static_cast<int>(e), node);
-    }
-  });
-  if (place.link >= 0) return place;
-  place.position = state.nodes[node].position;
-  for (std::size_t link = 0; link < model.links.size() && place.link < 0; ++link)
-    if (model.links[link].frame.node == node) place.link = static_cast<int>(link);
-  return place;
-}
-
-/// The coordinate; where the joint has none, what it holds.
-Place place_of_joint(const Model& model, const State& state, int joint, int component = 0) {
-  Place place = place_of_node(model, state, model.joints[joint].slave);
-  for (std::size_t i = 0; i < model.coordinates.size(); ++i)
-    if (model.coordinates[i].joint == joint && model.coordinates[i].component == component)
-      place.coordinate = static_cast<int>(i);
-  return place;
-}
-
-Place place_of_loop(const Model& model, const State& state, int loop) {
-  Place place;
-  place.position = state.nodes[model.closures[loop].child].position;
-  place.loop = loop;
-  return place;
-}
-
 /// Of a variable of DegreesOfFreedom.
-Place place_of_variable(const StepSystem& system, int variable) {
+StepResult::Place place_of_variable(const StepSystem& system, int variable) {
   const Model& model = system.configuration().model();
   const State& state = system.configuration().state();
   const DegreesOfFreedom& dof = system.degrees_of_freedom();
@@ -156,18 +106,18 @@ bool find_bent_element(const StepSystem& system, StepResult::Failure& failure) {
   return failure.quantity == Quantity::Bending;
 }
 
-}  // namespace
-
-void locate_failure(const StepSystem& system, StepResult& result) {
+/// True if a loop of the configuration at the beginning is at a dead point.
+bool find_dead_point(const StepSystem& system, StepResult::Failure& failure) {
   const StepConfiguration& configuration = system.configuration();
-  StepResult::Failure& failure = result.failure;
-  failure.time = configuration.state().time;
-  failure.step = configuration.step();
-  if (result.reason != Reason::EnergyDefect && find_bent_element(system, failure)) {
-    result.reason = Reason::BentTooFar;
-    return;
-  }
-  switch (result.reason) {
+  const int closure = closure_at_dead_point(configuration.model(), system.degrees_of_freedom(), configuration.state());
+  if (closure >= 0) failure.place = place_of_loop(configuration.model(), configuration.state(), closure);
+  return closure >= 0;
+}
+
+/// What `failure.cause` is to be said of.
+void find_place(const StepSystem& system, StepResult::Failure& failure) {
+  const StepConfiguration& configuration = system.configuration();
+  switch (failure.cause) {
     case Reason::RotationTooLarge:
       return find_largest_rotation(system, failure);
     case Reason::SingularTangent:
@@ -185,8 +135,26 @@ void locate_failure(const StepSystem& system, StepResult& result) {
     case Reason::None:
     case Reason::EnergyDefect:
     case Reason::BentTooFar:
+    case Reason::DeadPoint:
+    case Reason::OutOfTime:
       return;
   }
+}
+
+}  // namespace
+
+void locate_failure(const StepSystem& system, StepResult& result) {
+  StepResult::Failure& failure = result.failure;
+  failure.time = system.configuration().state().time;
+  failure.step = system.configuration().step();
+  // A slow look at the mechanism says more than that the iteration did not converge.
+  const bool is_of_elements = result.reason != Reason::None && result.reason != Reason::EnergyDefect;
+  if (is_of_elements && find_bent_element(system, failure))
+    result.reason = Reason::BentTooFar;
+  else if (result.reason == Reason::NoConvergence && find_dead_point(system, failure))
+    result.reason = Reason::DeadPoint;
+  failure.cause = result.reason;
+  if (!failure.place.is_known()) find_place(system, failure);
 }
 
 }  // namespace flexarm

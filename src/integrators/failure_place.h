@@ -7,7 +7,7 @@
 namespace flexarm {
 
 /// Completes `result.failure` by what the last attempt at the step has left in `system`, and names a cause where the
-/// reason is only that the iteration did not converge. No allocation, but it takes its time.
+/// reason is only that the iteration did not converge. Takes its time, and allocates where there are loops.
 void locate_failure(const StepSystem& system, StepResult& result);
 
 }  // namespace flexarm

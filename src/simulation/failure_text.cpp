@@ -31,9 +31,11 @@ std::string amount_text(const Failure& failure) {
 
 /// "what at where", of which one or both may be missing.
 std::string place_and_amount(const Model& model, const Failure& failure) {
-  const std::string place = place_text(model, failure.place), amount = amount_text(failure);
-  if (place.empty()) return amount;
-  return amount.empty() ? "at " + place : amount + " at " + place;
+  const std::string name = place_name(model, failure.place), amount = amount_text(failure);
+  if (name.empty()) return amount;
+  const Vector3& r = failure.place.position;
+  return fmt::format("{}at {} at ({:.4g}, {:.4g}, {:.4g}) m", amount.empty() ? "" : amount + " ", name, r.x(), r.y(),
+                     r.z());
 }
 
 std::string advice(const Model& model, const StepResult& result) {
@@ -62,6 +64,10 @@ std::string advice(const Model& model, const StepResult& result) {
       return "a smaller step, a longer line, or an end where the slider stops or leaves (on_end)";
     case Reason::OpenLoop:
       return "a start at which the loop is no dead point, and motions within its reach";
+    case Reason::DeadPoint:
+      return "motions within what the loop can reach, other lengths of its links, or a joint that yields";
+    case Reason::OutOfTime:
+      return "going on from here, which costs as much again, a smaller step, or a longer recovery_wall_time";
     case Reason::BentTooFar:
       return fmt::format("a finer mesh of that link: {} elements or more",
                          2 * model.links[failure.place.link].beam->elements.size());
@@ -71,30 +77,27 @@ std::string advice(const Model& model, const StepResult& result) {
 
 }  // namespace
 
-std::string place_text(const Model& model, const StepResult::Place& place) {
-  const auto with_position = [&](const std::string& what) {
-    return fmt::format("{} at ({:.4g}, {:.4g}, {:.4g}) m", what, place.position.x(), place.position.y(),
-                       place.position.z());
-  };
-  if (place.coordinate >= 0)
-    return with_position(fmt::format("joint coordinate '{}'", model.coordinates[place.coordinate].name));
-  if (place.loop >= 0) return with_position(fmt::format("loop joint '{}'", model.closures[place.loop].name));
+std::string place_name(const Model& model, const StepResult::Place& place) {
+  if (place.coordinate >= 0) return fmt::format("joint coordinate '{}'", model.coordinates[place.coordinate].name);
+  if (place.loop >= 0) return fmt::format("loop joint '{}'", model.closures[place.loop].name);
   if (place.link < 0) return "";
   const LinkFrame& link = model.links[place.link];
-  return with_position(place.element < 0 ? fmt::format("link '{}'", link.name)
-                                         : fmt::format("element {} of {} of link '{}'", place.element + 1,
-                                                       link.beam->elements.size(), link.name));
+  if (place.element < 0) return fmt::format("link '{}'", link.name);
+  return fmt::format("element {} of {} of link '{}'", place.element + 1, link.beam->elements.size(), link.name);
 }
 
 std::string failure_text(const Model& model, const StepSettings& settings, const StepResult& result) {
   if (result.reason == Reason::None) return "";
   const Failure& failure = result.failure;
   std::string text = to_string(result.reason);
+  if (failure.cause != result.reason && failure.cause != Reason::None)
+    text += fmt::format(" ({})", to_string(failure.cause));
   const std::string place = place_and_amount(model, failure);
   if (!place.empty()) text += ": " + place;
   text += fmt::format(
       ". Tried from t = {:.6g} s: steps down to {:.3g} s ({} halvings, step {:.3g} s), {} guesses, {} iterations",
       failure.time, failure.step, result.halvings, settings.step, failure.guesses, result.iterations);
+  if (failure.tried_dissipation) text += ", then edmc2 (on_failure)";
   return text + ". What usually helps: " + advice(model, result);
 }
 

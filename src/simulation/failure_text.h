@@ -12,7 +12,7 @@ namespace flexarm {
 /// What failed, where and when, what was tried, and what usually helps; one line. Empty if nothing failed.
 std::string failure_text(const Model& model, const StepSettings& settings, const StepResult& result);
 
-/// "element 3 of 8 of link 'arm' at (0.2, 0, 1) m", "joint coordinate 'elbow' at ..."; empty if it is not known.
-std::string place_text(const Model& model, const StepResult::Place& place);
+/// "element 3 of 8 of link 'arm'", "joint coordinate 'elbow'"; empty if it is not known.
+std::string place_name(const Model& model, const StepResult::Place& place);
 
 }  // namespace flexarm

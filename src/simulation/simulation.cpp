@@ -47,6 +47,8 @@ StepSettings settings_of(const scene::SceneDescription& scene, const SimulationO
   settings.max_iterations = scene.integrator.max_iterations;
   settings.max_halvings = scene.integrator.max_halvings;
   settings.reuse_factorisation = options.reuse_factorisation;
+  settings.on_failure = scene.integrator.on_failure;
+  settings.recovery_wall_time = options.recovery_wall_time;
   const auto require = [&](bool ok, const std::string& what) {
     if (!ok) throw ModelError(integrator_place(scene) + "<integrator>: " + what);
   };
@@ -60,6 +62,7 @@ StepSettings settings_of(const scene::SceneDescription& scene, const SimulationO
 /// The scene with the scheme and the step in use.
 scene::SceneDescription with_options(scene::SceneDescription scene, const SimulationOptions& options) {
   if (options.scheme) scene.integrator = with_scheme(scene.integrator, *options.scheme);
+  if (options.on_failure) scene.integrator.on_failure = *options.on_failure;
   scene.integrator.step = settings_of(scene, options).step;
   return scene;
 }

@@ -128,8 +128,9 @@ TEST(Bench, FullDiskLeavesTheReportOfBefore) {
   const std::string folder = temporary("full");
   std::filesystem::create_directories(folder);
   std::ofstream(folder + "/hard.md") << "before";
-  const Outcome outcome = shell("ulimit -f 1; '" + program() +
-                                "' bench hard --quick --group mimic --scheme em --scheme m1 --output '" + folder + "' > /dev/null");
+  const Outcome outcome =
+      shell("ulimit -f 1; '" + program() + "' bench hard --quick --group mimic --scheme em --scheme m1 --output '" +
+            folder + "' > /dev/null");
   EXPECT_EQ(outcome.status, 1);
   expect_contains(outcome.errors, "cannot be written");
   EXPECT_EQ(read_file(folder + "/hard.md"), "before");

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "math/pi.h"
-#include "support/scene_builder.h"
+#include "support/loops.h"
 
 namespace flexarm::test {
 namespace {
@@ -91,6 +91,27 @@ TEST(Failure, ElementBentBeyondItsInterpolationIsNamed) {
   EXPECT_NEAR(result.failure.amount, 2 * kPi, 0.1 * kPi);
   expect_says(simulation, result, "of 2 of link 'arm'");
   expect_says(simulation, result, "a finer mesh of that link: 4 elements or more");
+}
+
+TEST(Failure, LoopDrivenBeyondItsReachIsAtADeadPoint) {
+  SceneBuilder b;
+  // A four-bar linkage: crank 0.8 m upwards, coupler to (0.6, 0, 0.8), rocker of 0.6 m from (0.6, 0, 0.2). With both in
+  // line the crank's end is 1.2 m from the rocker's foot, and it turns further.
+  const Matrix3 inertia = 0.05 * Matrix3::Identity();
+  b.body("crank", 1, {0, 0, 0.4}, inertia);
+  b.body("coupler", 1, {0.3, 0, 0}, inertia);
+  b.body("rocker", 1, {0, 0, 0.3}, inertia);
+  b.joint("crank", JointKind::Continuous, "world", "crank", {0, 0, 0}, {0, 1, 0});
+  b.joint("knee", JointKind::Continuous, "crank", "coupler", {0, 0, 0.8}, {0, 1, 0});
+  b.joint("foot", JointKind::Continuous, "world", "rocker", {0.6, 0, 0.2}, {0, 1, 0});
+  close_loop(b, "hip", JointKind::Continuous, "rocker", "coupler", {0.6, 0, 0}, {0, 1, 0});
+  b.scene.motions.push_back({"crank", TimeFunction::parse("3*t*t/(1+t)"), {}});
+  b.scene.gravity.setZero();
+  b.scene.integrator.step = 0.002;
+  Simulation simulation(b.scene);
+  const StepResult result = first_failure(simulation, 2);
+  ASSERT_EQ(result.reason, Reason::DeadPoint) << simulation.explain(result);
+  expect_says(simulation, result, "loop joint 'hip'");
 }
 
 TEST(Failure, JointWithoutInertiaIsNamed) {

@@ -2,6 +2,7 @@
 /// What a simulation gives back: values, in SI units.
 
 #include <complex>
+#include <string>
 #include <vector>
 
 #include "flexarm/math/pose.h"
@@ -19,7 +20,9 @@ struct StepResult {
     EnergyDefect,
     OffTheLine,
     OpenLoop,
-    BentTooFar
+    BentTooFar,
+    DeadPoint,
+    OutOfTime
   };
 
   /// A part of the mechanism; what is not known is -1.
@@ -42,9 +45,11 @@ struct StepResult {
       Rotation,  ///< of a link in the smallest sub-step [rad]
       Bending    ///< rotation within an element [rad]
     };
-    double time = 0;  ///< at the beginning of the smallest sub-step [s]
-    double step = 0;  ///< length of that [s]
-    int guesses = 0;  ///< from which Newton's method was started in it
+    double time = 0;                 ///< at the beginning of the smallest sub-step [s]
+    double step = 0;                 ///< length of that [s]
+    int guesses = 0;                 ///< from which Newton's method was started in it
+    Reason cause = Reason::None;     ///< of the last attempt; another than `reason` where that is OutOfTime
+    bool tried_dissipation = false;  ///< edmc2 in place of the scheme, in vain
     Place place;
     Quantity quantity = Quantity::None;
     double amount = 0;
@@ -52,13 +57,32 @@ struct StepResult {
 
   bool converged = false;
   int iterations = 0;  ///< Newton iterations of all sub-steps
-  int halvings = 0;    ///< times that a sub-step had to be halved
   int factorisations = 0;
+
+  // ---- what saved it where it did not succeed at once
+  int halvings = 0;            ///< times that a sub-step had to be halved
+  int deepest_halving = 0;     ///< the shortest sub-step was 2^-deepest_halving of the step
+  int other_guesses = 0;       ///< sub-steps that were solved from another guess than the first
+  bool is_dissipated = false;  ///< the step was done by edmc2, OnFailure::Dissipate
+
+  double largest_rotation = 0;   ///< of a node in a sub-step, as 2 tan(angle/2)
+  int turning_node = -1;         ///< of Simulation::node_count(): which one
   Reason reason = Reason::None;  ///< why it failed
   Failure failure;               ///< where; of a step that failed
 };
 /// In words, for people to read.
 const char* to_string(StepResult::Reason reason);
+
+/// Sums of what steps came to.
+struct StepCounts {
+  long steps = 0, iterations = 0, halvings = 0, other_guesses = 0;
+  long dissipated_steps = 0;  ///< done by edmc2
+  int deepest_halving = 0;
+
+  void add(const StepResult& result);
+};
+/// How steps were saved, "3 halvings (down to 1/4 of a step), ..."; empty if none had to be.
+std::string recoveries_text(const StepCounts& counts);
 
 /// Energies of a state [J]; work and dissipation are path integrals since the start.
 struct Energies {
@@ -73,6 +97,10 @@ struct BeamPoint {
   Vector6 strain = Vector6::Zero();     ///< {Gamma, K} in the section frame [-, 1/m], by the scheme's interpolation
   Vector6 resultant = Vector6::Zero();  ///< {N, M} in the section frame [N, N m], elastic: without damping
 };
+
+/// The von Mises strain at the edge of a section, `radius` [m] from its middle, were bending and torsion to act at the
+/// same point of it.
+double edge_strain(const BeamPoint& point, double radius);
 
 /// Pose and velocity of a named point.
 struct ProbeState {

@@ -12,6 +12,7 @@
 #include "flexarm/model/model_error.h"
 #include "flexarm/model/results.h"
 #include "flexarm/scene/diagnostic.h"
+#include "flexarm/schemes/integrator_description.h"
 
 namespace flexarm {
 
@@ -28,6 +29,10 @@ struct SimulationOptions {
   /// Keep the factors of the tangent while the iteration contracts well (modified Newton). The result agrees with that
   /// of full Newton to far below the tolerance; off: quadratic convergence, and a restored state continues bit for bit.
   bool reuse_factorisation = true;
+  std::optional<OnFailure> on_failure;
+  /// Ends a step that has been halved after this time by the clock on the wall, with a reason of its own and the state
+  /// after the last good sub-step, from which the next call goes on; 0: never [s].
+  double recovery_wall_time = 0;
 };
 
 /// What a simulation was like at one time, to go back to it: a value, cheap to copy.

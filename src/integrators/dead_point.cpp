@@ -1,0 +1,46 @@
+#include "integrators/dead_point.h"
+
+#include <algorithm>
+
+#include "building/closure_jacobian.h"
+#include "math/least_squares.h"
+
+namespace flexarm {
+namespace {
+
+/// Of what is left of a constraint when the others hold, beside the largest one.
+constexpr double kDependent = 0.01;
+
+/// The model as if it started from the state, with independent constraints only.
+Model started_from(Model model, const State& state) {
+  for (std::size_t i = 0; i < model.nodes.size(); ++i) model.nodes[i] = node_pose(state.nodes[i]);
+  model.initial_released = state.released;
+  for (LoopClosure& closure : model.closures) closure.implied.clear();
+  return model;
+}
+
+std::vector<int> closure_of_rows(const Model& model) {
+  std::vector<int> closures;
+  for (std::size_t k = 0; k < model.closures.size(); ++k)
+    closures.insert(closures.end(), model.closures[k].constraints.size(), static_cast<int>(k));
+  return closures;
+}
+
+}  // namespace
+
+int closure_at_dead_point(const Model& model, const DegreesOfFreedom& dof, const State& state) {
+  if (model.closures.empty()) return -1;
+  std::vector<bool> is_free(dof.scalar_count);
+  for (int i = 0; i < dof.scalar_count; ++i) is_free[i] = dof.equation[i] >= 0;
+  const ConstraintRows jacobian = with_columns(closure_jacobian(started_from(model, state), dof), is_free);
+  const std::vector<int> closures = closure_of_rows(model);
+  for (const ConstraintGroup& group : independent_groups(jacobian)) {
+    const std::vector<Eigen::Index> independent = independent_rows(group.block, kDependent);
+    for (std::size_t i = 0; i < group.rows.size(); ++i)
+      if (std::find(independent.begin(), independent.end(), static_cast<Eigen::Index>(i)) == independent.end())
+        return closures[group.rows[i]];
+  }
+  return -1;
+}
+
+}  // namespace flexarm
