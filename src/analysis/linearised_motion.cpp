@@ -8,8 +8,8 @@
 
 #include "elements/element_configuration.h"
 #include "elements/endpoint_beam.h"
-#include "joints/joint_forces.h"
 #include "joints/joint_kinematics.h"
+#include "joints/joint_stop.h"
 
 namespace flexarm {
 namespace {
@@ -35,8 +35,8 @@ Eigen::Matrix<double, 6 * Nodes, 6 * Nodes> material_stiffness(const BeamElement
 
 /// Slope of a coordinate's effort against its rate, at rest.
 double damping_of(const Coordinate& coordinate, const StopPenalty& stop, const Released& released) {
-  const bool touches = stop_energy(coordinate, stop, released.displacement[coordinate.component % 3]) > 0;
-  return coordinate.damping + (touches ? stop.damping : 0);
+  if (!coordinate.limit) return coordinate.damping;
+  return coordinate.damping + stop_damping(*coordinate.limit, stop, released.displacement[coordinate.component]);
 }
 
 /// Equilibrium of exact forces.

@@ -13,6 +13,7 @@
 #include "building/load_builder.h"
 #include "building/loop_builder.h"
 #include "building/mass_properties.h"
+#include "building/stop_depths.h"
 #include "building/tree_builder.h"
 
 namespace flexarm {
@@ -41,6 +42,7 @@ BuiltModel build(const scene::SceneDescription& scene) {
   model.histories = std::move(placed_loads.histories);
   model.probes = place_probes(plan, model);
   model.gravity = scene.gravity;
+  set_stop_depths(model);
   std::vector<int> massless = finish_mass_properties(solvable.node_parents, model);
   return {std::move(model), std::move(massless)};
 }

@@ -2,7 +2,7 @@
 
 #include "elements/element_configuration.h"
 #include "elements/strain_dampers.h"
-#include "joints/joint_forces.h"
+#include "joints/joint_stop.h"
 
 namespace flexarm {
 namespace {
@@ -55,8 +55,9 @@ Energies energies(const Model& model, const Scheme& scheme, const State& state) 
     out.potential -= inertia.total_mass * model.gravity.dot(node.position);
   }
   for (const Coordinate& coordinate : model.coordinates)
-    out.strain += stop_energy(coordinate, stop_penalty(coordinate, scheme.contact_time),
-                              state.released[coordinate.joint].displacement[coordinate.component % 3]);
+    if (coordinate.limit)
+      out.strain += stop_energy(*coordinate.limit, stop_penalty(coordinate, scheme.contact_time),
+                                state.released[coordinate.joint].displacement[coordinate.component]);
   return out;
 }
 

@@ -11,14 +11,6 @@ namespace {
 /// Of what is left of a constraint when the others hold, beside the largest one.
 constexpr double kDependent = 0.01;
 
-/// The model as if it started from the state, with independent constraints only.
-Model started_from(Model model, const State& state) {
-  for (std::size_t i = 0; i < model.nodes.size(); ++i) model.nodes[i] = node_pose(state.nodes[i]);
-  model.initial_released = state.released;
-  for (LoopClosure& closure : model.closures) closure.implied.clear();
-  return model;
-}
-
 std::vector<int> closure_of_rows(const Model& model) {
   std::vector<int> closures;
   for (std::size_t k = 0; k < model.closures.size(); ++k)
@@ -26,21 +18,31 @@ std::vector<int> closure_of_rows(const Model& model) {
   return closures;
 }
 
-}  // namespace
-
-int closure_at_dead_point(const Model& model, const DegreesOfFreedom& dof, const State& state) {
-  if (model.closures.empty()) return -1;
+/// The first closure of a model without implied constraints that has one which depends on others, at the start; -1:
+/// none.
+int dependent_closure(const Model& model, const DegreesOfFreedom& dof) {
   std::vector<bool> is_free(dof.scalar_count);
   for (int i = 0; i < dof.scalar_count; ++i) is_free[i] = dof.equation[i] >= 0;
-  const ConstraintRows jacobian = with_columns(closure_jacobian(started_from(model, state), dof), is_free);
   const std::vector<int> closures = closure_of_rows(model);
-  for (const ConstraintGroup& group : independent_groups(jacobian)) {
+  for (const ConstraintGroup& group : independent_groups(with_columns(closure_jacobian(model, dof), is_free))) {
     const std::vector<Eigen::Index> independent = independent_rows(group.block, kDependent);
     for (std::size_t i = 0; i < group.rows.size(); ++i)
       if (std::find(independent.begin(), independent.end(), static_cast<Eigen::Index>(i)) == independent.end())
         return closures[group.rows[i]];
   }
   return -1;
+}
+
+}  // namespace
+
+int closure_at_dead_point(const Model& model, const DegreesOfFreedom& dof, const State& state) {
+  if (model.closures.empty()) return -1;
+  Model moved = model;
+  for (LoopClosure& closure : moved.closures) closure.implied.clear();
+  if (dependent_closure(moved, dof) >= 0) return -1;  // it is nearly so by its dimensions
+  for (std::size_t i = 0; i < moved.nodes.size(); ++i) moved.nodes[i] = node_pose(state.nodes[i]);
+  moved.initial_released = state.released;
+  return dependent_closure(moved, dof);
 }
 
 }  // namespace flexarm

@@ -14,8 +14,8 @@ namespace {
 using Quantity = StepResult::Failure::Quantity;
 using Reason = StepResult::Reason;
 
-/// Local rotations end at two half turns from the reference node (LocalRotations). A step that starts so near to that,
-/// and fails, has failed at it [rad].
+/// Local rotations end at a turn from the reference node (LocalRotations). A step that starts so near to that, and
+/// fails, has failed at it [rad].
 constexpr double kNearlyATurn = 0.95 * 2 * kPi;
 
 /// Of a variable of DegreesOfFreedom.
@@ -137,6 +137,7 @@ void find_place(const StepSystem& system, StepResult::Failure& failure) {
     case Reason::BentTooFar:
     case Reason::DeadPoint:
     case Reason::OutOfTime:
+    case Reason::HitTooFast:
       return;
   }
 }

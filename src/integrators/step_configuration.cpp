@@ -10,9 +10,7 @@
 namespace flexarm {
 namespace {
 
-/// Way beyond the end of a line that a stop may let a slider penetrate, relative to the last element.
-constexpr double kLargestOvershoot = 0.1;
-/// The same of one that leaves the line, which happens at the end of the step.
+/// Way beyond the end of a line, relative to the last element, of a slider that leaves it at the end of the step.
 constexpr double kLargestWayBeyond = 1.0;
 
 }  // namespace
@@ -36,13 +34,13 @@ void StepConfiguration::begin(const State& state, double step) {
   for (std::size_t i = 0; i < state.nodes.size(); ++i) begin_[i] = node_pose(state.nodes[i]);
   std::copy(begin_.begin(), begin_.end(), end_.begin());
   std::copy(state.released.begin(), state.released.end(), released_.begin());
-  if (keeps_begin_rates_) set_begin_rates();
+  if (keeps_begin_rates_) find_begin_rates();
 }
 
-void StepConfiguration::set_begin_rates() {
+void StepConfiguration::find_begin_rates() {
   for (std::size_t i = 0; i < begin_velocities_.size(); ++i) begin_velocities_[i] = spatial_velocity(state_->nodes[i]);
   for (std::size_t j = 0; j < model_.joints.size(); ++j)
-    begin_rates_[j] = released_rates(model_, static_cast<int>(j), begin_, released_[j], begin_velocities_);
+    begin_rates_[j] = released_rates(model_, static_cast<int>(j), begin_, state_->released[j], begin_velocities_);
 }
 
 void StepConfiguration::set_prescribed(double time) {
@@ -163,7 +161,7 @@ bool StepConfiguration::is_on_line(const JointMap& joint, int j) const {
   const SlideLine& line = model_.slide_lines[joint.line];
   const double to = released_[j].displacement[0];
   const int pieces = std::abs(line.piece_at(to) - line.piece_at(state_->released[j].displacement[0])) + 1;
-  const double largest = joint.leaving < 0 ? kLargestOvershoot : kLargestWayBeyond;
+  const double largest = joint.leaving < 0 ? SlideLine::kLargestOvershoot : kLargestWayBeyond;
   return line.overshoot(to) <= largest && pieces <= SlideLine::kMostPieces;
 }
 
@@ -222,8 +220,8 @@ CoordinateStep StepConfiguration::coordinate_step(std::size_t index, double incr
   step.end = released_[j].displacement[k % 3];
   step.increment = increment;
   step.step = step_;
-  if (!scheme_.is_incremental())
-    step.gamma = scheme_.gamma, step.begin_rate = keeps_begin_rates_ ? begin_rates_[j][k] : 0.0;
+  step.at_end = !scheme_.is_incremental();
+  if (step.at_end) step.gamma = scheme_.gamma, step.begin_rate = keeps_begin_rates_ ? begin_rates_[j][k] : 0.0;
   return step;
 }
 

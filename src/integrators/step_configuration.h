@@ -70,13 +70,13 @@ class StepConfiguration {
   MimicMap mimic_map(int coordinate) const;
   /// What passive efforts on a coordinate feel of the step.
   CoordinateStep coordinate_step(std::size_t coordinate, double increment) const;
-  /// Released rates of a joint at the beginning; where `keeps_begin_rates`.
+  /// Released rates of a joint at the beginning; where they are kept, or found in this step.
   const ReleasedVector& begin_rates(int joint) const { return begin_rates_[joint]; }
-  /// Asks for begin_rates(), which the Newmark family has in any case.
+  void find_begin_rates();
+  /// Finds begin_rates() in every step, as the Newmark family does in any case.
   void keep_begin_rates() { keeps_begin_rates_ = !scheme_.is_static; }
 
  private:
-  void set_begin_rates();
   SlideTravel slide_travel(int joint) const;
   bool is_on_line(const JointMap& joint, int j) const;
 

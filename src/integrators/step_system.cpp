@@ -19,6 +19,7 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme, BackendChoice b
       friction_(configuration_, interpolation_.get()),
       joints_(configuration_, histories_, friction_),
       reversals_(configuration_),
+      contacts_(configuration_),
       rows_(model, dof_),
       carried_rows_(model, dof_),
       tangent_(make_tangent_backend(model, dof_, backend)),
@@ -37,7 +38,9 @@ void StepSystem::begin(const State& state, double step, Guess guess) {
   reversals_.begin();
   const bool stands = guess == Guess::Extrapolated && state.history.order == IncrementHistory::kNoMotion;
   if (guess != Guess::Unchanged && !stands) {
+    contacts_.before_update();
     configuration_.extrapolate(guess == Guess::Extrapolated ? state.history.order : 0);
+    contacts_.after_update();
     if (state.history.holds_for(dof_.unknowns)) loops_.extrapolate();
   }
   configuration_.set_prescribed(state.time + step);
@@ -98,10 +101,12 @@ void StepSystem::carry_strains(double fraction) {
 
 void StepSystem::update(const Eigen::VectorXd& increment) {
   reversals_.before_update();
+  contacts_.before_update();
   configuration_.update(increment);
   loops_.update(increment);
   friction_.place_held();
   reversals_.after_update();
+  contacts_.after_update();
   configuration_.set_slaves();
 }
 

@@ -23,6 +23,7 @@
 #include "integrators/smooth_reversals.h"
 #include "integrators/step_configuration.h"
 #include "integrators/step_histories.h"
+#include "integrators/stop_contacts.h"
 #include "integrators/unknown_scales.h"
 
 namespace flexarm {
@@ -68,6 +69,8 @@ class StepSystem {
   const TangentBackend& tangent() const { return *tangent_; }
   /// See LoopMultipliers.
   LoopMultipliers::Opening largest_opening() const { return loops_.largest_opening(); }
+  /// See StopContacts.
+  bool hits_too_fast() { return contacts_.hits_too_fast(); }
   /// Internal less external forces on all nodes in the configuration of `state`, before joints fold them; of a scheme
   /// made by statics_of().
   std::vector<Vector6> nodal_forces(const State& state);
@@ -90,6 +93,7 @@ class StepSystem {
   DryFrictionStep friction_;
   JointFold joints_;
   SmoothReversals reversals_;
+  StopContacts contacts_;
   // ---- the balance of what they add
   ReducedResidual rows_, carried_rows_;
   std::unique_ptr<TangentBackend> tangent_;

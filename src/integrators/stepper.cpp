@@ -117,6 +117,9 @@ bool Stepper::simple_step(State& state, double step, StepResult& result) {
     system_.begin(state, step, attempt.guess);
     if (!newton_.solve(NewtonIteration::Updates::Limited, attempt.factors, result)) continue;
     result.reason = flaw_of_solution(result);
+    const bool may_halve = state.halving_level < settings_.max_halvings && result.halvings < kMostHalvings;
+    if (result.reason == StepResult::Reason::None && may_halve && system_.hits_too_fast())
+      result.reason = StepResult::Reason::HitTooFast;
     if (result.reason != StepResult::Reason::None) return false;
     enter(StepPhase::Accept);
     system_.accept(state);

@@ -1,6 +1,7 @@
 #pragma once
 /// The mechanism as numbers: nodes, elements, joints, loads and their numbering. Immutable after building.
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,10 +33,12 @@ struct NodalLoad {
   int history = 0;       ///< index into Model::histories
 };
 
-/// Unilateral stops of a scalar coordinate, held by a penalty (StopPenalty).
+/// Unilateral stops of a scalar coordinate, which harden (joints/joint_stop.h).
 struct LimitStop {
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   double lower, upper;
-  double inertia = 0;  ///< what the coordinate moves, at the start [kg or kg m^2]
+  double inertia = 0;                                     ///< what the coordinate moves, at the start [kg or kg m^2]
+  double give_below = kInfinity, give_above = kInfinity;  ///< how far they give way at most, > 0
 };
 
 /// How a coordinate follows another one u: offset + multiplier f(u).

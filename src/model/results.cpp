@@ -23,10 +23,12 @@ const char* to_string(StepResult::Reason reason) {
       return "a node turns by more than 90 degrees in one step";
     case StepResult::Reason::OffTheLine:
       return "a slider leaves its line, or passes too many elements in one step";
+    case StepResult::Reason::HitTooFast:
+      return "a stop is hit too fast for the step";
     case StepResult::Reason::OpenLoop:
       return "a loop joint opens: its loop was singular at the start, or more is prescribed than the loop allows";
     case StepResult::Reason::BentTooFar:
-      return "an element is bent by nearly two turns, or more, within itself";
+      return "an element is bent by nearly a turn, or more, between its nodes";
     case StepResult::Reason::DeadPoint:
       return "a loop comes to a dead point, beyond which a motion goes, or where nothing says which way it turns";
     case StepResult::Reason::OutOfTime:

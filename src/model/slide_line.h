@@ -41,6 +41,9 @@ struct SlideLine {
   /// Elements that a step may touch; a longer way is taken in shorter steps.
   static constexpr int kMostPieces = 3;
 
+  /// Way beyond its ends that a section may lie, relative to the element there.
+  static constexpr double kLargestOvershoot = 0.1;
+
   std::vector<int> nodes;  ///< of the model
   std::vector<SlidePiece> pieces;
   bool smooth = false;  ///< C1: the tangents of line and frame are continuous over borders (beyond.md 2)

@@ -66,6 +66,8 @@ std::string advice(const Model& model, const StepResult& result) {
       return "a start at which the loop is no dead point, and motions within its reach";
     case Reason::DeadPoint:
       return "motions within what the loop can reach, other lengths of its links, or a joint that yields";
+    case Reason::HitTooFast:
+      return "a smaller step, or more halvings (max_halvings)";
     case Reason::OutOfTime:
       return "going on from here, which costs as much again, a smaller step, or a longer recovery_wall_time";
     case Reason::BentTooFar:

@@ -38,7 +38,7 @@ TEST_P(ConsistentTangent, TangentOfAStepWithStickingFriction) {
 TEST_P(ConsistentTangent, TangentInsideAStop) {
   Model model = smooth_model();
   for (Coordinate& coordinate : model.coordinates)
-    if (coordinate.limit) coordinate.limit = LimitStop{0.6, 3.0, 8.0};  // the slider's travel is about zero
+    if (coordinate.limit) coordinate.limit = LimitStop{0.6, 3.0, 8.0, 2.0, 2.0};  // the slider's travel is about zero
   RandomSource random(5);  // with which no slider is near the end of an element, where forces have a kink
   StepSystem system(model, scheme(), BackendChoice::Matrix);
   const State state = prepared(random_state(model, random, 0.1), system, random);
@@ -87,7 +87,7 @@ INSTANTIATE_TEST_SUITE_P(AllSchemes, ConsistentTangent, ::testing::ValuesIn(with
 TEST(StepSystem, TangentOfStatics) {
   Model model = build_model(every_joint_scene(false));
   for (Coordinate& coordinate : model.coordinates)
-    if (coordinate.limit) coordinate.limit = LimitStop{0.6, 3.0, 2e-4};
+    if (coordinate.limit) coordinate.limit = LimitStop{0.6, 3.0, 2e-4, 2.0, 2.0};
   RandomSource random(5);
   const State state = random_state(model, random, 0.1);
   StepSystem system(model, statics_of(schemes().front()), BackendChoice::Matrix);

@@ -174,6 +174,27 @@ TEST_F(Allocation, NoneWhereSlidersEnterElements) {
   EXPECT_EQ(borders, 7);
 }
 
+// Hits that need halved steps ask for the rates at the beginning.
+TEST_F(Allocation, NoneWhereStopsAreHitFast) {
+  for (const char* scheme : {"em", "newmark"}) {
+    SimulationOptions options;
+    options.scheme = scheme;
+    SceneBuilder b;
+    b.body("block", 1, Vector3::Zero(), Matrix3::Identity());
+    b.joint("rail", scene::JointKind::Prismatic, "world", "block").limits = scene::JointLimits{-0.5, 0.5};
+    b.scene.initial_joints.push_back({"rail", 0, 100.0, {}});
+    Simulation simulation(b.scene, options);
+    ASSERT_TRUE(simulation.step().converged);
+    int halvings = 0;
+    EXPECT_EQ(allocations_in([&] {
+                for (int n = 0; n < 20; ++n) halvings += simulation.step().halvings;
+              }),
+              0)
+        << scheme;
+    EXPECT_GT(halvings, 0) << scheme;
+  }
+}
+
 // Halving takes a path of its own.
 TEST_F(Allocation, NoneInHalvedOrFailedSteps) {
   SceneBuilder b;

@@ -22,7 +22,8 @@ struct StepResult {
     OpenLoop,
     BentTooFar,
     DeadPoint,
-    OutOfTime
+    OutOfTime,
+    HitTooFast
   };
 
   /// A part of the mechanism; what is not known is -1.

@@ -1,0 +1,56 @@
+#include "integrators/stop_contacts.h"
+
+namespace flexarm {
+
+StopContacts::StopContacts(StepConfiguration& configuration) : configuration_(configuration) {
+  const std::vector<Coordinate>& coordinates = configuration.model().coordinates;
+  for (std::size_t index = 0; index < coordinates.size(); ++index) {
+    const Coordinate& coordinate = coordinates[index];
+    if (!coordinate.limit) continue;
+    const Coordinate& leader = coordinate.mimicked >= 0 ? coordinates[coordinate.mimicked] : coordinate;
+    stopped_.push_back({index, &leader, stop_penalty(coordinate, configuration.scheme().contact_time), 0, 0});
+  }
+}
+
+const Coordinate& StopContacts::coordinate(const Stopped& stopped) const {
+  return configuration_.model().coordinates[stopped.index];
+}
+
+/// Followers do not stand before StepConfiguration::set_slaves().
+double StopContacts::position(const Coordinate& coordinate) const {
+  if (coordinate.mimicked >= 0)
+    return coordinate.mimic.value(position(configuration_.model().coordinates[coordinate.mimicked]));
+  return configuration_.released()[coordinate.joint].displacement[coordinate.component];
+}
+
+void StopContacts::before_update() {
+  for (Stopped& stopped : stopped_) {
+    stopped.position = position(coordinate(stopped));
+    stopped.leading_position = position(*stopped.leader);
+  }
+}
+
+void StopContacts::after_update() {
+  for (const Stopped& stopped : stopped_) {
+    const Coordinate& limited = coordinate(stopped);
+    const double part = admissible_part(*limited.limit, stopped.position, position(limited));
+    if (part == 1) continue;
+    double& leading = configuration_.released(stopped.leader->joint).displacement[stopped.leader->component];
+    leading = stopped.leading_position + part * (leading - stopped.leading_position);
+  }
+}
+
+bool StopContacts::hits_too_fast() {
+  for (const Stopped& stopped : stopped_) {
+    const Coordinate& limited = coordinate(stopped);
+    const double increment = configuration_.increment_of(limited);
+    const CoordinateStep change = configuration_.coordinate_step(stopped.index, increment);
+    if (!is_coarse(*limited.limit, stopped.penalty, change)) continue;
+    configuration_.find_begin_rates();
+    if (swings(*limited.limit, stopped.penalty, change, configuration_.begin_rates(limited.joint)[limited.component]))
+      return true;
+  }
+  return false;
+}
+
+}  // namespace flexarm

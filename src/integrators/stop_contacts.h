@@ -1,0 +1,35 @@
+#pragma once
+/// Contacts with stops between Newton's iterations and after them.
+
+#include <vector>
+
+#include "integrators/step_configuration.h"
+
+namespace flexarm {
+
+/// Stops push without bound where they give way no further, which no update may pass: a coordinate whose stop feels it,
+/// itself or one that it leads, goes part of the way.
+class StopContacts {
+ public:
+  explicit StopContacts(StepConfiguration& configuration);
+
+  void before_update();
+  void after_update();
+  /// True where the restitution of a hit would be lost in so long a step.
+  bool hits_too_fast();
+
+ private:
+  struct Stopped {
+    std::size_t index;         // of the coordinate
+    const Coordinate* leader;  // whose unknown it follows; else itself
+    StopPenalty penalty;
+    double position, leading_position;  // before the update
+  };
+  const Coordinate& coordinate(const Stopped& stopped) const;
+  double position(const Coordinate& coordinate) const;
+
+  StepConfiguration& configuration_;
+  std::vector<Stopped> stopped_;
+};
+
+}  // namespace flexarm

@@ -1,0 +1,31 @@
+#pragma once
+/// What an effort on a released coordinate feels of a step, and what it does there.
+
+namespace flexarm {
+
+/// Change of a coordinate over a step, and how its rate is formed:
+/// rate = (increment / step - (1 - gamma) begin_rate) / gamma; gamma = 1 gives the mean rate of conserving schemes.
+struct CoordinateStep {
+  double begin = 0, end = 0;  ///< positions
+  double increment = 0;       ///< end - begin, or a component of a tangent-scaled rotation increment
+  double step = 0;            ///< [s]; 0: statics (no damping, no friction)
+  double gamma = 1, begin_rate = 0;
+  bool at_end = false;  ///< efforts are those at the end of the step; else means over it, whose work is exact
+};
+
+/// The rate that damping and smooth friction feel. Not in statics.
+inline double rate_of(const CoordinateStep& change) {
+  return (change.increment / change.step - (1 - change.gamma) * change.begin_rate) / change.gamma;
+}
+/// Its derivative with respect to the increment.
+inline double rate_slope(const CoordinateStep& change) {
+  return 1 / (change.gamma * change.step);
+}
+
+/// Effort on the coordinate, its derivative with respect to the increment, and the energy that it dissipates over the
+/// step.
+struct PassiveEffort {
+  double effort = 0, slope = 0, dissipated = 0;
+};
+
+}  // namespace flexarm

@@ -1,0 +1,207 @@
+#include "joints/joint_stop.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "math/pi.h"
+
+namespace flexarm {
+namespace {
+
+/// Ratio of a stop's damping to the critical one. A contact that never pulls ends where its force vanishes, after which
+/// the speed is e = exp(-2 z acos(z) / sqrt(1 - z^2)) of that before: 0.3.
+constexpr double kStopDampingRatio = 0.497239;
+/// The damper of forces at an instant, beside that of means: for the same restitution, since it takes hold only by and
+/// by, while the spring turns through the angle of a step of the scene (docs/notes/stops.md).
+constexpr double kEndDamping = 0.580020 / kStopDampingRatio, kRampAngle = kPi / 10;
+/// Part of the way to where a stop gives way no further that an update may take. What goes too deep comes back by only
+/// a sixth of the remaining depth in each update.
+constexpr double kLargestPart = 0.5;
+/// Angle, of the oscillator that the stop makes of its coordinate, that a step may go through: a fifth of half a turn.
+constexpr double kLargestAngle = kPi / 5;
+/// Smaller changes of an oscillation, relative to its amplitude, are those of something that rests on its stop.
+constexpr double kSwing = 0.5;
+/// Depths that a state beyond all bounds counts for.
+constexpr double kDeepest = 1 - 1e-6;
+/// Increments whose quotients lose too much to round-off, relative to the way to where the stop gives way no further.
+constexpr double kTiny = 1e-6;
+
+/// One side of a stop: how deep it is penetrated [m or rad], < 0 outside.
+struct Penetration {
+  double depth, give;
+};
+
+struct Hardened {
+  double value = 0, slope = 0, curvature = 0;
+};
+
+double share(const Penetration& p) {
+  return std::min(p.depth / p.give, kDeepest);
+}
+
+/// 1 - s^2, exact near s = 1.
+double room(double s) {
+  return (1 - s) * (1 + s);
+}
+
+Hardened hardened(const Penetration& p) {
+  if (p.depth <= 0) return {};
+  const double s = share(p), a = room(s);
+  return {p.depth / (a * a), (1 + 3 * s * s) / (a * a * a), 12 * s * (1 + s * s) / (a * a * a * a) / p.give};
+}
+
+/// Quotient of the increments of hardened and true penetration, and its derivative with respect to the end.
+Hardened quotient(const Penetration& begin, const Penetration& end) {
+  const double change = end.depth - begin.depth;
+  const Hardened x0 = hardened(begin), x1 = hardened(end);
+  if (begin.depth <= 0 || end.depth <= 0) {
+    const double value = (x1.value - x0.value) / change;
+    return {value, (x1.slope - value) / change, 0};
+  }
+  const double s0 = share(begin), s1 = share(end), a = room(s0), b = room(s1);
+  const double value = ((a + b) * (1 + s0 * s1) - a * b) / (a * a * b * b);
+  const bool is_tiny = std::abs(change) <= kTiny * (end.give - end.depth);
+  return {value, is_tiny ? 0.5 * x1.curvature : (x1.slope - value) / change, 0};
+}
+
+/// Against the penetration, and its derivative with respect to the one at the end.
+struct Push {
+  double elastic = 0, elastic_slope = 0, viscous = 0, viscous_slope = 0;
+
+  bool pulls() const { return elastic + viscous < 0; }
+  double value() const { return pulls() ? 0 : elastic + viscous; }
+  double slope() const { return pulls() ? 0 : elastic_slope + viscous_slope; }
+};
+
+/// Over the step: the discrete gradient of the energy conserves it. The damper acts on the rate of the hardened
+/// penetration, which is continuous at touch and release.
+Push mean_push(const StopPenalty& penalty, const Penetration& begin, const Penetration& end, double step) {
+  const double x0 = hardened(begin).value;
+  const Hardened x1 = hardened(end), rise = quotient(begin, end);
+  const double k = penalty.stiffness, mean = 0.5 * (x0 + x1.value), change = rise.value * (end.depth - begin.depth);
+  return {k * rise.value * mean, k * (rise.slope * mean + 0.5 * rise.value * x1.slope), penalty.damping * change / step,
+          penalty.damping * x1.slope / step};
+}
+
+/// At an instant. The damper takes hold within the first step of a hit, since the rate jumps at touch.
+Push push_at(const StopPenalty& penalty, double frequency, const Penetration& at, double rate, double rate_slope) {
+  const Hardened x = hardened(at);
+  const double k = penalty.stiffness, c = kEndDamping * penalty.damping, ramp = frequency / kRampAngle;
+  const bool takes_hold = ramp * x.value < rate;
+  const double felt = takes_hold ? ramp * x.value : rate, felt_slope = takes_hold ? ramp * x.slope : rate_slope;
+  return {k * x.slope * x.value, k * (x.slope * x.slope + x.curvature * x.value), c * x.slope * felt,
+          c * (x.curvature * felt + x.slope * felt_slope)};
+}
+
+/// Of both sides, each with the sign of what it does to the coordinate.
+struct Side {
+  double sign;
+  Penetration begin, end;
+};
+
+std::array<Side, 2> sides(const LimitStop& limit, double begin, double end) {
+  return {Side{1, {limit.lower - begin, limit.give_below}, {limit.lower - end, limit.give_below}},
+          Side{-1, {begin - limit.upper, limit.give_above}, {end - limit.upper, limit.give_above}}};
+}
+
+/// Of the oscillator that an undamped stop makes of its coordinate [rad/s].
+double frequency(const LimitStop& limit, const StopPenalty& penalty) {
+  return limit.inertia > 0 ? std::sqrt(penalty.stiffness / limit.inertia) : 0.0;
+}
+
+/// Against the penetration; what Newmark's rule makes of it is the work of the mean of both ends.
+PassiveEffort effort_at_end(const LimitStop& limit, const StopPenalty& penalty, const Side& side,
+                            const CoordinateStep& change) {
+  const double scale = frequency(limit, penalty);
+  const Push begin = push_at(penalty, scale, side.begin, -side.sign * change.begin_rate, 0);
+  const Push end = push_at(penalty, scale, side.end, -side.sign * rate_of(change), rate_slope(change));
+  const double x0 = hardened(side.begin).value, x1 = hardened(side.end).value;
+  const double stored = 0.5 * penalty.stiffness * (x1 - x0) * (x1 + x0);
+  const double work = 0.5 * (begin.value() + end.value()) * (side.end.depth - side.begin.depth);
+  return {end.value(), end.slope(), work - stored};
+}
+
+PassiveEffort mean_effort(const StopPenalty& penalty, const Side& side, double step) {
+  const Push push = mean_push(penalty, side.begin, side.end, step);
+  const double way = side.end.depth - side.begin.depth;
+  return {push.value(), push.slope(), (push.pulls() ? -push.elastic : push.viscous) * way};
+}
+
+/// Against the penetration.
+PassiveEffort one_side(const LimitStop& limit, const StopPenalty& penalty, const Side& side,
+                       const CoordinateStep& change) {
+  if (side.begin.depth <= 0 && side.end.depth <= 0) return {};
+  if (change.step == 0) {
+    const Push push = push_at(penalty, 0, side.end, 0, 0);
+    return {push.elastic, push.elastic_slope, 0};
+  }
+  if (change.at_end) return effort_at_end(limit, penalty, side, change);
+  return mean_effort(penalty, side, change.step);
+}
+
+}  // namespace
+
+StopPenalty stop_penalty(const Coordinate& coordinate, double contact_time) {
+  if (!coordinate.limit) return {};
+  const double inertia = coordinate.limit->inertia, omega = kPi / contact_time;
+  return {inertia * omega * omega, 2 * kStopDampingRatio * inertia * omega};
+}
+
+PassiveEffort stop_effort(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change) {
+  PassiveEffort out;
+  for (const Side& side : sides(limit, change.begin, change.end)) {
+    const PassiveEffort push = one_side(limit, penalty, side, change);
+    out.effort += side.sign * push.effort;
+    out.slope -= push.slope;
+    out.dissipated += push.dissipated;
+  }
+  return out;
+}
+
+double stop_energy(const LimitStop& limit, const StopPenalty& penalty, double position) {
+  double energy = 0;
+  for (const Side& side : sides(limit, position, position))
+    energy += 0.5 * penalty.stiffness * std::pow(hardened(side.end).value, 2);
+  return energy;
+}
+
+double stop_damping(const LimitStop& limit, const StopPenalty& penalty, double position) {
+  double damping = 0;
+  for (const Side& side : sides(limit, position, position)) damping += penalty.damping * hardened(side.end).slope;
+  return damping;
+}
+
+double admissible_part(const LimitStop& limit, double from, double to) {
+  double part = 1;
+  for (const Side& side : sides(limit, from, to)) {
+    const double inside = std::max(side.begin.depth, 0.0);
+    const double deepest = inside + kLargestPart * (side.end.give - inside);
+    if (side.end.depth > deepest && side.end.depth > side.begin.depth)
+      part = std::min(part, (deepest - side.begin.depth) / (side.end.depth - side.begin.depth));
+  }
+  return std::max(part, 0.0);
+}
+
+bool is_coarse(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change) {
+  const double angle = frequency(limit, penalty) * std::abs(change.step);
+  for (const Side& side : sides(limit, change.begin, change.end)) {
+    if (side.begin.depth <= 0 && side.end.depth <= 0) continue;
+    const double steepest = std::max(hardened(side.begin).slope, hardened(side.end).slope);
+    if (angle * (change.at_end ? steepest : quotient(side.begin, side.end).value) > kLargestAngle) return true;
+  }
+  return false;
+}
+
+bool swings(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change, double begin_rate) {
+  const double scale = frequency(limit, penalty), end_rate = 2 * change.increment / change.step - begin_rate;
+  for (const Side& side : sides(limit, change.begin, change.end)) {
+    if (side.begin.depth <= 0 && side.end.depth <= 0) continue;
+    const double x0 = scale * hardened(side.begin).value, x1 = scale * hardened(side.end).value;
+    const double largest = std::max(std::hypot(x0, begin_rate), std::hypot(x1, end_rate));
+    if (std::hypot(x1 - x0, end_rate - begin_rate) > kSwing * largest) return true;
+  }
+  return false;
+}
+
+}  // namespace flexarm

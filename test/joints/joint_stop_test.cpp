@@ -1,0 +1,339 @@
+// Stops: what they do over a step, how deep they let in, what they give back.
+#include "joints/joint_stop.h"
+
+#include <gtest/gtest.h>
+
+#include "elements/differences.h"
+#include "math/pi.h"
+
+namespace flexarm {
+namespace {
+
+using namespace test;
+
+constexpr double kLower = -1, kUpper = 2, kStiffness = 50, kInertia = 2;
+
+/// Stops that give way by at most `give`; infinite: linear ones.
+LimitStop stops(double give) {
+  return {kLower, kUpper, kInertia, give, give};
+}
+const double kGives[] = {LimitStop::kInfinity, 0.7};
+
+StopPenalty penalty_with(double damping) {
+  return {kStiffness, damping};
+}
+
+CoordinateStep step_between(double begin, double end, double step) {
+  CoordinateStep change;
+  change.begin = begin;
+  change.end = end;
+  change.increment = end - begin;
+  change.step = step;
+  return change;
+}
+
+/// Of the Newmark family.
+CoordinateStep step_to_end(double begin, double end, double step, double begin_rate) {
+  CoordinateStep change = step_between(begin, end, step);
+  change.at_end = true;
+  change.gamma = 0.5;
+  change.begin_rate = begin_rate;
+  return change;
+}
+
+double slope_by_difference(const LimitStop& limit, const StopPenalty& penalty, CoordinateStep change, double scale) {
+  return scalar_difference(
+      [&](double h) {
+        CoordinateStep moved = change;
+        moved.end += h;
+        moved.increment += h;
+        return stop_effort(limit, penalty, moved).effort;
+      },
+      0.02 * scale);
+}
+
+/// Positions on both sides of both stops and on them.
+const double kPositions[] = {-1.6, -1.2, -1.0, -0.99, 0.0, 1.5, 2.0, 2.001, 2.5};
+
+TEST(StopEffort, InStaticsIsTheGradientOfItsEnergy) {
+  for (const double give : kGives) {
+    const LimitStop limit = stops(give);
+    const StopPenalty penalty = penalty_with(3);
+    for (const double position : {-1.5, -0.3, 1.9, 2.4}) {
+      const CoordinateStep rest = step_between(0.0, position, 0);
+      const PassiveEffort effort = stop_effort(limit, penalty, rest);
+      const double gradient =
+          scalar_difference([&](double h) { return stop_energy(limit, penalty, position + h); }, 1e-2);
+      EXPECT_NEAR(effort.effort, -gradient, 1e-8 * (1 + std::abs(gradient)));
+      EXPECT_NEAR(effort.slope, slope_by_difference(limit, penalty, rest, 0.1), 1e-8 * (1 + std::abs(effort.slope)));
+    }
+  }
+}
+
+// Work of the stop = - change of its energy - what it dissipates, through every kind of contact.
+TEST(StopEffort, ClosesTheEnergyBudget) {
+  for (const double give : kGives)
+    for (const double damping : {0.0, 0.5, 40.0}) {
+      const LimitStop limit = stops(give);
+      const StopPenalty penalty = penalty_with(damping);
+      for (const double begin : kPositions)
+        for (const double end : kPositions) {
+          const CoordinateStep change = step_between(begin, end, 0.1);
+          const PassiveEffort effort = stop_effort(limit, penalty, change);
+          const double before = stop_energy(limit, penalty, begin), after = stop_energy(limit, penalty, end);
+          const double scale = std::abs(effort.effort * change.increment) + before + after + 1;
+          EXPECT_NEAR(effort.effort * change.increment + after - before + effort.dissipated, 0, 1e-14 * scale)
+              << begin << " -> " << end;
+          EXPECT_GE(effort.dissipated, -1e-15) << begin << " -> " << end;
+          EXPECT_TRUE(damping > 0 || effort.dissipated == 0);
+        }
+    }
+}
+
+// Near where a stop gives way no further, and over increments of any size, the quotients do not cancel.
+TEST(StopEffort, BudgetClosesInTheDepth) {
+  const LimitStop limit = stops(0.5);
+  const StopPenalty penalty = penalty_with(0);
+  for (const double room : {0.1, 1e-2, 1e-4})
+    for (const double part : {0.5, 1e-3, 1e-7}) {
+      const double begin = kUpper + 0.5 - room, end = begin + part * room;
+      const double work = stop_effort(limit, penalty, step_between(begin, end, 0.1)).effort * (end - begin);
+      const double before = stop_energy(limit, penalty, begin), after = stop_energy(limit, penalty, end);
+      // Round-off of the energies: that of a position, by the growth of the energy with it.
+      EXPECT_NEAR(work + after - before, 0, 1e-15 * after * 6 * (1 + kUpper / room)) << room << " " << part;
+    }
+}
+
+// A stop pushes out or not at all.
+TEST(StopEffort, NeverPulls) {
+  for (const double give : kGives)
+    for (const double damping : {0.5, 40.0}) {
+      const LimitStop limit = stops(give);
+      const StopPenalty penalty = penalty_with(damping);
+      for (const double begin : kPositions)
+        for (const double end : kPositions) {
+          if ((begin < 0) != (end < 0)) continue;  // from one stop to the other
+          for (const CoordinateStep& change :
+               {step_between(begin, end, 0.1), step_to_end(begin, end, 0.1, (end - begin) / 0.1)}) {
+            const double effort = stop_effort(limit, penalty, change).effort;
+            EXPECT_GE(begin < 0 ? effort : -effort, 0) << begin << " -> " << end;
+          }
+        }
+    }
+}
+
+TEST(StopEffort, Slope) {
+  for (const double give : kGives)
+    for (const double damping : {0.0, 0.5, 40.0}) {
+      const LimitStop limit = stops(give);
+      const StopPenalty penalty = penalty_with(damping);
+      for (const double begin : {-1.6, -1.2, -0.9, 0.5, 1.9, 2.3})
+        for (const double end : {-1.61, -1.15, -0.95, 0.45, 1.92, 2.33})
+          for (const CoordinateStep& change :
+               {step_between(begin, end, 0.1), step_to_end(begin, end, 0.1, 10 * (end - begin) + 0.1)}) {
+            const double slope = stop_effort(limit, penalty, change).slope;
+            // Round-off of differences of the quotient: epsilon / (increment * step).
+            EXPECT_NEAR(slope, slope_by_difference(limit, penalty, change, 0.01), 1e-6 * (1 + std::abs(slope)))
+                << begin << " -> " << end << " damping " << damping << " give " << give << " " << change.at_end;
+          }
+    }
+}
+
+// Neither touch nor release makes the effort jump: a step that just touches has a solution.
+TEST(StopEffort, IsContinuousAtTouchAndRelease) {
+  for (const double give : kGives) {
+    const LimitStop limit = stops(give);
+    const StopPenalty penalty = penalty_with(40);
+    for (const double begin : {1.5, 1.99, 2.3})
+      for (const bool at_end : {false, true}) {
+        const auto effort = [&](double end) {
+          const double rate = (2.0 - begin) / 0.1;
+          return stop_effort(limit, penalty,
+                             at_end ? step_to_end(begin, end, 0.1, rate) : step_between(begin, end, 0.1))
+              .effort;
+        };
+        EXPECT_NEAR(effort(2.0 - 1e-9), effort(2.0 + 1e-9), 1e-5);  // slopes of 40 / 0.1 and 50 * 0.3 / 0.01 over 2e-9
+      }
+  }
+}
+
+TEST(StopEffort, IsContinuousForVanishingIncrements) {
+  for (const double give : kGives) {
+    const LimitStop limit = stops(give);
+    const StopPenalty penalty = penalty_with(0);
+    const PassiveEffort at_rest = stop_effort(limit, penalty, step_between(-1.2, -1.2, 0.1));
+    const PassiveEffort gradient = stop_effort(limit, penalty, step_between(-1.2, -1.2, 0));
+    EXPECT_NEAR(at_rest.effort, gradient.effort, 1e-12);
+    EXPECT_NEAR(at_rest.slope, 0.5 * gradient.slope, 1e-12 * std::abs(gradient.slope)) << "one end moves";
+    for (const double increment : {1e-15, 1e-13, 1e-12, 3e-12, 1e-9})
+      EXPECT_NEAR(stop_effort(limit, penalty, step_between(-1.2, -1.2 + increment, 0.1)).effort, at_rest.effort,
+                  -at_rest.slope * increment + 1e-12);
+  }
+}
+
+// Whatever presses is held before the stop has given way.
+TEST(StopEffort, GrowsWithoutBound) {
+  const LimitStop limit = stops(0.5);
+  const StopPenalty penalty = penalty_with(0);
+  double last = 0;
+  for (const double room : {0.3, 0.1, 1e-2, 1e-3, 1e-4}) {
+    const double effort = -stop_effort(limit, penalty, step_between(0, kUpper + 0.5 - room, 0)).effort;
+    EXPECT_GT(effort, last);
+    last = effort;
+  }
+  EXPECT_GT(last, 1e12);
+  // A shallow penetration feels nothing of it: 5 (p/d)^2 of its effort.
+  const double shallow = stop_effort(limit, penalty, step_between(0, kLower - 1e-3, 0)).effort;
+  EXPECT_NEAR(shallow, kStiffness * 1e-3, 1.1 * kStiffness * 1e-3 * 8 * std::pow(1e-3 / 0.5, 2));
+}
+
+/// A mass with the mid-point rule, 2 m/h (du/h - v) = Q, or with Newmark's. Halves steps as the stepper does.
+struct Mass {
+  const LimitStop& limit;
+  const StopPenalty& penalty;
+  bool at_end = false;
+  double position, velocity, acceleration = 0, dissipated = 0;
+
+  CoordinateStep change(double increment, double h) const {
+    return at_end ? step_to_end(position, position + increment, h, velocity)
+                  : step_between(position, position + increment, h);
+  }
+  double residual(double increment, double h) const {
+    const double inertial =
+        at_end ? 4 / h * (increment / h - velocity) - acceleration : 2 / h * (increment / h - velocity);
+    return kInertia * inertial - stop_effort(limit, penalty, change(increment, h)).effort;
+  }
+  /// By bisection: the residual grows with the increment.
+  double solve(double h) const {
+    double low = -10, high = 10;
+    high = std::min(high, limit.upper + limit.give_above - position);
+    for (int i = 0; i < 200; ++i) {
+      const double middle = 0.5 * (low + high);
+      (residual(middle, h) > 0 ? high : low) = middle;
+    }
+    return 0.5 * (low + high);
+  }
+  void advance(double h) {
+    double increment = solve(h);
+    while (is_coarse(limit, penalty, change(increment, h)) && swings(limit, penalty, change(increment, h), velocity))
+      increment = solve(h *= 0.5);
+    dissipated += stop_effort(limit, penalty, change(increment, h)).dissipated;
+    acceleration = 4 / h * (increment / h - velocity) - acceleration;
+    position += increment;
+    velocity = 2 * increment / h - velocity;
+  }
+  double energy() const { return 0.5 * kInertia * velocity * velocity + stop_energy(limit, penalty, position); }
+};
+
+TEST(StopEffort, EnergyThroughAHit) {
+  for (const double give : {LimitStop::kInfinity, 0.1, 1e-3})
+    for (const double damping : {0.0, 4.0})
+      for (const bool at_end : {false, true}) {
+        const LimitStop limit = stops(give);
+        const StopPenalty penalty = penalty_with(damping);
+        Mass mass{limit, penalty, at_end, 1.5, 1.0};
+        const double start = mass.energy();
+        // A position's round-off, 4e-16, grows in the energy by 4 over the room that is left: a 30th of the whole one
+        // at least, over some steps.
+        const double round_off = std::max(1e-12, 2e-13 / give) * start;
+        double deepest = 0;
+        for (int step = 0; step < 200 && (mass.velocity > 0 || mass.position > limit.upper); ++step) {
+          mass.advance(0.02);
+          deepest = std::max(deepest, mass.position - limit.upper);
+          // Newmark's conserves the energy only of what is linear; what its efforts do is known as exactly.
+          EXPECT_TRUE(at_end || std::abs(mass.energy() + mass.dissipated - start) <= round_off) << give;
+        }
+        EXPECT_GT(deepest, 0);
+        EXPECT_LT(deepest, give);
+        EXPECT_LT(mass.velocity, 0);
+        EXPECT_NEAR(mass.energy() + mass.dissipated, start, round_off) << give << " " << at_end;
+        EXPECT_TRUE(at_end || (mass.dissipated > 0.01) == (damping > 0));
+      }
+}
+
+/// Ratio of the speeds after and before a hit; `steps` to the contact time of a shallow one.
+double restitution(const LimitStop& limit, double speed, double steps, bool at_end) {
+  Coordinate coordinate;
+  coordinate.limit = limit;
+  const double contact_time = 1e-2;
+  const StopPenalty penalty = stop_penalty(coordinate, contact_time);
+  Mass mass{limit, penalty, at_end, limit.upper - 0.3 * speed * contact_time / steps, speed};
+  for (int step = 0; step < 1000000 && (mass.velocity > 0 || mass.position > limit.upper); ++step)
+    mass.advance(contact_time / steps);
+  return -mass.velocity / speed;
+}
+
+// The restitution is that of a linear stop, 0.3, however deep the hit goes. The angle of a step is at most a fifth of
+// half a turn; the mid-point rule turns by less than that by a twelfth of its square, 3 %, which the damper turns into
+// 4 % of the restitution, and the release falls into the middle of a step: less than 10 % in all.
+TEST(StopEffort, RestitutionIsTheSameAtAllSpeeds) {
+  for (const double speed : {0.1, 1.0, 8.0, 20.0, 50.0, 200.0, 1000.0})
+    EXPECT_NEAR(restitution(stops(0.01), speed, 10, false), 0.3, 0.03) << speed;
+}
+
+// A hit at 3 m/s is one in full steps, which converges as the mid-point rule does.
+TEST(StopEffort, RestitutionConverges) {
+  for (const bool at_end : {false, true})
+    for (const double steps : {80.0, 320.0}) {
+      EXPECT_NEAR(restitution(stops(LimitStop::kInfinity), 1, steps, at_end), 0.3, 0.6 / steps) << at_end;
+      EXPECT_NEAR(restitution(stops(0.01), 3, steps, at_end), 0.3, 3 / steps) << at_end;
+    }
+}
+
+// The steps of the scene, ten to a contact, are fine enough for light touches, and for what rests on its stop.
+TEST(StopEffort, LightTouchesAndRestAreNoHits) {
+  const LimitStop limit = stops(0.5);
+  Coordinate coordinate;
+  coordinate.limit = limit;
+  const double contact_time = 1e-2, h = contact_time / 10;
+  const StopPenalty penalty = stop_penalty(coordinate, contact_time);
+  EXPECT_FALSE(is_coarse(limit, penalty, step_between(1.9, 1.95, h)));
+  EXPECT_FALSE(is_coarse(limit, penalty, step_between(2.0, 2.05, h)));
+  const CoordinateStep pressed = step_between(2.45, 2.45 + 1e-9, h);
+  EXPECT_TRUE(is_coarse(limit, penalty, pressed));
+  EXPECT_FALSE(swings(limit, penalty, pressed, 1e-6));
+  EXPECT_TRUE(swings(limit, penalty, pressed, 1e4)) << "it is thrown back in one step";
+}
+
+TEST(StopUpdate, GoesHalfTheWayAtMost) {
+  const LimitStop limit = stops(0.5);
+  EXPECT_EQ(admissible_part(limit, 0, 2.2), 1);
+  EXPECT_EQ(admissible_part(limit, 2.4, -1.2), 1) << "away from one stop, lightly into the other";
+  EXPECT_DOUBLE_EQ(admissible_part(limit, 0, 9), 2.25 / 9);
+  EXPECT_DOUBLE_EQ(admissible_part(limit, 2.25, 2.75), 0.25);
+  EXPECT_DOUBLE_EQ(admissible_part(limit, 0, -5), 1.25 / 5);
+  EXPECT_EQ(admissible_part(limit, 2.7, 2.1), 1) << "comes back from beyond";
+  EXPECT_EQ(admissible_part(stops(LimitStop::kInfinity), 0, 1e9), 1);
+}
+
+// A contact lasts as long as asked for, and gives 30 % of the speed back.
+TEST(StopPenalty, ContactTimeAndRestitution) {
+  Coordinate coordinate;
+  coordinate.limit = stops(LimitStop::kInfinity);
+  const auto [k, c] = stop_penalty(coordinate, 1e-2);
+  const double omega = std::sqrt(k / kInertia);
+  EXPECT_NEAR(omega, kPi / 1e-2, 1e-9 * omega);
+  // m x'' = min(0, -k x - c x'), hit at unit speed: integrated finely until the force vanishes.
+  double x = 0, v = 1;
+  const double h = 1e-8;
+  while (k * x + c * v > 0) {
+    const double middle = v - 0.5 * h * (k * x + c * v) / kInertia;
+    v -= h * (k * (x + 0.5 * h * v) + c * middle) / kInertia;
+    x += h * middle;
+  }
+  EXPECT_NEAR(-v, 0.3, 1e-3);
+  EXPECT_EQ(stop_penalty(Coordinate(), 1e-2).stiffness, 0);
+}
+
+TEST(StopEnergy, VanishesInside) {
+  const StopPenalty penalty = penalty_with(0);
+  for (const double give : kGives)
+    for (const double position : {-1.0, 0.0, 2.0}) EXPECT_EQ(stop_energy(stops(give), penalty, position), 0);
+  const LimitStop linear = stops(LimitStop::kInfinity);
+  EXPECT_NEAR(stop_energy(linear, penalty, -1.5), 0.5 * kStiffness * 0.25, 1e-13);
+  EXPECT_NEAR(stop_energy(linear, penalty, 2.5), 0.5 * kStiffness * 0.25, 1e-13);
+  EXPECT_TRUE(std::isfinite(stop_energy(stops(0.7), penalty, 100))) << "a state beyond all bounds";
+}
+
+}  // namespace
+}  // namespace flexarm
