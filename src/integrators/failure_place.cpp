@@ -124,6 +124,7 @@ void find_place(const StepSystem& system, StepResult::Failure& failure) {
       failure.place = place_of_variable(system, system.tangent().singular_variable());
       return;
     case Reason::OffTheLine:
+    case Reason::DrivenOffTheLine:
       failure.place = place_of_joint(configuration.model(), configuration.state(), configuration.off_line_joint());
       return;
     case Reason::OpenLoop:

@@ -58,7 +58,9 @@ bool NewtonIteration::solve(Updates updates, Factors factors, StepResult& result
 StepResult::Reason NewtonIteration::evaluate(bool with_tangent) {
   enter(with_tangent ? StepPhase::Tangent : StepPhase::Residual);
   if (system_.evaluate(with_tangent)) return Reason::None;
-  return system_.configuration().is_off_line() ? Reason::OffTheLine : Reason::NotFinite;
+  const StepConfiguration& configuration = system_.configuration();
+  if (!configuration.is_off_line()) return Reason::NotFinite;
+  return configuration.is_driven_off_line() ? Reason::DrivenOffTheLine : Reason::OffTheLine;
 }
 
 StepResult::Reason NewtonIteration::iterate(Updates updates, Factors factors, StepResult& result) {

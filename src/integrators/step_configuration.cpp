@@ -157,12 +157,24 @@ void StepConfiguration::remember_increments(IncrementHistory& history) const {
 
 // ---------------------------------------------------------------- joints
 
+double StepConfiguration::largest_overshoot(const JointMap& joint) const {
+  return joint.leaving < 0 ? SlideLine::kLargestOvershoot : kLargestWayBeyond;
+}
+
 bool StepConfiguration::is_on_line(const JointMap& joint, int j) const {
   const SlideLine& line = model_.slide_lines[joint.line];
   const double to = released_[j].displacement[0];
   const int pieces = std::abs(line.piece_at(to) - line.piece_at(state_->released[j].displacement[0])) + 1;
-  const double largest = joint.leaving < 0 ? SlideLine::kLargestOvershoot : kLargestWayBeyond;
-  return line.overshoot(to) <= largest && pieces <= SlideLine::kMostPieces;
+  return line.overshoot(to) <= largest_overshoot(joint) && pieces <= SlideLine::kMostPieces;
+}
+
+bool StepConfiguration::is_driven_off_line() const {
+  if (off_line_joint_ < 0) return false;
+  const JointMap& joint = model_.joints[off_line_joint_];
+  const Coordinate& travel = model_.coordinates[model_.first_coordinate[off_line_joint_]];
+  const Coordinate& driven = travel.mimicked >= 0 ? model_.coordinates[travel.mimicked] : travel;
+  const double to = released_[off_line_joint_].displacement[0];
+  return driven.motion >= 0 && model_.slide_lines[joint.line].overshoot(to) > largest_overshoot(joint);
 }
 
 SlideTravel StepConfiguration::slide_travel(int j) const {

@@ -58,6 +58,8 @@ class StepConfiguration {
   /// True where a slider has left its line, or goes over more elements than a step may.
   bool is_off_line() const { return off_line_joint_ >= 0; }
   int off_line_joint() const { return off_line_joint_; }  ///< the first of those, -1: none
+  /// True where a motion has driven it there, which no shorter step mends.
+  bool is_driven_off_line() const;
 
   // ---- joints over the step
   bool has_incremental_joints() const { return scheme_.is_incremental(); }
@@ -78,6 +80,7 @@ class StepConfiguration {
 
  private:
   SlideTravel slide_travel(int joint) const;
+  double largest_overshoot(const JointMap& joint) const;
   bool is_on_line(const JointMap& joint, int j) const;
 
   const Model& model_;

@@ -18,8 +18,9 @@ constexpr double kEndDamping = 0.580020 / kStopDampingRatio, kRampAngle = kPi / 
 /// Part of the way to where a stop gives way no further that an update may take. What goes too deep comes back by only
 /// a sixth of the remaining depth in each update.
 constexpr double kLargestPart = 0.5;
-/// Angle, of the oscillator that the stop makes of its coordinate, that a step may go through: a fifth of half a turn.
-constexpr double kLargestAngle = kPi / 5;
+/// Angle, of the oscillator that the stop makes of its coordinate, that a step may go through: a fifth of half a turn,
+/// less with forces at its end, which are of first order where the stop is touched and left.
+constexpr double kLargestAngle = kPi / 5, kLargestAngleAtEnd = kPi / 8;
 /// Smaller changes of an oscillation, relative to its amplitude, are those of something that rests on its stop.
 constexpr double kSwing = 0.5;
 /// Depths that a state beyond all bounds counts for.
@@ -188,7 +189,9 @@ bool is_coarse(const LimitStop& limit, const StopPenalty& penalty, const Coordin
   for (const Side& side : sides(limit, change.begin, change.end)) {
     if (side.begin.depth <= 0 && side.end.depth <= 0) continue;
     const double steepest = std::max(hardened(side.begin).slope, hardened(side.end).slope);
-    if (angle * (change.at_end ? steepest : quotient(side.begin, side.end).value) > kLargestAngle) return true;
+    if (change.at_end ? angle * steepest > kLargestAngleAtEnd
+                      : angle * quotient(side.begin, side.end).value > kLargestAngle)
+      return true;
   }
   return false;
 }

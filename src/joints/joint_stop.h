@@ -29,7 +29,8 @@ double stop_damping(const LimitStop& limit, const StopPenalty& penalty, double p
 /// How much of an update from one position to another a stop allows, 1 where it is far: half the way from the first one
 /// to where it gives way no further.
 double admissible_part(const LimitStop& limit, double from, double to);
-/// True if a whole hit would take fewer than five such steps: much of its restitution is lost.
+/// True if a whole hit would take fewer than five such steps (eight, where efforts are those at the end): much of its
+/// restitution is lost.
 bool is_coarse(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change);
 /// True if the step goes through a part of a hit worth mentioning, false if the coordinate rests on its stop.
 /// `begin_rate` of the coordinate; the mean rate of the step is that of both ends.

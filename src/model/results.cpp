@@ -23,6 +23,8 @@ const char* to_string(StepResult::Reason reason) {
       return "a node turns by more than 90 degrees in one step";
     case StepResult::Reason::OffTheLine:
       return "a slider leaves its line, or passes too many elements in one step";
+    case StepResult::Reason::DrivenOffTheLine:
+      return "a motion drives a slider beyond the end of its line";
     case StepResult::Reason::HitTooFast:
       return "a stop is hit too fast for the step";
     case StepResult::Reason::OpenLoop:

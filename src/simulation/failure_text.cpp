@@ -62,6 +62,8 @@ std::string advice(const Model& model, const StepResult& result) {
       return "a smaller step, or scheme em, which closes the energy element by element";
     case Reason::OffTheLine:
       return "a smaller step, a longer line, or an end where the slider stops or leaves (on_end)";
+    case Reason::DrivenOffTheLine:
+      return "a <motion> that stays on the line, or a longer line";
     case Reason::OpenLoop:
       return "a start at which the loop is no dead point, and motions within its reach";
     case Reason::DeadPoint:

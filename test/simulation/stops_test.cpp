@@ -190,5 +190,26 @@ TEST(Stop, OfATravelThatFollowsAnAngle) {
   EXPECT_LT(simulation.velocity(0), 0) << "it is thrown back";
 }
 
+// What is driven has no stops: it is said what drives it where it cannot go, of travels that follow an angle, too.
+TEST(Stop, NoneOfAMotionBeyondTheEnd) {
+  for (const JointKind rotation : {JointKind::Fixed, JointKind::Screw}) {
+    SceneBuilder b = rider(40, 9, 0);
+    b.scene.initial_joints.clear();
+    scene::JointDescription& ride = b.scene.joints.back();
+    ride.slide->rotation = rotation;
+    ride.axis = Vector3::UnitX();
+    ride.ratio = 1;
+    const bool is_screw = rotation == JointKind::Screw;
+    b.scene.motions.push_back(
+        {is_screw ? "ride/1" : "ride", TimeFunction::parse(is_screw ? "0:0 1:2" : "0:9 1:11"), {}});
+    Simulation simulation(b.scene, options("em"));
+    StepResult result;
+    do result = simulation.step();
+    while (result.converged && simulation.time() < 1);
+    EXPECT_EQ(result.reason, StepResult::Reason::DrivenOffTheLine);
+    EXPECT_NEAR(simulation.position(0), 10 + 0.1 * 10.0 / 40, 2e-3 + 1e-9) << "2 m/s, the last step done";
+  }
+}
+
 }  // namespace
 }  // namespace flexarm::test

@@ -19,6 +19,7 @@ struct StepResult {
     RotationTooLarge,
     EnergyDefect,
     OffTheLine,
+    DrivenOffTheLine,
     OpenLoop,
     BentTooFar,
     DeadPoint,
