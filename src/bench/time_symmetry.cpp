@@ -20,6 +20,7 @@ State reversed(State state) {
   for (NodeState& node : state.nodes) {
     node.velocity *= -1;
     node.angular_velocity *= -1;
+    node.mean_spin *= -1;
   }
   for (MassPointState& point : state.mass_points) point.angular_velocity *= -1;
   for (Vector6& rate : state.strain_rates) rate *= -1;

@@ -17,13 +17,34 @@
 
 namespace flexarm {
 
-/// Their values for given nodal rotations.
 template <int Nodes, typename S>
-void element_functions(const ConservingElement<Nodes, S>& element, const std::array<QuaternionT<S>, Nodes>& orientation,
-                       ElementFunctions<Nodes, S>& functions) {
-  const LocalRotationVariation<Nodes, S> local{LocalRotations<Nodes, S>(orientation)};
-  for (int k = 0; k < Nodes - 1; ++k)
+Vector3T<S> mean_of(const std::array<Vector3T<S>, Nodes>& vectors) {
+  Vector3T<S> sum = vectors[0];
+  for (int i = 1; i < Nodes; ++i) sum += vectors[i];
+  return S(1.0 / Nodes) * sum;
+}
+
+/// Generalised shape functions for the middle of a step from `orientation` by the `foreseen` tangent-scaled increments:
+/// those of the configuration half-way, with the stretch P = I + (cos(theta/2) - 1) e e^T, angle theta about e, of the
+/// mean increment, values P^-1 I_g P and derivatives P I_g' P. With it the conjugate strain of a step that turns the
+/// element by any angle is exact to first order in what else it does (beyond.md 1.3).
+template <int Nodes, typename S>
+void mid_functions(const ConservingElement<Nodes, S>& element, const std::array<QuaternionT<S>, Nodes>& orientation,
+                   const std::array<Vector3T<S>, Nodes>& foreseen, ElementFunctions<Nodes, S>& functions) {
+  std::array<QuaternionT<S>, Nodes> half_way;
+  for (int i = 0; i < Nodes; ++i) half_way[i] = cayley::half_quaternion(foreseen[i]) * orientation[i];
+  const LocalRotationVariation<Nodes, S> local{LocalRotations<Nodes, S>(half_way)};
+  const Vector3T<S> mean = mean_of<Nodes, S>(foreseen);
+  const Matrix3T<S> stretch = cayley::axial_stretch(mean), inverse = cayley::inverse_axial_stretch(mean);
+  for (int k = 0; k < Nodes - 1; ++k) {
     local.evaluate(element.points[k].shape, element.points[k].derivative, functions[k]);
+    for (int i = 0; i < Nodes; ++i) {
+      const Matrix3T<S> value = functions[k].values[i].lazyProduct(stretch),
+                        derivative = functions[k].derivatives[i].lazyProduct(stretch);
+      functions[k].values[i] = inverse.lazyProduct(value);
+      functions[k].derivatives[i] = stretch.lazyProduct(derivative);
+    }
+  }
 }
 
 /// The stiffness points for given nodal positions and rotations.
@@ -40,10 +61,25 @@ void element_points(const ConservingElement<Nodes, S>& element, const std::array
 
 namespace conserving {
 
-/// The element's energy multiplier lambda.
+/// The element's energy multiplier mu. The stresses work on the defect Delta Sigma - s of the conjugate strain, which
+/// the relative rotations of the nodes alone make. Moments mu (w_i - mean w), which sum to zero, do that work
+/// (beyond.md 1.3).
 template <int Nodes, typename S>
-struct Multiplier {
-  S numerator = S(0), denominator = S(0), reference = S(0);
+struct EnergyMultiplier {
+  /// Relative increments below this [rad] are rest: there is nothing that a correction could work on.
+  static constexpr double kRest = 1e-7;
+
+  std::array<Vector3T<S>, Nodes> relative;  ///< w_i - mean w
+  S square = S(0);                          ///< sum of their squares
+  S work = S(0), seen_work = S(0);          ///< of the trial configuration's stresses, and of those that are carried
+
+  void set_relative(const std::array<Vector3T<S>, Nodes>& increments) {
+    const Vector3T<S> mean = mean_of<Nodes, S>(increments);
+    for (int i = 0; i < Nodes; ++i) {
+      relative[i] = increments[i] - mean;
+      square += so3::dot(relative[i], relative[i]);
+    }
+  }
 
   void add(const S& weight, const SectionStiffness<S>& stiffness, const PointKinematicsT<S>& begin,
            const PointKinematicsT<S>& end, Point<Nodes, S>& p) {
@@ -60,36 +96,44 @@ struct Multiplier {
     defect.template head<3>() = p.average_rotation.transpose() * so3::cross(p.arm, Vector3T<S>(turn - p.increment));
     defect.template tail<3>() =
         end.strain.template tail<3>() - begin.strain.template tail<3>() - p.own.conjugate_strain.template tail<3>();
-    numerator += weight * dot6(p.seen.stress, defect);
-    denominator += weight * dot6(p.seen.conjugate_strain, p.seen.conjugate_stress);
-    reference += weight * dot6(p.seen.strain, p.seen.stress);
+    work += weight * dot6(p.own.stress, defect);
+    seen_work += weight * dot6(p.seen.stress, defect);
     p.half_defect_stress = S(0.5) * stiffness.stress(defect);
   }
 
-  /// lambda = num den / (den^2 + eps^2): the guard switches the correction off where the element does not deform.
-  S guarded_square() const {
-    using std::abs;
-    const S guard = S(1e-16) * abs(reference) + S(1e-60);
-    return denominator * denominator + guard * guard;
-  }
-  S value() const { return numerator * denominator / guarded_square(); }
-  S of_numerator() const { return denominator / guarded_square(); }
-  S of_denominator() const {
-    const S q = guarded_square();
-    return (numerator / q) * (S(1) - S(2) * denominator * (denominator / q));
-  }
-  /// d(lambda) as a linear form at a point.
+  S value() const { return work * slope(); }
+  S seen_value() const { return seen_work * slope(); }
+  /// d(mu) / d(work).
+  S slope() const { return square / guarded(); }
+  /// d(work) as a linear form at a point, with the stresses that are seen.
   PointForm<S> form(const S& weight, const Point<Nodes, S>& p) const {
-    const S a = weight * of_numerator(), b = S(2) * weight * of_denominator();
-    return strain_form<Nodes, S>(p, b * p.seen.conjugate_stress - a * p.seen.stress,
-                                 a * (p.half_defect_stress + p.seen.stress));
+    return strain_form<Nodes, S>(p, -weight * p.seen.stress,
+                                 weight * Vector6T<S>(p.half_defect_stress + p.seen.stress));
   }
-  /// What lambda gains to first order where the strains are the point's own instead of those seen.
-  S gain(const S& weight, const Point<Nodes, S>& p) const {
-    const S end = S(2) * dot6(p.half_defect_stress, Vector6T<S>(p.own.strain - p.seen.strain));
-    const S conjugate = dot6(p.seen.conjugate_stress, Vector6T<S>(p.own.conjugate_strain - p.seen.conjugate_strain));
-    return weight * (of_numerator() * end + S(2) * of_denominator() * conjugate);
+
+  /// Adds the moments, and to `carried` what the seen stresses would add to them.
+  void add_moments(BlockSystem<Nodes, S>& system, bool has_carried) const {
+    for (int i = 0; i < Nodes; ++i) system.residual[i].template tail<3>() += value() * relative[i];
+    for (int i = 0; i < Nodes && has_carried; ++i)
+      system.carried[i].template tail<3>() += (seen_value() - value()) * relative[i];
   }
+  /// Adds their tangent. `work_row`: d(work) for {dr, spin} of the nodes; `inverse_tangent`: S(w)^{-1}.
+  void add_tangent(const std::array<Vector6T<S>, Nodes>& work_row,
+                   const std::array<Matrix3T<S>, Nodes>& inverse_tangent, BlockTangent<Nodes, S>& tangent) const {
+    const S mu = seen_value(), by_square = seen_work / guarded() - S(2) * mu * slope();
+    for (int j = 0; j < Nodes; ++j) {
+      Vector6T<S> row = slope() * work_row[j];
+      row.template tail<3>() += (S(2) * by_square) * (inverse_tangent[j].transpose() * relative[j]);
+      for (int i = 0; i < Nodes; ++i) {
+        Matrix6T<S>& block = tangent[i][j];
+        block.template bottomRows<3>() += relative[i].lazyProduct(row.transpose());
+        block.template bottomRightCorner<3, 3>() += (mu * S((i == j ? 1.0 : 0.0) - 1.0 / Nodes)) * inverse_tangent[j];
+      }
+    }
+  }
+
+ private:
+  S guarded() const { return square * square + S(kRest * kRest * kRest * kRest); }
 };
 
 /// Translational inertia (1/h) int I^i I^j mass (v_{n+1} - v_n), v_{n+1} = factor Delta r / h - (factor - 1) v_n, and
@@ -131,7 +175,7 @@ struct StepPoints {
   std::array<Point<Nodes, S>, Nodes - 1> points;
   ElementFunctions<Nodes, S> averages;    // where the mid functions are symmetric
   const ElementFunctions<Nodes, S>* mid;  // of about the middle of the step
-  Multiplier<Nodes, S> multiplier;        // where the rule has one
+  EnergyMultiplier<Nodes, S> multiplier;  // where the rule has one
 
   /// `end` receives the points at t_{n+1}. The generalised shape functions of the points are set `with_variation`, or
   /// where the mid functions ask for them. `functions` must outlive this.
@@ -140,6 +184,8 @@ struct StepPoints {
              const CarriedStrains<Nodes, S>* carried, bool with_variation, PointKinematicsT<S>* end)
       : mid(&functions) {
     constexpr int kPoints = Nodes - 1;
+    const bool is_corrected = rule.correction == EnergyCorrection::Multiplier;
+    if (is_corrected) multiplier.set_relative(nodes.increment);
     const bool is_symmetric = rule.mid_functions == MidFunctions::Symmetric;
     const LocalRotations<Nodes, S> rotations(nodes.orientation);
     std::array<InterpolatedRotation<S>, kPoints> rotation;
@@ -169,8 +215,7 @@ struct StepPoints {
       if (carried)
         p.seen = PointStress<S>(element.stiffness, begin[k].strain, carried->end[k],
                                 carried->has_conjugate ? carried->conjugate[k] : p.own.conjugate_strain);
-      if (rule.correction == EnergyCorrection::Multiplier)
-        multiplier.add(constants.weight, element.stiffness, begin[k], end[k], p);
+      if (is_corrected) multiplier.add(constants.weight, element.stiffness, begin[k], end[k], p);
     }
   }
   StepPoints(const StepPoints&) = delete;  // `mid` may point to its own
@@ -183,16 +228,14 @@ struct StepPoints {
 /// numerical dissipation and damped elements; without either they may be null. Rotary inertia is added elsewhere.
 ///
 /// The moment rows are tested with, and the increments interpolated by, generalised shape functions of about the middle
-/// of the step: `functions` are these (MidFunctions::Explicit) or those of the beginning (Symmetric), averaged
-/// with those of the end; then the tangent, which leaves their variation out, makes Newton converge linearly, by a
-/// factor that falls with the step. Any of them conserve momenta (sum I_g = 1) and, with the multiplier, energy; those
-/// of the middle make Delta(strain) - s third order in the step. With the Lagrange functions (beyond.md 1.1) it is
-/// first order wherever an element is deformed, and the multiplier that makes up for it has no limit where the strain
-/// comes to rest.
+/// of the step: `functions` are those of mid_functions() (MidFunctions::Explicit) or of the beginning (Symmetric),
+/// averaged with those of the end; then the tangent, which leaves their variation out, makes Newton converge linearly,
+/// by a factor that falls with the step. Any of them conserve momenta (sum I_g = 1) and, with the multiplier, energy;
+/// those of the middle make Delta(strain) - s third order in the step. With the Lagrange functions (beyond.md 1.1) it
+/// is first order wherever an element is deformed.
 ///
-/// With a tangent, strains may be carried along: `carried`, per point, are what its geometric part and the multiplier
-/// see instead of those of the trial configuration. Null: these. The residual with carried strains differs from the one
-/// without by what is second order in their difference, and only by the multiplier (docs/notes/newton.md).
+/// With a tangent, strains may be carried along: `carried`, per point, are what its geometric part sees instead of
+/// those of the trial configuration. Null: these. The residual does not depend on them (docs/notes/newton.md).
 template <int Nodes, typename S>
 void conserving_beam(const ConservingElement<Nodes, S>& element, const BeamNodes<Nodes, S>& nodes, const TimeRule& rule,
                      const ElementFunctions<Nodes, S>& functions, const PointKinematicsT<S>* begin,
@@ -209,25 +252,20 @@ void conserving_beam(const ConservingElement<Nodes, S>& element, const BeamNodes
 
   const conserving::StepPoints<Nodes, S> at(element, nodes, rule, functions, begin, carried, with_tangent, end);
   const ElementFunctions<Nodes, S>& mid = *at.mid;
-  const conserving::Multiplier<Nodes, S>& multiplier = at.multiplier;
+  const conserving::EnergyMultiplier<Nodes, S>& multiplier = at.multiplier;
 
   const conserving::DamperParts<S> damper_parts(element.stiffness_damping, rule.damping_relaxation);
-  const S lambda = is_corrected ? multiplier.value() : S(0);
-  S lambda_gain = S(0);
-  for (int k = 0; k < kPoints && is_corrected && carried; ++k)
-    lambda_gain += multiplier.gain(element.points[k].weight, at.points[k]);
   std::array<Matrix3T<S>, Nodes> inverse_tangent;  // S(w)^{-1}: dw = S^{-1} spin
-  std::array<Vector6T<S>, Nodes> conjugate_residual, multiplier_row;
+  std::array<Vector6T<S>, Nodes> work_row;
   for (int i = 0; i < Nodes && with_tangent; ++i) {
     inverse_tangent[i] = cayley::inverse_tangent(nodes.increment[i]);
-    conjugate_residual[i].setConstant(S(0));
-    multiplier_row[i].setConstant(S(0));
+    work_row[i].setConstant(S(0));
   }
   for (int i = 0; i < Nodes && carried; ++i) system.carried[i].setConstant(S(0));
   for (int k = 0; k < kPoints; ++k) {
     const auto& constants = element.points[k];
     const Point<Nodes, S>& p = at.points[k];
-    S factor = lambda;
+    S factor = S(0);
     Vector6T<S> stress = p.own.stress, seen = p.seen.stress;
     if (rule.dissipation.any()) {
       const conserving::NumericalDamper<S> damper(rule.dissipation, memory[k], p.own.conjugate_strain,
@@ -249,7 +287,7 @@ void conserving_beam(const ConservingElement<Nodes, S>& element, const BeamNodes
       end_memory[k].delayed_rate = damper.delayed_rate;
     }
     if (has_memory) end_memory[k].rate = conserving::end_rate(memory[k], p.own.conjugate_strain, step);
-    stress += factor * p.own.conjugate_stress + lambda_gain * p.seen.conjugate_stress;
+    stress += factor * p.own.conjugate_stress;
     const Vector6T<S> weighted = constants.weight * stress;
     conserving::add_residual<Nodes, S>(constants.derivative, mid[k], p.average_rotation * weighted.template head<3>(),
                                        p.average_rotation * weighted.template tail<3>(), p.arm, system.residual);
@@ -281,15 +319,12 @@ void conserving_beam(const ConservingElement<Nodes, S>& element, const BeamNodes
     conserving::add_tangent<Nodes, S>(constants.derivative, mid[k], p, inverse_tangent, is_coupled,
                                       p.average_rotation * force, dn, dm, system.tangent);
     if (!is_corrected) continue;
-    const Vector6T<S> conjugate = constants.weight * p.seen.conjugate_stress;
-    conserving::add_residual<Nodes, S>(constants.derivative, mid[k], p.average_rotation * conjugate.template head<3>(),
-                                       p.average_rotation * conjugate.template tail<3>(), p.arm, conjugate_residual);
     conserving::add_form<Nodes, S>(multiplier.form(constants.weight, p), constants.derivative, p.generalised, mid[k],
-                                   inverse_tangent, multiplier_row);
+                                   inverse_tangent, work_row);
   }
-  for (int i = 0; i < Nodes && is_corrected && with_tangent; ++i)
-    for (int j = 0; j < Nodes; ++j)
-      system.tangent[i][j] += conjugate_residual[i].lazyProduct(multiplier_row[j].transpose());
+  if (!is_corrected) return;
+  multiplier.add_moments(system, carried != nullptr);
+  if (with_tangent) multiplier.add_tangent(work_row, inverse_tangent, system.tangent);
 }
 
 /// What the strains become along a Newton update {dr, spin} of the nodes, to first order. `end` is scratch.

@@ -9,9 +9,9 @@
 namespace flexarm::packs {
 
 template <int Nodes>
-void element_functions(const ConservingElement<Nodes, Pack>& element,
-                       const std::array<QuaternionT<Pack>, Nodes>& orientation,
-                       ElementFunctions<Nodes, Pack>& functions);
+void mid_functions(const ConservingElement<Nodes, Pack>& element,
+                   const std::array<QuaternionT<Pack>, Nodes>& orientation,
+                   const std::array<Vector3T<Pack>, Nodes>& foreseen, ElementFunctions<Nodes, Pack>& functions);
 
 template <int Nodes>
 void element_points(const ConservingElement<Nodes, Pack>& element, const std::array<Vector3T<Pack>, Nodes>& position,

@@ -2,7 +2,7 @@
 
 namespace flexarm::packs {
 
-template decltype(element_functions<5>) element_functions<5>;
+template decltype(mid_functions<5>) mid_functions<5>;
 template decltype(element_points<5>) element_points<5>;
 template decltype(conserving_beam<5>) conserving_beam<5>;
 template decltype(carry_strains<5>) carry_strains<5>;

@@ -8,10 +8,10 @@
 namespace flexarm::packs {
 
 template <int Nodes>
-void element_functions(const ConservingElement<Nodes, Pack>& element,
-                       const std::array<QuaternionT<Pack>, Nodes>& orientation,
-                       ElementFunctions<Nodes, Pack>& functions) {
-  simd::run([&] { flexarm::element_functions<Nodes, Pack>(element, orientation, functions); });
+void mid_functions(const ConservingElement<Nodes, Pack>& element,
+                   const std::array<QuaternionT<Pack>, Nodes>& orientation,
+                   const std::array<Vector3T<Pack>, Nodes>& foreseen, ElementFunctions<Nodes, Pack>& functions) {
+  simd::run([&] { flexarm::mid_functions<Nodes, Pack>(element, orientation, foreseen, functions); });
 }
 
 template <int Nodes>

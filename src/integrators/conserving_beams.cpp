@@ -53,6 +53,7 @@ ConservingBeams::ConservingBeams(const StepConfiguration& configuration)
 }
 
 void ConservingBeams::initialise(State& state) {
+  for (NodeState& node : state.nodes) node.mean_spin = node.orientation * node.angular_velocity;
   if (has_memory_) state.strain_memory = initial_strain_memory(configuration_.model(), state);
 }
 
@@ -71,6 +72,8 @@ void ConservingBeams::begin() {
 
 void ConservingBeams::accept(State& state) {
   std::copy(end_memory_.begin(), end_memory_.end(), state.strain_memory.begin());
+  const StepMotion step = configuration_.motion();
+  for (std::size_t i = 0; i < state.nodes.size(); ++i) state.nodes[i].mean_spin = step.increments[i] / step.step;
   begin_ = 1 - begin_;  // the points of the end are those at the beginning of the next step
 }
 
@@ -151,26 +154,26 @@ void ConservingBeams::set_begin_points() {
   });
 }
 
-/// Test functions for the middle of the step, as the velocities at its beginning foresee it.
+/// Test functions for the middle of the step, foreseen as if it went on like the last one.
 void ConservingBeams::set_mid_functions() {
   const StepMotion step = configuration_.motion();
-  // To second order: explicit, so that the tangent stays simple. Where the functions are to be averaged with those of
-  // the end: the beginning.
-  const Pack turned(rule_.mid_functions == MidFunctions::Explicit ? 0.5 * step.step : 0.0);
+  // Explicit, so that the tangent stays simple. Where they are to be averaged with those of the end: the beginning.
+  const Pack foreseen_time(rule_.mid_functions == MidFunctions::Explicit ? step.step : 0.0);
   for_each_group(groups_, [&](auto& packs) {
     constexpr int N = std::decay_t<decltype(packs)>::value_type::kNodes;
     simd::run([&] {
       for (auto& pack : packs) {
         std::array<QuaternionT<Pack>, N> orientation;
+        std::array<Vector3T<Pack>, N> foreseen;
         for (int i = 0; i < N; ++i) {
           const auto node = [&](int lane) { return pack.nodes[lane][i]; };
-          const Vector3T<Pack> spin = gathered_vector(
-              [&](int lane) -> const Vector3& { return step.state.nodes[node(lane)].angular_velocity; });
+          foreseen[i] = foreseen_time * gathered_vector([&](int lane) -> const Vector3& {
+                          return step.state.nodes[node(lane)].mean_spin;
+                        });
           orientation[i] =
-              gathered_quaternion([&](int lane) -> const Quaternion& { return step.begin[node(lane)].orientation; }) *
-              so3::exp_quaternion(Vector3T<Pack>(turned * spin));
+              gathered_quaternion([&](int lane) -> const Quaternion& { return step.begin[node(lane)].orientation; });
         }
-        packs::element_functions<N>(pack.element, orientation, pack.mid_functions);
+        packs::mid_functions<N>(pack.element, orientation, foreseen, pack.mid_functions);
       }
     });
   });

@@ -36,6 +36,42 @@ inline QuaternionT<typename V::Scalar> quaternion(const Eigen::MatrixBase<V>& w)
   return QuaternionT<S>(q0, half * w[0], half * w[1], half * w[2]);
 }
 
+/// Unit quaternion of half the rotation of w.
+template <typename V>
+inline QuaternionT<typename V::Scalar> half_quaternion(const Eigen::MatrixBase<V>& w) {
+  using std::sqrt;
+  using S = typename V::Scalar;
+  const S cosine = sqrt(detail::squared_cosine(Vector3T<S>(w)));
+  const S q0 = sqrt(S(0.5) * (S(1) + cosine));
+  const S scale = S(0.25) * cosine / q0;
+  return QuaternionT<S>(q0, scale * w[0], scale * w[1], scale * w[2]);
+}
+
+/// P = I + (cos(theta/2) - 1) e e^T for the angle theta about e. (I + hat(w)/2) cos(theta/2) is P times half the
+/// rotation of w.
+template <typename V>
+inline Matrix3T<typename V::Scalar> axial_stretch(const Eigen::MatrixBase<V>& w) {
+  using std::sqrt;
+  using S = typename V::Scalar;
+  const Vector3T<S> t = w;
+  const S cosine = sqrt(detail::squared_cosine(t));
+  Matrix3T<S> result = ((S(-0.25) * cosine * cosine / (S(1) + cosine)) * t) * t.transpose();
+  result.diagonal().array() += S(1);
+  return result;
+}
+
+/// P^-1.
+template <typename V>
+inline Matrix3T<typename V::Scalar> inverse_axial_stretch(const Eigen::MatrixBase<V>& w) {
+  using std::sqrt;
+  using S = typename V::Scalar;
+  const Vector3T<S> t = w;
+  const S cosine = sqrt(detail::squared_cosine(t));
+  Matrix3T<S> result = ((S(0.25) * cosine / (S(1) + cosine)) * t) * t.transpose();
+  result.diagonal().array() += S(1);
+  return result;
+}
+
 /// Tangent-scaled vector 2 q_v / q_0 of a quaternion of any norm and sign; unbounded as the angle approaches pi.
 template <typename Q>
 inline Vector3T<typename Q::Scalar> increment(const Eigen::QuaternionBase<Q>& quaternion) {

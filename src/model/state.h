@@ -15,8 +15,10 @@ namespace flexarm {
 struct NodeState {
   Vector3 position = Vector3::Zero();  ///< [m]
   Quaternion orientation = Quaternion::Identity();
-  Vector3 velocity = Vector3::Zero();              ///< [m/s]
-  Vector3 angular_velocity = Vector3::Zero();      ///< W [rad/s]
+  Vector3 velocity = Vector3::Zero();          ///< [m/s]
+  Vector3 angular_velocity = Vector3::Zero();  ///< W [rad/s]
+  Vector3 mean_spin =
+      Vector3::Zero();  ///< of the last step, tangent-scaled, in the world [rad/s]; energy-momentum family
   Vector3 acceleration = Vector3::Zero();          ///< [m/s^2], schemes of the Newmark family only
   Vector3 angular_acceleration = Vector3::Zero();  ///< A [rad/s^2], the same
 };

@@ -29,7 +29,7 @@ enum class RotationRule {
 
 /// Which generalised shape functions test the moment rows of the EM family; they stay the same during the iteration ...
 enum class MidFunctions {
-  Explicit,  ///< ... those of the middle that the velocities at the beginning foresee
+  Explicit,  ///< ... those of the middle if the step goes on like the last one
   Symmetric  ///< or not: the average of both ends, which makes the step symmetric in time
 };
 

@@ -21,6 +21,7 @@ void for_each_number(AnyState& state, const Visit& visit) {
     vector("a node's orientation", node.orientation.coeffs());
     vector("a node's velocity", node.velocity);
     vector("a node's angular velocity", node.angular_velocity);
+    vector("a node's mean spin", node.mean_spin);
     vector("a node's acceleration", node.acceleration);
     vector("a node's angular acceleration", node.angular_acceleration);
   }

@@ -48,7 +48,7 @@ template <int Nodes>
 class Conserving {
  public:
   Conserving(const RandomStep<Nodes>& step, const TimeRule& rule) : step_(step), rule_(rule) {
-    element_functions<Nodes>(step.element, step.begin_orientation, functions_);
+    functions_ = functions_at<Nodes>(step.element, step.begin_orientation);
   }
 
   /// The strains of the nodes' configuration, and what an update adds to them to first order.

@@ -88,13 +88,25 @@ void conserving_beam(const BeamElement<Nodes>& element, const ElementNodes<Nodes
   data.get_end(0, end, end_memory);
 }
 
-/// Generalised shape functions of an element of the model.
+/// Generalised shape functions of an element of the model, half-way from `orientation` by tangent-scaled increments.
 template <int Nodes>
-void element_functions(const BeamElement<Nodes>& element, const std::array<Quaternion, Nodes>& orientation,
-                       ElementFunctions<Nodes>& functions) {
+ElementFunctions<Nodes> functions_half_way(const BeamElement<Nodes>& element,
+                                           const std::array<Quaternion, Nodes>& orientation,
+                                           const std::array<Vector3, Nodes>& increments) {
   ConservingElement<Nodes> constants;
   set_lane(constants, 0, element);
-  flexarm::element_functions<Nodes, double>(constants, orientation, functions);
+  ElementFunctions<Nodes> functions;
+  mid_functions<Nodes, double>(constants, orientation, increments, functions);
+  return functions;
+}
+
+/// The same at `orientation`.
+template <int Nodes>
+ElementFunctions<Nodes> functions_at(const BeamElement<Nodes>& element,
+                                     const std::array<Quaternion, Nodes>& orientation) {
+  std::array<Vector3, Nodes> still;
+  still.fill(Vector3::Zero());
+  return functions_half_way<Nodes>(element, orientation, still);
 }
 
 }  // namespace flexarm::test

@@ -56,7 +56,7 @@ struct Dissipative {
 
   Dissipative(const RandomStep<Nodes>& step, const TimeRule& rule, const Memory<Nodes>& memory)
       : step(step), rule(rule), memory(memory) {
-    element_functions<Nodes>(step.element, step.begin_orientation, functions);
+    functions = functions_at<Nodes>(step.element, step.begin_orientation);
   }
   template <bool WithMultiplier>
   ElementSystem<Nodes> evaluate(const ElementNodes<Nodes>& nodes, bool with_tangent) {

@@ -59,7 +59,7 @@ class Lanes {
         step.element.stiffness.template topRightCorner<3, 3>().setZero();
         step.element.stiffness.template bottomLeftCorner<3, 3>().setZero();
       }
-      test::element_functions<Nodes>(step.element, step.begin_orientation, functions_[lane]);
+      functions_[lane] = functions_at<Nodes>(step.element, step.begin_orientation);
       for (StrainMemory& memory : memory_[lane])
         memory = {0.1 * random.vector6(), 0.1 * random.vector6(), 0.1 * random.vector6()};
     }

@@ -20,6 +20,27 @@ TEST(Cayley, IsTheRationalFunctionOfTheSkewMatrix) {
   }
 }
 
+TEST(Cayley, HalfQuaternionTwiceIsTheQuaternion) {
+  Samples samples;
+  for (const double length : {0.0, 1e-12, 1e-3, 0.5, 2.0, 10.0}) {
+    const Vector w = samples.of_length(length);
+    const auto half = cayley::half_quaternion(w);
+    EXPECT_LT(((half * half).coeffs() - cayley::quaternion(w).coeffs()).norm(), roundoff);
+  }
+}
+
+TEST(Cayley, AxialStretchMakesTheHalfTurn) {
+  Samples samples;
+  for (const double length : {0.0, 1e-12, 1e-3, 0.5, 2.0, 10.0}) {
+    const Vector w = samples.of_length(length);
+    const double cosine = 1 / std::sqrt(1 + 0.25 * w.squaredNorm());
+    const Matrix turn = cosine * (Matrix::Identity() + 0.5 * so3::hat(w)), stretch = cayley::axial_stretch(w);
+    EXPECT_LT(distance(Matrix(stretch * cayley::half_quaternion(w).toRotationMatrix()), turn), roundoff);
+    EXPECT_LT(distance(Matrix(stretch * cayley::inverse_axial_stretch(w)), Matrix(Matrix::Identity())),
+              roundoff / cosine);
+  }
+}
+
 TEST(Cayley, CompoundComposesRotations) {
   Samples samples;
   for (int i = 0; i < 50; ++i) {

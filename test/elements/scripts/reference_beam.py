@@ -330,15 +330,14 @@ def energy_momentum(element, step, with_multiplier, damping=0.0):
     """em (with the multiplier) or em0: rotary inertia lumped at the nodes; `damping` [s] is stiffness-proportional."""
     h, J = step.step, element.inertia
     at_points = [energy_momentum_point(element, step, k) for k in range(element.nodes - 1)]
-    multiplier = damping / h
-    if with_multiplier:
-        missing = sum(p.point.weight * p.stress @ (p.change - p.conjugate) for p in at_points)
-        multiplier += missing / sum(p.point.weight * p.conjugate @ element.stiffness @ p.conjugate for p in at_points)
-
     rows = np.zeros((element.nodes, 6))
     for p in at_points:
-        stress = p.stress + multiplier * element.stiffness @ p.conjugate
+        stress = p.stress + damping / h * element.stiffness @ p.conjugate
         rows += force_rows(p.point, p.mean @ stress[:3], p.mean @ stress[3:], p.line)
+    if with_multiplier:
+        missing = sum(p.point.weight * p.stress @ (p.change - p.conjugate) for p in at_points)
+        relative = step.increments - np.mean(step.increments, axis=0)
+        rows[:, 3:] += missing / np.sum(relative**2) * relative
     velocity_change = 2 * ((step.r1 - step.r0) / h - step.velocity)
     for point in element.mass_points:
         rows += inertia_rows(point, element.mass * (point.shape @ velocity_change) / h, np.zeros(3))
