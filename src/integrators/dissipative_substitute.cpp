@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "integrators/balance.h"
+#include "integrators/initial_strain_memory.h"
 
 namespace flexarm {
 namespace {
@@ -34,7 +35,7 @@ bool DissipativeSubstitute::advance(State& state, StepResult& result) {
   trial_ = begin_;
   trial_.halving_level = 0;
   stepper_.invalidate();
-  if (begin_.strain_memory.empty()) stepper_.initialise(trial_);
+  if (begin_.strain_memory.empty()) trial_.strain_memory = initial_strain_memory(model_, begin_);
   const double memory_at_beginning =
       energies(model_, dissipative_, trial_).strain - energies(model_, scheme_, begin_).strain;
   const StepResult made = stepper_.advance(trial_);
