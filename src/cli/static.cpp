@@ -37,6 +37,7 @@ void print_equilibrium(const Simulation& simulation) {
 
 int solve(const Arguments& arguments) {
   refuse_overwriting("--output", arguments.output, arguments.scene.path);
+  require_writable("--output", arguments.output);
   Simulation simulation = load_simulation(arguments.scene);
   const StaticResult result = simulation.solve_static(arguments.load_steps, arguments.wanted);
   if (!result.converged) {

@@ -70,7 +70,7 @@ class StepSystem {
   TangentBackend& tangent() { return *tangent_; }
   const TangentBackend& tangent() const { return *tangent_; }
   /// See LoopMultipliers.
-  double open_loop() const { return loops_.open_loop(); }
+  LoopMultipliers::Opening largest_opening() const { return loops_.largest_opening(); }
   /// See StopContacts.
   bool hits_too_fast() { return contacts_.hits_too_fast(); }
   /// Internal less external forces on all nodes in the configuration of `state`, before joints fold them; of a scheme

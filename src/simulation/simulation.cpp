@@ -15,6 +15,7 @@
 #include "math/so3.h"
 #include "model/line_release.h"
 #include "schemes/slide_scheme.h"
+#include "simulation/failure_text.h"
 #include "simulation/inside.h"
 #include "simulation/observables.h"
 #include "simulation/output_velocities.h"
@@ -46,6 +47,8 @@ StepSettings settings_of(const scene::SceneDescription& scene, const SimulationO
   settings.max_iterations = scene.integrator.max_iterations;
   settings.max_halvings = scene.integrator.max_halvings;
   settings.reuse_factorisation = options.reuse_factorisation;
+  settings.on_failure = scene.integrator.on_failure;
+  settings.recovery_wall_time = options.recovery_wall_time;
   const auto require = [&](bool ok, const std::string& what) {
     if (!ok) throw ModelError(integrator_place(scene) + "<integrator>: " + what);
   };
@@ -59,6 +62,7 @@ StepSettings settings_of(const scene::SceneDescription& scene, const SimulationO
 /// The scene with the scheme and the step in use.
 scene::SceneDescription with_options(scene::SceneDescription scene, const SimulationOptions& options) {
   if (options.scheme) scene.integrator = with_scheme(scene.integrator, *options.scheme);
+  if (options.on_failure) scene.integrator.on_failure = *options.on_failure;
   scene.integrator.step = settings_of(scene, options).step;
   return scene;
 }
@@ -172,6 +176,10 @@ StepResult Simulation::step() {
   implementation_->velocities_hold = false;
   implementation_->static_norms.clear();
   return result;
+}
+
+std::string Simulation::explain(const StepResult& result) const {
+  return failure_text(implementation_->model, implementation_->settings, result);
 }
 
 void Simulation::reset() {
