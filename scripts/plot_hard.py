@@ -12,7 +12,7 @@ from headless_pyplot import pyplot
 
 # Cases side by side in so many columns of panels, to fill one page.
 COLUMNS = 3
-FAILED, WRONG, DIAGNOSED = "#d62728", "#ff9f40", "#9ecae1"
+FAILED, WRONG, WARNED, DIAGNOSED = "#d62728", "#ff9f40", "#ffe08a", "#9ecae1"
 MOST_ITERATIONS = 50
 LONGEST_NAME = 50
 
@@ -34,7 +34,7 @@ def colour(verdict, iterations):
     if verdict == "right":
         share = math.log(max(iterations, 1)) / math.log(MOST_ITERATIONS)
         return pyplot.get_cmap("viridis")(0.8 - 0.55 * min(share, 1))
-    return {"wrong": WRONG, "diagnosed": DIAGNOSED}.get(verdict, FAILED)
+    return {"wrong": WRONG, "warned": WARNED, "diagnosed": DIAGNOSED}.get(verdict, FAILED)
 
 
 def lines(cases):
@@ -67,7 +67,7 @@ def draw(axes, part, schemes):
 
 def legend(figure):
     entries = [(f"right, {n} iterations a step", colour("right", n)) for n in (1, 3, 10, 50)]
-    entries += [("completed, wrong", WRONG), ("failed, or unsound and not diagnosed", FAILED),
+    entries += [("wrong", WRONG), ("wrong, warned", WARNED), ("failed, or unsound and not diagnosed", FAILED),
                 ("unsound, diagnosed", DIAGNOSED)]
     handles = [pyplot.Rectangle((0, 0), 1, 1, color=shade) for _, shade in entries]
     figure.legend(handles, [text for text, _ in entries], loc="lower center", ncol=4, fontsize=6)

@@ -10,6 +10,7 @@
 #include "elements/endpoint_beam.h"
 #include "joints/joint_kinematics.h"
 #include "joints/joint_stop.h"
+#include "math/so3.h"
 
 namespace flexarm {
 namespace {
@@ -31,6 +32,35 @@ Eigen::Matrix<double, 6 * Nodes, 6 * Nodes> material_stiffness(const BeamElement
                              {constants.derivative, functions}, tangent.resultants, tangent.couple, stiffness);
   }
   return stiffness;
+}
+
+/// d{Gamma, K} of a point by {displacement, spin} of the nodes.
+template <int Nodes>
+Eigen::Matrix<double, 6, 6 * Nodes> strain_variation(const Matrix3& rotation, const Vector3& tangent,
+                                                     const NodalValues<Nodes>& derivative,
+                                                     const GeneralisedShapeFunctions<Nodes>& spins) {
+  const Matrix3 turned = rotation.transpose() * so3::hat(tangent);
+  Eigen::Matrix<double, 6, 6 * Nodes> variation;
+  for (int i = 0; i < Nodes; ++i)
+    variation.template middleCols<6>(6 * i) << derivative[i] * rotation.transpose(), turned * spins.values[i],
+        Matrix3::Zero(), rotation.transpose() * spins.derivatives[i];
+  return variation;
+}
+
+/// Second derivative of the energy by strains alone: the material's stiffness with variations of strains as tests.
+template <int Nodes>
+Eigen::Matrix<double, 6 * Nodes, 6 * Nodes> material_curvature(const BeamElement<Nodes>& element, const State& state) {
+  const ElementConfiguration<Nodes> nodes(element, state);
+  const LocalRotationVariation<Nodes> local{LocalRotations<Nodes>(nodes.orientation)};
+  Eigen::Matrix<double, 6 * Nodes, 6 * Nodes> curvature = Eigen::Matrix<double, 6 * Nodes, 6 * Nodes>::Zero();
+  for (const auto& point : element.stiffness_points) {
+    GeneralisedShapeFunctions<Nodes> spins;
+    const Matrix3 rotation = local.evaluate(point.shape, point.derivative, spins).rotation;
+    const auto strains = strain_variation<Nodes>(rotation, interpolate<Nodes>(point.derivative, nodes.position),
+                                                 point.derivative, spins);
+    curvature += point.weight * strains.transpose() * element.stiffness * strains;
+  }
+  return curvature;
 }
 
 /// Slope of a coordinate's effort against its rate, at rest.
@@ -251,6 +281,34 @@ Mode LinearisedMotion::expand(const Eigen::VectorXcd& vector) const {
     mode.coordinate_motion.emplace_back(real[scalar], imaginary[scalar]);
   }
   return mode;
+}
+
+Eigen::SparseMatrix<double> LinearisedMotion::curvature() const {
+  SparseTangent difference(model_, dof_);
+  difference.set_zero();
+  for_each_element(model_.beams, [&](const auto& element) {
+    constexpr int N = std::decay_t<decltype(element)>::kNodes;
+    const Eigen::Matrix<double, 6 * N, 6 * N> own =
+        material_curvature<N>(element, state_) - material_stiffness<N>(element, state_);
+    for (int i = 0; i < N; ++i)
+      for (int j = 0; j < N; ++j)
+        Eigen::Map<Matrix6>(difference.element_block(element.first_block + i * N + j)) +=
+            own.template block<6, 6>(6 * i, 6 * j);
+  });
+  fold(difference);
+  const Eigen::SparseMatrix<double> sum = stiffness() + matrix(difference);
+  return 0.5 * (sum + Eigen::SparseMatrix<double>(sum.transpose()));
+}
+
+double LinearisedMotion::strain_energy(const std::vector<ComplexVector6>& node_motion) const {
+  double energy = 0;
+  for_each_element(model_.beams, [&](const auto& element) {
+    constexpr int N = std::decay_t<decltype(element)>::kNodes;
+    Eigen::Matrix<std::complex<double>, 6 * N, 1> motion;
+    for (int i = 0; i < N; ++i) motion.template segment<6>(6 * i) = node_motion[element.nodes[i]];
+    energy += motion.dot(material_curvature<N>(element, state_) * motion).real();
+  });
+  return energy;
 }
 
 double LinearisedMotion::round_off(const std::vector<ComplexVector6>& node_motion) const {

@@ -45,8 +45,14 @@ class LinearisedMotion {
   /// energy.
   bool is_circulatory() const;
 
+  /// The second derivative of the potential, with multipliers. Unlike the stiffness, whose tests are not the variations
+  /// of the strains, it is symmetric; the two differ by the elements' own error.
+  Eigen::SparseMatrix<double> curvature() const;
+
   /// The motion of all nodes and coordinates that an eigenvector means; frequency and rate are left alone.
   Mode expand(const Eigen::VectorXcd& vector) const;
+  /// Twice the energy of the strains that a motion of the nodes makes [J].
+  double strain_energy(const std::vector<ComplexVector6>& node_motion) const;
   /// What round-off may make of phi* K phi [J]: kRoundOff times the sum of its terms, in absolute value.
   double round_off(const std::vector<ComplexVector6>& node_motion) const;
 

@@ -1,44 +1,100 @@
 #include "analysis/statics.h"
 
-#include <cmath>
-
-#include "integrators/newton.h"
+#include "analysis/settling.h"
+#include "analysis/stability.h"
 
 namespace flexarm {
+namespace {
 
-StepResult solve_static(const Model& model, const Scheme& scheme, const StepSettings& settings, int load_steps,
-                        State& state, std::vector<double>* update_norms) {
-  using Updates = NewtonIteration::Updates;
-  StepSystem system(model, statics_of(scheme));
-  NewtonIteration newton(system, settings);
-  StepResult result;
-  State trial = state;
-  // Full updates first: a beam that rolls up by several turns needs large rotations at once, and takes them well.
-  const auto solve = [&](double factor) {
+/// First way along an unstable motion [rad, or in units of the length scale].
+constexpr double kPush = 1e-3;
+/// Drag on the way out of an unstable equilibrium beside its curvature: what leaves it doubles its way in each step.
+constexpr double kDragOfFall = 2;
+/// Times that a mechanism may fall from one unstable equilibrium to another one.
+constexpr int kMostFalls = 10;
+
+class EquilibriumSearch {
+ public:
+  EquilibriumSearch(const Model& model, const Scheme& scheme, const StepSettings& settings, const State& state)
+      : model_(model),
+        scheme_(scheme),
+        state_(state),
+        system_(model, statics_of(scheme)),
+        newton_(system_, settings),
+        settling_(system_, newton_, neutral_curvature(model), settings.tolerance) {}
+
+  const State& state() const { return state_; }
+  const StaticResult& result() const { return result_; }
+  const std::vector<double>& update_norms() const { return newton_.update_norms(); }
+
+  bool increase_loads(int load_steps) {
+    for (int step = 1; step <= load_steps; ++step) {
+      const double factor = static_cast<double>(step) / load_steps;
+      if (!solve(factor) && !settling_.settle(state_, factor, result_)) return false;
+    }
+    return true;
+  }
+
+  bool settle_for(Equilibrium wanted) {
+    for (int fall = 0; fall < kMostFalls; ++fall) {
+      const Stability stability = judge_stability(model_, scheme_, state_);
+      result_.loose_link = stability.loose_link;
+      if (stability.is_stable()) return true;
+      if (result_.falling_link.empty()) result_.falling_link = stability.motion.link;
+      if (wanted == Equilibrium::UnderTheLoads) return true;
+      if (!leave(stability.motion)) return false;
+    }
+    result_.reason = StepResult::Reason::NeverRests;
+    return false;
+  }
+
+ private:
+  /// Full updates first: a beam that rolls up by several turns needs large rotations at once, and takes them well.
+  bool solve(double factor) {
+    using Updates = NewtonIteration::Updates;
     for (const Updates updates : {Updates::Full, Updates::Limited}) {
-      system.begin_equilibrium(trial, factor);
-      if (newton.solve(updates, NewtonIteration::Factors::Fresh, result)) return true;
+      system_.begin_equilibrium(state_, factor);
+      if (!newton_.solve(updates, NewtonIteration::Factors::Fresh, result_)) continue;
+      system_.accept(state_);
+      return true;
     }
     return false;
-  };
-  double factor = 0, increment = 1.0 / load_steps;
-  const double smallest = std::ldexp(increment, -settings.max_halvings);
-  while (factor < 1) {
-    const double next = factor + increment > 1 - 1e-12 ? 1.0 : factor + increment;
-    const bool is_solved = solve(next);
-    if (update_norms) *update_norms = newton.update_norms();
-    if (is_solved) {
-      system.accept(trial);
-      factor = next;
-    } else {
-      increment *= 0.5;
-      if (increment < smallest) return result;
-      ++result.halvings;
-    }
   }
-  state = trial;
+
+  /// To one side of the motion or, where a line ends there, to the other one.
+  bool leave(const UnstableMotion& motion) {
+    for (const double push : {kPush, -kPush}) {
+      system_.begin_equilibrium(state_, 1);
+      system_.update(push * motion.direction);
+      if (!system_.evaluate(false)) continue;
+      system_.accept(state_);
+      return settling_.settle(state_, 1, -kDragOfFall * motion.curvature, result_);
+    }
+    result_.reason = StepResult::Reason::OffTheLine;
+    return false;
+  }
+
+  const Model& model_;
+  const Scheme& scheme_;
+  State state_;
+  StepSystem system_;
+  NewtonIteration newton_;
+  Settling settling_;
+  StaticResult result_;
+};
+
+}  // namespace
+
+StaticResult solve_static(const Model& model, const Scheme& scheme, const StepSettings& settings, int load_steps,
+                          Equilibrium wanted, State& state, std::vector<double>* update_norms) {
+  EquilibriumSearch search(model, scheme, settings, state);
+  const bool is_found = search.increase_loads(load_steps) && search.settle_for(wanted);
+  if (update_norms) *update_norms = search.update_norms();
+  StaticResult result = search.result();
+  result.converged = is_found;
+  if (!is_found) return result;
+  state = search.state();
   result.reason = StepResult::Reason::None;
-  result.converged = true;
   return result;
 }
 

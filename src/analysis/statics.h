@@ -11,10 +11,11 @@
 
 namespace flexarm {
 
-/// Equilibrium by `load_steps` equal increments of gravity and loads, halved where Newton's method asks for it; with
-/// the scheme's interpolation. Prescribed motions are held at time 0, other released coordinates are solved for. On
+/// Equilibrium by `load_steps` equal increments of gravity and loads, with the scheme's interpolation. Prescribed
+/// motions are held at time 0, other released coordinates are solved for: by Newton's method and, where this finds
+/// nothing, by Settling. An equilibrium that is not stable is left along its unstable motion unless it is `wanted`. On
 /// success `state` is at rest there; on failure it is untouched. `update_norms`: those of the last solve.
-StepResult solve_static(const Model& model, const Scheme& scheme, const StepSettings& settings, int load_steps,
-                        State& state, std::vector<double>* update_norms = nullptr);
+StaticResult solve_static(const Model& model, const Scheme& scheme, const StepSettings& settings, int load_steps,
+                          Equilibrium wanted, State& state, std::vector<double>* update_norms = nullptr);
 
 }  // namespace flexarm

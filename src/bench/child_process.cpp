@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <csignal>
+#include <initializer_list>
 #include <stdexcept>
 
 namespace flexarm::bench {
@@ -34,6 +35,7 @@ void limit(__rlimit_resource resource, rlim_t soft, rlim_t hard) {
 /// Of the calling process.
 void apply(const ProcessLimits& limits) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody is left to read what comes out
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_DFL);
   const rlim_t seconds = static_cast<rlim_t>(limits.seconds);
   limit(RLIMIT_CPU, seconds, seconds + 1);
   limit(RLIMIT_CORE, 0, 0);
@@ -56,8 +58,10 @@ ChildEnd run_in_child(const std::function<void()>& work, const ProcessLimits& li
     _exit(0);  // the parent's buffers and files are the parent's
   }
   int status = 0;
-  while (waitpid(child, &status, 0) < 0)
+  while (waitpid(child, &status, 0) < 0) {
     if (errno != EINTR) throw std::runtime_error("a process was lost");
+    kill(child, SIGKILL);  // somebody wants this process to end
+  }
   const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
   return {signal, signal == SIGXCPU || signal == SIGKILL || signal == SIGALRM};
 }

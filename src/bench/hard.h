@@ -65,6 +65,7 @@ struct HardOutcome {
   double bound = 0;                                                   ///< largest of the bound's measure
   double error = std::numeric_limits<double>::quiet_NaN();  ///< relative, at the end; NaN: no target, or not reached
   std::array<double, 3> observed{};                         ///< what the target observes, at the end
+  Text warning{};                                           ///< the first of RunSummary
 
   double iterations_per_step() const { return steps > 0 ? static_cast<double>(iterations) / steps : 0; }
 };
@@ -72,6 +73,7 @@ struct HardOutcome {
 /// How an outcome is to be taken.
 enum class Verdict {
   Right,
+  Warned,      ///< the same as Wrong, but the run ended with a warning
   Wrong,       ///< completed, but off its target, out of bounds, or with energy from nowhere
   Failed,      ///< did not complete
   Diagnosed,   ///< unsound, and refused or ended with a reason

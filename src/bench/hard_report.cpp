@@ -34,6 +34,8 @@ const char* to_string(Verdict verdict) {
   switch (verdict) {
     case Verdict::Right:
       return "right";
+    case Verdict::Warned:
+      return "warned";
     case Verdict::Wrong:
       return "wrong";
     case Verdict::Failed:
@@ -96,10 +98,10 @@ std::string total_row(const HardReport& report, std::size_t s) {
     energy_defect = std::max(energy_defect, outcome.energy_defect);
     momentum_defect = std::fmax(momentum_defect, outcome.momentum_defect);  // some have none
   }
-  return row({report.options.schemes[s], std::to_string(of(Verdict::Right)), std::to_string(of(Verdict::Wrong)),
-              std::to_string(of(Verdict::Failed)), std::to_string(of(Verdict::Diagnosed)),
-              std::to_string(of(Verdict::Undiagnosed)), std::to_string(of(Verdict::Unnoticed)),
-              std::to_string(ended(HardOutcome::End::OutOfTime)),
+  return row({report.options.schemes[s], std::to_string(of(Verdict::Right)), std::to_string(of(Verdict::Warned)),
+              std::to_string(of(Verdict::Wrong)), std::to_string(of(Verdict::Failed)),
+              std::to_string(of(Verdict::Diagnosed)), std::to_string(of(Verdict::Undiagnosed)),
+              std::to_string(of(Verdict::Unnoticed)), std::to_string(ended(HardOutcome::End::OutOfTime)),
               std::to_string(ended(HardOutcome::End::Crashed) + ended(HardOutcome::End::OutOfMemory)),
               std::to_string(beats(s, 0)), std::to_string(beats(0, s)), number("{:.1f}", median(iterations)),
               fmt::format("{:.0e}", energy_defect), fmt::format("{:.0e}", momentum_defect),
@@ -109,7 +111,7 @@ std::string total_row(const HardReport& report, std::size_t s) {
 std::string total_table(const HardReport& report) {
   const long sound = count_rows(report, [](const HardRow& row) { return row.hard.is_sound; });
   const std::string& first = report.options.schemes.front();
-  std::string text = head({"scheme", fmt::format("right, of {} sound", sound), "completed, wrong", "failed",
+  std::string text = head({"scheme", fmt::format("right, of {} sound", sound), "wrong, warned", "wrong", "failed",
                            fmt::format("diagnosed, of {} unsound", report.rows.size() - sound), "without a reason",
                            "unnoticed", "out of time", "crashed", fmt::format("completes, `{}` does not", first),
                            fmt::format("`{}` completes, this does not", first), "iterations per step", "energy defect",
@@ -131,6 +133,8 @@ std::string cell(const HardCase& hard, const HardOutcome& outcome) {
   switch (verdict(hard, outcome)) {
     case Verdict::Right:
       return fmt::format("{:.1f}", outcome.iterations_per_step());
+    case Verdict::Warned:
+      return fmt::format("**warned** {:.1f}", outcome.iterations_per_step());
     case Verdict::Wrong:
       return fmt::format("**wrong** {:.1f}", outcome.iterations_per_step());
     case Verdict::Failed:
@@ -176,9 +180,10 @@ std::string trouble_table(const HardReport& report) {
     const HardOutcome& outcome = r.outcomes.front();
     const Verdict v = verdict(r.hard, outcome);
     if (v == Verdict::Right || v == Verdict::Diagnosed) continue;
-    const std::string what = outcome.end == HardOutcome::End::Completed
-                                 ? (v == Verdict::Wrong ? flaw(r.hard, outcome) : "completed without a word")
-                                 : ending(r.hard, outcome);
+    const std::string what = v == Verdict::Wrong       ? flaw(r.hard, outcome)
+                             : v == Verdict::Warned    ? flaw(r.hard, outcome) + "; warned: " + outcome.warning.data()
+                             : v == Verdict::Unnoticed ? "completed without a word"
+                                                       : ending(r.hard, outcome);
     text += row({r.hard.group + ": " + r.hard.name, in_one_cell(what),
                  fmt::format("{:.1f}, {}", outcome.iterations_per_step(), outcome.most_iterations),
                  std::to_string(outcome.halvings), fmt::format("{:.1e}", outcome.energy_defect),
@@ -224,7 +229,9 @@ std::string to_markdown(const HardReport& report, const std::string& picture) {
       "A run is *right* if it completes, its end is where a closed form or a finer run says, it stays within the "
       "bounds "
       "of its case, its energy account gains less than 5 % of the motion's largest energy and loses no more than all "
-      "of it, and the momenta of a free motion change by less than 5 %. *Unsound* scenes (names in italics) cannot be "
+      "of it, and the momenta of a free motion change by less than 5 %. A *warned* run is wrong, too, but "
+      "ends with a warning that names what was out of bounds: rotations per step, strains, the energy account. "
+      "*Unsound* scenes (names in italics) cannot be "
       "built, have no definite motion or far too coarse a mesh; they are to be refused, or to end with a reason that "
       "says more than that the iteration did not converge.\n\n",
       report.options.quick ? " `--quick`: first steps only" : "", report.rows.size(), report.options.limits.seconds,

@@ -6,6 +6,7 @@
 #include "bench/processor_time.h"
 #include "flexarm/scene/scene_description.h"
 #include "flexarm/scene/urdf_reader.h"
+#include "flexarm/simulation/run_summary.h"
 #include "simulation/inside.h"
 
 namespace flexarm::bench {
@@ -16,11 +17,15 @@ constexpr int kQuickSteps = 5;
 /// motion; of the momenta of a free motion, beside themselves.
 constexpr double kLargestGain = 0.05, kLargestLoss = 1, kLargestMomentumDefect = 0.05;
 
+void write(HardOutcome::Text& text, const std::string& from) {
+  text.fill(0);
+  std::strncpy(text.data(), from.c_str(), text.size() - 1);
+}
+
 void note(HardOutcome& outcome, HardOutcome::End end, const std::string& reason, bool says_why = true) {
   outcome.end = end;
   outcome.says_why = says_why;
-  outcome.reason.fill(0);
-  std::strncpy(outcome.reason.data(), reason.c_str(), outcome.reason.size() - 1);
+  write(outcome.reason, reason);
 }
 
 /// The first error of a scene that cannot be read.
@@ -85,8 +90,8 @@ void count(HardOutcome& outcome, const StepResult& result) {
   outcome.most_iterations = std::max(outcome.most_iterations, result.iterations);
 }
 
-void note_failure(HardOutcome& outcome, StepResult::Reason reason) {
-  note(outcome, HardOutcome::End::Failed, to_string(reason), reason != StepResult::Reason::NoConvergence);
+void note_failure(HardOutcome& outcome, const StepResult& result) {
+  note(outcome, HardOutcome::End::Failed, to_string(result.reason), result.reason != StepResult::Reason::NoConvergence);
 }
 
 /// What is done in the child.
@@ -119,23 +124,28 @@ class Play {
     const StepResult result = simulation.solve_static(hard_.load_steps);
     count(outcome_, result);
     outcome_.steps = hard_.load_steps;
-    if (!result.converged) note_failure(outcome_, result.reason);
+    if (!result.converged) note_failure(outcome_, result);
     watch(simulation);
     return result.converged;
   }
 
   bool go_through(Simulation& simulation, double step) {
     Accounts accounts(simulation, hard_.is_free);
+    RunSummary summary(simulation);
     const long wanted = options_.quick ? kQuickSteps : std::lround(hard_.until / step);
     for (long n = 0; n < wanted; ++n) {
       const StepResult result = simulation.step();
       count(outcome_, result);
+      summary.count(simulation, result);
       outcome_.time = simulation.time();
       outcome_.seconds = processor_seconds() - begin_;
-      if (!result.converged) return note_failure(outcome_, result.reason), false;
+      if (!result.converged) return note_failure(outcome_, result), false;
       accounts.add(simulation, outcome_);
       watch(simulation);
     }
+    summary.look(simulation);
+    if (const auto warnings = summary.warnings(simulation); !warnings.empty())
+      write(outcome_.warning, warnings.front());
     return true;
   }
 
@@ -213,7 +223,10 @@ std::string flaw(const HardCase& hard, const HardOutcome& outcome) {
 Verdict verdict(const HardCase& hard, const HardOutcome& outcome) {
   const bool is_complete = outcome.end == HardOutcome::End::Completed;
   if (hard.is_sound)
-    return !is_complete ? Verdict::Failed : flaw(hard, outcome).empty() ? Verdict::Right : Verdict::Wrong;
+    return !is_complete                  ? Verdict::Failed
+           : flaw(hard, outcome).empty() ? Verdict::Right
+           : outcome.warning[0] != 0     ? Verdict::Warned
+                                         : Verdict::Wrong;
   if (is_complete) return Verdict::Unnoticed;
   return outcome.says_why ? Verdict::Diagnosed : Verdict::Undiagnosed;
 }

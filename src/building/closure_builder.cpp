@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "building/closure_jacobian.h"
+#include "building/dead_points.h"
 #include "building/model_builder.h"
 #include "math/least_squares.h"
 
@@ -11,9 +12,6 @@ namespace flexarm {
 namespace {
 
 using Kind = ClosureConstraint::Kind;
-
-/// Scaled constraints are independent if a pivot is larger than this part of the largest one of its group.
-constexpr double kIndependent = 1e-6;
 
 /// Makes constraints from vectors in the world, at the start.
 class ConstraintMaker {
@@ -131,6 +129,10 @@ SolvableMechanism choose_constraints(const ScenePlan& plan, DrivenMechanism mech
                      "more joints of the rigid loop that it closes may stick (<friction law=\"coulomb\">) than it has "
                      "freedoms, and the force that holds "
                      "each would be undetermined: give some of them the law 'smooth'");
+  if (const std::string loop = loop_at_dead_point(model, dof, jacobian); !loop.empty())
+    throw ModelError(at_loop_joint(plan.scene, loop) +
+                     "its loop starts at a dead point, where it may go on in more than one way, and nothing says in "
+                     "which: start it beside that by <initial>");
   std::size_t row = 0;
   for (LoopClosure& closure : model.closures) {
     std::vector<ClosureConstraint> all;

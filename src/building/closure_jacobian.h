@@ -13,6 +13,9 @@ namespace flexarm {
 /// Rows: the constraints of all closures, kept ones then implied ones, closure by closure.
 using ConstraintRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
+/// Scaled constraints are independent if a pivot is larger than this part of the largest one of its group.
+constexpr double kIndependent = 1e-6;
+
 /// Per scalar of the nodes and joints: the model's length scale where it is a displacement, 1 where it is a rotation.
 Eigen::VectorXd scalar_scales(const Model& model, const DegreesOfFreedom& dof);
 

@@ -1,11 +1,18 @@
 #include "building/mass_properties.h"
 
+#include <limits>
 #include <unordered_set>
 
 #include "math/so3.h"
 
 namespace flexarm {
 namespace {
+
+/// Of an angle between an axis and what hangs along it.
+constexpr double kRoundOff = 64 * std::numeric_limits<double>::epsilon();
+/// A composite inertia beside that of the largest motion about the joint, below which it has too few digits: a long
+/// thin rod about its own axis.
+constexpr double kDoubtful = 1e-9;
 
 /// Mass, first moment and inertia of everything outboard of a node, about that node, world axes, initial configuration:
 /// round-off does not grow with the distance to the world's origin.
@@ -64,7 +71,25 @@ struct MovedInertia {
   bool is_anything;  ///< more than round-off
 };
 
-MovedInertia moved_inertia(const Model& model, const Coordinate& coordinate, const std::vector<Composite>& outboard) {
+/// About an axis through `origin`, {translation, spin} in world axes, of all that hangs on a node: squares of distances
+/// to the axis, which cancel nothing.
+double inertia_about(const std::vector<int>& parents, const Model& model, int root, const Vector3& origin,
+                     const Vector6& axis) {
+  std::vector<bool> hangs(parents.size(), false);
+  double inertia = 0;
+  for (std::size_t i = root; i < parents.size(); ++i) {  // parents come before their children
+    hangs[i] = static_cast<int>(i) == root || (parents[i] >= 0 && hangs[parents[i]]);
+    if (!hangs[i]) continue;
+    const NodalInertia& own = model.inertias[i];
+    const Vector3 spin = model.nodes[i].rotation.transpose() * axis.tail<3>();
+    const Vector3 motion = axis.head<3>() + axis.tail<3>().cross(model.nodes[i].position - origin);
+    inertia += own.total_mass * motion.squaredNorm() + spin.dot((own.rotary + own.beam_rotary) * spin);
+  }
+  return inertia;
+}
+
+MovedInertia moved_inertia(const std::vector<int>& parents, const Model& model, const Coordinate& coordinate,
+                           const std::vector<Composite>& outboard) {
   const JointMap& joint = model.joints[coordinate.joint];
   const NodePose world;
   const NodePose& master = joint.master < 0 ? world : model.nodes[joint.master];
@@ -83,7 +108,11 @@ MovedInertia moved_inertia(const Model& model, const Coordinate& coordinate, con
   const double inertia = body.mass * translation.squaredNorm() + about_axis.dot(body.inertia * about_axis);
   // Nothing is what is left by round-off.
   const double terms = body.mass * translation.squaredNorm() + body.inertia.trace() * rotation.squaredNorm();
-  return {inertia, inertia > 1e-13 * terms};
+  if (inertia > kDoubtful * terms || terms == 0) return {inertia, inertia > 0};
+  Vector6 axis;
+  axis << frame * translation, about_axis;
+  const double summed = inertia_about(parents, model, joint.slave, moved_origin(joint, slave), axis);
+  return {summed, summed > kRoundOff * kRoundOff * terms};
 }
 
 /// Adds what coordinates that move nothing themselves move through those that follow them.
@@ -105,7 +134,8 @@ void add_followers(const Model& model, std::vector<MovedInertia>& moved) {
 std::vector<int> finish_mass_properties(const std::vector<int>& parents, Model& model) {
   const std::vector<Composite> outboard = composites(parents, model);
   std::vector<MovedInertia> moved;
-  for (const Coordinate& coordinate : model.coordinates) moved.push_back(moved_inertia(model, coordinate, outboard));
+  for (const Coordinate& coordinate : model.coordinates)
+    moved.push_back(moved_inertia(parents, model, coordinate, outboard));
   add_followers(model, moved);
   std::vector<int> massless;
   for (std::size_t i = 0; i < moved.size(); ++i) {

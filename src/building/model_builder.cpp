@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "building/articulated_inertia.h"
 #include "building/closure_builder.h"
 #include "building/coordinate_builder.h"
 #include "building/elementary_joints.h"
@@ -19,10 +20,11 @@
 namespace flexarm {
 namespace {
 
-/// A model, and its coordinates that move nothing that has inertia: their accelerations would be undetermined.
+/// A model, and its coordinates whose accelerations would be undetermined.
 struct BuiltModel {
   Model model;
-  std::vector<int> massless;
+  std::vector<int> massless;   ///< they move nothing that has inertia
+  std::vector<int> dependent;  ///< they move nothing at the start but what others move as well
 };
 
 BuiltModel build(const scene::SceneDescription& scene) {
@@ -44,7 +46,12 @@ BuiltModel build(const scene::SceneDescription& scene) {
   model.gravity = scene.gravity;
   set_stop_depths(model);
   std::vector<int> massless = finish_mass_properties(solvable.node_parents, model);
-  return {std::move(model), std::move(massless)};
+  std::vector<int> dependent = coordinates_without_own_inertia(solvable.node_parents, model);
+  return {std::move(model), std::move(massless), std::move(dependent)};
+}
+
+bool is_determined(const BuiltModel& built) {
+  return built.massless.empty() && built.dependent.empty();
 }
 
 [[noreturn]] void refuse_massless(const scene::SceneDescription& scene, const BuiltModel& built) {
@@ -53,20 +60,28 @@ BuiltModel build(const scene::SceneDescription& scene) {
     for (const scene::JointDescription& joint : *list)
       for (const std::string& name : coordinate_names(joint)) joints.emplace(name, &joint);
   std::string text;
-  for (const int index : built.massless) {
-    const std::string& name = built.model.coordinates[index].name;
-    text +=
-        at(joints.at(name)->location, "<joint>") + "joint coordinate '" + name + "' moves nothing that has inertia\n";
-  }
-  throw ModelError(text + scene.file +
-                   ": give the links outboard of these joints an <inertial> or a <beam>, or hold those with one "
-                   "coordinate where they are by massless=\"lock\" of <simulation> (--massless lock)");
+  const auto list = [&](const std::vector<int>& coordinates, const std::string& what) {
+    for (const int index : coordinates) {
+      const std::string& name = built.model.coordinates[index].name;
+      text += at(joints.at(name)->location, "<joint>") + "joint coordinate '" + name + "' moves nothing " + what + "\n";
+    }
+  };
+  list(built.massless, "that has inertia");
+  list(built.dependent,
+       "at the start that the joints outboard of it would not move as well: axes are in line, or links "
+       "without inertia follow each other");
+  const std::string start = built.dependent.empty() ? "" : "start elsewhere by <initial>, ";
+  throw ModelError(text + scene.file + ": give the links outboard of these joints an <inertial> or a <beam>, " + start +
+                   "or hold those "
+                   "with one coordinate where they are by massless=\"lock\" of <simulation> (--massless lock)");
 }
 
 /// The scene with constant motions of these coordinates in place of everything else that it says of them.
 scene::SceneDescription with_locked(scene::SceneDescription scene, const BuiltModel& built) {
   std::set<std::string> locked;
-  for (const int index : built.massless) {
+  std::vector<int> undetermined = built.massless;
+  undetermined.insert(undetermined.end(), built.dependent.begin(), built.dependent.end());
+  for (const int index : undetermined) {
     const Coordinate& coordinate = built.model.coordinates[index];
     if (coordinate.is_angle) continue;  // of a free rotation, which no motion can prescribe
     locked.insert(coordinate.name);
@@ -87,8 +102,8 @@ scene::SceneDescription with_locked(scene::SceneDescription scene, const BuiltMo
 
 Model build_model(const scene::SceneDescription& scene) {
   BuiltModel built = build(scene);
-  if (scene.lock_massless && !built.massless.empty()) built = build(with_locked(scene, built));
-  if (!built.massless.empty()) refuse_massless(scene, built);
+  if (scene.lock_massless && !is_determined(built)) built = build(with_locked(scene, built));
+  if (!is_determined(built)) refuse_massless(scene, built);
   return std::move(built.model);
 }
 

@@ -9,6 +9,9 @@
 namespace flexarm {
 namespace {
 
+/// A mechanism that is so many times as far away as it is large is built about an origin of its own.
+constexpr double kFar = 100;
+
 /// Meshes with element borders wherever a joint or a load attaches.
 LinkMeshes mesh_links(const scene::SceneDescription& scene, const LinkNames& links) {
   LinkMeshes meshes(scene.links.size());
@@ -46,6 +49,27 @@ LinkMeshes mesh_links(const scene::SceneDescription& scene, const LinkNames& lin
     room = std::max(0, room - static_cast<int>(meshes[i]->mesh.nodes.size()));
   }
   return meshes;
+}
+
+Vector3 origin_of(const scene::SceneDescription& scene, const JointTree& tree, const LinkMeshes& meshes) {
+  const auto& on_root = tree.below[tree.root];
+  if (on_root.empty() || meshes[tree.root]) return Vector3::Zero();
+  const Vector3 origin = on_root.front()->origin.position;
+  double size = 0;  // of the largest part
+  const auto reach = [&](const std::string& link, const Vector3& place) {
+    size = std::max(size, (link == scene.root_link ? Vector3(place - origin) : place).norm());
+  };
+  for (const auto* joints : {&scene.joints, &scene.loop_joints})
+    for (const scene::JointDescription& joint : *joints) {
+      reach(joint.parent, joint.origin.position);
+      reach(joint.child, joint.child_origin.position);
+    }
+  for (std::size_t i = 0; i < scene.links.size(); ++i) {
+    if (meshes[i]) size = std::max(size, meshes[i]->centreline.length());
+    const bool is_root = static_cast<int>(i) == tree.root;
+    if (scene.links[i].inertial && !is_root) size = std::max(size, scene.links[i].inertial->center_of_mass.norm());
+  }
+  return origin.norm() > kFar * size ? origin : Vector3::Zero();
 }
 
 }  // namespace
@@ -108,6 +132,11 @@ double InitialPositions::of(const std::string& coordinate, double otherwise) con
 }
 
 ScenePlan::ScenePlan(const scene::SceneDescription& scene)
-    : scene(scene), links(scene), tree(scene, links), meshes(mesh_links(scene, links)), initial_positions(scene) {}
+    : scene(scene),
+      links(scene),
+      tree(scene, links),
+      meshes(mesh_links(scene, links)),
+      initial_positions(scene),
+      origin(origin_of(scene, tree, meshes)) {}
 
 }  // namespace flexarm

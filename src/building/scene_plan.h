@@ -70,6 +70,9 @@ struct ScenePlan {
   JointTree tree;
   LinkMeshes meshes;
   InitialPositions initial_positions;
+  /// Of the model, in the world [m]: the world's own, or the place of the first joint on the root link where that is
+  /// far away beside the mechanism's size, so that positions have as many digits as at the world's origin.
+  Vector3 origin;
 };
 
 }  // namespace flexarm

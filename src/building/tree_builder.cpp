@@ -29,7 +29,8 @@ class TreeBuilder {
 
   PlacedTree build() {
     for (const scene::LinkDescription& link : plan_.scene.links) model_.links.push_back({link.name, {}, std::nullopt});
-    place_link(plan_.tree.root, {-1, Pose()});
+    model_.origin = plan_.origin;
+    place_link(plan_.tree.root, {-1, Pose{Vector3::Zero() - plan_.origin, Quaternion::Identity()}});
     for (const scene::JointDescription* joint : plan_.tree.joints)
       tree_.tree_joints.push_back(joint->kind == scene::JointKind::Slide ? add_slide(*joint) : add_joint(*joint));
     return std::move(tree_);

@@ -2,7 +2,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <map>
 
 #include <fmt/format.h>
@@ -13,8 +12,11 @@
 #include "bench/speed.h"
 #include "bench/thesis.h"
 #include "cli/commands.h"
+#include "cli/files.h"
+#include "cli/interruption.h"
 #include "cli/progress_bar.h"
 #include "flexarm/schemes/integrator_description.h"
+#include "simulation/unfinished_file.h"
 
 namespace flexarm::cli {
 namespace {
@@ -30,11 +32,13 @@ struct Arguments {
   bool quick = false;
 };
 
-void write_file(const fs::path& path, const std::string& text, std::ios::openmode mode = std::ios::trunc) {
-  std::ofstream file(path, std::ios::binary | std::ios::out | mode);
-  file << text;
-  file.close();
-  if (!file) throw std::runtime_error("cannot write '" + path.string() + "'");
+/// Whole, or what was there before stays.
+void write_file(const fs::path& path, const std::string& text) {
+  try {
+    UnfinishedFile(path.string(), text).put_in_place();
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error("'" + path.string() + "' " + error.what());
+  }
 }
 
 fs::path program_folder() {
@@ -79,11 +83,28 @@ bool draw(const std::string& name, const fs::path& data, const fs::path& picture
 /// The file of a report, in a folder that is made. Minutes later would be a bad time to find out that it cannot be
 /// written; what is there stays until then.
 fs::path report_file(const Arguments& arguments, const std::string& name) {
-  fs::create_directories(arguments.output);
+  std::error_code error;
+  fs::create_directories(arguments.output, error);  // what is wrong is found below
   const fs::path file = fs::path(arguments.output) / (name + ".md");
-  write_file(file, "", std::ios::app);
+  require_writable("--output", file.string());
   return file;
 }
+
+/// A bar that is told what is measured after each run, from where a signal ends the measurements: reports are written
+/// whole or not at all.
+class Progress {
+ public:
+  Progress() { catch_interruptions(); }
+  void operator()(double part, const std::string& what) {
+    bar_.show(part, what);
+    if (interruption() == 0) return;
+    bar_.clear();
+    throw Interrupted(fmt::format("interrupted after {:.0f} % of the measurements, nothing is written", 100 * part));
+  }
+
+ private:
+  ProgressBar bar_{0, 1, true};
+};
 
 /// The folder of scenes that was named, or flexarm's own.
 fs::path scene_folder(const Arguments& arguments, const std::string& own) {
@@ -101,8 +122,8 @@ int write_report(const Arguments& arguments, const std::string& name, const std:
   const fs::path file = report_file(arguments, name), folder = arguments.output, data = folder / (data_name + ".csv"),
                  picture = folder / (data_name + ".png");
   const auto report = [&] {
-    ProgressBar bar(0, 1, true);
-    return measure([&](double part, const std::string& what) { bar.show(part, what); });
+    Progress progress;
+    return measure([&](double part, const std::string& what) { progress(part, what); });
   }();
   write_file(data, to_data(report));
   const bool is_drawn = draw("plot_" + name + ".py", data, picture);
@@ -126,8 +147,8 @@ int measure_thesis(const Arguments& arguments) {
                  folder = arguments.output;
   bench::ThesisReport report;
   {
-    ProgressBar bar(0, 1, true);
-    report = bench::measure_thesis(scenes.string(), arguments.quick, [&](double part) { bar.show(part, "thesis"); });
+    Progress progress;
+    report = bench::measure_thesis(scenes.string(), arguments.quick, [&](double part) { progress(part, "thesis"); });
   }
   std::map<std::string, std::string> pictures;
   for (std::size_t e = 0; e < report.examples.size(); ++e) {

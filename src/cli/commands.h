@@ -16,6 +16,12 @@ class InputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A signal wants the program to end: what() says how far it came, the exit status is kInterrupted and its number.
+class Interrupted : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// Each adds its subcommand to `app`; when that is run, it leaves its exit status in `status`.
 void add_check(CLI::App& app, int& status);
 void add_simulate(CLI::App& app, int& status);

@@ -1,6 +1,11 @@
 #include "cli/files.h"
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
+
+#include <fmt/format.h>
 
 #include "cli/commands.h"
 
@@ -22,6 +27,16 @@ bool is_same_file(const std::string& a, const std::string& b) {
 void refuse_overwriting(const std::string& option, const std::string& output, const std::string& input) {
   if (!output.empty() && !input.empty() && is_same_file(output, input))
     throw InputError("flexarm: " + option + " would overwrite '" + input + "'");
+}
+
+void require_writable(const std::string& option, const std::string& output) {
+  if (output.empty() || is_standard_output(output)) return;
+  const bool is_new = !fs::exists(fs::symlink_status(output));
+  const bool is_good = std::ofstream(output, std::ios::app).is_open();
+  const int reason = errno;
+  if (!is_good)
+    throw InputError(fmt::format("flexarm: {}: cannot write '{}': {}", option, output, std::strerror(reason)));
+  if (is_new) fs::remove(output);
 }
 
 }  // namespace flexarm::cli

@@ -28,6 +28,9 @@ int run(int argc, char** argv) {
   } catch (const InputError& error) {
     fmt::print(stderr, "{}\n", error.what());
     return kBadInput;
+  } catch (const Interrupted& error) {
+    fmt::print(stderr, "flexarm: {}\n", error.what());
+    return kInterrupted + interruption();
   } catch (const flexarm::ModelError& error) {
     fmt::print(stderr, "flexarm: {}\n", error.what());
     return kBadInput;

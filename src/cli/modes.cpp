@@ -13,6 +13,7 @@ constexpr double kVisible = 1e-4;
 struct Arguments {
   SceneInput scene;
   int count = 10;
+  Equilibrium wanted = Equilibrium::Stable;
   bool json = false, csv = false;
 };
 
@@ -53,7 +54,7 @@ void print_text(const Simulation& simulation, const std::vector<Mode>& modes) {
 
 int solve(const Arguments& arguments) {
   Simulation simulation = load_simulation(arguments.scene);
-  std::vector<Mode> modes = modes_about_equilibrium(simulation, arguments.count);
+  std::vector<Mode> modes = modes_about_equilibrium(simulation, arguments.count, arguments.wanted);
   modes.resize(std::min<std::size_t>(modes.size(), arguments.count));
   if (arguments.json)
     fmt::print("{}", modes_as_json(simulation, modes));
@@ -70,6 +71,7 @@ void add_modes(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("modes", "Frequencies, growth or decay, and shapes about the equilibrium");
   add_scene(*command, arguments->scene);
+  add_equilibrium(*command, arguments->wanted);
   command->add_option("--count", arguments->count, "number of modes")
       ->capture_default_str()
       ->check(CLI::Range(1, 10000));

@@ -61,6 +61,12 @@ void add_scene(CLI::App& command, SceneInput& input) {
   add_choice("--massless", "lock", input.options.lock_massless, "joints that move nothing with inertia are held");
 }
 
+void add_equilibrium(CLI::App& command, Equilibrium& wanted) {
+  command.add_flag_callback(
+      "--unstable", [&wanted] { wanted = Equilibrium::UnderTheLoads; },
+      "takes the equilibrium that the loads lead to, stable or not");
+}
+
 Simulation load_simulation(const SceneInput& input, const SimulationOptions& options) {
   scene::ReadResult result = scene::read_scene_file(input.path, input.options);
   std::string findings = scene::to_text(result.diagnostics);
@@ -88,14 +94,30 @@ std::string check_tolerance(const std::string& text) {
   return is_good ? "" : fmt::format("must be a number > 0 and at most {}, got '{}'", kLargestTolerance, text);
 }
 
-std::vector<Mode> modes_about_equilibrium(Simulation& simulation, int count) {
-  constexpr int kLoadSteps = 10;
-  const StepResult result = simulation.solve_static(kLoadSteps);
-  if (result.converged) return simulation.natural_modes(count);
+std::vector<Mode> modes_about_equilibrium(Simulation& simulation, int count, Equilibrium wanted) {
+  const StaticResult result = simulation.solve_static(kLoadSteps, wanted);
+  if (result.converged) {
+    warn_of_instability(result, wanted);
+    return simulation.natural_modes(count);
+  }
   const std::vector<Mode> modes = initial_modes(simulation, count);
   fmt::print(stderr, "flexarm: {}; the modes are those of the initial configuration\n",
              lack_of_equilibrium(simulation, result, modes));
   return modes;
+}
+
+void warn_of_instability(const StaticResult& result, Equilibrium wanted) {
+  if (!result.falling_link.empty())
+    fmt::print(stderr, "flexarm: warning: the equilibrium to which the loads lead is not stable: link '{}' {}\n",
+               result.falling_link,
+               wanted == Equilibrium::Stable
+                   ? "falls from it; this is where it comes to rest (--unstable: the one that it falls from)"
+                   : "would fall from it");
+  if (!result.loose_link.empty())
+    fmt::print(stderr,
+               "flexarm: warning: nothing holds link '{}' where it stands: it may stand elsewhere as well (a <motion> "
+               "of its joint would hold it)\n",
+               result.loose_link);
 }
 
 bool are_modes_quick(const Simulation& simulation) {
@@ -111,13 +133,14 @@ std::string lack_of_equilibrium(const Simulation& simulation, const StepResult& 
                                 const std::vector<Mode>& modes) {
   const std::vector<std::string> joints = unheld_joints(simulation, modes);
   // The tangent of what moves freely is singular but for round-off.
-  const bool is_singular = result.reason == StepResult::Reason::SingularTangent ||
-                           result.reason == StepResult::Reason::NoConvergence ||
-                           result.reason == StepResult::Reason::NotFinite;
+  const bool is_singular =
+      result.reason == StepResult::Reason::SingularTangent || result.reason == StepResult::Reason::NoConvergence ||
+      result.reason == StepResult::Reason::NeverRests || result.reason == StepResult::Reason::NotFinite;
   if (!is_singular || joints.empty()) return fmt::format("no equilibrium found ({})", to_string(result.reason));
   const auto free = std::count_if(modes.begin(), modes.end(), [](const Mode& mode) { return mode.is_free(); });
-  return fmt::format("no equilibrium: nothing holds {} in the initial configuration ({} free)", listed(joints),
-                     free == 1 ? "1 motion is" : fmt::format("{} motions are", free));
+  return fmt::format(
+      "no equilibrium: nothing holds {} in the initial configuration ({} free; a <motion> would hold it)",
+      listed(joints), free == 1 ? "1 motion is" : fmt::format("{} motions are", free));
 }
 
 }  // namespace flexarm::cli

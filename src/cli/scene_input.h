@@ -30,10 +30,19 @@ std::string check_non_negative(const std::string& text);
 /// The same for a tolerance of Newton's method.
 std::string check_tolerance(const std::string& text);
 
+/// Load steps of equilibria.
+constexpr int kLoadSteps = 10;
+
+/// An option by which the equilibrium that the loads lead to is taken, stable or not; `wanted` must outlive the
+/// command.
+void add_equilibrium(CLI::App& command, Equilibrium& wanted);
+/// On the standard error output: that the loads lead to an unstable equilibrium, and which one was taken.
+void warn_of_instability(const StaticResult& result, Equilibrium wanted);
+
 /// Goes to the equilibrium if there is one that can be found; the `count` first modes about it. A mechanism that can
 /// move freely has none, which is said on the standard error output; then initial_modes().
 /// @throws std::runtime_error if the eigenvalue problem cannot be solved.
-std::vector<Mode> modes_about_equilibrium(Simulation& simulation, int count);
+std::vector<Mode> modes_about_equilibrium(Simulation& simulation, int count, Equilibrium wanted = Equilibrium::Stable);
 
 /// Whether a few modes take seconds and no more: without springs, there is a free one for every joint coordinate.
 bool are_modes_quick(const Simulation& simulation);

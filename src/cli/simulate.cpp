@@ -13,6 +13,7 @@
 #include "cli/scene_input.h"
 #include "flexarm/simulation/checkpoint.h"
 #include "flexarm/simulation/csv_writer.h"
+#include "flexarm/simulation/run_summary.h"
 
 namespace flexarm::cli {
 namespace {
@@ -35,7 +36,7 @@ std::FILE* report_stream(const Arguments& arguments) {
 /// How a run went.
 struct Run {
   StepResult last;  // of the last step; converged unless the run failed
-  long steps = 0, iterations = 0, halvings = 0;
+  RunSummary summary;
   double seconds = 0;  // of the wall clock
 };
 
@@ -87,7 +88,7 @@ Run run(const Arguments& arguments, Simulation& simulation) {
   CheckpointTimes checkpoints(simulation.time(), arguments.checkpoint_every);
   ProgressBar progress(simulation.time(), arguments.until, !arguments.quiet);
   const auto start = std::chrono::steady_clock::now();
-  Run run;
+  Run run{{}, RunSummary(simulation)};
   run.last.converged = true;
   if (output) output->write_row(simulation);
   double written = simulation.time();
@@ -95,19 +96,18 @@ Run run(const Arguments& arguments, Simulation& simulation) {
   const double end = arguments.until - 1e-6 * simulation.step_size();
   while (run.last.converged && simulation.time() < end && interruption() == 0) {
     run.last = simulation.step();
-    ++run.steps;
-    run.iterations += run.last.iterations;
-    run.halvings += run.last.halvings;
+    run.summary.count(simulation, run.last);
     progress.show(simulation.time());
     if (run.last.converged && checkpoints.is_due(simulation.time(), simulation.step_size()))
       write_checkpoint(simulation, arguments.checkpoint);
     if (!output) continue;
     output->count(run.last);
-    if (run.last.converged && run.steps % arguments.every != 0) continue;
-    if (simulation.time() > written) output->write_row(simulation);
+    if (run.last.converged && run.summary.counts().steps % arguments.every != 0) continue;
+    if (simulation.time() > written) output->write_row(simulation), run.summary.look(simulation);
     written = simulation.time();
   }
   if (output && simulation.time() > written) output->write_row(simulation);
+  run.summary.look(simulation);
   if (output) output->close();
   run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return run;
@@ -131,18 +131,26 @@ void report_failure(const Arguments& arguments, const Simulation& simulation, co
                                ? arguments.checkpoint
                                : std::filesystem::path(arguments.scene.path).stem().string() + ".last_good_state";
   fmt::print(stderr, "flexarm: simulation failed after t = {:.17g} s: {}\n", simulation.time(),
-             to_string(run.last.reason));
+             simulation.explain(run.last));
   write_checkpoint(simulation, kept);
   fmt::print(stderr, "flexarm: the last good state is kept in '{}'\n", kept);
 }
 
+void print_warnings(const Simulation& simulation, const Run& run) {
+  for (const std::string& warning : run.summary.warnings(simulation))
+    fmt::print(stderr, "flexarm: warning: {}\n", warning);
+}
+
 void print_summary(const Arguments& arguments, const Simulation& simulation, double begin, const Run& run) {
+  const StepCounts& counts = run.summary.counts();
+  const std::string recoveries = recoveries_text(counts);
   fmt::print(report_stream(arguments),
-             "t = {:.6g} s after {} steps ({}, {:.2f} iterations per step, {} halvings), {:.3g} s of computing, {:.3g} "
-             "times real time\n",
-             simulation.time(), run.steps, simulation.scheme(),
-             run.steps > 0 ? static_cast<double>(run.iterations) / static_cast<double>(run.steps) : 0.0, run.halvings,
-             run.seconds, run.seconds > 0 ? (simulation.time() - begin) / run.seconds : 0.0);
+             "t = {:.6g} s after {} steps ({}, {:.2f} iterations per step, {}), {:.3g} s of computing, {:.3g} times "
+             "real time\n",
+             simulation.time(), counts.steps, simulation.scheme(),
+             counts.steps > 0 ? static_cast<double>(counts.iterations) / static_cast<double>(counts.steps) : 0.0,
+             recoveries.empty() ? "no halvings" : recoveries, run.seconds,
+             run.seconds > 0 ? (simulation.time() - begin) / run.seconds : 0.0);
 }
 
 /// Whatever of the files can be found wrong before the run is an error of input.
@@ -166,6 +174,7 @@ int simulate(const Arguments& arguments) {
   const double begin = simulation.time();
   catch_interruptions();
   const Run result = run_and_keep(arguments, simulation);
+  print_warnings(simulation, result);
   if (!result.last.converged) {
     report_failure(arguments, simulation, result);
     return kFailed;
@@ -187,6 +196,14 @@ void add_simulate(CLI::App& app, int& status) {
   command->add_option("--step", arguments->options.step, "time step [s]")->check(check_positive);
   command->add_option("--scheme", arguments->options.scheme, "integration scheme");
   command->add_option("--tolerance", arguments->options.tolerance, "of Newton's method")->check(check_tolerance);
+  command
+      ->add_option_function<std::string>(
+          "--on-failure",
+          [arguments](const std::string& choice) {
+            arguments->options.on_failure = choice == "stop" ? OnFailure::Stop : OnFailure::Dissipate;
+          },
+          "what becomes of a step that the scheme cannot do (the scene's)")
+      ->check(CLI::IsMember({"stop", "dissipate"}));
   command->add_option("--output", arguments->output, "CSV file for the results; -: standard output");
   command->add_option("--every", arguments->every, "steps between rows of the output")
       ->capture_default_str()

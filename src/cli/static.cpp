@@ -13,7 +13,8 @@ namespace {
 struct Arguments {
   SceneInput scene;
   std::string output;
-  int load_steps = 10;
+  int load_steps = kLoadSteps;
+  Equilibrium wanted = Equilibrium::Stable;
 };
 
 void print_point(const std::string& name, const Vector3& position) {
@@ -36,13 +37,15 @@ void print_equilibrium(const Simulation& simulation) {
 
 int solve(const Arguments& arguments) {
   refuse_overwriting("--output", arguments.output, arguments.scene.path);
+  require_writable("--output", arguments.output);
   Simulation simulation = load_simulation(arguments.scene);
-  const StepResult result = simulation.solve_static(arguments.load_steps);
+  const StaticResult result = simulation.solve_static(arguments.load_steps, arguments.wanted);
   if (!result.converged) {
     const std::vector<Mode> modes = are_modes_quick(simulation) ? initial_modes(simulation, 1) : std::vector<Mode>();
     fmt::print(stderr, "flexarm: {}\n", lack_of_equilibrium(simulation, result, modes));
     return kFailed;
   }
+  warn_of_instability(result, arguments.wanted);
   if (!is_standard_output(arguments.output)) print_equilibrium(simulation);
   if (arguments.output.empty()) return kDone;
   CsvWriter output(arguments.output, simulation, CsvWriter::Columns::State);
@@ -60,6 +63,7 @@ void add_static(CLI::App& app, int& status) {
   command->add_option("--load-steps", arguments->load_steps, "steps in which gravity and loads grow")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000000));
+  add_equilibrium(*command, arguments->wanted);
   command->add_option("--output", arguments->output, "CSV file for the equilibrium; -: standard output");
   command->callback([arguments, &status] { status = solve(*arguments); });
 }

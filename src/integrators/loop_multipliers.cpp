@@ -56,15 +56,17 @@ void LoopMultipliers::accept(State& state) {
   for_each([&](double value, int equation) { state.history.increments[0][equation] = value; });
 }
 
-double LoopMultipliers::open_loop() const {
+LoopMultipliers::Opening LoopMultipliers::largest_opening() const {
   const Model& model = configuration_.model();
-  double largest = 0;
-  for (const LoopClosure& closure : model.closures)
+  Opening largest;
+  for (int k = 0; k < static_cast<int>(model.closures.size()); ++k) {
+    const LoopClosure& closure = model.closures[k];
     for (const ClosureConstraint& constraint : closure.implied) {
       const double scale = constraint.kind == ClosureConstraint::Kind::Gap ? model.length_scale : 1.0;
-      largest =
-          std::max(largest, std::abs(closure_value(closure, constraint, poses(closure, configuration_.end()))) / scale);
+      const double size = std::abs(closure_value(closure, constraint, poses(closure, configuration_.end()))) / scale;
+      if (size > largest.size) largest = {size, k};
     }
+  }
   return largest;
 }
 

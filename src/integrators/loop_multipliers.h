@@ -22,9 +22,12 @@ class LoopMultipliers {
   /// The history keeps the multipliers in the place of increments of their own.
   void accept(State& state);
 
-  /// Largest violation of what the closures of loops imply, over the model's length scale and in rad: not zero where a
-  /// loop was singular at the start.
-  double open_loop() const;
+  struct Opening {
+    double size = 0;   ///< over the model's length scale, or in rad
+    int closure = -1;  ///< where
+  };
+  /// Largest violation of what the closures of loops imply: not zero where a loop was singular at the start.
+  Opening largest_opening() const;
 
  private:
   ClosurePoses poses(const LoopClosure& closure, const std::vector<NodePose>& nodes) const;

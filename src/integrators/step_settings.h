@@ -1,6 +1,8 @@
 #pragma once
 /// What is asked of a step.
 
+#include "flexarm/schemes/integrator_description.h"
+
 namespace flexarm {
 
 /// Settings of Newton's method and of the step control.
@@ -12,6 +14,10 @@ struct StepSettings {
   /// Keep the factors of the tangent while the iteration contracts well (modified Newton). The result agrees with that
   /// of full Newton to far below the tolerance; off: quadratic convergence, and a restored state continues bit for bit.
   bool reuse_factorisation = true;
+  OnFailure on_failure = OnFailure::Stop;
+  /// By the clock on the wall [s], after which a step that has been halved is given up, however far it has come; 0:
+  /// never. What one Newton iteration takes comes on top.
+  double recovery_wall_time = 0;
 };
 
 }  // namespace flexarm

@@ -15,6 +15,7 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme, BackendChoice b
                          : nullptr),
       forces_(configuration_, histories_, interpolation_.get()),
       bodies_(configuration_),
+      drag_(configuration_),
       loops_(configuration_),
       friction_(configuration_, interpolation_.get()),
       joints_(configuration_, histories_, friction_),
@@ -47,8 +48,9 @@ void StepSystem::begin(const State& state, double step, Guess guess) {
   configuration_.set_slaves();
 }
 
-void StepSystem::begin_equilibrium(const State& state, double load_factor) {
+void StepSystem::begin_equilibrium(const State& state, double load_factor, double drag) {
   histories_.factor = load_factor;
+  drag_.strength = drag;
   configuration_.begin(state, 0);
   histories_.begin(configuration_);
   beams_->begin();
@@ -77,7 +79,9 @@ bool StepSystem::evaluate(bool with_tangent) {
   if (interpolation_) interpolation_->begin_evaluation();
   add_forces(balance);
   if (interpolation_) interpolation_->add_forces(balance);
-  if (!scheme().is_static) {
+  if (scheme().is_static) {
+    drag_.evaluate(balance);
+  } else {
     bodies_.evaluate(balance);
     beams_->add_inertia(balance);
   }

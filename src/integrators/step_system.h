@@ -16,6 +16,7 @@
 
 #include "integrators/beam_family.h"
 #include "integrators/bodies.h"
+#include "integrators/drag.h"
 #include "integrators/dry_friction_step.h"
 #include "integrators/joint_fold.h"
 #include "integrators/loop_multipliers.h"
@@ -40,8 +41,8 @@ class StepSystem {
   /// values.
   void begin(const State& state, double step, Guess guess);
   /// Starts the search for an equilibrium, of a scheme made by statics_of(), from `state`: gravity and loads scaled by
-  /// `load_factor`, histories and motions at time 0.
-  void begin_equilibrium(const State& state, double load_factor);
+  /// `load_factor`, histories and motions at time 0. `drag`: see Drag::strength.
+  void begin_equilibrium(const State& state, double load_factor, double drag = 0);
 
   /// Assembles residual (and tangent) of the trial configuration. False if something is not finite, or a slider is off
   /// its line.
@@ -64,11 +65,12 @@ class StepSystem {
   const DegreesOfFreedom& degrees_of_freedom() const { return dof_; }
   const StepConfiguration& configuration() const { return configuration_; }
   const UnknownScales& scales() const { return scales_; }
+  const Drag& drag() const { return drag_; }
   const Eigen::VectorXd& residual() const { return residual_; }
   TangentBackend& tangent() { return *tangent_; }
   const TangentBackend& tangent() const { return *tangent_; }
   /// See LoopMultipliers.
-  double open_loop() const { return loops_.open_loop(); }
+  LoopMultipliers::Opening largest_opening() const { return loops_.largest_opening(); }
   /// See StopContacts.
   bool hits_too_fast() { return contacts_.hits_too_fast(); }
   /// Internal less external forces on all nodes in the configuration of `state`, before joints fold them; of a scheme
@@ -89,6 +91,7 @@ class StepSystem {
   std::unique_ptr<HhtInterpolation> interpolation_;  // null unless forces are interpolated in time
   NodalForces forces_;
   Bodies bodies_;
+  Drag drag_;
   LoopMultipliers loops_;
   DryFrictionStep friction_;
   JointFold joints_;

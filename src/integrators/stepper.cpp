@@ -1,9 +1,12 @@
 #include "integrators/stepper.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 
+#include "integrators/dissipative_substitute.h"
+#include "integrators/failure_place.h"
 #include "math/flush_subnormals.h"
 
 namespace flexarm {
@@ -21,6 +24,22 @@ constexpr int kMostHalvings = 500;
 /// Converged sub-steps after which the step is doubled again.
 constexpr int kGoodStepsToDouble = 2;
 
+/// Of the time by the clock on the wall that a step may take.
+class Deadline {
+ public:
+  explicit Deadline(double seconds) : seconds_(seconds) {
+    if (seconds_ > 0) begin_ = Clock::now();
+  }
+  bool has_passed() const {
+    return seconds_ > 0 && std::chrono::duration<double>(Clock::now() - begin_).count() > seconds_;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  double seconds_;
+  Clock::time_point begin_;
+};
+
 }  // namespace
 
 Stepper::Stepper(const Model& model, const Scheme& scheme, const StepSettings& settings)
@@ -28,7 +47,11 @@ Stepper::Stepper(const Model& model, const Scheme& scheme, const StepSettings& s
   for (std::vector<double>& increment : before_.history.increments)
     increment.reserve(system_.degrees_of_freedom().unknowns);
   if (scheme.scales_velocities) scaling_.emplace(model, scheme);
+  if (settings.on_failure == OnFailure::Dissipate)
+    substitute_ = std::make_unique<DissipativeSubstitute>(model, scheme, settings);
 }
+
+Stepper::~Stepper() = default;
 
 void Stepper::invalidate() {
   system_.invalidate();
@@ -62,10 +85,17 @@ bool Stepper::sub_step(State& state, double step, StepResult& result) {
   return true;
 }
 
-StepResult::Reason Stepper::flaw_of_solution() const {
-  for (const Vector3& increment : system_.configuration().increments())
-    if (increment.norm() > kLargestStepRotation) return StepResult::Reason::RotationTooLarge;
-  return system_.open_loop() > kOpenLoop ? StepResult::Reason::OpenLoop : StepResult::Reason::None;
+StepResult::Reason Stepper::flaw_of_solution(StepResult& result) const {
+  const std::vector<Vector3>& increments = system_.configuration().increments();
+  double largest = 0;  // squared
+  std::size_t node = 0;
+  for (std::size_t i = 0; i < increments.size(); ++i)
+    if (const double square = increments[i].squaredNorm(); square > largest) largest = square, node = i;
+  largest = std::sqrt(largest);
+  if (largest > kLargestStepRotation) return StepResult::Reason::RotationTooLarge;
+  if (largest > result.largest_rotation)
+    result.largest_rotation = largest, result.turning_node = static_cast<int>(node);
+  return system_.largest_opening().size > kOpenLoop ? StepResult::Reason::OpenLoop : StepResult::Reason::None;
 }
 
 bool Stepper::simple_step(State& state, double step, StepResult& result) {
@@ -78,19 +108,22 @@ bool Stepper::simple_step(State& state, double step, StepResult& result) {
       {Guess::Extrapolated, settings_.reuse_factorisation ? Factors::MayBeKept : Factors::Fresh},
       {Guess::Repeated, Factors::Fresh},
       {Guess::Unchanged, Factors::Fresh}};
+  result.failure.guesses = 0;
   for (const Attempt& attempt : attempts) {
     const bool is_the_same = !settings_.reuse_factorisation && state.history.order == 0;
     if (attempt.guess == Guess::Repeated && is_the_same) continue;
+    ++result.failure.guesses;
     enter(StepPhase::Begin);
     system_.begin(state, step, attempt.guess);
     if (!newton_.solve(NewtonIteration::Updates::Limited, attempt.factors, result)) continue;
-    result.reason = flaw_of_solution();
+    result.reason = flaw_of_solution(result);
     const bool may_halve = state.halving_level < settings_.max_halvings && result.halvings < kMostHalvings;
     if (result.reason == StepResult::Reason::None && may_halve && system_.hits_too_fast())
       result.reason = StepResult::Reason::HitTooFast;
     if (result.reason != StepResult::Reason::None) return false;
     enter(StepPhase::Accept);
     system_.accept(state);
+    result.other_guesses += attempt.guess != Guess::Extrapolated;
     enter(StepPhase::Control);
     return true;
   }
@@ -99,7 +132,16 @@ bool Stepper::simple_step(State& state, double step, StepResult& result) {
 
 StepResult Stepper::advance(State& state) {
   const FlushSubnormals flush;
+  if (!substitute_) return advance_by_scheme(state);
+  substitute_->keep(state);
+  StepResult result = advance_by_scheme(state);
+  if (!result.converged && substitute_->advance(state, result)) invalidate();
+  return result;
+}
+
+StepResult Stepper::advance_by_scheme(State& state) {
   StepResult result;
+  const Deadline deadline(settings_.recovery_wall_time);
   const double begin = state.time;
   const int finest = settings_.max_halvings;
   long done = 0;  // in units of step / 2^finest
@@ -108,28 +150,37 @@ StepResult Stepper::advance(State& state) {
   state.drives.begin();
   while (done < whole) {
     const int level = state.halving_level;
-    if (sub_step(state, std::ldexp(settings_.step, -level), result)) {
-      done += whole >> level;
-      state.good_steps = std::min(state.good_steps, std::numeric_limits<int>::max() - 1) + 1;
-      // Doubling must keep sub-steps on the grid of the longer ones.
-      if (state.good_steps >= kGoodStepsToDouble && level > 0 && done % (whole >> (level - 1)) == 0) {
-        --state.halving_level;
-        state.good_steps = 0;
-      }
+    const bool is_done = sub_step(state, std::ldexp(settings_.step, -level), result);
+    const bool is_late = level > 0 && deadline.has_passed();
+    result.deepest_halving = std::max(result.deepest_halving, level);
+    if (!is_done) {
+      state.good_steps = 0;
+      if (level == finest || result.halvings >= kMostHalvings) return give_up(false, result);
+      ++state.halving_level;
+      ++result.halvings;
+      if (is_late) return give_up(true, result);  // who goes on does so with a shorter step
       continue;
     }
-    state.good_steps = 0;
-    if (level == finest || result.halvings >= kMostHalvings) {
-      invalidate();
-      return result;
+    done += whole >> level;
+    if (is_late && done < whole) return give_up(is_late, result);
+    state.good_steps = std::min(state.good_steps, std::numeric_limits<int>::max() - 1) + 1;
+    // Doubling must keep sub-steps on the grid of the longer ones.
+    if (state.good_steps >= kGoodStepsToDouble && level > 0 && done % (whole >> (level - 1)) == 0) {
+      --state.halving_level;
+      state.good_steps = 0;
     }
-    ++state.halving_level;
-    ++result.halvings;
   }
   state.time = begin + settings_.step;
   state.drives.end(settings_.step);
   ++state.steps;
   result.converged = true;
+  return result;
+}
+
+StepResult Stepper::give_up(bool is_late, StepResult result) {
+  locate_failure(system_, result);
+  if (is_late) result.reason = StepResult::Reason::OutOfTime;
+  invalidate();
   return result;
 }
 

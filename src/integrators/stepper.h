@@ -1,6 +1,7 @@
 #pragma once
 /// Step control around Newton's method: halve on failure, recover after success.
 
+#include <memory>
 #include <optional>
 
 #include "flexarm/model/results.h"
@@ -11,14 +12,17 @@
 
 namespace flexarm {
 
+class DissipativeSubstitute;
+
 /// Advances states of one model with one scheme. Allocates nothing after the first step, but when a slider enters
 /// another element and the model needs a matrix (see SparseTangent).
 class Stepper {
  public:
   Stepper(const Model& model, const Scheme& scheme, const StepSettings& settings);
+  ~Stepper();
 
   /// One step of settings.step, in sub-steps of step / 2^k where Newton needs them. On failure the state is that after
-  /// the last good sub-step.
+  /// the last good sub-step, or the step is done otherwise, see OnFailure.
   StepResult advance(State& state);
   /// Adds to an initial state what the scheme keeps there; accelerations (Newmark family) come from a short
   /// momentum-conserving step.
@@ -34,12 +38,15 @@ class Stepper {
   void observe(StepObserver* observer);
 
  private:
+  StepResult advance_by_scheme(State& state);
+  /// What has come to nothing by now: where, and why.
+  StepResult give_up(bool is_late, StepResult result);
   void initialise_accelerations(State& state);
   /// A step of a composed scheme is several simple ones; on failure the state is untouched.
   bool sub_step(State& state, double step, StepResult& result);
   bool simple_step(State& state, double step, StepResult& result);
-  /// Why a solution is not to be accepted.
-  StepResult::Reason flaw_of_solution() const;
+  /// Why a solution is not to be accepted. Notes the largest rotation.
+  StepResult::Reason flaw_of_solution(StepResult& result) const;
   void enter(StepPhase phase) {
     if (observer_) observer_->enter(phase);
   }
@@ -50,7 +57,8 @@ class Stepper {
   StepSystem system_;
   NewtonIteration newton_;
   std::optional<VelocityScaling> scaling_;
-  State before_;  // of a step that may have to be taken back
+  std::unique_ptr<DissipativeSubstitute> substitute_;  // where it is allowed
+  State before_;                                       // of a step that may have to be taken back
   StepObserver* observer_ = nullptr;
 };
 

@@ -38,6 +38,13 @@ double UnknownScales::norm(const Eigen::VectorXd& increment, double step) const 
   return norm;
 }
 
+double UnknownScales::largest_moment(const Eigen::VectorXd& residual) const {
+  double largest = 0;
+  for (const Unknown& unknown : unknowns_)
+    largest = std::max(largest, std::abs(residual[unknown.equation]) * (unknown.is_rotation ? 1.0 : length_));
+  return largest;
+}
+
 double UnknownScales::largest_rotation(const Eigen::VectorXd& increment) const {
   double largest = 0;
   for (const Unknown& unknown : unknowns_)

@@ -19,6 +19,8 @@ class UnknownScales {
   /// Largest entry of an increment, [-] or rad; infinite where one is not finite. `step` [s]; 0: statics, where
   /// multipliers do not count.
   double norm(const Eigen::VectorXd& increment, double step) const;
+  /// Largest entry of a residual: forces times the model's length scale, and moments [N m].
+  double largest_moment(const Eigen::VectorXd& residual) const;
   /// Largest rotation among the entries [rad].
   double largest_rotation(const Eigen::VectorXd& increment) const;
   /// The next step is to be foreseen as the newest one would have been foreseen best.

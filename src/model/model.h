@@ -125,7 +125,8 @@ struct Model {
   double length_scale = 1;  ///< extent of the mechanism [m]: scales displacements in the convergence test
 
   // ---- output
-  std::vector<LinkFrame> links;  ///< in the scene's order
+  Vector3 origin = Vector3::Zero();  ///< of all positions here and in states, in the world [m]
+  std::vector<LinkFrame> links;      ///< in the scene's order
   std::vector<ProbePoint> probes;
 };
 

@@ -1,6 +1,9 @@
 #include "flexarm/model/results.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include <fmt/format.h>
 
 #include "math/pi.h"
 
@@ -26,10 +29,43 @@ const char* to_string(StepResult::Reason reason) {
       return "a stop is hit too fast for the step";
     case StepResult::Reason::OpenLoop:
       return "a loop joint opens: its loop was singular at the start, or more is prescribed than the loop allows";
+    case StepResult::Reason::NeverRests:
+      return "it moves on and on under the loads: nothing holds it";
+    case StepResult::Reason::BentTooFar:
+      return "an element is bent by nearly a turn, or more, between its nodes";
+    case StepResult::Reason::DeadPoint:
+      return "a loop comes to a dead point, beyond which a motion goes, or where nothing says which way it turns";
+    case StepResult::Reason::OutOfTime:
+      return "the step takes longer than it may by the clock on the wall";
     case StepResult::Reason::EnergyDefect:
       return "the step's energy defect is too large to be closed by scaling the velocities";
   }
   return "unknown";
+}
+
+void StepCounts::add(const StepResult& result) {
+  ++steps;
+  iterations += result.iterations;
+  halvings += result.halvings;
+  other_guesses += result.other_guesses;
+  dissipated_steps += result.is_dissipated;
+  deepest_halving = std::max(deepest_halving, result.deepest_halving);
+}
+
+std::string recoveries_text(const StepCounts& counts) {
+  std::vector<std::string> texts;
+  if (counts.deepest_halving > 0)
+    texts.push_back(fmt::format("{} halvings (down to 1/{} of a step)", counts.halvings, 1L << counts.deepest_halving));
+  if (counts.other_guesses > 0) texts.push_back(fmt::format("{} sub-steps from another guess", counts.other_guesses));
+  if (counts.dissipated_steps > 0) texts.push_back(fmt::format("{} steps by edmc2", counts.dissipated_steps));
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
+double edge_strain(const BeamPoint& point, double radius) {
+  const Vector3 gamma = point.strain.head<3>(), curvature = point.strain.tail<3>();
+  const double normal = std::abs(gamma.x()) + radius * curvature.tail<2>().norm();
+  const double shear = gamma.tail<2>().norm() + radius * std::abs(curvature.x());
+  return std::hypot(normal, shear / std::sqrt(3.0));
 }
 
 double Mode::damping_ratio() const {

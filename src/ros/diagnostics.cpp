@@ -34,7 +34,8 @@ void Diagnostics::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("Scheme", simulation_.scheme());
   status.add("Steps", run_.steps);
   status.add("Newton iterations of the last step", run_.last_step.iterations);
-  status.add("Step halvings", run_.halvings);
+  status.add("Step halvings", run_.counts.halvings);
+  status.add("Recoveries", recoveries_text(run_.counts));
   status.add("Overruns (steps dropped)", run_.overruns);
 }
 

@@ -1,7 +1,6 @@
 #include "marker_publisher.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "advertise.h"
 #include "strain_legend.h"
@@ -15,15 +14,6 @@ constexpr int kPointsBetweenNodes = 3;  ///< so that bending looks smooth
 constexpr double kSmallestRadius = 0.008;
 /// What is below is the round-off of a beam without load.
 constexpr double kSmallestScale = 1e-9;
-
-/// The von Mises strain at the edge of the section, were bending and torsion to act at the same point of it: the
-/// stress there in units of Young's modulus. @param radius  of the edge [m]
-double edge_strain(const BeamPoint& point, double radius) {
-  const Vector3 gamma = point.strain.head<3>(), curvature = point.strain.tail<3>();
-  const double normal = std::abs(gamma.x()) + radius * curvature.tail<2>().norm();
-  const double shear = gamma.tail<2>().norm() + radius * std::abs(curvature.x());
-  return std::hypot(normal, shear / std::sqrt(3.0));
-}
 
 }  // namespace
 

@@ -15,12 +15,19 @@ using SteadyClock = std::chrono::steady_clock;
 const ros::WallDuration kTickPeriod(0.001);
 /// A tick ends after this wall time even if more steps are due, so that commands and services get their turn.
 constexpr std::chrono::milliseconds kTickBudget(10);
+constexpr double kWarningPeriod = 10;  ///< of what goes on and on, wall time [s]
+
+SimulationOptions simulation_options(const Parameters& parameters) {
+  SimulationOptions options;
+  options.recovery_wall_time = parameters.recovery_wall_time;
+  return options;
+}
 
 }  // namespace
 
 Node::Node()
     : parameters_(read_parameters(private_node_)),
-      simulation_(read_scene(node_, private_node_)),
+      simulation_(read_scene(node_, private_node_), simulation_options(parameters_)),
       pacer_(simulation_.step_size(), parameters_.real_time_factor, parameters_.max_catch_up),
       last_tick_(SteadyClock::now()),
       clock_publisher_(node_, run_, parameters_.publish_clock, parameters_.clock_rate, simulation_.step_size()),
@@ -54,6 +61,7 @@ void Node::tick() {
       if (!advance()) break;
       pacer_.step_done();
     }
+    warn_if_slow();
   }
   diagnostics_.publish(false);
   clock_publisher_.warn_if_missing();
@@ -61,13 +69,19 @@ void Node::tick() {
 
 bool Node::advance() {
   command_interface_.expire(run_.simulated_time);
+  const SteadyClock::time_point start = SteadyClock::now();
   const StepResult result = simulation_.step();
+  slowest_step_.note(std::chrono::duration<double>(SteadyClock::now() - start).count(), simulation_.time(), result);
   run_.last_step = result;
-  run_.halvings += static_cast<std::uint64_t>(result.halvings);
+  run_.counts.add(result);
   if (!result.converged) {
     fail(result);
     return false;
   }
+  if (result.is_dissipated)
+    ROS_WARN_THROTTLE(kWarningPeriod,
+                      "the step to t = %g s was done by edmc2, as on_failure allows: %s could not do it",
+                      simulation_.time(), simulation_.scheme().c_str());
   run_.failure.clear();
   ++run_.steps;
   run_.simulated_time = static_cast<double>(run_.steps) * simulation_.step_size();
@@ -76,11 +90,32 @@ bool Node::advance() {
   return true;
 }
 
+void Node::SlowestStep::note(double new_seconds, double new_time, const StepResult& result) {
+  if (new_seconds <= seconds) return;
+  seconds = new_seconds;
+  time = new_time;
+  counts = {};
+  counts.add(result);
+}
+
+void Node::warn_if_slow() {
+  if (run_.overruns == warned_overruns_) return;
+  const SteadyClock::time_point now = SteadyClock::now();
+  if (warned_overruns_ > 0 && std::chrono::duration<double>(now - last_warning_).count() < kWarningPeriod) return;
+  const std::string recoveries = recoveries_text(slowest_step_.counts);
+  ROS_WARN(
+      "slower than asked for, simulated time lags: %lu steps of %g s dropped; the slowest one took %.2g s, to "
+      "t = %g s: %s",
+      run_.overruns - warned_overruns_, simulation_.step_size(), slowest_step_.seconds, slowest_step_.time,
+      recoveries.empty() ? "the scene is too large, or the processor busy" : recoveries.c_str());
+  warned_overruns_ = run_.overruns;
+  last_warning_ = now;
+  slowest_step_ = {};
+}
+
 void Node::fail(const StepResult& result) {
   run_.paused = true;
-  run_.failure = "step from t = " + std::to_string(simulation_.time()) + " s failed: " + to_string(result.reason) +
-                 " after " + std::to_string(result.iterations) + " iterations and " + std::to_string(result.halvings) +
-                 " halvings";
+  run_.failure = "step from t = " + std::to_string(simulation_.time()) + " s failed: " + simulation_.explain(result);
   ROS_ERROR_STREAM(run_.failure << "; paused at the last good state: " << private_node_.resolveName("resume")
                                 << " goes on from it, " << private_node_.resolveName("reset") << " starts again");
   clock_publisher_.advance();  // the last good sub-step may be news, and news need a stamp of their own

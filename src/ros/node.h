@@ -51,11 +51,21 @@ class Node {
   void tick();
   /// One step and what has to happen around it. @returns false, and pauses, if it failed [real-time loop]
   bool advance();
+  /// Where steps have been dropped since the last warning, not too often: how many, and why.
+  void warn_if_slow();
   void publish(bool force);
   /// Sets ~view, which tells displays where to look.
   void describe_view() const;
   std::string root_frame() const { return parameters_.frame_prefix + simulation_.scene().root_link; }
   void fail(const StepResult& result);
+
+  /// By the clock on the wall, since the last warning.
+  struct SlowestStep {
+    double seconds = 0, time = 0;  // it took; simulated, at its end [s]
+    StepCounts counts;             // of this step alone
+
+    void note(double new_seconds, double new_time, const StepResult& result);
+  };
 
   ros::NodeHandle node_, private_node_{"~"};
   Parameters parameters_;
@@ -63,6 +73,9 @@ class Node {
   RunState run_;
   Pacer pacer_;
   std::chrono::steady_clock::time_point last_tick_;
+  SlowestStep slowest_step_;
+  std::uint64_t warned_overruns_ = 0;
+  std::chrono::steady_clock::time_point last_warning_;
   ClockPublisher clock_publisher_;
   StatePublisher state_publisher_;
   BeamStatePublisher beam_state_publisher_;

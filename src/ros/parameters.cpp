@@ -70,6 +70,17 @@ void read_frame_prefix(ParameterReader& reader, std::string& prefix) {
   if (prefix.back() != '/') prefix += '/';
 }
 
+void read_on_failure(ParameterReader& reader, IntegratorDescription& integrator) {
+  std::string choice;
+  reader.read("on_failure", choice);
+  if (choice.empty()) return;
+  if (choice != "stop" && choice != "dissipate")
+    return reader.complain("on_failure", "must be 'stop', 'dissipate' or empty", "'" + choice + "'");
+  integrator.on_failure = choice == "stop" ? OnFailure::Stop : OnFailure::Dissipate;
+  for (const OptionConflict& conflict : option_conflicts(integrator))
+    reader.complain("on_failure", conflict.message, "'" + choice + "'");
+}
+
 void override_integrator(const ros::NodeHandle& private_node, IntegratorDescription& integrator) {
   ParameterReader reader(private_node);
   std::string scheme = integrator.scheme;
@@ -87,6 +98,7 @@ void override_integrator(const ros::NodeHandle& private_node, IntegratorDescript
     for (const OptionConflict& conflict : option_conflicts(integrator))
       reader.complain("rho_infinity", conflict.message, std::to_string(rho_infinity));
   }
+  read_on_failure(reader, integrator);
   reader.throw_if_any();
 }
 
@@ -129,6 +141,7 @@ Parameters read_parameters(const ros::NodeHandle& private_node) {
   reader.read("status_rate", parameters.status_rate);
   reader.read("publish_clock", parameters.publish_clock);
   reader.read("clock_rate", parameters.clock_rate);
+  reader.read("recovery_wall_time", parameters.recovery_wall_time, true);
   reader.read("command_timeout", parameters.command_timeout, true);
   read_frame_prefix(reader, parameters.frame_prefix);
   reader.throw_if_any();

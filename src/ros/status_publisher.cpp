@@ -35,7 +35,10 @@ SimulatorStatus StatusPublisher::make_message(const ros::Time& stamp) {
   message.overruns = run_.overruns;
   message.scheme = simulation_.scheme();
   message.iterations = run_.last_step.iterations;
-  message.halvings = run_.halvings;
+  message.halvings = run_.counts.halvings;
+  message.deepest_halving = run_.counts.deepest_halving;
+  message.other_guesses = run_.counts.other_guesses;
+  message.dissipated_steps = run_.counts.dissipated_steps;
   message.kinetic_energy = energies.kinetic;
   message.strain_energy = energies.strain;
   message.potential_energy = energies.potential;

@@ -51,6 +51,8 @@ void read_scheme(const XmlElement& integrator, IntegratorDescription& descriptio
   if (integrator.has("gamma")) description.gamma = integrator.number("gamma", kPositive);
   if (integrator.has("alpha")) description.alpha = integrator.number("alpha", kHhtRange);
   if (integrator.has("rho_infinity")) description.rho_infinity = integrator.number("rho_infinity", kUnitInterval);
+  constexpr Choice<OnFailure> kOnFailure[] = {{"stop", OnFailure::Stop}, {"dissipate", OnFailure::Dissipate}};
+  description.on_failure = read_choice(integrator, "on_failure", kOnFailure, description.on_failure);
   for (const OptionConflict& conflict : option_conflicts(description))
     integrator.attribute_error(conflict.attribute.c_str(), conflict.message);
 }
@@ -59,7 +61,7 @@ void read_integrator(const XmlElement& integrator, SceneDescription& scene) {
   IntegratorDescription& description = scene.integrator;
   scene.integrator_location = integrator.location();
   integrator.expect_only({"scheme", "step", "tolerance", "max_iterations", "max_halvings", "interpolation", "weak_form",
-                          "beta", "gamma", "alpha", "rho_infinity"});
+                          "beta", "gamma", "alpha", "rho_infinity", "on_failure"});
   read_scheme(integrator, description);
   description.step = integrator.number("step", kPositive, description.step);
   description.tolerance = integrator.number("tolerance", kTolerance, description.tolerance);

@@ -70,6 +70,11 @@ std::vector<OptionConflict> option_conflicts(const IntegratorDescription& integr
   const bool is_additive = integrator.weak_form == WeakForm::Additive;
   require(!is_additive || takes(scheme, &SchemeOptions::additive), "weak_form",
           "the additive form does not conserve momenta; it belongs to " + owners(&SchemeOptions::additive));
+  const bool has_substitute =
+      takes(scheme, &SchemeOptions::substitute) && integrator.rho_infinity.value_or(1) >= 1;  // "auto" is edmc2 below
+  require(integrator.on_failure == OnFailure::Stop || has_substitute, "on_failure",
+          "edmc2 cannot go on from states of scheme '" + scheme +
+              "', or is the scheme itself; 'dissipate' belongs to " + owners(&SchemeOptions::substitute));
   require(!is_additive || interpolation == Interpolation::Total, "weak_form",
           "the additive form needs interpolation=\"total\"");
   return conflicts;
@@ -84,6 +89,7 @@ IntegratorDescription with_scheme(IntegratorDescription integrator, const std::s
     if (conflict.attribute == "rho_infinity") integrator.rho_infinity.reset();
     if (conflict.attribute == "interpolation") integrator.interpolation.reset();
     if (conflict.attribute == "weak_form") integrator.weak_form.reset();
+    if (conflict.attribute == "on_failure") integrator.on_failure = OnFailure::Stop;
   }
   return integrator;
 }

@@ -21,6 +21,7 @@ struct SchemeOptions {
   bool interpolation = false;  ///< others than the local one
   bool iterative = false;      ///< among them the one from iterate to iterate
   bool additive = false;       ///< WeakForm::Additive
+  bool substitute = false;     ///< OnFailure::Dissipate: its state is one that edmc2 can go on from, and back
 };
 
 /// A scheme by name: its rule for the elements, what it claims, and what a scene may say of it.

@@ -14,6 +14,7 @@ using Trait = void (*)(Scheme&);
 void energy_momentum(Scheme& scheme) {
   scheme.damping_relaxation = IntegratorDescription().step;
   scheme.conserves_momenta = true;
+  scheme.options.substitute = true;
 }
 
 /// Rotary inertia at the mass points, moments by T(omega).
@@ -59,6 +60,7 @@ void dissipative(Scheme& scheme) {
   scheme.order = order;
   scheme.conserves_energy = false;
   scheme.options.rho_infinity = true;
+  scheme.options.substitute = false;
 }
 
 void backward(Scheme& scheme) {

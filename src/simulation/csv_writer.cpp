@@ -50,7 +50,9 @@ void append_header(std::string& line, const Simulation& simulation, CsvWriter::C
   append_names(line, "energy", {"kinetic", "strain", "potential", "total", "work", "dissipated"});
   append_names(line, "momentum", {"x", "y", "z"});
   append_names(line, "angular_momentum", {"x", "y", "z"});
-  if (columns == CsvWriter::Columns::StateAndSolver) append_names(line, "solver", {"step", "iterations", "halvings"});
+  if (columns == CsvWriter::Columns::StateAndSolver)
+    append_names(line, "solver",
+                 {"step", "iterations", "halvings", "deepest_halving", "other_guesses", "dissipated_steps"});
 }
 
 // ---------------------------------------------------------------- rows
@@ -98,16 +100,16 @@ void CsvWriter::write_row(const Simulation& simulation) {
   append_state(line_, simulation);
   if (columns_ == Columns::StateAndSolver) {
     append(line_, simulation.step_size());
-    append(line_, iterations_);
-    append(line_, halvings_);
-    iterations_ = halvings_ = 0;
+    for (const long count : {counts_.iterations, counts_.halvings, static_cast<long>(counts_.deepest_halving),
+                             counts_.other_guesses, counts_.dissipated_steps})
+      append(line_, count);
+    counts_ = {};
   }
   write_line(line_);
 }
 
 void CsvWriter::count(const StepResult& result) {
-  iterations_ += result.iterations;
-  halvings_ += result.halvings;
+  counts_.add(result);
 }
 
 void CsvWriter::close() {

@@ -15,6 +15,7 @@
 #include "math/so3.h"
 #include "model/line_release.h"
 #include "schemes/slide_scheme.h"
+#include "simulation/failure_text.h"
 #include "simulation/inside.h"
 #include "simulation/observables.h"
 #include "simulation/output_velocities.h"
@@ -46,6 +47,8 @@ StepSettings settings_of(const scene::SceneDescription& scene, const SimulationO
   settings.max_iterations = scene.integrator.max_iterations;
   settings.max_halvings = scene.integrator.max_halvings;
   settings.reuse_factorisation = options.reuse_factorisation;
+  settings.on_failure = scene.integrator.on_failure;
+  settings.recovery_wall_time = options.recovery_wall_time;
   const auto require = [&](bool ok, const std::string& what) {
     if (!ok) throw ModelError(integrator_place(scene) + "<integrator>: " + what);
   };
@@ -59,6 +62,7 @@ StepSettings settings_of(const scene::SceneDescription& scene, const SimulationO
 /// The scene with the scheme and the step in use.
 scene::SceneDescription with_options(scene::SceneDescription scene, const SimulationOptions& options) {
   if (options.scheme) scene.integrator = with_scheme(scene.integrator, *options.scheme);
+  if (options.on_failure) scene.integrator.on_failure = *options.on_failure;
   scene.integrator.step = settings_of(scene, options).step;
   return scene;
 }
@@ -116,6 +120,9 @@ struct Simulation::Implementation {
     return output_velocities;
   }
 
+  /// Of a pose about the model's origin.
+  Pose in_world(const Pose& pose) const { return {model.origin + pose.position, pose.orientation}; }
+
   void release_from_lines() {
     for (int slide; (slide = slide_beyond_end(model, state)) >= 0;) {
       State released = state_after_release(model, state, slide);
@@ -169,6 +176,10 @@ StepResult Simulation::step() {
   implementation_->velocities_hold = false;
   implementation_->static_norms.clear();
   return result;
+}
+
+std::string Simulation::explain(const StepResult& result) const {
+  return failure_text(implementation_->model, implementation_->settings, result);
 }
 
 void Simulation::reset() {
@@ -244,7 +255,7 @@ const std::vector<std::string>& Simulation::link_names() const {
 }
 
 Pose Simulation::link_pose(std::size_t link) const {
-  return attached_pose(implementation_->state, implementation_->model.links.at(link).frame);
+  return implementation_->in_world(attached_pose(implementation_->state, implementation_->model.links.at(link).frame));
 }
 
 bool Simulation::is_flexible(std::size_t link) const {
@@ -253,12 +264,16 @@ bool Simulation::is_flexible(std::size_t link) const {
 
 Pose Simulation::tip_pose(std::size_t link) const {
   const LinkFrame& frame = implementation_->model.links.at(link);
-  return frame.beam ? attached_pose(implementation_->state, frame.beam->tip) : link_pose(link);
+  return frame.beam ? implementation_->in_world(attached_pose(implementation_->state, frame.beam->tip))
+                    : link_pose(link);
 }
 
 void Simulation::beam_points(std::size_t link, int between, std::vector<BeamPoint>& points) const {
   const LinkFrame& frame = implementation_->model.links.at(link);
-  if (frame.beam) flexarm::beam_points(implementation_->model, implementation_->state, *frame.beam, between, points);
+  if (!frame.beam) return;
+  const std::size_t first = points.size();
+  flexarm::beam_points(implementation_->model, implementation_->state, *frame.beam, between, points);
+  for (std::size_t i = first; i < points.size(); ++i) points[i].pose = implementation_->in_world(points[i].pose);
 }
 
 double Simulation::beam_radius(std::size_t link) const {
@@ -275,18 +290,22 @@ Vector3 Simulation::momentum() const {
   return momenta(implementation_->model, implementation_->scheme, implementation_->state).linear;
 }
 Vector3 Simulation::angular_momentum() const {
-  return momenta(implementation_->model, implementation_->scheme, implementation_->state).angular;
+  const Momenta momenta = flexarm::momenta(implementation_->model, implementation_->scheme, implementation_->state);
+  return implementation_->model.origin.cross(momenta.linear) + momenta.angular;
 }
 ProbeState Simulation::probe(std::size_t index) const {
-  return probe_state(implementation_->model, implementation_->state, implementation_->velocities().nodes(),
-                     implementation_->model.probes.at(index));
+  ProbeState probe = probe_state(implementation_->model, implementation_->state, implementation_->velocities().nodes(),
+                                 implementation_->model.probes.at(index));
+  probe.pose = implementation_->in_world(probe.pose);
+  return probe;
 }
 
-StepResult Simulation::solve_static(int load_steps) {
+StaticResult Simulation::solve_static(int load_steps, Equilibrium wanted) {
   if (load_steps < 1) throw std::invalid_argument("the number of load steps must be >= 1");
   implementation_->velocities_hold = false;
   Implementation& s = *implementation_;
-  const StepResult result = flexarm::solve_static(s.model, s.scheme, s.settings, load_steps, s.state, &s.static_norms);
+  const StaticResult result =
+      flexarm::solve_static(s.model, s.scheme, s.settings, load_steps, wanted, s.state, &s.static_norms);
   s.stepper->invalidate();
   return result;
 }

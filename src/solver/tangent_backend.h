@@ -55,6 +55,8 @@ class TangentBackend {
   // ---- solution
   /// False if the tangent is singular or not finite.
   virtual bool factorise() = 0;
+  /// The variable whose elimination has failed then; -1: the backend cannot tell.
+  virtual int singular_variable() const { return -1; }
   /// Replaces b, one entry per equation, by the solution with the factors made last. False if that is not finite.
   virtual bool solve(Eigen::VectorXd& b) = 0;
   /// The last solution for all scalars (DegreesOfFreedom::first), slaves as the maps of the last factors move them.

@@ -218,8 +218,11 @@ bool TreeTangent::factorise() {
   for (int p = 0; p < static_cast<int>(parts.size()); ++p)
     if (!(parts[p].has_border   ? bordered_.eliminate(p)
           : parts[p].joint >= 0 ? eliminate_joint(parts[p].joint)
-                                : eliminate_element(p)))
+                                : eliminate_element(p))) {
+      singular_variable_ =
+          parts[p].joint >= 0 ? dof_.variable_of_joint(parts[p].joint) : parts[p].nodes[parts[p].node_count - 1];
       return false;
+    }
   return true;
 }
 

@@ -38,6 +38,7 @@ class TreeTangent : public TangentBackend {
   void finish() override {}
   void hold_row(int joint, int component, int first, const ReleasedVector& coefficients) override;
   bool factorise() override;
+  int singular_variable() const override { return singular_variable_; }
   bool solve(Eigen::VectorXd& b) override;
   const double* expanded_solution() const override { return values_.data(); }
   double cost_of_factors() const override;
@@ -68,7 +69,8 @@ class TreeTangent : public TangentBackend {
   TreeBlocks blocks_;
   TreeOrder order_;
   BorderedElimination bordered_;
-  std::vector<JointFront> joints_;        // in the model's order
+  std::vector<JointFront> joints_;  // in the model's order
+  int singular_variable_ = -1;
   std::vector<double> values_;            // per scalar: right-hand side, solution
   std::vector<std::size_t> first_pivot_;  // per part
   std::vector<unsigned char> pivots_;

@@ -93,6 +93,19 @@ TEST(HardRuns, OffTargetOrOutOfBoundsIsWrong) {
   EXPECT_EQ(flaw(hard, outcome), "beyond half a metre");
 }
 
+TEST(HardRuns, WrongRunThatSaysSoIsWarned) {
+  HardOutcome outcome;
+  outcome.end = End::Completed;
+  outcome.error = 1;
+  HardCase hard = carriage();
+  hard.target = rail_at(1);
+  EXPECT_EQ(verdict(hard, outcome), Verdict::Wrong);
+  outcome.warning[0] = 'w';
+  EXPECT_EQ(verdict(hard, outcome), Verdict::Warned);
+  outcome.error = 0;
+  EXPECT_EQ(verdict(hard, outcome), Verdict::Right) << "a warning takes nothing from what is right";
+}
+
 TEST(HardRuns, EnergyFromNowhereIsWrong) {
   HardOutcome outcome;
   outcome.end = End::Completed;
@@ -217,7 +230,7 @@ TEST(HardReports, HaveARowForEachCaseAndSayWhatFailed) {
   EXPECT_TRUE(std::is_sorted(parts.begin(), parts.end()));
   EXPECT_EQ(parts.back(), 1);
   const std::string text = to_markdown(report, "");
-  for (const char* line : {"\n| em | 1 | 1 | 0 |", "\n| newmark | 1 | 1 | 0 |",
+  for (const char* line : {"\n| em | 1 | 0 | 1 | 0 |", "\n| newmark | 1 | 0 | 1 | 0 |",
                            "\n| group: wrong carriage | off its target (test) |", "\n| carriage | 0.1 | 10 | 1."})
     EXPECT_NE(text.find(line), std::string::npos) << text;
   const std::string data = hard_to_csv(report);

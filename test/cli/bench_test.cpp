@@ -96,9 +96,11 @@ TEST(Bench, HardReport) {
 
 TEST(Bench, HardScenesCanBePrintedAndRun) {
   const std::string file = temporary("hard.urdf");
-  ASSERT_EQ(shell("flexarm bench hard --print --case 'parallelogram started flat' > '" + file + "'").status, 0);
-  EXPECT_NE(read_file(file).find("<!-- dead point: parallelogram started flat; until 0.5 s -->"), std::string::npos);
-  EXPECT_EQ(shell("flexarm simulate --quiet --until 0.5 '" + file + "'").status, 1);
+  ASSERT_EQ(shell("flexarm bench hard --print --case 'triple rocker driven beyond its reach' > '" + file + "'").status,
+            0);
+  EXPECT_NE(read_file(file).find("<!-- dead point: triple rocker driven beyond its reach; until 2 s -->"),
+            std::string::npos);
+  EXPECT_EQ(shell("flexarm simulate --quiet --until 2 '" + file + "'").status, 1);
   ASSERT_EQ(shell("flexarm bench hard --print --case 'door on two hinges' > '" + file + "'").status, 0);
   EXPECT_EQ(shell("flexarm simulate --quiet --until 0.5 '" + file + "'").status, 0);
   EXPECT_EQ(shell("flexarm bench hard --print --case 'no such case'").status, 1);
@@ -108,8 +110,32 @@ TEST(Bench, FolderThatCannotBeWritten) {
   const std::string file = temporary("file");
   std::ofstream(file) << "x";
   const Outcome outcome = shell("flexarm bench properties --quick --output '" + file + "'");
+  EXPECT_EQ(outcome.status, 2);
+  expect_contains(outcome.errors, "cannot write '" + file + "/properties.md': Not a directory");
+}
+
+TEST(Bench, SignalsEndItAndLeaveTheReportOfBefore) {
+  const std::string folder = temporary("interrupted");
+  std::filesystem::remove_all(folder);
+  for (const auto& [signal, status] : {std::pair("INT", 130), std::pair("TERM", 143)}) {
+    const Outcome outcome = shell("env --default-signal '" + program() + "' bench hard --group column --output '" +
+                                  folder + "' & sleep 1; kill -" + signal + " $!; wait $!");
+    EXPECT_EQ(outcome.status, status);
+    expect_contains(outcome.errors, "nothing is written");
+    EXPECT_TRUE(std::filesystem::is_empty(folder));
+  }
+}
+
+TEST(Bench, FullDiskLeavesTheReportOfBefore) {
+  const std::string folder = temporary("full");
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder + "/hard.md") << "before";
+  const Outcome outcome =
+      shell("ulimit -f 1; '" + program() + "' bench hard --quick --group mimic --scheme em --scheme m1 --output '" +
+            folder + "' > /dev/null");
   EXPECT_EQ(outcome.status, 1);
-  EXPECT_NE(outcome.errors, "");
+  expect_contains(outcome.errors, "cannot be written");
+  EXPECT_EQ(read_file(folder + "/hard.md"), "before");
 }
 
 }  // namespace

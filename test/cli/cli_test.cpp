@@ -198,7 +198,8 @@ TEST(Modes, FreeMechanismIsExplained) {
   <simulation> <gravity xyz="0 0 0"/> <effort joint="shoulder" history="1"/> </simulation>
 </robot>)");
   const std::string sentence =
-      "no equilibrium: nothing holds joint 'shoulder' in the initial configuration (1 motion is free)";
+      "no equilibrium: nothing holds joint 'shoulder' in the initial configuration (1 motion is free; a <motion> would "
+      "hold it)";
   const Outcome modes = shell("flexarm modes " + scene), check = shell("flexarm check " + scene);
   for (const Outcome& outcome : {modes, check}) {
     EXPECT_EQ(outcome.status, 0);
@@ -209,6 +210,31 @@ TEST(Modes, FreeMechanismIsExplained) {
   const Outcome statics = shell("flexarm static " + scene);
   EXPECT_EQ(statics.status, 1);
   expect_contains(statics.errors, sentence);
+}
+
+// A beam that stands up on a hinge: the loads lead to where it stands, and it falls.
+TEST(Statics, FallsFromAnUnstableEquilibrium) {
+  const std::string scene = scene_file(R"(<robot name="r">
+  <link name="world"/>
+  <joint name="hinge" type="continuous"> <parent link="world"/> <child link="rod"/> <axis xyz="0 1 0"/> </joint>
+  <link name="rod">
+    <beam> <centerline> <line to="0 0 1"/> </centerline>
+      <circle radius="0.01"/> <material young="70e9" poisson="0.33" density="2700"/> </beam>
+  </link>
+</robot>)");
+  const Outcome falls = shell("flexarm static " + scene), stays = shell("flexarm static --unstable " + scene);
+  for (const Outcome& outcome : {falls, stays}) {
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    expect_contains(outcome.errors, "the equilibrium to which the loads lead is not stable: link 'rod'");
+  }
+  expect_contains(falls.errors, "falls from it; this is where it comes to rest");
+  expect_contains(falls.output, "hinge                          3.14159");
+  expect_contains(stays.errors, "would fall from it");
+  EXPECT_EQ(stays.output.find("hinge                          3.14159"), std::string::npos) << stays.output;
+  // Other commands look at the same equilibrium.
+  expect_contains(shell("flexarm modes " + scene).errors, "falls from it; this is where it comes to rest");
+  EXPECT_EQ(shell("flexarm modes " + scene).output.find("divergence"), std::string::npos);
+  expect_contains(shell("flexarm modes --unstable " + scene).output, "(divergence)");
 }
 
 TEST(CommandLine, RingOfOneLink) {

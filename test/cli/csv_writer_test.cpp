@@ -65,7 +65,10 @@ TEST(CsvWriter, SolverCountsStartAgainAfterEachRow) {
   StepResult step;
   step.iterations = 3;
   step.halvings = 1;
+  step.deepest_halving = 2;
   writer.count(step);
+  step.deepest_halving = 1;
+  step.is_dissipated = true;
   writer.count(step);
   writer.write_row(cart);
   writer.write_row(cart);
@@ -74,6 +77,9 @@ TEST(CsvWriter, SolverCountsStartAgainAfterEachRow) {
   EXPECT_EQ(columns["solver/step"], (std::vector<double>{1e-3, 1e-3}));
   EXPECT_EQ(columns["solver/iterations"], (std::vector<double>{6, 0}));
   EXPECT_EQ(columns["solver/halvings"], (std::vector<double>{2, 0}));
+  EXPECT_EQ(columns["solver/deepest_halving"], (std::vector<double>{2, 0}));
+  EXPECT_EQ(columns["solver/other_guesses"], (std::vector<double>{0, 0}));
+  EXPECT_EQ(columns["solver/dissipated_steps"], (std::vector<double>{1, 0}));
 }
 
 TEST(CsvWriter, DoesNotDependOnTheLocale) {

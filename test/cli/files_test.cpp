@@ -57,9 +57,27 @@ TEST(Simulate, FailureKeepsAndNamesTheLastGoodState) {
       shell("flexarm simulate " + scene_file(kFailingScene) + " --checkpoint " + state + " --output " + csv);
   EXPECT_EQ(outcome.status, 1);
   expect_contains(outcome.errors, "simulation failed after t = 0 s: ");
+  expect_contains(outcome.errors, "joint coordinate 'hinge'");
+  expect_contains(outcome.errors, "What usually helps: ");
   expect_contains(outcome.errors, "the last good state is kept in '" + state + "'");
   EXPECT_TRUE(std::filesystem::exists(state));
   EXPECT_EQ(read_csv(csv)["time"].size(), 1u);
+}
+
+TEST(Simulate, RecoveriesAndDoubtsAreSaid) {
+  // A free hinge that turns by 1.5 rad a step, of which a sub-step may make half.
+  std::string text = kFailingScene;
+  text.replace(
+      text.find("<integrator"), std::string::npos,
+      R"(<gravity xyz="0 0 0"/> <integrator step="0.1"/> <initial joint="hinge" velocity="25"/> </simulation> </robot>)");
+  const Outcome outcome = shell("flexarm simulate " + scene_file(text) + " --until 1");
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  expect_contains(outcome.output, " halvings (down to 1/2 of a step)");
+  expect_contains(outcome.errors, "flexarm: warning: link 'rod'");
+  expect_contains(outcome.errors, "lags by ");
+  EXPECT_EQ(shell("flexarm simulate " + scene_file(text) + " --until 0.1 --on-failure dissipate").status, 0);
+  EXPECT_EQ(shell("flexarm simulate " + scene_file(text) + " --on-failure hope").status, 2);
+  EXPECT_EQ(shell("flexarm simulate " + scene_file(text) + " --scheme m1 --on-failure dissipate").status, 2);
 }
 
 TEST(Simulate, CheckpointsOnTheWay) {
@@ -181,6 +199,34 @@ TEST(Simulate, ClosedPipeEndsTheRun) {
       shell("{ '" + program() + "' " + kEndless + "--output -; echo status $? >&2; } | head -2 > /dev/null");
   expect_contains(outcome.errors, "cannot write the standard output: Broken pipe");
   expect_contains(outcome.errors, "status 1");
+}
+
+TEST(Static, OutputIsTriedBeforeTheSolution) {
+  const std::string csv = temporary("out.csv");
+  fs::remove(csv);
+  const std::string command = "flexarm static " + example("cantilever") + " --output ";
+  const Outcome missing = shell(command + "/no/such/folder/out.csv");
+  EXPECT_EQ(missing.status, 2);
+  EXPECT_EQ(missing.output, "") << "nothing has been solved";
+  expect_contains(missing.errors, "cannot write '/no/such/folder/out.csv': No such file or directory");
+  const Outcome full = shell(command + "/dev/full");
+  EXPECT_EQ(full.status, 1);
+  expect_contains(full.errors, "cannot write '/dev/full': No space left on device");
+  // Where nothing is found, nothing is left.
+  EXPECT_EQ(shell("flexarm static " + scene_file(kFailingScene) + " --output " + csv).status, 1);
+  EXPECT_FALSE(fs::exists(csv));
+}
+
+TEST(Analyses, EndWithTheStatusesOfSignals) {
+  // A scene whose modes take long; statics of it as well.
+  std::string text = R"(<robot name="r"> <link name="world"/>
+    <joint name="clamp" type="fixed"> <parent link="world"/> <child link="arm"/> </joint>
+    <link name="arm"> <beam elements="20000"> <centerline> <line to="1 0 0"/> </centerline> <circle radius="0.01"/>
+      <material young="70e9" poisson="0.33" density="2700"/> </beam> </link> </robot>)";
+  const std::string scene = scene_file(text);
+  for (const std::string command : {"static", "modes"})
+    for (const auto& [signal, status] : {std::pair("INT", 130), std::pair("TERM", 143)})
+      EXPECT_EQ(ended_by(command + " " + scene, "kill -" + std::string(signal) + " $!").status, status) << command;
 }
 
 TEST(Simulate, InputIsNotOverwritten) {

@@ -191,7 +191,7 @@ TEST(Statics, AFailureLeavesTheStateUntouched) {
   const Model model = build_model(builder.scene);
   State state = initial_state(model);
   const State before = state;
-  const StepResult result = solve_static(model, schemes().front(), {1e-2, 1e-9, 20, 2}, 2, state);
+  const StepResult result = solve_static(model, schemes().front(), {1e-2, 1e-9, 20, 2}, 2, Equilibrium::Stable, state);
   EXPECT_FALSE(result.converged);
   EXPECT_NE(result.reason, StepResult::Reason::None);
   for (std::size_t i = 0; i < state.nodes.size(); ++i) EXPECT_EQ(state.nodes[i].position, before.nodes[i].position);

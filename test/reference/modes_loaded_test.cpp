@@ -16,7 +16,7 @@ namespace {
 /// omega^2 of the lowest mode of the equilibrium, negative where it grows.
 double lowest_square(const SceneBuilder& builder) {
   Simulation simulation(builder.scene);
-  if (!simulation.solve_static(1).converged) throw std::runtime_error("no equilibrium");
+  if (!simulation.solve_static(1, Equilibrium::UnderTheLoads).converged) throw std::runtime_error("no equilibrium");
   const Mode mode = simulation.natural_modes(3).front();
   return std::pow(2 * kPi * mode.frequency, 2) - std::pow(mode.rate, 2);
 }

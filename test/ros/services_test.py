@@ -166,6 +166,8 @@ class Failure(ClockedArm):
 
     def test_last_good_state_and_reason_are_published(self):
         self.assertIn("step from t = ", self.answer.message)
+        self.assertRegex(self.answer.message, " at (link|joint coordinate|element .* of link) '")
+        self.assertIn("What usually helps: ", self.answer.message)
         status = self.status()
         self.assertTrue(status.paused)
         self.assertEqual(status.message, self.answer.message)

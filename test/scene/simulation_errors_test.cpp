@@ -44,12 +44,17 @@ TEST(SimulationErrors, Integrator) {
   for (const char* options :
        {R"(scheme="newmark" beta="0.3" gamma="0.6")", R"(scheme="hht2" alpha="-0.1" interpolation="iterative")",
         R"(scheme="m1" interpolation="incremental")", R"(scheme="newmark" interpolation="total" weak_form="additive")",
-        R"(scheme="beta1" interpolation="local" weak_form="spin")", R"(scheme="auto" rho_infinity="0.8")"})
+        R"(scheme="beta1" interpolation="local" weak_form="spin")", R"(scheme="auto" rho_infinity="0.8")",
+        R"(on_failure="dissipate")", R"(scheme="em4" on_failure="dissipate")", R"(scheme="m1" on_failure="stop")"})
     EXPECT_TRUE(read(good_scene_with(known, options)).scene) << options;
   expect_error(known, R"(scheme="hht2" alpha="-0.5")", 60, "alpha must be from -1/3 to 0, got '-0.5'");
   expect_error(known, R"(scheme="newmark" beta="0")", 60, "beta must be > 0, got '0'");
   expect_error(known, R"(scheme="em" gamma="0.5")", 60, "scheme 'em' does not have this option; it belongs to newmark");
   expect_error(known, R"(scheme="m1" rho_infinity="0.9")", 60, "it belongs to auto, edmc1, edmc2, got '0.9'");
+  expect_error(known, R"(on_failure="hope")", 60, "on_failure must be one of stop, dissipate, got 'hope'");
+  for (const char* options : {R"(scheme="m1" on_failure="dissipate")", R"(scheme="edmc2" on_failure="dissipate")",
+                              R"(rho_infinity="0.9" on_failure="dissipate")"})
+    expect_error(known, options, 60, "'dissipate' belongs to auto, em, em0, em_scaled, em_symmetric, em4, got");
   expect_error(known, R"(scheme="m1" interpolation="quadratic")", 60,
                "interpolation must be one of local, total, incremental, iterative, got 'quadratic'");
   expect_error(known, R"(scheme="em" interpolation="total")", 60, "scheme 'em' is built on the local interpolation");

@@ -2,6 +2,7 @@
 /// What a simulation gives back: values, in SI units.
 
 #include <complex>
+#include <string>
 #include <vector>
 
 #include "flexarm/math/pose.h"
@@ -20,18 +21,86 @@ struct StepResult {
     OffTheLine,
     DrivenOffTheLine,
     OpenLoop,
+    NeverRests,
+    BentTooFar,
+    DeadPoint,
+    OutOfTime,
     HitTooFast
   };
+
+  /// A part of the mechanism; what is not known is -1.
+  struct Place {
+    int link = -1;                       ///< index into Simulation::link_names()
+    int element = -1;                    ///< of that link if it is flexible, counted from its beginning
+    int coordinate = -1;                 ///< index into Simulation::coordinate_names()
+    int loop = -1;                       ///< of those that a joint without coordinates closes
+    Vector3 position = Vector3::Zero();  ///< world axes [m]
+    bool is_known() const { return link >= 0 || coordinate >= 0 || loop >= 0; }
+  };
+
+  /// Where a step failed and what was tried. Numbers only; Simulation::explain() says it in words.
+  struct Failure {
+    /// What `amount` is.
+    enum class Quantity {
+      None,
+      Force,     ///< of what is not in balance, the largest part [N]
+      Moment,    ///< the same [N m]
+      Rotation,  ///< of a link in the smallest sub-step [rad]
+      Bending    ///< rotation within an element [rad]
+    };
+    double time = 0;                 ///< at the beginning of the smallest sub-step [s]
+    double step = 0;                 ///< length of that [s]
+    int guesses = 0;                 ///< from which Newton's method was started in it
+    Reason cause = Reason::None;     ///< of the last attempt; another than `reason` where that is OutOfTime
+    bool tried_dissipation = false;  ///< edmc2 in place of the scheme, in vain
+    Place place;
+    Quantity quantity = Quantity::None;
+    double amount = 0;
+  };
+
   bool converged = false;
   int iterations = 0;  ///< Newton iterations of all sub-steps
-  int halvings = 0;    ///< times that a sub-step had to be halved
   int factorisations = 0;
+
+  // ---- what saved it where it did not succeed at once
+  int halvings = 0;            ///< times that a sub-step had to be halved
+  int deepest_halving = 0;     ///< the shortest sub-step was 2^-deepest_halving of the step
+  int other_guesses = 0;       ///< sub-steps that were solved from another guess than the first
+  bool is_dissipated = false;  ///< the step was done by edmc2, OnFailure::Dissipate
+
+  double largest_rotation = 0;   ///< of a node in a sub-step, as 2 tan(angle/2)
+  int turning_node = -1;         ///< of Simulation::node_count(): which one
   Reason reason = Reason::None;  ///< why it failed
+  Failure failure;               ///< where; of a step that failed
+};
+/// Outcome of the search for an equilibrium.
+struct StaticResult : StepResult {
+  /// The link that moves most when the equilibrium to which the loads lead is left; empty: it is stable.
+  std::string falling_link;
+  /// A link that may stand elsewhere as well, as on an upright hinge; empty: there is none.
+  std::string loose_link;
+};
+/// Which equilibrium is asked for.
+enum class Equilibrium {
+  Stable,  ///< that to which the loads lead or, where this is not stable, one to which the mechanism falls from it
+  UnderTheLoads  ///< that to which the loads lead, stable or not
 };
 /// In words, for people to read.
 const char* to_string(StepResult::Reason reason);
 
-/// Energies of a state [J]; work and dissipation are path integrals since the start.
+/// Sums of what steps came to.
+struct StepCounts {
+  long steps = 0, iterations = 0, halvings = 0, other_guesses = 0;
+  long dissipated_steps = 0;  ///< done by edmc2
+  int deepest_halving = 0;
+
+  void add(const StepResult& result);
+};
+/// How steps were saved, "3 halvings (down to 1/4 of a step), ..."; empty if none had to be.
+std::string recoveries_text(const StepCounts& counts);
+
+/// Energies of a state [J]; work and dissipation are path integrals since the start. The potential is that of gravity:
+/// zero at the world's origin or, where a mechanism is far from it, at the first joint on its root link.
 struct Energies {
   double kinetic = 0, strain = 0, potential = 0, work = 0, dissipated = 0;
   double total() const { return kinetic + strain + potential; }
@@ -44,6 +113,10 @@ struct BeamPoint {
   Vector6 strain = Vector6::Zero();     ///< {Gamma, K} in the section frame [-, 1/m], by the scheme's interpolation
   Vector6 resultant = Vector6::Zero();  ///< {N, M} in the section frame [N, N m], elastic: without damping
 };
+
+/// The von Mises strain at the edge of a section, `radius` [m] from its middle, were bending and torsion to act at the
+/// same point of it.
+double edge_strain(const BeamPoint& point, double radius);
 
 /// Pose and velocity of a named point.
 struct ProbeState {

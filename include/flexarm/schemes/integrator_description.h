@@ -22,6 +22,12 @@ enum class WeakForm {
   Additive  ///< total rotation vectors: the static tangent is symmetric
 };
 
+/// What becomes of a step that the scheme cannot do, however often it is halved.
+enum class OnFailure {
+  Stop,      ///< the step fails
+  Dissipate  ///< it is done from its beginning by edmc2, with its own numerical dissipation
+};
+
 /// Of Newton's method; with more there would be nothing left of it.
 constexpr double kLargestTolerance = 1;
 
@@ -39,6 +45,7 @@ struct IntegratorDescription {
   int max_iterations = 20;
   int max_halvings = 14;
   std::optional<double> rho_infinity;  ///< of numerical dissipation: spectral radius at infinite frequency (0.8)
+  OnFailure on_failure = OnFailure::Stop;
 };
 
 /// Names of the schemes that a scene may ask for, "auto" first.

@@ -17,7 +17,9 @@ namespace flexarm {
 ///   probe/NAME/x|y|z|qx|qy|qz|qw|vx|vy|vz    for every probe
 ///   energy/kinetic|strain|potential|total|work|dissipated
 ///   momentum/x|y|z, angular_momentum/x|y|z   (about the world origin)
-///   solver/step|iterations|halvings          only of a simulation in time: step size, and counts since the row before
+///   solver/step|iterations|halvings|deepest_halving|other_guesses|dissipated_steps
+///                                            only of a simulation in time: step size, and StepCounts since the row
+///                                            before
 class CsvWriter {
  public:
   enum class Columns { State, StateAndSolver };
@@ -43,8 +45,8 @@ class CsvWriter {
   std::string path_, line_;
   std::unique_ptr<std::FILE, Closer> file_;
   Columns columns_;
-  long written_ = 0;  // bytes of whole rows
-  long iterations_ = 0, halvings_ = 0;
+  long written_ = 0;   // bytes of whole rows
+  StepCounts counts_;  // since the last row
 };
 
 }  // namespace flexarm

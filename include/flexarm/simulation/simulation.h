@@ -12,6 +12,7 @@
 #include "flexarm/model/model_error.h"
 #include "flexarm/model/results.h"
 #include "flexarm/scene/diagnostic.h"
+#include "flexarm/schemes/integrator_description.h"
 
 namespace flexarm {
 
@@ -28,6 +29,10 @@ struct SimulationOptions {
   /// Keep the factors of the tangent while the iteration contracts well (modified Newton). The result agrees with that
   /// of full Newton to far below the tolerance; off: quadratic convergence, and a restored state continues bit for bit.
   bool reuse_factorisation = true;
+  std::optional<OnFailure> on_failure;
+  /// Ends a step that has been halved after this time by the clock on the wall, with a reason of its own and the state
+  /// after the last good sub-step, from which the next call goes on; 0: never [s].
+  double recovery_wall_time = 0;
 };
 
 /// What a simulation was like at one time, to go back to it: a value, cheap to copy.
@@ -56,6 +61,9 @@ class Simulation {
   /// Advances by one step, in smaller sub-steps where Newton asks for it. On failure the state is that of the last good
   /// sub-step. Allocates nothing after its first call, but when a slider enters another element of its line.
   StepResult step();
+  /// Why a step has failed: what, at which element or joint, where and when, what was tried, and what usually helps.
+  /// One sentence for each, in one line. Empty if it has not failed.
+  std::string explain(const StepResult& result) const;
   /// Back to the scene's initial state; commands are forgotten.
   void reset();
   Snapshot snapshot() const;
@@ -103,9 +111,9 @@ class Simulation {
   ProbeState probe(std::size_t index) const;  ///< in the order of scene().probes
 
   /// Statics: loads and gravity grow from zero in `load_steps` equal steps; prescribed motions are held at t = 0,
-  /// other released coordinates are solved for. On success the state is the equilibrium, at rest.
+  /// other released coordinates are solved for. On success the state is the equilibrium, at rest; else it is as before.
   /// @throws std::invalid_argument if `load_steps` < 1.
-  StepResult solve_static(int load_steps);
+  StaticResult solve_static(int load_steps, Equilibrium wanted = Equilibrium::Stable);
 
   /// Modes about the current configuration, taken to be at rest: growing ones first, then by |lambda|.
   /// @throws std::invalid_argument if `count` < 1; std::runtime_error if the eigenvalue problem cannot be solved.

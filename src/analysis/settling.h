@@ -1,0 +1,31 @@
+#pragma once
+/// The way down to an equilibrium.
+
+#include "integrators/newton.h"
+
+namespace flexarm {
+
+/// Lets a mechanism sink to an equilibrium, as if through a fluid that is so thick that nothing has inertia: in
+/// implicit Euler steps, longer and longer ones as it comes to rest, until they are Newton's. Such a motion ends in
+/// stable equilibria alone where loads have a potential, and needs no stiffness to start with.
+class Settling {
+ public:
+  /// `neutral`: curvature of the potential that counts as none, see Stability; drag is never less, so that round-off of
+  /// the balance does not move what nothing holds [J]. `tolerance`: on ways. The system and the iteration must outlive
+  /// it.
+  Settling(StepSystem& system, NewtonIteration& newton, double neutral, double tolerance)
+      : system_(system), newton_(newton), neutral_(neutral), tolerance_(tolerance) {}
+
+  /// From `state`, under loads times `load_factor`, with steps that forces decide. False if it does not come to rest,
+  /// or nothing moves it that its stiffness could balance; `result` says why, and `state` is where it was given up.
+  bool settle(State& state, double load_factor, StepResult& result);
+  /// The same with the first step's Drag::strength.
+  bool settle(State& state, double load_factor, double drag, StepResult& result);
+
+ private:
+  StepSystem& system_;
+  NewtonIteration& newton_;
+  double neutral_, tolerance_;
+};
+
+}  // namespace flexarm

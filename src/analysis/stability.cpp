@@ -1,0 +1,136 @@
+#include "analysis/stability.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include <Eigen/SparseCholesky>
+
+#include "analysis/linearised_motion.h"
+
+namespace flexarm {
+namespace {
+
+using Matrix = Eigen::SparseMatrix<double>;
+
+/// Stiffness of what holds loops together, beside that of what they join.
+constexpr double kLoopStiffness = 1e3;
+/// Added to the diagonal, which is scaled to 1: zeros there are no reason to stop.
+constexpr double kShift = 1e-12;
+/// Pivots below this may mean a motion that nothing holds: eight digits have gone.
+constexpr double kSmallPivot = 1e-8;
+/// See neutral_curvature().
+constexpr double kNeutral = 1e-6;
+/// Chains of more joints have tangents that are dense and large.
+constexpr std::size_t kMostCoordinates = 1000;
+/// Motions that are looked at, the softest ones first.
+constexpr std::size_t kMostMotions = 64;
+
+/// Springs in place of loops' constraints, in the unknowns that are no multipliers.
+Matrix with_springs(const Matrix& whole, Eigen::Index multipliers) {
+  if (multipliers == 0) return whole;
+  const Eigen::Index motions = whole.cols() - multipliers;
+  const Matrix curvature = whole.topLeftCorner(motions, motions);
+  Eigen::SparseMatrix<double, Eigen::RowMajor> constraints = whole.bottomLeftCorner(multipliers, motions);
+  const Eigen::VectorXd stiffness = curvature.diagonal().cwiseAbs();
+  for (Eigen::Index row = 0; row < multipliers; ++row) {
+    double square = 0, held = 0;
+    for (decltype(constraints)::InnerIterator entry(constraints, row); entry; ++entry) {
+      square += entry.value() * entry.value();
+      held += entry.value() * entry.value() * stiffness[entry.col()];
+    }
+    constraints.row(row) *= std::sqrt(kLoopStiffness * (held > 0 ? held / square : 1.0) / square);
+  }
+  return curvature + Matrix(constraints.transpose() * constraints);
+}
+
+/// Motions of the pivots that are negative or small, one entry per unknown.
+std::vector<Eigen::VectorXd> soft_motions(const Matrix& whole, Eigen::Index multipliers) {
+  Matrix curvature = with_springs(whole, multipliers);
+  const Eigen::Index size = curvature.cols();
+  const Eigen::VectorXd scale =
+      curvature.diagonal().unaryExpr([](double value) { return value == 0 ? 1.0 : 1 / std::sqrt(std::abs(value)); });
+  Matrix shift(size, size);
+  shift.setIdentity();
+  curvature = scale.asDiagonal() * curvature * scale.asDiagonal();
+  curvature += kShift * shift;
+  const Eigen::SimplicialLDLT<Matrix> factors(curvature);
+  if (factors.info() != Eigen::Success) return {};
+  const Eigen::VectorXd pivots = factors.vectorD();
+  std::vector<Eigen::Index> order;
+  for (Eigen::Index k = 0; k < size; ++k)
+    if (pivots[k] < kSmallPivot) order.push_back(k);
+  std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) { return pivots[a] < pivots[b]; });
+  order.resize(std::min(order.size(), kMostMotions));
+  std::vector<Eigen::VectorXd> motions;
+  for (const Eigen::Index k : order) {
+    Eigen::VectorXd motion = Eigen::VectorXd::Unit(size, k);
+    factors.matrixU().solveInPlace(motion);
+    motion = scale.cwiseProduct(factors.permutationPinv() * motion);
+    motions.push_back(Eigen::VectorXd::Zero(whole.cols()));
+    motions.back().head(size) = motion;
+  }
+  return motions;
+}
+
+/// How far nodes go in a motion: displacements over the model's length scale, turns in rad.
+class Ways {
+ public:
+  Ways(const Model& model, const std::vector<ComplexVector6>& motion) : model_(model) {
+    for (const ComplexVector6& node : motion)
+      ways_.push_back(std::max(node.head<3>().norm() / model.length_scale, node.tail<3>().norm()));
+  }
+
+  double largest() const { return *std::max_element(ways_.begin(), ways_.end()); }
+  double sum_of_squares() const { return std::inner_product(ways_.begin(), ways_.end(), ways_.begin(), 0.0); }
+  /// Name of the link with the node that goes farthest.
+  std::string link() const {
+    const auto way = [&](const LinkFrame& link) {
+      const int first = link.frame.node, last = link.beam ? link.beam->tip.node : first;
+      return first < 0 ? 0.0 : *std::max_element(ways_.begin() + first, ways_.begin() + last + 1);
+    };
+    return std::max_element(model_.links.begin(), model_.links.end(),
+                            [&](const LinkFrame& a, const LinkFrame& b) { return way(a) < way(b); })
+        ->name;
+  }
+
+ private:
+  const Model& model_;
+  std::vector<double> ways_;  // per node
+};
+
+}  // namespace
+
+double neutral_curvature(const Model& model) {
+  double work = 0;
+  for (const NodalInertia& inertia : model.inertias)
+    work += inertia.total_mass * model.gravity.norm() * model.length_scale;
+  for (const NodalLoad& load : model.loads)
+    work +=
+        std::abs(model.histories[load.history](0.0)) * (load.force.norm() * model.length_scale + load.moment.norm());
+  return kNeutral * work;
+}
+
+Stability judge_stability(const Model& model, const Scheme& scheme, const State& equilibrium) {
+  Stability stability;
+  if (model.coordinates.size() > kMostCoordinates || scheme.interpolation != Interpolation::Local) return stability;
+  const LinearisedMotion system(model, equilibrium, scheme.contact_time);
+  if (system.freedoms() <= 0) return stability;
+  const double neutral = neutral_curvature(model);
+  const Matrix curvature = system.curvature();
+  for (const Eigen::VectorXd& motion : soft_motions(curvature, (system.unknowns() - system.freedoms()) / 2)) {
+    const std::vector<ComplexVector6> nodes = system.expand(motion.cast<std::complex<double>>()).node_motion;
+    const Ways ways(model, nodes);
+    const double own = motion.dot(curvature * motion), round_off = system.round_off(nodes),
+                 least = round_off + neutral * ways.sum_of_squares();
+    if (std::abs(own) <= least && system.strain_energy(nodes) <= round_off) stability.loose_link = ways.link();
+    const double per_way = own / ways.sum_of_squares();
+    if (own < -least && !system.is_circulatory() && per_way < stability.motion.curvature)
+      stability.motion = {motion / ways.largest(), per_way, ways.link()};
+  }
+  return stability;
+}
+
+}  // namespace flexarm

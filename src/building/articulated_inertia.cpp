@@ -1,0 +1,137 @@
+#include "building/articulated_inertia.h"
+
+#include <Eigen/Eigenvalues>
+
+#include "joints/joint_kinematics.h"
+#include "math/so3.h"
+
+namespace flexarm {
+namespace {
+
+/// Inertia of a motion beside that of the coordinate alone with all others locked; less is what is left by round-off.
+constexpr double kRoundOff = 1e-13;
+/// The same beside that of the largest motion about the joint: less has no digits by which it could be judged.
+constexpr double kJudgeable = 1e-11;
+
+/// About a node, of {displacement, spin} in world axes.
+using SpatialInertia = Matrix6;
+
+SpatialInertia own_inertia(const NodalInertia& inertia, const Matrix3& rotation) {
+  SpatialInertia out = SpatialInertia::Zero();
+  out.topLeftCorner<3, 3>().diagonal().setConstant(inertia.total_mass);
+  out.bottomRightCorner<3, 3>() = rotation * (inertia.rotary + inertia.beam_rotary) * rotation.transpose();
+  return out;
+}
+
+/// About a point from which the present one is `way` away.
+SpatialInertia moved(const SpatialInertia& inertia, const Vector3& way) {
+  Matrix6 columns = Matrix6::Identity();
+  columns.topRightCorner<3, 3>() = -so3::hat(way);
+  return columns.transpose() * inertia * columns;
+}
+
+/// Factorises the joints' mass matrix from the leaves to the root (Featherstone): what is outboard of a joint resists
+/// the others inboard with the inertia that is left when the joint itself yields.
+class Articulation {
+ public:
+  Articulation(const std::vector<int>& parents, const Model& model)
+      : parents_(parents), model_(model), joint_of_(model.nodes.size(), -1), leads_(model.coordinates.size(), false) {
+    for (std::size_t j = 0; j < model.joints.size(); ++j) joint_of_[model.joints[j].slave] = static_cast<int>(j);
+    for (const Coordinate& coordinate : model.coordinates)
+      if (coordinate.mimicked >= 0) leads_[coordinate.mimicked] = true;
+    for (std::size_t i = 0; i < model.nodes.size(); ++i)
+      articulated_.push_back(own_inertia(model.inertias[i], model.nodes[i].rotation));
+    locked_ = articulated_;
+  }
+
+  bool has_loops() const {
+    if (!model_.closures.empty()) return true;
+    for (const JointMap& joint : model_.joints)
+      if (joint.kind != JointMapKind::Slide && parents_[joint.slave] != joint.master) return true;
+    return false;
+  }
+
+  std::vector<int> dependent_coordinates() {
+    for (int i = static_cast<int>(articulated_.size()) - 1; i >= 0; --i) {  // parents come before their children
+      const int joint = joint_of_[i], parent = parents_[i];
+      if (joint >= 0 && model_.joints[joint].kind != JointMapKind::Slide) yield(joint, i);
+      if (parent < 0) continue;
+      const Vector3 way = model_.nodes[i].position - model_.nodes[parent].position;
+      articulated_[parent] += moved(articulated_[i], way);
+      locked_[parent] += moved(locked_[i], way);
+    }
+    return dependent_;
+  }
+
+ private:
+  using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6>;
+  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
+
+  void yield(int j, int node) {
+    FoldMaps maps;
+    variational_maps(model_.joints[j], joint_pose(model_.joints[j], model_.nodes, model_.initial_released[j]),
+                     Vector6::Zero(), maps);
+    std::vector<int> free = free_components(j, maps.right, node);
+    while (!free.empty()) {
+      Columns columns(6, free.size());
+      for (std::size_t k = 0; k < free.size(); ++k) columns.col(k) = maps.right.col(free[k]);
+      const int dependent = dependent_of(columns, node);
+      if (dependent < 0) {
+        const Columns forces = articulated_[node] * columns;
+        articulated_[node] -= forces * Square(columns.transpose() * forces).ldlt().solve(forces.transpose());
+        return;
+      }
+      dependent_.push_back(model_.first_coordinate[j] + free[dependent]);
+      free.erase(free.begin() + dependent);
+    }
+  }
+
+  /// Those that are free, and move something themselves.
+  std::vector<int> free_components(int j, const Columns& columns, int node) const {
+    const double mass = locked_[node].topLeftCorner<3, 3>().trace(),
+                 inertia = locked_[node].bottomRightCorner<3, 3>().trace();
+    std::vector<int> free;
+    for (int k = 0; k < columns.cols(); ++k) {
+      const int index = model_.first_coordinate[j] + k;
+      const Coordinate& coordinate = model_.coordinates[index];
+      const Vector6 column = columns.col(k);
+      const double terms = mass * column.head<3>().squaredNorm() + inertia * column.tail<3>().squaredNorm();
+      const bool is_free = coordinate.motion < 0 && coordinate.mimicked < 0 && !leads_[index];
+      if (is_free && column.dot(locked_[node] * column) > kJudgeable * terms) free.push_back(k);
+    }
+    return free;
+  }
+
+  /// The one of the columns that moves most in a motion that is without inertia once joints outboard yield; -1: none.
+  int dependent_of(const Columns& columns, int node) const {
+    using Pairs = Eigen::SelfAdjointEigenSolver<Square>;
+    const Square locked = columns.transpose() * locked_[node] * columns;
+    const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> scale = locked.diagonal().cwiseSqrt().cwiseInverse();
+    const Pairs principal(Square(scale.asDiagonal() * locked * scale.asDiagonal()));
+    const auto count = (principal.eigenvalues().array() > kJudgeable).count();
+    // Motions of equal inertia with joints locked.
+    const Square motions = scale.asDiagonal() * principal.eigenvectors().rightCols(count) *
+                           principal.eigenvalues().tail(count).cwiseSqrt().cwiseInverse().asDiagonal();
+    const Pairs pairs(Square(motions.transpose() * (columns.transpose() * articulated_[node] * columns) * motions));
+    if (pairs.eigenvalues()[0] > kRoundOff) return -1;
+    Eigen::Index most = 0;
+    scale.cwiseInverse().cwiseProduct(motions * pairs.eigenvectors().col(0)).cwiseAbs().maxCoeff(&most);
+    return static_cast<int>(most);
+  }
+
+  const std::vector<int>& parents_;
+  const Model& model_;
+  std::vector<int> joint_of_;                         // per node: joint that moves it, or -1
+  std::vector<bool> leads_;                           // per coordinate: others follow it
+  std::vector<SpatialInertia> articulated_, locked_;  // per node: of what is outboard, if joints yield and if not
+  std::vector<int> dependent_;
+};
+
+}  // namespace
+
+std::vector<int> coordinates_without_own_inertia(const std::vector<int>& parents, const Model& model) {
+  Articulation articulation(parents, model);
+  return articulation.has_loops() ? std::vector<int>() : articulation.dependent_coordinates();
+}
+
+}  // namespace flexarm

@@ -1,0 +1,63 @@
+#include "integrators/dissipative_substitute.h"
+
+#include <algorithm>
+
+#include "integrators/balance.h"
+#include "integrators/initial_strain_memory.h"
+
+namespace flexarm {
+namespace {
+
+Scheme dissipative_scheme(const Scheme& scheme, double step) {
+  Scheme out = *find_scheme("edmc2");
+  out.dissipation = numerical_dissipation(out.order, kDefaultRho, step);
+  // The same dampers and stops as those of the scheme.
+  out.damping_relaxation = scheme.damping_relaxation;
+  out.contact_time = scheme.contact_time;
+  return out;
+}
+
+/// It must not have a substitute of its own.
+StepSettings without_substitute(StepSettings settings) {
+  settings.on_failure = OnFailure::Stop;
+  return settings;
+}
+
+}  // namespace
+
+DissipativeSubstitute::DissipativeSubstitute(const Model& model, const Scheme& scheme, const StepSettings& settings)
+    : model_(model),
+      scheme_(scheme),
+      dissipative_(dissipative_scheme(scheme, settings.step)),
+      stepper_(model, dissipative_, without_substitute(settings)) {}
+
+bool DissipativeSubstitute::advance(State& state, StepResult& result) {
+  trial_ = begin_;
+  trial_.halving_level = 0;
+  stepper_.invalidate();
+  if (begin_.strain_memory.empty()) trial_.strain_memory = initial_strain_memory(model_, begin_);
+  const double memory_at_beginning =
+      energies(model_, dissipative_, trial_).strain - energies(model_, scheme_, begin_).strain;
+  const StepResult made = stepper_.advance(trial_);
+  result.iterations += made.iterations;
+  result.factorisations += made.factorisations;
+  result.halvings += made.halvings;
+  result.other_guesses += made.other_guesses;
+  result.deepest_halving = std::max(result.deepest_halving, made.deepest_halving);
+  result.largest_rotation = made.largest_rotation;
+  result.turning_node = made.turning_node;
+  result.failure.tried_dissipation = true;
+  if (!made.converged) return false;
+
+  const double strain_energy = energies(model_, dissipative_, trial_).strain;
+  if (begin_.strain_memory.empty()) trial_.strain_memory.clear();
+  for (StrainMemory& memory : trial_.strain_memory) memory.average.setZero();
+  trial_.dissipated += strain_energy - energies(model_, scheme_, trial_).strain - memory_at_beginning;
+  state = trial_;
+  result.converged = result.is_dissipated = true;
+  result.reason = StepResult::Reason::None;
+  result.failure = {};
+  return true;
+}
+
+}  // namespace flexarm

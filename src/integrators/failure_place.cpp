@@ -1,0 +1,162 @@
+#include "integrators/failure_place.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "elements/element_configuration.h"
+#include "integrators/dead_point.h"
+#include "math/pi.h"
+#include "model/place.h"
+
+namespace flexarm {
+namespace {
+
+using Quantity = StepResult::Failure::Quantity;
+using Reason = StepResult::Reason;
+
+/// Local rotations end at a turn from the reference node (LocalRotations). A step that starts so near to that, and
+/// fails, has failed at it [rad].
+constexpr double kNearlyATurn = 0.95 * 2 * kPi;
+
+/// Of a variable of DegreesOfFreedom.
+StepResult::Place place_of_variable(const StepSystem& system, int variable) {
+  const Model& model = system.configuration().model();
+  const State& state = system.configuration().state();
+  const DegreesOfFreedom& dof = system.degrees_of_freedom();
+  if (variable < 0) return {};
+  if (variable < dof.node_count) return place_of_node(model, state, variable);
+  if (variable < dof.node_count + dof.joint_count) return place_of_joint(model, state, variable - dof.node_count);
+  return place_of_loop(model, state, variable - dof.node_count - dof.joint_count);
+}
+
+// ---------------------------------------------------------------- what stands out
+
+/// The largest force or moment that is left; moments count by the mechanism's length. What is not a number is larger
+/// than all else.
+void find_largest_residual(const StepSystem& system, StepResult::Failure& failure) {
+  const Model& model = system.configuration().model();
+  const State& state = system.configuration().state();
+  const DegreesOfFreedom& dof = system.degrees_of_freedom();
+  double largest = 0;
+  const auto is_larger = [&](double amount, bool is_moment) {
+    const double force = is_moment ? amount / model.length_scale : amount;
+    if (std::isnan(largest) || force <= largest) return false;
+    largest = force;
+    failure.quantity = is_moment ? Quantity::Moment : Quantity::Force;
+    failure.amount = amount;
+    return true;
+  };
+  int node = -1;
+  for (int i = 0; i < dof.node_count; ++i)
+    for (const bool is_moment : {false, true}) {
+      const int row = dof.equation[dof.first[i]];
+      if (row >= 0 && is_larger(system.residual().segment<3>(row + (is_moment ? 3 : 0)).norm(), is_moment)) node = i;
+    }
+  const Coordinate* coordinate = nullptr;
+  for (const Coordinate& candidate : model.coordinates) {
+    const int row = dof.equation[dof.scalar_of(candidate)];
+    if (row >= 0 && is_larger(std::abs(system.residual()[row]), is_rotation(model, candidate))) coordinate = &candidate;
+  }
+  if (coordinate)
+    failure.place = place_of_joint(model, state, coordinate->joint, coordinate->component);
+  else if (node >= 0)
+    failure.place = place_of_node(model, state, node);
+}
+
+void find_largest_rotation(const StepSystem& system, StepResult::Failure& failure) {
+  const StepConfiguration& configuration = system.configuration();
+  const std::vector<Vector3>& increments = configuration.increments();
+  const auto largest = std::max_element(
+      increments.begin(), increments.end(),
+      [](const Vector3& one, const Vector3& other) { return one.squaredNorm() < other.squaredNorm(); });
+  failure.place =
+      place_of_node(configuration.model(), configuration.state(), static_cast<int>(largest - increments.begin()));
+  failure.quantity = Quantity::Rotation;
+  failure.amount = 2 * std::atan(0.5 * largest->norm());  // they are tangent-scaled
+}
+
+/// Rotation of a node from its element's reference; of the two nodes half-way between which that lies, from each other.
+template <int N>
+double bending(const LocalRotations<N>& local, int i) {
+  const ReferenceNodes reference = LocalRotations<N>::reference;
+  const bool is_of_pair = reference.first != reference.second && (i == reference.first || i == reference.second);
+  return (is_of_pair ? 2 : 1) * local.rotation_vectors()[i].norm();
+}
+
+/// True if an element is bent as far as its interpolation goes.
+bool find_bent_element(const StepSystem& system, StepResult::Failure& failure) {
+  if (system.configuration().scheme().interpolation != Interpolation::Local) return false;
+  const Model& model = system.configuration().model();
+  const State& state = system.configuration().state();
+  double largest = kNearlyATurn;
+  for_each_group(model.beams, [&](const auto& group) {
+    constexpr int N = std::decay_t<decltype(group.elements)>::value_type::kNodes;
+    for (std::size_t e = 0; e < group.elements.size(); ++e) {
+      const ElementConfiguration<N> nodes(group.elements[e], state);
+      const LocalRotations<N> local(nodes.orientation);
+      for (int i = 0; i < N; ++i) {
+        if (!(bending(local, i) > largest)) continue;
+        largest = bending(local, i);
+        failure.place = place_of_element(model, state, N - 1, static_cast<int>(e), group.elements[e].nodes.front());
+        failure.quantity = Quantity::Bending;
+        failure.amount = largest;
+      }
+    }
+  });
+  return failure.quantity == Quantity::Bending;
+}
+
+/// True if a loop of the configuration at the beginning is at a dead point.
+bool find_dead_point(const StepSystem& system, StepResult::Failure& failure) {
+  const StepConfiguration& configuration = system.configuration();
+  const int closure = closure_at_dead_point(configuration.model(), system.degrees_of_freedom(), configuration.state());
+  if (closure >= 0) failure.place = place_of_loop(configuration.model(), configuration.state(), closure);
+  return closure >= 0;
+}
+
+/// What `failure.cause` is to be said of.
+void find_place(const StepSystem& system, StepResult::Failure& failure) {
+  const StepConfiguration& configuration = system.configuration();
+  switch (failure.cause) {
+    case Reason::RotationTooLarge:
+      return find_largest_rotation(system, failure);
+    case Reason::SingularTangent:
+      failure.place = place_of_variable(system, system.tangent().singular_variable());
+      return;
+    case Reason::OffTheLine:
+    case Reason::DrivenOffTheLine:
+      failure.place = place_of_joint(configuration.model(), configuration.state(), configuration.off_line_joint());
+      return;
+    case Reason::OpenLoop:
+      failure.place = place_of_loop(configuration.model(), configuration.state(), system.largest_opening().closure);
+      return;
+    case Reason::NoConvergence:
+    case Reason::NotFinite:
+      return find_largest_residual(system, failure);
+    case Reason::None:
+    case Reason::EnergyDefect:
+    case Reason::BentTooFar:
+    case Reason::DeadPoint:
+    case Reason::OutOfTime:
+    case Reason::HitTooFast:
+      return;
+  }
+}
+
+}  // namespace
+
+void locate_failure(const StepSystem& system, StepResult& result) {
+  StepResult::Failure& failure = result.failure;
+  failure.time = system.configuration().state().time;
+  failure.step = system.configuration().step();
+  // A slow look at the mechanism says more than that the iteration did not converge.
+  const bool is_of_elements = result.reason != Reason::None && result.reason != Reason::EnergyDefect;
+  if (is_of_elements && find_bent_element(system, failure))
+    result.reason = Reason::BentTooFar;
+  else if (result.reason == Reason::NoConvergence && find_dead_point(system, failure))
+    result.reason = Reason::DeadPoint;
+  failure.cause = result.reason;
+  if (!failure.place.is_known()) find_place(system, failure);
+}
+
+}  // namespace flexarm

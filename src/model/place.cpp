@@ -1,0 +1,56 @@
+#include "model/place.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace flexarm {
+
+using Place = StepResult::Place;
+
+Place place_of_element(const Model& model, const State& state, int order, int index, int node) {
+  Place place;
+  place.position = model.origin + state.nodes[node].position;
+  for (std::size_t link = 0; link < model.links.size(); ++link) {
+    const std::optional<BeamLink>& beam = model.links[link].beam;
+    if (!beam || beam->order != order) continue;
+    const auto found = std::find(beam->elements.begin(), beam->elements.end(), index);
+    if (found == beam->elements.end()) continue;
+    place.link = static_cast<int>(link);
+    place.element = static_cast<int>(found - beam->elements.begin());
+  }
+  return place;
+}
+
+Place place_of_node(const Model& model, const State& state, int node) {
+  Place place;
+  for_each_group(model.beams, [&](const auto& group) {
+    constexpr int N = std::decay_t<decltype(group.elements)>::value_type::kNodes;
+    for (std::size_t e = 0; e < group.elements.size() && place.link < 0; ++e) {
+      const auto& nodes = group.elements[e].nodes;
+      if (std::find(nodes.begin(), nodes.end(), node) != nodes.end())
+        place = place_of_element(model, state, N - 1, static_cast<int>(e), node);
+    }
+  });
+  if (place.link >= 0) return place;
+  place.position = model.origin + state.nodes[node].position;
+  for (std::size_t link = 0; link < model.links.size() && place.link < 0; ++link)
+    if (model.links[link].frame.node == node) place.link = static_cast<int>(link);
+  return place;
+}
+
+Place place_of_joint(const Model& model, const State& state, int joint, int component) {
+  Place place = place_of_node(model, state, model.joints[joint].slave);
+  for (std::size_t i = 0; i < model.coordinates.size(); ++i)
+    if (model.coordinates[i].joint == joint && model.coordinates[i].component == component)
+      place.coordinate = static_cast<int>(i);
+  return place;
+}
+
+Place place_of_loop(const Model& model, const State& state, int loop) {
+  Place place;
+  place.position = model.origin + state.nodes[model.closures[loop].child].position;
+  place.loop = loop;
+  return place;
+}
+
+}  // namespace flexarm

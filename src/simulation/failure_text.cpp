@@ -1,0 +1,110 @@
+#include "simulation/failure_text.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace flexarm {
+namespace {
+
+using Failure = StepResult::Failure;
+using Reason = StepResult::Reason;
+
+/// What is wrong there.
+std::string amount_text(const Failure& failure) {
+  switch (failure.quantity) {
+    case Failure::Quantity::None:
+      return "";
+    case Failure::Quantity::Force:
+      if (!std::isfinite(failure.amount)) return "a force";
+      return fmt::format("{:.3g} N not in balance", failure.amount);
+    case Failure::Quantity::Moment:
+      if (!std::isfinite(failure.amount)) return "a moment";
+      return fmt::format("{:.3g} N m not in balance", failure.amount);
+    case Failure::Quantity::Rotation:
+      return fmt::format("{:.3g} rad in {:.3g} s", failure.amount, failure.step);
+    case Failure::Quantity::Bending:
+      return fmt::format("{:.3g} rad", failure.amount);
+  }
+  return "";
+}
+
+/// "what at where", of which one or both may be missing.
+std::string place_and_amount(const Model& model, const Failure& failure) {
+  const std::string name = place_name(model, failure.place), amount = amount_text(failure);
+  if (name.empty()) return amount;
+  const Vector3& r = failure.place.position;
+  return fmt::format("{}at {} at ({:.4g}, {:.4g}, {:.4g}) m", amount.empty() ? "" : amount + " ", name, r.x(), r.y(),
+                     r.z());
+}
+
+std::string advice(const Model& model, const StepResult& result) {
+  const Failure& failure = result.failure;
+  switch (result.reason) {
+    case Reason::None:
+      return "";
+    case Reason::NoConvergence:
+      return failure.place.element >= 0
+                 ? "a finer mesh of that link, a smaller step, numerical dissipation (rho_infinity)"
+                 : "a smaller step, damping of what moves there, more room for what a <motion> asks for";
+    case Reason::SingularTangent:
+      return "inertia or stiffness for what moves there (an <inertial>, a spring), another start than a dead point; "
+             "see "
+             "flexarm check";
+    case Reason::NotFinite:
+      return "finite loads, efforts and motions: look at their functions of time and at commands";
+    case Reason::RotationTooLarge:
+      // From a sub-step that turns by so much to one that turns by half a radian.
+      return fmt::format(
+          "a smaller step ({:.1g} s, say), or less effort, more damping or a <limit> at what turns there",
+          failure.amount > 0 ? 0.5 * failure.step / failure.amount : failure.step);
+    case Reason::EnergyDefect:
+      return "a smaller step, or scheme em, which closes the energy element by element";
+    case Reason::OffTheLine:
+      return "a smaller step, a longer line, or an end where the slider stops or leaves (on_end)";
+    case Reason::DrivenOffTheLine:
+      return "a <motion> that stays on the line, or a longer line";
+    case Reason::OpenLoop:
+      return "a start at which the loop is no dead point, and motions within its reach";
+    case Reason::DeadPoint:
+      return "motions within what the loop can reach, other lengths of its links, or a joint that yields";
+    case Reason::NeverRests:
+      return "a <motion>, a stop or a load that holds what moves";
+    case Reason::HitTooFast:
+      return "a smaller step, or more halvings (max_halvings)";
+    case Reason::OutOfTime:
+      return "going on from here, which costs as much again, a smaller step, or a longer recovery_wall_time";
+    case Reason::BentTooFar:
+      return fmt::format("a finer mesh of that link: {} elements or more",
+                         2 * model.links[failure.place.link].beam->elements.size());
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string place_name(const Model& model, const StepResult::Place& place) {
+  if (place.coordinate >= 0) return fmt::format("joint coordinate '{}'", model.coordinates[place.coordinate].name);
+  if (place.loop >= 0) return fmt::format("loop joint '{}'", model.closures[place.loop].name);
+  if (place.link < 0) return "";
+  const LinkFrame& link = model.links[place.link];
+  if (place.element < 0) return fmt::format("link '{}'", link.name);
+  return fmt::format("element {} of {} of link '{}'", place.element + 1, link.beam->elements.size(), link.name);
+}
+
+std::string failure_text(const Model& model, const StepSettings& settings, const StepResult& result) {
+  if (result.reason == Reason::None) return "";
+  const Failure& failure = result.failure;
+  std::string text = to_string(result.reason);
+  if (failure.cause != result.reason && failure.cause != Reason::None)
+    text += fmt::format(" ({})", to_string(failure.cause));
+  const std::string place = place_and_amount(model, failure);
+  if (!place.empty()) text += ": " + place;
+  text += fmt::format(
+      ". Tried from t = {:.6g} s: steps down to {:.3g} s ({} halvings, step {:.3g} s), {} guesses, {} iterations",
+      failure.time, failure.step, result.halvings, settings.step, failure.guesses, result.iterations);
+  if (failure.tried_dissipation) text += ", then edmc2 (on_failure)";
+  return text + ". What usually helps: " + advice(model, result);
+}
+
+}  // namespace flexarm

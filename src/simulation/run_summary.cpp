@@ -1,0 +1,104 @@
+#include "flexarm/simulation/run_summary.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "flexarm/scene/scene_description.h"
+#include "model/place.h"
+#include "schemes/scheme.h"
+#include "simulation/failure_text.h"
+#include "simulation/inside.h"
+
+namespace flexarm {
+namespace {
+
+/// Rotation of a node in a step [rad]. What turns freely lags by a twelfth of its square (2 %), where velocities follow
+/// tangent-scaled increments; second order in the step says little of what turns by more.
+constexpr double kLargestRotation = 0.5;
+/// What materials of arms bear, and where a linear law of theirs holds, ends long before that.
+constexpr double kLargestStrain = 0.1;
+/// Of the energy account of a scheme that conserves energy, beside the largest energy: far above what the tolerance of
+/// Newton's method leaves.
+constexpr double kLargestEnergyDefect = 1e-3;
+/// Displacements in a step, beside the mechanism's length, that are as good as rest.
+constexpr double kRest = 1e-8;
+
+/// Of a mechanism that moves as little as that [J].
+double energy_of_rest(const Simulation& simulation) {
+  const Model& model = model_of(simulation);
+  double mass = 0;
+  for (const NodalInertia& inertia : model.inertias) mass += inertia.total_mass;
+  const double speed = kRest * model.length_scale / simulation.step_size();
+  return 0.5 * mass * speed * speed;
+}
+
+}  // namespace
+
+RunSummary::RunSummary(const Simulation& simulation)
+    : conserves_energy_(make_scheme(simulation.scene().integrator).conserves_energy),
+      start_(simulation.energies()),
+      energy_scale_(energy_of_rest(simulation)) {
+  look(simulation);
+}
+
+void RunSummary::count(const Simulation& simulation, const StepResult& result) {
+  counts_.add(result);
+  if (result.largest_rotation > rotation_.amount)
+    rotation_ = {result.largest_rotation, simulation.time(), result.turning_node, 0};
+}
+
+void RunSummary::look(const Simulation& simulation) {
+  const double time = simulation.time();
+  for (std::size_t link = 0; link < simulation.link_names().size(); ++link) {
+    points_.clear();
+    simulation.beam_points(link, 0, points_);
+    const double radius = simulation.beam_radius(link);
+    for (const BeamPoint& point : points_)
+      if (const double strain = edge_strain(point, radius); strain > strain_.amount)
+        strain_ = {strain, time, static_cast<int>(link), point.arc_length};
+  }
+  const Energies e = simulation.energies();
+  energy_scale_ = std::max(
+      {energy_scale_, e.kinetic, e.strain, std::abs(e.potential - start_.potential), std::abs(e.work - start_.work)});
+  const double defect = std::abs(account(e) - account(start_));
+  if (defect > energy_.amount) energy_ = {defect, time, -1, 0};
+}
+
+std::string RunSummary::rotation_warning(const Simulation& simulation) const {
+  const double angle = 2 * std::atan(0.5 * rotation_.amount);
+  if (angle <= kLargestRotation) return "";
+  const std::string place =
+      place_name(model_of(simulation), place_of_node(model_of(simulation), state_of(simulation), rotation_.index));
+  const double lag = 1 - angle / rotation_.amount;
+  return fmt::format(
+      "{} turned by up to {:.2g} rad in a step, by t = {:.6g} s: what turns freely lags by {:.2g} % there; a smaller "
+      "step helps, that keeps it below {} rad",
+      place.empty() ? "a node" : place, angle, rotation_.time, 100 * lag, kLargestRotation);
+}
+
+std::string RunSummary::strain_warning(const Simulation& simulation) const {
+  if (strain_.amount <= kLargestStrain) return "";
+  return fmt::format(
+      "link '{}' was strained by up to {:.2g}, {:.4g} m from its beginning at t = {:.6g} s: the material's law, which "
+      "is "
+      "linear, says little there; look at loads and stiffness, or refine its mesh if the strain is where it is coarse",
+      simulation.link_names()[strain_.index], strain_.amount, strain_.arc_length, strain_.time);
+}
+
+std::string RunSummary::energy_warning() const {
+  if (!conserves_energy_ || energy_.amount <= kLargestEnergyDefect * energy_scale_) return "";
+  return fmt::format(
+      "energy - work + dissipation changed by up to {:.2g} J at t = {:.6g} s, {:.2g} % of the largest energy, with a "
+      "scheme that conserves it: a smaller tolerance or step helps",
+      energy_.amount, energy_.time, 100 * energy_.amount / energy_scale_);
+}
+
+std::vector<std::string> RunSummary::warnings(const Simulation& simulation) const {
+  std::vector<std::string> warnings = {rotation_warning(simulation), strain_warning(simulation), energy_warning()};
+  warnings.erase(std::remove(warnings.begin(), warnings.end(), ""), warnings.end());
+  return warnings;
+}
+
+}  // namespace flexarm

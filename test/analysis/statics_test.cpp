@@ -1,0 +1,205 @@
+// Equilibria: stable ones, the way to them, and what has none.
+#include "analysis/statics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "analysis/stability.h"
+#include "building/model_builder.h"
+#include "math/pi.h"
+#include "simulation/inside.h"
+#include "support/scene_builder.h"
+
+namespace flexarm {
+namespace {
+
+using namespace test;
+using scene::JointKind;
+
+constexpr double kEuler = kPi * kPi / 4;  // buckling load of the column, EI = L = 1
+/// Equilibria are found up to the tolerance on updates, of IntegratorDescription, which contract by at least a half.
+constexpr double kTolerance = 2e-8;
+
+/// Clamped, upright.
+SceneBuilder column(double load, double across) {
+  SceneBuilder b;
+  b.beam("beam", {{0, 0, 1}}, section(1e5, 5e4, 1, 1, 1, 1e-3, 5e-4), 8, 2);
+  b.joint("clamp", JointKind::Fixed, "world", "beam");
+  b.load("beam", {0, 0, 1}, {across, 0, -load});
+  b.probe("tip", "beam", {0, 0, 1});
+  return b;
+}
+
+/// Of the tip of Euler's elastica, clamped below, of length 1, under `ratio` > 1 times the buckling load.
+double height_of_elastica(double ratio) {
+  double low = 0, high = 1;
+  for (int i = 0; i < 60; ++i) {
+    const double k = (low + high) / 2;
+    (std::comp_ellint_1(k) < kPi / 2 * std::sqrt(ratio) ? low : high) = k;
+  }
+  return 2 * std::comp_ellint_2(low) / std::comp_ellint_1(low) - 1;
+}
+
+/// Rods of 1 m and 1 kg on hinges about y, one behind the other along x.
+SceneBuilder pendulum(int links, const Vector3& gravity) {
+  SceneBuilder b;
+  b.scene.gravity = gravity;
+  std::string parent = "world";
+  for (int i = 0; i < links; ++i) {
+    const std::string link = "rod" + std::to_string(i);
+    b.body(link, 1, {0.5, 0, 0}, Vector3(0.01, 1. / 12, 1. / 12).asDiagonal());
+    b.joint("hinge" + std::to_string(i), JointKind::Continuous, parent, link, {i == 0 ? 0. : 1., 0, 0}, {0, 1, 0});
+    parent = link;
+  }
+  return b;
+}
+
+bool diverges(const Simulation& simulation) {
+  return simulation.natural_modes(1).at(0).is_divergence();
+}
+
+TEST(Statics, ColumnBucklesWhatEverTheLoadSteps) {
+  for (const double across : {0.0, 1e-3})
+    for (const int load_steps : {1, 2, 20}) {
+      Simulation simulation(column(3 * kEuler, across * 3 * kEuler).scene);
+      ASSERT_TRUE(simulation.solve_static(load_steps).converged) << across << " " << load_steps;
+      EXPECT_FALSE(diverges(simulation));
+      // Bending strains of the elastica vary along two thirds of a wave: elements of order two, h = 1/8, are good to
+      // (2/3 2 pi h)^4 / 180 beside 1; the load across moves the tip by its own part.
+      EXPECT_NEAR(simulation.probe(0).pose.position.z(), height_of_elastica(3),
+                  std::pow(2. / 3 * 2 * kPi / 8, 4) / 180 + across);
+    }
+}
+
+TEST(Statics, StraightColumnIsToldAndCanBeHad) {
+  Simulation simulation(column(3 * kEuler, 0).scene);
+  const StaticResult falls = simulation.solve_static(2);
+  EXPECT_EQ(falls.falling_link, "beam");
+  simulation.reset();
+  const StaticResult stays = simulation.solve_static(2, Equilibrium::UnderTheLoads);
+  ASSERT_TRUE(stays.converged);
+  EXPECT_EQ(stays.falling_link, "beam");
+  EXPECT_LT(simulation.probe(0).pose.position.head<2>().norm(), kTolerance);
+  EXPECT_TRUE(diverges(simulation));
+}
+
+TEST(Statics, AColumnBelowItsBucklingLoadStands) {
+  Simulation simulation(column(0.98 * kEuler, 0).scene);
+  const StaticResult result = simulation.solve_static(1);
+  EXPECT_TRUE(result.converged);
+  EXPECT_EQ(result.falling_link, "");
+  EXPECT_LT(simulation.probe(0).pose.position.head<2>().norm(), kTolerance);
+}
+
+TEST(Statics, PendulumsHang) {
+  for (const int links : {1, 2, 5})
+    for (const Vector3& gravity : {Vector3(0, 0, -9.81), Vector3(-9.81, 0, 0), Vector3(9.81, 0, 0)}) {
+      Simulation simulation(pendulum(links, gravity).scene);
+      const StaticResult result = simulation.solve_static(10);
+      ASSERT_TRUE(result.converged) << links << " " << gravity.transpose() << ": " << to_string(result.reason);
+      EXPECT_EQ(result.falling_link.empty(), gravity.x() >= 0);
+      const double turn = gravity.z() < 0 ? kPi / 2 : gravity.x() < 0 ? kPi : 0;
+      EXPECT_NEAR(std::remainder(std::abs(simulation.position(0)) - turn, 2 * kPi), 0, kTolerance);
+      for (int i = 1; i < links; ++i) EXPECT_NEAR(std::remainder(simulation.position(i), 2 * kPi), 0, kTolerance);
+      EXPECT_FALSE(diverges(simulation));
+    }
+}
+
+// What Sylvester's law is asked: the curvature of an upright pendulum is -m g l, beside a way of 1 rad of hinge and
+// centre.
+TEST(Stability, UprightPendulum) {
+  SceneBuilder b = pendulum(1, {-9.81, 0, 0});
+  const Simulation simulation(b.scene);
+  const Stability up = judge_stability(model_of(simulation), *find_scheme("em"), state_of(simulation));
+  EXPECT_FALSE(up.is_stable());
+  EXPECT_EQ(up.motion.link, "rod0");
+  const double ways = static_cast<double>(simulation.node_count());  // all turn by 1 rad
+  EXPECT_NEAR(up.motion.curvature * ways, -9.81 * 0.5, 1e-12 * 9.81);
+}
+
+// Loops: the multipliers' zeros on the diagonal are no instability, and what the loop holds is none either.
+TEST(Statics, LoopsFallAsTheyCan) {
+  for (const double gravity : {-9.81, 9.81}) {
+    SceneBuilder b;
+    b.scene.gravity = Vector3(0, 0, gravity);
+    const Matrix3 inertia = Vector3(0.1, 0.1, 0.01).asDiagonal();
+    b.body("left", 1, {0, 0, 0.5}, inertia);
+    b.body("right", 1, {0, 0, 0.5}, inertia);
+    b.body("coupler", 1, {1, 0, 0}, inertia);
+    b.joint("left_foot", JointKind::Continuous, "world", "left", {0, 0, 0}, {0, 1, 0});
+    b.joint("head", JointKind::Continuous, "left", "coupler", {0, 0, 1}, {0, 1, 0});
+    b.joint("right_foot", JointKind::Continuous, "world", "right", {2, 0, 0}, {0, 1, 0});
+    scene::JointDescription loop = b.scene.joints.back();
+    loop.name = "other_head";
+    loop.parent = "right";
+    loop.child = "coupler";
+    loop.origin.position = Vector3(0, 0, 1);
+    loop.child_origin.position = Vector3(2, 0, 0);
+    b.scene.loop_joints.push_back(loop);
+    Simulation simulation(b.scene);
+    const StaticResult result = simulation.solve_static(2);
+    ASSERT_TRUE(result.converged) << to_string(result.reason);
+    EXPECT_EQ(result.falling_link.empty(), gravity > 0);
+    EXPECT_NEAR(std::abs(simulation.position(0)), gravity < 0 ? kPi : 0, kTolerance);
+    EXPECT_FALSE(diverges(simulation));
+  }
+}
+
+// Two shallow rods under an apex that is pushed through: no equilibrium is near where the loads' path ends.
+TEST(Statics, ShallowTrussSnapsThrough) {
+  SceneBuilder b;
+  const scene::DirectSection rod = section(1e5, 5e4, 10, 10, 1, 1e-2, 5e-3);
+  b.beam("left", {{1, 0, 0.05}}, rod, 4, 2);
+  b.beam("right", {{-1, 0, 0.05}}, rod, 4, 2);
+  b.joint("left_foot", JointKind::Continuous, "world", "left", {0, 0, 0}, {0, 1, 0});
+  b.joint("right_foot", JointKind::Continuous, "world", "right", {2, 0, 0}, {0, 1, 0});
+  scene::JointDescription apex = b.scene.joints.back();
+  apex.name = "apex";
+  apex.parent = "left";
+  apex.child = "right";
+  apex.origin.position = Vector3(1, 0, 0.05);
+  apex.child_origin.position = Vector3(-1, 0, 0.05);
+  b.scene.loop_joints.push_back(apex);
+  b.load("left", {1, 0, 0.05}, {0, 0, -200});
+  b.probe("apex", "left", {1, 0, 0.05});
+  Simulation simulation(b.scene);
+  const StaticResult result = simulation.solve_static(10);
+  ASSERT_TRUE(result.converged) << to_string(result.reason);
+  EXPECT_LT(simulation.probe(0).pose.position.z(), -0.05);
+  EXPECT_FALSE(diverges(simulation));
+}
+
+TEST(Statics, WhatNothingHoldsNeverRests) {
+  SceneBuilder b;
+  b.beam("beam", {{1, 0, 0}}, section(1e4, 5e3, 20, 20, 1, 0.02, 0.01), 2, 2);
+  b.joint("free", JointKind::Floating, "world", "beam");
+  b.load("beam", {1, 0, 0}, {1, 0, 0});
+  Simulation simulation(b.scene);
+  const StaticResult result = simulation.solve_static(1);
+  EXPECT_FALSE(result.converged);
+  EXPECT_EQ(result.reason, StepResult::Reason::NeverRests);
+}
+
+TEST(Statics, WhatNothingMovesHasNoEquilibriumOfItsOwn) {
+  Simulation simulation(pendulum(1, Vector3::Zero()).scene);
+  const StaticResult result = simulation.solve_static(1);
+  EXPECT_FALSE(result.converged);
+  EXPECT_EQ(result.reason, StepResult::Reason::SingularTangent);
+}
+
+// A beam that hangs down on an upright hinge may stand anywhere about it.
+TEST(Statics, WhatMayStandElsewhereIsTold) {
+  SceneBuilder b;
+  b.scene.gravity = Vector3(0, 0, -9.81);
+  b.beam("beam", {{1, 0, 0}}, section(1e4, 5e3, 20, 20, 1, 0.02, 0.01), 4, 2);
+  b.joint("swivel", JointKind::Continuous, "world", "beam", Vector3::Zero(), {0, 0, 1});
+  Simulation simulation(b.scene);
+  const StaticResult result = simulation.solve_static(1);
+  ASSERT_TRUE(result.converged) << to_string(result.reason);
+  EXPECT_EQ(result.loose_link, "beam");
+  EXPECT_EQ(result.falling_link, "");
+}
+
+}  // namespace
+}  // namespace flexarm

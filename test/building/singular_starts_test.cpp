@@ -1,0 +1,150 @@
+// Starts at which accelerations would be undetermined, or a motion would: refused, with the joint and what to do.
+#include <gtest/gtest.h>
+
+#include "building/expect_model_error.h"
+#include "building/model_builder.h"
+#include "elements/random_element.h"
+#include "math/pi.h"
+#include "support/scene_builder.h"
+
+namespace flexarm {
+namespace {
+
+using namespace test;
+using scene::JointKind;
+
+const Vector3 kAcross = Vector3::UnitY();
+
+/// Links of 1 m without inertia on hinges about y, each bent by an angle against the one before, then a body.
+SceneBuilder massless_chain(int links, double bend, const Matrix3& inertia, const Vector3& center) {
+  SceneBuilder b;
+  std::string parent = "world";
+  for (int i = 0; i <= links; ++i) {
+    const std::string link = "link" + std::to_string(i), hinge = "hinge" + std::to_string(i);
+    if (i < links)
+      b.scene.links.push_back({link, {}, {}, {}});
+    else
+      b.body(link, 1, center, inertia);
+    b.joint(hinge, JointKind::Continuous, parent, link, {i == 0 ? 0. : 1., 0, 0}, kAcross);
+    if (i > 0) b.scene.initial_joints.push_back({hinge, bend, 0, {}});
+    parent = link;
+  }
+  return b;
+}
+
+// In a plane a body has three freedoms: on more hinges than that something moves that nothing resists. A point has two,
+// and one where the links are in line.
+TEST(SingularInertia, MasslessChains) {
+  const Matrix3 body = 0.1 * Matrix3::Identity(), point = Matrix3::Zero();
+  const Vector3 beside(0.5, 0, 0), end(1, 0, 0);
+  for (const int links : {0, 1, 2})
+    EXPECT_NO_THROW(build_model(massless_chain(links, 0.7, body, beside).scene)) << links;
+  for (const int links : {0, 1}) EXPECT_NO_THROW(build_model(massless_chain(links, 0.7, point, end).scene)) << links;
+  EXPECT_NO_THROW(build_model(massless_chain(1, 0, body, beside).scene));
+  for (const int links : {3, 4, 6})
+    expect_error(massless_chain(links, 0.5, body, beside).scene, "moves nothing at the start that the joints outboard");
+  expect_error(massless_chain(2, 0.7, point, end).scene, "'hinge0' moves nothing at the start");
+  expect_error(massless_chain(1, 0, point, end).scene, "'hinge0' moves nothing at the start");
+  expect_error(massless_chain(1, 0, point, end).scene, "start elsewhere by <initial>");
+}
+
+TEST(SingularInertia, AxesInLineWithNothingBetween) {
+  RandomSource random(3);
+  for (int repeat = 0; repeat < 10; ++repeat) {
+    const Vector3 axis = random.unit();
+    for (const bool has_ring : {false, true}) {
+      SceneBuilder b;
+      if (has_ring)
+        b.body("ring", 1e-9, Vector3::Zero(), 1e-9 * Matrix3::Identity());
+      else
+        b.scene.links.push_back({"ring", {}, {}, {}});
+      b.body("end", 1, random.vector(), 0.1 * Matrix3::Identity());
+      b.joint("first", JointKind::Continuous, "world", "ring", random.vector(), axis);
+      b.joint("second", JointKind::Continuous, "ring", "end", 2 * axis, axis);
+      if (has_ring)
+        EXPECT_NO_THROW(build_model(b.scene));
+      else
+        expect_error(b.scene, "'first' moves nothing at the start");
+    }
+  }
+}
+
+/// A body in two rings without inertia, about z, y and z.
+SceneBuilder gimbal(double nutation) {
+  SceneBuilder b;
+  b.scene.links.push_back({"outer", {}, {}, {}});
+  b.scene.links.push_back({"inner", {}, {}, {}});
+  b.body("end", 1, {0, 0, 0.1}, Vector3(0.1, 0.15, 0.2).asDiagonal());
+  b.joint("first", JointKind::Continuous, "world", "outer");
+  b.joint("second", JointKind::Continuous, "outer", "inner", Vector3::Zero(), kAcross);
+  b.joint("third", JointKind::Continuous, "inner", "end");
+  b.scene.initial_joints.push_back({"second", nutation, 0, {}});
+  return b;
+}
+
+// The inertia of the first axis is the body's times sin^2 of the nutation.
+TEST(SingularInertia, GimbalInItsLock) {
+  for (const double nutation : {1.0, 0.1, 1e-3, 1e-5}) EXPECT_NO_THROW(build_model(gimbal(nutation).scene)) << nutation;
+  for (const double nutation : {0.0, 1e-8, kPi})
+    expect_error(gimbal(nutation).scene, "'first' moves nothing at the start");
+}
+
+TEST(SingularInertia, IsHeldOnDemand) {
+  SceneBuilder b = gimbal(0);
+  b.scene.lock_massless = true;
+  const Model model = build_model(b.scene);
+  EXPECT_GE(model.coordinates[0].motion, 0);
+  EXPECT_LT(model.coordinates[1].motion, 0);
+  EXPECT_LT(model.coordinates[2].motion, 0);
+}
+
+// A rod's inertia about its own axis is small beside that about the others, however it lies.
+TEST(SingularInertia, ThinRodsSpin) {
+  RandomSource random(5);
+  for (const double slenderness : {1e3, 1e6, 1e8}) {
+    SceneBuilder b;
+    const double length = 1e5, radius = length / slenderness;
+    b.beam("rod", {length * random.unit()}, section(1, 1, 1, 1, 1, radius * radius / 2, radius * radius / 4), 10, 2);
+    b.joint("free", JointKind::Floating, "world", "rod");
+    EXPECT_NO_THROW(build_model(b.scene)) << slenderness;
+  }
+}
+
+/// Two cranks on a line that carry a coupler parallel to it, all links turned by an angle from that line.
+SceneBuilder parallelogram(double angle, int rockers) {
+  SceneBuilder b;
+  const Quaternion turned(Eigen::AngleAxisd(-angle, kAcross));
+  const Matrix3 inertia = 0.05 * Matrix3::Identity();
+  b.body("rocker0", 1, {0.5, 0, 0}, inertia);
+  b.body("coupler", 1, {1, 0, 0}, inertia);
+  b.joint("foot0", JointKind::Continuous, "world", "rocker0", Vector3::Zero(), kAcross).origin.orientation = turned;
+  b.joint("head0", JointKind::Continuous, "rocker0", "coupler", {1, 0, 0}, kAcross).origin.orientation =
+      turned.conjugate();
+  for (int i = 1; i < rockers; ++i) {
+    const std::string name = "rocker" + std::to_string(i);
+    const Vector3 place(2. * i / (rockers - 1), 0, 0);
+    b.body(name, 1, {0.5, 0, 0}, inertia);
+    b.joint("foot" + std::to_string(i), JointKind::Continuous, "world", name, place, kAcross).origin.orientation =
+        turned;
+    scene::JointDescription loop = b.scene.joints.back();
+    loop.name = "head" + std::to_string(i);
+    loop.parent = name;
+    loop.child = "coupler";
+    loop.origin = {Vector3(1, 0, 0), turned.conjugate()};
+    loop.child_origin.position = place;
+    b.scene.loop_joints.push_back(loop);
+  }
+  return b;
+}
+
+// A flat parallelogram may open as one or cross over. Rockers that repeat what others hold are no dead point.
+TEST(DeadPoints, FlatParallelogram) {
+  for (const int rockers : {2, 3, 5}) {
+    expect_error(parallelogram(0, rockers).scene, "its loop starts at a dead point");
+    for (const double angle : {1e-3, 0.3, kPi / 2})
+      EXPECT_NO_THROW(build_model(parallelogram(angle, rockers).scene)) << rockers << " " << angle;
+  }
+}
+
+}  // namespace
+}  // namespace flexarm

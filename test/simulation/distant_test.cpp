@@ -1,0 +1,102 @@
+// Mechanisms far from the world's origin move as they do there.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "simulation/inside.h"
+#include "support/loops.h"
+
+namespace flexarm::test {
+namespace {
+
+using scene::JointKind;
+
+/// An arm of a body and a beam, which a joint of that kind holds at a place, a rod that stands beside it and carries
+/// its end in a loop, a probe on each link.
+scene::SceneDescription arm(JointKind kind, const Vector3& place) {
+  SceneBuilder b;
+  b.scene.gravity = Vector3(0, 0, -9.81);
+  b.body("upper", 1, {0.5, 0, 0}, Vector3(0.1, 0.2, 0.15).asDiagonal());
+  b.beam("lower", {{0.5, 0, -0.5}}, section(1e4, 4e3, 30, 40, 0.5, 1e-3, 5e-4), 3, 2);
+  b.joint("root", kind, "world", "upper", place, Vector3::UnitY());
+  b.joint("elbow", JointKind::Continuous, "upper", "lower", {1, 0, 0}, Vector3::UnitY());
+  b.probe("tip", "lower", {0.5, 0, -0.5});
+  b.probe("ground", "world", place);
+  b.load("lower", {0.5, 0, -0.5}, {1, 2, 3}, {0.1, 0, 0.2}, "sin(5*t)");
+  return b.scene;
+}
+
+/// The arm with its tip held to the world.
+scene::SceneDescription held_arm(const Vector3& place) {
+  SceneBuilder b;
+  b.scene = arm(JointKind::Continuous, place);
+  close_loop(b, "stay", JointKind::Spherical, "world", "lower", {0.5, 0, -0.5}).origin.position =
+      place + Vector3(1.5, 0, -0.5);
+  return b.scene;
+}
+
+void expect_alike(const scene::SceneDescription& near, const scene::SceneDescription& far, const Vector3& place) {
+  Simulation here(near), there(far);
+  // Places in the scene are rounded, those that are read as well.
+  const double unit = std::numeric_limits<double>::epsilon() * place.norm();
+  for (int n = 0; n < 100; ++n) {
+    const StepResult result = here.step(), distant = there.step();
+    ASSERT_TRUE(result.converged && distant.converged) << to_string(distant.reason);
+    EXPECT_EQ(distant.iterations, result.iterations);
+  }
+  for (std::size_t i = 0; i < here.coordinate_names().size(); ++i) {
+    EXPECT_EQ(there.position(i), here.position(i)) << here.coordinate_names()[i];
+    EXPECT_EQ(there.velocity(i), here.velocity(i)) << here.coordinate_names()[i];
+  }
+  EXPECT_EQ(there.energies().total(), here.energies().total());
+  EXPECT_EQ(there.momentum(), here.momentum());
+  for (std::size_t i = 0; i < here.link_names().size(); ++i) {
+    const Vector3 moved = here.link_names()[i] == "world" ? Vector3::Zero() : place;
+    EXPECT_LE((there.link_pose(i).position - here.link_pose(i).position - moved).norm(), 2 * unit);
+    if (here.is_flexible(i))
+      EXPECT_LE((there.tip_pose(i).position - here.tip_pose(i).position - place).norm(), 2 * unit);
+  }
+  EXPECT_LE((there.probe(0).pose.position - here.probe(0).pose.position - place).norm(), 2 * unit);
+  EXPECT_LE((there.probe(1).pose.position - place).norm(), 2 * unit);
+  std::vector<BeamPoint> points, distant;
+  here.beam_points(2, 1, points);
+  there.beam_points(2, 1, distant);
+  ASSERT_EQ(points.size(), distant.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_LE((distant[i].pose.position - points[i].pose.position - place).norm(), 2 * unit);
+    EXPECT_EQ(distant[i].strain, points[i].strain);
+  }
+}
+
+TEST(Distant, ArmsMoveAsAtTheOrigin) {
+  for (const double distance : {1e3, 1e6, 1e9, 1e12}) {
+    const Vector3 place = distance * Vector3(0.6, -0.48, 0.64);
+    for (const JointKind kind : {JointKind::Continuous, JointKind::Floating})
+      expect_alike(arm(kind, Vector3::Zero()), arm(kind, place), place);
+  }
+}
+
+// The place where the world holds the tip is rounded in the scene: to a power of two it is not.
+TEST(Distant, LoopsToTheWorldAsWell) {
+  const Vector3 place(std::ldexp(1, 30), 0, -std::ldexp(1, 20));
+  expect_alike(held_arm(Vector3::Zero()), held_arm(place), place);
+}
+
+TEST(Distant, AngularMomentumIsAboutTheWorldsOrigin) {
+  const Vector3 place(1e6, 0, 0);
+  scene::SceneDescription near = arm(JointKind::Floating, Vector3::Zero()), far = arm(JointKind::Floating, place);
+  Simulation here(near), there(far);
+  for (int n = 0; n < 50; ++n) here.step(), there.step();
+  const Vector3 expected = here.angular_momentum() + place.cross(here.momentum());
+  EXPECT_LE((there.angular_momentum() - expected).norm(),
+            4 * std::numeric_limits<double>::epsilon() * place.norm() * here.momentum().norm());
+}
+
+// What is near is left where it is.
+TEST(Distant, NearMechanismsKeepTheWorldsOrigin) {
+  for (const double distance : {0.0, 1.0, 50.0})
+    EXPECT_EQ(model_of(Simulation(arm(JointKind::Continuous, distance * Vector3::UnitX()))).origin, Vector3::Zero());
+}
+
+}  // namespace
+}  // namespace flexarm::test
