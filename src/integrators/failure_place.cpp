@@ -65,13 +65,20 @@ void find_largest_residual(const StepSystem& system, StepResult::Failure& failur
 
 void find_largest_rotation(const StepSystem& system, StepResult::Failure& failure) {
   const StepConfiguration& configuration = system.configuration();
+  failure.quantity = Quantity::Rotation;
+  if (const int aliased = configuration.aliased_coordinate(); aliased >= 0) {
+    const Coordinate& coordinate = configuration.model().coordinates[aliased];
+    failure.place =
+        place_of_joint(configuration.model(), configuration.state(), coordinate.joint, coordinate.component);
+    failure.amount = configuration.turn_of(coordinate);
+    return;
+  }
   const std::vector<Vector3>& increments = configuration.increments();
   const auto largest = std::max_element(
       increments.begin(), increments.end(),
       [](const Vector3& one, const Vector3& other) { return one.squaredNorm() < other.squaredNorm(); });
   failure.place =
       place_of_node(configuration.model(), configuration.state(), static_cast<int>(largest - increments.begin()));
-  failure.quantity = Quantity::Rotation;
   failure.amount = 2 * std::atan(0.5 * largest->norm());  // they are tangent-scaled
 }
 

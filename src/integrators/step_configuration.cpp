@@ -5,6 +5,7 @@
 
 #include "joints/joint_kinematics.h"
 #include "math/cayley.h"
+#include "math/pi.h"
 #include "math/so3.h"
 
 namespace flexarm {
@@ -222,6 +223,20 @@ ReleasedVector StepConfiguration::increment_of(int joint) const {
 
 double StepConfiguration::increment_of(const Coordinate& coordinate) const {
   return increment_of(coordinate.joint)[coordinate.component];
+}
+
+double StepConfiguration::turn_of(const Coordinate& coordinate) const {
+  const int j = coordinate.joint, k = coordinate.component % 3;
+  const double change = released_[j].displacement[k] - state_->released[j].displacement[k];
+  return model_.joints[j].rotation.norm() * std::abs(change);
+}
+
+int StepConfiguration::aliased_coordinate() const {
+  for (std::size_t i = 0; i < model_.coordinates.size(); ++i) {
+    const Coordinate& coordinate = model_.coordinates[i];
+    if (!coordinate.is_angle && turn_of(coordinate) > kPi) return static_cast<int>(i);
+  }
+  return -1;
 }
 
 CoordinateStep StepConfiguration::coordinate_step(std::size_t index, double increment) const {

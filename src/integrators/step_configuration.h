@@ -54,6 +54,11 @@ class StepConfiguration {
   /// Per node: tangent-scaled rotation increments, and the inverse of their tangent.
   const std::vector<Vector3>& increments() const { return increments_; }
   const std::vector<Matrix3>& inverse_tangents() const { return inverse_tangents_; }
+  /// The first hinge's coordinate that turns by more than half a turn, which the rotations of its nodes cannot tell
+  /// from less; -1: none.
+  int aliased_coordinate() const;
+  /// Angle by which a coordinate that is no component of a rotation vector turns its joint [rad].
+  double turn_of(const Coordinate& coordinate) const;
   StepMotion motion() const { return {*state_, begin_, end_, increments_, step_}; }
   /// True where a slider has left its line, or goes over more elements than a step may.
   bool is_off_line() const { return off_line_joint_ >= 0; }

@@ -92,7 +92,8 @@ StepResult::Reason Stepper::flaw_of_solution(StepResult& result) const {
   for (std::size_t i = 0; i < increments.size(); ++i)
     if (const double square = increments[i].squaredNorm(); square > largest) largest = square, node = i;
   largest = std::sqrt(largest);
-  if (largest > kLargestStepRotation) return StepResult::Reason::RotationTooLarge;
+  if (largest > kLargestStepRotation || system_.configuration().aliased_coordinate() >= 0)
+    return StepResult::Reason::RotationTooLarge;
   if (largest > result.largest_rotation)
     result.largest_rotation = largest, result.turning_node = static_cast<int>(node);
   return system_.largest_opening().size > kOpenLoop ? StepResult::Reason::OpenLoop : StepResult::Reason::None;

@@ -114,6 +114,23 @@ TEST(Failure, LoopDrivenBeyondItsReachIsAtADeadPoint) {
   expect_says(simulation, result, "loop joint 'hip'");
 }
 
+// The nodes of a hinge that is driven by nearly a turn look as if it had turned back a little.
+TEST(Failure, DrivenHingeThatTurnsByNearlyATurnIsNamed) {
+  SceneBuilder b;
+  b.body("rotor", 1, {0.1, 0, 0}, Matrix3::Identity());
+  b.joint("shaft", JointKind::Continuous, "world", "rotor", {0, 0, 0}, {0, 0, 1});
+  b.scene.motions.push_back({"shaft", TimeFunction::parse("620*t"), {}});
+  b.scene.integrator.step = 0.01;
+  b.scene.integrator.max_halvings = 0;
+  Simulation coarse(b.scene);
+  const StepResult result = coarse.step();
+  ASSERT_EQ(result.reason, Reason::RotationTooLarge);
+  expect_says(coarse, result, "joint coordinate 'shaft'");
+  b.scene.integrator.max_halvings = 2;
+  Simulation halved(b.scene);
+  EXPECT_TRUE(halved.step().converged);
+}
+
 // Most of these are refused when the model is built (singular_starts_test).
 TEST(Failure, SingularTangentAsksForACheck) {
   const Simulation simulation(clamped_arm().scene);
