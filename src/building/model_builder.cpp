@@ -5,6 +5,8 @@
 #include <set>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "building/articulated_inertia.h"
 #include "building/closure_builder.h"
 #include "building/coordinate_builder.h"
@@ -63,7 +65,8 @@ bool is_determined(const BuiltModel& built) {
   const auto list = [&](const std::vector<int>& coordinates, const std::string& what) {
     for (const int index : coordinates) {
       const std::string& name = built.model.coordinates[index].name;
-      text += at(joints.at(name)->location, "<joint>") + "joint coordinate '" + name + "' moves nothing " + what + "\n";
+      text += at(joints.at(name)->location, "<joint>");
+      text += fmt::format("joint coordinate '{}' moves nothing {}\n", name, what);
     }
   };
   list(built.massless, "that has inertia");

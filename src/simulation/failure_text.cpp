@@ -31,7 +31,8 @@ std::string amount_text(const Failure& failure) {
 
 /// "what at where", of which one or both may be missing.
 std::string place_and_amount(const Model& model, const Failure& failure) {
-  const std::string name = place_name(model, failure.place), amount = amount_text(failure);
+  const std::string name = place_name(model, failure.place);
+  std::string amount = amount_text(failure);
   if (name.empty()) return amount;
   const Vector3& r = failure.place.position;
   return fmt::format("{}at {} at ({:.4g}, {:.4g}, {:.4g}) m", amount.empty() ? "" : amount + " ", name, r.x(), r.y(),

@@ -171,7 +171,7 @@ const scene::SceneDescription& Simulation::scene() const {
 }
 
 StepResult Simulation::step() {
-  const StepResult result = implementation_->stepper->advance(implementation_->state);
+  StepResult result = implementation_->stepper->advance(implementation_->state);
   implementation_->release_from_lines();
   implementation_->velocities_hold = false;
   implementation_->static_norms.clear();
@@ -304,7 +304,7 @@ StaticResult Simulation::solve_static(int load_steps, Equilibrium wanted) {
   if (load_steps < 1) throw std::invalid_argument("the number of load steps must be >= 1");
   implementation_->velocities_hold = false;
   Implementation& s = *implementation_;
-  const StaticResult result =
+  StaticResult result =
       flexarm::solve_static(s.model, s.scheme, s.settings, load_steps, wanted, s.state, &s.static_norms);
   s.stepper->invalidate();
   return result;
