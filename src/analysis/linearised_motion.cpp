@@ -15,31 +15,43 @@
 namespace flexarm {
 namespace {
 
-/// Stiffness of the material alone, without what stress adds to it.
 template <int Nodes>
-Eigen::Matrix<double, 6 * Nodes, 6 * Nodes> material_stiffness(const BeamElement<Nodes>& element, const State& state) {
+using ElementMatrix = Eigen::Matrix<double, 6 * Nodes, 6 * Nodes>;
+
+/// `visit(constants, kinematics, generalised shape functions)` of every stiffness point.
+template <int Nodes, class Visit>
+void for_each_point(const BeamElement<Nodes>& element, const State& state, const Visit& visit) {
   const ElementConfiguration<Nodes> nodes(element, state);
   const LocalRotationVariation<Nodes> local{LocalRotations<Nodes>(nodes.orientation)};
-  Eigen::Matrix<double, 6 * Nodes, 6 * Nodes> stiffness = Eigen::Matrix<double, 6 * Nodes, 6 * Nodes>::Zero();
   for (const auto& constants : element.stiffness_points) {
     GeneralisedShapeFunctions<Nodes> functions;
     const auto rotation = local.evaluate(constants.shape, constants.derivative, functions);
-    const PointKinematics point = point_kinematics(rotation, interpolate<Nodes>(constants.derivative, nodes.position),
-                                                   constants.reference_strain);
+    visit(constants,
+          point_kinematics(rotation, interpolate<Nodes>(constants.derivative, nodes.position),
+                           constants.reference_strain),
+          functions);
+  }
+}
+
+/// Stiffness of the material alone, without what stress adds to it.
+template <int Nodes>
+ElementMatrix<Nodes> material_stiffness(const BeamElement<Nodes>& element, const State& state) {
+  ElementMatrix<Nodes> stiffness = ElementMatrix<Nodes>::Zero();
+  for_each_point(element, state, [&](const auto& constants, const PointKinematics& point, const auto& functions) {
     const endpoint::PointTangent tangent =
         endpoint::point_tangent(point, element.stiffness, 1, Vector3::Zero(), Vector3::Zero());
     add_point_tangent<Nodes>(constants.weight, LagrangeTests<Nodes>{constants.shape, constants.derivative},
                              {constants.derivative, functions}, tangent.resultants, tangent.couple, stiffness);
-  }
+  });
   return stiffness;
 }
 
 /// d{Gamma, K} of a point by {displacement, spin} of the nodes.
 template <int Nodes>
-Eigen::Matrix<double, 6, 6 * Nodes> strain_variation(const Matrix3& rotation, const Vector3& tangent,
-                                                     const NodalValues<Nodes>& derivative,
+Eigen::Matrix<double, 6, 6 * Nodes> strain_variation(const PointKinematics& point, const NodalValues<Nodes>& derivative,
                                                      const GeneralisedShapeFunctions<Nodes>& spins) {
-  const Matrix3 turned = rotation.transpose() * so3::hat(tangent);
+  const Matrix3& rotation = point.rotation;
+  const Matrix3 turned = rotation.transpose() * so3::hat(point.tangent);
   Eigen::Matrix<double, 6, 6 * Nodes> variation;
   for (int i = 0; i < Nodes; ++i)
     variation.template middleCols<6>(6 * i) << derivative[i] * rotation.transpose(), turned * spins.values[i],
@@ -49,17 +61,12 @@ Eigen::Matrix<double, 6, 6 * Nodes> strain_variation(const Matrix3& rotation, co
 
 /// Second derivative of the energy by strains alone: the material's stiffness with variations of strains as tests.
 template <int Nodes>
-Eigen::Matrix<double, 6 * Nodes, 6 * Nodes> material_curvature(const BeamElement<Nodes>& element, const State& state) {
-  const ElementConfiguration<Nodes> nodes(element, state);
-  const LocalRotationVariation<Nodes> local{LocalRotations<Nodes>(nodes.orientation)};
-  Eigen::Matrix<double, 6 * Nodes, 6 * Nodes> curvature = Eigen::Matrix<double, 6 * Nodes, 6 * Nodes>::Zero();
-  for (const auto& point : element.stiffness_points) {
-    GeneralisedShapeFunctions<Nodes> spins;
-    const Matrix3 rotation = local.evaluate(point.shape, point.derivative, spins).rotation;
-    const auto strains = strain_variation<Nodes>(rotation, interpolate<Nodes>(point.derivative, nodes.position),
-                                                 point.derivative, spins);
-    curvature += point.weight * strains.transpose() * element.stiffness * strains;
-  }
+ElementMatrix<Nodes> material_curvature(const BeamElement<Nodes>& element, const State& state) {
+  ElementMatrix<Nodes> curvature = ElementMatrix<Nodes>::Zero();
+  for_each_point(element, state, [&](const auto& constants, const PointKinematics& point, const auto& spins) {
+    const auto strains = strain_variation<Nodes>(point, constants.derivative, spins);
+    curvature += constants.weight * strains.transpose() * element.stiffness * strains;
+  });
   return curvature;
 }
 
@@ -77,6 +84,16 @@ Scheme rest(double contact_time) {
 }
 
 }  // namespace
+
+double work_of_forces(const Model& model) {
+  double work = 0;
+  for (const NodalInertia& inertia : model.inertias)
+    work += inertia.total_mass * model.gravity.norm() * model.length_scale;
+  for (const NodalLoad& load : model.loads)
+    work +=
+        std::abs(model.histories[load.history](0.0)) * (load.force.norm() * model.length_scale + load.moment.norm());
+  return work;
+}
 
 LinearisedMotion::LinearisedMotion(const Model& model, const State& state, double contact_time)
     : model_(model),
@@ -288,8 +305,7 @@ Eigen::SparseMatrix<double> LinearisedMotion::curvature() const {
   difference.set_zero();
   for_each_element(model_.beams, [&](const auto& element) {
     constexpr int N = std::decay_t<decltype(element)>::kNodes;
-    const Eigen::Matrix<double, 6 * N, 6 * N> own =
-        material_curvature<N>(element, state_) - material_stiffness<N>(element, state_);
+    const ElementMatrix<N> own = material_curvature<N>(element, state_) - material_stiffness<N>(element, state_);
     for (int i = 0; i < N; ++i)
       for (int j = 0; j < N; ++j)
         Eigen::Map<Matrix6>(difference.element_block(element.first_block + i * N + j)) +=
@@ -320,14 +336,8 @@ double LinearisedMotion::round_off(const std::vector<ComplexVector6>& node_motio
     elastic += motion.dot(material_stiffness<N>(element, state_).cwiseAbs() * motion);
   });
   // A force changes its work by a second order of rotations, times an arm.
-  double moments = 0;
-  for (const NodalInertia& inertia : model_.inertias)
-    moments += inertia.total_mass * model_.gravity.norm() * model_.length_scale;
-  for (const NodalLoad& load : model_.loads)
-    moments +=
-        std::abs(model_.histories[load.history](0.0)) * (load.force.norm() * model_.length_scale + load.moment.norm());
   for (const ComplexVector6& motion : node_motion) largest_spin = std::max(largest_spin, motion.tail<3>().norm());
-  return kRoundOff * (elastic + moments * largest_spin * largest_spin);
+  return kRoundOff * (elastic + work_of_forces(model_) * largest_spin * largest_spin);
 }
 
 }  // namespace flexarm

@@ -19,6 +19,9 @@ struct JointMaps {
   std::vector<MimicMap> mimics;
 };
 
+/// What weight and loads at time 0 do over the model's length scale, or a turn of 1 rad [J].
+double work_of_forces(const Model& model);
+
 class LinearisedMotion {
  public:
   /// Relative round-off of a term of the stiffness, which has some sixty operations behind it: interpolation,

@@ -104,13 +104,7 @@ class Ways {
 }  // namespace
 
 double neutral_curvature(const Model& model) {
-  double work = 0;
-  for (const NodalInertia& inertia : model.inertias)
-    work += inertia.total_mass * model.gravity.norm() * model.length_scale;
-  for (const NodalLoad& load : model.loads)
-    work +=
-        std::abs(model.histories[load.history](0.0)) * (load.force.norm() * model.length_scale + load.moment.norm());
-  return kNeutral * work;
+  return kNeutral * work_of_forces(model);
 }
 
 Stability judge_stability(const Model& model, const Scheme& scheme, const State& equilibrium) {

@@ -74,9 +74,9 @@ bool is_determined(const BuiltModel& built) {
        "at the start that the joints outboard of it would not move as well: axes are in line, or links "
        "without inertia follow each other");
   const std::string start = built.dependent.empty() ? "" : "start elsewhere by <initial>, ";
-  throw ModelError(text + scene.file + ": give the links outboard of these joints an <inertial> or a <beam>, " + start +
-                   "or hold those "
-                   "with one coordinate where they are by massless=\"lock\" of <simulation> (--massless lock)");
+  throw ModelError(
+      text + scene.file + ": give the links outboard of these joints an <inertial> or a <beam>, " + start +
+      "or hold those with one coordinate where they are by massless=\"lock\" of <simulation> (--massless lock)");
 }
 
 /// The scene with constant motions of these coordinates in place of everything else that it says of them.

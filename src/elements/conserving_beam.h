@@ -101,8 +101,6 @@ struct EnergyMultiplier {
     p.half_defect_stress = S(0.5) * stiffness.stress(defect);
   }
 
-  S value() const { return work * slope(); }
-  S seen_value() const { return seen_work * slope(); }
   /// d(mu) / d(work).
   S slope() const { return square / guarded(); }
   /// d(work) as a linear form at a point, with the stresses that are seen.
@@ -113,16 +111,16 @@ struct EnergyMultiplier {
 
   /// Adds the moments, and to `carried` what the seen stresses would add to them.
   void add_moments(BlockSystem<Nodes, S>& system, bool has_carried) const {
-    for (int i = 0; i < Nodes; ++i) system.residual[i].template tail<3>() += value() * relative[i];
-    for (int i = 0; i < Nodes && has_carried; ++i)
-      system.carried[i].template tail<3>() += (seen_value() - value()) * relative[i];
+    const S mu = work * slope(), rest = seen_work * slope() - mu;
+    for (int i = 0; i < Nodes; ++i) system.residual[i].template tail<3>() += mu * relative[i];
+    for (int i = 0; i < Nodes && has_carried; ++i) system.carried[i].template tail<3>() += rest * relative[i];
   }
   /// Adds their tangent. `work_row`: d(work) for {dr, spin} of the nodes; `inverse_tangent`: S(w)^{-1}.
   void add_tangent(const std::array<Vector6T<S>, Nodes>& work_row,
                    const std::array<Matrix3T<S>, Nodes>& inverse_tangent, BlockTangent<Nodes, S>& tangent) const {
-    const S mu = seen_value(), by_square = seen_work / guarded() - S(2) * mu * slope();
+    const S by_work = slope(), mu = seen_work * by_work, by_square = seen_work / guarded() - S(2) * mu * by_work;
     for (int j = 0; j < Nodes; ++j) {
-      Vector6T<S> row = slope() * work_row[j];
+      Vector6T<S> row = by_work * work_row[j];
       row.template tail<3>() += (S(2) * by_square) * (inverse_tangent[j].transpose() * relative[j]);
       for (int i = 0; i < Nodes; ++i) {
         Matrix6T<S>& block = tangent[i][j];
@@ -175,7 +173,6 @@ struct StepPoints {
   std::array<Point<Nodes, S>, Nodes - 1> points;
   ElementFunctions<Nodes, S> averages;    // where the mid functions are symmetric
   const ElementFunctions<Nodes, S>* mid;  // of about the middle of the step
-  EnergyMultiplier<Nodes, S> multiplier;  // where the rule has one
 
   /// `end` receives the points at t_{n+1}. The generalised shape functions of the points are set `with_variation`, or
   /// where the mid functions ask for them. `functions` must outlive this.
@@ -184,8 +181,6 @@ struct StepPoints {
              const CarriedStrains<Nodes, S>* carried, bool with_variation, PointKinematicsT<S>* end)
       : mid(&functions) {
     constexpr int kPoints = Nodes - 1;
-    const bool is_corrected = rule.correction == EnergyCorrection::Multiplier;
-    if (is_corrected) multiplier.set_relative(nodes.increment);
     const bool is_symmetric = rule.mid_functions == MidFunctions::Symmetric;
     const LocalRotations<Nodes, S> rotations(nodes.orientation);
     std::array<InterpolatedRotation<S>, kPoints> rotation;
@@ -215,7 +210,6 @@ struct StepPoints {
       if (carried)
         p.seen = PointStress<S>(element.stiffness, begin[k].strain, carried->end[k],
                                 carried->has_conjugate ? carried->conjugate[k] : p.own.conjugate_strain);
-      if (is_corrected) multiplier.add(constants.weight, element.stiffness, begin[k], end[k], p);
     }
   }
   StepPoints(const StepPoints&) = delete;  // `mid` may point to its own
@@ -250,9 +244,12 @@ void conserving_beam(const ConservingElement<Nodes, S>& element, const BeamNodes
   assert(!has_memory || (memory && end_memory));
   conserving::set_translation<Nodes, S>(element, nodes, rule.velocity_factor(), step, with_tangent, system);
 
-  const conserving::StepPoints<Nodes, S> at(element, nodes, rule, functions, begin, carried, with_tangent, end);
+  conserving::StepPoints<Nodes, S> at(element, nodes, rule, functions, begin, carried, with_tangent, end);
   const ElementFunctions<Nodes, S>& mid = *at.mid;
-  const conserving::EnergyMultiplier<Nodes, S>& multiplier = at.multiplier;
+  conserving::EnergyMultiplier<Nodes, S> multiplier;
+  if (is_corrected) multiplier.set_relative(nodes.increment);
+  for (int k = 0; k < kPoints && is_corrected; ++k)
+    multiplier.add(element.points[k].weight, element.stiffness, begin[k], end[k], at.points[k]);
 
   const conserving::DamperParts<S> damper_parts(element.stiffness_damping, rule.damping_relaxation);
   std::array<Matrix3T<S>, Nodes> inverse_tangent;  // S(w)^{-1}: dw = S^{-1} spin

@@ -73,13 +73,9 @@ void find_largest_rotation(const StepSystem& system, StepResult::Failure& failur
     failure.amount = configuration.turn_of(coordinate);
     return;
   }
-  const std::vector<Vector3>& increments = configuration.increments();
-  const auto largest = std::max_element(
-      increments.begin(), increments.end(),
-      [](const Vector3& one, const Vector3& other) { return one.squaredNorm() < other.squaredNorm(); });
-  failure.place =
-      place_of_node(configuration.model(), configuration.state(), static_cast<int>(largest - increments.begin()));
-  failure.amount = 2 * std::atan(0.5 * largest->norm());  // they are tangent-scaled
+  const StepConfiguration::LargestIncrement largest = configuration.largest_increment();
+  failure.place = place_of_node(configuration.model(), configuration.state(), largest.node);
+  failure.amount = 2 * std::atan(0.5 * largest.size);
 }
 
 /// Rotation of a node from its element's reference; of the two nodes half-way between which that lies, from each other.

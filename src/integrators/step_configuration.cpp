@@ -225,6 +225,15 @@ double StepConfiguration::increment_of(const Coordinate& coordinate) const {
   return increment_of(coordinate.joint)[coordinate.component];
 }
 
+StepConfiguration::LargestIncrement StepConfiguration::largest_increment() const {
+  LargestIncrement largest;
+  for (std::size_t i = 0; i < increments_.size(); ++i)
+    if (const double square = increments_[i].squaredNorm(); square > largest.size)
+      largest = {square, static_cast<int>(i)};
+  largest.size = std::sqrt(largest.size);
+  return largest;
+}
+
 double StepConfiguration::turn_of(const Coordinate& coordinate) const {
   const int j = coordinate.joint, k = coordinate.component % 3;
   const double change = released_[j].displacement[k] - state_->released[j].displacement[k];

@@ -54,6 +54,12 @@ class StepConfiguration {
   /// Per node: tangent-scaled rotation increments, and the inverse of their tangent.
   const std::vector<Vector3>& increments() const { return increments_; }
   const std::vector<Matrix3>& inverse_tangents() const { return inverse_tangents_; }
+  /// The longest of the increments, tangent-scaled, and its node.
+  struct LargestIncrement {
+    double size = 0;
+    int node = 0;
+  };
+  LargestIncrement largest_increment() const;
   /// The first hinge's coordinate that turns by more than half a turn, which the rotations of its nodes cannot tell
   /// from less; -1: none.
   int aliased_coordinate() const;

@@ -86,16 +86,11 @@ bool Stepper::sub_step(State& state, double step, StepResult& result) {
 }
 
 StepResult::Reason Stepper::flaw_of_solution(StepResult& result) const {
-  const std::vector<Vector3>& increments = system_.configuration().increments();
-  double largest = 0;  // squared
-  std::size_t node = 0;
-  for (std::size_t i = 0; i < increments.size(); ++i)
-    if (const double square = increments[i].squaredNorm(); square > largest) largest = square, node = i;
-  largest = std::sqrt(largest);
-  if (largest > kLargestStepRotation || system_.configuration().aliased_coordinate() >= 0)
+  const StepConfiguration::LargestIncrement largest = system_.configuration().largest_increment();
+  if (largest.size > kLargestStepRotation || system_.configuration().aliased_coordinate() >= 0)
     return StepResult::Reason::RotationTooLarge;
-  if (largest > result.largest_rotation)
-    result.largest_rotation = largest, result.turning_node = static_cast<int>(node);
+  if (largest.size > result.largest_rotation)
+    result.largest_rotation = largest.size, result.turning_node = largest.node;
   return system_.largest_opening().size > kOpenLoop ? StepResult::Reason::OpenLoop : StepResult::Reason::None;
 }
 

@@ -15,6 +15,13 @@ template <typename S>
 inline S squared_cosine(const Vector3T<S>& w) {
   return S(1) / (S(1) + S(0.25) * so3::dot(w, w));
 }
+/// I + c w w^T.
+template <typename S>
+inline Matrix3T<S> identity_plus_dyad(const S& c, const Vector3T<S>& w) {
+  Matrix3T<S> result = (c * w) * w.transpose();
+  result.diagonal().array() += S(1);
+  return result;
+}
 }  // namespace detail
 
 /// cay(w) = (I - hat(w)/2)^-1 (I + hat(w)/2).
@@ -53,11 +60,8 @@ template <typename V>
 inline Matrix3T<typename V::Scalar> axial_stretch(const Eigen::MatrixBase<V>& w) {
   using std::sqrt;
   using S = typename V::Scalar;
-  const Vector3T<S> t = w;
-  const S cosine = sqrt(detail::squared_cosine(t));
-  Matrix3T<S> result = ((S(-0.25) * cosine * cosine / (S(1) + cosine)) * t) * t.transpose();
-  result.diagonal().array() += S(1);
-  return result;
+  const S cosine = sqrt(detail::squared_cosine(Vector3T<S>(w)));
+  return detail::identity_plus_dyad<S>(S(-0.25) * cosine * cosine / (S(1) + cosine), w);
 }
 
 /// P^-1.
@@ -65,11 +69,8 @@ template <typename V>
 inline Matrix3T<typename V::Scalar> inverse_axial_stretch(const Eigen::MatrixBase<V>& w) {
   using std::sqrt;
   using S = typename V::Scalar;
-  const Vector3T<S> t = w;
-  const S cosine = sqrt(detail::squared_cosine(t));
-  Matrix3T<S> result = ((S(0.25) * cosine / (S(1) + cosine)) * t) * t.transpose();
-  result.diagonal().array() += S(1);
-  return result;
+  const S cosine = sqrt(detail::squared_cosine(Vector3T<S>(w)));
+  return detail::identity_plus_dyad<S>(S(0.25) * cosine / (S(1) + cosine), w);
 }
 
 /// Tangent-scaled vector 2 q_v / q_0 of a quaternion of any norm and sign; unbounded as the angle approaches pi.

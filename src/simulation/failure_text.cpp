@@ -50,8 +50,7 @@ std::string advice(const Model& model, const StepResult& result) {
                  : "a smaller step, damping of what moves there, more room for what a <motion> asks for";
     case Reason::SingularTangent:
       return "inertia or stiffness for what moves there (an <inertial>, a spring), another start than a dead point; "
-             "see "
-             "flexarm check";
+             "see flexarm check";
     case Reason::NotFinite:
       return "finite loads, efforts and motions: look at their functions of time and at commands";
     case Reason::RotationTooLarge:

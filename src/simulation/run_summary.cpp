@@ -82,8 +82,8 @@ std::string RunSummary::strain_warning(const Simulation& simulation) const {
   if (strain_.amount <= kLargestStrain) return "";
   return fmt::format(
       "link '{}' was strained by up to {:.2g}, {:.4g} m from its beginning at t = {:.6g} s: the material's law, which "
-      "is "
-      "linear, says little there; look at loads and stiffness, or refine its mesh if the strain is where it is coarse",
+      "is linear, says little there; look at loads and stiffness, or refine its mesh if the strain is where it is "
+      "coarse",
       simulation.link_names()[strain_.index], strain_.amount, strain_.arc_length, strain_.time);
 }
 

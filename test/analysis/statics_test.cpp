@@ -9,7 +9,7 @@
 #include "building/model_builder.h"
 #include "math/pi.h"
 #include "simulation/inside.h"
-#include "support/scene_builder.h"
+#include "support/loops.h"
 
 namespace flexarm {
 namespace {
@@ -130,13 +130,7 @@ TEST(Statics, LoopsFallAsTheyCan) {
     b.joint("left_foot", JointKind::Continuous, "world", "left", {0, 0, 0}, {0, 1, 0});
     b.joint("head", JointKind::Continuous, "left", "coupler", {0, 0, 1}, {0, 1, 0});
     b.joint("right_foot", JointKind::Continuous, "world", "right", {2, 0, 0}, {0, 1, 0});
-    scene::JointDescription loop = b.scene.joints.back();
-    loop.name = "other_head";
-    loop.parent = "right";
-    loop.child = "coupler";
-    loop.origin.position = Vector3(0, 0, 1);
-    loop.child_origin.position = Vector3(2, 0, 0);
-    b.scene.loop_joints.push_back(loop);
+    close_loop(b, "other_head", JointKind::Continuous, "right", "coupler", {2, 0, 0}, {0, 1, 0});
     Simulation simulation(b.scene);
     const StaticResult result = simulation.solve_static(2);
     ASSERT_TRUE(result.converged) << to_string(result.reason);
@@ -154,13 +148,7 @@ TEST(Statics, ShallowTrussSnapsThrough) {
   b.beam("right", {{-1, 0, 0.05}}, rod, 4, 2);
   b.joint("left_foot", JointKind::Continuous, "world", "left", {0, 0, 0}, {0, 1, 0});
   b.joint("right_foot", JointKind::Continuous, "world", "right", {2, 0, 0}, {0, 1, 0});
-  scene::JointDescription apex = b.scene.joints.back();
-  apex.name = "apex";
-  apex.parent = "left";
-  apex.child = "right";
-  apex.origin.position = Vector3(1, 0, 0.05);
-  apex.child_origin.position = Vector3(-1, 0, 0.05);
-  b.scene.loop_joints.push_back(apex);
+  close_loop(b, "apex", JointKind::Continuous, "left", "right", {-1, 0, 0.05}, {0, 1, 0});
   b.load("left", {1, 0, 0.05}, {0, 0, -200});
   b.probe("apex", "left", {1, 0, 0.05});
   Simulation simulation(b.scene);

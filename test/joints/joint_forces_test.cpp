@@ -3,34 +3,18 @@
 
 #include <gtest/gtest.h>
 
-#include "elements/differences.h"
 #include "elements/random_element.h"
+#include "joints/coordinate_steps.h"
 
 namespace flexarm {
 namespace {
 
 using namespace test;
 
-CoordinateStep step_between(double begin, double end, double step) {
-  CoordinateStep change;
-  change.begin = begin;
-  change.end = end;
-  change.increment = end - begin;
-  change.step = step;
-  return change;
-}
-
-/// d(effort)/d(end) by differences with a step small against `scale`.
-double slope_by_difference(const Coordinate& coordinate, const StopPenalty& penalty, CoordinateStep change,
+double slope_by_difference(const Coordinate& coordinate, const StopPenalty& penalty, const CoordinateStep& change,
                            double scale) {
-  return scalar_difference(
-      [&](double h) {
-        CoordinateStep moved = change;
-        moved.end += h;
-        moved.increment += h;
-        return passive_effort(coordinate, penalty, moved).effort;
-      },
-      0.02 * scale);
+  return test::slope_by_difference(
+      [&](const CoordinateStep& moved) { return passive_effort(coordinate, penalty, moved).effort; }, change, scale);
 }
 
 TEST(PassiveEffort, DampingAndFriction) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "elements/differences.h"
+#include "joints/coordinate_steps.h"
 #include "math/pi.h"
 
 namespace flexarm {
@@ -23,15 +24,6 @@ StopPenalty penalty_with(double damping) {
   return {kStiffness, damping};
 }
 
-CoordinateStep step_between(double begin, double end, double step) {
-  CoordinateStep change;
-  change.begin = begin;
-  change.end = end;
-  change.increment = end - begin;
-  change.step = step;
-  return change;
-}
-
 /// Of the Newmark family.
 CoordinateStep step_to_end(double begin, double end, double step, double begin_rate) {
   CoordinateStep change = step_between(begin, end, step);
@@ -41,15 +33,10 @@ CoordinateStep step_to_end(double begin, double end, double step, double begin_r
   return change;
 }
 
-double slope_by_difference(const LimitStop& limit, const StopPenalty& penalty, CoordinateStep change, double scale) {
-  return scalar_difference(
-      [&](double h) {
-        CoordinateStep moved = change;
-        moved.end += h;
-        moved.increment += h;
-        return stop_effort(limit, penalty, moved).effort;
-      },
-      0.02 * scale);
+double slope_by_difference(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change,
+                           double scale) {
+  return test::slope_by_difference(
+      [&](const CoordinateStep& moved) { return stop_effort(limit, penalty, moved).effort; }, change, scale);
 }
 
 /// Positions on both sides of both stops and on them.
