@@ -73,6 +73,7 @@ class StepSystem {
   LoopMultipliers::Opening largest_opening() const { return loops_.largest_opening(); }
   /// See StopContacts.
   bool hits_too_fast() { return contacts_.hits_too_fast(); }
+  bool may_hit_a_stop() { return contacts_.may_hit(); }
   /// Internal less external forces on all nodes in the configuration of `state`, before joints fold them; of a scheme
   /// made by statics_of().
   std::vector<Vector6> nodal_forces(const State& state);

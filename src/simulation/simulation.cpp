@@ -154,7 +154,7 @@ struct Simulation::Implementation {
   }
 
   void restore(const State& other) {
-    const std::string flaw = state_flaw(built ? *built : model, initial, settings.max_halvings, other);
+    const std::string flaw = state_flaw(built ? *built : model, initial, finest_halving(settings), other);
     if (!flaw.empty()) throw std::invalid_argument("not a state of this scene: " + flaw);
     set_state(other);
   }

@@ -124,8 +124,8 @@ TEST(RestoredState, WithImpossibleValuesIsRefused) {
       {"norm of a node's orientation is 1.1", [](State& s) { s.nodes[4].orientation.coeffs() *= 1.1; }},
       {"norm of a joint's rotation is 0", [](State& s) { s.released[2].rotation.coeffs().setZero(); }},
       {"a mark of rest is 0.5", [](State& s) { s.rests[2] = 0.5; }},
-      {"halving level is 15, expected 0 to 14", [](State& s) { s.halving_level = 15; }},
-      {"halving level is -1, expected 0 to 14", [](State& s) { s.halving_level = -1; }},
+      {"halving level is 41, expected 0 to 40", [](State& s) { s.halving_level = 41; }},
+      {"halving level is -1, expected 0 to 40", [](State& s) { s.halving_level = -1; }},
       {"good steps is -1", [](State& s) { s.good_steps = -1; }},
       {"number of steps is -1", [](State& s) { s.steps = -1; }},
       {"past increments is 5, expected 0 to 4", [](State& s) { s.history.count = 5; }},
@@ -230,7 +230,7 @@ TEST_F(DamagedCheckpoint, WrongContentIsRefused) {
       {"steps five level 0 good 5 increments 7", line_of(counts)},
       {"steps 5 level 0 good 5 increments 8", "expected the effort of a motion"},
       {"steps -5 level 0 good 5 increments 7", "the number of steps is -5, expected 0 or more"},
-      {"steps 5 level 15 good 5 increments 7", "the halving level is 15, expected 0 to 14"}};
+      {"steps 5 level 41 good 5 increments 7", "the halving level is 41, expected 0 to 40"}};
   for (const auto& [wrong, told] : wrong_counts)
     expect_refused(sealed(head + wrong + line.substr(good.size()) + rest), wrong, told);
   for (const std::string time : {"nan", "inf", "xyz", "1p+2x", ""})
