@@ -61,6 +61,8 @@ class StepSystem {
   void accept(State& state);
   /// The state was changed by somebody else: quantities kept from the last step do not hold.
   void invalidate() { beams_->invalidate(); }
+  /// Of strains that depend on the way to a configuration: see RotationReference.
+  void forget_path(State& state) { beams_->forget_path(state); }
 
   const DegreesOfFreedom& degrees_of_freedom() const { return dof_; }
   const StepConfiguration& configuration() const { return configuration_; }
