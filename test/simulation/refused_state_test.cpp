@@ -244,8 +244,8 @@ TEST_F(DamagedCheckpoint, WrongContentIsRefused) {
 // Finite numbers, of which each alone could be.
 TEST_F(DamagedCheckpoint, EnergiesThatAreNotFiniteAreRefused) {
   const std::size_t counts = text_.find("\nsteps ") + 1, end = text_.rfind("checksum ");
-  std::size_t velocity = text_.find('\n', counts) + 1;  // behind the time and the first node's pose
-  for (int line = 0; line < 1 + 3 + 4; ++line) velocity = text_.find('\n', velocity) + 1;
+  std::size_t velocity = text_.find('\n', counts) + 1;  // behind the time, origin, first node's pose
+  for (int line = 0; line < 1 + 3 + 3 + 4; ++line) velocity = text_.find('\n', velocity) + 1;
   const std::size_t next = text_.find('\n', velocity);
   expect_refused(sealed(text_.substr(0, velocity) + "1p+600" + text_.substr(next, end - next)), "fast node",
                  "its energies are not finite");
