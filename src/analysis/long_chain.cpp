@@ -1,13 +1,13 @@
 #include "analysis/long_chain.h"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 #include <Eigen/Eigenvalues>
 
 #include "analysis/linearised_motion.h"
 #include "analysis/node_ways.h"
+#include "math/general_vector.h"
 
 namespace flexarm {
 namespace {
@@ -26,15 +26,6 @@ class Inverse {
     if (!system_.tangent().solve(b)) throw std::runtime_error("the stiffness is not finite");
     return b;
   }
-  /// Of all nodes in the solution made last.
-  std::vector<ComplexVector6> node_motion() const {
-    const DegreesOfFreedom& dof = system_.degrees_of_freedom();
-    const double* scalars = system_.tangent().expanded_solution();
-    std::vector<ComplexVector6> motion;
-    for (int node = 0; node < dof.node_count; ++node)
-      motion.emplace_back(Eigen::Map<const Vector6>(scalars + dof.first[node]).cast<std::complex<double>>());
-    return motion;
-  }
 
  private:
   StepSystem& system_;
@@ -44,8 +35,7 @@ class Inverse {
 Eigen::VectorXd least_ritz_vector(Inverse& inverse, Eigen::Index size) {
   const Eigen::Index most = std::min(size, kDimensions);
   Eigen::MatrixXd basis(size, most), images(size, most);
-  Eigen::VectorXd next = Eigen::VectorXd::Ones(size);
-  for (Eigen::Index k = 0; k < size; ++k) next[k] += std::sin(2.3 * static_cast<double>(k));  // nothing is special
+  Eigen::VectorXd next = general_vector(size);
   Eigen::Index count = 0;
   for (double before = next.norm(), left = before; count < most && left > kExhausted * before; ++count) {
     basis.col(count) = next / left;
@@ -72,7 +62,7 @@ UnstableMotion falling_motion(const Model& model, const Scheme& scheme, const St
   const Eigen::VectorXd vector = least_ritz_vector(inverse, system.degrees_of_freedom().unknowns);
   // Of A = K + neutral D: w = A^-1 v has w^T A w = v^T A^-1 v.
   const Eigen::VectorXd motion = inverse(vector);
-  const std::vector<ComplexVector6> nodes = inverse.node_motion();
+  const std::vector<ComplexVector6> nodes = node_motion_of_solution(system);
   const NodeWays ways(model, nodes);
   const double per_way = vector.dot(motion) / ways.sum_of_squares() - neutral;
   if (per_way * ways.sum_of_squares() >= -neutral * ways.sum_of_squares() - round_off(model, equilibrium, nodes))

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/modes.h"
+#include "integrators/step_system.h"
 #include "model/model.h"
 
 namespace flexarm {
@@ -36,5 +37,15 @@ class NodeWays {
   const Model& model_;
   std::vector<double> ways_;  // per node
 };
+
+/// Of all nodes in the solution that the tangent of a system has given last.
+inline std::vector<ComplexVector6> node_motion_of_solution(const StepSystem& system) {
+  const DegreesOfFreedom& dof = system.degrees_of_freedom();
+  const double* scalars = system.tangent().expanded_solution();
+  std::vector<ComplexVector6> motion;
+  for (int node = 0; node < dof.node_count; ++node)
+    motion.emplace_back(Eigen::Map<const Vector6>(scalars + dof.first[node]).cast<std::complex<double>>());
+  return motion;
+}
 
 }  // namespace flexarm

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "analysis/flexible_dead_point.h"
 #include "analysis/stability.h"
 #include "building/model_builder.h"
 #include "math/pi.h"
@@ -146,6 +147,37 @@ TEST(Stability, OfThousandsOfJoints) {
   EXPECT_FALSE(stability.is_stable());
   EXPECT_EQ(stability.motion.link, "rod700");
   EXPECT_LE(stability.motion.curvature, -9.81 * 0.5 / 3);
+}
+
+/// Cranks of 1 m on a line, with a coupler of 2 m, all of them beams, turned by an angle from it. `left`: the left
+/// crank's joints.
+SceneBuilder flexible_parallelogram(double angle, JointKind left) {
+  SceneBuilder b;
+  const Vector3 across(0, 1, 0), crank(std::cos(angle), 0, std::sin(angle));
+  b.beam("left", {crank}, section(1e5, 5e4, 10, 10, 1, 1e-2, 5e-3), 2, 2);
+  b.beam("coupler", {{2, 0, 0}}, section(1e5, 5e4, 10, 10, 1, 1e-2, 5e-3), 4, 2);
+  b.beam("right", {crank}, section(1e5, 5e4, 10, 10, 1, 1e-2, 5e-3), 2, 2);
+  b.joint("left_foot", left, "world", "left", {0, 0, 0}, across);
+  b.joint("left_head", left, "left", "coupler", crank, across);
+  b.joint("right_foot", JointKind::Continuous, "world", "right", {2, 0, 0}, across);
+  close_loop(b, "right_head", JointKind::Continuous, "coupler", "right", crank, across).origin.position = {2, 0, 0};
+  return b;
+}
+
+std::string dead_link(const SceneBuilder& b) {
+  const Simulation simulation(b.scene);
+  return link_at_dead_point(model_of(simulation), state_of(simulation), 0.01);
+}
+
+// A flat one may open as a parallelogram or cross over, however it stretches; one whose crank and coupler are clamped
+// has to bend.
+TEST(Stability, FlexibleLoopsAtDeadPoints) {
+  EXPECT_NE(dead_link(flexible_parallelogram(0, JointKind::Continuous)), "");
+  for (const double angle : {0.01, 0.3, kPi / 2})
+    EXPECT_EQ(dead_link(flexible_parallelogram(angle, JointKind::Continuous)), "") << angle;
+  EXPECT_EQ(dead_link(flexible_parallelogram(0, JointKind::Fixed)), "");
+  EXPECT_EQ(dead_link(column(0, 0)), "");
+  EXPECT_EQ(dead_link(pendulum(3, Vector3::Zero())), "");
 }
 
 // Loops: the multipliers' zeros on the diagonal are no instability, and what the loop holds is none either.
