@@ -21,6 +21,8 @@ constexpr double kLittleDrag = 1e-13;
 /// ... and enough to hold that while strains are relieved: the stiffness of a dead point, kWay^2, is less.
 constexpr double kHoldingDrag = 1e-9;
 constexpr int kRelief = 2;
+/// General motions that are tried: one may go the way of a branch by chance.
+constexpr int kMotions = 3;
 /// What is left of the strain energy of a motion at a dead point, and how much of it there is at least, beside the
 /// stiffness times kWay^4. Of motions that are free it is relieved to kWay^2 of it and less.
 constexpr double kLeft = 1e-2, kStrains = 1e-6;
@@ -89,23 +91,41 @@ std::string most_strained_link(const Model& model, const State& state) {
   return name;
 }
 
-}  // namespace
-
-std::string link_at_dead_point(const Model& model, const State& start, double contact_time) {
-  if (!model.closures.empty() || model.stiffness_point_count == 0) return "";
+/// See link_at_dead_point(), in one motion of those that are free.
+std::string link_strained_in_second_order(const Model& model, const State& start, double contact_time,
+                                          const Eigen::VectorXd& general) {
   Unloaded mechanism(model, start, contact_time);
   const double stiffness = typical_stiffness(model, start), before = mechanism.strain_energy();
-  mechanism.forces(kLittleDrag * stiffness);
-  const Eigen::VectorXd motion = mechanism.answer(general_vector(mechanism.system().degrees_of_freedom().unknowns));
+  const double drag = kLittleDrag * stiffness;
+  mechanism.forces(drag);
+  // Inverse iteration: what is soft, but not free, goes with the square of the drag.
+  const Eigen::VectorXd free = mechanism.answer(general).normalized(), motion = mechanism.answer(free);
   if (!mechanism.system().tangent().expanded_solution()) return "";  // of a matrix, not of a tree
-  const double way = NodeWays(model, node_motion_of_solution(mechanism.system())).largest();
-  mechanism.move(kWay / way * motion);
+  const NodeWays ways(model, node_motion_of_solution(mechanism.system()));
+  // Twice the energy of strains and drag: where nothing is free, strains take far more.
+  if (motion.dot(free) > 2 * drag * ways.sum_of_squares()) return "";
+  mechanism.move(kWay / ways.largest() * motion);
   const double strained = mechanism.strain_energy() - before;
   for (int repeat = 0; repeat < kRelief; ++repeat)
     mechanism.move(mechanism.answer(mechanism.forces(kHoldingDrag * stiffness)));
   const double left = mechanism.strain_energy() - before;
   const double least = kStrains * stiffness * std::pow(kWay, 4);
+  fprintf(stderr, "dot %g vs %g strained %g left %g least %g stiffness %g\n", motion.dot(free),
+          drag * ways.sum_of_squares(), strained, left, least, stiffness);
   return left > std::max(kLeft * strained, least) ? most_strained_link(model, mechanism.state()) : "";
+}
+
+}  // namespace
+
+std::string link_at_dead_point(const Model& model, const State& start, double contact_time) {
+  if (!model.closures.empty() || model.stiffness_point_count == 0) return "";
+  const Eigen::Index unknowns = DegreesOfFreedom(model).unknowns;
+  for (int k = 0; k < kMotions; ++k) {
+    const Eigen::VectorXd general = general_vector(unknowns + k).tail(unknowns);
+    const std::string link = link_strained_in_second_order(model, start, contact_time, general);
+    if (!link.empty()) return link;
+  }
+  return "";
 }
 
 }  // namespace flexarm

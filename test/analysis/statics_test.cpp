@@ -177,7 +177,19 @@ TEST(Stability, FlexibleLoopsAtDeadPoints) {
     EXPECT_EQ(dead_link(flexible_parallelogram(angle, JointKind::Continuous)), "") << angle;
   EXPECT_EQ(dead_link(flexible_parallelogram(0, JointKind::Fixed)), "");
   EXPECT_EQ(dead_link(column(0, 0)), "");
+  for (const double slenderness : {1e5, 1e8}) {  // soft is not free
+    SceneBuilder soft = flexible_parallelogram(0, JointKind::Fixed);
+    for (scene::LinkDescription& link : soft.scene.links)
+      if (link.beam) link.beam->section = section(10 * slenderness, 4 * slenderness, 10, 10, 1, 1e-2, 5e-3);
+    EXPECT_EQ(dead_link(soft), "") << slenderness;
+  }
   EXPECT_EQ(dead_link(pendulum(3, Vector3::Zero())), "");
+
+  SceneBuilder ring;  // free to fly, and soft
+  ring.beam("ring", {{1, 0, 1}, {0, 0, 2}, {-1, 0, 1}, {0, 0, 0}}, section(1e9, 4e8, 1, 1, 1, 2e-9, 1e-9), 16, 2);
+  ring.joint("free", JointKind::Floating, "world", "ring");
+  close_loop(ring, "weld", JointKind::Fixed, "ring", "ring").origin.position.setZero();
+  EXPECT_EQ(dead_link(ring), "");
 }
 
 // Loops: the multipliers' zeros on the diagonal are no instability, and what the loop holds is none either.
