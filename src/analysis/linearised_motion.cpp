@@ -8,6 +8,7 @@
 
 #include "elements/element_configuration.h"
 #include "elements/endpoint_beam.h"
+#include "elements/spring_action.h"
 #include "joints/joint_kinematics.h"
 #include "joints/joint_stop.h"
 #include "math/so3.h"
@@ -76,6 +77,12 @@ double damping_of(const Coordinate& coordinate, const StopPenalty& stop, const R
   return coordinate.damping + stop_damping(*coordinate.limit, stop, released.displacement[coordinate.component]);
 }
 
+/// See spring_gradient().
+Vector12 gradient_of(const PointSpring& spring, const Model& model, const State& state) {
+  const LoopClosure& ends = model.closures[spring.closure];
+  return spring_gradient(ends, closure_poses(ends, state));
+}
+
 }  // namespace
 
 double work_of_forces(const Model& model) {
@@ -96,6 +103,13 @@ double round_off(const Model& model, const State& equilibrium, const std::vector
     for (int i = 0; i < N; ++i) motion.template segment<6>(6 * i) = node_motion[element.nodes[i]].cwiseAbs();
     elastic += motion.dot(material_stiffness<N>(element, equilibrium).cwiseAbs() * motion);
   });
+  for (const PointSpring& spring : model.springs) {
+    const LoopClosure& ends = model.closures[spring.closure];
+    const Vector12 gradient = gradient_of(spring, model, equilibrium).cwiseAbs();
+    double stretch = gradient.head<6>().dot(node_motion[ends.child].cwiseAbs());
+    if (ends.parent >= 0) stretch += gradient.tail<6>().dot(node_motion[ends.parent].cwiseAbs());
+    elastic += spring.stiffness * stretch * stretch;
+  }
   // A force changes its work by a second order of rotations, times an arm.
   for (const ComplexVector6& motion : node_motion) largest_spin = std::max(largest_spin, motion.tail<3>().norm());
   return kStiffnessRoundOff * (elastic + work_of_forces(model) * largest_spin * largest_spin);
@@ -245,6 +259,10 @@ void LinearisedMotion::assemble_damping() {
     damping_.diagonal_block(dof_.variable_of_joint(coordinate.joint))[k * count + k] +=
         damping_of(coordinate, stop_penalty(coordinate, contact_time_), state_.released[coordinate.joint]);
   }
+  for (const PointSpring& spring : model_.springs) {
+    const Vector12 gradient = gradient_of(spring, model_, state_);
+    damping_.add_coupling(spring.closure, spring.damping * gradient * gradient.transpose());
+  }
   fold(damping_);
 }
 
@@ -336,6 +354,13 @@ double LinearisedMotion::strain_energy(const std::vector<ComplexVector6>& node_m
     for (int i = 0; i < N; ++i) motion.template segment<6>(6 * i) = node_motion[element.nodes[i]];
     energy += motion.dot(material_curvature<N>(element, state_) * motion).real();
   });
+  for (const PointSpring& spring : model_.springs) {
+    const LoopClosure& ends = model_.closures[spring.closure];
+    const Vector12 gradient = gradient_of(spring, model_, state_);
+    std::complex<double> stretch = (gradient.head<6>().transpose() * node_motion[ends.child]).value();
+    if (ends.parent >= 0) stretch += (gradient.tail<6>().transpose() * node_motion[ends.parent]).value();
+    energy += spring.stiffness * std::norm(stretch);
+  }
   return energy;
 }
 

@@ -123,14 +123,16 @@ MassiveTree add_inertia(const ScenePlan& plan, PlacedTree tree) {
   return {std::move(tree)};
 }
 
-std::vector<double> length_weights(const ScenePlan& plan, const Model& model, int link) {
+std::vector<double> length_weights(const ScenePlan& plan, const Model& model, int link, double from, double to) {
   const LinkFrame& frame = model.links[link];
   std::vector<double> weights(plan.meshes[link]->mesh.nodes.size(), 0.0);
   for_each_group(model.beams, [&](const auto& group) {
     constexpr int kNodes = std::decay_t<decltype(group)>::kNodes;
     if (kNodes != frame.beam->order + 1) return;
-    for (const int e : frame.beam->elements) {
-      const auto& element = group.elements[e];
+    for (std::size_t k = 0; k < frame.beam->elements.size(); ++k) {
+      const double begin = k == 0 ? 0.0 : frame.beam->element_ends[k - 1], end = frame.beam->element_ends[k];
+      if (0.5 * (begin + end) < from || 0.5 * (begin + end) > to) continue;
+      const auto& element = group.elements[frame.beam->elements[k]];
       for (const auto& point : element.mass_points)
         for (int i = 0; i < kNodes; ++i) weights[element.nodes[i] - frame.frame.node] += point.weight * point.shape[i];
     }

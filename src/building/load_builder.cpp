@@ -40,8 +40,10 @@ class LoadBuilder {
     const BeamMesh& mesh = plan_.meshes[link]->mesh;
     const int history = add_history(load.history);
     // Lumped with the weights int I^i ds: exact for a dead load, the nodes' Newton-Cotes rule for a follower load.
-    const std::vector<double> weights = length_weights(plan_, model_, link);
+    const std::vector<double> weights =
+        length_weights(plan_, model_, link, load.from.value_or(0.0), load.to.value_or(model_.links[link].beam->length));
     for (std::size_t i = 0; i < weights.size(); ++i) {
+      if (weights[i] == 0) continue;
       NodalLoad out;
       out.node = model_.links[link].frame.node + static_cast<int>(i);
       out.arm = -mesh.centroid;
@@ -63,37 +65,35 @@ class LoadBuilder {
   PlacedLoads placed_;
 };
 
-ProbePoint probe_point(const ScenePlan& plan, const Model& model, const scene::Probe& probe) {
-  ProbePoint out;
-  out.link = plan.links[probe.link];
-  const LinkFrame& link = model.links[out.link];
-  const Pose at{probe.at, Quaternion::Identity()};
-  if (!link.beam) {
-    out.attachment = {link.frame.node, link.frame.offset * at};
-    return out;
-  }
-  const auto& [centreline, mesh] = *plan.meshes[out.link];
-  const double s = centreline.nearest(probe.at);
-  const std::vector<double>& ends = link.beam->element_ends;
-  const auto found = std::lower_bound(ends.begin(), std::prev(ends.end()), s - 1e-12 * link.beam->length);
-  const double begin = found == ends.begin() ? 0.0 : *std::prev(found);
-  out.element = static_cast<int>(found - ends.begin());
-  out.xi = 2 * (s - begin) / (*found - begin) - 1;
-  Pose section = centreline.at(s);
-  section.position += section.orientation * mesh.centroid;
-  out.offset = section.inverse() * at;
-  return out;
-}
-
 }  // namespace
 
 PlacedLoads place_loads(const ScenePlan& plan, const Model& model) {
   return LoadBuilder(plan, model).place();
 }
 
+ProbePoint probe_point(const ScenePlan& plan, const Model& model, const std::string& name, const Vector3& point) {
+  ProbePoint out;
+  out.link = plan.links[name];
+  const LinkFrame& link = model.links[out.link];
+  const Pose at{point, Quaternion::Identity()};
+  if (!link.beam) {
+    out.attachment = {link.frame.node, link.frame.offset * at};
+    return out;
+  }
+  const auto& [centreline, mesh] = *plan.meshes[out.link];
+  const double s = centreline.nearest(point);
+  const ElementPlace place = element_at(*link.beam, s);
+  out.element = place.element;
+  out.xi = place.xi;
+  Pose section = centreline.at(s);
+  section.position += section.orientation * mesh.centroid;
+  out.offset = section.inverse() * at;
+  return out;
+}
+
 std::vector<ProbePoint> place_probes(const ScenePlan& plan, const Model& model) {
   std::vector<ProbePoint> probes;
-  for (const scene::Probe& probe : plan.scene.probes) probes.push_back(probe_point(plan, model, probe));
+  for (const scene::Probe& probe : plan.scene.probes) probes.push_back(probe_point(plan, model, probe.link, probe.at));
   return probes;
 }
 

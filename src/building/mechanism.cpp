@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "joints/joint_kinematics.h"
+#include "joints/stop_restitution.h"
 
 namespace flexarm {
 
@@ -81,7 +82,10 @@ void Mechanism::add_coordinates(const scene::JointDescription& joint, const std:
       coordinate.friction_coefficient =
           joint.friction_law.coefficient * (model.joints[map].rotation.isZero(0) ? 1.0 : joint.friction_law.radius);
     coordinate.effort_limit = joint.effort_limit;
-    if (joint.limits) coordinate.limit = LimitStop{joint.limits->lower, joint.limits->upper};
+    if (joint.limits) {
+      coordinate.limit = LimitStop{joint.limits->lower, joint.limits->upper};
+      if (joint.limits->restitution) coordinate.limit->damping = damping_for(*joint.limits->restitution);
+    }
     model.coordinates.push_back(coordinate);
   }
 }

@@ -16,6 +16,8 @@
 #include "building/load_builder.h"
 #include "building/loop_builder.h"
 #include "building/mass_properties.h"
+#include "building/sensor_builder.h"
+#include "building/spring_builder.h"
 #include "building/stop_depths.h"
 #include "building/tree_builder.h"
 
@@ -45,10 +47,12 @@ BuiltModel build(const scene::SceneDescription& scene) {
   model.loads = std::move(placed_loads.loads);
   model.histories = std::move(placed_loads.histories);
   model.probes = place_probes(plan, model);
+  place_sensors(plan, solvable.slave_joint, model);
   model.gravity = scene.gravity;
   set_stop_depths(model);
   std::vector<int> massless = finish_mass_properties(solvable.node_parents, model);
   std::vector<int> dependent = coordinates_without_own_inertia(solvable.node_parents, model);
+  place_springs(plan, model);
   return {std::move(model), std::move(massless), std::move(dependent)};
 }
 

@@ -35,6 +35,22 @@ LinkMeshes mesh_links(const scene::SceneDescription& scene, const LinkNames& lin
     attach(joint.child, joint.child_origin.position);
   }
   for (const scene::PointLoad& load : scene.loads) attach(load.link, load.at);
+  for (const scene::PointSpring& spring : scene.point_springs) {
+    attach(spring.from, spring.from_at);
+    attach(spring.to, spring.to_at);
+  }
+  for (const scene::DistributedLoad& load : scene.distributed_loads) {
+    const int link = links[load.link];
+    if (!meshes[link]) continue;  // said where loads are placed
+    const double length = meshes[link]->centreline.length();
+    for (const std::optional<double>& end : {load.from, load.to}) {
+      if (!end) continue;
+      if (*end > length)
+        throw ModelError(at(load.location, "<distributed_load>") + "the line of link '" + load.link + "' is " +
+                         std::to_string(length) + " m long, got " + std::to_string(*end));
+      borders[link].push_back(*end);
+    }
+  }
   int room = scene::kMostBeamNodes;  // of nodes
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     if (!meshes[i]) continue;
@@ -83,8 +99,12 @@ bool floats(const scene::SceneDescription& scene, const JointTree& tree, const L
   const auto holds_root = [&](const scene::JointDescription& loop) {
     return loop.parent == scene.root_link || loop.child == scene.root_link;
   };
+  const auto ties_root = [&](const scene::PointSpring& spring) {
+    return spring.from == scene.root_link || spring.to == scene.root_link;
+  };
   return !on_root.empty() && !meshes[tree.root] && std::all_of(on_root.begin(), on_root.end(), is_free) &&
-         std::none_of(scene.loop_joints.begin(), scene.loop_joints.end(), holds_root);
+         std::none_of(scene.loop_joints.begin(), scene.loop_joints.end(), holds_root) &&
+         std::none_of(scene.point_springs.begin(), scene.point_springs.end(), ties_root);
 }
 
 }  // namespace

@@ -105,7 +105,8 @@ Attachment SlideBuilder::add(const scene::JointDescription& joint) {
   const int node = mechanism_.add_map(map, released);
   scene::JointDescription travel = joint;
   travel.limits.reset();
-  if (slide.on_end == scene::SlideDescription::End::Stop) travel.limits = scene::JointLimits{line.begin(), line.end()};
+  if (slide.on_end == scene::SlideDescription::End::Stop)
+    travel.limits = scene::JointLimits{line.begin(), line.end(), 0, slide.restitution};
   mechanism_.add_coordinates(travel, {name});
   // The joint's frame is fixed to the section: its orientation in the link where the undeformed line starts.
   const Pose section = mesh.centreline.at(slide.start);

@@ -1,6 +1,7 @@
 #include "building/tree_builder.h"
 
 #include "building/elementary_joints.h"
+#include "building/sensor_builder.h"
 #include "building/slide_builder.h"
 #include "math/so3.h"
 
@@ -44,6 +45,9 @@ class TreeBuilder {
     Attachment frame = attachment(plan_, model_, joint.parent, joint.origin.position);
     frame.offset = frame.offset * joint.origin;
     if (joint.kind == scene::JointKind::Fixed) {
+      // What is asked for its reaction needs a node of its own.
+      if (!plan_.meshes[child] && measures_reaction(plan_.scene, joint.child))
+        frame = {tree_.add_rigid(frame.node, frame.offset), Pose()};
       place_link(child, frame);
       return {&joint, first, 0};
     }

@@ -108,7 +108,7 @@ void JointFold::evaluate(Balance& balance) {
   if (balance.tangent) balance.tangent->fold_mimics(mimic_maps_);
 }
 
-void JointFold::find_drives(const ReducedResidual& residual, DriveEfforts& drives) {
+void JointFold::find_drives(const ReducedResidual& residual, StepMeans& drives) {
   const Model& model = configuration_.model();
   const State& state = configuration_.state();
   for (std::size_t index = 0; index < model.coordinates.size(); ++index) {

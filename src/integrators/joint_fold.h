@@ -19,7 +19,7 @@ class JointFold {
   /// Adds the work of efforts over the step to `work` [J].
   void add_work(double& work) const;
   /// Finds what drove prescribed coordinates; before add_work().
-  void find_drives(const ReducedResidual& residual, DriveEfforts& drives);
+  void find_drives(const ReducedResidual& residual, StepMeans& drives);
   /// Writes released coordinates and efforts.
   void accept(State& state) const;
   /// Per coordinate: effort in this step.

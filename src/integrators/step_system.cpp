@@ -14,11 +14,13 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme, BackendChoice b
                          ? std::make_unique<HhtInterpolation>(configuration_, beams_->total_rotations())
                          : nullptr),
       forces_(configuration_, histories_, interpolation_.get()),
+      springs_(configuration_),
       bodies_(configuration_),
       drag_(configuration_),
       loops_(configuration_),
       friction_(configuration_, interpolation_.get()),
       joints_(configuration_, histories_, friction_),
+      reactions_(configuration_, friction_),
       reversals_(configuration_),
       contacts_(configuration_),
       rows_(model, dof_),
@@ -62,6 +64,7 @@ void StepSystem::begin_equilibrium(const State& state, double load_factor, doubl
 void StepSystem::add_forces(Balance& balance) {
   beams_->add_forces(balance);
   forces_.evaluate(balance);
+  springs_.evaluate(balance);
 }
 
 bool StepSystem::evaluate(bool with_tangent) {
@@ -117,6 +120,7 @@ void StepSystem::update(const Eigen::VectorXd& increment) {
 void StepSystem::accept(State& state) {
   if (scheme().is_static) return accept_rest(state);
   joints_.find_drives(rows_, state.drives);
+  reactions_.accept(rows_, state);
   friction_.accept(state);
   double work = 0;
   forces_.add_work(work);
@@ -145,6 +149,7 @@ void StepSystem::accept_rest(State& state) {
   std::fill(state.strain_rates.begin(), state.strain_rates.end(), Vector6::Zero());
   std::fill(state.strain_memory.begin(), state.strain_memory.end(), StrainMemory());
   state.drives.restart(joints_.efforts());
+  reactions_.accept_rest(rows_, state);
   state.history.clear();
 }
 

@@ -19,8 +19,10 @@
 #include "integrators/drag.h"
 #include "integrators/dry_friction_step.h"
 #include "integrators/joint_fold.h"
+#include "integrators/joint_reactions.h"
 #include "integrators/loop_multipliers.h"
 #include "integrators/nodal_forces.h"
+#include "integrators/point_springs.h"
 #include "integrators/smooth_reversals.h"
 #include "integrators/step_configuration.h"
 #include "integrators/step_histories.h"
@@ -93,11 +95,13 @@ class StepSystem {
   std::unique_ptr<BeamFamily> beams_;
   std::unique_ptr<HhtInterpolation> interpolation_;  // null unless forces are interpolated in time
   NodalForces forces_;
+  PointSprings springs_;
   Bodies bodies_;
   Drag drag_;
   LoopMultipliers loops_;
   DryFrictionStep friction_;
   JointFold joints_;
+  JointReactions reactions_;
   SmoothReversals reversals_;
   StopContacts contacts_;
   // ---- the balance of what they add

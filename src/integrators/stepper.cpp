@@ -144,6 +144,7 @@ StepResult Stepper::advance_by_scheme(State& state) {
   const long whole = 1L << finest;
   state.halving_level = std::clamp(state.halving_level, 0, finest);
   state.drives.begin();
+  state.transmitted.begin();
   while (done < whole) {
     const int level = state.halving_level;
     const bool is_done = sub_step(state, std::ldexp(settings_.step, -level), result);
@@ -169,6 +170,7 @@ StepResult Stepper::advance_by_scheme(State& state) {
   }
   state.time = begin + settings_.step;
   state.drives.end(settings_.step);
+  state.transmitted.end(settings_.step);
   ++state.steps;
   result.converged = true;
   return result;

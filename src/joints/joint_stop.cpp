@@ -4,17 +4,12 @@
 #include <array>
 #include <cmath>
 
+#include "joints/stop_restitution.h"
 #include "math/pi.h"
 
 namespace flexarm {
 namespace {
 
-/// Ratio of a stop's damping to the critical one. A contact that never pulls ends where its force vanishes, after which
-/// the speed is e = exp(-2 z acos(z) / sqrt(1 - z^2)) of that before: 0.3.
-constexpr double kStopDampingRatio = 0.497239;
-/// The damper of forces at an instant, beside that of means: for the same restitution, since it takes hold only by and
-/// by, while the spring turns through the angle of a step of the scene (docs/notes/stops.md).
-constexpr double kEndDamping = 0.580020 / kStopDampingRatio, kRampAngle = kPi / 10;
 /// Part of the way to where a stop gives way no further that an update may take. What goes too deep comes back by only
 /// a sixth of the remaining depth in each update.
 constexpr double kLargestPart = 0.5;
@@ -90,7 +85,7 @@ Push mean_push(const StopPenalty& penalty, const Penetration& begin, const Penet
 /// At an instant. The damper takes hold within the first step of a hit, since the rate jumps at touch.
 Push push_at(const StopPenalty& penalty, double frequency, const Penetration& at, double rate, double rate_slope) {
   const Hardened x = hardened(at);
-  const double k = penalty.stiffness, c = kEndDamping * penalty.damping, ramp = frequency / kRampAngle;
+  const double k = penalty.stiffness, c = penalty.end_damping, ramp = frequency / kRampAngle;
   const bool takes_hold = ramp * x.value < rate;
   const double felt = takes_hold ? ramp * x.value : rate, felt_slope = takes_hold ? ramp * x.slope : rate_slope;
   return {k * x.slope * x.value, k * (x.slope * x.slope + x.curvature * x.value), c * x.slope * felt,
@@ -147,8 +142,10 @@ PassiveEffort one_side(const LimitStop& limit, const StopPenalty& penalty, const
 
 StopPenalty stop_penalty(const Coordinate& coordinate, double contact_time) {
   if (!coordinate.limit) return {};
+  const auto& [of_means, at_end] = coordinate.limit->damping;
   const double inertia = coordinate.limit->inertia, omega = kPi / contact_time;
-  return {inertia * omega * omega, 2 * kStopDampingRatio * inertia * omega};
+  const double damping = 2 * of_means * inertia * omega;
+  return {inertia * omega * omega, damping, at_end / of_means * damping};
 }
 
 PassiveEffort stop_effort(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change) {

@@ -14,9 +14,11 @@ namespace flexarm {
 
 /// By which the stops of a coordinate hold while they are touched lightly.
 struct StopPenalty {
-  double stiffness = 0, damping = 0;  ///< [N/m or N m/rad], [N s/m or N m s/rad]
+  double stiffness = 0;    ///< [N/m or N m/rad]
+  double damping = 0;      ///< of means of a step [N s/m or N m s/rad]
+  double end_damping = 0;  ///< of forces at the end of a step [N s/m or N m s/rad]
 };
-/// Such that a contact lasts `contact_time` [s] were it without damping, and gives 30 % of the speed back.
+/// Such that a contact lasts `contact_time` [s] were it without damping, and gives back what LimitStop::damping is for.
 StopPenalty stop_penalty(const Coordinate& coordinate, double contact_time);
 
 /// Of both stops.

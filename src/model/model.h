@@ -11,6 +11,7 @@
 #include "model/beam_element.h"
 #include "model/joint.h"
 #include "model/loop_closure.h"
+#include "model/point_spring.h"
 #include "model/slide_line.h"
 
 namespace flexarm {
@@ -33,12 +34,19 @@ struct NodalLoad {
   int history = 0;       ///< index into Model::histories
 };
 
+/// Of a stop's damper, over the critical one of the oscillator that the stop makes of its coordinate: where forces are
+/// means of steps, and where they are those at the end. These give 30 % of the speed back (joints/stop_restitution.h).
+struct StopDamping {
+  double of_means = 0.497239, at_end = 0.580020;
+};
+
 /// Unilateral stops of a scalar coordinate, which harden (joints/joint_stop.h).
 struct LimitStop {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   double lower, upper;
   double inertia = 0;                                     ///< what the coordinate moves, at the start [kg or kg m^2]
   double give_below = kInfinity, give_above = kInfinity;  ///< how far they give way at most, > 0
+  StopDamping damping = {};
 };
 
 /// How a coordinate follows another one u: offset + multiplier f(u).
@@ -91,6 +99,14 @@ struct BeamLink {
   double length = 0, mass = 0, radius = 0;
 };
 
+/// A place on a beam's line: an element, by its index along the line, and the shape parameter in [-1, 1] there.
+struct ElementPlace {
+  int element = 0;
+  double xi = 0;
+};
+/// At an arc length from 0 to the beam's length; at an element's border in the one before.
+ElementPlace element_at(const BeamLink& beam, double arc_length);
+
 struct LinkFrame {
   std::string name;
   Attachment frame;  ///< of the link origin
@@ -106,6 +122,18 @@ struct ProbePoint {
   Pose offset;  ///< in the interpolated section frame
 };
 
+/// A joint of which is kept what it transmits to the link that it carries.
+struct ReactionPlace {
+  int joint = -1;                 ///< elementary; its slave carries the link
+  Vector3 arm = Vector3::Zero();  ///< from the slave to the link's origin, in the slave's frame [m]
+};
+
+/// Where a sensor sits.
+struct SensorPlace {
+  ProbePoint point;
+  int reaction = -1;  ///< index into Model::reactions; -1: it does not measure one
+};
+
 struct Model {
   // ---- mechanics
   std::vector<NodePose> nodes;         ///< initial poses (released coordinates at their initial values)
@@ -115,6 +143,7 @@ struct Model {
   std::vector<JointMap> joints;  ///< root to leaf
   std::vector<SlideLine> slide_lines;
   std::vector<LoopClosure> closures;       ///< loops that no joint closes by its slave
+  std::vector<PointSpring> springs;        ///< each has a closure of its own, which couples its nodes
   std::vector<Released> initial_released;  ///< per joint
   std::vector<Vector6> initial_velocity;   ///< per node {v, w}, spatial
   std::vector<Coordinate> coordinates;
@@ -132,6 +161,8 @@ struct Model {
   Vector3 origin = Vector3::Zero();  ///< of joints on the world and, but for State::origin, of positions [m]
   std::vector<LinkFrame> links;      ///< in the scene's order
   std::vector<ProbePoint> probes;
+  std::vector<ReactionPlace> reactions;  ///< those that somebody asks for
+  std::vector<SensorPlace> sensors;
 };
 
 /// True for coordinates that count in rad: free rotations, and scalars by which something turns.

@@ -4,10 +4,11 @@
 #include <vector>
 
 #include "flexarm/math/pose.h"
+#include "flexarm/model/results.h"
 #include "math/local_rotation.h"
-#include "model/drive_efforts.h"
 #include "model/increment_history.h"
 #include "model/joint.h"
+#include "model/step_means.h"
 
 namespace flexarm {
 
@@ -72,7 +73,10 @@ struct State {
   std::vector<double> efforts;           ///< per coordinate: applied in the last step
   std::vector<double> rests;             ///< per coordinate: 1 where dry friction stopped it in the last step, else 0
   IncrementHistory history;              ///< of the last sub-steps, for the predictor
-  DriveEfforts drives;                   ///< what drove prescribed coordinates, for output
+  StepMeans drives;                      ///< what drove prescribed coordinates, for output
+  StepMeans transmitted;                 ///< {force, moment} per Model::reactions, for output
+  std::vector<double> last_transmitted;  ///< the same as the last step has it, for means of the Newmark family
+  std::vector<SensorSample> samples;     ///< per sensor: what it measured last
   double work = 0, dissipated = 0;       ///< path integrals since the start [J]
   double energy_defect = 0;              ///< energy that scaled velocities still owe [J]
   int halving_level = 0;                 ///< sub-steps are step / 2^level

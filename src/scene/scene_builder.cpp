@@ -56,6 +56,15 @@ void SceneBuilder::load(const std::string& link, const Vector3& at, const Vector
   scene.loads.push_back(load);
 }
 
+void SceneBuilder::sensor(const std::string& name, SensorKind kind, const std::string& link, const Vector3& at) {
+  Sensor sensor;
+  sensor.name = name;
+  sensor.kind = kind;
+  sensor.link = link;
+  sensor.at = at;
+  scene.sensors.push_back(sensor);
+}
+
 void SceneBuilder::probe(const std::string& name, const std::string& link, const Vector3& at) {
   scene.probes.push_back({name, link, at, {}});
 }

@@ -26,6 +26,8 @@ class SceneBuilder {
   void load(const std::string& link, const Vector3& at, const Vector3& force, const Vector3& moment = Vector3::Zero(),
             const std::string& history = "1", LoadFrame frame = LoadFrame::World);
   /// `at` in the link frame [m].
+  void sensor(const std::string& name, SensorKind kind, const std::string& link, const Vector3& at = Vector3::Zero());
+  /// `at` in the link frame [m].
   void probe(const std::string& name, const std::string& link, const Vector3& at);
 
   SceneDescription scene;

@@ -178,7 +178,34 @@ class ReferenceCheck {
     check_unique(scene_.probes, "probe", findings_);
   }
 
+  void check_springs() const {
+    for (const PointSpring& spring : scene_.point_springs)
+      for (const auto& [attribute, link] : {std::pair("from", spring.from), std::pair("to", spring.to)})
+        if (!link.empty() && links_.count(link) == 0)
+          findings_.error(spring.location.line, "<spring> of robot " + quoted(scene_.name),
+                          std::string(attribute) + " must be a link of the scene", quoted(link));
+  }
+
+  void check_sensors() const {
+    check_unique(scene_.sensors, "sensor", findings_);
+    for (const Sensor& sensor : scene_.sensors) check_sensor(sensor);
+  }
+
  private:
+  void check_sensor(const Sensor& sensor) const {
+    const std::string element = element_of("sensor", sensor.name);
+    check_link(sensor.link, sensor.location, element.c_str());
+    const auto link = links_.find(sensor.link);
+    if (link == links_.end() || unreadable_.count(sensor.link) > 0) return;
+    const bool needs_beam = sensor.kind == SensorKind::SectionForce || sensor.kind == SensorKind::Strain;
+    const bool needs_joint = sensor.kind == SensorKind::Wrench || sensor.kind == SensorKind::Reaction;
+    if (needs_beam && !link->second->beam)
+      findings_.error(sensor.location.line, element, "link must be flexible, that is have a <beam>",
+                      quoted(sensor.link));
+    if (needs_joint && sensor.link == scene_.root_link)
+      findings_.error(sensor.location.line, element, "no joint carries the root link", quoted(sensor.link));
+  }
+
   void add_joint(const JointDescription& joint) {
     joints_.emplace(joint.name, &joint);
     for (const std::string& suffix : coordinate_suffixes(joint)) add_coordinate(joint, joint.name + suffix);
@@ -290,6 +317,8 @@ void check_references(const SceneDescription& scene, const std::set<std::string>
   const ReferenceCheck check(scene, unreadable, findings);
   check.check_mimics();
   check.check_simulation();
+  check.check_springs();
+  check.check_sensors();
 }
 
 }  // namespace flexarm::scene

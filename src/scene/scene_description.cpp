@@ -44,4 +44,31 @@ const std::vector<std::string>& coordinate_suffixes(const JointDescription& join
   return none;
 }
 
+const std::vector<SensorChannel>& sensor_channels(SensorKind kind) {
+  static const std::vector<SensorChannel> wrench = {{"fx", "N"},   {"fy", "N"},   {"fz", "N"},
+                                                    {"mx", "N m"}, {"my", "N m"}, {"mz", "N m"}},
+                                          strain = {{"strain", "1"}},
+                                          imu = {{"wx", "rad/s"}, {"wy", "rad/s"}, {"wz", "rad/s"},
+                                                 {"ax", "m/s^2"}, {"ay", "m/s^2"}, {"az", "m/s^2"}},
+                                          pose = {{"x", "m"},  {"y", "m"},  {"z", "m"}, {"qx", "1"},
+                                                  {"qy", "1"}, {"qz", "1"}, {"qw", "1"}};
+  switch (kind) {
+    case SensorKind::Wrench:
+    case SensorKind::Reaction:
+    case SensorKind::SectionForce:
+      return wrench;
+    case SensorKind::Strain:
+      return strain;
+    case SensorKind::Imu:
+      return imu;
+    case SensorKind::Pose:
+      return pose;
+  }
+  return wrench;
+}
+
+std::size_t sensor_error_count(SensorKind kind) {
+  return kind == SensorKind::Pose ? 6 : sensor_channels(kind).size();
+}
+
 }  // namespace flexarm::scene

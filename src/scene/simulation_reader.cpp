@@ -129,9 +129,14 @@ void read_load(const XmlElement& load, SceneDescription& scene) {
 }
 
 void read_distributed_load(const XmlElement& load, SceneDescription& scene) {
-  load.expect_only({"link", "force", "frame", "history"});
+  load.expect_only({"link", "force", "frame", "history", "from", "to"});
+  const auto arc_length = [&](const char* attribute) {
+    return load.has(attribute) ? load.number(attribute, kNonNegative) : std::nullopt;
+  };
+  const std::optional<double> from = arc_length("from"), to = arc_length("to");
+  if (to && *to <= from.value_or(0)) load.attribute_error("to", "to must be > from, along the line");
   scene.distributed_loads.push_back({load.text("link").value_or(""), load.vector("force").value_or(Vector3::Zero()),
-                                     read_frame(load), read_history(load), load.location()});
+                                     read_frame(load), read_history(load), load.location(), from, to});
 }
 
 void read_motion(const XmlElement& motion, SceneDescription& scene) {

@@ -35,7 +35,7 @@ JointKind read_rotation(const XmlElement& joint, const XmlElement& slide, JointD
 }  // namespace
 
 void read_slide(const XmlElement& joint, const XmlElement& slide, JointDescription& description) {
-  slide.expect_only({"start", "rotation", "pitch", "on_end", "scheme", "line", "offset"}, {"couple"});
+  slide.expect_only({"start", "rotation", "pitch", "on_end", "scheme", "line", "offset", "restitution"}, {"couple"});
   SlideDescription out;
   out.location = slide.location();
   out.start = slide.number("start", kNonNegative).value_or(0);
@@ -46,6 +46,9 @@ void read_slide(const XmlElement& joint, const XmlElement& slide, JointDescripti
     if (const SlideScheme* scheme = read_row(slide, "scheme", kSlideSchemes)) out.scheme = scheme->name;
   out.smooth = read_choice(slide, "line", kLines, out.smooth);
   out.offset = slide.vector("offset", out.offset);
+  if (slide.has("restitution")) out.restitution = slide.number("restitution", kRestitution);
+  if (out.restitution && out.on_end != SlideDescription::End::Stop)
+    slide.attribute_error("restitution", "only ends that stop have one; leave this out");
   description.kind = JointKind::Slide;
   description.slide = out;
 }

@@ -170,7 +170,8 @@ void read_limits(const XmlElement& joint, JointDescription& description) {
     return;
   if (lower > upper) limit->error("lower must be <= upper", fmt::format("lower '{}', upper '{}'", lower, upper));
   if (lower == upper) limit->warning("lower and upper are equal: the joint cannot move");
-  description.limits = JointLimits{lower, upper, limit->number("velocity", kNonNegative, 0)};
+  description.limits = JointLimits{lower, upper, limit->number("velocity", kNonNegative, 0), std::nullopt};
+  if (limit->has("restitution")) description.limits->restitution = limit->number("restitution", kRestitution);
 }
 
 /// The coordinate that a joint follows. Exporters keep <mimic> where they have fixed a joint.

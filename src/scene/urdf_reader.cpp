@@ -8,6 +8,8 @@
 #include "scene/inertia_checks.h"
 #include "scene/limits.h"
 #include "scene/scene_checks.h"
+#include "scene/sensor_reader.h"
+#include "scene/spring_reader.h"
 #include "scene/standard_reader.h"
 #include "scene/urdfdom.h"
 #include "scene/xacro.h"
@@ -21,10 +23,10 @@ struct Place {
   const char* tag;
   const char* parent;
 };
-constexpr Place kPlaces[] = {{"beam", "link"},      {"release", "joint"},    {"axis2", "joint"},
-                             {"slide", "joint"},    {"couple", "joint"},     {"child_origin", "loop_joint"},
-                             {"friction", "joint"}, {"simulation", "robot"}, {"loop_joint", "robot"},
-                             {"root", "simulation"}};
+constexpr Place kPlaces[] = {{"beam", "link"},       {"release", "joint"},    {"axis2", "joint"},
+                             {"slide", "joint"},     {"couple", "joint"},     {"child_origin", "loop_joint"},
+                             {"friction", "joint"},  {"simulation", "robot"}, {"loop_joint", "robot"},
+                             {"root", "simulation"}, {"sensor", "robot"},     {"spring", "robot"}};
 
 /// Records our elements where they would be ignored like a stranger's.
 void check_places(const XmlElement& element) {
@@ -55,6 +57,8 @@ class SceneReader {
     check_size(robot, "links", scene_.links.size(), kMostLinks);
     check_size(robot, "joints", scene_.joints.size(), kMostJoints);
     check_size(robot, "loop joints", scene_.loop_joints.size(), kMostJoints);
+    check_size(robot, "sensors", scene_.sensors.size(), kMostSensors);
+    check_size(robot, "springs", scene_.point_springs.size(), kMostSprings);
     if (scene_.links.empty()) robot.error("at least one <link> is expected");
     check_tree(scene_, findings_);
     settle_root(scene_, start_, findings_);
@@ -83,6 +87,10 @@ class SceneReader {
       if (findings_.error_count() > errors) unreadable_.insert(scene_.loop_joints.back().name);
     } else if (tag == "simulation") {
       read_simulation(child, scene_, start_);
+    } else if (tag == "spring" && scene_.point_springs.size() <= kMostSprings) {
+      scene_.point_springs.push_back(read_point_spring(child));
+    } else if (tag == "sensor" && !child.child("parent") && scene_.sensors.size() <= kMostSensors) {
+      scene_.sensors.push_back(read_sensor(child));  // those with a <parent> are URDF's own
     }
   }
 

@@ -23,6 +23,8 @@ constexpr NumberRange kAnyNumber{"a finite number", [](double) { return true; }}
 constexpr NumberRange kModerate{"at most 1e60 in absolute value", [](double x) { return -1e60 <= x && x <= 1e60; }};
 constexpr NumberRange kPositive{"> 0", [](double x) { return x > 0; }};
 constexpr NumberRange kNotZero{"different from 0", [](double x) { return x != 0; }};
+/// Of stops: more than what a damper, however large, takes.
+constexpr NumberRange kRestitution{"from 0.05 to 1", [](double x) { return x >= 0.05 && x <= 1; }};
 constexpr NumberRange kNonNegative{">= 0", [](double x) { return x >= 0; }};
 
 /// A view: element and findings must outlive it.

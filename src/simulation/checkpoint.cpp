@@ -117,7 +117,9 @@ std::string counts_line(const State& state) {
   return fmt::format("steps {} level {} good {} increments {} of {} order {} drives {} reactions {} left {} {}\n",
                      state.steps, state.halving_level, state.good_steps, state.history.increments[0].size(),
                      state.history.count, state.history.order, state.drives.count, state.reactions.size(),
-                     state.left_lines.size(), fmt::join(state.left_lines, " "));
+                     state.left_lines.size(), fmt::join(state.left_lines, " ")) +
+         // Of scenes with sensors only: what others have kept before can still be read.
+         (state.samples.empty() ? "" : fmt::format("transmitted {}\n", state.transmitted.count));
 }
 
 /// The whole numbers, and room for the others.
@@ -140,6 +142,10 @@ void read_counts(Reader& reader, State& state) {
   require(in && increments <= 6 * state.nodes.size() + 6 * state.released.size() && reactions <= state.nodes.size());
   state.reactions.assign(reactions, Vector6::Zero());
   for (std::vector<double>& made : history.increments) made.assign(increments, 0.0);
+  if (state.samples.empty()) return;
+  const std::string transmitted = reader.next();
+  std::istringstream numbers(transmitted);
+  if (!(numbers >> word >> state.transmitted.count)) reader.fail_line(transmitted, "the number of forces of joints");
 }
 
 std::string text_of(const Simulation& simulation) {

@@ -6,6 +6,7 @@
 #include "elements/element_configuration.h"
 #include "math/quadrature.h"
 #include "math/shape_functions.h"
+#include "model/carried_origin.h"
 
 namespace flexarm {
 namespace {
@@ -50,6 +51,30 @@ void set_stress(const Matrix6& stiffness, const Vector6& strain, const Vector3& 
   point.resultant.tail<3>() += centroid.cross(point.resultant.head<3>());
 }
 
+/// What all points of an element share.
+template <int Nodes>
+struct DeformedElement {
+  DeformedElement(const BeamElement<Nodes>& element, const State& state)
+      : stiffness(element.stiffness), nodes(element, state), local(nodes.orientation) {
+    for (int k = 0; k < Nodes - 1; ++k) strains[k] = centroid_strain(element, nodes, local, state, k);
+  }
+
+  /// `centroid`: in the section; `begin`, `end`: arc lengths of the element's ends [m].
+  BeamPoint point(double xi, const Vector3& centroid, double begin, double end) const {
+    BeamPoint point;
+    point.arc_length = begin + 0.5 * (1 + xi) * (end - begin);
+    point.pose = section_pose<Nodes>(nodes.position, local, xi);
+    point.pose.position = point.pose * Vector3(-centroid);
+    set_stress(stiffness, extended<Nodes>(strains, xi), centroid, point);
+    return point;
+  }
+
+  const Matrix6& stiffness;
+  ElementConfiguration<Nodes> nodes;
+  LocalRotations<Nodes> local;
+  std::array<Vector6, Nodes - 1> strains;
+};
+
 }  // namespace
 
 void beam_points(const Model& model, const State& state, const BeamLink& beam, int between,
@@ -59,30 +84,59 @@ void beam_points(const Model& model, const State& state, const BeamLink& beam, i
     const double end = beam.element_ends[e];
     visit_element(model, beam, static_cast<int>(e), [&](const auto& element) {
       constexpr int N = std::decay_t<decltype(element)>::kNodes;
-      const ElementConfiguration<N> nodes(element, state);
-      const LocalRotations<N> local(nodes.orientation);
-      std::array<Vector6, N - 1> strains;
-      for (int k = 0; k < N - 1; ++k) strains[k] = centroid_strain(element, nodes, local, state, k);
+      const DeformedElement<N> deformed(element, state);
       const int steps = (N - 1) * (between + 1);
       for (int k = e == 0 ? 0 : 1; k <= steps; ++k) {
         const int pair = std::min(k / (between + 1), N - 2);
         const double left = node_coordinate<N>(pair), right = node_coordinate<N>(pair + 1);
         const double xi = left + (right - left) * (k - pair * (between + 1)) / (between + 1);
-        BeamPoint& point = points.emplace_back();
-        point.arc_length = begin + 0.5 * (1 + xi) * (end - begin);
-        point.pose = section_pose<N>(nodes.position, local, xi);
-        point.pose.position = point.pose * Vector3(-beam.centroid);
-        set_stress(element.stiffness, extended<N>(strains, xi), beam.centroid, point);
+        points.push_back(deformed.point(xi, beam.centroid, begin, end));
       }
     });
     begin = end;
   }
 }
 
+BeamPoint section_point(const Model& model, const State& state, const BeamLink& beam, int element, double xi) {
+  const double begin = element == 0 ? 0.0 : beam.element_ends[element - 1], end = beam.element_ends[element];
+  BeamPoint point;
+  visit_element(model, beam, element, [&](const auto& data) {
+    constexpr int N = std::decay_t<decltype(data)>::kNodes;
+    point = DeformedElement<N>(data, state).point(xi, beam.centroid, begin, end);
+  });
+  return point;
+}
+
+double fibre_strain(const Model& model, const State& state, const ProbePoint& point) {
+  const BeamLink& beam = *model.links[point.link].beam;
+  const Vector6 strain = section_point(model, state, beam, point.element, point.xi).strain;
+  // The sensor stands beside the mass centroid, the strain is about the reference line.
+  const Vector3 beside = beam.centroid + point.offset.position;
+  return strain[0] + strain.tail<3>().cross(beside)[0];
+}
+
 Pose attached_pose(const State& state, const Attachment& attachment) {
   if (attachment.node < 0) return attachment.offset;
   const NodeState& node = state.nodes[attachment.node];
   return Pose{node.position, node.orientation} * attachment.offset;
+}
+
+Pose probe_pose(const Model& model, const State& state, const ProbePoint& probe) {
+  if (probe.element < 0) return attached_pose(state, probe.attachment);
+  Pose pose;
+  visit_element(model, *model.links[probe.link].beam, probe.element, [&](const auto& element) {
+    constexpr int N = std::decay_t<decltype(element)>::kNodes;
+    const ElementConfiguration<N> nodes(element, state);
+    pose = section_pose<N>(nodes.position, LocalRotations<N>(nodes.orientation), probe.xi) * probe.offset;
+  });
+  return pose;
+}
+
+Pose probe_pose_in_world(const Model& model, const State& state, const ProbePoint& probe) {
+  const bool is_on_world = probe.element < 0 && probe.attachment.node < 0;
+  Pose pose = probe_pose(model, state, probe);
+  pose.position += is_on_world ? model.origin : world_origin(model, state);
+  return pose;
 }
 
 ProbeState probe_state(const Model& model, const State& state, const std::vector<Vector6>& velocities,
@@ -133,6 +187,9 @@ State initial_state(const Model& model) {
   state.commands.assign(model.coordinates.size(), std::numeric_limits<double>::quiet_NaN());
   state.efforts.assign(model.coordinates.size(), 0.0);
   state.drives.resize(model.coordinates.size());
+  state.transmitted.resize(6 * model.reactions.size());
+  state.last_transmitted.assign(6 * model.reactions.size(), 0.0);
+  state.samples.resize(model.sensors.size());
   state.rests.assign(model.coordinates.size(), 0.0);
   for_each_element(model.beams, [&](const auto& element) {
     constexpr int N = std::decay_t<decltype(element)>::kNodes;

@@ -13,6 +13,16 @@ namespace flexarm {
 void beam_points(const Model& model, const State& state, const BeamLink& beam, int between,
                  std::vector<BeamPoint>& points);
 
+/// The section of a beam at the shape parameter `xi` of one of its elements.
+BeamPoint section_point(const Model& model, const State& state, const BeamLink& beam, int element, double xi);
+
+/// Of the fibre through a point of a beam's section, along the line, per length of the undeformed reference line; the
+/// point lies inside an element [-].
+double fibre_strain(const Model& model, const State& state, const ProbePoint& point);
+
+/// About the origin of the state; of a point on the world, about that of the model.
+Pose probe_pose(const Model& model, const State& state, const ProbePoint& probe);
+Pose probe_pose_in_world(const Model& model, const State& state, const ProbePoint& probe);
 /// `velocities`: {v, w} per node, world axes.
 ProbeState probe_state(const Model& model, const State& state, const std::vector<Vector6>& velocities,
                        const ProbePoint& probe);

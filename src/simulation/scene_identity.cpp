@@ -87,11 +87,19 @@ class SceneFingerprint {
     const auto& [name, inertial, beam, location] = link;
     all(name, inertial, beam);
   }
-  void add(const scene::JointLimits& limits) { all(limits.lower, limits.upper); }
+  /// What was not there before counts where it is given: other scenes keep their fingerprints.
+  void add_given(const std::optional<double>& value) {
+    if (value) add(*value);
+  }
+  void add(const scene::JointLimits& limits) {
+    all(limits.lower, limits.upper);
+    add_given(limits.restitution);
+  }
   void add(const scene::Mimic& mimic) { all(mimic.joint, mimic.multiplier, mimic.offset); }
   void add(const scene::SlideDescription& slide) {
-    const auto& [start, rotation, on_end, scheme, smooth, offset, location] = slide;
+    const auto& [start, rotation, on_end, scheme, smooth, offset, restitution, location] = slide;
     all(start, rotation, on_end, scheme, smooth, offset);
+    add_given(restitution);
   }
   void add(const scene::FrictionDescription& friction) { all(friction.law, friction.coefficient, friction.radius); }
   void add(const scene::JointDescription& joint) {
@@ -112,8 +120,19 @@ class SceneFingerprint {
     const auto& [link, at, force, moment, frame, history, location] = load;
     all(link, at, force, moment, frame, history);
   }
-  void add(const scene::DistributedLoad& load) { all(load.link, load.force, load.frame, load.history); }
+  void add(const scene::DistributedLoad& load) {
+    all(load.link, load.force, load.frame, load.history);
+    if (load.from || load.to) all(load.from, load.to);
+  }
   void add(const scene::PrescribedMotion& motion) { all(motion.coordinate, motion.position); }
+  void add(const scene::Sensor& sensor) {
+    const auto& [name, kind, link, at, rate, noise, bias, seed, location] = sensor;
+    all(name, kind, link, at, rate, noise, bias, seed);
+  }
+  void add(const scene::PointSpring& spring) {
+    const auto& [from, to, from_at, to_at, stiffness, rest_length, damping, location] = spring;
+    all(from, to, from_at, to_at, stiffness, rest_length, damping);
+  }
   void add(const scene::JointEffort& effort) { all(effort.coordinate, effort.history); }
 
   Fingerprint bytes_;
@@ -139,14 +158,17 @@ std::string named_lines(const char* kind, const Parts& parts) {
 
 std::string scene_identity(const scene::SceneDescription& scene) {
   const auto& [name, file, root, links, joints, loop_joints, gravity, integrator, integrator_location, initial_joints,
-               initial_links, loads, distributed_loads, motions, efforts, probes, lock_massless] = scene;
+               initial_links, loads, distributed_loads, motions, efforts, probes, sensors, point_springs,
+               lock_massless] = scene;
   return integrator_line(integrator) + "\n" + named_lines("link", links) + named_lines("joint", joints) +
          named_lines("loop_joint", loop_joints) +
          fmt::format("gravity {}\ninitial {}\nload {}\ndistributed_load {}\nmotion {}\neffort {}\n",
                      SceneFingerprint::of(gravity),
                      SceneFingerprint::of(root, initial_joints, initial_links, lock_massless),
                      SceneFingerprint::of(loads), SceneFingerprint::of(distributed_loads),
-                     SceneFingerprint::of(motions), SceneFingerprint::of(efforts));
+                     SceneFingerprint::of(motions), SceneFingerprint::of(efforts)) +
+         named_lines("sensor", sensors) +
+         (point_springs.empty() ? "" : fmt::format("springs {}\n", SceneFingerprint::of(point_springs)));
 }
 
 }  // namespace flexarm

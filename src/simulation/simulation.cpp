@@ -1,5 +1,6 @@
 #include "flexarm/simulation/simulation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -19,7 +20,8 @@
 #include "simulation/failure_text.h"
 #include "simulation/inside.h"
 #include "simulation/observables.h"
-#include "simulation/output_velocities.h"
+#include "simulation/published_motion.h"
+#include "simulation/sensors.h"
 #include "simulation/state_flaw.h"
 
 namespace flexarm {
@@ -92,9 +94,8 @@ struct Simulation::Implementation {
   State initial, state;
   std::vector<std::string> coordinate_names, link_names;
   std::map<std::string, std::size_t, std::less<>> coordinate_indices;  ///< by name
-  mutable OutputVelocities output_velocities;
-  mutable bool velocities_hold = false;  // output_velocities are those of `state`
-  std::vector<double> static_norms;      // of the last solve for an equilibrium; empty after steps
+  mutable PublishedMotion published;                                   // of `state`
+  std::vector<double> static_norms;  // of the last solve for an equilibrium; empty after steps
 
   Implementation(scene::SceneDescription description, const SimulationOptions& options)
       : scene(with_options(std::move(description), options)),
@@ -111,15 +112,14 @@ struct Simulation::Implementation {
     for (const LinkFrame& link : model.links) link_names.push_back(link.name);
     stepper->initialise(initial);
     state = initial;
-    velocities();  // their memory is there from the start
+    published.velocities(view());  // their memory is there from the start
+    take_samples(true);
+    initial.samples = state.samples;
   }
 
-  /// Made where somebody asks for them.
-  const OutputVelocities& velocities() const {
-    if (!velocities_hold) output_velocities.update(model, stepper->degrees_of_freedom(), scheme, state);
-    velocities_hold = true;
-    return output_velocities;
-  }
+  MotionView view() const { return {model, stepper->degrees_of_freedom(), scheme, state}; }
+
+  void take_samples(bool all) { flexarm::take_samples(scene.sensors, view(), published, all, state.samples); }
 
   /// Of a pose about the origin of the state.
   Pose in_world(const Pose& pose) const { return {world_origin(model, state) + pose.position, pose.orientation}; }
@@ -154,7 +154,7 @@ struct Simulation::Implementation {
   void set_state(const State& other) {
     fit_to_state(other);
     state = other;
-    velocities_hold = false;
+    published.forget();
     stepper->invalidate();
   }
 
@@ -179,8 +179,9 @@ StepResult Simulation::step() {
   StepResult result = implementation_->stepper->advance(implementation_->state);
   implementation_->release_from_lines();
   carry_origin(implementation_->model, implementation_->state);
-  implementation_->velocities_hold = false;
+  implementation_->published.forget();
   implementation_->static_norms.clear();
+  implementation_->take_samples(false);
   return result;
 }
 
@@ -233,7 +234,8 @@ double Simulation::position(std::size_t index) const {
 }
 
 double Simulation::velocity(std::size_t index) const {
-  return implementation_->velocities().rate(implementation_->model.coordinates.at(index));
+  return implementation_->published.velocities(implementation_->view())
+      .rate(implementation_->model.coordinates.at(index));
 }
 
 double Simulation::effort(std::size_t index) const {
@@ -304,20 +306,49 @@ Vector3 Simulation::angular_momentum() const {
 }
 ProbeState Simulation::probe(std::size_t index) const {
   const Implementation& s = *implementation_;
-  const ProbePoint& point = s.model.probes.at(index);
-  ProbeState probe = probe_state(s.model, s.state, s.velocities().nodes(), point);
-  const bool is_on_world = point.element < 0 && point.attachment.node < 0;
-  probe.pose = is_on_world ? s.in_world(point.attachment) : s.in_world(probe.pose);
+  const MotionView view = s.view();
+  const ProbePoint& point = view.model.probes.at(index);
+  ProbeState probe = probe_state(view.model, view.state, s.published.velocities(view).nodes(), point);
+  probe.pose = probe_pose_in_world(view.model, view.state, point);
   return probe;
+}
+ProbeAcceleration Simulation::probe_acceleration(std::size_t index) const {
+  const MotionView view = implementation_->view();
+  return implementation_->published.past(view).acceleration(view, view.model.probes.at(index));
+}
+BeamPoint Simulation::section(std::size_t link, double arc_length) const {
+  const LinkFrame& frame = implementation_->model.links.at(link);
+  if (!frame.beam) throw std::invalid_argument("link '" + frame.name + "' has no sections: it is rigid");
+  if (!(arc_length >= 0 && arc_length <= frame.beam->length))
+    throw std::invalid_argument(
+        fmt::format("link '{}' has sections from 0 to {} m, not at {} m", frame.name, frame.beam->length, arc_length));
+  const ElementPlace place = element_at(*frame.beam, arc_length);
+  BeamPoint point = section_point(implementation_->model, implementation_->state, *frame.beam, place.element, place.xi);
+  point.pose = implementation_->in_world(point.pose);
+  return point;
+}
+Wrench Simulation::reaction(std::size_t link) const {
+  const Model& model = implementation_->model;
+  const std::string& name = model.links.at(link).name;
+  const auto place = std::find_if(model.sensors.begin(), model.sensors.end(), [&](const SensorPlace& sensor) {
+    return sensor.reaction >= 0 && sensor.point.link == static_cast<int>(link);
+  });
+  if (place == model.sensors.end())
+    throw std::invalid_argument("no sensor of the scene asks what carries link '" + name + "'");
+  return transmitted_wrench(implementation_->state, place->reaction);
+}
+const SensorSample& Simulation::sample(std::size_t sensor) const {
+  return implementation_->state.samples.at(sensor);
 }
 
 StaticResult Simulation::solve_static(int load_steps, Equilibrium wanted) {
   if (load_steps < 1) throw std::invalid_argument("the number of load steps must be >= 1");
-  implementation_->velocities_hold = false;
+  implementation_->published.forget();
   Implementation& s = *implementation_;
   StaticResult result =
       flexarm::solve_static(s.model, s.scheme, s.settings, load_steps, wanted, s.state, &s.static_norms);
   s.stepper->invalidate();
+  if (result.converged) s.take_samples(true);
   return result;
 }
 

@@ -52,7 +52,11 @@ void check_sizes(const State& initial, const State& state, Flaw& flaw) {
   flaw.require_size("the number of impulses of motions", state.drives.impulse.size(), initial.drives.impulse.size());
   for (const std::vector<double>& means : state.drives.means)
     flaw.require_size("the number of efforts of motions", means.size(), initial.efforts.size());
-  flaw.require_range("the number of past efforts of motions", state.drives.count, 0, DriveEfforts::kLength);
+  flaw.require_range("the number of past efforts of motions", state.drives.count, 0, StepMeans::kLength);
+  flaw.require_size("the number of impulses of joints", state.transmitted.impulse.size(),
+                    initial.transmitted.impulse.size());
+  flaw.require_range("the number of past forces of joints", state.transmitted.count, 0, StepMeans::kLength);
+  flaw.require_size("the number of samples", state.samples.size(), initial.samples.size());
   flaw.require_size("the number of marks of rest", state.rests.size(), initial.rests.size());
   flaw.require_size("the number of strain memories", state.strain_memory.size(), initial.strain_memory.size());
   flaw.require_size("the number of rotations of stiffness points", state.stiffness_rotations.size(),

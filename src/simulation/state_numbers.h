@@ -61,6 +61,14 @@ void for_each_number(AnyState& state, const Visit& visit) {
   for (auto& force : state.forces) vector("a nodal force", force);
   for (auto& reaction : state.reactions) vector("a reaction", reaction);
   for (auto& rate : state.momentum_rates) vector("a momentum rate", rate);
+  for (auto& impulse : state.transmitted.impulse) visit("the impulse of a joint", impulse);
+  for (auto& means : state.transmitted.means)
+    for (auto& mean : means) visit("what a joint transmits", mean);
+  for (auto& force : state.last_transmitted) visit("what a joint transmits", force);
+  for (auto& sample : state.samples) {
+    visit("the time of a sample", sample.time);
+    for (auto& value : sample.values) visit("a sample", value);
+  }
 }
 
 }  // namespace flexarm

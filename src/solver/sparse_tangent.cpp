@@ -56,6 +56,18 @@ void SparseTangent::add_closure(int closure, int index, double multiplier, const
   add_row(blocks.multiplier_parent, maps.right.parent);
 }
 
+void SparseTangent::add_coupling(int closure, const Eigen::Matrix<double, 12, 12>& coupling) {
+  const ClosureBlocks& blocks = closure_blocks_[closure];
+  const auto add = [&](int block, int row, int column) {
+    Eigen::Map<Matrix6>(values_.data() + blocks_[block].offset) += coupling.block<6, 6>(row, column);
+  };
+  add(blocks.child_child, 0, 0);
+  if (model_.closures[closure].parent < 0) return;
+  add(blocks.child_parent, 0, 6);
+  add(blocks.parent_child, 6, 0);
+  add(blocks.parent_parent, 6, 6);
+}
+
 void SparseTangent::fold(int j) {
   if (model_.joints[j].kind == JointMapKind::Slide)
     fold(j, slide_maps_);

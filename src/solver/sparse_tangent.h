@@ -26,6 +26,7 @@ class SparseTangent : public TangentBackend {
 
   void set_zero() override;
   void add_closure(int closure, int index, double multiplier, const ClosureMaps& maps) override;
+  void add_coupling(int closure, const Eigen::Matrix<double, 12, 12>& blocks) override;
   FoldMaps& fold_maps(int) override { return maps_; }
   SlideMaps& slide_maps(int) override { return slide_maps_; }
   void fold(int joint) override;

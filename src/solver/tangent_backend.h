@@ -37,6 +37,8 @@ class TangentBackend {
   bool keeps_elements_apart() const { return keeps_elements_apart_; }
   /// Adds constraint `index` of a closure with its multiplier, before joints are folded.
   virtual void add_closure(int closure, int index, double multiplier, const ClosureMaps& maps) = 0;
+  /// Adds blocks of a closure's nodes with each other, {child, parent}: of a spring between them.
+  virtual void add_coupling(int closure, const Eigen::Matrix<double, 12, 12>& blocks) = 0;
 
   // ---- reduction
   /// Where the maps of a joint, or of one that slides, are to be written for fold().

@@ -107,6 +107,10 @@ void TreeTangent::add_closure(int closure, int index, double multiplier, const C
   values.row(own).segment<6>(6) += maps.right.parent;
 }
 
+void TreeTangent::add_coupling(int closure, const Eigen::Matrix<double, 12, 12>& blocks) {
+  blocks_.closures[closure].topLeftCorner<12, 12>() += blocks;
+}
+
 /// Is left to the elimination, but for where sliders are.
 void TreeTangent::fold(int joint) {
   if (model_.joints[joint].kind != JointMapKind::Slide) return;

@@ -31,6 +31,7 @@ class TreeTangent : public TangentBackend {
 
   void set_zero() override;
   void add_closure(int closure, int index, double multiplier, const ClosureMaps& maps) override;
+  void add_coupling(int closure, const Eigen::Matrix<double, 12, 12>& blocks) override;
   FoldMaps& fold_maps(int joint) override { return blocks_.maps[joint]; }
   SlideMaps& slide_maps(int joint) override { return blocks_.slide_maps[joint]; }
   void fold(int joint) override;

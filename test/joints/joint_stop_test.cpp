@@ -21,7 +21,12 @@ LimitStop stops(double give) {
 const double kGives[] = {LimitStop::kInfinity, 0.7};
 
 StopPenalty penalty_with(double damping) {
-  return {kStiffness, damping};
+  const StopDamping usual;
+  StopPenalty penalty;
+  penalty.stiffness = kStiffness;
+  penalty.damping = damping;
+  penalty.end_damping = usual.at_end / usual.of_means * damping;
+  return penalty;
 }
 
 /// Of the Newmark family.
@@ -297,7 +302,7 @@ TEST(StopUpdate, GoesHalfTheWayAtMost) {
 TEST(StopPenalty, ContactTimeAndRestitution) {
   Coordinate coordinate;
   coordinate.limit = stops(LimitStop::kInfinity);
-  const auto [k, c] = stop_penalty(coordinate, 1e-2);
+  const auto [k, c, end_c] = stop_penalty(coordinate, 1e-2);
   const double omega = std::sqrt(k / kInertia);
   EXPECT_NEAR(omega, kPi / 1e-2, 1e-9 * omega);
   // m x'' = min(0, -k x - c x'), hit at unit speed: integrated finely until the force vanishes.
@@ -309,6 +314,7 @@ TEST(StopPenalty, ContactTimeAndRestitution) {
     x += h * middle;
   }
   EXPECT_NEAR(-v, 0.3, 1e-3);
+  EXPECT_GT(end_c, c);
   EXPECT_EQ(stop_penalty(Coordinate(), 1e-2).stiffness, 0);
 }
 

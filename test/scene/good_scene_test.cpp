@@ -241,4 +241,60 @@ TEST(GoodScene, FileAndTextAgree) {
   EXPECT_EQ(file.scene->joints.back().location.line, text.scene->joints.back().location.line);
 }
 
+TEST(GoodScene, Sensors) {
+  const SceneDescription scene = good_scene();
+  ASSERT_EQ(scene.sensors.size(), 2u);
+  const Sensor& cell = scene.sensors[0];
+  EXPECT_EQ(cell.name, "cell");
+  EXPECT_EQ(cell.kind, SensorKind::Wrench);
+  EXPECT_EQ(cell.link, "hand");
+  EXPECT_EQ(cell.at, Vector3(0, 0, 0.1));
+  EXPECT_EQ(cell.rate, 500);
+  EXPECT_EQ(cell.noise, std::vector<double>{0.05});
+  EXPECT_EQ(cell.bias, (std::vector<double>{0.1, 0, 0, 0, 0, 0.2}));
+  EXPECT_EQ(cell.seed, 7);
+  EXPECT_EQ(cell.location.line, 70);
+  EXPECT_EQ(scene.sensors[1].kind, SensorKind::Strain);
+  EXPECT_EQ(scene.sensors[1].rate, 0);
+  EXPECT_TRUE(scene.sensors[1].noise.empty());
+}
+
+// One with a <parent> is as URDF once proposed it.
+TEST(GoodScene, SensorsOfOthersAreLeftAlone) {
+  const ReadResult result = read(
+      good_scene_with("</robot>", "<sensor name=\"camera\"> <parent link=\"hand\"/> <camera/> </sensor> </robot>"));
+  EXPECT_TRUE(result.diagnostics.empty()) << to_text(result.diagnostics);
+  EXPECT_EQ(result.scene.value().sensors.size(), 2u);
+}
+
+TEST(GoodScene, SpringBetweenPoints) {
+  const SceneDescription scene = good_scene();
+  ASSERT_EQ(scene.point_springs.size(), 1u);
+  const PointSpring& spring = scene.point_springs[0];
+  EXPECT_EQ(spring.from, "upper");
+  EXPECT_EQ(spring.from_at, Vector3(0.1, 0, 0));
+  EXPECT_EQ(spring.to, "hand");
+  EXPECT_EQ(spring.to_at, Vector3(0, 0, 1));
+  EXPECT_EQ(spring.stiffness, 20);
+  EXPECT_EQ(spring.rest_length, 0.3);
+  EXPECT_EQ(spring.damping, 0.5);
+}
+
+TEST(GoodScene, LoadOnAPartOfALine) {
+  const std::string load = "<distributed_load link=\"tip\"";
+  const ReadResult result = read(good_scene_with(load, load + " from=\"0.25\" to=\"0.5\""));
+  ASSERT_TRUE(result.scene) << to_text(result.diagnostics);
+  EXPECT_EQ(result.scene->distributed_loads[0].from, 0.25);
+  EXPECT_EQ(result.scene->distributed_loads[0].to, 0.5);
+  EXPECT_FALSE(good_scene().distributed_loads[0].from);
+}
+
+TEST(GoodScene, RestitutionOfStops) {
+  const ReadResult result =
+      read(good_scene_with("upper=\"1\" effort=\"0\"", "upper=\"1\" restitution=\"0.6\" effort=\"0\""));
+  ASSERT_TRUE(result.scene) << to_text(result.diagnostics);
+  EXPECT_EQ(joint(*result.scene, "finger").limits->restitution, 0.6);
+  EXPECT_FALSE(joint(*result.scene, "shoulder").limits->restitution);
+}
+
 }  // namespace flexarm::scene

@@ -87,7 +87,18 @@ TEST_P(Allocation, NoneInAThousandSteps) {
   SimulationOptions options;
   options.scheme = scheme;
   options.reuse_factorisation = reuse;
-  scene::SceneDescription scene = everything_scene().scene;
+  SceneBuilder builder = everything_scene();
+  using scene::SensorKind;
+  for (const auto& [kind, link] : {std::pair(SensorKind::Wrench, "spherical_body"),
+                                   {SensorKind::Reaction, "fixed_body"},
+                                   {SensorKind::SectionForce, "beam2"},
+                                   {SensorKind::Strain, "beam3"},
+                                   {SensorKind::Imu, "beam4"},
+                                   {SensorKind::Pose, "beam1"}}) {
+    builder.sensor(std::string("on_") + link, kind, link, {0.05, 0.01, 0});
+    builder.scene.sensors.back().noise = {0.01};
+  }
+  scene::SceneDescription scene = builder.scene;
   if (scheme == "em_scaled") scene.motions.clear();              // refused with them
   const bool may_fail = scheme == "beta1" || scheme == "beta2";  // where the axial strain rests (beam.md 3.3)
   if (may_fail) scene.integrator.max_halvings = 5;               // not deep, a thousand times

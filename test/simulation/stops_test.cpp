@@ -155,6 +155,24 @@ TEST(Stop, OfNewmarksFamily) {
     }
 }
 
+// To the same accuracy as the usual one; at 1 m/s, a hit begins and ends between steps.
+TEST(Stop, GivesBackWhatTheSceneAsks) {
+  for (const double restitution : {0.1, 0.6, 1.0}) {
+    SCOPED_TRACE(restitution);
+    SceneBuilder b = carriage(1);
+    b.scene.joints.back().limits->restitution = restitution;
+    Simulation joint(b.scene, options("em"));
+    EXPECT_LT(watch(joint, kLimit, 560).energy_defect, 1e-11);
+    EXPECT_NEAR(-joint.velocity(0), restitution, kOfRestitution);
+
+    SceneBuilder slide = rider(40, 9.9, 1);
+    slide.scene.joints.back().slide->restitution = restitution;
+    Simulation ride(slide.scene, options("em"));
+    watch(ride, 10, 160);
+    EXPECT_NEAR(-ride.velocity(0), restitution, kOfRestitution);
+  }
+}
+
 TEST(Stop, HoldsWhateverPresses) {
   SceneBuilder b = carriage(0);
   b.scene.efforts.push_back({"rail", TimeFunction::parse("0:0 0.1:1e6 1:1e6"), {}});

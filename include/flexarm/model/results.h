@@ -1,7 +1,9 @@
 #pragma once
 /// What a simulation gives back: values, in SI units.
 
+#include <array>
 #include <complex>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -125,6 +127,25 @@ struct ProbeState {
   // Of second order in the step, see Simulation::velocity.
   Vector3 velocity = Vector3::Zero();          ///< world axes [m/s]
   Vector3 angular_velocity = Vector3::Zero();  ///< the same [rad/s]
+};
+
+/// Of a named point, from the motion over the last four steps, free of what rings in single ones.
+struct ProbeAcceleration {
+  Vector3 linear = Vector3::Zero();   ///< world axes [m/s^2]
+  Vector3 angular = Vector3::Zero();  ///< the same [rad/s^2]
+};
+
+/// What acts at a point.
+struct Wrench {
+  Vector3 force = Vector3::Zero();   ///< [N]
+  Vector3 moment = Vector3::Zero();  ///< [N m]
+};
+
+/// What a sensor has measured, with bias and noise; it holds until the sensor's next sample.
+struct SensorSample {
+  static constexpr std::size_t kMostValues = 7;
+  double time = -1;                             ///< when; < 0: never [s]
+  std::array<double, kMostValues> values = {};  ///< as scene::sensor_channels() has them
 };
 
 using ComplexVector6 = Eigen::Matrix<std::complex<double>, 6, 1>;

@@ -125,8 +125,9 @@ constexpr bool has_dependent_travel(JointKind kind) {
 }
 
 struct JointLimits {
-  double lower, upper;  ///< position [rad or m]
-  double velocity = 0;  ///< kept, not enforced
+  double lower, upper;                     ///< position [rad or m]
+  double velocity = 0;                     ///< kept, not enforced
+  std::optional<double> restitution = {};  ///< of the stops, from 0.05 to 1; empty: 0.3
 };
 
 struct Mimic {
@@ -143,10 +144,11 @@ struct SlideDescription {
   double start = 0;  ///< initial arc length [m]
   /// Fixed, Revolute, Universal, Spherical, or a kind with dependent travel: then the arc length is `start` + travel.
   JointKind rotation = JointKind::Spherical;
-  End on_end = End::Stop;            ///< what the ends of the line are
-  std::string scheme = "sm_em";      ///< how the contact is carried over a step (docs/schemes.md)
-  bool smooth = true;                ///< tangents of the line are continuous over the borders of elements
-  Vector3 offset = Vector3::Zero();  ///< rigid segment from the line to the joint, in the joint's frame [m]
+  End on_end = End::Stop;                  ///< what the ends of the line are
+  std::string scheme = "sm_em";            ///< how the contact is carried over a step (docs/schemes.md)
+  bool smooth = true;                      ///< tangents of the line are continuous over the borders of elements
+  Vector3 offset = Vector3::Zero();        ///< rigid segment from the line to the joint, in the joint's frame [m]
+  std::optional<double> restitution = {};  ///< of the stops, from 0.05 to 1; empty: 0.3
   SourceLocation location = {};
 };
 
@@ -213,13 +215,14 @@ struct PointLoad {
   SourceLocation location;
 };
 
-/// Force per length [N/m] along a flexible link's centreline.
+/// Force per length [N/m] along a flexible link's centreline, between two arc lengths of it [m].
 struct DistributedLoad {
   std::string link;
   Vector3 force = Vector3::Zero();
   LoadFrame frame = LoadFrame::World;
   TimeFunction history;
   SourceLocation location;
+  std::optional<double> from = {}, to = {};  ///< empty: the ends of the line
 };
 
 /// Prescribed released coordinate, position(t) [rad or m].
@@ -243,6 +246,48 @@ struct Probe {
   SourceLocation location;
 };
 
+/// A spring between points of two links, with a damper beside it.
+struct PointSpring {
+  std::string from, to;                                        ///< links
+  Vector3 from_at = Vector3::Zero(), to_at = Vector3::Zero();  ///< in the undeformed link frames [m]
+  double stiffness = 0;                                        ///< [N/m]
+  std::optional<double> rest_length = {};                      ///< empty: as long as it is at the start [m]
+  double damping = 0;                                          ///< [N s/m]
+  SourceLocation location = {};
+};
+
+enum class SensorKind {
+  Wrench,        ///< what carries a link does to it, in the link's axes about the sensor's place
+  Reaction,      ///< the same in world axes
+  SectionForce,  ///< of a flexible link: elastic force and moment in the section's axes, about its reference line
+  Strain,        ///< of a flexible link: of the fibre through the sensor's place, along the line
+  Imu,           ///< angular velocity, and acceleration less gravity, in axes that turn with the sensor's place
+  Pose           ///< in the world
+};
+
+/// One number that a sensor measures: the last part of its name, and its unit.
+struct SensorChannel {
+  const char* name;
+  const char* unit;
+};
+/// What a sensor of that kind measures, in this order.
+const std::vector<SensorChannel>& sensor_channels(SensorKind kind);
+/// Number of a sensor's errors: one for each channel, but six of a pose (three of the place [m], three of the rotation
+/// vector [rad], in the sensor's axes).
+std::size_t sensor_error_count(SensorKind kind);
+
+/// Measures at a point of a link, in its own time.
+struct Sensor {
+  std::string name;
+  SensorKind kind = SensorKind::Pose;
+  std::string link;
+  Vector3 at = Vector3::Zero();  ///< in the undeformed link frame [m]
+  double rate = 0;  ///< samples per second, each at the end of the first step that reaches it [Hz]; 0: every step
+  std::vector<double> noise, bias;  ///< standard deviations and means of the errors; empty: none, one: all alike
+  int seed = 0;                     ///< of the noise, besides the sensor's name
+  SourceLocation location = {};
+};
+
 struct SceneDescription {
   std::string name;  ///< of the robot
   std::string file;
@@ -260,6 +305,8 @@ struct SceneDescription {
   std::vector<PrescribedMotion> motions;
   std::vector<JointEffort> efforts;
   std::vector<Probe> probes;
+  std::vector<Sensor> sensors;
+  std::vector<PointSpring> point_springs;
   bool lock_massless = false;  ///< joints that move nothing with inertia are held where they start, not refused
 };
 

@@ -109,6 +109,18 @@ class Simulation {
   Vector3 momentum() const;                   ///< world axes [kg m/s]
   Vector3 angular_momentum() const;           ///< about the world origin [kg m^2/s]
   ProbeState probe(std::size_t index) const;  ///< in the order of scene().probes
+  /// Of second order in the step from the fourth step on; zero before the second one.
+  ProbeAcceleration probe_acceleration(std::size_t index) const;
+  /// The section of a flexible link at an arc length of its undeformed line [m]: pose, strain, section force.
+  /// @throws std::invalid_argument if the link is rigid, or its line not as long.
+  BeamPoint section(std::size_t link, double arc_length) const;
+  /// What the joint that carries a link does to it, its drive and friction included: about the link's origin, world
+  /// axes, of second order in the step from the third step on. It is kept for links of which a sensor of the scene
+  /// asks it (kind Reaction or Wrench), and zero before the first step.
+  /// @throws std::invalid_argument if none does.
+  Wrench reaction(std::size_t link) const;
+  /// What a sensor has measured last, in the order of scene().sensors.
+  const SensorSample& sample(std::size_t sensor) const;
 
   /// Statics: loads and gravity grow from zero in `load_steps` equal steps; prescribed motions are held at t = 0,
   /// other released coordinates are solved for. On success the state is the equilibrium, at rest; else it is as before.

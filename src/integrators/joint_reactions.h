@@ -1,0 +1,30 @@
+#pragma once
+/// What joints transmit over a step, for output: of those that the model names.
+
+#include "integrators/dry_friction_step.h"
+#include "integrators/step_configuration.h"
+#include "solver/reduced_residual.h"
+
+namespace flexarm {
+
+/// The residual of a slave, once all that hangs on it has been folded, is what its joint does to it: exactly that by
+/// which the momenta of what hangs on it change in the step, less its loads. Moments are about the origin of the link
+/// that the slave carries.
+class JointReactions {
+ public:
+  JointReactions(const StepConfiguration& configuration, const DryFrictionStep& friction)
+      : configuration_(configuration), friction_(friction) {}
+
+  /// Adds to State::transmitted, before the rest of the state is written.
+  void accept(const ReducedResidual& residual, State& state) const;
+  /// The same of an equilibrium.
+  void accept_rest(const ReducedResidual& residual, State& state) const;
+
+ private:
+  Vector6 transmitted(const ReducedResidual& residual, const ReactionPlace& place) const;
+
+  const StepConfiguration& configuration_;
+  const DryFrictionStep& friction_;
+};
+
+}  // namespace flexarm

@@ -1,0 +1,64 @@
+#include "joints/stop_restitution.h"
+
+#include <array>
+#include <cmath>
+
+namespace flexarm {
+namespace {
+
+/// Penetration and its rate of an oscillator of frequency 1, and damping ratio.
+struct Oscillator {
+  double x, v, ratio;
+
+  double force() const { return x + 2 * ratio * v; }
+  /// Runge's and Kutta's step.
+  Oscillator after(double h) const {
+    const auto rate = [&](double x_, double v_) { return std::array{v_, -x_ - 2 * ratio * v_}; };
+    const auto k1 = rate(x, v), k2 = rate(x + h / 2 * k1[0], v + h / 2 * k1[1]);
+    const auto k3 = rate(x + h / 2 * k2[0], v + h / 2 * k2[1]), k4 = rate(x + h * k3[0], v + h * k3[1]);
+    return {x + h / 6 * (k1[0] + 2 * k2[0] + 2 * k3[0] + k4[0]), v + h / 6 * (k1[1] + 2 * k2[1] + 2 * k3[1] + k4[1]),
+            ratio};
+  }
+};
+
+/// Speed with which the contact ends: where its force vanishes, since a stop never pulls.
+double speed_at_release(Oscillator contact) {
+  double step = 0.01;
+  while (step > 1e-12) {
+    const Oscillator next = contact.after(step);
+    if (next.force() > 0)
+      contact = next;
+    else
+      step /= 2;
+  }
+  return -contact.v;
+}
+
+double restitution_of_means(double ratio) {
+  return speed_at_release(Oscillator{0, 1, ratio}.after(1e-6));
+}
+
+/// The damper takes hold with the spring, as a spring of its own, until it has its full force.
+double restitution_at_end(double ratio) {
+  const double v = 1 / std::sqrt(1 + kRampAngle * kRampAngle + 2 * ratio * kRampAngle);
+  return speed_at_release({kRampAngle * v, v, ratio});
+}
+
+/// The ratio at which a restitution, which falls with it, has this value.
+template <class Restitution>
+double ratio_for(const Restitution& restitution, double value) {
+  double low = 0, high = 10;
+  for (int i = 0; i < 50; ++i) {
+    const double middle = 0.5 * (low + high);
+    (restitution(middle) > value ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+}  // namespace
+
+StopDamping damping_for(double restitution) {
+  return {ratio_for(restitution_of_means, restitution), ratio_for(restitution_at_end, restitution)};
+}
+
+}  // namespace flexarm

@@ -1,0 +1,15 @@
+#include "model/model.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace flexarm {
+
+ElementPlace element_at(const BeamLink& beam, double arc_length) {
+  const std::vector<double>& ends = beam.element_ends;
+  const auto found = std::lower_bound(ends.begin(), std::prev(ends.end()), arc_length - 1e-12 * beam.length);
+  const double begin = found == ends.begin() ? 0.0 : *std::prev(found);
+  return {static_cast<int>(found - ends.begin()), 2 * (arc_length - begin) / (*found - begin) - 1};
+}
+
+}  // namespace flexarm

@@ -1,0 +1,52 @@
+#include "scene/sensor_reader.h"
+
+#include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "scene/choice.h"
+
+namespace flexarm::scene {
+namespace {
+
+constexpr Choice<SensorKind> kKinds[] = {
+    {"wrench", SensorKind::Wrench}, {"reaction", SensorKind::Reaction}, {"section_force", SensorKind::SectionForce},
+    {"strain", SensorKind::Strain}, {"imu", SensorKind::Imu},           {"pose", SensorKind::Pose}};
+constexpr std::size_t kMostErrors = 6;
+/// Samples of a run of years can be counted.
+constexpr NumberRange kRate{"> 0 and at most 1e9", [](double x) { return x > 0 && x <= 1e9; }};
+
+/// One number for all errors, or one for each.
+std::vector<double> read_errors(const XmlElement& sensor, const char* attribute, std::size_t count) {
+  if (!sensor.has(attribute)) return {};
+  const std::vector<double> errors = sensor.all_numbers(attribute, kMostErrors).value_or(std::vector<double>());
+  if (errors.empty() || errors.size() == 1 || errors.size() == count) return errors;
+  sensor.attribute_error(attribute, count == 1 ? fmt::format("{} must be 1 number", attribute)
+                                               : fmt::format("{} must be 1 number or {}", attribute, count));
+  return {};
+}
+
+}  // namespace
+
+Sensor read_sensor(const XmlElement& unnamed) {
+  Sensor out;
+  out.name = unnamed.name("name").value_or("");
+  out.location = unnamed.location();
+  const XmlElement sensor = unnamed.with_name(out.name);
+  sensor.expect_only({"name", "kind", "link", "at", "rate", "noise", "bias", "seed"});
+  out.link = sensor.text("link").value_or("");
+  out.at = sensor.vector("at", out.at);
+  if (sensor.has("rate")) out.rate = sensor.number("rate", kRate).value_or(0);
+  if (sensor.has("seed")) out.seed = sensor.integer("seed", 0, std::numeric_limits<int>::max()).value_or(0);
+  const std::optional<SensorKind> kind = read_choice(sensor, "kind", kKinds);
+  if (!kind) return out;
+  out.kind = *kind;
+  out.noise = read_errors(sensor, "noise", sensor_error_count(*kind));
+  out.bias = read_errors(sensor, "bias", sensor_error_count(*kind));
+  if (std::any_of(out.noise.begin(), out.noise.end(), [](double deviation) { return deviation < 0; }))
+    sensor.attribute_error("noise", "noise is a standard deviation, >= 0");
+  return out;
+}
+
+}  // namespace flexarm::scene

@@ -1,0 +1,123 @@
+#include "simulation/sensors.h"
+
+#include <cmath>
+
+#include "math/normal_noise.h"
+#include "math/so3.h"
+#include "simulation/observables.h"
+
+namespace flexarm {
+namespace {
+
+using scene::Sensor;
+using scene::SensorKind;
+
+constexpr std::size_t kMostErrors = 6;
+using Errors = Eigen::Matrix<double, kMostErrors, 1>;
+/// Of a sample's interval: what is so little early is on time.
+constexpr double kRoundOff = 1e-6;
+
+/// Which sample is the last one at `time`, counted from t = 0; without a rate each step has its own.
+long sample_at(const Sensor& sensor, double time, long steps) {
+  return sensor.rate > 0 ? static_cast<long>(std::floor(time * sensor.rate + kRoundOff)) : steps;
+}
+
+/// FNV-1a.
+std::uint64_t hashed(const std::string& name) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  return hash;
+}
+
+double channel_value(const std::vector<double>& values, std::size_t channel) {
+  if (values.empty()) return 0;
+  return values.size() == 1 ? values[0] : values[channel];
+}
+
+/// Bias and noise of a sample.
+Errors errors_of(const Sensor& sensor, long sample) {
+  Errors errors = Errors::Zero();
+  const std::size_t count = scene::sensor_error_count(sensor.kind);
+  for (std::size_t i = 0; i < count; ++i) errors[i] = channel_value(sensor.bias, i);
+  if (sensor.noise.empty()) return errors;
+  const std::uint64_t stream = NormalNoise::mixed(hashed(sensor.name) + static_cast<std::uint64_t>(sensor.seed));
+  NormalNoise noise(stream + static_cast<std::uint64_t>(sample));
+  for (std::size_t i = 0; i < count; ++i) errors[i] += channel_value(sensor.noise, i) * noise.next();
+  return errors;
+}
+
+Vector6 measured_wrench(const Sensor& sensor, const SensorPlace& place, const MotionView& view) {
+  const Wrench wrench = transmitted_wrench(view.state, place.reaction);
+  const Pose link = attached_pose(view.state, view.model.links[place.point.link].frame);
+  const Vector3 arm = link.orientation * sensor.at;
+  const Quaternion axes = sensor.kind == SensorKind::Wrench ? link.orientation.conjugate() : Quaternion::Identity();
+  Vector6 out;
+  out << axes * wrench.force, axes * Vector3(wrench.moment - arm.cross(wrench.force));
+  return out;
+}
+
+Vector6 measured_motion(const SensorPlace& place, const MotionView& view, PublishedMotion& motion) {
+  const ProbeState probe = probe_state(view.model, view.state, motion.velocities(view).nodes(), place.point);
+  const ProbeAcceleration acceleration = motion.past(view).acceleration(view, place.point);
+  const Quaternion axes = probe.pose.orientation.conjugate();
+  Vector6 out;
+  out << axes * probe.angular_velocity, axes * Vector3(acceleration.linear - view.model.gravity);
+  return out;
+}
+
+/// A pose whose errors are in its own axes; in the world.
+void set_pose(const Pose& pose, const Errors& errors, SensorSample& sample) {
+  const Vector3 position = pose.position + pose.orientation * errors.head<3>();
+  const Quaternion orientation = (pose.orientation * so3::exp_quaternion(Vector3(errors.tail<3>()))).normalized();
+  for (int i = 0; i < 3; ++i) sample.values[i] = position[i];
+  for (int i = 0; i < 4; ++i) sample.values[3 + i] = orientation.coeffs()[i];  // x y z w
+}
+
+void measure(const Sensor& sensor, const SensorPlace& place, const MotionView& view, PublishedMotion& motion,
+             const Errors& errors, SensorSample& sample) {
+  const auto set = [&](const Vector6& values) {
+    for (int i = 0; i < 6; ++i) sample.values[i] = values[i] + errors[i];
+  };
+  switch (sensor.kind) {
+    case SensorKind::Wrench:
+    case SensorKind::Reaction:
+      return set(measured_wrench(sensor, place, view));
+    case SensorKind::SectionForce: {
+      const auto& [link, attachment, element, xi, offset] = place.point;
+      return set(section_point(view.model, view.state, *view.model.links[link].beam, element, xi).resultant);
+    }
+    case SensorKind::Strain:
+      sample.values[0] = fibre_strain(view.model, view.state, place.point) + errors[0];
+      return;
+    case SensorKind::Imu:
+      return set(measured_motion(place, view, motion));
+    case SensorKind::Pose:
+      return set_pose(probe_pose_in_world(view.model, view.state, place.point), errors, sample);
+  }
+}
+
+}  // namespace
+
+Wrench transmitted_wrench(const State& state, int reaction) {
+  Wrench wrench;
+  for (int k = 0; k < 3; ++k) {
+    wrench.force[k] = state.transmitted.at_end(6 * static_cast<std::size_t>(reaction) + k);
+    wrench.moment[k] = state.transmitted.at_end(6 * static_cast<std::size_t>(reaction) + 3 + k);
+  }
+  return wrench;
+}
+
+void take_samples(const std::vector<Sensor>& sensors, const MotionView& view, PublishedMotion& motion, bool all,
+                  std::vector<SensorSample>& samples) {
+  const double time = view.state.time;
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    const Sensor& sensor = sensors[i];
+    const long number = sample_at(sensor, time, view.state.steps);
+    const bool is_due = sensor.rate > 0 ? number > sample_at(sensor, samples[i].time, 0) : samples[i].time != time;
+    if (!all && samples[i].time >= 0 && !is_due) continue;
+    samples[i].time = time;
+    measure(sensor, view.model.sensors[i], view, motion, errors_of(sensor, number), samples[i]);
+  }
+}
+
+}  // namespace flexarm

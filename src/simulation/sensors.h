@@ -1,0 +1,18 @@
+#pragma once
+/// What sensors measure, and when.
+
+#include "flexarm/scene/scene_description.h"
+#include "simulation/published_motion.h"
+
+namespace flexarm {
+
+/// {force, moment} that a joint transmits to the link that it carries, at the end of the last step: about the link's
+/// origin, world axes.
+Wrench transmitted_wrench(const State& state, int reaction);
+
+/// Takes the samples that are due by the state's time, or all. Nothing depends on when it is called but for that: the
+/// errors of a sample are those of its number, counted from t = 0. Allocates nothing after its first call.
+void take_samples(const std::vector<scene::Sensor>& sensors, const MotionView& view, PublishedMotion& motion, bool all,
+                  std::vector<SensorSample>& samples);
+
+}  // namespace flexarm

@@ -1,0 +1,157 @@
+// What joints transmit: it balances loads and the rates of momenta of what hangs on them.
+#include <gtest/gtest.h>
+
+#include "support/scene_builder.h"
+
+namespace flexarm::test {
+namespace {
+
+constexpr double kStep = 2e-3;
+const Vector3 kForce(3, -2, 5);
+
+std::size_t link_index(const Simulation& simulation, const std::string& name) {
+  const std::vector<std::string>& names = simulation.link_names();
+  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+/// A flexible arm on a hinge away from the world's origin, with a body at its end that a constant force pulls.
+SceneBuilder pulled_arm() {
+  SceneBuilder b;
+  b.beam("arm", {{0.6, 0, 0}, {0.9, 0.2, 0.1}}, section(2e4, 1e4, 200, 250, 0.5, 0.02, 0.01), 3, 2);
+  b.joint("hinge", scene::JointKind::Revolute, "world", "arm", {0.3, -0.2, 0.5}, {0, 0.6, 0.8});
+  b.body("hand", 0.7, {0.05, 0.02, 0}, Vector3(0.01, 0.02, 0.015).asDiagonal());
+  b.joint("wrist", scene::JointKind::Spherical, "arm", "hand", {0.9, 0.2, 0.1});
+  b.load("hand", {0.1, 0, 0}, kForce);
+  b.probe("hand", "hand", {0.1, 0, 0});
+  b.sensor("root", scene::SensorKind::Reaction, "arm");
+  b.scene.initial_joints.push_back({"hinge", 0.2, 1.5, {}});
+  b.scene.integrator.tolerance = 1e-12;
+  b.scene.integrator.step = kStep;
+  return b;
+}
+
+/// As theory.md has it, from means over the last three steps.
+Vector3 at_end(const std::vector<Vector3>& means) {
+  const std::size_t n = means.size();
+  return means[n - 1] + 0.5 * (means[n - 2] - means[n - 3]);
+}
+
+class Reactions : public ::testing::TestWithParam<std::string> {};
+
+// Exact with these schemes, by the tolerance of Newton's method and the round-off of momenta over a step.
+TEST_P(Reactions, OfTheRootBalanceLoadsAndRatesOfMomenta) {
+  SceneBuilder b = pulled_arm();
+  b.scene.integrator.scheme = GetParam();
+  Simulation simulation(b.scene);
+  const std::size_t arm = link_index(simulation, "arm");
+  const Vector3 root = simulation.link_pose(arm).position;
+  std::vector<Vector3> forces, moments;
+  Vector3 momentum = simulation.momentum(), spin = simulation.angular_momentum(),
+          hand = simulation.probe(0).pose.position;
+  double scale = 0, error = 0;
+  for (int n = 0; n < 200; ++n) {
+    ASSERT_TRUE(simulation.step().converged);
+    const Vector3 next = simulation.momentum(), next_spin = simulation.angular_momentum();
+    const Vector3 next_hand = simulation.probe(0).pose.position;
+    forces.push_back((next - momentum) / kStep - kForce);
+    moments.push_back((next_spin - spin) / kStep - (0.5 * (hand + next_hand)).cross(kForce) -
+                      root.cross(forces.back()));
+    momentum = next, spin = next_spin, hand = next_hand;
+    if (forces.size() < 3) continue;
+    const Wrench reaction = simulation.reaction(arm);
+    scale = std::max({scale, reaction.force.norm(), reaction.moment.norm()});
+    error = std::max({error, (reaction.force - at_end(forces)).norm(), (reaction.moment - at_end(moments)).norm()});
+  }
+  EXPECT_GT(scale, kForce.norm());
+  EXPECT_LE(error, 1e-10 * scale);
+}
+INSTANTIATE_TEST_SUITE_P(Schemes, Reactions, ::testing::Values("em", "em0", "edmc2", "m1", "em_symmetric"));
+
+// Forces at the ends of steps: momenta change by their means, moments but to second order.
+TEST(Reactions, OfNewmarkBalanceRatesOfMomentum) {
+  SceneBuilder b = pulled_arm();
+  b.scene.integrator.scheme = "newmark";
+  Simulation simulation(b.scene);
+  const std::size_t arm = link_index(simulation, "arm");
+  std::vector<Vector3> forces;
+  Vector3 momentum = simulation.momentum();
+  double scale = 0, error = 0;
+  for (int n = 0; n < 200; ++n) {
+    ASSERT_TRUE(simulation.step().converged);
+    forces.push_back((simulation.momentum() - momentum) / kStep - kForce);
+    momentum = simulation.momentum();
+    if (n < 5) continue;  // there is no force before the start
+    scale = std::max(scale, forces.back().norm());
+    error = std::max(error, (simulation.reaction(arm).force - at_end(forces)).norm());
+  }
+  EXPECT_LE(error, 1e-10 * scale);
+}
+
+// The torque about a driven axis is the drive's effort: both do the same work, one over the angle u of a step, the
+// other over 2 tan(u/2), which is more by a part u^2/12.
+TEST(Reactions, ContainTheDrive) {
+  SceneBuilder b = pulled_arm();
+  b.scene.initial_joints.clear();
+  b.scene.motions.push_back({"hinge", TimeFunction::parse("0.3*sin(4*t)"), {}});
+  Simulation simulation(b.scene);
+  const std::size_t arm = link_index(simulation, "arm");
+  for (int n = 0; n < 100; ++n) ASSERT_TRUE(simulation.step().converged);
+  const double effort = simulation.effort(0);
+  EXPECT_GT(std::abs(effort), 0.1);
+  const double turn = 0.3 * 4 * kStep;
+  EXPECT_NEAR(simulation.reaction(arm).moment.dot(Vector3(0, 0.6, 0.8)), effort, turn * turn / 12 * std::abs(effort));
+}
+
+// A link that is fixed to another one is part of its rigid body, unless somebody wants to know what holds it.
+TEST(Reactions, HoldAFixedPayload) {
+  SceneBuilder b;
+  b.scene.gravity = {0, 0, -10};
+  b.body("arm", 1, {0.2, 0, 0}, 0.1 * Matrix3::Identity());
+  b.joint("mount", scene::JointKind::Fixed, "world", "arm", {0, 0, 1});
+  b.body("payload", 2, {0.1, 0.3, 0}, 0.1 * Matrix3::Identity());
+  scene::JointDescription& grip = b.joint("grip", scene::JointKind::Fixed, "arm", "payload", {0.4, 0, 0});
+  grip.origin.orientation = Quaternion(Eigen::AngleAxisd(0.5 * 3.14159265358979323846, Vector3::UnitZ()));
+  b.body("pendulum", 0.5, {0, 0, -0.1}, 0.1 * Matrix3::Identity());
+  b.joint("free", scene::JointKind::Revolute, "payload", "pendulum", {0, 0, 0}, {0, 1, 0});
+  b.sensor("grip", scene::SensorKind::Reaction, "payload");
+  b.sensor("cell", scene::SensorKind::Wrench, "payload", {0.1, 0, 0});
+  b.sensor("base", scene::SensorKind::Reaction, "arm");
+  Simulation simulation(b.scene);
+  ASSERT_TRUE(simulation.solve_static(1).converged);
+  const Wrench grip_wrench = simulation.reaction(link_index(simulation, "payload"));
+  // The payload's axes: x along the world's y. Its mass hangs at (-0.3, 0.1) from the grip.
+  EXPECT_LE((grip_wrench.force - Vector3(0, 0, 25)).norm(), 1e-12);
+  EXPECT_LE((grip_wrench.moment - Vector3(-0.3, 0.1, 0).cross(Vector3(0, 0, 20))).norm(), 1e-12);
+  const SensorSample& cell = simulation.sample(1);
+  // About a place 0.1 m further in the link's x, in the link's axes.
+  const Vector3 moment = Vector3(0.1, 0.3, 0).cross(Vector3(0, 0, 20)) - Vector3(0.1, 0, 0).cross(Vector3(0, 0, 25));
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(cell.values[3 + k], moment[k], 1e-12);
+  EXPECT_NEAR(cell.values[2], 25, 1e-12);
+  EXPECT_LE((simulation.reaction(link_index(simulation, "arm")).force - Vector3(0, 0, 35)).norm(), 1e-12);
+}
+
+TEST(Reactions, AreThereForLinksOfWhichSomebodyAsks) {
+  Simulation simulation(pulled_arm().scene);
+  EXPECT_THROW(simulation.reaction(link_index(simulation, "hand")), std::invalid_argument);
+  EXPECT_EQ(simulation.reaction(link_index(simulation, "arm")).force, Vector3(0, 0, 0));
+}
+
+// A step of a cantilever: the clamp carries what the first section does.
+TEST(Reactions, AgreeWithTheSectionForceAtRest) {
+  SceneBuilder b;
+  b.beam("arm", {{1, 0, 0}}, section(2e4, 1e4, 200, 250, 0.5, 0.02, 0.01), 4, 2);
+  b.joint("clamp", scene::JointKind::Fixed, "world", "arm");
+  b.load("arm", {1, 0, 0}, {0, 1e-4, 2e-4});
+  b.sensor("root", scene::SensorKind::Reaction, "arm");
+  b.scene.integrator.tolerance = 1e-12;
+  Simulation simulation(b.scene);
+  ASSERT_TRUE(simulation.solve_static(1).converged);
+  const Wrench reaction = simulation.reaction(1);
+  EXPECT_LE((reaction.force - Vector3(0, -1e-4, -2e-4)).norm(), 2e4 * 1e-15);  // stiffness times round-off of strains
+  // What the section before does to the one behind is minus the resultant.
+  const BeamPoint section = simulation.section(1, 0);
+  EXPECT_LE((reaction.moment + section.resultant.tail<3>()).norm(), 1e-6 * reaction.moment.norm());
+}
+
+}  // namespace
+}  // namespace flexarm::test
