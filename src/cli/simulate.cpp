@@ -2,7 +2,9 @@
 #include <chrono>
 #include <filesystem>
 #include <limits>
-#include <optional>
+#include <memory>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -14,6 +16,7 @@
 #include "flexarm/simulation/checkpoint.h"
 #include "flexarm/simulation/csv_writer.h"
 #include "flexarm/simulation/run_summary.h"
+#include "recording/writers.h"
 
 namespace flexarm::cli {
 namespace {
@@ -21,8 +24,9 @@ namespace {
 struct Arguments {
   SceneInput scene;
   std::string output, resume, checkpoint;
-  double until = 10;            // s
-  double checkpoint_every = 0;  // s; 0: at the end only
+  double until = 10;                 // s
+  double checkpoint_every = 0;       // s; 0: at the end only
+  std::vector<std::string> columns;  // patterns; empty: all
   int every = 1;
   bool quiet = false;
   SimulationOptions options;
@@ -40,6 +44,10 @@ struct Run {
   double seconds = 0;  // of the wall clock
 };
 
+bool ends_with(const std::string& text, std::string_view end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
 void check_places(const Arguments& arguments) {
   for (const auto& [option, path] : {std::pair("--checkpoint", &arguments.checkpoint), {"--resume", &arguments.resume}})
     if (is_standard_output(*path))
@@ -47,6 +55,8 @@ void check_places(const Arguments& arguments) {
   for (const std::string& other : {arguments.scene.path, arguments.resume, arguments.checkpoint})
     refuse_overwriting("--output", arguments.output, other);
   refuse_overwriting("--checkpoint", arguments.checkpoint, arguments.scene.path);
+  if (!arguments.columns.empty() && ends_with(arguments.output, ".bag"))
+    throw InputError("flexarm: --columns: a bag has messages, not columns");
 }
 
 /// Times of more steps than this could not be told apart.
@@ -75,10 +85,22 @@ class CheckpointTimes {
   double every_, next_;
 };
 
-std::optional<CsvWriter> open_output(const Arguments& arguments, const Simulation& simulation) {
-  if (arguments.output.empty()) return std::nullopt;
+/// The kind of file is what its name ends with.
+std::unique_ptr<ResultWriter> make_writer(const Arguments& arguments, const Simulation& simulation) {
+  const std::string& path = arguments.output;
+  if (ends_with(path, ".bag")) return recording::make_bag_writer(path, simulation);
+  ResultColumns columns(simulation, ResultColumns::Solver::With, arguments.columns);
+  if (ends_with(path, ".h5")) return recording::make_hdf5_writer(path, simulation, std::move(columns));
+  return std::make_unique<CsvWriter>(path, std::move(columns));
+}
+
+/// Null: nothing is put out.
+std::unique_ptr<ResultWriter> open_output(const Arguments& arguments, const Simulation& simulation) {
+  if (arguments.output.empty()) return nullptr;
   try {
-    return CsvWriter(arguments.output, simulation, CsvWriter::Columns::StateAndSolver);
+    return make_writer(arguments, simulation);
+  } catch (const std::invalid_argument& error) {
+    throw InputError("flexarm: --columns: " + std::string(error.what()));
   } catch (const std::runtime_error& error) {
     throw InputError("flexarm: " + std::string(error.what()));
   }
@@ -87,7 +109,7 @@ std::optional<CsvWriter> open_output(const Arguments& arguments, const Simulatio
 /// Steps to the end, to a failure or to an interruption; the output ends with the last good state.
 /// @throws std::runtime_error if results or a checkpoint on the way cannot be written.
 Run run(const Arguments& arguments, Simulation& simulation) {
-  std::optional<CsvWriter> output = open_output(arguments, simulation);
+  const std::unique_ptr<ResultWriter> output = open_output(arguments, simulation);
   CheckpointTimes checkpoints(simulation.time(), arguments.checkpoint_every);
   ProgressBar progress(simulation.time(), arguments.until, !arguments.quiet);
   const auto start = std::chrono::steady_clock::now();
@@ -104,7 +126,7 @@ Run run(const Arguments& arguments, Simulation& simulation) {
     if (run.last.converged && checkpoints.is_due(simulation.time(), simulation.step_size()))
       write_checkpoint(simulation, arguments.checkpoint);
     if (!output) continue;
-    output->count(run.last);
+    output->note_step(simulation, run.last);
     if (run.last.converged && run.summary.counts().steps % arguments.every != 0) continue;
     if (simulation.time() > written) output->write_row(simulation), run.summary.look(simulation);
     written = simulation.time();
@@ -207,7 +229,13 @@ void add_simulate(CLI::App& app, int& status) {
           },
           "what becomes of a step that the scheme cannot do (the scene's)")
       ->check(CLI::IsMember({"stop", "dissipate"}));
-  command->add_option("--output", arguments->output, "CSV file for the results; -: standard output");
+  CLI::Option* output = command->add_option(
+      "--output", arguments->output, "file for the results: .h5: HDF5, .bag: ROS bag, else CSV; -: standard output");
+  command
+      ->add_option("--columns", arguments->columns,
+                   "of the output: patterns of names, with commas between them (\"joint/*,sensor/*/f?\")")
+      ->delimiter(',')
+      ->needs(output);
   command->add_option("--every", arguments->every, "steps between rows of the output")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000000000));

@@ -48,7 +48,7 @@ int solve(const Arguments& arguments) {
   warn_of_instability(result, arguments.wanted);
   if (!is_standard_output(arguments.output)) print_equilibrium(simulation);
   if (arguments.output.empty()) return kDone;
-  CsvWriter output(arguments.output, simulation, CsvWriter::Columns::State);
+  CsvWriter output(arguments.output, ResultColumns(simulation, ResultColumns::Solver::Without));
   output.write_row(simulation);
   output.close();
   return kDone;

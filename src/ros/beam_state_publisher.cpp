@@ -1,7 +1,7 @@
 #include "beam_state_publisher.h"
 
 #include "advertise.h"
-#include "conversions.h"
+#include "messages/conversions.h"
 
 namespace flexarm::node {
 
@@ -29,12 +29,12 @@ BeamStateArray BeamStatePublisher::make_message(const ros::Time& stamp) {
     beam.link = simulation_.link_names()[link];
     for (const BeamPoint& point : points_) {
       geometry_msgs::Wrench resultant;
-      resultant.force = to_vector3(point.resultant.head<3>());
-      resultant.torque = to_vector3(point.resultant.tail<3>());
+      resultant.force = messages::to_vector3(point.resultant.head<3>());
+      resultant.torque = messages::to_vector3(point.resultant.tail<3>());
       beam.arc_length.push_back(point.arc_length);
-      beam.pose.push_back(to_pose(point.pose));
-      beam.strain.push_back(to_vector3(point.strain.head<3>()));
-      beam.curvature.push_back(to_vector3(point.strain.tail<3>()));
+      beam.pose.push_back(messages::to_pose(point.pose));
+      beam.strain.push_back(messages::to_vector3(point.strain.head<3>()));
+      beam.curvature.push_back(messages::to_vector3(point.strain.tail<3>()));
       beam.resultant.push_back(resultant);
     }
   }

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "scene_extent.h"
+#include "messages/scene_extent.h"
 
 namespace flexarm::node {
 namespace {
@@ -34,6 +34,7 @@ Node::Node()
       state_publisher_(node_, simulation_, run_, parameters_.publish_rate, parameters_.frame_prefix),
       beam_state_publisher_(node_, simulation_, run_, parameters_.publish_rate, root_frame()),
       marker_publisher_(node_, simulation_, run_, parameters_.marker_rate, root_frame()),
+      sensor_publisher_(node_, simulation_, run_, parameters_.frame_prefix),
       status_publisher_(private_node_, simulation_, run_, parameters_.status_rate, root_frame()),
       diagnostics_(node_, private_node_, simulation_, run_),
       command_interface_(node_, private_node_, simulation_, parameters_.command_timeout),
@@ -124,7 +125,7 @@ void Node::fail(const StepResult& result) {
 }
 
 void Node::describe_view() const {
-  const SceneExtent extent = scene_extent(simulation_);
+  const messages::SceneExtent extent = messages::scene_extent(simulation_);
   private_node_.setParam("view/frame", root_frame());
   private_node_.setParam("view/center", std::vector<double>{extent.center.x(), extent.center.y(), extent.center.z()});
   private_node_.setParam("view/radius", extent.radius);
@@ -137,6 +138,7 @@ void Node::publish(bool force) {
   state_publisher_.publish(*stamp, force);
   beam_state_publisher_.publish(*stamp, force);
   marker_publisher_.publish(*stamp, force);
+  sensor_publisher_.publish(*stamp);
   status_publisher_.publish(*stamp, force);
 }
 

@@ -19,6 +19,7 @@
 #include "pacer.h"
 #include "parameters.h"
 #include "run_state.h"
+#include "sensor_publisher.h"
 #include "services.h"
 #include "state_publisher.h"
 #include "status_publisher.h"
@@ -80,6 +81,7 @@ class Node {
   StatePublisher state_publisher_;
   BeamStatePublisher beam_state_publisher_;
   MarkerPublisher marker_publisher_;
+  SensorPublisher sensor_publisher_;
   StatusPublisher status_publisher_;
   Diagnostics diagnostics_;
   CommandInterface command_interface_;

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "advertise.h"
-#include "conversions.h"
+#include "messages/conversions.h"
 
 namespace flexarm::node {
 
@@ -45,8 +45,8 @@ SimulatorStatus StatusPublisher::make_message(const ros::Time& stamp) {
   message.total_energy = energies.total();
   message.work = energies.work;
   message.dissipated = energies.dissipated;
-  message.momentum = to_vector3(simulation_.momentum());
-  message.angular_momentum = to_vector3(simulation_.angular_momentum());
+  message.momentum = messages::to_vector3(simulation_.momentum());
+  message.angular_momentum = messages::to_vector3(simulation_.angular_momentum());
   return message;
 }
 

@@ -23,9 +23,9 @@ Simulation simulation(const std::string& joint) {
   return Simulation(result.scene.value());
 }
 
-std::string written(const Simulation& simulation, CsvWriter::Columns columns) {
+std::string written(const Simulation& simulation, ResultColumns::Solver solver) {
   const std::string path = temporary("out.csv");
-  CsvWriter writer(path, simulation, columns);
+  CsvWriter writer(path, ResultColumns(simulation, solver));
   writer.write_row(simulation);
   writer.close();
   return read_file(path);
@@ -43,7 +43,7 @@ struct Foreign : std::numpunct<char> {
 TEST(CsvWriter, WritesTheState) {
   const std::string path = temporary("out.csv");
   const Simulation cart = simulation("rail");
-  CsvWriter writer(path, cart, CsvWriter::Columns::State);
+  CsvWriter writer(path, ResultColumns(cart, ResultColumns::Solver::Without));
   writer.write_row(cart);
   writer.write_row(cart);
   writer.close();
@@ -61,15 +61,15 @@ TEST(CsvWriter, WritesTheState) {
 TEST(CsvWriter, SolverCountsStartAgainAfterEachRow) {
   const std::string path = temporary("out.csv");
   const Simulation cart = simulation("rail");
-  CsvWriter writer(path, cart, CsvWriter::Columns::StateAndSolver);
+  CsvWriter writer(path, ResultColumns(cart, ResultColumns::Solver::With));
   StepResult step;
   step.iterations = 3;
   step.halvings = 1;
   step.deepest_halving = 2;
-  writer.count(step);
+  writer.note_step(cart, step);
   step.deepest_halving = 1;
   step.is_dissipated = true;
-  writer.count(step);
+  writer.note_step(cart, step);
   writer.write_row(cart);
   writer.write_row(cart);
   writer.close();
@@ -84,21 +84,22 @@ TEST(CsvWriter, SolverCountsStartAgainAfterEachRow) {
 
 TEST(CsvWriter, DoesNotDependOnTheLocale) {
   const Simulation cart = simulation("rail");
-  const std::string text = written(cart, CsvWriter::Columns::StateAndSolver);
+  const std::string text = written(cart, ResultColumns::Solver::With);
   const std::locale before = std::locale::global(std::locale(std::locale::classic(), new Foreign));
-  EXPECT_EQ(written(cart, CsvWriter::Columns::StateAndSolver), text);
+  EXPECT_EQ(written(cart, ResultColumns::Solver::With), text);
   std::locale::global(before);
 }
 
 TEST(CsvWriter, NamesWithSeparatorsStandInQuotes) {
-  const std::string text = written(simulation("a,b"), CsvWriter::Columns::State);
+  const std::string text = written(simulation("a,b"), ResultColumns::Solver::Without);
   EXPECT_NE(text.find(",\"joint/a,b/position\","), std::string::npos) << text;
 }
 
 TEST(CsvWriter, ReportsErrors) {
   const Simulation cart = simulation("rail");
-  EXPECT_THROW(CsvWriter("/no/such/folder/out.csv", cart, CsvWriter::Columns::State), std::runtime_error);
-  EXPECT_THROW(CsvWriter("/dev/full", cart, CsvWriter::Columns::State), std::runtime_error);
+  EXPECT_THROW(CsvWriter("/no/such/folder/out.csv", ResultColumns(cart, ResultColumns::Solver::Without)),
+               std::runtime_error);
+  EXPECT_THROW(CsvWriter("/dev/full", ResultColumns(cart, ResultColumns::Solver::Without)), std::runtime_error);
 }
 
 }  // namespace flexarm::cli

@@ -1,11 +1,11 @@
-#include "scene_extent.h"
+#include "messages/scene_extent.h"
 
 #include <Eigen/Geometry>
 #include <vector>
 
 #include "flexarm/scene/scene_description.h"
 
-namespace flexarm::node {
+namespace flexarm::messages {
 
 SceneExtent scene_extent(const Simulation& simulation) {
   Eigen::AlignedBox3d box;
@@ -24,4 +24,4 @@ SceneExtent scene_extent(const Simulation& simulation) {
   return {box.center(), radius > 0 ? radius : 1};
 }
 
-}  // namespace flexarm::node
+}  // namespace flexarm::messages

@@ -12,7 +12,7 @@
 
 #include "flexarm/math/pose.h"
 
-namespace flexarm::node {
+namespace flexarm::messages {
 
 /// Blue, cyan, green, yellow, red for 0 to 1, linear between.
 std_msgs::ColorRGBA make_color(double value);
@@ -53,4 +53,4 @@ class Tube {
   std::optional<Section> last_;
 };
 
-}  // namespace flexarm::node
+}  // namespace flexarm::messages

@@ -8,7 +8,7 @@
 
 #include "flexarm/math/pose.h"
 
-namespace flexarm::node {
+namespace flexarm::messages {
 
 inline geometry_msgs::Vector3 to_vector3(const Vector3& vector) {
   geometry_msgs::Vector3 message;
@@ -49,4 +49,4 @@ inline geometry_msgs::Transform to_transform(const Pose& pose) {
   return message;
 }
 
-}  // namespace flexarm::node
+}  // namespace flexarm::messages

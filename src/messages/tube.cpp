@@ -1,11 +1,11 @@
-#include "tube.h"
+#include "messages/tube.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "conversions.h"
+#include "messages/conversions.h"
 
-namespace flexarm::node {
+namespace flexarm::messages {
 namespace {
 
 /// A colour under a light from above: rviz does not light triangles that have colours of their own.
@@ -85,4 +85,4 @@ void Tube::add_cap(const Section& section, bool forwards) {
   }
 }
 
-}  // namespace flexarm::node
+}  // namespace flexarm::messages

@@ -1,13 +1,13 @@
-#include "strain_legend.h"
+#include "messages/strain_legend.h"
 
 #include <cmath>
 #include <cstdio>
 #include <string>
 
-#include "conversions.h"
-#include "tube.h"
+#include "messages/conversions.h"
+#include "messages/tube.h"
 
-namespace flexarm::node {
+namespace flexarm::messages {
 namespace {
 
 // Lengths as parts of the scene's radius.
@@ -53,4 +53,4 @@ void add_strain_legend(const std_msgs::Header& header, const SceneExtent& extent
   add_text(center + height(1) + 2 * kTextHeight * extent.radius * Vector3::UnitZ(), "edge strain");
 }
 
-}  // namespace flexarm::node
+}  // namespace flexarm::messages

@@ -3,7 +3,7 @@
 
 #include "flexarm/simulation/simulation.h"
 
-namespace flexarm::node {
+namespace flexarm::messages {
 
 struct SceneExtent {
   Vector3 center;  ///< in the world [m]
@@ -13,4 +13,4 @@ struct SceneExtent {
 /// Extent of the present configuration: link frames, centres of mass, centrelines. Shapes for display do not count.
 SceneExtent scene_extent(const Simulation& simulation);
 
-}  // namespace flexarm::node
+}  // namespace flexarm::messages

@@ -1,0 +1,57 @@
+#pragma once
+/// What a row of results is made of.
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "flexarm/simulation/simulation.h"
+
+namespace flexarm {
+
+/// One number of a row.
+struct ResultColumn {
+  std::string name, unit;
+};
+
+/// Which results of a simulation are put out. In this order, SI units, world axes, quaternions x y z w:
+///   time
+///   joint/NAME/position|velocity|effort      for every released coordinate
+///   frame/LINK/x|y|z|qx|qy|qz|qw             for every link
+///   probe/NAME/x|y|z|qx|qy|qz|qw|vx|vy|vz    for every probe
+///   probe/NAME/ax|ay|az                      the same, only where a pattern asks for it
+///   sensor/NAME/...                          for every sensor what scene::sensor_channels() has: its last sample
+///   energy/kinetic|strain|potential|total|work|dissipated
+///   momentum/x|y|z, angular_momentum/x|y|z   (about the world origin)
+///   solver/step|iterations|halvings|deepest_halving|other_guesses|dissipated_steps
+///                                            of a simulation in time: step size, and StepCounts since the row before
+class ResultColumns {
+ public:
+  enum class Solver { Without, With };
+
+  /// Those whose names fit one of the `patterns`, as a shell's wildcards do ("joint/*", "*/f[xyz]"), and the time; all
+  /// where there are none. What no column needs is not computed.
+  /// @throws std::invalid_argument naming a pattern that no column fits.
+  ResultColumns(const Simulation& simulation, Solver solver, const std::vector<std::string>& patterns = {});
+
+  const std::vector<ResultColumn>& columns() const { return columns_; }
+  /// Their values now; `counts`: since the row before. Valid until the next call.
+  const std::vector<double>& row(const Simulation& simulation, const StepCounts& counts);
+
+ private:
+  using Values = void (*)(const Simulation& simulation, const StepCounts& counts, std::size_t index,
+                          std::vector<double>& values);
+  /// What is computed together.
+  struct Group {
+    Values values;
+    std::size_t index;               // of the joint, link, probe or sensor
+    std::vector<std::size_t> taken;  // of its values
+  };
+  class Selection;
+
+  std::vector<ResultColumn> columns_;
+  std::vector<Group> groups_;
+  std::vector<double> row_, values_;
+};
+
+}  // namespace flexarm

@@ -1,0 +1,43 @@
+#pragma once
+/// A simulation as a ROS bag.
+
+#include <string>
+#include <vector>
+
+#include <rosbag/bag.h>
+
+#include "flexarm/simulation/result_writer.h"
+#include "messages/marker_messages.h"
+#include "messages/state_messages.h"
+#include "recording/replaced_file.h"
+
+namespace flexarm::recording {
+
+/// What the node would publish, stamped with simulated time: /joint_states and /tf with each row, /beam_markers 25
+/// times a second, /sensors/NAME with each sample, /tf_static once. What was at the file's place before stays there
+/// until close().
+class BagWriter : public ResultWriter {
+ public:
+  /// @throws std::runtime_error naming the file if it cannot be written; so do the other functions
+  BagWriter(const std::string& path, const Simulation& simulation);
+
+  void write_row(const Simulation& simulation) override;
+  void note_step(const Simulation& simulation, const StepResult& result) override;
+  void close() override;
+
+ private:
+  /// What `write` does; errors name the file.
+  template <class Write>
+  void checked(const Write& write);
+  void write_samples(const Simulation& simulation);
+  void write_static_transforms();
+
+  ReplacedFile place_;
+  rosbag::Bag bag_;
+  messages::StateMessages states_;
+  messages::MarkerMessages markers_;
+  double next_markers_ = 0;      // [s]
+  std::vector<double> sampled_;  // per sensor: time of the last sample that was written [s]
+};
+
+}  // namespace flexarm::recording

@@ -1,0 +1,164 @@
+#include "flexarm/simulation/result_columns.h"
+
+#include <algorithm>
+#include <initializer_list>
+#include <stdexcept>
+
+#include <fnmatch.h>
+
+#include "flexarm/scene/scene_description.h"
+#include "simulation/inside.h"
+
+namespace flexarm {
+namespace {
+
+using Row = std::vector<double>;
+
+void append(Row& row, const Vector3& vector) {
+  row.insert(row.end(), vector.begin(), vector.end());
+}
+
+void append(Row& row, const Pose& pose) {
+  append(row, pose.position);
+  for (int i = 0; i < 4; ++i) row.push_back(pose.orientation.coeffs()[i]);  // x y z w
+}
+
+// ---------------------------------------------------------------- values of groups
+
+void time_values(const Simulation& simulation, const StepCounts&, std::size_t, Row& row) {
+  row.push_back(simulation.time());
+}
+void joint_values(const Simulation& simulation, const StepCounts&, std::size_t i, Row& row) {
+  row.insert(row.end(), {simulation.position(i), simulation.velocity(i), simulation.effort(i)});
+}
+void frame_values(const Simulation& simulation, const StepCounts&, std::size_t i, Row& row) {
+  append(row, simulation.link_pose(i));
+}
+void probe_values(const Simulation& simulation, const StepCounts&, std::size_t i, Row& row) {
+  const ProbeState probe = simulation.probe(i);
+  append(row, probe.pose);
+  append(row, probe.velocity);
+}
+void acceleration_values(const Simulation& simulation, const StepCounts&, std::size_t i, Row& row) {
+  append(row, simulation.probe_acceleration(i).linear);
+}
+void sensor_values(const Simulation& simulation, const StepCounts&, std::size_t i, Row& row) {
+  const std::size_t count = scene::sensor_channels(simulation.scene().sensors[i].kind).size();
+  const auto& values = simulation.sample(i).values;
+  row.insert(row.end(), values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
+}
+void energy_values(const Simulation& simulation, const StepCounts&, std::size_t, Row& row) {
+  const Energies e = simulation.energies();
+  row.insert(row.end(), {e.kinetic, e.strain, e.potential, e.total(), e.work, e.dissipated});
+}
+void momentum_values(const Simulation& simulation, const StepCounts&, std::size_t, Row& row) {
+  append(row, simulation.momentum());
+}
+void angular_momentum_values(const Simulation& simulation, const StepCounts&, std::size_t, Row& row) {
+  append(row, simulation.angular_momentum());
+}
+void solver_values(const Simulation& simulation, const StepCounts& counts, std::size_t, Row& row) {
+  row.push_back(simulation.step_size());
+  for (const long count : {counts.iterations, counts.halvings, static_cast<long>(counts.deepest_halving),
+                           counts.other_guesses, counts.dissipated_steps})
+    row.push_back(static_cast<double>(count));
+}
+
+}  // namespace
+
+/// Takes what is asked for.
+class ResultColumns::Selection {
+ public:
+  Selection(ResultColumns& result, const std::vector<std::string>& patterns)
+      : result_(result), patterns_(patterns), is_fitted_(patterns.size(), false) {}
+
+  using Names = std::vector<scene::SensorChannel>;
+  /// `by_request`: only where a pattern fits.
+  void add(const std::string& prefix, const Names& names, Values values, std::size_t index = 0,
+           bool by_request = false) {
+    Group group{values, index, {}};
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      const std::string name = prefix + names[k].name;
+      if (!is_wanted(name, by_request)) continue;
+      result_.columns_.push_back({name, names[k].unit});
+      group.taken.push_back(k);
+    }
+    if (!group.taken.empty()) result_.groups_.push_back(group);
+  }
+
+  void require_all_fitted() const {
+    const auto odd = std::find(is_fitted_.begin(), is_fitted_.end(), false);
+    if (odd != is_fitted_.end())
+      throw std::invalid_argument("no column is like '" +
+                                  patterns_[static_cast<std::size_t>(odd - is_fitted_.begin())] + "'");
+  }
+
+ private:
+  bool is_wanted(const std::string& name, bool by_request) {
+    bool is_wanted = name == "time" || (patterns_.empty() && !by_request);
+    for (std::size_t i = 0; i < patterns_.size(); ++i) {
+      if (fnmatch(patterns_[i].c_str(), name.c_str(), 0) != 0) continue;
+      is_wanted = is_fitted_[i] = true;
+    }
+    return is_wanted;
+  }
+
+  ResultColumns& result_;
+  const std::vector<std::string>& patterns_;
+  std::vector<bool> is_fitted_;
+};
+
+ResultColumns::ResultColumns(const Simulation& simulation, Solver solver, const std::vector<std::string>& patterns) {
+  using Names = Selection::Names;
+  const Names pose = {{"x", "m"}, {"y", "m"}, {"z", "m"}, {"qx", "1"}, {"qy", "1"}, {"qz", "1"}, {"qw", "1"}};
+  Names probe = pose;
+  probe.insert(probe.end(), {{"vx", "m/s"}, {"vy", "m/s"}, {"vz", "m/s"}});
+  const scene::SceneDescription& scene = simulation.scene();
+  Selection selection(*this, patterns);
+  selection.add("", {{"time", "s"}}, time_values);
+  for (std::size_t i = 0; i < simulation.coordinate_names().size(); ++i) {
+    const bool turns = is_rotation(model_of(simulation), model_of(simulation).coordinates[i]);
+    const Names angle = {{"position", "rad"}, {"velocity", "rad/s"}, {"effort", "N m"}};
+    const Names travel = {{"position", "m"}, {"velocity", "m/s"}, {"effort", "N"}};
+    selection.add("joint/" + simulation.coordinate_names()[i] + "/", turns ? angle : travel, joint_values, i);
+  }
+  for (std::size_t i = 0; i < simulation.link_names().size(); ++i)
+    selection.add("frame/" + simulation.link_names()[i] + "/", pose, frame_values, i);
+  for (std::size_t i = 0; i < scene.probes.size(); ++i) {
+    const std::string prefix = "probe/" + scene.probes[i].name + "/";
+    selection.add(prefix, probe, probe_values, i);
+    selection.add(prefix, {{"ax", "m/s^2"}, {"ay", "m/s^2"}, {"az", "m/s^2"}}, acceleration_values, i, true);
+  }
+  for (std::size_t i = 0; i < scene.sensors.size(); ++i)
+    selection.add("sensor/" + scene.sensors[i].name + "/", scene::sensor_channels(scene.sensors[i].kind), sensor_values,
+                  i);
+  selection.add(
+      "energy/",
+      {{"kinetic", "J"}, {"strain", "J"}, {"potential", "J"}, {"total", "J"}, {"work", "J"}, {"dissipated", "J"}},
+      energy_values);
+  selection.add("momentum/", {{"x", "kg m/s"}, {"y", "kg m/s"}, {"z", "kg m/s"}}, momentum_values);
+  selection.add("angular_momentum/", {{"x", "kg m^2/s"}, {"y", "kg m^2/s"}, {"z", "kg m^2/s"}},
+                angular_momentum_values);
+  if (solver == Solver::With)
+    selection.add("solver/",
+                  {{"step", "s"},
+                   {"iterations", "1"},
+                   {"halvings", "1"},
+                   {"deepest_halving", "1"},
+                   {"other_guesses", "1"},
+                   {"dissipated_steps", "1"}},
+                  solver_values);
+  selection.require_all_fitted();
+}
+
+const std::vector<double>& ResultColumns::row(const Simulation& simulation, const StepCounts& counts) {
+  row_.clear();
+  for (const Group& group : groups_) {
+    values_.clear();
+    group.values(simulation, counts, group.index, values_);
+    for (const std::size_t k : group.taken) row_.push_back(values_[k]);
+  }
+  return row_;
+}
+
+}  // namespace flexarm

@@ -1,0 +1,81 @@
+#include "flexarm/simulation/result_columns.h"
+
+#include "cli/program.h"
+#include "flexarm/scene/urdf_reader.h"
+#include "simulation/everything_scene.h"
+
+namespace flexarm::cli {
+namespace {
+
+using Solver = ResultColumns::Solver;
+
+Simulation everything() {
+  test::SceneBuilder b = test::everything_scene();
+  b.sensor("eye", scene::SensorKind::Pose, "beam4");
+  return Simulation(b.scene);
+}
+
+std::vector<std::string> names(const Simulation& simulation, const std::vector<std::string>& patterns) {
+  std::vector<std::string> names;
+  const ResultColumns columns(simulation, Solver::With, patterns);
+  for (const ResultColumn& column : columns.columns()) names.push_back(column.name);
+  return names;
+}
+
+}  // namespace
+
+TEST(ResultColumns, AreThoseThatFit) {
+  const Simulation simulation = everything();
+  EXPECT_EQ(names(simulation, {"joint/hinge/*", "energy/total"}),
+            (std::vector<std::string>{"time", "joint/hinge/position", "joint/hinge/velocity", "joint/hinge/effort",
+                                      "energy/total"}));
+  EXPECT_EQ(names(simulation, {"probe/tip/[av]z"}), (std::vector<std::string>{"time", "probe/tip/vz", "probe/tip/az"}));
+}
+
+TEST(ResultColumns, HaveTheValuesOfAllColumns) {
+  Simulation simulation = everything();
+  for (int n = 0; n < 3; ++n) simulation.step();
+  ResultColumns all(simulation, Solver::With);
+  const std::vector<double> row = all.row(simulation, {});
+  ASSERT_EQ(row.size(), all.columns().size());
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    std::string pattern = all.columns()[i].name;
+    ResultColumns one(simulation, Solver::With, {pattern});
+    EXPECT_EQ(one.row(simulation, {}).back(), row[i]) << pattern;
+  }
+}
+
+TEST(ResultColumns, HaveUnits) {
+  const Simulation simulation = everything();
+  const auto unit = [&](const std::string& name) {
+    return ResultColumns(simulation, Solver::With, {name}).columns().back().unit;
+  };
+  EXPECT_EQ(unit("joint/hinge/position"), "rad");
+  EXPECT_EQ(unit("joint/prismatic/effort"), "N");
+  EXPECT_EQ(unit("joint/cylindrical/1/velocity"), "m/s");
+  EXPECT_EQ(unit("probe/tip/ax"), "m/s^2");
+  EXPECT_EQ(unit("sensor/eye/qw"), "1");
+  EXPECT_EQ(unit("angular_momentum/y"), "kg m^2/s");
+}
+
+TEST(ResultColumns, NobodyIsLikeAreRefused) {
+  const Simulation simulation = everything();
+  EXPECT_THROW(names(simulation, {"joint/*", "joints/*"}), std::invalid_argument);
+}
+
+TEST(Columns, AreChosenOnTheCommandLine) {
+  const std::string out = temporary("out.csv");
+  const std::string run =
+      "flexarm simulate --quiet --until 0.01 " + example("flexible_two_link_arm") + " --output " + out;
+  EXPECT_EQ(shell(run + " --columns 'energy/*,momentum/x'").status, 0);
+  EXPECT_EQ(read_csv(out).size(), 8u);
+  const Outcome refused = shell(run + " --columns 'speed/*'");
+  EXPECT_EQ(refused.status, 2);
+  expect_contains(refused.errors, "flexarm: --columns: no column is like 'speed/*'");
+  const Outcome bag = shell("flexarm simulate --until 0.01 " + example("flexible_two_link_arm") + " --output " +
+                            temporary("out.bag") + " --columns time");
+  EXPECT_EQ(bag.status, 2);
+  expect_contains(bag.errors, "a bag has messages, not columns");
+}
+
+}  // namespace flexarm::cli
