@@ -5,6 +5,7 @@
 
 #include "building/section.h"
 #include "cli/commands.h"
+#include "cli/driven_ends.h"
 #include "cli/mode_table.h"
 #include "cli/scene_input.h"
 #include "simulation/inside.h"
@@ -63,7 +64,9 @@ void print_links(const Simulation& simulation) {
     const scene::LinkDescription& link = scene.links[i];
     const std::optional<BeamLink>& beam = model_of(simulation).links[i].beam;
     const bool is_root = link.name == scene.root_link;
-    const double mass = beam ? beam->mass : link.inertial ? link.inertial->mass : 0.0;
+    double mass = beam ? beam->mass : link.inertial ? link.inertial->mass : 0.0;
+    if (beam)
+      for (const scene::HubDescription& hub : link.beam->hubs) mass += hub.mass;
     fmt::print("{:<24} {:<10} {:>12.6g}\n", link.name, beam ? "flexible" : is_root ? "clamped" : "rigid", mass);
   }
 }
@@ -145,6 +148,8 @@ void add_check(CLI::App& app, int& status) {
     print_links(simulation);
     print_joints(simulation);
     print_beams(simulation);
+    for (const std::string& warning : warnings_of_driven_ends(simulation))
+      fmt::print(stderr, "flexarm: warning: {}\n", warning);
     try {
       print_frequencies(simulation);
     } catch (const std::runtime_error& error) {
