@@ -76,13 +76,6 @@ double damping_of(const Coordinate& coordinate, const StopPenalty& stop, const R
   return coordinate.damping + stop_damping(*coordinate.limit, stop, released.displacement[coordinate.component]);
 }
 
-/// Equilibrium of exact forces.
-Scheme rest(double contact_time) {
-  Scheme scheme = statics_of(*find_scheme("newmark"));
-  scheme.contact_time = contact_time;
-  return scheme;
-}
-
 }  // namespace
 
 double work_of_forces(const Model& model) {
@@ -95,11 +88,46 @@ double work_of_forces(const Model& model) {
   return work;
 }
 
+double round_off(const Model& model, const State& equilibrium, const std::vector<ComplexVector6>& node_motion) {
+  double elastic = 0, largest_spin = 0;
+  for_each_element(model.beams, [&](const auto& element) {
+    constexpr int N = std::decay_t<decltype(element)>::kNodes;
+    Eigen::Matrix<double, 6 * N, 1> motion;
+    for (int i = 0; i < N; ++i) motion.template segment<6>(6 * i) = node_motion[element.nodes[i]].cwiseAbs();
+    elastic += motion.dot(material_stiffness<N>(element, equilibrium).cwiseAbs() * motion);
+  });
+  // A force changes its work by a second order of rotations, times an arm.
+  for (const ComplexVector6& motion : node_motion) largest_spin = std::max(largest_spin, motion.tail<3>().norm());
+  return kStiffnessRoundOff * (elastic + work_of_forces(model) * largest_spin * largest_spin);
+}
+
+bool is_circulatory(const Model& model, const State& equilibrium) {
+  const auto load_circulates = [](const NodalLoad& load) { return load.follows || !load.moment.isZero(0); };
+  // The moment on a free rotation has axes that stand still while it turns.
+  const auto effort_circulates = [&](std::size_t i) {
+    const Coordinate& coordinate = model.coordinates[i];
+    return coordinate.is_angle && (coordinate.effort >= 0 || !std::isnan(equilibrium.commands[i]));
+  };
+  if (std::any_of(model.loads.begin(), model.loads.end(), load_circulates)) return true;
+  for (std::size_t i = 0; i < model.coordinates.size(); ++i)
+    if (effort_circulates(i)) return true;
+  // A servo that measures beyond its gear pushes at another place than it feels.
+  return std::any_of(model.actuators.begin(), model.actuators.end(), [](const Actuator& actuator) {
+    return actuator.drive.gear && actuator.servo && actuator.servo->on_link;
+  });
+}
+
+Scheme exact_equilibrium(double contact_time) {
+  Scheme scheme = statics_of(*find_scheme("newmark"));
+  scheme.contact_time = contact_time;
+  return scheme;
+}
+
 LinearisedMotion::LinearisedMotion(const Model& model, const State& state, double contact_time)
     : model_(model),
       state_(state),
       contact_time_(contact_time),
-      system_(model, rest(contact_time), BackendChoice::Matrix),
+      system_(model, exact_equilibrium(contact_time), BackendChoice::Matrix),
       dof_(system_.degrees_of_freedom()),
       stiffness_(static_cast<const SparseTangent&>(system_.tangent())),
       damping_(model, dof_),
@@ -134,22 +162,6 @@ LinearisedMotion::Matrix LinearisedMotion::matrix(const std::vector<double>& ext
 bool LinearisedMotion::is_damped() const {
   const Matrix values = damping();
   return std::any_of(values.valuePtr(), values.valuePtr() + values.nonZeros(), [](double value) { return value != 0; });
-}
-
-bool LinearisedMotion::is_circulatory() const {
-  const auto load_circulates = [](const NodalLoad& load) { return load.follows || !load.moment.isZero(0); };
-  // The moment on a free rotation has axes that stand still while it turns.
-  const auto effort_circulates = [&](std::size_t i) {
-    const Coordinate& coordinate = model_.coordinates[i];
-    return coordinate.is_angle && (coordinate.effort >= 0 || !std::isnan(state_.commands[i]));
-  };
-  if (std::any_of(model_.loads.begin(), model_.loads.end(), load_circulates)) return true;
-  for (std::size_t i = 0; i < model_.coordinates.size(); ++i)
-    if (effort_circulates(i)) return true;
-  // A servo that measures beyond its gear pushes at another place than it feels.
-  return std::any_of(model_.actuators.begin(), model_.actuators.end(), [](const Actuator& actuator) {
-    return actuator.drive.gear && actuator.servo && actuator.servo->on_link;
-  });
 }
 
 /// Sets the multipliers of loops to what balances the residual: their forces stiffen the mechanism as loads do.
@@ -342,19 +354,6 @@ double LinearisedMotion::strain_energy(const std::vector<ComplexVector6>& node_m
     energy += motion.dot(material_curvature<N>(element, state_) * motion).real();
   });
   return energy;
-}
-
-double LinearisedMotion::round_off(const std::vector<ComplexVector6>& node_motion) const {
-  double elastic = 0, largest_spin = 0;
-  for_each_element(model_.beams, [&](const auto& element) {
-    constexpr int N = std::decay_t<decltype(element)>::kNodes;
-    Eigen::Matrix<double, 6 * N, 1> motion;
-    for (int i = 0; i < N; ++i) motion.template segment<6>(6 * i) = node_motion[element.nodes[i]].cwiseAbs();
-    elastic += motion.dot(material_stiffness<N>(element, state_).cwiseAbs() * motion);
-  });
-  // A force changes its work by a second order of rotations, times an arm.
-  for (const ComplexVector6& motion : node_motion) largest_spin = std::max(largest_spin, motion.tail<3>().norm());
-  return kRoundOff * (elastic + work_of_forces(model_) * largest_spin * largest_spin);
 }
 
 }  // namespace flexarm
