@@ -55,8 +55,8 @@ Eigen::MatrixXd material_curvature(const BeamElement<Nodes>& element, const Stat
   Eigen::MatrixXd curvature = Eigen::MatrixXd::Zero(6 * Nodes, 6 * Nodes);
   for_each_point(element, state, [&](const auto& constants, const PointKinematics& point, const auto& spins) {
     const Eigen::MatrixXd strains = strain_variation<Nodes>(point, constants.derivative, spins);
-    const Eigen::MatrixXd stresses = constants.weight * element.stiffness.lazyProduct(strains);
-    curvature += strains.transpose().lazyProduct(stresses);
+    const Eigen::MatrixXd stresses = (constants.weight * strains.transpose()).lazyProduct(element.stiffness);
+    curvature += stresses.lazyProduct(strains);
   });
   return curvature;
 }
