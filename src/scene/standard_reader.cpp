@@ -6,6 +6,7 @@
 #include "scene/slide_reader.h"
 
 #include <fmt/format.h>
+#include <urdf_model/model.h>
 
 #include "scene/urdfdom.h"
 
@@ -47,9 +48,8 @@ void check_attributes(const XmlElement& element, const StandardAttribute (&table
 
 /// Has urdfdom read a document with only these elements of <robot>. What only other programs stumble over is a warning.
 void judge_alone(const XmlElement& element, const std::string& elements) {
-  const UrdfdomResult result = parse_with_urdfdom("<robot name=\"robot\">" + elements + "</robot>");
-  if (!result.errors.empty())
-    element.warning("programs that use urdfdom cannot read it", quoted(result.errors.front()));
+  const std::vector<std::string> errors = errors_of_urdfdom("<robot name=\"robot\">" + elements + "</robot>");
+  if (!errors.empty()) element.warning("programs that use urdfdom cannot read it", quoted(errors.front()));
 }
 
 /// Reads <origin> or <child_origin>.
