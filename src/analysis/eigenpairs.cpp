@@ -15,8 +15,8 @@ constexpr int kDenseLimit = 200;
 class ShiftedSolver {
  public:
   ShiftedSolver(const LinearisedMotion& motion, double damping_factor, double mass_factor)
-      : solver_(motion.unknowns(), motion.pattern().column_starts(), motion.pattern().row_indices()),
-        values_(motion.pattern().values()) {
+      : solver_(motion.unknowns(), motion.column_starts(), motion.row_indices()),
+        values_(motion.stiffness().valuePtr(), motion.stiffness().valuePtr() + motion.stiffness().nonZeros()) {
     const double *damping = motion.damping().valuePtr(), *mass = motion.mass().valuePtr();
     for (std::size_t p = 0; p < values_.size(); ++p) values_[p] += damping_factor * damping[p] + mass_factor * mass[p];
     if (!solver_.factorise(values_)) throw std::runtime_error("the shifted stiffness is singular");

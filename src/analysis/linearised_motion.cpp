@@ -69,7 +69,10 @@ bool is_circulatory(const Model& model, const State& equilibrium) {
   if (std::any_of(model.loads.begin(), model.loads.end(), load_circulates)) return true;
   for (std::size_t i = 0; i < model.coordinates.size(); ++i)
     if (effort_circulates(i)) return true;
-  return false;
+  // A servo that measures beyond its gear pushes at another place than it feels.
+  return std::any_of(model.actuators.begin(), model.actuators.end(), [](const Actuator& actuator) {
+    return actuator.drive.gear && actuator.servo && actuator.servo->on_link;
+  });
 }
 
 Scheme exact_equilibrium(double contact_time) {
@@ -93,6 +96,7 @@ LinearisedMotion::LinearisedMotion(const Model& model, const State& state, doubl
   set_joint_maps();
   assemble_damping();
   assemble_mass();
+  matrices_ = with_rotors(model, dof_, state, system_.actuators(), stiffness_, damping_, mass_);
 }
 
 int LinearisedMotion::freedoms() const {
@@ -107,9 +111,15 @@ LinearisedMotion::Matrix LinearisedMotion::matrix(const SparseTangent& tangent) 
                 tangent.row_indices().data(), tangent.values().data());
 }
 
+LinearisedMotion::Matrix LinearisedMotion::matrix(const std::vector<double>& extended, const SparseTangent& own) const {
+  if (!has_rotors()) return matrix(own);
+  return Matrix(unknowns(), unknowns(), static_cast<Eigen::Index>(extended.size()), column_starts().data(),
+                row_indices().data(), extended.data());
+}
+
 bool LinearisedMotion::is_damped() const {
-  const std::vector<double>& values = damping_.values();
-  return std::any_of(values.begin(), values.end(), [](double value) { return value != 0; });
+  const Matrix values = damping();
+  return std::any_of(values.valuePtr(), values.valuePtr() + values.nonZeros(), [](double value) { return value != 0; });
 }
 
 /// Sets the multipliers of loops to what balances the residual: their forces stiffen the mechanism as loads do.
@@ -121,7 +131,7 @@ void LinearisedMotion::find_multipliers() {
   if (multipliers.empty()) return;
   Eigen::MatrixXd forces(unknowns(), static_cast<Eigen::Index>(multipliers.size()));
   for (std::size_t m = 0; m < multipliers.size(); ++m)
-    forces.col(static_cast<Eigen::Index>(m)) = stiffness().col(multipliers[m]);
+    forces.col(static_cast<Eigen::Index>(m)) = matrix(stiffness_).col(multipliers[m]);
   const Eigen::VectorXd balancing = -least_squares(forces, system_.residual());
   Eigen::VectorXd update = Eigen::VectorXd::Zero(unknowns());
   for (std::size_t m = 0; m < multipliers.size(); ++m) update[multipliers[m]] = balancing[static_cast<Eigen::Index>(m)];
@@ -150,6 +160,12 @@ void LinearisedMotion::set_joint_maps() {
   }
 }
 
+/// Of a released coordinate.
+double& LinearisedMotion::diagonal(SparseTangent& tangent, int joint, int component) const {
+  const int count = released_count(model_.joints[joint].kind);
+  return tangent.diagonal_block(dof_.variable_of_joint(joint))[component * count + component];
+}
+
 void LinearisedMotion::assemble_mass() {
   mass_.set_zero();
   for_each_element(model_.beams,
@@ -161,6 +177,7 @@ void LinearisedMotion::assemble_mass() {
     block.topLeftCorner<3, 3>().diagonal().array() += inertia.mass;
     block.bottomRightCorner<3, 3>() += rotation * inertia.rotary * rotation.transpose();
   }
+  for (const ActuatorTerms& terms : actuator_terms(model_)) diagonal(mass_, terms.joint, terms.component) += terms.mass;
   fold(mass_);
 }
 
@@ -180,11 +197,11 @@ void LinearisedMotion::assemble_damping() {
     Eigen::Map<Matrix6>(damping_.diagonal_block(static_cast<int>(i))).bottomRightCorner<3, 3>() +=
         rotation * model_.inertias[i].rotary_damping * rotation.transpose();
   }
-  for (const Coordinate& coordinate : model_.coordinates) {
-    const int count = released_count(model_.joints[coordinate.joint].kind), k = coordinate.component;
-    damping_.diagonal_block(dof_.variable_of_joint(coordinate.joint))[k * count + k] +=
+  for (const Coordinate& coordinate : model_.coordinates)
+    diagonal(damping_, coordinate.joint, coordinate.component) +=
         damping_of(coordinate, stop_penalty(coordinate, contact_time_), state_.released[coordinate.joint]);
-  }
+  for (const ActuatorTerms& terms : actuator_terms(model_))
+    diagonal(damping_, terms.joint, terms.component) += terms.damping;
   fold(damping_);
 }
 
@@ -260,7 +277,7 @@ Eigen::SparseMatrix<double> LinearisedMotion::curvature() const {
                 material_curvature(element, state_) - material_stiffness(element, state_));
   });
   fold(difference);
-  const Eigen::SparseMatrix<double> sum = stiffness() + matrix(difference);
+  const Eigen::SparseMatrix<double> sum = matrix(stiffness_) + matrix(difference);
   return 0.5 * (sum + Eigen::SparseMatrix<double>(sum.transpose()));
 }
 

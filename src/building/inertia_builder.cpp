@@ -89,6 +89,20 @@ std::vector<bool> movable_nodes(const Mechanism& mechanism) {
   return is_movable;
 }
 
+/// On the ends of beams.
+void add_hubs(const ScenePlan& plan, const Model& model, std::map<int, Body>& bodies) {
+  for (std::size_t link = 0; link < plan.scene.links.size(); ++link) {
+    if (!plan.meshes[link]) continue;
+    const BeamMesh& mesh = plan.meshes[link]->mesh;
+    for (const scene::HubDescription& hub : plan.scene.links[link].beam->hubs) {
+      const std::size_t end = hub.end == scene::HubDescription::End::Start ? 0 : mesh.nodes.size() - 1;
+      const Matrix3 section = mesh.nodes[end].pose.orientation.toRotationMatrix();
+      bodies[model.links[link].frame.node + static_cast<int>(end)] +=
+          {hub.mass, -mesh.centroid, section.transpose() * hub.inertia.asDiagonal() * section};
+    }
+  }
+}
+
 void add_bodies(const ScenePlan& plan, Mechanism& mechanism) {
   std::map<int, Body> bodies;  // by node
   for (const int link : links_root_to_leaf(plan)) {
@@ -99,6 +113,7 @@ void add_bodies(const ScenePlan& plan, Mechanism& mechanism) {
     bodies[frame.node] +=
         {inertial->mass, frame.offset * inertial->center_of_mass, rotation * inertial->inertia * rotation.transpose()};
   }
+  add_hubs(plan, mechanism.model, bodies);
   // A joint's slave goes to the centre of mass of its body: one node and one joint for each rigid link.
   const std::vector<bool> is_movable = movable_nodes(mechanism);
   std::vector<Vector3> ways(is_movable.size(), Vector3::Zero());

@@ -6,6 +6,7 @@
 #include "analysis/flexible_dead_point.h"
 #include "building/section.h"
 #include "cli/commands.h"
+#include "cli/driven_ends.h"
 #include "cli/mode_table.h"
 #include "cli/scene_input.h"
 #include "schemes/scheme.h"
@@ -65,7 +66,9 @@ void print_links(const Simulation& simulation) {
     const scene::LinkDescription& link = scene.links[i];
     const std::optional<BeamLink>& beam = model_of(simulation).links[i].beam;
     const bool is_root = link.name == scene.root_link;
-    const double mass = beam ? beam->mass : link.inertial ? link.inertial->mass : 0.0;
+    double mass = beam ? beam->mass : link.inertial ? link.inertial->mass : 0.0;
+    if (beam)
+      for (const scene::HubDescription& hub : link.beam->hubs) mass += hub.mass;
     fmt::print("{:<24} {:<10} {:>12.6g}\n", link.name, beam ? "flexible" : is_root ? "clamped" : "rigid", mass);
   }
 }
@@ -175,6 +178,8 @@ void add_check(CLI::App& app, int& status) {
     print_joints(simulation);
     print_beams(simulation);
     print_dead_point(simulation);
+    for (const std::string& warning : warnings_of_driven_ends(simulation))
+      fmt::print(stderr, "flexarm: warning: {}\n", warning);
     try {
       print_frequencies(simulation);
     } catch (const std::runtime_error& error) {

@@ -2,6 +2,7 @@
 
 #include "elements/element_configuration.h"
 #include "elements/strain_dampers.h"
+#include "joints/elasticity.h"
 #include "joints/joint_stop.h"
 
 namespace flexarm {
@@ -58,6 +59,15 @@ Energies energies(const Model& model, const Scheme& scheme, const State& state) 
     if (coordinate.limit)
       out.strain += stop_energy(*coordinate.limit, stop_penalty(coordinate, scheme.contact_time),
                                 state.released[coordinate.joint].displacement[coordinate.component]);
+  for (std::size_t i = 0; i < model.actuators.size(); ++i) {
+    const Actuator& actuator = model.actuators[i];
+    const Coordinate& coordinate = model.coordinates[actuator.coordinate];
+    const double position = state.released[coordinate.joint].displacement[coordinate.component % 3];
+    const ActuatorState& rotor = state.actuators[i];
+    out.kinetic += 0.5 * actuator.drive.inertia * rotor.rate * rotor.rate;
+    if (actuator.drive.gear) out.strain += elastic_energy(*actuator.drive.gear, rotor.angle - position);
+    if (actuator.spring) out.strain += elastic_energy(actuator.spring->elasticity, position - actuator.spring->rest);
+  }
   return out;
 }
 
@@ -87,6 +97,11 @@ Momenta momenta(const Model& model, const Scheme& scheme, const State& state) {
     out.linear += inertia.mass * node.velocity;
     out.angular += inertia.mass * node.position.cross(node.velocity) +
                    node.orientation * (lumped_rotary(inertia, scheme) * node.angular_velocity);
+  }
+  for (std::size_t i = 0; i < model.actuators.size(); ++i) {
+    if (!model.actuators[i].gyroscope) continue;
+    const auto& [node, axis, inertia, ratio] = *model.actuators[i].gyroscope;
+    out.angular += inertia * ratio * state.actuators[i].rate * (state.nodes[node].orientation * axis);
   }
   return out;
 }

@@ -5,6 +5,7 @@
 
 #include "flexarm/math/pose.h"
 #include "math/local_rotation.h"
+#include "model/actuator.h"
 #include "model/drive_efforts.h"
 #include "model/increment_history.h"
 #include "model/joint.h"
@@ -71,6 +72,7 @@ struct State {
   std::vector<double> commands;          ///< per coordinate: commanded effort, NaN where none holds
   std::vector<double> efforts;           ///< per coordinate: applied in the last step
   std::vector<double> rests;             ///< per coordinate: 1 where dry friction stopped it in the last step, else 0
+  std::vector<ActuatorState> actuators;  ///< per actuator
   IncrementHistory history;              ///< of the last sub-steps, for the predictor
   DriveEfforts drives;                   ///< what drove prescribed coordinates, for output
   double work = 0, dissipated = 0;       ///< path integrals since the start [J]

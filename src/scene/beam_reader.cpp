@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "scene/choice.h"
 #include "scene/extension_reader.h"
 #include "scene/limits.h"
 #include "scene/section_reader.h"
@@ -126,13 +127,33 @@ void read_mesh(const XmlElement& beam, BeamDescription& description) {
   if (beam.has("order")) description.order = beam.integer("order", 1, 4).value_or(description.order);
 }
 
+constexpr Choice<HubDescription::End> kEnds[] = {{"start", HubDescription::End::Start},
+                                                 {"end", HubDescription::End::End}};
+
+void read_hubs(const XmlElement& beam, BeamDescription& description) {
+  for (const XmlElement& element : beam.children()) {
+    if (element.tag() != "hub") continue;
+    element.expect_only({"at", "mass", "inertia"});
+    HubDescription hub;
+    hub.location = element.location();
+    hub.end = read_choice(element, "at", kEnds).value_or(hub.end);
+    hub.mass = element.number("mass", kNonNegative).value_or(0);
+    hub.inertia = element.vector("inertia", Vector3::Zero());
+    if (hub.inertia.minCoeff() < 0) element.attribute_error("inertia", "moments of inertia must be >= 0");
+    for (const HubDescription& other : description.hubs)
+      if (other.end == hub.end)
+        element.attribute_error("at", fmt::format("this end has a hub already, by line {}", other.location.line));
+    description.hubs.push_back(hub);
+  }
+}
+
 }  // namespace
 
 std::optional<BeamDescription> read_beam(const XmlElement& unowned, const std::string& link) {
   const XmlElement beam = unowned.with_owner("beam " + quoted(link));
   const std::size_t errors = beam.findings().error_count();
   beam.expect_only({"elements", "order"}, {"centerline", "orientation", "circle", "tube", "rectangle", "box_tube",
-                                           "material", "section", "section_matrix", "damping"});
+                                           "material", "section", "section_matrix", "damping", "hub"});
   beam.expect_at_most_one({"centerline", "orientation", "material", "damping"});
   BeamDescription description;
   description.location = beam.location();
@@ -146,6 +167,7 @@ std::optional<BeamDescription> read_beam(const XmlElement& unowned, const std::s
     description.stiffness_proportional_damping = damping->number("stiffness_proportional", kNonNegative, 0);
     description.mass_proportional_damping = damping->number("mass_proportional", kNonNegative, 0);
   }
+  read_hubs(beam, description);
   if (beam.findings().error_count() > errors) return std::nullopt;
   return description;
 }

@@ -14,6 +14,7 @@ constexpr std::size_t kMostSimulationEntries = 10000;  ///< children of <simulat
 constexpr std::size_t kMostCentrelinePieces = 10000;   ///< per beam
 constexpr double kLongestPiece = 1e9;                  ///< of a centreline, and radius of an arc [m]
 constexpr std::size_t kMostProfilePoints = 10000;      ///< of a cam
+constexpr int kLongestDelay = 10000;                   ///< of a servo, in its sample times
 constexpr int kMostBeamElements = 100000;              ///< per beam
 constexpr int kMostBeamNodes = 200000;                 ///< of all beams: 2 GB
 constexpr int kMostNewtonIterations = 1000;

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "scene/drive_reader.h"
 #include "scene/extension_reader.h"
 #include "scene/inertia_checks.h"
 #include "scene/limits.h"
@@ -21,10 +22,11 @@ struct Place {
   const char* tag;
   const char* parent;
 };
-constexpr Place kPlaces[] = {{"beam", "link"},      {"release", "joint"},    {"axis2", "joint"},
-                             {"slide", "joint"},    {"couple", "joint"},     {"child_origin", "loop_joint"},
-                             {"friction", "joint"}, {"simulation", "robot"}, {"loop_joint", "robot"},
-                             {"root", "simulation"}};
+constexpr Place kPlaces[] = {{"beam", "link"},       {"release", "joint"},    {"axis2", "joint"},
+                             {"slide", "joint"},     {"couple", "joint"},     {"child_origin", "loop_joint"},
+                             {"friction", "joint"},  {"simulation", "robot"}, {"loop_joint", "robot"},
+                             {"root", "simulation"}, {"spring", "robot"},     {"drive", "robot"},
+                             {"servo", "robot"},     {"hub", "beam"}};
 
 /// Records our elements where they would be ignored like a stranger's.
 void check_places(const XmlElement& element) {
@@ -55,6 +57,10 @@ class SceneReader {
     check_size(robot, "links", scene_.links.size(), kMostLinks);
     check_size(robot, "joints", scene_.joints.size(), kMostJoints);
     check_size(robot, "loop joints", scene_.loop_joints.size(), kMostJoints);
+    check_size(robot, "springs", scene_.springs.size(), kMostJoints);
+    check_size(robot, "drives", scene_.drives.size(), kMostJoints);
+    check_size(robot, "servos", scene_.servos.size(), kMostJoints);
+    settle_gears(transmissions_, scene_.drives, findings_);
     if (scene_.links.empty()) robot.error("at least one <link> is expected");
     check_tree(scene_, findings_);
     settle_root(scene_, start_, findings_);
@@ -81,6 +87,15 @@ class SceneReader {
       scene_.loop_joints.push_back(read_loop_joint(child));
       check_places(child.with_name(scene_.loop_joints.back().name));
       if (findings_.error_count() > errors) unreadable_.insert(scene_.loop_joints.back().name);
+    } else if (tag == "spring" && scene_.springs.size() <= kMostJoints) {
+      scene_.springs.push_back(read_spring(child));
+    } else if (tag == "drive" && scene_.drives.size() <= kMostJoints) {
+      scene_.drives.push_back(read_drive(child));
+    } else if (tag == "servo" && scene_.servos.size() <= kMostJoints) {
+      scene_.servos.push_back(read_servo(child));
+    } else if (tag == "transmission" && transmissions_.size() <= kMostJoints) {
+      if (const std::optional<Transmission> transmission = read_transmission(child))
+        transmissions_.push_back(*transmission);
     } else if (tag == "simulation") {
       read_simulation(child, scene_, start_);
     }
@@ -105,6 +120,7 @@ class SceneReader {
   Findings& findings_;
   SceneDescription scene_;
   StartRequest start_;
+  std::vector<Transmission> transmissions_;
   std::set<std::string> unreadable_;  // links and joints with errors, of which only the name is to be trusted
 };
 

@@ -4,6 +4,8 @@
 #include <limits>
 
 #include "elements/element_configuration.h"
+#include "joints/joint_kinematics.h"
+#include "joints/servo_step.h"
 #include "math/quadrature.h"
 #include "math/shape_functions.h"
 
@@ -134,6 +136,23 @@ State initial_state(const Model& model) {
   state.efforts.assign(model.coordinates.size(), 0.0);
   state.drives.resize(model.coordinates.size());
   state.rests.assign(model.coordinates.size(), 0.0);
+  for (const Actuator& actuator : model.actuators) {
+    const Coordinate& coordinate = model.coordinates[actuator.coordinate];
+    const Released& released = model.initial_released[coordinate.joint];
+    const ReleasedVector rates = released_rates(model, coordinate.joint, model.nodes, released, model.initial_velocity);
+    ActuatorState& own = state.actuators.emplace_back();
+    own.angle = released.displacement[coordinate.component % 3];
+    own.rate = rates[coordinate.component];
+    if (actuator.servo) {
+      own.servo.outputs.assign(outputs_of(*actuator.servo), 0.0);
+      own.servo.delayed_rate = -own.rate;
+      own.servo.measured = own.angle - actuator.servo->sample_time * own.rate;
+    }
+    if (actuator.gyroscope) {
+      const auto& [node, axis, inertia, ratio] = *actuator.gyroscope;
+      own.rate += axis.dot(state.nodes[node].angular_velocity) / ratio;
+    }
+  }
   for_each_element(model.beams, [&](const auto& element) {
     constexpr int N = std::decay_t<decltype(element)>::kNodes;
     const ElementConfiguration<N> nodes(element, state);

@@ -138,6 +138,22 @@ TEST_F(Allocation, NoneWhereFrictionSticks) {
     }
 }
 
+TEST_F(Allocation, NoneInDrivesAndServos) {
+  for (const char* scheme : {"em", "edmc2", "m1", "std", "newmark", "hht1"}) {
+    SimulationOptions options;
+    options.scheme = scheme;
+    Simulation simulation(driven_scene().scene, options);
+    ASSERT_TRUE(simulation.step().converged);
+    int converged = 0;
+    EXPECT_EQ(allocations_in([&] {
+                for (int n = 0; n < 300; ++n) converged += simulation.step().converged;
+              }),
+              0)
+        << scheme;
+    EXPECT_EQ(converged, 300) << scheme;
+  }
+}
+
 TEST_F(Allocation, NoneInLoopsOfRigidLinks) {
   for (const char* scheme : {"em", "edmc2", "m1", "std", "newmark", "hht1", "hht2", "hht3"}) {
     SimulationOptions options;
