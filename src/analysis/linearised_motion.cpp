@@ -39,7 +39,7 @@ ElementMatrix<Nodes> material_stiffness(const BeamElement<Nodes>& element, const
   ElementMatrix<Nodes> stiffness = ElementMatrix<Nodes>::Zero();
   for_each_point(element, state, [&](const auto& constants, const PointKinematics& point, const auto& functions) {
     const endpoint::PointTangent tangent =
-        endpoint::point_tangent(point, element.stiffness, 1, Vector3::Zero(), Vector3::Zero());
+        endpoint::point_tangent(point, constants.stiffness, 1, Vector3::Zero(), Vector3::Zero());
     add_point_tangent<Nodes>(constants.weight, LagrangeTests<Nodes>{constants.shape, constants.derivative},
                              {constants.derivative, functions}, tangent.resultants, tangent.couple, stiffness);
   });
@@ -65,7 +65,7 @@ ElementMatrix<Nodes> material_curvature(const BeamElement<Nodes>& element, const
   ElementMatrix<Nodes> curvature = ElementMatrix<Nodes>::Zero();
   for_each_point(element, state, [&](const auto& constants, const PointKinematics& point, const auto& spins) {
     const auto strains = strain_variation<Nodes>(point, constants.derivative, spins);
-    curvature += constants.weight * strains.transpose() * element.stiffness * strains;
+    curvature += constants.weight * strains.transpose() * constants.stiffness * strains;
   });
   return curvature;
 }
@@ -193,7 +193,7 @@ void LinearisedMotion::assemble_mass() {
     for (const auto& point : element.mass_points) {
       GeneralisedShapeFunctions<N> generalised;
       const Matrix3 rotation = local.evaluate(point.shape, point.derivative, generalised).rotation;
-      const Matrix3 inertia = point.weight * rotation * element.inertia * rotation.transpose();
+      const Matrix3 inertia = point.weight * rotation * point.inertia * rotation.transpose();
       for (int i = 0; i < N; ++i)
         for (int j = 0; j < N; ++j)
           block(i, j).template bottomRightCorner<3, 3>() += point.shape[i] * inertia * generalised.values[j];
