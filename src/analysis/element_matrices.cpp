@@ -43,7 +43,7 @@ Eigen::MatrixXd material_stiffness(const BeamElement<Nodes>& element, const Stat
   Eigen::Matrix<double, 6 * Nodes, 6 * Nodes> stiffness = Eigen::Matrix<double, 6 * Nodes, 6 * Nodes>::Zero();
   for_each_point(element, state, [&](const auto& constants, const PointKinematics& point, const auto& functions) {
     const endpoint::PointTangent tangent =
-        endpoint::point_tangent(point, element.stiffness, 1, Vector3::Zero(), Vector3::Zero());
+        endpoint::point_tangent(point, constants.stiffness, 1, Vector3::Zero(), Vector3::Zero());
     add_point_tangent<Nodes>(constants.weight, LagrangeTests<Nodes>{constants.shape, constants.derivative},
                              {constants.derivative, functions}, tangent.resultants, tangent.couple, stiffness);
   });
@@ -55,7 +55,7 @@ Eigen::MatrixXd material_curvature(const BeamElement<Nodes>& element, const Stat
   Eigen::MatrixXd curvature = Eigen::MatrixXd::Zero(6 * Nodes, 6 * Nodes);
   for_each_point(element, state, [&](const auto& constants, const PointKinematics& point, const auto& spins) {
     const Eigen::MatrixXd strains = strain_variation<Nodes>(point, constants.derivative, spins);
-    const Eigen::MatrixXd stresses = (constants.weight * strains.transpose()).lazyProduct(element.stiffness);
+    const Eigen::MatrixXd stresses = (constants.weight * strains.transpose()).lazyProduct(constants.stiffness);
     curvature += stresses.lazyProduct(strains);
   });
   return curvature;
@@ -71,7 +71,7 @@ Eigen::MatrixXd mass_matrix(const BeamElement<Nodes>& element, const State& stat
   for (const auto& point : element.mass_points) {
     GeneralisedShapeFunctions<Nodes> generalised;
     const Matrix3 rotation = local.evaluate(point.shape, point.derivative, generalised).rotation;
-    const Matrix3 inertia = point.weight * rotation * element.inertia * rotation.transpose();
+    const Matrix3 inertia = point.weight * rotation * point.inertia * rotation.transpose();
     for (int i = 0; i < Nodes; ++i)
       for (int j = 0; j < Nodes; ++j)
         mass.block<3, 3>(6 * i + 3, 6 * j + 3) += point.shape[i] * inertia * generalised.values[j];
