@@ -39,6 +39,8 @@ class RotationReference {
   const std::vector<Vector3>& total_rotations() const { return total_; }
 
  private:
+  /// The points' rotations that follow from those of nodes.
+  void set_points(const std::vector<NodePose>& nodes, State& state) const;
   void compute_points(std::vector<PointRotation>& stiffness, std::vector<PointRotation>& mass) const;
 
   const Model& model_;
