@@ -179,7 +179,7 @@ std::optional<Mimic> read_mimic(const XmlElement& mimic, JointKind kind) {
     mimic.warning("is ignored: a fixed joint has no coordinate that could follow another");
     return std::nullopt;
   }
-  return Mimic{mimic.text("joint").value_or(""), mimic.number("multiplier", kAnyNumber, 1),
+  return Mimic{mimic.name("joint").value_or(""), mimic.number("multiplier", kAnyNumber, 1),
                mimic.number("offset", kAnyNumber, 0)};
 }
 
@@ -196,7 +196,7 @@ void check_joint_structure(const XmlElement& joint) {
 std::string read_link_name(const XmlElement& joint, const char* tag) {
   const std::optional<XmlElement> child = joint.child(tag);
   if (!child) joint.error("<" + std::string(tag) + " link=\"...\"/> is missing");
-  return child ? child->text("link").value_or("") : "";
+  return child ? child->name("link").value_or("") : "";
 }
 
 /// Text of a joint as a <joint> between stand-ins for its links, which keep urdfdom from complaining about the rest of
