@@ -76,7 +76,7 @@ struct ServoState {
   double set_point = std::numeric_limits<double>::quiet_NaN();  ///< commanded; NaN where no command holds
   double integral = 0;      ///< of the error, or with Mode::Velocity the error itself [s times the error]
   double average = 0;       ///< of past increments of the error, which damps stiff gains
-  double delayed_rate = 0;  ///< what follows the error's rate, the same
+  double delayed_rate = 0;  ///< what follows the rate of what is measured, backwards, the same
   // Sampled controllers:
   double samples = 0;           ///< taken
   double measured = 0;          ///< in the last sample
