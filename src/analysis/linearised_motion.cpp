@@ -34,13 +34,6 @@ double damping_of(const Coordinate& coordinate, const StopPenalty& stop, const R
   return coordinate.damping + stop_damping(*coordinate.limit, stop, released.displacement[coordinate.component]);
 }
 
-/// Equilibrium of exact forces.
-Scheme rest(double contact_time) {
-  Scheme scheme = statics_of(*find_scheme("newmark"));
-  scheme.contact_time = contact_time;
-  return scheme;
-}
-
 }  // namespace
 
 double work_of_forces(const Model& model) {
@@ -53,11 +46,41 @@ double work_of_forces(const Model& model) {
   return work;
 }
 
+double round_off(const Model& model, const State& equilibrium, const std::vector<ComplexVector6>& node_motion) {
+  double elastic = 0, largest_spin = 0;
+  for_each_element(model.beams, [&](const auto& element) {
+    const Eigen::VectorXd motion = motion_of(element, node_motion).cwiseAbs();
+    elastic += motion.dot(material_stiffness(element, equilibrium).cwiseAbs().lazyProduct(motion));
+  });
+  // A force changes its work by a second order of rotations, times an arm.
+  for (const ComplexVector6& motion : node_motion) largest_spin = std::max(largest_spin, motion.tail<3>().norm());
+  return kStiffnessRoundOff * (elastic + work_of_forces(model) * largest_spin * largest_spin);
+}
+
+bool is_circulatory(const Model& model, const State& equilibrium) {
+  const auto load_circulates = [](const NodalLoad& load) { return load.follows || !load.moment.isZero(0); };
+  // The moment on a free rotation has axes that stand still while it turns.
+  const auto effort_circulates = [&](std::size_t i) {
+    const Coordinate& coordinate = model.coordinates[i];
+    return coordinate.is_angle && (coordinate.effort >= 0 || !std::isnan(equilibrium.commands[i]));
+  };
+  if (std::any_of(model.loads.begin(), model.loads.end(), load_circulates)) return true;
+  for (std::size_t i = 0; i < model.coordinates.size(); ++i)
+    if (effort_circulates(i)) return true;
+  return false;
+}
+
+Scheme exact_equilibrium(double contact_time) {
+  Scheme scheme = statics_of(*find_scheme("newmark"));
+  scheme.contact_time = contact_time;
+  return scheme;
+}
+
 LinearisedMotion::LinearisedMotion(const Model& model, const State& state, double contact_time)
     : model_(model),
       state_(state),
       contact_time_(contact_time),
-      system_(model, rest(contact_time), BackendChoice::Matrix),
+      system_(model, exact_equilibrium(contact_time), BackendChoice::Matrix),
       dof_(system_.degrees_of_freedom()),
       stiffness_(static_cast<const SparseTangent&>(system_.tangent())),
       damping_(model, dof_),
@@ -85,19 +108,6 @@ LinearisedMotion::Matrix LinearisedMotion::matrix(const SparseTangent& tangent) 
 bool LinearisedMotion::is_damped() const {
   const std::vector<double>& values = damping_.values();
   return std::any_of(values.begin(), values.end(), [](double value) { return value != 0; });
-}
-
-bool LinearisedMotion::is_circulatory() const {
-  const auto load_circulates = [](const NodalLoad& load) { return load.follows || !load.moment.isZero(0); };
-  // The moment on a free rotation has axes that stand still while it turns.
-  const auto effort_circulates = [&](std::size_t i) {
-    const Coordinate& coordinate = model_.coordinates[i];
-    return coordinate.is_angle && (coordinate.effort >= 0 || !std::isnan(state_.commands[i]));
-  };
-  if (std::any_of(model_.loads.begin(), model_.loads.end(), load_circulates)) return true;
-  for (std::size_t i = 0; i < model_.coordinates.size(); ++i)
-    if (effort_circulates(i)) return true;
-  return false;
 }
 
 /// Sets the multipliers of loops to what balances the residual: their forces stiffen the mechanism as loads do.
@@ -261,17 +271,6 @@ double LinearisedMotion::strain_energy(const std::vector<ComplexVector6>& node_m
     energy += real.dot(curvature.lazyProduct(real)) + imaginary.dot(curvature.lazyProduct(imaginary));
   });
   return energy;
-}
-
-double LinearisedMotion::round_off(const std::vector<ComplexVector6>& node_motion) const {
-  double elastic = 0, largest_spin = 0;
-  for_each_element(model_.beams, [&](const auto& element) {
-    const Eigen::VectorXd motion = motion_of(element, node_motion).cwiseAbs();
-    elastic += motion.dot(material_stiffness(element, state_).cwiseAbs().lazyProduct(motion));
-  });
-  // A force changes its work by a second order of rotations, times an arm.
-  for (const ComplexVector6& motion : node_motion) largest_spin = std::max(largest_spin, motion.tail<3>().norm());
-  return kRoundOff * (elastic + work_of_forces(model_) * largest_spin * largest_spin);
 }
 
 }  // namespace flexarm

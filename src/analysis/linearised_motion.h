@@ -22,15 +22,23 @@ struct JointMaps {
 /// What weight and loads at time 0 do over the model's length scale, or a turn of 1 rad [J].
 double work_of_forces(const Model& model);
 
+/// Relative round-off of a term of the stiffness, which has some sixty operations behind it: interpolation, rotations,
+/// section, folding, factorisation.
+constexpr double kStiffnessRoundOff = 64 * std::numeric_limits<double>::epsilon();
+/// What round-off may make of phi* K phi about an equilibrium [J]: that times the sum of its terms, in absolute value.
+double round_off(const Model& model, const State& equilibrium, const std::vector<ComplexVector6>& node_motion);
+/// Some load has no potential (it follows, or is a moment in space), so that a motion about the equilibrium may gain
+/// energy.
+bool is_circulatory(const Model& model, const State& equilibrium);
+/// Equilibrium of exact forces, with local interpolation. `contact_time`: of stops (Scheme::contact_time) [s].
+Scheme exact_equilibrium(double contact_time);
+
 class LinearisedMotion {
  public:
-  /// Relative round-off of a term of the stiffness, which has some sixty operations behind it: interpolation,
-  /// rotations, section, folding, factorisation.
-  static constexpr double kRoundOff = 64 * std::numeric_limits<double>::epsilon();
   using Matrix = Eigen::Map<const Eigen::SparseMatrix<double>>;
 
-  /// About the configuration of `state`, under the loads at time 0. Both must outlive this. `contact_time`: of stops
-  /// (Scheme::contact_time) [s].
+  /// About the configuration of `state`, under the loads at time 0. Both must outlive this. `contact_time`: see
+  /// exact_equilibrium().
   /// @throws std::runtime_error if the stiffness is not finite.
   LinearisedMotion(const Model& model, const State& state, double contact_time);
 
@@ -44,9 +52,7 @@ class LinearisedMotion {
   Matrix damping() const { return matrix(damping_); }
   Matrix mass() const { return matrix(mass_); }
   bool is_damped() const;
-  /// Some load has no potential (it follows, or is a moment in space), so that a motion about the equilibrium may gain
-  /// energy.
-  bool is_circulatory() const;
+  bool is_circulatory() const { return flexarm::is_circulatory(model_, state_); }
 
   /// The second derivative of the potential, with multipliers. Unlike the stiffness, whose tests are not the variations
   /// of the strains, it is symmetric; the two differ by the elements' own error.
@@ -56,8 +62,9 @@ class LinearisedMotion {
   Mode expand(const Eigen::VectorXcd& vector) const;
   /// Twice the energy of the strains that a motion of the nodes makes [J].
   double strain_energy(const std::vector<ComplexVector6>& node_motion) const;
-  /// What round-off may make of phi* K phi [J]: kRoundOff times the sum of its terms, in absolute value.
-  double round_off(const std::vector<ComplexVector6>& node_motion) const;
+  double round_off(const std::vector<ComplexVector6>& node_motion) const {
+    return flexarm::round_off(model_, state_, node_motion);
+  }
 
  private:
   static Matrix matrix(const SparseTangent& tangent);

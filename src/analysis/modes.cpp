@@ -45,7 +45,7 @@ struct Motion {
     vector /= largest;
     mass = std::abs(energy(system.mass(), vector));
     damping = std::abs(energy(system.damping(), vector));
-    round_off = system.round_off(mode.node_motion) + LinearisedMotion::kRoundOff * shift * mass;
+    round_off = system.round_off(mode.node_motion) + kStiffnessRoundOff * shift * mass;
   }
   Mode with(Complex eigenvalue) && {
     mode.frequency = std::abs(eigenvalue.imag()) / (2 * kPi);
@@ -85,7 +85,7 @@ std::optional<Mode> damped_mode(const LinearisedMotion& system, double shift, co
   // Of the energies, and of 1/(lambda/s - 1), which the solver knows to the round-off of its largest value.
   const double s = std::sqrt(shift);
   const double tolerance = motion.round_off / std::abs(2.0 * lambda * motion.mass + motion.damping) +
-                           LinearisedMotion::kRoundOff * std::norm(lambda - s) / s;
+                           kStiffnessRoundOff * std::norm(lambda - s) / s;
   const bool may_grow = system.is_circulatory() || lambda.imag() == 0;  // Kelvin, Tait and Chetaev
   if (std::abs(lambda.real()) <= tolerance || (lambda.real() > 0 && !may_grow)) lambda.real(0);
   return std::move(motion).with(lambda);

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <vector>
 
 #include <Eigen/SparseCholesky>
 
 #include "analysis/linearised_motion.h"
+#include "analysis/long_chain.h"
+#include "analysis/node_ways.h"
 
 namespace flexarm {
 namespace {
@@ -23,7 +24,7 @@ constexpr double kShift = 1e-12;
 constexpr double kSmallPivot = 1e-8;
 /// See neutral_curvature().
 constexpr double kNeutral = 1e-6;
-/// Chains of more joints have tangents that are dense and large.
+/// Chains of more joints have matrices that are dense and large.
 constexpr std::size_t kMostCoordinates = 1000;
 /// Motions that are looked at, the softest ones first.
 constexpr std::size_t kMostMotions = 64;
@@ -75,32 +76,6 @@ std::vector<Eigen::VectorXd> soft_motions(const Matrix& whole, Eigen::Index mult
   return motions;
 }
 
-/// How far nodes go in a motion: displacements over the model's length scale, turns in rad.
-class Ways {
- public:
-  Ways(const Model& model, const std::vector<ComplexVector6>& motion) : model_(model) {
-    for (const ComplexVector6& node : motion)
-      ways_.push_back(std::max(node.head<3>().norm() / model.length_scale, node.tail<3>().norm()));
-  }
-
-  double largest() const { return *std::max_element(ways_.begin(), ways_.end()); }
-  double sum_of_squares() const { return std::inner_product(ways_.begin(), ways_.end(), ways_.begin(), 0.0); }
-  /// Name of the link with the node that goes farthest.
-  std::string link() const {
-    const auto way = [&](const LinkFrame& link) {
-      const int first = link.frame.node, last = link.beam ? link.beam->tip.node : first;
-      return first < 0 ? 0.0 : *std::max_element(ways_.begin() + first, ways_.begin() + last + 1);
-    };
-    return std::max_element(model_.links.begin(), model_.links.end(),
-                            [&](const LinkFrame& a, const LinkFrame& b) { return way(a) < way(b); })
-        ->name;
-  }
-
- private:
-  const Model& model_;
-  std::vector<double> ways_;  // per node
-};
-
 }  // namespace
 
 double neutral_curvature(const Model& model) {
@@ -109,14 +84,18 @@ double neutral_curvature(const Model& model) {
 
 Stability judge_stability(const Model& model, const Scheme& scheme, const State& equilibrium) {
   Stability stability;
-  if (model.coordinates.size() > kMostCoordinates || scheme.interpolation != Interpolation::Local) return stability;
+  if (model.coordinates.size() > kMostCoordinates) {
+    if (model.closures.empty() && !is_circulatory(model, equilibrium))
+      stability.motion = falling_motion(model, scheme, equilibrium);
+    return stability;
+  }
   const LinearisedMotion system(model, equilibrium, scheme.contact_time);
   if (system.freedoms() <= 0) return stability;
   const double neutral = neutral_curvature(model);
   const Matrix curvature = system.curvature();
   for (const Eigen::VectorXd& motion : soft_motions(curvature, (system.unknowns() - system.freedoms()) / 2)) {
     const std::vector<ComplexVector6> nodes = system.expand(motion.cast<std::complex<double>>()).node_motion;
-    const Ways ways(model, nodes);
+    const NodeWays ways(model, nodes);
     const double own = motion.dot(curvature * motion), round_off = system.round_off(nodes),
                  least = round_off + neutral * ways.sum_of_squares();
     if (std::abs(own) <= least && system.strain_energy(nodes) <= round_off) stability.loose_link = ways.link();

@@ -29,9 +29,10 @@ struct Stability {
 double neutral_curvature(const Model& model);
 
 /// By the signs of the pivots of the tangent's symmetric part, in motions that loops allow (Sylvester's law of
-/// inertia). Not judged, and taken as stable: loads without a potential, for which there is natural_modes();
-/// interpolations that have none either, as their strains depend on the past; and chains of so many joints that it
-/// would take long.
+/// inertia); of chains of more than a thousand joints by falling_motion(). The potential is that of local interpolation
+/// in the same configuration, whatever the scheme's: those whose strains depend on the past have none of their own, and
+/// differ by the elements' error. Not judged, and taken as stable: loads without a potential, for which there is
+/// natural_modes(), and such long chains in loops that multipliers close.
 /// @throws std::runtime_error if the stiffness is not finite.
 Stability judge_stability(const Model& model, const Scheme& scheme, const State& equilibrium);
 

@@ -18,6 +18,7 @@ class EquilibriumSearch {
   EquilibriumSearch(const Model& model, const Scheme& scheme, const StepSettings& settings, const State& state)
       : model_(model),
         scheme_(scheme),
+        settings_(settings),
         state_(state),
         system_(model, statics_of(scheme)),
         newton_(system_, settings),
@@ -33,6 +34,24 @@ class EquilibriumSearch {
       if (!solve(factor) && !settling_.settle(state_, factor, result_)) return false;
     }
     return true;
+  }
+
+  /// Where strains depend on the way, a mechanism may go round and round, and what it falls to is no matter of the way:
+  /// it falls with local interpolation, and its strains begin anew there.
+  bool settle_without_path(Equilibrium wanted) {
+    Scheme local = scheme_;
+    local.interpolation = Interpolation::Local;
+    local.cayley_interpolation = false;
+    EquilibriumSearch search(model_, local, settings_, state_);
+    const bool is_found = search.settle_for(wanted);
+    const bool falls = is_found && wanted == Equilibrium::Stable && !search.result_.falling_link.empty();
+    result_.falling_link = search.result_.falling_link;
+    result_.loose_link = search.result_.loose_link;
+    if (!is_found) result_.reason = search.result_.reason;
+    if (!falls) return is_found;
+    state_ = search.state_;
+    system_.forget_path(state_);
+    return solve(1);
   }
 
   bool settle_for(Equilibrium wanted) {
@@ -76,6 +95,7 @@ class EquilibriumSearch {
 
   const Model& model_;
   const Scheme& scheme_;
+  const StepSettings& settings_;
   State state_;
   StepSystem system_;
   NewtonIteration newton_;
@@ -88,7 +108,10 @@ class EquilibriumSearch {
 StaticResult solve_static(const Model& model, const Scheme& scheme, const StepSettings& settings, int load_steps,
                           Equilibrium wanted, State& state, std::vector<double>* update_norms) {
   EquilibriumSearch search(model, scheme, settings, state);
-  const bool is_found = search.increase_loads(load_steps) && search.settle_for(wanted);
+  const bool depends_on_path =
+      scheme.interpolation == Interpolation::Incremental || scheme.interpolation == Interpolation::Iterative;
+  const bool is_found = search.increase_loads(load_steps) &&
+                        (depends_on_path ? search.settle_without_path(wanted) : search.settle_for(wanted));
   if (update_norms) *update_norms = search.update_norms();
   StaticResult result = search.result();
   result.converged = is_found;

@@ -101,6 +101,12 @@ void add_stops(std::vector<HardCase>& cases) {
               initial("hinge", 0, rate)),
         1e-3, 1, stop_holds("hinge", -0.5, 0.5));
   group.add_bounded(
+      "arm between stops 1 mrad apart, 200 rad/s, steps of 10 ms",
+      scene(joint("hinge", "revolute", "world", "arm", Vector3::Zero(), axis({0, 1, 0}) + limits(-5e-4, 5e-4)) +
+                body("arm", 1, 0.1, {0.5, 0, 0}),
+            initial("hinge", 0, 200)),
+      1e-2, 0.2, stop_holds("hinge", -5e-4, 5e-4));
+  group.add_bounded(
       "beam hits its stop at 20 rad/s",
       scene(joint("hinge", "revolute", "world", "arm", Vector3::Zero(), axis({0, 1, 0}) + limits(-0.5, 0.5)) +
                 beam("arm", {1, 0, 0}, circle(0.01), 8),

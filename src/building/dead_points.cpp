@@ -6,6 +6,7 @@
 #include <Eigen/QR>
 
 #include "joints/joint_kinematics.h"
+#include "math/general_vector.h"
 
 namespace flexarm {
 namespace {
@@ -24,16 +25,9 @@ Eigen::VectorXd least_squares(const Eigen::MatrixXd& block, const Eigen::VectorX
   return decomposition.compute(block).solve(b);
 }
 
-/// Some motion, no component of which is special.
-Eigen::VectorXd general_motion(Eigen::Index size) {
-  Eigen::VectorXd motion(size);
-  for (Eigen::Index k = 0; k < size; ++k) motion[k] = std::sin(1.0 + 2.3 * static_cast<double>(k));
-  return motion;
-}
-
-/// What of it the constraints allow, to first order; its largest component is 1.
+/// What of a general motion the constraints allow, to first order; its largest component is 1.
 Eigen::VectorXd allowed_motion(const Eigen::MatrixXd& block) {
-  const Eigen::VectorXd wanted = general_motion(block.cols());
+  const Eigen::VectorXd wanted = general_vector(block.cols());
   const Eigen::VectorXd motion = wanted - least_squares(block, block * wanted);
   const double largest = motion.lpNorm<Eigen::Infinity>();
   return largest > kIndependent ? Eigen::VectorXd(motion / largest)

@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "building/elementary_joints.h"
 #include "building/model_builder.h"
+#include "model/carried_origin.h"
 #include "scene/limits.h"
 
 namespace flexarm {
 namespace {
-
-/// A mechanism that is so many times as far away as it is large is built about an origin of its own.
-constexpr double kFar = 100;
 
 /// Meshes with element borders wherever a joint or a load attaches.
 LinkMeshes mesh_links(const scene::SceneDescription& scene, const LinkNames& links) {
@@ -51,11 +50,10 @@ LinkMeshes mesh_links(const scene::SceneDescription& scene, const LinkNames& lin
   return meshes;
 }
 
-Vector3 origin_of(const scene::SceneDescription& scene, const JointTree& tree, const LinkMeshes& meshes) {
-  const auto& on_root = tree.below[tree.root];
-  if (on_root.empty() || meshes[tree.root]) return Vector3::Zero();
-  const Vector3 origin = on_root.front()->origin.position;
-  double size = 0;  // of the largest part
+/// Size of the largest part, joints on the root link seen from `origin`.
+double size_of(const scene::SceneDescription& scene, const JointTree& tree, const LinkMeshes& meshes,
+               const Vector3& origin) {
+  double size = 0;
   const auto reach = [&](const std::string& link, const Vector3& place) {
     size = std::max(size, (link == scene.root_link ? Vector3(place - origin) : place).norm());
   };
@@ -69,7 +67,24 @@ Vector3 origin_of(const scene::SceneDescription& scene, const JointTree& tree, c
     const bool is_root = static_cast<int>(i) == tree.root;
     if (scene.links[i].inertial && !is_root) size = std::max(size, scene.links[i].inertial->center_of_mass.norm());
   }
-  return origin.norm() > kFar * size ? origin : Vector3::Zero();
+  return size;
+}
+
+/// See Model::floats.
+bool floats(const scene::SceneDescription& scene, const JointTree& tree, const LinkMeshes& meshes) {
+  const auto& on_root = tree.below[tree.root];
+  const auto is_free = [&](const scene::JointDescription* joint) {
+    return joint->kind == scene::JointKind::Floating &&
+           std::none_of(scene.motions.begin(), scene.motions.end(), [&](const scene::PrescribedMotion& motion) {
+             const std::vector<std::string> names = coordinate_names(*joint);
+             return std::count(names.begin(), names.end(), motion.coordinate) > 0;
+           });
+  };
+  const auto holds_root = [&](const scene::JointDescription& loop) {
+    return loop.parent == scene.root_link || loop.child == scene.root_link;
+  };
+  return !on_root.empty() && !meshes[tree.root] && std::all_of(on_root.begin(), on_root.end(), is_free) &&
+         std::none_of(scene.loop_joints.begin(), scene.loop_joints.end(), holds_root);
 }
 
 }  // namespace
@@ -137,6 +152,16 @@ ScenePlan::ScenePlan(const scene::SceneDescription& scene)
       tree(scene, links),
       meshes(mesh_links(scene, links)),
       initial_positions(scene),
-      origin(origin_of(scene, tree, meshes)) {}
+      floats(flexarm::floats(scene, tree, meshes)) {
+  const auto& on_root = tree.below[tree.root];
+  if (on_root.empty() || meshes[tree.root]) return;
+  const scene::JointDescription& first = *on_root.front();
+  const double size = size_of(scene, tree, meshes, first.origin.position);
+  if (first.origin.position.norm() > kFarInSizes * size) origin = first.origin.position;
+  if (!floats) return;
+  Vector3 start;
+  for (int k = 0; k < 3; ++k) start[k] = initial_positions.of(coordinate_names(first)[k]);
+  if (start.norm() > kFarInSizes * (size > 0 ? size : 1.0)) start_origin = first.origin.orientation * start;
+}
 
 }  // namespace flexarm

@@ -72,7 +72,10 @@ struct ScenePlan {
   InitialPositions initial_positions;
   /// Of the model, in the world [m]: the world's own, or the place of the first joint on the root link where that is
   /// far away beside the mechanism's size, so that positions have as many digits as at the world's origin.
-  Vector3 origin;
+  Vector3 origin = Vector3::Zero();
+  /// See Model::floats and Model::initial_origin.
+  bool floats;
+  Vector3 start_origin = Vector3::Zero();
 };
 
 }  // namespace flexarm

@@ -30,6 +30,8 @@ class TreeBuilder {
   PlacedTree build() {
     for (const scene::LinkDescription& link : plan_.scene.links) model_.links.push_back({link.name, {}, std::nullopt});
     model_.origin = plan_.origin;
+    model_.floats = plan_.floats;
+    model_.initial_origin = plan_.start_origin;
     place_link(plan_.tree.root, {-1, Pose{Vector3::Zero() - plan_.origin, Quaternion::Identity()}});
     for (const scene::JointDescription* joint : plan_.tree.joints)
       tree_.tree_joints.push_back(joint->kind == scene::JointKind::Slide ? add_slide(*joint) : add_joint(*joint));
@@ -95,7 +97,9 @@ class TreeBuilder {
       map.master = node;
       const std::vector<std::string> own(name, name + released_count(map.kind));
       name += released_count(map.kind);
-      node = tree_.add_map(map, initial_released(map.kind, own, plan_.initial_positions));
+      Released start = initial_released(map.kind, own, plan_.initial_positions);
+      if (node < 0) start.displacement -= map.origin.orientation.conjugate() * plan_.start_origin;
+      node = tree_.add_map(map, start);
       tree_.add_coordinates(joint, own);
     }
     return node;

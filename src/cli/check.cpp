@@ -3,10 +3,12 @@
 
 #include <fmt/format.h>
 
+#include "analysis/flexible_dead_point.h"
 #include "building/section.h"
 #include "cli/commands.h"
 #include "cli/mode_table.h"
 #include "cli/scene_input.h"
+#include "schemes/scheme.h"
 #include "simulation/inside.h"
 
 namespace flexarm::cli {
@@ -98,6 +100,33 @@ void print_beams(const Simulation& simulation) {
   if (!is_first) fmt::print("(m, N, N m^2, kg; number of elements x order)\n");
 }
 
+/// The loop joint, of a scene that has some, in whose loop a link is.
+std::string loop_joint_of(const scene::SceneDescription& scene, const std::string& link) {
+  const auto hangs_on = [&](std::string child) {  // whether the chain from there to the root goes over the link
+    while (child != link && child != scene.root_link)
+      child = std::find_if(scene.joints.begin(), scene.joints.end(), [&](const scene::JointDescription& joint) {
+                return joint.child == child;
+              })->parent;
+    return child == link;
+  };
+  const auto found =
+      std::find_if(scene.loop_joints.begin(), scene.loop_joints.end(), [&](const scene::JointDescription& loop) {
+        return hangs_on(loop.parent) != hangs_on(loop.child) || loop.parent == link || loop.child == link;
+      });
+  return (found == scene.loop_joints.end() ? scene.loop_joints.front() : *found).name;
+}
+
+void print_dead_point(const Simulation& simulation) {
+  if (simulation.scene().loop_joints.empty()) return;
+  const double contact_time = make_scheme(simulation.scene().integrator).contact_time;
+  const std::string link = link_at_dead_point(model_of(simulation), state_of(simulation), contact_time);
+  if (link.empty()) return;
+  fmt::print(
+      "\nat a dead point: the loop that joint '{}' closes is free to move in first order, and strains link '{}' in the "
+      "second; how it goes on is up to small disturbances: start it beside that by <initial>\n",
+      loop_joint_of(simulation.scene(), link), link);
+}
+
 void print_growth(const std::vector<Mode>& modes) {
   for (const Mode& mode : modes)
     if (mode.rate > 0)
@@ -145,6 +174,7 @@ void add_check(CLI::App& app, int& status) {
     print_links(simulation);
     print_joints(simulation);
     print_beams(simulation);
+    print_dead_point(simulation);
     try {
       print_frequencies(simulation);
     } catch (const std::runtime_error& error) {

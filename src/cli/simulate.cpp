@@ -41,6 +41,9 @@ struct Run {
 };
 
 void check_places(const Arguments& arguments) {
+  for (const auto& [option, path] : {std::pair("--checkpoint", &arguments.checkpoint), {"--resume", &arguments.resume}})
+    if (is_standard_output(*path))
+      throw InputError(fmt::format("flexarm: {}: states are files, no streams: './-' is one of that name", option));
   for (const std::string& other : {arguments.scene.path, arguments.resume, arguments.checkpoint})
     refuse_overwriting("--output", arguments.output, other);
   refuse_overwriting("--checkpoint", arguments.checkpoint, arguments.scene.path);

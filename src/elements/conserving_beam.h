@@ -25,19 +25,25 @@ Vector3T<S> mean_of(const std::array<Vector3T<S>, Nodes>& vectors) {
 }
 
 /// Generalised shape functions for the middle of a step from `orientation` by the `foreseen` tangent-scaled increments:
-/// those of the configuration half-way, with the stretch P = I + (cos(theta/2) - 1) e e^T, angle theta about e, of the
-/// mean increment, values P^-1 I_g P and derivatives P I_g' P. With it the conjugate strain of a step that turns the
-/// element by any angle is exact to first order in what else it does (beyond.md 1.3).
+/// those of the configuration half-way.
 template <int Nodes, typename S>
 void mid_functions(const ConservingElement<Nodes, S>& element, const std::array<QuaternionT<S>, Nodes>& orientation,
                    const std::array<Vector3T<S>, Nodes>& foreseen, ElementFunctions<Nodes, S>& functions) {
   std::array<QuaternionT<S>, Nodes> half_way;
   for (int i = 0; i < Nodes; ++i) half_way[i] = cayley::half_quaternion(foreseen[i]) * orientation[i];
   const LocalRotationVariation<Nodes, S> local{LocalRotations<Nodes, S>(half_way)};
+  for (int k = 0; k < Nodes - 1; ++k)
+    local.evaluate(element.points[k].shape, element.points[k].derivative, functions[k]);
+}
+
+/// The stretch P = I + (cos(theta/2) - 1) e e^T, angle theta about e, of the mean of the `foreseen` increments: values
+/// P^-1 I_g P and derivatives P I_g' P. With it the conjugate strain of a step that turns the element by any angle is
+/// exact to first order in what else it does, and the energy multiplier has little to make up for (beyond.md 1.3).
+template <int Nodes, typename S>
+void stretch_mid_functions(const std::array<Vector3T<S>, Nodes>& foreseen, ElementFunctions<Nodes, S>& functions) {
   const Vector3T<S> mean = mean_of<Nodes, S>(foreseen);
   const Matrix3T<S> stretch = cayley::axial_stretch(mean), inverse = cayley::inverse_axial_stretch(mean);
   for (int k = 0; k < Nodes - 1; ++k) {
-    local.evaluate(element.points[k].shape, element.points[k].derivative, functions[k]);
     for (int i = 0; i < Nodes; ++i) {
       const Matrix3T<S> value = functions[k].values[i].lazyProduct(stretch),
                         derivative = functions[k].derivatives[i].lazyProduct(stretch);

@@ -14,6 +14,9 @@ void mid_functions(const ConservingElement<Nodes, Pack>& element,
                    const std::array<Vector3T<Pack>, Nodes>& foreseen, ElementFunctions<Nodes, Pack>& functions);
 
 template <int Nodes>
+void stretch_mid_functions(const std::array<Vector3T<Pack>, Nodes>& foreseen, ElementFunctions<Nodes, Pack>& functions);
+
+template <int Nodes>
 void element_points(const ConservingElement<Nodes, Pack>& element, const std::array<Vector3T<Pack>, Nodes>& position,
                     const std::array<QuaternionT<Pack>, Nodes>& orientation, PointKinematicsT<Pack>* points);
 

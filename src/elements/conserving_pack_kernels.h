@@ -15,6 +15,12 @@ void mid_functions(const ConservingElement<Nodes, Pack>& element,
 }
 
 template <int Nodes>
+void stretch_mid_functions(const std::array<Vector3T<Pack>, Nodes>& foreseen,
+                           ElementFunctions<Nodes, Pack>& functions) {
+  simd::run([&] { flexarm::stretch_mid_functions<Nodes, Pack>(foreseen, functions); });
+}
+
+template <int Nodes>
 void element_points(const ConservingElement<Nodes, Pack>& element, const std::array<Vector3T<Pack>, Nodes>& position,
                     const std::array<QuaternionT<Pack>, Nodes>& orientation, PointKinematicsT<Pack>* points) {
   simd::run([&] { flexarm::element_points<Nodes, Pack>(element, position, orientation, points); });

@@ -52,7 +52,7 @@ Energies energies(const Model& model, const Scheme& scheme, const State& state) 
     const NodeState& node = state.nodes[i];
     out.kinetic += 0.5 * inertia.mass * node.velocity.squaredNorm() +
                    0.5 * node.angular_velocity.dot(lumped_rotary(inertia, scheme) * node.angular_velocity);
-    out.potential -= inertia.total_mass * model.gravity.dot(node.position);
+    out.potential -= inertia.total_mass * model.gravity.dot(node.position + (state.origin - model.initial_origin));
   }
   for (const Coordinate& coordinate : model.coordinates)
     if (coordinate.limit)

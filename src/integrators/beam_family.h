@@ -16,6 +16,8 @@ class BeamFamily {
 
   /// Adds to an initial state what the family keeps there.
   virtual void initialise(State&) {}
+  /// See RotationReference.
+  virtual void forget_path(State&) {}
   /// The configuration's step has begun.
   virtual void begin() = 0;
   /// Internal forces and damping; in families that have their inertia at the same points, that as well.

@@ -159,6 +159,7 @@ void ConservingBeams::set_mid_functions() {
   const StepMotion step = configuration_.motion();
   // Explicit, so that the tangent stays simple. Where they are to be averaged with those of the end: the beginning.
   const Pack foreseen_time(rule_.mid_functions == MidFunctions::Explicit ? step.step : 0.0);
+  const bool is_stretched = rule_.correction == EnergyCorrection::Multiplier;
   for_each_group(groups_, [&](auto& packs) {
     constexpr int N = std::decay_t<decltype(packs)>::value_type::kNodes;
     simd::run([&] {
@@ -174,6 +175,7 @@ void ConservingBeams::set_mid_functions() {
               gathered_quaternion([&](int lane) -> const Quaternion& { return step.begin[node(lane)].orientation; });
         }
         packs::mid_functions<N>(pack.element, orientation, foreseen, pack.mid_functions);
+        if (is_stretched) packs::stretch_mid_functions<N>(foreseen, pack.mid_functions);
       }
     });
   });

@@ -13,6 +13,7 @@ class EndpointBeams : public BeamFamily {
   explicit EndpointBeams(const StepConfiguration& configuration);
 
   void initialise(State& state) override;
+  void forget_path(State& state) override { points_.reference.forget_path(state); }
   void begin() override;
   void add_forces(Balance& balance) override;
   void add_inertia(Balance& balance) override;

@@ -14,6 +14,7 @@ class MomentumBeams : public BeamFamily {
       : configuration_(configuration), points_(configuration) {}
 
   void initialise(State& state) override { points_.reference.initialise(state); }
+  void forget_path(State& state) override { points_.reference.forget_path(state); }
   /// Energy corrections differentiate the tangent's own stresses: they carry nothing.
   void begin() override { points_.begin(configuration_.scheme().correction == EnergyCorrection::None); }
   void add_forces(Balance& balance) override;

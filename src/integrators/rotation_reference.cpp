@@ -37,13 +37,23 @@ RotationReference::RotationReference(const Model& model, const TimeRule& rule)
 
 void RotationReference::initialise(State& state) const {
   if (keeps_total_) state.total_rotations.assign(model_.nodes.size(), Vector3::Zero());
+  set_points(model_.nodes, state);
+}
+
+void RotationReference::forget_path(State& state) const {
+  std::vector<NodePose> nodes;
+  for (const NodeState& node : state.nodes) nodes.push_back(node_pose(node));
+  set_points(nodes, state);
+}
+
+void RotationReference::set_points(const std::vector<NodePose>& nodes, State& state) const {
   if (!is_used()) return;
   state.stiffness_rotations.resize(model_.stiffness_point_count);
   state.mass_rotations.resize(model_.mass_point_count);
   for_each_element(model_.beams, [&](const auto& element) {
     using Element = std::decay_t<decltype(element)>;
     std::array<Quaternion, Element::kNodes> orientation;
-    for (int i = 0; i < Element::kNodes; ++i) orientation[i] = model_.nodes[element.nodes[i]].orientation;
+    for (int i = 0; i < Element::kNodes; ++i) orientation[i] = nodes[element.nodes[i]].orientation;
     const LocalRotations<Element::kNodes> local(orientation);
     for (int k = 0; k < Element::kStiffnessPoints; ++k)
       state.stiffness_rotations[element.first_stiffness_point + k] =

@@ -18,6 +18,8 @@ class RotationReference {
   bool is_used() const { return interpolation_ != Interpolation::Local; }
   /// Adds to a state what this interpolation keeps there, for the configuration of the model.
   void initialise(State& state) const;
+  /// The points' rotations become those that follow from the nodes of the state, whatever way has led there.
+  void forget_path(State& state) const;
   /// The configuration at the beginning of a step.
   void begin(const State& state);
   /// Rotation vectors of the trial configuration. The iterative interpolation moves its reference there.
@@ -37,6 +39,8 @@ class RotationReference {
   const std::vector<Vector3>& total_rotations() const { return total_; }
 
  private:
+  /// The points' rotations that follow from those of nodes.
+  void set_points(const std::vector<NodePose>& nodes, State& state) const;
   void compute_points(std::vector<PointRotation>& stiffness, std::vector<PointRotation>& mass) const;
 
   const Model& model_;

@@ -10,7 +10,7 @@ struct StepSettings {
   double step = 1e-3;       ///< [s]
   double tolerance = 1e-8;  ///< on the largest update: displacements over the model's length scale, rotations in rad
   int max_iterations = 20;
-  int max_halvings = 14;
+  int max_halvings = 14;  ///< but where a stop is hit, see finest_halving()
   /// Keep the factors of the tangent while the iteration contracts well (modified Newton). The result agrees with that
   /// of full Newton to far below the tolerance; off: quadratic convergence, and a restored state continues bit for bit.
   bool reuse_factorisation = true;
@@ -19,5 +19,12 @@ struct StepSettings {
   /// never. What one Newton iteration takes comes on top.
   double recovery_wall_time = 0;
 };
+
+/// Halvings of a step at most: a hit on a stop asks for as many as it is fast, of which there is no bound but this one;
+/// where nothing is to be halved, stops are no exception.
+inline int finest_halving(const StepSettings& settings) {
+  constexpr int kFinestAtStops = 40;
+  return settings.max_halvings > 0 ? kFinestAtStops : 0;
+}
 
 }  // namespace flexarm

@@ -61,6 +61,8 @@ class StepSystem {
   void accept(State& state);
   /// The state was changed by somebody else: quantities kept from the last step do not hold.
   void invalidate() { beams_->invalidate(); }
+  /// Of strains that depend on the way to a configuration: see RotationReference.
+  void forget_path(State& state) { beams_->forget_path(state); }
 
   const DegreesOfFreedom& degrees_of_freedom() const { return dof_; }
   const StepConfiguration& configuration() const { return configuration_; }
@@ -73,6 +75,7 @@ class StepSystem {
   LoopMultipliers::Opening largest_opening() const { return loops_.largest_opening(); }
   /// See StopContacts.
   bool hits_too_fast() { return contacts_.hits_too_fast(); }
+  bool may_hit_a_stop() { return contacts_.may_hit(); }
   /// Internal less external forces on all nodes in the configuration of `state`, before joints fold them; of a scheme
   /// made by statics_of().
   std::vector<Vector6> nodal_forces(const State& state);

@@ -113,7 +113,7 @@ bool Stepper::simple_step(State& state, double step, StepResult& result) {
     system_.begin(state, step, attempt.guess);
     if (!newton_.solve(NewtonIteration::Updates::Limited, attempt.factors, result)) continue;
     result.reason = flaw_of_solution(result);
-    const bool may_halve = state.halving_level < settings_.max_halvings && result.halvings < kMostHalvings;
+    const bool may_halve = state.halving_level < finest_halving(settings_) && result.halvings < kMostHalvings;
     if (result.reason == StepResult::Reason::None && may_halve && system_.hits_too_fast())
       result.reason = StepResult::Reason::HitTooFast;
     if (result.reason != StepResult::Reason::None) return false;
@@ -139,7 +139,7 @@ StepResult Stepper::advance_by_scheme(State& state) {
   StepResult result;
   const Deadline deadline(settings_.recovery_wall_time);
   const double begin = state.time;
-  const int finest = settings_.max_halvings;
+  const int finest = finest_halving(settings_);
   long done = 0;  // in units of step / 2^finest
   const long whole = 1L << finest;
   state.halving_level = std::clamp(state.halving_level, 0, finest);
@@ -151,7 +151,8 @@ StepResult Stepper::advance_by_scheme(State& state) {
     result.deepest_halving = std::max(result.deepest_halving, level);
     if (!is_done) {
       state.good_steps = 0;
-      if (level == finest || result.halvings >= kMostHalvings) return give_up(false, result);
+      const bool may_halve = level < (system_.may_hit_a_stop() ? finest : settings_.max_halvings);
+      if (!may_halve || result.halvings >= kMostHalvings) return give_up(false, result);
       ++state.halving_level;
       ++result.halvings;
       if (is_late) return give_up(true, result);  // who goes on does so with a shorter step

@@ -21,8 +21,8 @@ class Stepper {
   Stepper(const Model& model, const Scheme& scheme, const StepSettings& settings);
   ~Stepper();
 
-  /// One step of settings.step, in sub-steps of step / 2^k where Newton needs them. On failure the state is that after
-  /// the last good sub-step, or the step is done otherwise, see OnFailure.
+  /// One step of settings.step, in sub-steps of step / 2^k where Newton or a hit on a stop needs them. On failure the
+  /// state is that after the last good sub-step, or the step is done otherwise, see OnFailure.
   StepResult advance(State& state);
   /// Adds to an initial state what the scheme keeps there; accelerations (Newmark family) come from a short
   /// momentum-conserving step.

@@ -1,5 +1,7 @@
 #include "integrators/stop_contacts.h"
 
+#include <algorithm>
+
 namespace flexarm {
 
 StopContacts::StopContacts(StepConfiguration& configuration) : configuration_(configuration) {
@@ -21,6 +23,12 @@ double StopContacts::position(const Coordinate& coordinate) const {
   if (coordinate.mimicked >= 0)
     return coordinate.mimic.value(position(configuration_.model().coordinates[coordinate.mimicked]));
   return configuration_.released()[coordinate.joint].displacement[coordinate.component];
+}
+
+/// Where they have been found.
+double StopContacts::begin_rate(const Stopped& stopped) const {
+  const Coordinate& limited = coordinate(stopped);
+  return configuration_.begin_rates(limited.joint)[limited.component];
 }
 
 void StopContacts::before_update() {
@@ -47,10 +55,17 @@ bool StopContacts::hits_too_fast() {
     const CoordinateStep change = configuration_.coordinate_step(stopped.index, increment);
     if (!is_coarse(*limited.limit, stopped.penalty, change)) continue;
     configuration_.find_begin_rates();
-    if (swings(*limited.limit, stopped.penalty, change, configuration_.begin_rates(limited.joint)[limited.component]))
-      return true;
+    if (swings(*limited.limit, stopped.penalty, change, begin_rate(stopped))) return true;
   }
   return false;
+}
+
+bool StopContacts::may_hit() {
+  configuration_.find_begin_rates();
+  return std::any_of(stopped_.begin(), stopped_.end(), [&](const Stopped& stopped) {
+    const CoordinateStep change = configuration_.coordinate_step(stopped.index, 0);
+    return is_long_for_a_hit(*coordinate(stopped).limit, stopped.penalty, change, begin_rate(stopped));
+  });
 }
 
 }  // namespace flexarm

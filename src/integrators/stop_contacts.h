@@ -17,6 +17,8 @@ class StopContacts {
   void after_update();
   /// True where the restitution of a hit would be lost in so long a step.
   bool hits_too_fast();
+  /// True where the step is long for a hit that it is in or may come to, whatever its trial end.
+  bool may_hit();
 
  private:
   struct Stopped {
@@ -27,6 +29,7 @@ class StopContacts {
   };
   const Coordinate& coordinate(const Stopped& stopped) const;
   double position(const Coordinate& coordinate) const;
+  double begin_rate(const Stopped& stopped) const;
 
   StepConfiguration& configuration_;
   std::vector<Stopped> stopped_;

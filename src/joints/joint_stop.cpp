@@ -23,6 +23,8 @@ constexpr double kLargestPart = 0.5;
 constexpr double kLargestAngle = kPi / 5, kLargestAngleAtEnd = kPi / 8;
 /// Smaller changes of an oscillation, relative to its amplitude, are those of something that rests on its stop.
 constexpr double kSwing = 0.5;
+/// Part of what a stop still gives way that a step cannot miss.
+constexpr double kMuch = 0.1;
 /// Depths that a state beyond all bounds counts for.
 constexpr double kDeepest = 1 - 1e-6;
 /// Increments whose quotients lose too much to round-off, relative to the way to where the stop gives way no further.
@@ -203,6 +205,17 @@ bool swings(const LimitStop& limit, const StopPenalty& penalty, const Coordinate
     const double x0 = scale * hardened(side.begin).value, x1 = scale * hardened(side.end).value;
     const double largest = std::max(std::hypot(x0, begin_rate), std::hypot(x1, end_rate));
     if (std::hypot(x1 - x0, end_rate - begin_rate) > kSwing * largest) return true;
+  }
+  return false;
+}
+
+bool is_long_for_a_hit(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change,
+                       double begin_rate) {
+  const double scale = frequency(limit, penalty);
+  for (const Side& side : sides(limit, change.begin, change.begin)) {
+    const double way = std::hypot(scale * hardened(side.begin).value, begin_rate) * std::abs(change.step);
+    const double room = side.begin.give - std::max(side.begin.depth, 0.0);
+    if (side.begin.depth + way > 0 && way > kMuch * room) return true;
   }
   return false;
 }

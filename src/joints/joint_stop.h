@@ -35,5 +35,9 @@ bool is_coarse(const LimitStop& limit, const StopPenalty& penalty, const Coordin
 /// True if the step goes through a part of a hit worth mentioning, false if the coordinate rests on its stop.
 /// `begin_rate` of the coordinate; the mean rate of the step is that of both ends.
 bool swings(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change, double begin_rate);
+/// True if, from the beginning of the step alone, the coordinate may come to its stop in it and go through much of what
+/// the stop still gives way.
+bool is_long_for_a_hit(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change,
+                       double begin_rate);
 
 }  // namespace flexarm

@@ -122,10 +122,14 @@ struct Model {
   std::vector<NodalLoad> loads;
   std::vector<TimeFunction> histories;
   Vector3 gravity = Vector3::Zero();
+  /// All that hangs on the world does so by free joints, and nothing says where it is to be: the origin of positions
+  /// may go with it (model/carried_origin.h).
+  bool floats = false;
+  Vector3 initial_origin = Vector3::Zero();  ///< State::origin at the start [m]
   double length_scale = 1;  ///< extent of the mechanism [m]: scales displacements in the convergence test
 
   // ---- output
-  Vector3 origin = Vector3::Zero();  ///< of all positions here and in states, in the world [m]
+  Vector3 origin = Vector3::Zero();  ///< of joints on the world and, but for State::origin, of positions [m]
   std::vector<LinkFrame> links;      ///< in the scene's order
   std::vector<ProbePoint> probes;
 };

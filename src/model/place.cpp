@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <optional>
 
+#include "model/carried_origin.h"
+
 namespace flexarm {
 
 using Place = StepResult::Place;
 
 Place place_of_element(const Model& model, const State& state, int order, int index, int node) {
   Place place;
-  place.position = model.origin + state.nodes[node].position;
+  place.position = world_origin(model, state) + state.nodes[node].position;
   for (std::size_t link = 0; link < model.links.size(); ++link) {
     const std::optional<BeamLink>& beam = model.links[link].beam;
     if (!beam || beam->order != order) continue;
@@ -32,7 +34,7 @@ Place place_of_node(const Model& model, const State& state, int node) {
     }
   });
   if (place.link >= 0) return place;
-  place.position = model.origin + state.nodes[node].position;
+  place.position = world_origin(model, state) + state.nodes[node].position;
   for (std::size_t link = 0; link < model.links.size() && place.link < 0; ++link)
     if (model.links[link].frame.node == node) place.link = static_cast<int>(link);
   return place;
@@ -48,7 +50,7 @@ Place place_of_joint(const Model& model, const State& state, int joint, int comp
 
 Place place_of_loop(const Model& model, const State& state, int loop) {
   Place place;
-  place.position = model.origin + state.nodes[model.closures[loop].child].position;
+  place.position = world_origin(model, state) + state.nodes[model.closures[loop].child].position;
   place.loop = loop;
   return place;
 }

@@ -53,10 +53,12 @@ using StrainMemory = StrainMemoryT<double>;
 using PointRotation = InterpolatedRotation<double>;
 
 struct State {
-  double time = 0;                 ///< [s]
-  std::vector<NodeState> nodes;    ///< slaves included
-  std::vector<Released> released;  ///< per elementary joint
-  std::vector<int> left_lines;     ///< joints that have slid off their lines, in the order in which they did
+  double time = 0;                   ///< [s]
+  Vector3 origin = Vector3::Zero();  ///< of positions of nodes, and of released translations in the world, from
+                                     ///< Model::origin; it stays there unless Model::floats [m]
+  std::vector<NodeState> nodes;      ///< slaves included
+  std::vector<Released> released;    ///< per elementary joint
+  std::vector<int> left_lines;       ///< joints that have slid off their lines, in the order in which they did
   std::vector<MassPointState> mass_points;
   std::vector<Vector6> strain_rates;  ///< per stiffness point; Newmark family with damping only
   // Empty unless the scheme needs them:

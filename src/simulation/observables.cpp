@@ -126,6 +126,7 @@ State initial_state(const Model& model) {
     node.velocity = model.initial_velocity[i].head<3>();
     node.angular_velocity = node.orientation.conjugate() * Vector3(model.initial_velocity[i].tail<3>());
   }
+  state.origin = model.initial_origin;
   state.released = model.initial_released;
   state.mass_points.resize(model.mass_point_count);
   state.strain_rates.assign(model.stiffness_point_count, Vector6::Zero());

@@ -13,6 +13,7 @@
 #include "integrators/balance.h"
 #include "integrators/stepper.h"
 #include "math/so3.h"
+#include "model/carried_origin.h"
 #include "model/line_release.h"
 #include "schemes/slide_scheme.h"
 #include "simulation/failure_text.h"
@@ -120,8 +121,12 @@ struct Simulation::Implementation {
     return output_velocities;
   }
 
-  /// Of a pose about the model's origin.
-  Pose in_world(const Pose& pose) const { return {model.origin + pose.position, pose.orientation}; }
+  /// Of a pose about the origin of the state.
+  Pose in_world(const Pose& pose) const { return {world_origin(model, state) + pose.position, pose.orientation}; }
+  Pose in_world(const Attachment& frame) const {
+    const Pose pose = attached_pose(state, frame);
+    return frame.node < 0 ? Pose{model.origin + pose.position, pose.orientation} : in_world(pose);
+  }
 
   void release_from_lines() {
     for (int slide; (slide = slide_beyond_end(model, state)) >= 0;) {
@@ -154,7 +159,7 @@ struct Simulation::Implementation {
   }
 
   void restore(const State& other) {
-    const std::string flaw = state_flaw(built ? *built : model, initial, settings.max_halvings, other);
+    const std::string flaw = state_flaw(built ? *built : model, initial, finest_halving(settings), other);
     if (!flaw.empty()) throw std::invalid_argument("not a state of this scene: " + flaw);
     set_state(other);
   }
@@ -173,6 +178,7 @@ const scene::SceneDescription& Simulation::scene() const {
 StepResult Simulation::step() {
   StepResult result = implementation_->stepper->advance(implementation_->state);
   implementation_->release_from_lines();
+  carry_origin(implementation_->model, implementation_->state);
   implementation_->velocities_hold = false;
   implementation_->static_norms.clear();
   return result;
@@ -218,7 +224,11 @@ std::optional<std::size_t> Simulation::find_coordinate(std::string_view name) co
 double Simulation::position(std::size_t index) const {
   const Coordinate& coordinate = implementation_->model.coordinates.at(index);
   const Released& released = implementation_->state.released[coordinate.joint];
-  if (!coordinate.is_angle) return released.displacement[coordinate.component];
+  if (!coordinate.is_angle) {
+    const JointMap& joint = implementation_->model.joints[coordinate.joint];
+    return carried_translation(joint, implementation_->state)[coordinate.component] +
+           released.displacement[coordinate.component];
+  }
   return so3::log(released.rotation)[coordinate.component % 3];
 }
 
@@ -255,7 +265,7 @@ const std::vector<std::string>& Simulation::link_names() const {
 }
 
 Pose Simulation::link_pose(std::size_t link) const {
-  return implementation_->in_world(attached_pose(implementation_->state, implementation_->model.links.at(link).frame));
+  return implementation_->in_world(implementation_->model.links.at(link).frame);
 }
 
 bool Simulation::is_flexible(std::size_t link) const {
@@ -264,8 +274,7 @@ bool Simulation::is_flexible(std::size_t link) const {
 
 Pose Simulation::tip_pose(std::size_t link) const {
   const LinkFrame& frame = implementation_->model.links.at(link);
-  return frame.beam ? implementation_->in_world(attached_pose(implementation_->state, frame.beam->tip))
-                    : link_pose(link);
+  return frame.beam ? implementation_->in_world(frame.beam->tip) : link_pose(link);
 }
 
 void Simulation::beam_points(std::size_t link, int between, std::vector<BeamPoint>& points) const {
@@ -291,12 +300,14 @@ Vector3 Simulation::momentum() const {
 }
 Vector3 Simulation::angular_momentum() const {
   const Momenta momenta = flexarm::momenta(implementation_->model, implementation_->scheme, implementation_->state);
-  return implementation_->model.origin.cross(momenta.linear) + momenta.angular;
+  return world_origin(implementation_->model, implementation_->state).cross(momenta.linear) + momenta.angular;
 }
 ProbeState Simulation::probe(std::size_t index) const {
-  ProbeState probe = probe_state(implementation_->model, implementation_->state, implementation_->velocities().nodes(),
-                                 implementation_->model.probes.at(index));
-  probe.pose = implementation_->in_world(probe.pose);
+  const Implementation& s = *implementation_;
+  const ProbePoint& point = s.model.probes.at(index);
+  ProbeState probe = probe_state(s.model, s.state, s.velocities().nodes(), point);
+  const bool is_on_world = point.element < 0 && point.attachment.node < 0;
+  probe.pose = is_on_world ? s.in_world(point.attachment) : s.in_world(probe.pose);
   return probe;
 }
 

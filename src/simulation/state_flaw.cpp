@@ -81,13 +81,13 @@ void check_history(const IncrementHistory& history, Flaw& flaw) {
 
 }  // namespace
 
-std::string state_flaw(const Model& built, const State& initial, int max_halvings, const State& state) {
+std::string state_flaw(const Model& built, const State& initial, int finest_halving, const State& state) {
   Flaw flaw;
   check_left_lines(built, state, flaw);
   check_sizes(initial, state, flaw);
   check_history(state.history, flaw);
   flaw.require(state.steps >= 0, "the number of steps", static_cast<double>(state.steps), "0 or more");
-  flaw.require_range("the halving level", state.halving_level, 0, max_halvings);
+  flaw.require_range("the halving level", state.halving_level, 0, finest_halving);
   flaw.require(state.good_steps >= 0, "the number of good steps", state.good_steps, "0 or more");
   for_each_number(state, [&](const char* what, double number) {
     if (what == kCommand && std::isnan(number)) return;

@@ -16,6 +16,7 @@ void for_each_number(AnyState& state, const Visit& visit) {
     for (int k = 0; k < v.size(); ++k) visit(what, v[k]);
   };
   visit("the time", state.time);
+  vector("the origin", state.origin);
   for (auto& node : state.nodes) {
     vector("a node's position", node.position);
     vector("a node's orientation", node.orientation.coeffs());

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "analysis/flexible_dead_point.h"
 #include "analysis/stability.h"
 #include "building/model_builder.h"
 #include "math/pi.h"
@@ -72,16 +73,24 @@ TEST(Statics, ColumnBucklesWhatEverTheLoadSteps) {
     }
 }
 
+// With interpolations whose strains depend on the past, too: their tangents are not symmetric, but the configuration is
+// one of the potential of the others.
 TEST(Statics, StraightColumnIsToldAndCanBeHad) {
-  Simulation simulation(column(3 * kEuler, 0).scene);
-  const StaticResult falls = simulation.solve_static(2);
-  EXPECT_EQ(falls.falling_link, "beam");
-  simulation.reset();
-  const StaticResult stays = simulation.solve_static(2, Equilibrium::UnderTheLoads);
-  ASSERT_TRUE(stays.converged);
-  EXPECT_EQ(stays.falling_link, "beam");
-  EXPECT_LT(simulation.probe(0).pose.position.head<2>().norm(), kTolerance);
-  EXPECT_TRUE(diverges(simulation));
+  for (const char* scheme : {"em", "std", "hht3"}) {
+    SimulationOptions options;
+    options.scheme = scheme;
+    Simulation simulation(column(3 * kEuler, 0).scene, options);
+    const StaticResult falls = simulation.solve_static(2);
+    ASSERT_TRUE(falls.converged) << scheme;
+    EXPECT_EQ(falls.falling_link, "beam") << scheme;
+    EXPECT_LT(simulation.probe(0).pose.position.z(), 0.9) << scheme;
+    simulation.reset();
+    const StaticResult stays = simulation.solve_static(2, Equilibrium::UnderTheLoads);
+    ASSERT_TRUE(stays.converged) << scheme;
+    EXPECT_EQ(stays.falling_link, "beam") << scheme;
+    EXPECT_LT(simulation.probe(0).pose.position.head<2>().norm(), kTolerance) << scheme;
+    EXPECT_TRUE(diverges(simulation)) << scheme;
+  }
 }
 
 TEST(Statics, AColumnBelowItsBucklingLoadStands) {
@@ -116,6 +125,71 @@ TEST(Stability, UprightPendulum) {
   EXPECT_EQ(up.motion.link, "rod0");
   const double ways = static_cast<double>(simulation.node_count());  // all turn by 1 rad
   EXPECT_NEAR(up.motion.curvature * ways, -9.81 * 0.5, 1e-12 * 9.81);
+}
+
+Stability stability_at_start(const SceneBuilder& b) {
+  const Simulation simulation(b.scene);
+  return judge_stability(model_of(simulation), *find_scheme("em"), state_of(simulation));
+}
+
+// Chains of so many joints are judged without a matrix: one that hangs, one that stands, and rods of which one stands
+// among those that hang. A rod that stands turns from its hinge by 1 rad with three nodes at most.
+TEST(Stability, OfThousandsOfJoints) {
+  constexpr int kLinks = 2000;
+  EXPECT_TRUE(stability_at_start(pendulum(kLinks, {9.81, 0, 0})).is_stable());
+  EXPECT_FALSE(stability_at_start(pendulum(kLinks, {-9.81, 0, 0})).is_stable());
+
+  SceneBuilder rods = pendulum(kLinks, {9.81, 0, 0});
+  for (scene::JointDescription& joint : rods.scene.joints) joint.parent = "world";
+  EXPECT_TRUE(stability_at_start(rods).is_stable());
+  rods.scene.initial_joints.push_back({"hinge700", kPi, 0, {}});
+  const Stability stability = stability_at_start(rods);
+  EXPECT_FALSE(stability.is_stable());
+  EXPECT_EQ(stability.motion.link, "rod700");
+  EXPECT_LE(stability.motion.curvature, -9.81 * 0.5 / 3);
+}
+
+/// Cranks of 1 m on a line, with a coupler of 2 m, all of them beams, turned by an angle from it. `left`: the left
+/// crank's joints.
+SceneBuilder flexible_parallelogram(double angle, JointKind left) {
+  SceneBuilder b;
+  const Vector3 across(0, 1, 0), crank(std::cos(angle), 0, std::sin(angle));
+  b.beam("left", {crank}, section(1e5, 5e4, 10, 10, 1, 1e-2, 5e-3), 2, 2);
+  b.beam("coupler", {{2, 0, 0}}, section(1e5, 5e4, 10, 10, 1, 1e-2, 5e-3), 4, 2);
+  b.beam("right", {crank}, section(1e5, 5e4, 10, 10, 1, 1e-2, 5e-3), 2, 2);
+  b.joint("left_foot", left, "world", "left", {0, 0, 0}, across);
+  b.joint("left_head", left, "left", "coupler", crank, across);
+  b.joint("right_foot", JointKind::Continuous, "world", "right", {2, 0, 0}, across);
+  close_loop(b, "right_head", JointKind::Continuous, "coupler", "right", crank, across).origin.position = {2, 0, 0};
+  return b;
+}
+
+std::string dead_link(const SceneBuilder& b) {
+  const Simulation simulation(b.scene);
+  return link_at_dead_point(model_of(simulation), state_of(simulation), 0.01);
+}
+
+// A flat one may open as a parallelogram or cross over, however it stretches; one whose crank and coupler are clamped
+// has to bend.
+TEST(Stability, FlexibleLoopsAtDeadPoints) {
+  EXPECT_NE(dead_link(flexible_parallelogram(0, JointKind::Continuous)), "");
+  for (const double angle : {0.01, 0.3, kPi / 2})
+    EXPECT_EQ(dead_link(flexible_parallelogram(angle, JointKind::Continuous)), "") << angle;
+  EXPECT_EQ(dead_link(flexible_parallelogram(0, JointKind::Fixed)), "");
+  EXPECT_EQ(dead_link(column(0, 0)), "");
+  for (const double slenderness : {1e5, 1e8}) {  // soft is not free
+    SceneBuilder soft = flexible_parallelogram(0, JointKind::Fixed);
+    for (scene::LinkDescription& link : soft.scene.links)
+      if (link.beam) link.beam->section = section(10 * slenderness, 4 * slenderness, 10, 10, 1, 1e-2, 5e-3);
+    EXPECT_EQ(dead_link(soft), "") << slenderness;
+  }
+  EXPECT_EQ(dead_link(pendulum(3, Vector3::Zero())), "");
+
+  SceneBuilder ring;  // free to fly, and soft
+  ring.beam("ring", {{1, 0, 1}, {0, 0, 2}, {-1, 0, 1}, {0, 0, 0}}, section(1e9, 4e8, 1, 1, 1, 2e-9, 1e-9), 16, 2);
+  ring.joint("free", JointKind::Floating, "world", "ring");
+  close_loop(ring, "weld", JointKind::Fixed, "ring", "ring").origin.position.setZero();
+  EXPECT_EQ(dead_link(ring), "");
 }
 
 // Loops: the multipliers' zeros on the diagonal are no instability, and what the loop holds is none either.

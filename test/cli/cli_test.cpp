@@ -49,6 +49,37 @@ TEST(Check, DescribesTheModel) {
     expect_contains(outcome.output, word);
 }
 
+TEST(Check, NamesLoopsOfBeamsAtDeadPoints) {
+  const auto beam = [](const std::string& link, double length) {
+    return "<link name=\"" + link + "\"><beam elements=\"2\"><centerline><line to=\"" + std::to_string(length) +
+           " 0 0\"/></centerline><circle radius=\"0.01\"/><material young=\"70e9\" poisson=\"0.33\" "
+           "density=\"2700\"/></beam></link>\n";
+  };
+  const auto joint = [](const std::string& tag, const std::string& links, const std::string& name, double place) {
+    return "<" + tag + " name=\"" + name + "\" type=\"continuous\">" + links + "<axis xyz=\"0 1 0\"/><origin xyz=\"" +
+           std::to_string(place) + " 0 0\"/>";
+  };
+  const auto links = [](const std::string& parent, const std::string& child) {
+    return "<parent link=\"" + parent + "\"/><child link=\"" + child + "\"/>";
+  };
+  const auto parallelogram = [&](const std::string& initial) {
+    return scene_file("<robot name=\"flat\">\n<link name=\"world\"/>\n" + beam("left", 1) + beam("coupler", 2) +
+                      beam("right", 1) + joint("joint", links("world", "left"), "left_foot", 0) + "</joint>\n" +
+                      joint("joint", links("left", "coupler"), "left_head", 1) + "</joint>\n" +
+                      joint("joint", links("world", "right"), "right_foot", 2) + "</joint>\n" +
+                      joint("loop_joint", links("coupler", "right"), "right_head", 2) +
+                      "<child_origin xyz=\"1 0 0\"/></loop_joint>\n<simulation>" + initial + "</simulation></robot>\n");
+  };
+  const Outcome flat = shell("flexarm check " + parallelogram(""));
+  EXPECT_EQ(flat.status, 0);
+  expect_contains(flat.output, "at a dead point: the loop that joint 'right_head' closes");
+  const Outcome open = shell("flexarm check " + parallelogram("<initial joint=\"left_foot\" position=\"-0.5\"/>"
+                                                              "<initial joint=\"left_head\" position=\"0.5\"/>"
+                                                              "<initial joint=\"right_foot\" position=\"-0.5\"/>"));
+  EXPECT_EQ(open.status, 0);
+  EXPECT_EQ(open.output.find("dead point"), std::string::npos);
+}
+
 TEST(Check, TakesEveryExample) {
   for (const auto& entry : std::filesystem::directory_iterator(test::source_path("config/examples")))
     EXPECT_EQ(shell("flexarm check " + entry.path().string()).status, 0) << entry.path();

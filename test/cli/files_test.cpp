@@ -110,6 +110,14 @@ TEST(Simulate, PlaceOfTheCheckpointIsTriedBeforeTheRun) {
   }
 }
 
+TEST(Simulate, StatesAreNoStreams) {
+  for (const std::string option : {"--checkpoint", "--resume"}) {
+    const Outcome outcome = shell(kShort + option + " -");
+    EXPECT_EQ(outcome.status, 2);
+    expect_contains(outcome.errors, option + ": states are files");
+  }
+}
+
 TEST(Simulate, FullDiskKeepsTheCheckpointThatIsThere) {
   const std::string state = temporary("state");
   ASSERT_EQ(shell(kShort + "--checkpoint " + state).status, 0);

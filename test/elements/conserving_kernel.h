@@ -88,7 +88,8 @@ void conserving_beam(const BeamElement<Nodes>& element, const ElementNodes<Nodes
   data.get_end(0, end, end_memory);
 }
 
-/// Generalised shape functions of an element of the model, half-way from `orientation` by tangent-scaled increments.
+/// Generalised shape functions of an element of the model, half-way from `orientation` by tangent-scaled increments,
+/// with the stretch.
 template <int Nodes>
 ElementFunctions<Nodes> functions_half_way(const BeamElement<Nodes>& element,
                                            const std::array<Quaternion, Nodes>& orientation,
@@ -97,6 +98,7 @@ ElementFunctions<Nodes> functions_half_way(const BeamElement<Nodes>& element,
   set_lane(constants, 0, element);
   ElementFunctions<Nodes> functions;
   mid_functions<Nodes, double>(constants, orientation, increments, functions);
+  stretch_mid_functions<Nodes, double>(increments, functions);
   return functions;
 }
 

@@ -1,7 +1,8 @@
 // Mechanisms far from the world's origin move as they do there.
-#include <gtest/gtest.h>
-
+#include <cmath>
 #include <limits>
+
+#include <gtest/gtest.h>
 
 #include "simulation/inside.h"
 #include "support/loops.h"
@@ -80,6 +81,65 @@ TEST(Distant, ArmsMoveAsAtTheOrigin) {
 TEST(Distant, LoopsToTheWorldAsWell) {
   const Vector3 place(std::ldexp(1, 30), 0, -std::ldexp(1, 20));
   expect_alike(held_arm(Vector3::Zero()), held_arm(place), place);
+}
+
+/// The arm on a floating joint whose coordinates start at `place`.
+scene::SceneDescription floating_arm(const Vector3& place, const Vector3& velocity) {
+  scene::SceneDescription scene = arm(JointKind::Floating, Vector3::Zero());
+  for (int k = 0; k < 3; ++k)
+    scene.initial_joints.push_back({std::string("root/") + "xyz" [k], place[k], velocity[k], {}, true});
+  return scene;
+}
+
+TEST(Distant, FloatingJointsMayHaveLargeCoordinates) {
+  for (const double distance : {1e3, 1e6, 1e9, 1e12}) {
+    const Vector3 place = distance * Vector3(0.6, -0.48, 0.64);
+    Simulation here(floating_arm(Vector3::Zero(), {1, 2, 3})), there(floating_arm(place, {1, 2, 3}));
+    const double unit = std::numeric_limits<double>::epsilon() * distance;
+    for (int n = 0; n < 100; ++n) ASSERT_TRUE(here.step().converged && there.step().converged);
+    EXPECT_EQ(there.energies().total(), here.energies().total());
+    EXPECT_EQ(there.momentum(), here.momentum());
+    for (std::size_t i = 0; i < here.coordinate_names().size(); ++i) {
+      const Vector3 moved = i < 3 ? place : Vector3::Zero();
+      EXPECT_NEAR(there.position(i) - moved[i % 3], here.position(i), i < 3 ? unit : 0) << here.coordinate_names()[i];
+      EXPECT_EQ(there.velocity(i), here.velocity(i)) << here.coordinate_names()[i];
+    }
+    for (std::size_t i = 0; i < here.link_names().size(); ++i) {
+      const Vector3 moved = here.link_names()[i] == "world" ? Vector3::Zero() : place;
+      EXPECT_LE((there.link_pose(i).position - here.link_pose(i).position - moved).norm(), 2 * unit);
+    }
+    EXPECT_EQ(there.probe(1).pose.position, here.probe(1).pose.position) << "the ground";
+    // What is written is read again to the last digit.
+    const Snapshot before = there.snapshot();
+    ASSERT_TRUE(there.step().converged);
+    const Vector3 tip = there.probe(0).pose.position;
+    there.restore(before);
+    ASSERT_TRUE(there.step().converged);
+    EXPECT_EQ(there.probe(0).pose.position, tip);
+  }
+}
+
+// A mechanism does not feel how far it has come. Positions are rounded as at the end of one step, which shakes the rod
+// in every step anew; rounded as at the end of the way, a thousand times as much.
+TEST(Distant, FlightsDoNotStrain) {
+  constexpr double kStiffness = 1e9, kLength = 1, kSpeed = 1e6;
+  constexpr int kElements = 4, kSteps = 1000;
+  SceneBuilder b;
+  b.scene.gravity.setZero();
+  b.beam("rod", {{kLength, 0, 0}}, section(kStiffness, 4e8, 3e6, 4e6, 5, 1e-2, 5e-3), kElements, 2);
+  b.joint("root", JointKind::Floating, "world", "rod");
+  b.scene.initial_joints.push_back({"root/x", 0, kSpeed, {}, true});
+  Simulation simulation(b.scene);
+  const double epsilon = std::numeric_limits<double>::epsilon(), way = kSpeed * kSteps * simulation.step_size();
+  double largest = 0;
+  for (int n = 0; n < kSteps; ++n) {
+    ASSERT_TRUE(simulation.step().converged);
+    largest = std::max(largest, std::sqrt(2 * simulation.energies().strain / (kStiffness * kLength)));
+  }
+  EXPECT_LT(largest, 8 * epsilon * kSpeed * simulation.step_size() * kElements / kLength * std::sqrt(kSteps));
+  EXPECT_NEAR(simulation.position(0), way, epsilon * way * kSteps);
+  EXPECT_NEAR(simulation.link_pose(1).position.x(), way, epsilon * way * kSteps);
+  EXPECT_EQ(simulation.link_pose(0).position, Vector3::Zero()) << "the world stays where it is";
 }
 
 TEST(Distant, AngularMomentumIsAboutTheWorldsOrigin) {

@@ -124,8 +124,8 @@ TEST(RestoredState, WithImpossibleValuesIsRefused) {
       {"norm of a node's orientation is 1.1", [](State& s) { s.nodes[4].orientation.coeffs() *= 1.1; }},
       {"norm of a joint's rotation is 0", [](State& s) { s.released[2].rotation.coeffs().setZero(); }},
       {"a mark of rest is 0.5", [](State& s) { s.rests[2] = 0.5; }},
-      {"halving level is 15, expected 0 to 14", [](State& s) { s.halving_level = 15; }},
-      {"halving level is -1, expected 0 to 14", [](State& s) { s.halving_level = -1; }},
+      {"halving level is 41, expected 0 to 40", [](State& s) { s.halving_level = 41; }},
+      {"halving level is -1, expected 0 to 40", [](State& s) { s.halving_level = -1; }},
       {"good steps is -1", [](State& s) { s.good_steps = -1; }},
       {"number of steps is -1", [](State& s) { s.steps = -1; }},
       {"past increments is 5, expected 0 to 4", [](State& s) { s.history.count = 5; }},
@@ -230,7 +230,7 @@ TEST_F(DamagedCheckpoint, WrongContentIsRefused) {
       {"steps five level 0 good 5 increments 7", line_of(counts)},
       {"steps 5 level 0 good 5 increments 8", "expected the effort of a motion"},
       {"steps -5 level 0 good 5 increments 7", "the number of steps is -5, expected 0 or more"},
-      {"steps 5 level 15 good 5 increments 7", "the halving level is 15, expected 0 to 14"}};
+      {"steps 5 level 41 good 5 increments 7", "the halving level is 41, expected 0 to 40"}};
   for (const auto& [wrong, told] : wrong_counts)
     expect_refused(sealed(head + wrong + line.substr(good.size()) + rest), wrong, told);
   for (const std::string time : {"nan", "inf", "xyz", "1p+2x", ""})
@@ -238,14 +238,14 @@ TEST_F(DamagedCheckpoint, WrongContentIsRefused) {
                    line_of(numbers) + time + "', expected the time as a finite hexadecimal number");
   expect_refused(sealed(head + line + others), "a number is missing", "expected ");
   expect_refused(sealed(head + line + rest + "0p+0\n"), "a number too many", "expected the checksum");
-  expect_refused(sealed("flexarm-checkpoint 5" + text_.substr(20, end - 20)), "format", "'flexarm-checkpoint 6'");
+  expect_refused(sealed("flexarm-checkpoint 6" + text_.substr(20, end - 20)), "format", "'flexarm-checkpoint 7'");
 }
 
 // Finite numbers, of which each alone could be.
 TEST_F(DamagedCheckpoint, EnergiesThatAreNotFiniteAreRefused) {
   const std::size_t counts = text_.find("\nsteps ") + 1, end = text_.rfind("checksum ");
-  std::size_t velocity = text_.find('\n', counts) + 1;  // behind the time and the first node's pose
-  for (int line = 0; line < 1 + 3 + 4; ++line) velocity = text_.find('\n', velocity) + 1;
+  std::size_t velocity = text_.find('\n', counts) + 1;  // behind the time, origin, first node's pose
+  for (int line = 0; line < 1 + 3 + 3 + 4; ++line) velocity = text_.find('\n', velocity) + 1;
   const std::size_t next = text_.find('\n', velocity);
   expect_refused(sealed(text_.substr(0, velocity) + "1p+600" + text_.substr(next, end - next)), "fast node",
                  "its energies are not finite");

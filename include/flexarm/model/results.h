@@ -100,7 +100,8 @@ struct StepCounts {
 std::string recoveries_text(const StepCounts& counts);
 
 /// Energies of a state [J]; work and dissipation are path integrals since the start. The potential is that of gravity:
-/// zero at the world's origin or, where a mechanism is far from it, at the first joint on its root link.
+/// zero at the world's origin or, where a mechanism is far from it, at the first joint on its root link, or where what
+/// floats there starts.
 struct Energies {
   double kinetic = 0, strain = 0, potential = 0, work = 0, dissipated = 0;
   double total() const { return kinetic + strain + potential; }

@@ -1,0 +1,131 @@
+#include "analysis/flexible_dead_point.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "analysis/linearised_motion.h"
+#include "analysis/node_ways.h"
+#include "elements/element_configuration.h"
+#include "integrators/balance.h"
+#include "math/general_vector.h"
+#include "model/place.h"
+
+namespace flexarm {
+namespace {
+
+/// A small motion [rad, or in units of the length scale]. Strains are its square, far above round-off.
+constexpr double kWay = 1e-5;
+/// Drag beside the stiffness: so little that the answer to general forces is what nothing holds, ...
+constexpr double kLittleDrag = 1e-13;
+/// ... and enough to hold that while strains are relieved: the stiffness of a dead point, kWay^2, is less.
+constexpr double kHoldingDrag = 1e-9;
+constexpr int kRelief = 2;
+/// General motions that are tried: one may go the way of a branch by chance.
+constexpr int kMotions = 3;
+/// What is left of the strain energy of a motion at a dead point, and how much of it there is at least, beside the
+/// stiffness times kWay^4. Of motions that are free it is relieved to kWay^2 of it and less.
+constexpr double kLeft = 1e-2, kStrains = 1e-6;
+
+/// The unloaded mechanism, moved by hand.
+class Unloaded {
+ public:
+  Unloaded(const Model& model, const State& start, double contact_time)
+      : model_(model), scheme_(exact_equilibrium(contact_time)), system_(model, scheme_), state_(start) {}
+
+  const State& state() const { return state_; }
+  double strain_energy() const { return energies(model_, scheme_, state_).strain; }
+  const StepSystem& system() const { return system_; }
+  /// Forces that balance its strains, with tangents for answers.
+  Eigen::VectorXd forces(double drag) {
+    system_.begin_equilibrium(state_, 0, drag);
+    if (!system_.evaluate(true) || !system_.tangent().factorise())
+      throw std::runtime_error("the stiffness is not finite");
+    return -system_.residual();
+  }
+  /// One entry per unknown.
+  Eigen::VectorXd answer(Eigen::VectorXd forces) {
+    if (!system_.tangent().solve(forces)) throw std::runtime_error("the stiffness is not finite");
+    return forces;
+  }
+  void move(const Eigen::VectorXd& motion) {
+    system_.update(motion);
+    if (!system_.evaluate(false)) throw std::runtime_error("the stiffness is not finite");
+    system_.accept(state_);
+  }
+
+ private:
+  const Model& model_;
+  Scheme scheme_;
+  StepSystem system_;
+  State state_;
+};
+
+/// Of elements against displacements by the length scale and turns by 1 rad, the mean of all nodes [J].
+double typical_stiffness(const Model& model, const State& state) {
+  ComplexVector6 unit = ComplexVector6::Ones();
+  unit.head<3>() *= model.length_scale;
+  const std::vector<ComplexVector6> all(model.nodes.size(), unit);
+  return round_off(model, state, all) / kStiffnessRoundOff / static_cast<double>(all.size());
+}
+
+std::string most_strained_link(const Model& model, const State& state) {
+  double largest = -1;
+  std::string name;
+  for_each_group(model.beams, [&](const auto& group) {
+    constexpr int N = std::decay_t<decltype(group.elements)>::value_type::kNodes;
+    for (std::size_t e = 0; e < group.elements.size(); ++e) {
+      const auto& element = group.elements[e];
+      const ElementConfiguration<N> nodes(element, state);
+      const LocalRotations<N> local(nodes.orientation);
+      double energy = 0;
+      for (int k = 0; k < N - 1; ++k) {
+        const Vector6 strain = centroid_strain(element, nodes, local, state, k);
+        energy += element.stiffness_points[k].weight * strain.dot(element.stiffness * strain);
+      }
+      if (energy <= largest) continue;
+      largest = energy;
+      name = model.links[place_of_element(model, state, N - 1, static_cast<int>(e), element.nodes.front()).link].name;
+    }
+  });
+  return name;
+}
+
+/// See link_at_dead_point(), in one motion of those that are free.
+std::string link_strained_in_second_order(const Model& model, const State& start, double contact_time,
+                                          const Eigen::VectorXd& general) {
+  Unloaded mechanism(model, start, contact_time);
+  const double stiffness = typical_stiffness(model, start), before = mechanism.strain_energy();
+  const double drag = kLittleDrag * stiffness;
+  mechanism.forces(drag);
+  // Inverse iteration: what is soft, but not free, goes with the square of the drag.
+  const Eigen::VectorXd free = mechanism.answer(general).normalized(), motion = mechanism.answer(free);
+  if (!mechanism.system().tangent().expanded_solution()) return "";  // of a matrix, not of a tree
+  const NodeWays ways(model, node_motion_of_solution(mechanism.system()));
+  // Twice the energy of strains and drag: where nothing is free, strains take far more.
+  if (motion.dot(free) > 2 * drag * ways.sum_of_squares()) return "";
+  mechanism.move(kWay / ways.largest() * motion);
+  const double strained = mechanism.strain_energy() - before;
+  for (int repeat = 0; repeat < kRelief; ++repeat)
+    mechanism.move(mechanism.answer(mechanism.forces(kHoldingDrag * stiffness)));
+  const double left = mechanism.strain_energy() - before;
+  const double least = kStrains * stiffness * std::pow(kWay, 4);
+  fprintf(stderr, "dot %g vs %g strained %g left %g least %g stiffness %g\n", motion.dot(free),
+          drag * ways.sum_of_squares(), strained, left, least, stiffness);
+  return left > std::max(kLeft * strained, least) ? most_strained_link(model, mechanism.state()) : "";
+}
+
+}  // namespace
+
+std::string link_at_dead_point(const Model& model, const State& start, double contact_time) {
+  if (!model.closures.empty() || model.stiffness_point_count == 0) return "";
+  const Eigen::Index unknowns = DegreesOfFreedom(model).unknowns;
+  for (int k = 0; k < kMotions; ++k) {
+    const Eigen::VectorXd general = general_vector(unknowns + k).tail(unknowns);
+    const std::string link = link_strained_in_second_order(model, start, contact_time, general);
+    if (!link.empty()) return link;
+  }
+  return "";
+}
+
+}  // namespace flexarm

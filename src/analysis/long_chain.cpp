@@ -1,0 +1,73 @@
+#include "analysis/long_chain.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include <Eigen/Eigenvalues>
+
+#include "analysis/linearised_motion.h"
+#include "analysis/node_ways.h"
+#include "math/general_vector.h"
+
+namespace flexarm {
+namespace {
+
+/// Dimensions of the Krylov space.
+constexpr Eigen::Index kDimensions = 60;
+/// A new direction that is this part of what it was before it was made normal to the others is round-off.
+constexpr double kExhausted = 1e-10;
+
+/// A^-1 of the tangent A evaluated last.
+class Inverse {
+ public:
+  explicit Inverse(StepSystem& system) : system_(system) {}
+
+  Eigen::VectorXd operator()(Eigen::VectorXd b) {
+    if (!system_.tangent().solve(b)) throw std::runtime_error("the stiffness is not finite");
+    return b;
+  }
+
+ private:
+  StepSystem& system_;
+};
+
+/// A unit vector v of a Krylov space of a symmetric A^-1 with the least v^T A^-1 v, by Lanczos's method.
+Eigen::VectorXd least_ritz_vector(Inverse& inverse, Eigen::Index size) {
+  const Eigen::Index most = std::min(size, kDimensions);
+  Eigen::MatrixXd basis(size, most), images(size, most);
+  Eigen::VectorXd next = general_vector(size);
+  Eigen::Index count = 0;
+  for (double before = next.norm(), left = before; count < most && left > kExhausted * before; ++count) {
+    basis.col(count) = next / left;
+    images.col(count) = next = inverse(basis.col(count));
+    before = next.norm();
+    for (int repeat = 0; repeat < 2; ++repeat)
+      next -= basis.leftCols(count + 1) * (basis.leftCols(count + 1).transpose() * next);
+    left = next.norm();
+  }
+  const Eigen::MatrixXd projected = basis.leftCols(count).transpose() * images.leftCols(count);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(0.5 * (projected + projected.transpose()));
+  return basis.leftCols(count) * solver.eigenvectors().col(0);
+}
+
+}  // namespace
+
+UnstableMotion falling_motion(const Model& model, const Scheme& scheme, const State& equilibrium) {
+  StepSystem system(model, exact_equilibrium(scheme.contact_time));
+  const double neutral = neutral_curvature(model);
+  system.begin_equilibrium(equilibrium, 1.0, neutral);
+  if (!system.evaluate(true)) throw std::runtime_error("the stiffness is not finite");
+  if (!system.tangent().factorise() || !system.tangent().expanded_solution()) return {};
+  Inverse inverse(system);
+  const Eigen::VectorXd vector = least_ritz_vector(inverse, system.degrees_of_freedom().unknowns);
+  // Of A = K + neutral D: w = A^-1 v has w^T A w = v^T A^-1 v.
+  const Eigen::VectorXd motion = inverse(vector);
+  const std::vector<ComplexVector6> nodes = node_motion_of_solution(system);
+  const NodeWays ways(model, nodes);
+  const double per_way = vector.dot(motion) / ways.sum_of_squares() - neutral;
+  if (per_way * ways.sum_of_squares() >= -neutral * ways.sum_of_squares() - round_off(model, equilibrium, nodes))
+    return {};
+  return {motion / ways.largest(), per_way, ways.link()};
+}
+
+}  // namespace flexarm
