@@ -100,8 +100,9 @@ int scalar_coordinate(const Model& model, const CoordinateNames& names, const st
                       const std::string& where) {
   const int index = names.index(name, where);
   const Coordinate& coordinate = model.coordinates[index];
-  if (coordinate.is_angle)
-    throw ModelError(where + "a component of a free rotation is no angle ('" + name + "'); name a hinge or a slider");
+  if (released_count(model.joints[coordinate.joint].kind) != 1)
+    throw ModelError(where + "'" + name +
+                     "' is one of several coordinates that turn or fly freely; name a hinge or a slider");
   if (coordinate.mimicked >= 0) throw ModelError(where + "'" + name + "' follows another coordinate; name that one");
   return index;
 }

@@ -185,9 +185,9 @@ void add_check(CLI::App& app, int& status) {
     print_links(simulation);
     print_joints(simulation);
     print_beams(simulation);
-    print_dead_point(simulation);
     for (const std::string& warning : warnings_of_driven_ends(simulation))
       fmt::print(stderr, "flexarm: warning: {}\n", warning);
+    print_dead_point(simulation);
     try {
       print_frequencies(simulation);
     } catch (const std::runtime_error& error) {
