@@ -43,15 +43,17 @@ void add_elements(const ScenePlan& plan, int link, Model& model) {
   BeamLink& beam = *model.links[link].beam;
   for (const MeshElement& element : mesh.elements) {
     BeamElement<Nodes> out = beam_element<Nodes>(mesh, element, *plan.scene.links[link].beam);
-    NodalValues<Nodes> weights = NodalValues<Nodes>::Zero();
-    for (const auto& point : out.mass_points) weights += point.weight * point.shape;
     for (int i = 0; i < Nodes; ++i) {
       out.nodes[i] = first_node + element.nodes[i];
       NodalInertia& inertia = model.inertias[out.nodes[i]];
       inertia.total_mass += out.mass.row(i).sum();
-      inertia.beam_rotary += weights[i] * out.inertia;
-      inertia.rotary_damping += out.mass_damping * weights[i] * out.inertia;
+      for (const auto& point : out.mass_points) {
+        const Matrix3 rotary = point.weight * point.shape[i] * point.inertia;
+        inertia.beam_rotary += rotary;
+        inertia.rotary_damping += out.mass_damping * rotary;
+      }
     }
+    beam.mass += out.mass.sum();
     beam.elements.push_back(static_cast<int>(group.size()));
     beam.element_ends.push_back(element.end);
     group.push_back(out);

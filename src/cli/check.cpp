@@ -95,10 +95,18 @@ void print_beams(const Simulation& simulation) {
                  "GA y", "GA z", "GJ", "EI y", "EI z", "mass", "elements");
     is_first = false;
     const BeamLink& beam = *model_of(simulation).links[i].beam;
-    const Vector6 stiffness = section_properties(links[i].beam->section).stiffness.diagonal();
+    const SectionLine section(links[i].beam->section);
     fmt::print("{:<24} {:>9.5g}", links[i].name, beam.length);
-    for (int k = 0; k < 6; ++k) fmt::print(" {:>11.5g}", stiffness[k]);
+    const auto print_stiffness = [&](double arc_length) {
+      const Vector6 stiffness = section.at(arc_length).stiffness.diagonal();
+      for (int k = 0; k < 6; ++k) fmt::print(" {:>11.5g}", stiffness[k]);
+    };
+    print_stiffness(0);
     fmt::print(" {:>10.5g} {:>9}\n", beam.mass, fmt::format("{} x {}", beam.elements.size(), beam.order));
+    if (section.is_uniform()) continue;
+    fmt::print("{:<24} {:>9}", "  at its end", "");
+    print_stiffness(beam.length);
+    fmt::print("\n");
   }
   if (!is_first) fmt::print("(m, N, N m^2, kg; number of elements x order)\n");
 }

@@ -20,7 +20,7 @@ constexpr double kSmallPart = 1e-2, kFast = 1;
 struct BeamEnd {
   std::size_t link;
   int node;
-  double element_length;  // of the last element there [m]
+  double arc_length, element_length;  // of the last element there [m]
 };
 
 std::optional<BeamEnd> beam_end(const Model& model, int node) {
@@ -30,7 +30,7 @@ std::optional<BeamEnd> beam_end(const Model& model, int node) {
     const std::vector<double>& ends = link.beam->element_ends;
     const bool is_start = link.frame.node == node;
     const double before = ends.size() > 1 ? ends[ends.size() - 2] : 0;
-    return BeamEnd{i, node, is_start ? ends.front() : ends.back() - before};
+    return is_start ? BeamEnd{i, node, 0, ends.front()} : BeamEnd{i, node, ends.back(), ends.back() - before};
   }
   return std::nullopt;
 }
@@ -107,7 +107,8 @@ std::vector<std::string> warnings_of_driven_ends(const Simulation& simulation) {
       const std::optional<BeamEnd> end = beam_end(model, node);
       if (!end) continue;
       const Vector3 own = model.nodes[node].rotation.transpose() * axis;
-      const Matrix6 stiffness = section_properties(simulation.scene().links[end->link].beam->section).stiffness;
+      const SectionLine section(simulation.scene().links[end->link].beam->section);
+      const Matrix6 stiffness = section.at(end->arc_length).stiffness;
       const double bending = 4 / end->element_length * own.dot(stiffness.bottomRightCorner<3, 3>() * own);
       const double inertia = own_inertia(model, node, axis) + (node == joint.slave ? armature(model, coordinate) : 0.0);
       const double turn = std::sqrt(bending / inertia) * simulation.step_size();

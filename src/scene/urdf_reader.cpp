@@ -143,8 +143,8 @@ std::optional<SceneDescription> read_scene(const std::string& text, const ReadOp
   if (findings.error_count() > 0) return std::nullopt;
 
   // Each part has been judged alone; now the whole, as other programs read it.
-  const UrdfdomResult whole = parse_with_urdfdom(text);
-  if (!whole.errors.empty()) robot.warning("programs that use urdfdom refuse this file", quoted(whole.errors.front()));
+  const std::vector<std::string> errors = errors_of_urdfdom(printed(*root));
+  if (!errors.empty()) robot.warning("programs that use urdfdom refuse this file", quoted(errors.front()));
   return scene;
 }
 

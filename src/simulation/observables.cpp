@@ -45,10 +45,10 @@ Vector6 extended(const std::array<Vector6, Nodes - 1>& values, double xi) {
 
 /// From the mass centroid, at c in the section, to the reference line, by which the section turns: there
 /// r = r_c - Lambda c, hence Gamma = Gamma_c + c x K, and with the same virtual work N = N_c, M = M_c + c x N.
-void set_stress(const Matrix6& stiffness, const Vector6& strain, const Vector3& centroid, BeamPoint& point) {
+void set_stress(const Vector6& strain, const Vector6& resultant, const Vector3& centroid, BeamPoint& point) {
   point.strain = strain;
   point.strain.head<3>() += centroid.cross(strain.tail<3>());
-  point.resultant = stiffness * strain;
+  point.resultant = resultant;
   point.resultant.tail<3>() += centroid.cross(point.resultant.head<3>());
 }
 
@@ -63,8 +63,11 @@ void beam_points(const Model& model, const State& state, const BeamLink& beam, i
       constexpr int N = std::decay_t<decltype(element)>::kNodes;
       const ElementConfiguration<N> nodes(element, state);
       const LocalRotations<N> local(nodes.orientation);
-      std::array<Vector6, N - 1> strains;
-      for (int k = 0; k < N - 1; ++k) strains[k] = centroid_strain(element, nodes, local, state, k);
+      std::array<Vector6, N - 1> strains, resultants;
+      for (int k = 0; k < N - 1; ++k) {
+        strains[k] = centroid_strain(element, nodes, local, state, k);
+        resultants[k] = element.stiffness_points[k].stiffness * strains[k];
+      }
       const int steps = (N - 1) * (between + 1);
       for (int k = e == 0 ? 0 : 1; k <= steps; ++k) {
         const int pair = std::min(k / (between + 1), N - 2);
@@ -74,7 +77,7 @@ void beam_points(const Model& model, const State& state, const BeamLink& beam, i
         point.arc_length = begin + 0.5 * (1 + xi) * (end - begin);
         point.pose = section_pose<N>(nodes.position, local, xi);
         point.pose.position = point.pose * Vector3(-beam.centroid);
-        set_stress(element.stiffness, extended<N>(strains, xi), beam.centroid, point);
+        set_stress(extended<N>(strains, xi), extended<N>(resultants, xi), beam.centroid, point);
       }
     });
     begin = end;

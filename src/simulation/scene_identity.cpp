@@ -72,6 +72,7 @@ class SceneFingerprint {
     all(ea, ga2, ga3, gj, ei2, ei3, mass, j1, j2, j3);
   }
   void add(const scene::MatrixSection& section) { all(section.stiffness, section.inertia); }
+  void add(const scene::SectionStations& stations) { all(stations.arc_lengths, stations.sections); }
   void add(const scene::CentrelinePiece& piece) {
     const auto& [kind, to, center, twist, location] = piece;
     all(kind, to, center, twist);

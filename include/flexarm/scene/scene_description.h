@@ -60,7 +60,16 @@ struct MatrixSection {
   Matrix6 stiffness, inertia;
 };
 
-using Section = std::variant<GeometricSection, DirectSection, MatrixSection>;
+using UniformSection = std::variant<GeometricSection, DirectSection, MatrixSection>;
+
+/// A section that changes along the line: linear between stations in the shape's lengths, or in stiffnesses and
+/// inertias, and constant before the first and beyond the last.
+struct SectionStations {
+  std::vector<double> arc_lengths;       ///< ascending, at least two [m]
+  std::vector<UniformSection> sections;  ///< as many, all of one kind; shapes of one kind and one material
+};
+
+using Section = std::variant<GeometricSection, DirectSection, MatrixSection, SectionStations>;
 
 /// One piece of the centreline in the link frame; starts where the piece before ended (the first at the link origin).
 struct CentrelinePiece {
