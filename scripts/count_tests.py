@@ -4,8 +4,8 @@
 ctest knows every program that ran; a gtest or rostest left its single tests in DIRECTORY as JUnit XML (the test-name of
 test/ros/NAME.test is NAME, so that its file can be found). A program without such a file, or that failed although each
 of its tests passed, counts as one test. Skipped are the tests that say so themselves, and disabled ones; a program that
-could not be started has failed. The last line is `N passed, N failed, N skipped`; the exit status is 1 if a test
-failed, or if none passed.
+could not be started has failed. What a program that failed printed last stands below its name. The last line is
+`N passed, N failed, N skipped`; the exit status is 1 if a test failed, or if none passed.
 """
 
 import os
@@ -15,6 +15,7 @@ import xml.etree.ElementTree
 
 
 PASSED, FAILED, SKIPPED = "passed", "failed", "skipped"
+LAST_LINES = 15
 
 
 def single_tests(path):
@@ -66,15 +67,17 @@ def results_of(program, outcome, directory):
 
 def main():
     report, directory = sys.argv[1:]
-    results = []
-    if os.path.exists(report):
-        for case in xml.etree.ElementTree.parse(report).getroot().iter("testcase"):
-            results += results_of(case.get("name"), outcome_of_program(case), directory)
     counts = {PASSED: 0, FAILED: 0, SKIPPED: 0}
-    for name, outcome in results:
-        counts[outcome] += 1
-        if outcome != PASSED:
-            print("%s: %s" % (outcome, name))
+    programs = xml.etree.ElementTree.parse(report).getroot().iter("testcase") if os.path.exists(report) else []
+    for case in programs:
+        results = results_of(case.get("name"), outcome_of_program(case), directory)
+        for name, outcome in results:
+            counts[outcome] += 1
+            if outcome != PASSED:
+                print("%s: %s" % (outcome, name))
+        if any(outcome == FAILED for _, outcome in results):
+            for line in (case.findtext("system-out") or "").splitlines()[-LAST_LINES:]:
+                print("    " + line)
     print(", ".join("%d %s" % (count, outcome) for outcome, count in counts.items()))
     return 1 if counts[FAILED] or not counts[PASSED] else 0
 

@@ -1,19 +1,10 @@
 #pragma once
 /// The eigenvalues of small motions that lie next to zero.
 
-#include <complex>
-#include <vector>
-
-#include <Eigen/Core>
-
+#include "analysis/largest_eigenpairs.h"
 #include "analysis/linearised_motion.h"
 
 namespace flexarm {
-
-struct Eigenpair {
-  std::complex<double> value;
-  Eigen::VectorXcd vector;
-};
 
 /// The `count` pairs of K phi = mu M phi with mu nearest to -`shift`, nearest first; shift > 0.
 /// @throws std::runtime_error if the shifted matrix is singular or the iteration does not converge.

@@ -81,7 +81,7 @@ std::string most_strained_link(const Model& model, const State& state) {
       double energy = 0;
       for (int k = 0; k < N - 1; ++k) {
         const Vector6 strain = centroid_strain(element, nodes, local, state, k);
-        energy += element.stiffness_points[k].weight * strain.dot(element.stiffness * strain);
+        energy += element.stiffness_points[k].weight * strain.dot(element.stiffness_points[k].stiffness * strain);
       }
       if (energy <= largest) continue;
       largest = energy;

@@ -4,71 +4,29 @@
 #include <cmath>
 #include <stdexcept>
 
-#include <Eigen/QR>
-
-#include "elements/element_configuration.h"
-#include "elements/endpoint_beam.h"
+#include "analysis/element_matrices.h"
 #include "elements/spring_action.h"
 #include "joints/joint_kinematics.h"
 #include "joints/joint_stop.h"
-#include "math/so3.h"
+#include "math/least_squares.h"
 
 namespace flexarm {
 namespace {
 
-template <int Nodes>
-using ElementMatrix = Eigen::Matrix<double, 6 * Nodes, 6 * Nodes>;
-
-/// `visit(constants, kinematics, generalised shape functions)` of every stiffness point.
-template <int Nodes, class Visit>
-void for_each_point(const BeamElement<Nodes>& element, const State& state, const Visit& visit) {
-  const ElementConfiguration<Nodes> nodes(element, state);
-  const LocalRotationVariation<Nodes> local{LocalRotations<Nodes>(nodes.orientation)};
-  for (const auto& constants : element.stiffness_points) {
-    GeneralisedShapeFunctions<Nodes> functions;
-    const auto rotation = local.evaluate(constants.shape, constants.derivative, functions);
-    visit(constants,
-          point_kinematics(rotation, interpolate<Nodes>(constants.derivative, nodes.position),
-                           constants.reference_strain),
-          functions);
-  }
+/// Of the element whose first block is `first`.
+void add_element(SparseTangent& sum, std::size_t first, const Eigen::MatrixXd& matrix) {
+  const int nodes = static_cast<int>(matrix.rows()) / 6;
+  for (int i = 0; i < nodes; ++i)
+    for (int j = 0; j < nodes; ++j)
+      Eigen::Map<Matrix6>(sum.element_block(first + i * nodes + j)) += matrix.block<6, 6>(6 * i, 6 * j);
 }
 
-/// Stiffness of the material alone, without what stress adds to it.
+/// {displacement, spin} of an element's nodes.
 template <int Nodes>
-ElementMatrix<Nodes> material_stiffness(const BeamElement<Nodes>& element, const State& state) {
-  ElementMatrix<Nodes> stiffness = ElementMatrix<Nodes>::Zero();
-  for_each_point(element, state, [&](const auto& constants, const PointKinematics& point, const auto& functions) {
-    const endpoint::PointTangent tangent =
-        endpoint::point_tangent(point, element.stiffness, 1, Vector3::Zero(), Vector3::Zero());
-    add_point_tangent<Nodes>(constants.weight, LagrangeTests<Nodes>{constants.shape, constants.derivative},
-                             {constants.derivative, functions}, tangent.resultants, tangent.couple, stiffness);
-  });
-  return stiffness;
-}
-
-/// d{Gamma, K} of a point by {displacement, spin} of the nodes.
-template <int Nodes>
-Eigen::Matrix<double, 6, 6 * Nodes> strain_variation(const PointKinematics& point, const NodalValues<Nodes>& derivative,
-                                                     const GeneralisedShapeFunctions<Nodes>& spins) {
-  const Matrix3& rotation = point.rotation;
-  const Matrix3 turned = rotation.transpose() * so3::hat(point.tangent);
-  Eigen::Matrix<double, 6, 6 * Nodes> variation;
-  for (int i = 0; i < Nodes; ++i)
-    variation.template middleCols<6>(6 * i) << derivative[i] * rotation.transpose(), turned * spins.values[i],
-        Matrix3::Zero(), rotation.transpose() * spins.derivatives[i];
-  return variation;
-}
-
-/// Second derivative of the energy by strains alone: the material's stiffness with variations of strains as tests.
-template <int Nodes>
-ElementMatrix<Nodes> material_curvature(const BeamElement<Nodes>& element, const State& state) {
-  ElementMatrix<Nodes> curvature = ElementMatrix<Nodes>::Zero();
-  for_each_point(element, state, [&](const auto& constants, const PointKinematics& point, const auto& spins) {
-    const auto strains = strain_variation<Nodes>(point, constants.derivative, spins);
-    curvature += constants.weight * strains.transpose() * element.stiffness * strains;
-  });
-  return curvature;
+Eigen::VectorXcd motion_of(const BeamElement<Nodes>& element, const std::vector<ComplexVector6>& node_motion) {
+  Eigen::VectorXcd motion(6 * Nodes);
+  for (int i = 0; i < Nodes; ++i) motion.segment<6>(6 * i) = node_motion[element.nodes[i]];
+  return motion;
 }
 
 /// Slope of a coordinate's effort against its rate, at rest.
@@ -101,7 +59,7 @@ double round_off(const Model& model, const State& equilibrium, const std::vector
     constexpr int N = std::decay_t<decltype(element)>::kNodes;
     Eigen::Matrix<double, 6 * N, 1> motion;
     for (int i = 0; i < N; ++i) motion.template segment<6>(6 * i) = node_motion[element.nodes[i]].cwiseAbs();
-    elastic += motion.dot(material_stiffness<N>(element, equilibrium).cwiseAbs() * motion);
+    elastic += motion.dot(material_stiffness(element, equilibrium).cwiseAbs().lazyProduct(motion));
   });
   for (const PointSpring& spring : model.springs) {
     const LoopClosure& ends = model.closures[spring.closure];
@@ -125,7 +83,10 @@ bool is_circulatory(const Model& model, const State& equilibrium) {
   if (std::any_of(model.loads.begin(), model.loads.end(), load_circulates)) return true;
   for (std::size_t i = 0; i < model.coordinates.size(); ++i)
     if (effort_circulates(i)) return true;
-  return false;
+  // A servo that measures beyond its gear pushes at another place than it feels.
+  return std::any_of(model.actuators.begin(), model.actuators.end(), [](const Actuator& actuator) {
+    return actuator.drive.gear && actuator.servo && actuator.servo->on_link;
+  });
 }
 
 Scheme exact_equilibrium(double contact_time) {
@@ -149,6 +110,7 @@ LinearisedMotion::LinearisedMotion(const Model& model, const State& state, doubl
   set_joint_maps();
   assemble_damping();
   assemble_mass();
+  matrices_ = with_rotors(model, dof_, state, system_.actuators(), stiffness_, damping_, mass_);
 }
 
 int LinearisedMotion::freedoms() const {
@@ -163,9 +125,15 @@ LinearisedMotion::Matrix LinearisedMotion::matrix(const SparseTangent& tangent) 
                 tangent.row_indices().data(), tangent.values().data());
 }
 
+LinearisedMotion::Matrix LinearisedMotion::matrix(const std::vector<double>& extended, const SparseTangent& own) const {
+  if (!has_rotors()) return matrix(own);
+  return Matrix(unknowns(), unknowns(), static_cast<Eigen::Index>(extended.size()), column_starts().data(),
+                row_indices().data(), extended.data());
+}
+
 bool LinearisedMotion::is_damped() const {
-  const std::vector<double>& values = damping_.values();
-  return std::any_of(values.begin(), values.end(), [](double value) { return value != 0; });
+  const Matrix values = damping();
+  return std::any_of(values.valuePtr(), values.valuePtr() + values.nonZeros(), [](double value) { return value != 0; });
 }
 
 /// Sets the multipliers of loops to what balances the residual: their forces stiffen the mechanism as loads do.
@@ -177,8 +145,8 @@ void LinearisedMotion::find_multipliers() {
   if (multipliers.empty()) return;
   Eigen::MatrixXd forces(unknowns(), static_cast<Eigen::Index>(multipliers.size()));
   for (std::size_t m = 0; m < multipliers.size(); ++m)
-    forces.col(static_cast<Eigen::Index>(m)) = stiffness().col(multipliers[m]);
-  const Eigen::VectorXd balancing = -forces.colPivHouseholderQr().solve(system_.residual());
+    forces.col(static_cast<Eigen::Index>(m)) = matrix(stiffness_).col(multipliers[m]);
+  const Eigen::VectorXd balancing = -least_squares(forces, system_.residual());
   Eigen::VectorXd update = Eigen::VectorXd::Zero(unknowns());
   for (std::size_t m = 0; m < multipliers.size(); ++m) update[multipliers[m]] = balancing[static_cast<Eigen::Index>(m)];
   system_.update(update);
@@ -206,25 +174,16 @@ void LinearisedMotion::set_joint_maps() {
   }
 }
 
+/// Of a released coordinate.
+double& LinearisedMotion::diagonal(SparseTangent& tangent, int joint, int component) const {
+  const int count = released_count(model_.joints[joint].kind);
+  return tangent.diagonal_block(dof_.variable_of_joint(joint))[component * count + component];
+}
+
 void LinearisedMotion::assemble_mass() {
   mass_.set_zero();
-  for_each_element(model_.beams, [&](const auto& element) {
-    constexpr int N = std::decay_t<decltype(element)>::kNodes;
-    const LocalRotationVariation<N> local{LocalRotations<N>(ElementConfiguration<N>(element, state_).orientation)};
-    const auto block = [&](int i, int j) {
-      return Eigen::Map<Matrix6>(mass_.element_block(element.first_block + i * N + j));
-    };
-    for (int i = 0; i < N; ++i)
-      for (int j = 0; j < N; ++j) block(i, j).template topLeftCorner<3, 3>().diagonal().array() += element.mass(i, j);
-    for (const auto& point : element.mass_points) {
-      GeneralisedShapeFunctions<N> generalised;
-      const Matrix3 rotation = local.evaluate(point.shape, point.derivative, generalised).rotation;
-      const Matrix3 inertia = point.weight * rotation * element.inertia * rotation.transpose();
-      for (int i = 0; i < N; ++i)
-        for (int j = 0; j < N; ++j)
-          block(i, j).template bottomRightCorner<3, 3>() += point.shape[i] * inertia * generalised.values[j];
-    }
-  });
+  for_each_element(model_.beams,
+                   [&](const auto& element) { add_element(mass_, element.first_block, mass_matrix(element, state_)); });
   for (std::size_t i = 0; i < model_.nodes.size(); ++i) {
     const NodalInertia& inertia = model_.inertias[i];
     const Matrix3 rotation = state_.nodes[i].orientation.toRotationMatrix();
@@ -232,6 +191,7 @@ void LinearisedMotion::assemble_mass() {
     block.topLeftCorner<3, 3>().diagonal().array() += inertia.mass;
     block.bottomRightCorner<3, 3>() += rotation * inertia.rotary * rotation.transpose();
   }
+  for (const ActuatorTerms& terms : actuator_terms(model_)) diagonal(mass_, terms.joint, terms.component) += terms.mass;
   fold(mass_);
 }
 
@@ -240,25 +200,22 @@ void LinearisedMotion::assemble_damping() {
   for_each_element(model_.beams, [&](const auto& element) {
     constexpr int N = std::decay_t<decltype(element)>::kNodes;
     if (element.stiffness_damping == 0 && element.mass_damping == 0) return;
-    const Eigen::Matrix<double, 6 * N, 6 * N> of_strains =
-        element.stiffness_damping * material_stiffness<N>(element, state_);
+    Eigen::MatrixXd damping = element.stiffness_damping * material_stiffness(element, state_);
     for (int i = 0; i < N; ++i)
-      for (int j = 0; j < N; ++j) {
-        Eigen::Map<Matrix6> block(damping_.element_block(element.first_block + i * N + j));
-        block += of_strains.template block<6, 6>(6 * i, 6 * j);
-        block.template topLeftCorner<3, 3>().diagonal().array() += element.mass_damping * element.mass(i, j);
-      }
+      for (int j = 0; j < N; ++j)
+        damping.block<3, 3>(6 * i, 6 * j).diagonal().array() += element.mass_damping * element.mass(i, j);
+    add_element(damping_, element.first_block, damping);
   });
   for (std::size_t i = 0; i < model_.nodes.size(); ++i) {
     const Matrix3 rotation = state_.nodes[i].orientation.toRotationMatrix();
     Eigen::Map<Matrix6>(damping_.diagonal_block(static_cast<int>(i))).bottomRightCorner<3, 3>() +=
         rotation * model_.inertias[i].rotary_damping * rotation.transpose();
   }
-  for (const Coordinate& coordinate : model_.coordinates) {
-    const int count = released_count(model_.joints[coordinate.joint].kind), k = coordinate.component;
-    damping_.diagonal_block(dof_.variable_of_joint(coordinate.joint))[k * count + k] +=
+  for (const Coordinate& coordinate : model_.coordinates)
+    diagonal(damping_, coordinate.joint, coordinate.component) +=
         damping_of(coordinate, stop_penalty(coordinate, contact_time_), state_.released[coordinate.joint]);
-  }
+  for (const ActuatorTerms& terms : actuator_terms(model_))
+    diagonal(damping_, terms.joint, terms.component) += terms.damping;
   for (const PointSpring& spring : model_.springs) {
     const Vector12 gradient = gradient_of(spring, model_, state_);
     damping_.add_coupling(spring.closure, spring.damping * gradient * gradient.transpose());
@@ -334,25 +291,21 @@ Eigen::SparseMatrix<double> LinearisedMotion::curvature() const {
   SparseTangent difference(model_, dof_);
   difference.set_zero();
   for_each_element(model_.beams, [&](const auto& element) {
-    constexpr int N = std::decay_t<decltype(element)>::kNodes;
-    const ElementMatrix<N> own = material_curvature<N>(element, state_) - material_stiffness<N>(element, state_);
-    for (int i = 0; i < N; ++i)
-      for (int j = 0; j < N; ++j)
-        Eigen::Map<Matrix6>(difference.element_block(element.first_block + i * N + j)) +=
-            own.template block<6, 6>(6 * i, 6 * j);
+    add_element(difference, element.first_block,
+                material_curvature(element, state_) - material_stiffness(element, state_));
   });
   fold(difference);
-  const Eigen::SparseMatrix<double> sum = stiffness() + matrix(difference);
+  const Eigen::SparseMatrix<double> sum = matrix(stiffness_) + matrix(difference);
   return 0.5 * (sum + Eigen::SparseMatrix<double>(sum.transpose()));
 }
 
 double LinearisedMotion::strain_energy(const std::vector<ComplexVector6>& node_motion) const {
   double energy = 0;
   for_each_element(model_.beams, [&](const auto& element) {
-    constexpr int N = std::decay_t<decltype(element)>::kNodes;
-    Eigen::Matrix<std::complex<double>, 6 * N, 1> motion;
-    for (int i = 0; i < N; ++i) motion.template segment<6>(6 * i) = node_motion[element.nodes[i]];
-    energy += motion.dot(material_curvature<N>(element, state_) * motion).real();
+    const Eigen::VectorXcd motion = motion_of(element, node_motion);
+    const Eigen::VectorXd real = motion.real(), imaginary = motion.imag();
+    const Eigen::MatrixXd curvature = material_curvature(element, state_);
+    energy += real.dot(curvature.lazyProduct(real)) + imaginary.dot(curvature.lazyProduct(imaginary));
   });
   for (const PointSpring& spring : model_.springs) {
     const LoopClosure& ends = model_.closures[spring.closure];

@@ -7,6 +7,7 @@
 #include <Eigen/SparseCore>
 
 #include "analysis/modes.h"
+#include "analysis/rotor_motion.h"
 #include "integrators/step_system.h"
 #include "solver/sparse_tangent.h"
 
@@ -42,20 +43,26 @@ class LinearisedMotion {
   /// @throws std::runtime_error if the stiffness is not finite.
   LinearisedMotion(const Model& model, const State& state, double contact_time);
 
-  int unknowns() const { return stiffness_.unknowns(); }
+  /// Those of a step, then the rotors behind elastic gears.
+  int unknowns() const { return has_rotors() ? static_cast<int>(matrices_.column_starts.size()) - 1 : dof_.unknowns; }
   /// Motions that no multiplier of a loop holds.
   int freedoms() const;
   /// All three have the same pattern.
-  const SparseTangent& pattern() const { return stiffness_; }
-  Matrix stiffness() const { return matrix(stiffness_); }
+  const std::vector<int>& column_starts() const {
+    return has_rotors() ? matrices_.column_starts : stiffness_.column_starts();
+  }
+  const std::vector<int>& row_indices() const {
+    return has_rotors() ? matrices_.row_indices : stiffness_.row_indices();
+  }
+  Matrix stiffness() const { return matrix(matrices_.stiffness, stiffness_); }
   /// What multiplies velocities. About a configuration at rest there are no gyroscopic terms in it.
-  Matrix damping() const { return matrix(damping_); }
-  Matrix mass() const { return matrix(mass_); }
+  Matrix damping() const { return matrix(matrices_.damping, damping_); }
+  Matrix mass() const { return matrix(matrices_.mass, mass_); }
   bool is_damped() const;
   bool is_circulatory() const { return flexarm::is_circulatory(model_, state_); }
 
-  /// The second derivative of the potential, with multipliers. Unlike the stiffness, whose tests are not the variations
-  /// of the strains, it is symmetric; the two differ by the elements' own error.
+  /// The second derivative of the potential, with multipliers, rotors at rest. Unlike the stiffness, whose tests are
+  /// not the variations of the strains, it is symmetric; the two differ by the elements' own error.
   Eigen::SparseMatrix<double> curvature() const;
 
   /// The motion of all nodes and coordinates that an eigenvector means; frequency and rate are left alone.
@@ -68,8 +75,12 @@ class LinearisedMotion {
 
  private:
   static Matrix matrix(const SparseTangent& tangent);
+  bool has_rotors() const { return !matrices_.column_starts.empty(); }
+  /// Those with rotors, if there are any.
+  Matrix matrix(const std::vector<double>& extended, const SparseTangent& own) const;
   void find_multipliers();
   void set_joint_maps();
+  double& diagonal(SparseTangent& tangent, int joint, int component) const;
   void assemble_mass();
   void assemble_damping();
   void fold(SparseTangent& tangent) const;
@@ -84,6 +95,7 @@ class LinearisedMotion {
   const SparseTangent& stiffness_;
   SparseTangent damping_, mass_;
   JointMaps maps_;
+  MotionMatrices matrices_;  // with rotors behind elastic gears; empty where there are none
 };
 
 }  // namespace flexarm

@@ -75,15 +75,24 @@ class Articulation {
     while (!free.empty()) {
       Columns columns(6, free.size());
       for (std::size_t k = 0; k < free.size(); ++k) columns.col(k) = maps.right.col(free[k]);
-      const int dependent = dependent_of(columns, node);
+      const int dependent = dependent_of(columns, rotors(j, free), node);
       if (dependent < 0) {
         const Columns forces = articulated_[node] * columns;
-        articulated_[node] -= forces * Square(columns.transpose() * forces).ldlt().solve(forces.transpose());
+        const Square resisting = Square(columns.transpose() * forces) + rotors(j, free);
+        articulated_[node] -= forces * resisting.ldlt().solve(forces.transpose());
         return;
       }
       dependent_.push_back(model_.first_coordinate[j] + free[dependent]);
       free.erase(free.begin() + dependent);
     }
+  }
+
+  /// Inertia of the rotors that turn with these components.
+  Square rotors(int j, const std::vector<int>& free) const {
+    Square out = Square::Zero(free.size(), free.size());
+    for (std::size_t k = 0; k < free.size(); ++k)
+      out(k, k) = armature(model_, model_.coordinates[model_.first_coordinate[j] + free[k]]);
+    return out;
   }
 
   /// Those that are free, and move something themselves.
@@ -103,16 +112,17 @@ class Articulation {
   }
 
   /// The one of the columns that moves most in a motion that is without inertia once joints outboard yield; -1: none.
-  int dependent_of(const Columns& columns, int node) const {
+  int dependent_of(const Columns& columns, const Square& rotors, int node) const {
     using Pairs = Eigen::SelfAdjointEigenSolver<Square>;
-    const Square locked = columns.transpose() * locked_[node] * columns;
+    const Square locked = Square(columns.transpose() * locked_[node] * columns) + rotors;
     const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> scale = locked.diagonal().cwiseSqrt().cwiseInverse();
     const Pairs principal(Square(scale.asDiagonal() * locked * scale.asDiagonal()));
     const auto count = (principal.eigenvalues().array() > kJudgeable).count();
     // Motions of equal inertia with joints locked.
     const Square motions = scale.asDiagonal() * principal.eigenvectors().rightCols(count) *
                            principal.eigenvalues().tail(count).cwiseSqrt().cwiseInverse().asDiagonal();
-    const Pairs pairs(Square(motions.transpose() * (columns.transpose() * articulated_[node] * columns) * motions));
+    const Square yielding = Square(columns.transpose() * articulated_[node] * columns) + rotors;
+    const Pairs pairs(Square(motions.transpose() * yielding * motions));
     if (pairs.eigenvalues()[0] > kRoundOff) return -1;
     Eigen::Index most = 0;
     scale.cwiseInverse().cwiseProduct(motions * pairs.eigenvectors().col(0)).cwiseAbs().maxCoeff(&most);

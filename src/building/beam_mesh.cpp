@@ -15,6 +15,9 @@
 namespace flexarm {
 namespace {
 
+/// Ways of the centre of mass that are round-off of a table of numbers, relative to the section's size.
+constexpr double kCentroidTolerance = 1e-6;
+
 /// Element counts for the frequency rule and largest turning per element [rad], by order.
 constexpr int kFrequencyElements[] = {0, 45, 9, 5, 3};
 constexpr double kTurningPerElement[] = {0, 0.139, 1.05, 1.58, 3.15};
@@ -138,10 +141,20 @@ int BeamMesh::node_at(double arc_length) const {
 BeamMesh mesh_beam(const scene::BeamDescription& beam, const Centreline& centreline,
                    const std::vector<double>& attachments, int most) {
   BeamMesh mesh;
-  const SectionProperties section = section_properties(beam.section);
-  require_measurable(section, centreline.length());
-  mesh.section = referred_to_center_of_mass(section);
-  mesh.centroid = section.center_of_mass;
+  mesh.section = SectionLine(beam.section);
+  const SectionProperties first = mesh.section.at(0);
+  mesh.centroid = first.center_of_mass;
+  require_measurable(first, centreline.length());
+  for (const double s : mesh.section.stations()) {
+    const SectionProperties section = mesh.section.at(s);
+    require_measurable(section, centreline.length());
+    if ((section.center_of_mass - mesh.centroid).norm() > kCentroidTolerance * section.radius)
+      throw std::invalid_argument(
+          fmt::format("its centre of mass must be in the same place in all sections, y = {}, z = {} as at the first "
+                      "station, and at "
+                      "{} m is y = {}, z = {}",
+                      mesh.centroid[1], mesh.centroid[2], s, section.center_of_mass[1], section.center_of_mass[2]));
+  }
   mesh.order = beam.order;
 
   const std::vector<double> border = borders(centreline, attachments);
@@ -178,18 +191,18 @@ BeamMesh mesh_beam(const scene::BeamDescription& beam, const Centreline& centrel
 template <int Nodes>
 BeamElement<Nodes> beam_element(const BeamMesh& mesh, const MeshElement& element, const scene::BeamDescription& beam) {
   BeamElement<Nodes> out;
-  out.stiffness = mesh.section.stiffness;
-  out.inertia = mesh.section.inertia;
   out.stiffness_damping = beam.stiffness_proportional_damping;
   out.mass_damping = beam.mass_proportional_damping;
 
   std::array<Vector3, Nodes> centroid, reference;
+  NodalValues<Nodes> arc_length;
   std::array<Quaternion, Nodes> orientation;
   for (int i = 0; i < Nodes; ++i) {
     const Pose& pose = mesh.nodes[element.nodes[i]].pose;
     centroid[i] = pose.position;
     reference[i] = pose.position - pose.orientation * mesh.centroid;
     orientation[i] = pose.orientation;
+    arc_length[i] = mesh.nodes[element.nodes[i]].arc_length;
   }
   const LocalRotations<Nodes> local(orientation);
   // Weights and derivatives in arc length of the reference line, which is what stiffness and inertia are per length of.
@@ -206,6 +219,7 @@ BeamElement<Nodes> beam_element(const BeamMesh& mesh, const MeshElement& element
   for (int k = 0; k < Nodes - 1; ++k) {
     auto& p = out.stiffness_points[k];
     point(Stiffness::points[k], Stiffness::weights[k], p.shape, p.derivative, p.weight);
+    p.stiffness = referred_to_center_of_mass(mesh.section.at(p.shape.dot(arc_length))).stiffness;
     p.reference_strain = point_kinematics(local.evaluate(p.shape, p.derivative),
                                           interpolate<Nodes>(p.derivative, centroid), Vector6::Zero())
                              .strain;
@@ -214,7 +228,9 @@ BeamElement<Nodes> beam_element(const BeamMesh& mesh, const MeshElement& element
   for (int k = 0; k < Nodes; ++k) {
     auto& p = out.mass_points[k];
     point(Mass::points[k], Mass::weights[k], p.shape, p.derivative, p.weight);
-    out.mass += mesh.section.mass * p.weight * p.shape * p.shape.transpose();
+    const SectionProperties section = mesh.section.at(p.shape.dot(arc_length));
+    p.inertia = section.inertia;
+    out.mass += section.mass * p.weight * p.shape * p.shape.transpose();
   }
   return out;
 }

@@ -25,7 +25,7 @@ struct MeshElement {
 };
 
 struct BeamMesh {
-  SectionProperties section;           ///< referred to the mass centroid
+  SectionLine section;                 ///< of the reference line
   Vector3 centroid = Vector3::Zero();  ///< in the section, from the reference line
   int order = 2;
   std::vector<MeshNode> nodes;
@@ -46,7 +46,8 @@ struct BeamMesh {
 int automatic_element_count(int order, double turning);
 
 /// Meshes a link with element borders at `attachments` (arc lengths), piece borders and kinks.
-/// @throws std::invalid_argument if that takes more than `most` elements.
+/// @throws std::invalid_argument if that takes more than `most` elements, or if the centre of mass is not in the same
+/// place in all sections.
 BeamMesh mesh_beam(const scene::BeamDescription& beam, const Centreline& centreline,
                    const std::vector<double>& attachments, int most = scene::kMostBeamElements);
 

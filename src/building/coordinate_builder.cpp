@@ -1,9 +1,13 @@
 #include "building/coordinate_builder.h"
 
+#include <cmath>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "building/elementary_joints.h"
 #include "building/model_builder.h"
 #include "joints/joint_kinematics.h"
 
@@ -81,6 +85,118 @@ int add_history(const TimeFunction& function, Model& model) {
   return static_cast<int>(model.histories.size()) - 1;
 }
 
+/// The coordinate's actuator, made where there is none yet.
+Actuator& actuator_of(int coordinate, Model& model) {
+  int& index = model.coordinates[coordinate].actuator;
+  if (index < 0) {
+    index = static_cast<int>(model.actuators.size());
+    model.actuators.emplace_back().coordinate = coordinate;
+  }
+  return model.actuators[index];
+}
+
+/// The coordinate of an element that acts on it as on a scalar. @throws ModelError
+int scalar_coordinate(const Model& model, const CoordinateNames& names, const std::string& name,
+                      const std::string& where) {
+  const int index = names.index(name, where);
+  const Coordinate& coordinate = model.coordinates[index];
+  if (released_count(model.joints[coordinate.joint].kind) != 1)
+    throw ModelError(where + "'" + name +
+                     "' is one of several coordinates that turn or fly freely; name a hinge or a slider");
+  if (coordinate.mimicked >= 0) throw ModelError(where + "'" + name + "' follows another coordinate; name that one");
+  return index;
+}
+
+void add_spring(const scene::SpringDescription& spring, const CoordinateNames& names, Model& model) {
+  const int index = scalar_coordinate(model, names, spring.coordinate, at(spring.location, "<spring>"));
+  actuator_of(index, model).spring = JointSpring{{spring.stiffness, 0, 0}, spring.rest};
+}
+
+/// The joint of the scene that has the coordinate.
+const scene::JointDescription& joint_of(const scene::SceneDescription& scene, const std::string& coordinate) {
+  for (const auto* joints : {&scene.joints, &scene.loop_joints})
+    for (const scene::JointDescription& joint : *joints)
+      for (const std::string& name : coordinate_names(joint))
+        if (name == coordinate) return joint;
+  throw ModelError("there is no joint coordinate '" + coordinate + "'");
+}
+
+void add_gyroscope(const ScenePlan& plan, const scene::DriveDescription& drive, Actuator& actuator, Model& model) {
+  const std::string where = at(drive.location, "<drive>");
+  const JointMap& map = model.joints[model.coordinates[actuator.coordinate].joint];
+  const scene::JointDescription& joint = joint_of(plan.scene, drive.coordinate);
+  if (actuator.drive.sticks)
+    throw ModelError(where + "the rotor of '" + drive.coordinate +
+                     "' may stick by the law 'coulomb' or have an axis, "
+                     "but not both");
+  const Attachment parent = attachment(plan, model, joint.parent, joint.origin.position);
+  if (parent.node < 0) return;  // an axis that stands still
+  if (map.kind != JointMapKind::Scalar || map.master != parent.node)
+    throw ModelError(where + "the axis of a rotor is not known here, where no hinge or slider hangs on link '" +
+                     joint.parent + "'; leave it out");
+  actuator.gyroscope =
+      Gyroscope{parent.node, parent.offset.orientation * *drive.axis, drive.rotor_inertia, drive.gear.value_or(1)};
+}
+
+void add_drive(const ScenePlan& plan, const scene::DriveDescription& drive, const CoordinateNames& names,
+               Model& model) {
+  const std::string where = at(drive.location, "<drive>");
+  const int index = scalar_coordinate(model, names, drive.coordinate, where);
+  Coordinate& coordinate = model.coordinates[index];
+  if (coordinate.motion >= 0) throw ModelError(where + "the motion of '" + drive.coordinate + "' is prescribed");
+  Drive& out = actuator_of(index, model).drive;
+  const double gear = drive.gear.value_or(1);
+  out.inertia = gear * gear * drive.rotor_inertia;
+  out.loss = 1 / drive.efficiency - 1;
+  if (drive.effort_limit > 0) out.effort_limit = drive.effort_limit;
+  if (drive.velocity_limit > 0) out.velocity_limit = drive.velocity_limit;
+  if (drive.stiffness) {
+    out.gear = Elasticity{*drive.stiffness, drive.damping, drive.backlash};
+    out.friction = drive.friction;
+    out.sticks = coordinate.sticks;
+  } else {
+    coordinate.friction += drive.friction;
+  }
+  if (drive.axis && drive.rotor_inertia > 0) add_gyroscope(plan, drive, actuator_of(index, model), model);
+}
+
+/// A sample time that steps hit.
+bool is_multiple(double sample_time, double step) {
+  const double steps = std::round(sample_time / step);
+  return steps >= 1 && std::abs(sample_time - steps * step) <= 1e-9 * sample_time;
+}
+
+void add_servo(const ScenePlan& plan, const scene::ServoDescription& servo, const CoordinateNames& names,
+               Model& model) {
+  using Mode = scene::ServoDescription::Mode;
+  const std::string where = at(servo.location, "<servo>");
+  const int index = scalar_coordinate(model, names, servo.coordinate, where);
+  const Coordinate& coordinate = model.coordinates[index];
+  if (coordinate.motion >= 0) throw ModelError(where + "the motion of '" + servo.coordinate + "' is prescribed");
+  if (servo.sample_time > 0 && !is_multiple(servo.sample_time, plan.scene.integrator.step))
+    throw ModelError(fmt::format("{}sample_time must be a multiple of the step, {} s, got '{}'", where,
+                                 plan.scene.integrator.step, servo.sample_time));
+  Actuator& actuator = actuator_of(index, model);
+  Servo& out = actuator.servo.emplace();
+  out.mode = servo.mode == Mode::Effort     ? Servo::Mode::Effort
+             : servo.mode == Mode::Velocity ? Servo::Mode::Velocity
+                                            : Servo::Mode::Position;
+  // Of a velocity's error the integral is what a position's error is.
+  const bool is_velocity = servo.mode == Mode::Velocity;
+  out.proportional = is_velocity ? servo.ki : servo.kp;
+  out.derivative = is_velocity ? servo.kp : servo.kd;
+  out.integral = is_velocity ? 0 : servo.ki;
+  if (servo.set_point) out.set_point = add_history(*servo.set_point, model);
+  if (servo.feedforward) out.feedforward = add_history(*servo.feedforward, model);
+  if (servo.mode == Mode::Position)
+    out.start = model.initial_released[coordinate.joint].displacement[coordinate.component % 3];
+  if (servo.effort_limit > 0) out.effort_limit = servo.effort_limit;
+  out.tracking_time = servo.anti_windup;
+  out.on_link = servo.side == scene::ServoDescription::Side::Link || !actuator.drive.gear;
+  out.sample_time = servo.sample_time;
+  out.delay = servo.delay;
+}
+
 }  // namespace
 
 TreeAtStart follow_mimics(const ScenePlan& plan, MassiveTree tree) {
@@ -127,6 +243,9 @@ DrivenMechanism connect_drives(const ScenePlan& plan, ClosedMechanism mechanism)
   for (const scene::JointEffort& effort : plan.scene.efforts)
     model.coordinates[names.index(effort.coordinate, at(effort.location, "<effort>"))].effort =
         add_history(effort.history, model);
+  for (const scene::SpringDescription& spring : plan.scene.springs) add_spring(spring, names, model);
+  for (const scene::DriveDescription& drive : plan.scene.drives) add_drive(plan, drive, names, model);
+  for (const scene::ServoDescription& servo : plan.scene.servos) add_servo(plan, servo, names, model);
   return {std::move(mechanism)};
 }
 

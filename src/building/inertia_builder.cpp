@@ -43,15 +43,17 @@ void add_elements(const ScenePlan& plan, int link, Model& model) {
   BeamLink& beam = *model.links[link].beam;
   for (const MeshElement& element : mesh.elements) {
     BeamElement<Nodes> out = beam_element<Nodes>(mesh, element, *plan.scene.links[link].beam);
-    NodalValues<Nodes> weights = NodalValues<Nodes>::Zero();
-    for (const auto& point : out.mass_points) weights += point.weight * point.shape;
     for (int i = 0; i < Nodes; ++i) {
       out.nodes[i] = first_node + element.nodes[i];
       NodalInertia& inertia = model.inertias[out.nodes[i]];
       inertia.total_mass += out.mass.row(i).sum();
-      inertia.beam_rotary += weights[i] * out.inertia;
-      inertia.rotary_damping += out.mass_damping * weights[i] * out.inertia;
+      for (const auto& point : out.mass_points) {
+        const Matrix3 rotary = point.weight * point.shape[i] * point.inertia;
+        inertia.beam_rotary += rotary;
+        inertia.rotary_damping += out.mass_damping * rotary;
+      }
     }
+    beam.mass += out.mass.sum();
     beam.elements.push_back(static_cast<int>(group.size()));
     beam.element_ends.push_back(element.end);
     group.push_back(out);
@@ -89,6 +91,20 @@ std::vector<bool> movable_nodes(const Mechanism& mechanism) {
   return is_movable;
 }
 
+/// On the ends of beams.
+void add_hubs(const ScenePlan& plan, const Model& model, std::map<int, Body>& bodies) {
+  for (std::size_t link = 0; link < plan.scene.links.size(); ++link) {
+    if (!plan.meshes[link]) continue;
+    const BeamMesh& mesh = plan.meshes[link]->mesh;
+    for (const scene::HubDescription& hub : plan.scene.links[link].beam->hubs) {
+      const std::size_t end = hub.end == scene::HubDescription::End::Start ? 0 : mesh.nodes.size() - 1;
+      const Matrix3 section = mesh.nodes[end].pose.orientation.toRotationMatrix();
+      bodies[model.links[link].frame.node + static_cast<int>(end)] +=
+          {hub.mass, -mesh.centroid, section.transpose() * hub.inertia.asDiagonal() * section};
+    }
+  }
+}
+
 void add_bodies(const ScenePlan& plan, Mechanism& mechanism) {
   std::map<int, Body> bodies;  // by node
   for (const int link : links_root_to_leaf(plan)) {
@@ -99,6 +115,7 @@ void add_bodies(const ScenePlan& plan, Mechanism& mechanism) {
     bodies[frame.node] +=
         {inertial->mass, frame.offset * inertial->center_of_mass, rotation * inertial->inertia * rotation.transpose()};
   }
+  add_hubs(plan, mechanism.model, bodies);
   // A joint's slave goes to the centre of mass of its body: one node and one joint for each rigid link.
   const std::vector<bool> is_movable = movable_nodes(mechanism);
   std::vector<Vector3> ways(is_movable.size(), Vector3::Zero());

@@ -134,8 +134,11 @@ void add_followers(const Model& model, std::vector<MovedInertia>& moved) {
 std::vector<int> finish_mass_properties(const std::vector<int>& parents, Model& model) {
   const std::vector<Composite> outboard = composites(parents, model);
   std::vector<MovedInertia> moved;
-  for (const Coordinate& coordinate : model.coordinates)
+  for (const Coordinate& coordinate : model.coordinates) {
     moved.push_back(moved_inertia(parents, model, coordinate, outboard));
+    const double rotor = armature(model, coordinate);
+    if (rotor > 0) moved.back() = {(moved.back().is_anything ? moved.back().inertia : 0) + rotor, true};
+  }
   add_followers(model, moved);
   std::vector<int> massless;
   for (std::size_t i = 0; i < moved.size(); ++i) {

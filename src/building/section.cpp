@@ -105,9 +105,50 @@ SectionProperties convert(const scene::MatrixSection& s) {
   return out;
 }
 
+// ---------------------------------------------------------------- between two stations
+
+double blend(double a, double b, double t) {
+  return (1 - t) * a + t * b;
+}
+Matrix6 blend(const Matrix6& a, const Matrix6& b, double t) {
+  return (1 - t) * a + t * b;
+}
+scene::Circle blend(const scene::Circle& a, const scene::Circle& b, double t) {
+  return {blend(a.radius, b.radius, t)};
+}
+scene::Tube blend(const scene::Tube& a, const scene::Tube& b, double t) {
+  return {blend(a.outer_radius, b.outer_radius, t), blend(a.inner_radius, b.inner_radius, t)};
+}
+scene::Rectangle blend(const scene::Rectangle& a, const scene::Rectangle& b, double t) {
+  return {blend(a.width, b.width, t), blend(a.height, b.height, t)};
+}
+scene::BoxTube blend(const scene::BoxTube& a, const scene::BoxTube& b, double t) {
+  return {blend(a.width, b.width, t), blend(a.height, b.height, t), blend(a.thickness, b.thickness, t)};
+}
+scene::DirectSection blend(const scene::DirectSection& a, const scene::DirectSection& b, double t) {
+  return {blend(a.ea, b.ea, t),   blend(a.ga2, b.ga2, t), blend(a.ga3, b.ga3, t),   blend(a.gj, b.gj, t),
+          blend(a.ei2, b.ei2, t), blend(a.ei3, b.ei3, t), blend(a.mass, b.mass, t), blend(a.j1, b.j1, t),
+          blend(a.j2, b.j2, t),   blend(a.j3, b.j3, t)};
+}
+scene::MatrixSection blend(const scene::MatrixSection& a, const scene::MatrixSection& b, double t) {
+  return {blend(a.stiffness, b.stiffness, t), blend(a.inertia, b.inertia, t)};
+}
+
+scene::GeometricSection blend(const scene::GeometricSection& a, const scene::GeometricSection& b, double t);
+
+/// Of two values of one kind.
+template <class Variant>
+Variant blend_alike(const Variant& a, const Variant& b, double t) {
+  return std::visit([&](const auto& one) -> Variant { return blend(one, std::get<std::decay_t<decltype(one)>>(b), t); },
+                    a);
+}
+scene::GeometricSection blend(const scene::GeometricSection& a, const scene::GeometricSection& b, double t) {
+  return {blend_alike(a.shape, b.shape, t), a.material};
+}
+
 }  // namespace
 
-SectionProperties section_properties(const scene::Section& section) {
+SectionProperties section_properties(const scene::UniformSection& section) {
   return std::visit([](const auto& s) { return convert(s); }, section);
 }
 
@@ -118,6 +159,35 @@ SectionProperties referred_to_center_of_mass(const SectionProperties& section) {
   out.stiffness = transform.transpose() * section.stiffness * transform;
   out.center_of_mass.setZero();
   return out;
+}
+
+SectionLine::SectionLine(const scene::Section& section) {
+  std::visit(
+      [&](const auto& s) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(s)>, scene::SectionStations>) {
+          stations_ = s;
+        } else {
+          uniform_ = convert(s);
+        }
+      },
+      section);
+}
+
+double SectionLine::largest_radius() const {
+  double radius = at(0).radius;
+  for (const double s : stations()) radius = std::max(radius, at(s).radius);
+  return radius;
+}
+
+SectionProperties SectionLine::at(double arc_length) const {
+  if (uniform_) return *uniform_;
+  const std::vector<double>& s = stations_.arc_lengths;
+  const auto next = std::upper_bound(s.begin(), s.end(), arc_length);
+  if (next == s.begin()) return section_properties(stations_.sections.front());
+  if (next == s.end()) return section_properties(stations_.sections.back());
+  const std::size_t k = next - s.begin();
+  return section_properties(
+      blend_alike(stations_.sections[k - 1], stations_.sections[k], (arc_length - s[k - 1]) / (s[k] - s[k - 1])));
 }
 
 }  // namespace flexarm

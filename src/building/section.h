@@ -1,6 +1,9 @@
 #pragma once
 /// Cross-section stiffness and inertia from what a scene says.
 
+#include <optional>
+#include <vector>
+
 #include "flexarm/math/pose.h"
 #include "flexarm/scene/scene_description.h"
 
@@ -17,11 +20,30 @@ struct SectionProperties {
 
 /// Converts geometry and material, direct properties or full matrices.
 /// Shear correction factors: Cowper (1966); torsion constants: Saint-Venant (Bredt for the thin box). beam.md 2.1.
-SectionProperties section_properties(const scene::Section& section);
+SectionProperties section_properties(const scene::UniformSection& section);
 
 /// The same section referred to its mass centroid: the strain energy is unchanged because
 /// Gamma_reference = Gamma_centroid + d^ K for the centroid at d in the section.
 /// In the result center_of_mass is zero.
 SectionProperties referred_to_center_of_mass(const SectionProperties& section);
+
+/// The section along a line, by arc length of the reference line [m].
+class SectionLine {
+ public:
+  explicit SectionLine(const scene::Section& section = scene::DirectSection());
+  /// The same section everywhere; for tests.
+  explicit SectionLine(const SectionProperties& uniform) : uniform_(uniform) {}
+
+  bool is_uniform() const { return uniform_.has_value(); }
+  SectionProperties at(double arc_length) const;
+  /// Where it is known, ascending; nothing where it is uniform.
+  const std::vector<double>& stations() const { return stations_.arc_lengths; }
+  /// For display [m].
+  double largest_radius() const;
+
+ private:
+  std::optional<SectionProperties> uniform_;
+  scene::SectionStations stations_;
+};
 
 }  // namespace flexarm

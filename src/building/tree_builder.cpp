@@ -140,8 +140,7 @@ class TreeBuilder {
     beam.tip = {first_node + static_cast<int>(mesh.nodes.size()) - 1,
                 Pose{-mesh.centroid, mesh.nodes.back().pose.orientation.conjugate()}};
     beam.length = centreline.length();
-    beam.mass = beam.length * mesh.section.mass;
-    beam.radius = mesh.section.radius;
+    beam.radius = mesh.section.largest_radius();
     model_.links[link].beam = beam;
     model_.links[link].frame = {first_node, mesh.nodes[0].pose.inverse()};
   }

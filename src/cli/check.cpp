@@ -6,6 +6,7 @@
 #include "analysis/flexible_dead_point.h"
 #include "building/section.h"
 #include "cli/commands.h"
+#include "cli/driven_ends.h"
 #include "cli/mode_table.h"
 #include "cli/scene_input.h"
 #include "schemes/scheme.h"
@@ -65,7 +66,9 @@ void print_links(const Simulation& simulation) {
     const scene::LinkDescription& link = scene.links[i];
     const std::optional<BeamLink>& beam = model_of(simulation).links[i].beam;
     const bool is_root = link.name == scene.root_link;
-    const double mass = beam ? beam->mass : link.inertial ? link.inertial->mass : 0.0;
+    double mass = beam ? beam->mass : link.inertial ? link.inertial->mass : 0.0;
+    if (beam)
+      for (const scene::HubDescription& hub : link.beam->hubs) mass += hub.mass;
     fmt::print("{:<24} {:<10} {:>12.6g}\n", link.name, beam ? "flexible" : is_root ? "clamped" : "rigid", mass);
   }
 }
@@ -92,10 +95,18 @@ void print_beams(const Simulation& simulation) {
                  "GA y", "GA z", "GJ", "EI y", "EI z", "mass", "elements");
     is_first = false;
     const BeamLink& beam = *model_of(simulation).links[i].beam;
-    const Vector6 stiffness = section_properties(links[i].beam->section).stiffness.diagonal();
+    const SectionLine section(links[i].beam->section);
     fmt::print("{:<24} {:>9.5g}", links[i].name, beam.length);
-    for (int k = 0; k < 6; ++k) fmt::print(" {:>11.5g}", stiffness[k]);
+    const auto print_stiffness = [&](double arc_length) {
+      const Vector6 stiffness = section.at(arc_length).stiffness.diagonal();
+      for (int k = 0; k < 6; ++k) fmt::print(" {:>11.5g}", stiffness[k]);
+    };
+    print_stiffness(0);
     fmt::print(" {:>10.5g} {:>9}\n", beam.mass, fmt::format("{} x {}", beam.elements.size(), beam.order));
+    if (section.is_uniform()) continue;
+    fmt::print("{:<24} {:>9}", "  at its end", "");
+    print_stiffness(beam.length);
+    fmt::print("\n");
   }
   if (!is_first) fmt::print("(m, N, N m^2, kg; number of elements x order)\n");
 }
@@ -174,6 +185,8 @@ void add_check(CLI::App& app, int& status) {
     print_links(simulation);
     print_joints(simulation);
     print_beams(simulation);
+    for (const std::string& warning : warnings_of_driven_ends(simulation))
+      fmt::print(stderr, "flexarm: warning: {}\n", warning);
     print_dead_point(simulation);
     try {
       print_frequencies(simulation);

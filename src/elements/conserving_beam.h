@@ -211,10 +211,10 @@ struct StepPoints {
       end[k] = point_kinematics(rotation[k], interpolate<Nodes>(constants.derivative, nodes.end),
                                 constants.reference_strain);
       Point<Nodes, S>& p = points[k];
-      set_strains<Nodes, S>((*mid)[k], element.stiffness, nodes, begin[k], end[k], p);
+      set_strains<Nodes, S>((*mid)[k], element.section(k), nodes, begin[k], end[k], p);
       p.seen = p.own;
       if (carried)
-        p.seen = PointStress<S>(element.stiffness, begin[k].strain, carried->end[k],
+        p.seen = PointStress<S>(element.section(k), begin[k].strain, carried->end[k],
                                 carried->has_conjugate ? carried->conjugate[k] : p.own.conjugate_strain);
     }
   }
@@ -255,7 +255,7 @@ void conserving_beam(const ConservingElement<Nodes, S>& element, const BeamNodes
   conserving::EnergyMultiplier<Nodes, S> multiplier;
   if (is_corrected) multiplier.set_relative(nodes.increment);
   for (int k = 0; k < kPoints && is_corrected; ++k)
-    multiplier.add(element.points[k].weight, element.stiffness, begin[k], end[k], at.points[k]);
+    multiplier.add(element.points[k].weight, element.section(k), begin[k], end[k], at.points[k]);
 
   const conserving::DamperParts<S> damper_parts(element.stiffness_damping, rule.damping_relaxation);
   std::array<Matrix3T<S>, Nodes> inverse_tangent;  // S(w)^{-1}: dw = S^{-1} spin
@@ -267,12 +267,12 @@ void conserving_beam(const ConservingElement<Nodes, S>& element, const BeamNodes
   for (int i = 0; i < Nodes && carried; ++i) system.carried[i].setConstant(S(0));
   for (int k = 0; k < kPoints; ++k) {
     const auto& constants = element.points[k];
+    const SectionStiffness<S>& section = element.section(k);
     const Point<Nodes, S>& p = at.points[k];
     S factor = S(0);
     Vector6T<S> stress = p.own.stress, seen = p.seen.stress;
     if (rule.dissipation.any()) {
-      const conserving::NumericalDamper<S> damper(rule.dissipation, memory[k], p.own.conjugate_strain,
-                                                  element.stiffness, step);
+      const conserving::NumericalDamper<S> damper(rule.dissipation, memory[k], p.own.conjugate_strain, section, step);
       factor += damper.factor;
       stress -= damper.remembered;
       seen -= damper.remembered;
@@ -281,8 +281,7 @@ void conserving_beam(const ConservingElement<Nodes, S>& element, const BeamNodes
     }
     if (element.has_stiffness_damping) {
       const conserving::StructuralDamper<S> damper(damper_parts, rule.damping_relaxation, memory[k],
-                                                   p.own.conjugate_strain, p.own.conjugate_stress, element.stiffness,
-                                                   step);
+                                                   p.own.conjugate_strain, p.own.conjugate_stress, section, step);
       factor += damper.factor;
       stress -= damper.remembered;
       seen -= damper.remembered;
@@ -302,14 +301,14 @@ void conserving_beam(const ConservingElement<Nodes, S>& element, const BeamNodes
                                          p.average_rotation * more.template tail<3>(), p.arm, system.carried);
     }
 
-    const bool is_coupled = element.stiffness.is_coupled;
+    const bool is_coupled = section.is_coupled;
     const conserving::SlopeBuilder<Nodes, S> slope(p, constants.weight, factor);
     conserving::ResultantSlopes<S> dn, dm;
-    slope.set_strain_part(element.stiffness.forces, false, dn);
-    slope.set_curvature_part(element.stiffness.moments, false, dm);
+    slope.set_strain_part(section.forces, false, dn);
+    slope.set_curvature_part(section.moments, false, dm);
     if (is_coupled) {
-      slope.set_curvature_part(element.stiffness.coupling, true, dn);
-      slope.set_strain_part(element.stiffness.coupling.transpose(), true, dm);
+      slope.set_curvature_part(section.coupling, true, dn);
+      slope.set_strain_part(section.coupling.transpose(), true, dm);
     } else {  // not used, but compilers warn
       dn.spin_derivative.setConstant(S(0));
       dn.increment_derivative.setConstant(S(0));

@@ -42,10 +42,14 @@ struct ConservingElement {
     Vector6T<S> reference_strain;
   };
   std::array<Point, Nodes - 1> points;
-  SectionStiffness<S> stiffness;
+  /// By points; of a uniform element only the first is used, so that less is read.
+  std::array<SectionStiffness<S>, Nodes - 1> sections;
+  bool is_uniform = true;
   Eigen::Matrix<S, Nodes, Nodes> mass;
   S stiffness_damping, mass_damping;
   bool has_stiffness_damping = false, has_mass_damping = false;
+
+  const SectionStiffness<S>& section(int point) const { return sections[is_uniform ? 0 : point]; }
 };
 
 /// Makes an element a lane.
@@ -58,12 +62,14 @@ void set_lane(ConservingElement<Nodes, S>& pack, int lane, const BeamElement<Nod
     set_lane(to.derivative, lane, point.derivative);
     set_lane(to.weight, lane, point.weight);
     set_lane(to.reference_strain, lane, point.reference_strain);
+    SectionStiffness<S>& section = pack.sections[k];
+    const auto coupling = point.stiffness.template topRightCorner<3, 3>();
+    set_lane(section.forces, lane, point.stiffness.template topLeftCorner<3, 3>());
+    set_lane(section.coupling, lane, coupling);
+    set_lane(section.moments, lane, point.stiffness.template bottomRightCorner<3, 3>());
+    section.is_coupled = section.is_coupled || !coupling.isZero(0);
+    pack.is_uniform = pack.is_uniform && point.stiffness == element.stiffness_points[0].stiffness;
   }
-  const auto coupling = element.stiffness.template topRightCorner<3, 3>();
-  set_lane(pack.stiffness.forces, lane, element.stiffness.template topLeftCorner<3, 3>());
-  set_lane(pack.stiffness.coupling, lane, coupling);
-  set_lane(pack.stiffness.moments, lane, element.stiffness.template bottomRightCorner<3, 3>());
-  pack.stiffness.is_coupled = pack.stiffness.is_coupled || !coupling.isZero(0);
   set_lane(pack.mass, lane, element.mass);
   set_lane(pack.stiffness_damping, lane, element.stiffness_damping);
   set_lane(pack.mass_damping, lane, element.mass_damping);

@@ -44,20 +44,20 @@ struct PointStress {
   double dissipated = 0;  ///< over the step [J/m]
 };
 
-/// `rule` null: statics. `begin`, `strain_rate`: at the beginning of the step, used where there is damping.
-template <int Nodes>
-PointStress point_stress(const BeamElement<Nodes>& element, const Vector6& strain, const NewmarkRule* rule,
-                         const PointKinematics& begin, const Vector6& strain_rate) {
+/// `damping`: eta of BeamElement::stiffness_damping. `rule` null: statics. `begin`, `strain_rate`: at the beginning of
+/// the step, used where there is damping.
+inline PointStress point_stress(const Matrix6& stiffness, double damping, const Vector6& strain,
+                                const NewmarkRule* rule, const PointKinematics& begin, const Vector6& strain_rate) {
   PointStress out;
-  out.stress = element.stiffness * strain;
+  out.stress = stiffness * strain;
   out.strain_rate.setZero();
-  if (!rule || element.stiffness_damping == 0) return out;
+  if (!rule || damping == 0) return out;
   const Vector6 increment = (strain - begin.strain) / (1 + rule->alpha);
   out.strain_rate = (increment / rule->step - (1 - rule->gamma) * strain_rate) / rule->gamma;
   const Vector6 rate = (1 + rule->alpha) * out.strain_rate - rule->alpha * strain_rate;
-  const Vector6 damping_stress = element.stiffness_damping * (element.stiffness * rate);
+  const Vector6 damping_stress = damping * (stiffness * rate);
   out.stress += damping_stress;
-  out.slope += element.stiffness_damping / (rule->gamma * rule->step);
+  out.slope += damping / (rule->gamma * rule->step);
   out.dissipated = damping_stress.dot(increment);
   return out;
 }
@@ -103,14 +103,18 @@ void endpoint_internal(const BeamElement<Nodes>& element, const ElementNodes<Nod
     const auto rotation = rotations.evaluate(constants.shape, constants.derivative, reference, generalised);
     end[k] =
         point_kinematics(rotation, interpolate<Nodes>(constants.derivative, nodes.end), constants.reference_strain);
-    const endpoint::PointStress point = endpoint::point_stress(element, end[k].strain, rule, begin[k], strain_rates[k]);
+    const auto stress_at = [&](const Vector6& strain) {
+      return endpoint::point_stress(constants.stiffness, element.stiffness_damping, strain, rule, begin[k],
+                                    strain_rates[k]);
+    };
+    const endpoint::PointStress point = stress_at(end[k].strain);
     system.dissipated += constants.weight * point.dissipated;
     new_strain_rates[k] = point.strain_rate;
     const auto in_space = [&](const Vector3& material) -> Vector3 { return end[k].rotation * material; };
     const Vector3 n = in_space(point.stress.template head<3>()), m = in_space(point.stress.template tail<3>());
-    endpoint::PointForces forces{end[k], element.stiffness, point.slope, n, m, n, m};
+    endpoint::PointForces forces{end[k], constants.stiffness, point.slope, n, m, n, m};
     if (carried) {
-      const endpoint::PointStress seen = endpoint::point_stress(element, carried[k], rule, begin[k], strain_rates[k]);
+      const endpoint::PointStress seen = stress_at(carried[k]);
       forces.seen_n = in_space(seen.stress.template head<3>());
       forces.seen_m = in_space(seen.stress.template tail<3>());
     }

@@ -132,17 +132,17 @@ void add_stress(const BeamElement<Nodes>& element, StressRule rule, const Stress
     const auto& constants = element.stiffness_points[k];
     const Point<Nodes>& p = points[k];
     StressState state;
-    state.stress = element.stiffness * (weights.begin * begin[k].strain + weights.end * p.end.strain);
+    state.stress = constants.stiffness * (weights.begin * begin[k].strain + weights.end * p.end.strain);
     if (weights.forces_only) state.stress.template tail<3>().setZero();
     const MomentMap map(rule, begin[k].rotation, p.end.rotation);
     state.moment_map = map.map();
     state.seen = state.stress;
     if (with_tangent) {
       if (carried) {
-        state.seen = element.stiffness * (weights.begin * begin[k].strain + weights.end * carried[k]);
+        state.seen = constants.stiffness * (weights.begin * begin[k].strain + weights.end * carried[k]);
         if (weights.forces_only) state.seen.template tail<3>().setZero();
       }
-      state.stress_derivative.noalias() = weights.end * element.stiffness.lazyProduct(strain_derivative(p.end));
+      state.stress_derivative.noalias() = weights.end * constants.stiffness.lazyProduct(strain_derivative(p.end));
       if (weights.forces_only) state.stress_derivative.template bottomRows<3>().setZero();
       state.moment_derivative = map.derivative(state.seen.template tail<3>());
     }
@@ -159,9 +159,9 @@ void add_strain_energy(const BeamElement<Nodes>& element,
   for (int k = 0; k < BeamElement<Nodes>::kStiffnessPoints; ++k) {
     const auto& constants = element.stiffness_points[k];
     const PointKinematics& end = points[k].end;
-    const Vector6 average = element.stiffness * (0.5 * (begin[k].strain + end.strain));
+    const Vector6 average = constants.stiffness * (0.5 * (begin[k].strain + end.strain));
     energy.change += constants.weight * average.dot(end.strain - begin[k].strain);
-    const Vector6 stress = element.stiffness * end.strain;
+    const Vector6 stress = constants.stiffness * end.strain;
     add_point_residual<Nodes>(constants.weight, constants.derivative, GeneralisedTests<Nodes>{points[k].generalised},
                               end.rotation * stress.template head<3>(), end.rotation * stress.template tail<3>(),
                               end.tangent, energy.gradient);

@@ -3,6 +3,7 @@
 #include "elements/element_configuration.h"
 #include "elements/spring_action.h"
 #include "elements/strain_dampers.h"
+#include "joints/elasticity.h"
 #include "joints/joint_stop.h"
 
 namespace flexarm {
@@ -34,18 +35,19 @@ Energies energies(const Model& model, const Scheme& scheme, const State& state) 
     const ElementConfiguration<N> nodes(element, state);
     const LocalRotations<N> local(nodes.orientation);
     for (int k = 0; k < N - 1; ++k) {
-      const double weight = element.stiffness_points[k].weight;
+      const auto& point = element.stiffness_points[k];
+      const double weight = point.weight;
       const Vector6 strain = centroid_strain(element, nodes, local, state, k);
-      out.strain += 0.5 * weight * strain.dot(element.stiffness * strain);
+      out.strain += 0.5 * weight * strain.dot(point.stiffness * strain);
       if (!state.strain_memory.empty())
-        out.strain += weight * stored(scheme, state.strain_memory[element.first_stiffness_point + k], element.stiffness,
+        out.strain += weight * stored(scheme, state.strain_memory[element.first_stiffness_point + k], point.stiffness,
                                       element.stiffness_damping);
     }
     for (int i = 0; i < N; ++i)
       for (int j = 0; j < N; ++j) out.kinetic += 0.5 * element.mass(i, j) * nodes.velocity[i].dot(nodes.velocity[j]);
     for (int k = 0; k < N && !scheme.nodal_rotary_inertia; ++k) {
       const Vector3& W = state.mass_points[element.first_mass_point + k].angular_velocity;
-      out.kinetic += 0.5 * element.mass_points[k].weight * W.dot(element.inertia * W);
+      out.kinetic += 0.5 * element.mass_points[k].weight * W.dot(element.mass_points[k].inertia * W);
     }
   });
   for (std::size_t i = 0; i < model.nodes.size(); ++i) {
@@ -64,6 +66,15 @@ Energies energies(const Model& model, const Scheme& scheme, const State& state) 
     if (coordinate.limit)
       out.strain += stop_energy(*coordinate.limit, stop_penalty(coordinate, scheme.contact_time),
                                 state.released[coordinate.joint].displacement[coordinate.component]);
+  for (std::size_t i = 0; i < model.actuators.size(); ++i) {
+    const Actuator& actuator = model.actuators[i];
+    const Coordinate& coordinate = model.coordinates[actuator.coordinate];
+    const double position = state.released[coordinate.joint].displacement[coordinate.component % 3];
+    const ActuatorState& rotor = state.actuators[i];
+    out.kinetic += 0.5 * actuator.drive.inertia * rotor.rate * rotor.rate;
+    if (actuator.drive.gear) out.strain += elastic_energy(*actuator.drive.gear, rotor.angle - position);
+    if (actuator.spring) out.strain += elastic_energy(actuator.spring->elasticity, position - actuator.spring->rest);
+  }
   return out;
 }
 
@@ -84,7 +95,7 @@ Momenta momenta(const Model& model, const Scheme& scheme, const State& state) {
       const int index = element.first_mass_point + k;
       const Vector3& W = state.mass_points[index].angular_velocity;
       out.angular +=
-          point.weight * (point_rotation(local, point, state.mass_rotations, index).rotation * (element.inertia * W));
+          point.weight * (point_rotation(local, point, state.mass_rotations, index).rotation * (point.inertia * W));
     }
   });
   for (std::size_t i = 0; i < model.nodes.size(); ++i) {
@@ -93,6 +104,11 @@ Momenta momenta(const Model& model, const Scheme& scheme, const State& state) {
     out.linear += inertia.mass * node.velocity;
     out.angular += inertia.mass * node.position.cross(node.velocity) +
                    node.orientation * (lumped_rotary(inertia, scheme) * node.angular_velocity);
+  }
+  for (std::size_t i = 0; i < model.actuators.size(); ++i) {
+    if (!model.actuators[i].gyroscope) continue;
+    const auto& [node, axis, inertia, ratio] = *model.actuators[i].gyroscope;
+    out.angular += inertia * ratio * state.actuators[i].rate * (state.nodes[node].orientation * axis);
   }
   return out;
 }

@@ -14,8 +14,8 @@ struct Momenta {
 };
 
 /// By the scheme's own quadrature (lumped or integrated rotary inertia), so that its balance is exact. `strain`
-/// contains the elastic energy of springs and joint stops and what numerical dissipation has stored (second order in
-/// the step); `potential` is that of gravity.
+/// contains the elastic energy of joint stops, of springs and gears, and what numerical dissipation has stored (second
+/// order in the step); `potential` is that of gravity.
 Energies energies(const Model& model, const Scheme& scheme, const State& state);
 Momenta momenta(const Model& model, const Scheme& scheme, const State& state);
 

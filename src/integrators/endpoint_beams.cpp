@@ -21,7 +21,8 @@ void EndpointBeams::initialise(State& state) {
     for (std::size_t k = 0; k < element.mass_points.size(); ++k) {
       const int index = element.first_mass_point + static_cast<int>(k);
       const MassPointState& point = state.mass_points[index];
-      state.momentum_rates[index] = momentum_rate(points_.begin_rotations[index], element.inertia, point);
+      state.momentum_rates[index] =
+          momentum_rate(points_.begin_rotations[index], element.mass_points[k].inertia, point);
     }
   });
   points_.invalidate();
@@ -66,10 +67,11 @@ void EndpointBeams::add_rotary(const BeamElement<Nodes>& element, const ElementN
                       [&](int k, const PointRotation& point, const GeneralisedShapeFunctions<Nodes>& generalised) {
                         const MassPointState& state = before.mass_points[first + k];
                         const Matrix3& begin = points_.begin_rotations[first + k];
-                        const RotaryRate rate =
-                            interpolation_ ? momentum_rotary_rate(element.inertia, begin, point.rotation, state,
-                                                                  before.momentum_rates[first + k], rule_)
-                                           : newmark_rotary_rate(element.inertia, begin, point.rotation, state, rule_);
+                        const Matrix3& inertia = element.mass_points[k].inertia;
+                        const RotaryRate rate = interpolation_
+                                                    ? momentum_rotary_rate(inertia, begin, point.rotation, state,
+                                                                           before.momentum_rates[first + k], rule_)
+                                                    : newmark_rotary_rate(inertia, begin, point.rotation, state, rule_);
                         points_.end_rotations[first + k] = point.rotation;
                         points_.end_motion[first + k] = rate.end;
                         end_momentum_rates_[first + k] = rate.moment;

@@ -1,17 +1,27 @@
 #include "integrators/joint_fold.h"
 
 #include <algorithm>
-#include <cmath>
+#include <type_traits>
 
 #include "joints/joint_forces.h"
 #include "math/cayley.h"
 
 namespace flexarm {
+namespace {
 
-JointFold::JointFold(const StepConfiguration& configuration, const StepHistories& histories, DryFrictionStep& friction)
+/// Efforts are those of the coordinate's Actuator.
+bool has_motor(const Coordinate& coordinate) {
+  return coordinate.actuator >= 0 && coordinate.motion < 0;
+}
+
+}  // namespace
+
+JointFold::JointFold(const StepConfiguration& configuration, const StepHistories& histories, DryFrictionStep& friction,
+                     const Actuators& actuators)
     : configuration_(configuration),
       histories_(histories),
       friction_(friction),
+      actuators_(actuators),
       is_resisted_(configuration.model().joints.size(), false),
       applied_(configuration.model().coordinates.size(), 0.0),
       slide_maps_(most_active_nodes(configuration.model().slide_lines)),
@@ -22,17 +32,6 @@ JointFold::JointFold(const StepConfiguration& configuration, const StepHistories
   }
 }
 
-double JointFold::effort_at(const Coordinate& coordinate, std::size_t index) const {
-  const double commanded = configuration_.state().commands[index];
-  double effort = 0;
-  if (!std::isnan(commanded))
-    effort = commanded;
-  else if (coordinate.effort >= 0)
-    effort = histories_.at_point[coordinate.effort];
-  if (coordinate.effort_limit > 0) effort = std::clamp(effort, -coordinate.effort_limit, coordinate.effort_limit);
-  return histories_.factor * effort;
-}
-
 void JointFold::add_efforts(int j, Balance& balance) {
   const Model& model = configuration_.model();
   const int count = released_count(model.joints[j].kind);
@@ -40,7 +39,9 @@ void JointFold::add_efforts(int j, Balance& balance) {
   double* residual = balance.residual.at(configuration_.degrees_of_freedom().variable_of_joint(j));
   for (int k = 0; k < count; ++k) {
     const std::size_t index = model.first_coordinate[j] + k;
-    applied_[index] = effort_at(model.coordinates[index], index);
+    const Coordinate& coordinate = model.coordinates[index];
+    if (has_motor(coordinate)) continue;
+    applied_[index] = histories_.effort(coordinate, configuration_.state().commands[index]);
     residual[k] -= friction_.effort_weight() * applied_[index];
   }
   if (is_resisted_[j]) add_resistance(j, balance);
@@ -87,6 +88,8 @@ void JointFold::fold(int j, Maps& maps, Balance& balance) {
   const Vector6 g = force_on_slave(j, balance);
   configuration_.joint_maps(j, g, maps, balance.tangent != nullptr);
   friction_.add_normal(j, g, maps, balance);
+  if constexpr (std::is_same_v<Maps, FoldMaps>)
+    if (balance.tangent) actuators_.add_gyroscope(j, maps);
   balance.residual.fold(j, maps);
   if (balance.carried) balance.carried->fold(j, maps);
 }
@@ -131,6 +134,7 @@ void JointFold::add_work(double& work) const {
     const ReleasedVector change = configuration_.increment_of(static_cast<int>(j));
     for (int k = 0; k < change.size(); ++k) {
       const std::size_t index = model.first_coordinate[j] + k;
+      if (has_motor(model.coordinates[index])) continue;
       const double effort =
           configuration_.scheme().is_incremental() ? applied_[index] : 0.5 * (applied_[index] + state.efforts[index]);
       work += effort * change[k];

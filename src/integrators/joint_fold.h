@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "integrators/actuators.h"
 #include "integrators/dry_friction_step.h"
 #include "integrators/step_configuration.h"
 #include "integrators/step_histories.h"
@@ -12,7 +13,8 @@ namespace flexarm {
 
 class JointFold {
  public:
-  JointFold(const StepConfiguration& configuration, const StepHistories& histories, DryFrictionStep& friction);
+  JointFold(const StepConfiguration& configuration, const StepHistories& histories, DryFrictionStep& friction,
+            const Actuators& actuators);
 
   /// Folds all joints from leaf to root, then coordinates that follow others; all nodes' forces are in the balance.
   void evaluate(Balance& balance);
@@ -31,11 +33,11 @@ class JointFold {
   void fold(int joint, Maps& maps, Balance& balance);
   void add_efforts(int joint, Balance& balance);
   void add_resistance(int joint, Balance& balance);
-  double effort_at(const Coordinate& coordinate, std::size_t index) const;
 
   const StepConfiguration& configuration_;
   const StepHistories& histories_;
   DryFrictionStep& friction_;
+  const Actuators& actuators_;
   std::vector<StopPenalty> stops_;  // per coordinate
   std::vector<bool> is_resisted_;   // per joint: damping, a stop or friction acts on a coordinate of it
   std::vector<double> applied_;

@@ -20,15 +20,15 @@ void MomentumBeams::add_rotary(const BeamElement<Nodes>& element, const ElementN
         const Quaternion relative = so3::quaternion_from_matrix(point.rotation * begin.transpose());
         const Vector3 increment = is_scaled ? cayley::increment(relative) : so3::log(relative);
         const Matrix3 inverse = is_scaled ? cayley::inverse_tangent(increment) : so3::inverse_tangent(increment);
-        const RotaryRate rate = average_rotary_rate(element.inertia, begin, point.rotation, increment, inverse, state,
-                                                    configuration_.step(), with_derivative);
+        const RotaryRate rate = average_rotary_rate(element.mass_points[k].inertia, begin, point.rotation, increment,
+                                                    inverse, state, configuration_.step(), with_derivative);
         points_.end_rotations[first + k] = point.rotation;
         points_.end_motion[first + k] = rate.end;
         add_rotary_rate(element, k, rate, generalised, with_tangent, system);
         if (!energy) return;
         const Vector3 &before = state.angular_velocity, &after = rate.end.angular_velocity;
-        const double weight = element.mass_points[k].weight;
-        energy->change += 0.5 * weight * (after - before).dot(element.inertia * (after + before));
+        const auto& [shape, derivative, weight, inertia] = element.mass_points[k];
+        energy->change += 0.5 * weight * (after - before).dot(inertia * (after + before));
         for (int i = 0; i < Nodes; ++i)
           energy->gradient.template segment<3>(6 * i + 3) +=
               weight * (generalised.values[i].transpose() * rate.energy_gradient);

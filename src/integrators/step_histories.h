@@ -1,6 +1,8 @@
 #pragma once
 /// Values of the scene's functions of time over a step.
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "integrators/step_configuration.h"
@@ -21,6 +23,17 @@ struct StepHistories {
       at_point[i] = history(scheme.is_static ? 0.0 : time + point * configuration.step());
       if (!scheme.is_incremental() && !scheme.is_static) at_beginning[i] = history(time);
     }
+  }
+
+  /// What a coordinate is commanded, NaN where nothing is, or else the scene's effort for it; cut at its limit.
+  double effort(const Coordinate& coordinate, double commanded) const {
+    double effort = 0;
+    if (!std::isnan(commanded))
+      effort = commanded;
+    else if (coordinate.effort >= 0)
+      effort = at_point[coordinate.effort];
+    if (coordinate.effort_limit > 0) effort = std::clamp(effort, -coordinate.effort_limit, coordinate.effort_limit);
+    return factor * effort;
   }
 
   std::vector<double> at_point;      ///< where in the step the scheme evaluates forces; at time 0 in statics

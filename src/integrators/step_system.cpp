@@ -19,7 +19,8 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme, BackendChoice b
       drag_(configuration_),
       loops_(configuration_),
       friction_(configuration_, interpolation_.get()),
-      joints_(configuration_, histories_, friction_),
+      actuators_(configuration_, histories_, interpolation_.get()),
+      joints_(configuration_, histories_, friction_, actuators_),
       reactions_(configuration_, friction_),
       reversals_(configuration_),
       contacts_(configuration_),
@@ -38,6 +39,7 @@ void StepSystem::begin(const State& state, double step, Guess guess) {
   beams_->begin();
   loops_.begin();
   friction_.begin();
+  actuators_.begin();
   reversals_.begin();
   const bool stands = guess == Guess::Extrapolated && state.history.order == IncrementHistory::kNoMotion;
   if (guess != Guess::Unchanged && !stands) {
@@ -57,6 +59,7 @@ void StepSystem::begin_equilibrium(const State& state, double load_factor, doubl
   histories_.begin(configuration_);
   beams_->begin();
   loops_.begin();
+  actuators_.begin();
   configuration_.set_prescribed(0.0);
   configuration_.set_slaves();
 }
@@ -90,6 +93,7 @@ bool StepSystem::evaluate(bool with_tangent) {
   }
   if (interpolation_) interpolation_->shift_reactions(balance);
   loops_.evaluate(balance);
+  actuators_.evaluate(balance);
   joints_.evaluate(balance);
 
   if (with_tangent) tangent_->finish();
@@ -125,6 +129,7 @@ void StepSystem::accept(State& state) {
   double work = 0;
   forces_.add_work(work);
   joints_.add_work(work);
+  actuators_.add_work(work);
   state.work += work;
   state.dissipated += dissipated_;
   configuration_.remember_increments(state.history);
@@ -132,6 +137,7 @@ void StepSystem::accept(State& state) {
   loops_.accept(state);
   bodies_.accept(state);
   joints_.accept(state);
+  actuators_.accept(state);
   beams_->accept(state);
   if (interpolation_) interpolation_->accept(state);
   state.time += configuration_.step();
@@ -144,6 +150,7 @@ void StepSystem::accept_rest(State& state) {
     state.nodes[i].orientation = configuration_.end()[i].orientation;
   }
   joints_.accept(state);
+  actuators_.accept(state);
   beams_->accept(state);
   std::fill(state.mass_points.begin(), state.mass_points.end(), MassPointState());
   std::fill(state.strain_rates.begin(), state.strain_rates.end(), Vector6::Zero());

@@ -14,6 +14,7 @@
 
 #include <memory>
 
+#include "integrators/actuators.h"
 #include "integrators/beam_family.h"
 #include "integrators/bodies.h"
 #include "integrators/drag.h"
@@ -70,6 +71,7 @@ class StepSystem {
   const StepConfiguration& configuration() const { return configuration_; }
   const UnknownScales& scales() const { return scales_; }
   const Drag& drag() const { return drag_; }
+  const Actuators& actuators() const { return actuators_; }
   const Eigen::VectorXd& residual() const { return residual_; }
   TangentBackend& tangent() { return *tangent_; }
   const TangentBackend& tangent() const { return *tangent_; }
@@ -100,6 +102,7 @@ class StepSystem {
   Drag drag_;
   LoopMultipliers loops_;
   DryFrictionStep friction_;
+  Actuators actuators_;
   JointFold joints_;
   JointReactions reactions_;
   SmoothReversals reversals_;

@@ -206,6 +206,8 @@ void Stepper::initialise_accelerations(State& state) {
   for (std::size_t i = 0; i < state.mass_points.size(); ++i)
     state.mass_points[i].angular_acceleration =
         (moved.mass_points[i].angular_velocity - state.mass_points[i].angular_velocity) / h;
+  for (std::size_t i = 0; i < state.actuators.size(); ++i)
+    state.actuators[i].acceleration = (moved.actuators[i].rate - state.actuators[i].rate) / h;
 }
 
 }  // namespace flexarm

@@ -24,18 +24,18 @@ struct BeamElement {
     NodeWeights shape, derivative;  ///< I^i, dI^i/ds [-, 1/m]
     double weight;                  ///< of the integral over s [m]
     Vector6 reference_strain;       ///< {Lambda_0^T r_0', Upsilon_0}: the undeformed line is free of stress
+    Matrix6 stiffness;              ///< of the section, about the mass centroid
   };
   struct MassPoint {
     NodeWeights shape, derivative;
     double weight;
+    Matrix3 inertia;  ///< rotary inertia per length [kg m]
   };
 
   std::array<int, Nodes> nodes;
   int first_stiffness_point = 0, first_mass_point = 0;  ///< into the per-point arrays of Workspace and State
   std::array<StiffnessPoint, kStiffnessPoints> stiffness_points;
   std::array<MassPoint, kMassPoints> mass_points;
-  Matrix6 stiffness;                         ///< of the section, about the mass centroid
-  Matrix3 inertia;                           ///< rotary inertia per length [kg m]
   Eigen::Matrix<double, Nodes, Nodes> mass;  ///< int I^i I^j mass ds [kg]
   double stiffness_damping = 0;              ///< eta of F += eta C d(strain)/dt [s]
   double mass_damping = 0;                   ///< [1/s]

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "flexarm/math/time_function.h"
+#include "model/actuator.h"
 #include "model/beam_element.h"
 #include "model/joint.h"
 #include "model/loop_closure.h"
@@ -79,6 +80,7 @@ struct Coordinate {
   int effort = -1;    ///< history index of the scene's effort; -1: none
   int mimicked = -1;  ///< coordinate that this one follows; -1: none
   MimicLaw mimic;
+  int actuator = -1;        ///< index into Model::actuators; -1: none
   bool is_coupled = false;  ///< it follows the coordinate right behind it, of the same joint
 };
 
@@ -148,6 +150,7 @@ struct Model {
   std::vector<Vector6> initial_velocity;   ///< per node {v, w}, spatial
   std::vector<Coordinate> coordinates;
   std::vector<int> first_coordinate;  ///< per joint; its coordinates are consecutive
+  std::vector<Actuator> actuators;
   std::vector<NodalLoad> loads;
   std::vector<TimeFunction> histories;
   Vector3 gravity = Vector3::Zero();
@@ -164,6 +167,13 @@ struct Model {
   std::vector<ReactionPlace> reactions;  ///< those that somebody asks for
   std::vector<SensorPlace> sensors;
 };
+
+/// Inertia of a rotor that turns with the coordinate [kg m^2 or kg].
+inline double armature(const Model& model, const Coordinate& coordinate) {
+  if (coordinate.actuator < 0) return 0;
+  const Drive& drive = model.actuators[coordinate.actuator].drive;
+  return drive.gear ? 0 : drive.inertia;
+}
 
 /// True for coordinates that count in rad: free rotations, and scalars by which something turns.
 inline bool is_rotation(const Model& model, const Coordinate& coordinate) {

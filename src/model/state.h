@@ -6,6 +6,7 @@
 #include "flexarm/math/pose.h"
 #include "flexarm/model/results.h"
 #include "math/local_rotation.h"
+#include "model/actuator.h"
 #include "model/increment_history.h"
 #include "model/joint.h"
 #include "model/step_means.h"
@@ -72,6 +73,7 @@ struct State {
   std::vector<double> commands;          ///< per coordinate: commanded effort, NaN where none holds
   std::vector<double> efforts;           ///< per coordinate: applied in the last step
   std::vector<double> rests;             ///< per coordinate: 1 where dry friction stopped it in the last step, else 0
+  std::vector<ActuatorState> actuators;  ///< per actuator
   IncrementHistory history;              ///< of the last sub-steps, for the predictor
   StepMeans drives;                      ///< what drove prescribed coordinates, for output
   StepMeans transmitted;                 ///< {force, moment} per Model::reactions, for output

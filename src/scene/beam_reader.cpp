@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "math/pi.h"
+#include "scene/choice.h"
 #include "scene/extension_reader.h"
 #include "scene/limits.h"
 #include "scene/section_reader.h"
@@ -126,14 +128,62 @@ void read_mesh(const XmlElement& beam, BeamDescription& description) {
   if (beam.has("order")) description.order = beam.integer("order", 1, 4).value_or(description.order);
 }
 
+constexpr Choice<HubDescription::End> kEnds[] = {{"start", HubDescription::End::Start},
+                                                 {"end", HubDescription::End::End}};
+
+void read_hubs(const XmlElement& beam, BeamDescription& description) {
+  for (const XmlElement& element : beam.children()) {
+    if (element.tag() != "hub") continue;
+    element.expect_only({"at", "mass", "inertia"});
+    HubDescription hub;
+    hub.location = element.location();
+    hub.end = read_choice(element, "at", kEnds).value_or(hub.end);
+    hub.mass = element.number("mass", kNonNegative).value_or(0);
+    hub.inertia = element.vector("inertia", Vector3::Zero());
+    if (hub.inertia.minCoeff() < 0) element.attribute_error("inertia", "moments of inertia must be >= 0");
+    for (const HubDescription& other : description.hubs)
+      if (other.end == hub.end)
+        element.attribute_error("at", fmt::format("this end has a hub already, by line {}", other.location.line));
+    description.hubs.push_back(hub);
+  }
+}
+
+/// By its coefficients, or by the damping ratio of modes: eta w / 2 + alpha / (2 w) at circular frequency w.
+void read_damping(const XmlElement& damping, BeamDescription& description) {
+  damping.expect_only({"stiffness_proportional", "mass_proportional", "ratio", "frequency", "frequencies"});
+  double &eta = description.stiffness_proportional_damping, &alpha = description.mass_proportional_damping;
+  if (!damping.has("ratio")) {
+    for (const char* attribute : {"frequency", "frequencies"})
+      if (damping.has(attribute)) damping.error(std::string(attribute) + " needs the damping ratio there, ratio");
+    eta = damping.number("stiffness_proportional", kNonNegative, 0);
+    alpha = damping.number("mass_proportional", kNonNegative, 0);
+    return;
+  }
+  for (const char* attribute : {"stiffness_proportional", "mass_proportional"})
+    if (damping.has(attribute)) damping.attribute_error(attribute, "damping is given by ratio already");
+  const std::optional<double> ratio = damping.number("ratio", kNonNegative);
+  if (damping.has("frequency") == damping.has("frequencies")) {
+    damping.error("either frequency, where the modes have that damping ratio, or two frequencies are expected");
+  } else if (damping.has("frequency")) {
+    const std::optional<double> frequency = damping.number("frequency", kPositive);
+    if (ratio && frequency) eta = *ratio / (kPi * *frequency);
+  } else {
+    const std::optional<std::vector<double>> f = damping.numbers("frequencies", 2, kPositive);
+    if (!ratio || !f) return;
+    const double sum = (*f)[0] + (*f)[1];
+    eta = *ratio / (kPi * sum);
+    alpha = 4 * kPi * *ratio * (*f)[0] * (*f)[1] / sum;
+  }
+}
+
 }  // namespace
 
 std::optional<BeamDescription> read_beam(const XmlElement& unowned, const std::string& link) {
   const XmlElement beam = unowned.with_owner("beam " + quoted(link));
   const std::size_t errors = beam.findings().error_count();
   beam.expect_only({"elements", "order"}, {"centerline", "orientation", "circle", "tube", "rectangle", "box_tube",
-                                           "material", "section", "section_matrix", "damping"});
-  beam.expect_at_most_one({"centerline", "orientation", "material", "damping"});
+                                           "material", "section", "section_matrix", "stations", "damping", "hub"});
+  beam.expect_at_most_one({"centerline", "orientation", "material", "stations", "damping"});
   BeamDescription description;
   description.location = beam.location();
   read_mesh(beam, description);
@@ -141,11 +191,8 @@ std::optional<BeamDescription> read_beam(const XmlElement& unowned, const std::s
   description.centreline = read_centreline(beam, first_tangent);
   read_orientation(beam, first_tangent, description);
   if (const std::optional<Section> section = read_section(beam)) description.section = *section;
-  if (const std::optional<XmlElement> damping = beam.child("damping")) {
-    damping->expect_only({"stiffness_proportional", "mass_proportional"});
-    description.stiffness_proportional_damping = damping->number("stiffness_proportional", kNonNegative, 0);
-    description.mass_proportional_damping = damping->number("mass_proportional", kNonNegative, 0);
-  }
+  if (const std::optional<XmlElement> damping = beam.child("damping")) read_damping(*damping, description);
+  read_hubs(beam, description);
   if (beam.findings().error_count() > errors) return std::nullopt;
   return description;
 }

@@ -252,6 +252,19 @@ class ReferenceCheck {
     }
     for (const PrescribedMotion& motion : scene_.motions)
       if (motion.position(0.0) != 0) check_no_loop(motion.coordinate, motion.location, "<motion> of simulation");
+    std::set<std::string> sprung, geared, controlled;
+    for (const ServoDescription& servo : scene_.servos) {
+      const char* element = "<servo> of robot";
+      check_coordinate(servo.coordinate, servo.location, element, controlled);
+      check_not_prescribed(servo.coordinate, servo.location, element, moved);
+    }
+    for (const SpringDescription& spring : scene_.springs)
+      check_coordinate(spring.coordinate, spring.location, "<spring> of robot", sprung);
+    for (const DriveDescription& drive : scene_.drives) {
+      const char* element = "<drive> of robot";
+      check_coordinate(drive.coordinate, drive.location, element, geared);
+      check_not_prescribed(drive.coordinate, drive.location, element, moved);
+    }
     for (const JointEffort& effort : scene_.efforts) {
       const char* element = "<effort> of simulation";
       check_coordinate(effort.coordinate, effort.location, element, driven);

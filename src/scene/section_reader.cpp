@@ -1,17 +1,18 @@
 #include "scene/section_reader.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <fmt/format.h>
-#include <Eigen/Cholesky>
 
-#include "scene/inertia_checks.h"
+#include "scene/section_matrix.h"
+#include "scene/section_table.h"
 
 namespace flexarm::scene {
 namespace {
 
 constexpr NumberRange kPoisson{"in (-1, 0.5)", [](double x) { return x > -1 && x < 0.5; }};
-constexpr double kMatrixTolerance = 1e-9;  // relative to the largest number of the matrix or block
 
 std::optional<SectionShape> read_tube(const XmlElement& tube) {
   tube.expect_only({"outer_radius", "inner_radius"});
@@ -55,7 +56,7 @@ std::optional<Material> read_material(const XmlElement& material) {
   return Material{*young, *poisson, *density};
 }
 
-std::optional<Section> read_direct_section(const XmlElement& section) {
+std::optional<DirectSection> read_direct_section(const XmlElement& section) {
   section.expect_only({"ea", "ga2", "ga3", "gj", "ei2", "ei3", "mass", "j1", "j2", "j3"});
   const auto read = [&](const char* name, const NumberRange& range) { return section.number(name, range).value_or(0); };
   const std::size_t errors = section.findings().error_count();
@@ -82,47 +83,7 @@ std::optional<Matrix6> read_matrix(const XmlElement& element, const char* attrib
   return Matrix6(Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(numbers->data()));
 }
 
-/// Relative to the diagonal, since translations and rotations have different units.
-bool is_symmetric(const Matrix6& matrix) {
-  for (int i = 0; i < 6; ++i) {
-    for (int j = 0; j < i; ++j) {
-      const double scale = std::max(
-          {std::abs(matrix(i, j)), std::abs(matrix(j, i)), std::sqrt(std::abs(matrix(i, i)) * std::abs(matrix(j, j)))});
-      if (!(std::abs(matrix(i, j) - matrix(j, i)) <= kMatrixTolerance * scale)) return false;
-    }
-  }
-  return true;
-}
-
-/// The matrix with a unit diagonal: its definiteness does not depend on units. Needs a positive diagonal.
-Matrix6 scaled_to_unit_diagonal(const Matrix6& matrix) {
-  const Vector6 scale = matrix.diagonal().cwiseSqrt().cwiseInverse();
-  return scale.asDiagonal() * matrix * scale.asDiagonal();
-}
-
-bool is_positive_definite(const Matrix6& matrix) {
-  if (!(matrix.diagonal().array() > 0).all()) return false;
-  const Eigen::LLT<Matrix6> cholesky(scaled_to_unit_diagonal(matrix));
-  return cholesky.info() == Eigen::Success;
-}
-
-/// [[m 1, -m d^], [m d^, J]] with m > 0 and J - m d^T d^ (about the centre of mass) positive semidefinite.
-bool is_inertia(const Matrix6& matrix) {
-  const double mass = matrix(0, 0);
-  const Matrix3 coupling = matrix.bottomLeftCorner<3, 3>(), rotary = matrix.bottomRightCorner<3, 3>();
-  const auto small = [](const Matrix3& difference, double scale) {
-    return difference.cwiseAbs().maxCoeff() <= kMatrixTolerance * scale;
-  };
-  if (!(mass > 0)) return false;
-  if (!small(matrix.topLeftCorner<3, 3>() - mass * Matrix3::Identity(), mass)) return false;
-  const double coupling_scale = coupling.cwiseAbs().maxCoeff(), rotary_scale = rotary.cwiseAbs().maxCoeff();
-  if (!small(coupling + coupling.transpose(), coupling_scale)) return false;
-  if (!small(matrix.topRightCorner<3, 3>() + coupling, coupling_scale)) return false;
-  if (!small(rotary - rotary.transpose(), rotary_scale)) return false;
-  return principal_moments(rotary + coupling * coupling / mass)[0] >= -kMatrixTolerance * rotary_scale;
-}
-
-std::optional<Section> read_section_matrix(const XmlElement& section) {
+std::optional<MatrixSection> read_section_matrix(const XmlElement& section) {
   section.expect_only({"stiffness", "inertia"});
   const std::optional<Matrix6> stiffness = read_matrix(section, "stiffness"), inertia = read_matrix(section, "inertia");
   const std::size_t errors = section.findings().error_count();
@@ -140,38 +101,99 @@ std::optional<Section> read_section_matrix(const XmlElement& section) {
   return MatrixSection{*stiffness, *inertia};
 }
 
+// ---------------------------------------------------------------- one of all kinds
+
+constexpr const char* kSectionTags[] = {"circle", "tube", "rectangle", "box_tube", "section", "section_matrix"};
+constexpr const char* kSectionExpected =
+    "<circle>, <tube>, <rectangle> or <box_tube> with <material>, or <section>, or <section_matrix>";
+
+bool is_shape(const XmlElement& section) {
+  return section.tag() != "section" && section.tag() != "section_matrix";
+}
+
+/// The one section that `parent` has, of which it must not have more.
+std::optional<XmlElement> find_section(const XmlElement& parent, const std::string& has_already) {
+  std::optional<XmlElement> first;
+  for (const XmlElement& child : parent.children()) {
+    if (std::find(std::begin(kSectionTags), std::end(kSectionTags), child.tag()) == std::end(kSectionTags)) continue;
+    if (first) child.error(has_already + " has a section already, <" + first->tag() + ">");
+    if (!first) first = child;
+  }
+  return first;
+}
+
+/// `material`: the beam's, for shapes; nothing if it is wrong.
+std::optional<UniformSection> read_uniform(const XmlElement& section, const std::optional<Material>& material) {
+  const auto widened = [](const auto& read) { return read ? std::optional<UniformSection>(*read) : std::nullopt; };
+  if (section.tag() == "section") return widened(read_direct_section(section));
+  if (section.tag() == "section_matrix") return widened(read_section_matrix(section));
+  const std::optional<SectionShape> shape = read_shape(section);
+  if (!shape || !material) return std::nullopt;
+  return GeometricSection{*shape, *material};
+}
+
+/// Sections of which every length, stiffness and inertia has another one to go to.
+bool are_alike(const UniformSection& a, const UniformSection& b) {
+  if (a.index() != b.index()) return false;
+  const auto *one = std::get_if<GeometricSection>(&a), *other = std::get_if<GeometricSection>(&b);
+  return !one || one->shape.index() == other->shape.index();
+}
+
+std::optional<Section> read_stations(const XmlElement& stations, const std::optional<Material>& material) {
+  if (stations.has("file")) return read_section_table(stations);
+  stations.expect_only({}, {"station"});
+  const std::size_t errors = stations.findings().error_count();
+  SectionStations out;
+  for (const XmlElement& station : stations.children()) {
+    if (station.tag() != "station") continue;
+    station.expect_only({"at"}, {"circle", "tube", "rectangle", "box_tube", "section", "section_matrix"});
+    const std::optional<double> at = station.number("at", kNonNegative);
+    if (at && !out.arc_lengths.empty() && !(*at > out.arc_lengths.back()))
+      station.attribute_error(
+          "at", fmt::format("stations are in the order of their arc lengths, at must be > {}", out.arc_lengths.back()));
+    const std::optional<XmlElement> section = find_section(station, "the station");
+    if (!section) station.error(std::string("a section is missing: ") + kSectionExpected);
+    if (!at || !section) continue;
+    const std::optional<UniformSection> read = read_uniform(*section, material);
+    if (!read) continue;
+    if (!out.sections.empty() && !are_alike(out.sections.front(), *read)) {
+      section->error("all stations of a beam have the same kind of section as the first");
+      continue;
+    }
+    out.arc_lengths.push_back(*at);
+    out.sections.push_back(*read);
+  }
+  if (stations.findings().error_count() > errors) return std::nullopt;
+  if (out.sections.size() >= 2) return out;
+  // A material that is wrong has been told already, and then there are no sections.
+  if (stations.findings().error_count() == 0 || material) stations.error("at least two <station> are expected");
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<Section> read_section(const XmlElement& beam) {
-  std::vector<XmlElement> found;
-  for (const XmlElement& child : beam.children()) {
-    for (const char* tag : {"circle", "tube", "rectangle", "box_tube", "section", "section_matrix"})
-      if (child.tag() == tag) found.push_back(child);
-  }
-  const std::optional<XmlElement> material = beam.child("material");
-  if (found.empty()) {
-    beam.error(
-        "a section is missing: <circle>, <tube>, <rectangle> or <box_tube> with <material>, or <section>, or "
-        "<section_matrix>");
-    if (material) read_material(*material);
-    return std::nullopt;
-  }
-  for (std::size_t i = 1; i < found.size(); ++i)
-    found[i].error("the beam has a section already, <" + found[0].tag() + ">");
+  const std::optional<XmlElement> section = find_section(beam, "the beam"), stations = beam.child("stations"),
+                                  material_element = beam.child("material");
+  if (section && stations) stations->error("the beam has a section already, <" + section->tag() + ">");
+  bool has_shape = section && is_shape(*section),
+       has_others = (section && !has_shape) || (stations && stations->has("file"));
+  for (const XmlElement& station : stations ? stations->children() : std::vector<XmlElement>())
+    for (const XmlElement& child : station.children()) (is_shape(child) ? has_shape : has_others) = true;
 
-  const XmlElement& section = found[0];
-  if (section.tag() == "section" || section.tag() == "section_matrix") {
-    if (material) material->error("<" + section.tag() + "> leaves no place for a material");
-    return section.tag() == "section" ? read_direct_section(section) : read_section_matrix(section);
-  }
-  const std::optional<SectionShape> shape = read_shape(section);
-  if (!material) {
-    beam.error("<material> is missing");
+  std::optional<Material> material;
+  if (material_element && !has_others) material = read_material(*material_element);
+  if (!section && !stations) {
+    beam.error(std::string("a section is missing: ") + kSectionExpected + ", or <stations>");
     return std::nullopt;
   }
-  const std::optional<Material> read = read_material(*material);
-  if (!shape || !read) return std::nullopt;
-  return GeometricSection{*shape, *read};
+  if (material_element && has_others)
+    material_element->error("<" + (section ? *section : *stations).tag() + "> leaves no place for a material");
+  if (has_shape && !material_element) beam.error("<material> is missing");
+  if (!section) return read_stations(*stations, material);
+  const std::optional<UniformSection> read = read_uniform(*section, material);
+  if (!read) return std::nullopt;
+  return std::visit([](const auto& s) -> Section { return s; }, *read);
 }
 
 }  // namespace flexarm::scene

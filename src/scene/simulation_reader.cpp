@@ -96,13 +96,13 @@ void read_initial(const XmlElement& initial, SceneDescription& scene, StartReque
   if (of_link) {
     initial.expect_only({"link", "linear", "angular"});
     if (!initial.has("linear") && !initial.has("angular")) initial.error("attribute 'linear' or 'angular' is missing");
-    scene.initial_links.push_back({initial.text("link").value_or(""), initial.vector("linear", Vector3::Zero()),
+    scene.initial_links.push_back({initial.name("link").value_or(""), initial.vector("linear", Vector3::Zero()),
                                    initial.vector("angular", Vector3::Zero()), initial.location()});
   } else {
     initial.expect_only({"joint", "position", "velocity"});
     if (!initial.has("position") && !initial.has("velocity"))
       initial.error("attribute 'position' or 'velocity' is missing");
-    const std::string coordinate = initial.text("joint").value_or("");
+    const std::string coordinate = initial.name("joint").value_or("");
     const double position = read_initial_position(initial, coordinate, start);
     scene.initial_joints.push_back(
         {coordinate, position, initial.number("velocity", kAnyNumber, 0), initial.location(), initial.has("velocity")});
@@ -124,7 +124,7 @@ void read_load(const XmlElement& load, SceneDescription& scene) {
   load.expect_only({"link", "at", "force", "moment", "frame", "history"});
   if (!load.has("force") && !load.has("moment")) load.error("attribute 'force' or 'moment' is missing");
   const Vector3 zero = Vector3::Zero();
-  scene.loads.push_back({load.text("link").value_or(""), load.vector("at", zero), load.vector("force", zero),
+  scene.loads.push_back({load.name("link").value_or(""), load.vector("at", zero), load.vector("force", zero),
                          load.vector("moment", zero), read_frame(load), read_history(load), load.location()});
 }
 
@@ -135,25 +135,25 @@ void read_distributed_load(const XmlElement& load, SceneDescription& scene) {
   };
   const std::optional<double> from = arc_length("from"), to = arc_length("to");
   if (to && *to <= from.value_or(0)) load.attribute_error("to", "to must be > from, along the line");
-  scene.distributed_loads.push_back({load.text("link").value_or(""), load.vector("force").value_or(Vector3::Zero()),
+  scene.distributed_loads.push_back({load.name("link").value_or(""), load.vector("force").value_or(Vector3::Zero()),
                                      read_frame(load), read_history(load), load.location(), from, to});
 }
 
 void read_motion(const XmlElement& motion, SceneDescription& scene) {
   motion.expect_only({"joint", "position"});
   scene.motions.push_back(
-      {motion.text("joint").value_or(""), motion.function("position").value_or(TimeFunction()), motion.location()});
+      {motion.name("joint").value_or(""), motion.function("position").value_or(TimeFunction()), motion.location()});
 }
 
 void read_effort(const XmlElement& effort, SceneDescription& scene) {
   effort.expect_only({"joint", "history"});
   scene.efforts.push_back(
-      {effort.text("joint").value_or(""), effort.function("history").value_or(TimeFunction()), effort.location()});
+      {effort.name("joint").value_or(""), effort.function("history").value_or(TimeFunction()), effort.location()});
 }
 
 void read_probe(const XmlElement& probe, SceneDescription& scene) {
   probe.expect_only({"name", "link", "at"});
-  scene.probes.push_back({probe.name("name").value_or(""), probe.text("link").value_or(""),
+  scene.probes.push_back({probe.name("name").value_or(""), probe.name("link").value_or(""),
                           probe.vector("at", Vector3::Zero()), probe.location()});
 }
 

@@ -6,9 +6,9 @@ PointSpring read_point_spring(const XmlElement& spring) {
   spring.expect_only({"from", "from_at", "to", "to_at", "stiffness", "rest_length", "damping"});
   PointSpring out;
   out.location = spring.location();
-  out.from = spring.text("from").value_or("");
+  out.from = spring.name("from").value_or("");
   out.from_at = spring.vector("from_at", out.from_at);
-  out.to = spring.text("to").value_or("");
+  out.to = spring.name("to").value_or("");
   out.to_at = spring.vector("to_at", out.to_at);
   out.stiffness = spring.number("stiffness", kNonNegative).value_or(0);
   if (spring.has("rest_length")) out.rest_length = spring.number("rest_length", kNonNegative);

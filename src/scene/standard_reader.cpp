@@ -6,6 +6,7 @@
 #include "scene/slide_reader.h"
 
 #include <fmt/format.h>
+#include <urdf_model/model.h>
 
 #include "scene/urdfdom.h"
 
@@ -47,9 +48,8 @@ void check_attributes(const XmlElement& element, const StandardAttribute (&table
 
 /// Has urdfdom read a document with only these elements of <robot>. What only other programs stumble over is a warning.
 void judge_alone(const XmlElement& element, const std::string& elements) {
-  const UrdfdomResult result = parse_with_urdfdom("<robot name=\"robot\">" + elements + "</robot>");
-  if (!result.errors.empty())
-    element.warning("programs that use urdfdom cannot read it", quoted(result.errors.front()));
+  const std::vector<std::string> errors = errors_of_urdfdom("<robot name=\"robot\">" + elements + "</robot>");
+  if (!errors.empty()) element.warning("programs that use urdfdom cannot read it", quoted(errors.front()));
 }
 
 /// Reads <origin> or <child_origin>.
@@ -180,7 +180,7 @@ std::optional<Mimic> read_mimic(const XmlElement& mimic, JointKind kind) {
     mimic.warning("is ignored: a fixed joint has no coordinate that could follow another");
     return std::nullopt;
   }
-  return Mimic{mimic.text("joint").value_or(""), mimic.number("multiplier", kAnyNumber, 1),
+  return Mimic{mimic.name("joint").value_or(""), mimic.number("multiplier", kAnyNumber, 1),
                mimic.number("offset", kAnyNumber, 0)};
 }
 
@@ -197,7 +197,7 @@ void check_joint_structure(const XmlElement& joint) {
 std::string read_link_name(const XmlElement& joint, const char* tag) {
   const std::optional<XmlElement> child = joint.child(tag);
   if (!child) joint.error("<" + std::string(tag) + " link=\"...\"/> is missing");
-  return child ? child->text("link").value_or("") : "";
+  return child ? child->name("link").value_or("") : "";
 }
 
 /// Text of a joint as a <joint> between stand-ins for its links, which keep urdfdom from complaining about the rest of

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "scene/drive_reader.h"
 #include "scene/extension_reader.h"
 #include "scene/inertia_checks.h"
 #include "scene/limits.h"
@@ -26,7 +27,8 @@ struct Place {
 constexpr Place kPlaces[] = {{"beam", "link"},       {"release", "joint"},    {"axis2", "joint"},
                              {"slide", "joint"},     {"couple", "joint"},     {"child_origin", "loop_joint"},
                              {"friction", "joint"},  {"simulation", "robot"}, {"loop_joint", "robot"},
-                             {"root", "simulation"}, {"sensor", "robot"},     {"spring", "robot"}};
+                             {"root", "simulation"}, {"spring", "robot"},     {"drive", "robot"},
+                             {"servo", "robot"},     {"hub", "beam"},         {"sensor", "robot"}};
 
 /// Records our elements where they would be ignored like a stranger's.
 void check_places(const XmlElement& element) {
@@ -57,8 +59,12 @@ class SceneReader {
     check_size(robot, "links", scene_.links.size(), kMostLinks);
     check_size(robot, "joints", scene_.joints.size(), kMostJoints);
     check_size(robot, "loop joints", scene_.loop_joints.size(), kMostJoints);
+    check_size(robot, "springs", scene_.springs.size(), kMostJoints);
+    check_size(robot, "drives", scene_.drives.size(), kMostJoints);
+    check_size(robot, "servos", scene_.servos.size(), kMostJoints);
+    settle_gears(transmissions_, scene_.drives, findings_);
     check_size(robot, "sensors", scene_.sensors.size(), kMostSensors);
-    check_size(robot, "springs", scene_.point_springs.size(), kMostSprings);
+    check_size(robot, "springs between points", scene_.point_springs.size(), kMostSprings);
     if (scene_.links.empty()) robot.error("at least one <link> is expected");
     check_tree(scene_, findings_);
     settle_root(scene_, start_, findings_);
@@ -85,10 +91,19 @@ class SceneReader {
       scene_.loop_joints.push_back(read_loop_joint(child));
       check_places(child.with_name(scene_.loop_joints.back().name));
       if (findings_.error_count() > errors) unreadable_.insert(scene_.loop_joints.back().name);
+    } else if (tag == "spring" && child.has("from") && scene_.point_springs.size() <= kMostSprings) {
+      scene_.point_springs.push_back(read_point_spring(child));
+    } else if (tag == "spring" && scene_.springs.size() <= kMostJoints) {
+      scene_.springs.push_back(read_spring(child));
+    } else if (tag == "drive" && scene_.drives.size() <= kMostJoints) {
+      scene_.drives.push_back(read_drive(child));
+    } else if (tag == "servo" && scene_.servos.size() <= kMostJoints) {
+      scene_.servos.push_back(read_servo(child));
+    } else if (tag == "transmission" && transmissions_.size() <= kMostJoints) {
+      if (const std::optional<Transmission> transmission = read_transmission(child))
+        transmissions_.push_back(*transmission);
     } else if (tag == "simulation") {
       read_simulation(child, scene_, start_);
-    } else if (tag == "spring" && scene_.point_springs.size() <= kMostSprings) {
-      scene_.point_springs.push_back(read_point_spring(child));
     } else if (tag == "sensor" && !child.child("parent") && scene_.sensors.size() <= kMostSensors) {
       scene_.sensors.push_back(read_sensor(child));  // those with a <parent> are URDF's own
     }
@@ -113,6 +128,7 @@ class SceneReader {
   Findings& findings_;
   SceneDescription scene_;
   StartRequest start_;
+  std::vector<Transmission> transmissions_;
   std::set<std::string> unreadable_;  // links and joints with errors, of which only the name is to be trusted
 };
 
@@ -135,8 +151,8 @@ std::optional<SceneDescription> read_scene(const std::string& text, const ReadOp
   if (findings.error_count() > 0) return std::nullopt;
 
   // Each part has been judged alone; now the whole, as other programs read it.
-  const UrdfdomResult whole = parse_with_urdfdom(text);
-  if (!whole.errors.empty()) robot.warning("programs that use urdfdom refuse this file", quoted(whole.errors.front()));
+  const std::vector<std::string> errors = errors_of_urdfdom(printed(*root));
+  if (!errors.empty()) robot.warning("programs that use urdfdom refuse this file", quoted(errors.front()));
   return scene;
 }
 

@@ -1,5 +1,6 @@
 #include "scene/urdfdom.h"
 
+#include <algorithm>
 #include <exception>
 #include <mutex>
 
@@ -36,19 +37,20 @@ class MessageCapture : public console_bridge::OutputHandler {
 
 }  // namespace
 
-UrdfdomResult parse_with_urdfdom(const std::string& document) {
+std::vector<std::string> errors_of_urdfdom(std::string document) {
   static std::mutex mutex;
   const std::lock_guard<std::mutex> lock(mutex);
   MessageCapture capture;
-  UrdfdomResult result;
+  // urdfdom logs some parts of the document as the format of printf. Nobody writes this control character.
+  constexpr char kPercent = '\x1a';
+  std::replace(document.begin(), document.end(), '%', kPercent);
   try {
-    result.model = urdf::parseURDF(document);
+    if (!urdf::parseURDF(document) && capture.errors.empty()) capture.errors.push_back("urdfdom cannot read it");
   } catch (const std::exception& error) {
     capture.errors.push_back(error.what());
   }
-  result.errors = std::move(capture.errors);
-  if (!result.model && result.errors.empty()) result.errors.push_back("urdfdom cannot read it");
-  return result;
+  for (std::string& error : capture.errors) std::replace(error.begin(), error.end(), kPercent, '%');
+  return std::move(capture.errors);
 }
 
 std::string printed(const tinyxml2::XMLElement& element) {

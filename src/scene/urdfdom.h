@@ -5,20 +5,16 @@
 #include <vector>
 
 #include <tinyxml2.h>
-#include <urdf_model/model.h>
-#include <urdf_world/types.h>
 
 namespace flexarm::scene {
 
-struct UrdfdomResult {
-  urdf::ModelInterfaceSharedPtr model;  ///< may be null, and incomplete wherever there are errors
-  std::vector<std::string> errors;      ///< what urdfdom logged as errors, the cause before its consequences
-};
+/// Has urdfdom parse a URDF document of moderate nesting in UTF-8, which must not hide characters behind references
+/// like
+/// `&#37;`: what it logs as errors, the cause before its consequences. Serialised: urdfdom logs through a global
+/// handler.
+std::vector<std::string> errors_of_urdfdom(std::string document);
 
-/// Parses a URDF document of moderate nesting in UTF-8. Serialised: urdfdom logs through a global handler.
-UrdfdomResult parse_with_urdfdom(const std::string& document);
-
-/// The element as XML text.
+/// The element as XML text, references only where a character could not stand for itself.
 std::string printed(const tinyxml2::XMLElement& element);
 
 }  // namespace flexarm::scene

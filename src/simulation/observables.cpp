@@ -4,6 +4,8 @@
 #include <limits>
 
 #include "elements/element_configuration.h"
+#include "joints/joint_kinematics.h"
+#include "joints/servo_step.h"
 #include "math/quadrature.h"
 #include "math/shape_functions.h"
 #include "model/carried_origin.h"
@@ -44,10 +46,10 @@ Vector6 extended(const std::array<Vector6, Nodes - 1>& values, double xi) {
 
 /// From the mass centroid, at c in the section, to the reference line, by which the section turns: there
 /// r = r_c - Lambda c, hence Gamma = Gamma_c + c x K, and with the same virtual work N = N_c, M = M_c + c x N.
-void set_stress(const Matrix6& stiffness, const Vector6& strain, const Vector3& centroid, BeamPoint& point) {
+void set_stress(const Vector6& strain, const Vector6& resultant, const Vector3& centroid, BeamPoint& point) {
   point.strain = strain;
   point.strain.head<3>() += centroid.cross(strain.tail<3>());
-  point.resultant = stiffness * strain;
+  point.resultant = resultant;
   point.resultant.tail<3>() += centroid.cross(point.resultant.head<3>());
 }
 
@@ -55,8 +57,11 @@ void set_stress(const Matrix6& stiffness, const Vector6& strain, const Vector3& 
 template <int Nodes>
 struct DeformedElement {
   DeformedElement(const BeamElement<Nodes>& element, const State& state)
-      : stiffness(element.stiffness), nodes(element, state), local(nodes.orientation) {
-    for (int k = 0; k < Nodes - 1; ++k) strains[k] = centroid_strain(element, nodes, local, state, k);
+      : nodes(element, state), local(nodes.orientation) {
+    for (int k = 0; k < Nodes - 1; ++k) {
+      strains[k] = centroid_strain(element, nodes, local, state, k);
+      resultants[k] = element.stiffness_points[k].stiffness * strains[k];
+    }
   }
 
   /// `centroid`: in the section; `begin`, `end`: arc lengths of the element's ends [m].
@@ -65,14 +70,13 @@ struct DeformedElement {
     point.arc_length = begin + 0.5 * (1 + xi) * (end - begin);
     point.pose = section_pose<Nodes>(nodes.position, local, xi);
     point.pose.position = point.pose * Vector3(-centroid);
-    set_stress(stiffness, extended<Nodes>(strains, xi), centroid, point);
+    set_stress(extended<Nodes>(strains, xi), extended<Nodes>(resultants, xi), centroid, point);
     return point;
   }
 
-  const Matrix6& stiffness;
   ElementConfiguration<Nodes> nodes;
   LocalRotations<Nodes> local;
-  std::array<Vector6, Nodes - 1> strains;
+  std::array<Vector6, Nodes - 1> strains, resultants;
 };
 
 }  // namespace
@@ -191,6 +195,23 @@ State initial_state(const Model& model) {
   state.last_transmitted.assign(6 * model.reactions.size(), 0.0);
   state.samples.resize(model.sensors.size());
   state.rests.assign(model.coordinates.size(), 0.0);
+  for (const Actuator& actuator : model.actuators) {
+    const Coordinate& coordinate = model.coordinates[actuator.coordinate];
+    const Released& released = model.initial_released[coordinate.joint];
+    const ReleasedVector rates = released_rates(model, coordinate.joint, model.nodes, released, model.initial_velocity);
+    ActuatorState& own = state.actuators.emplace_back();
+    own.angle = released.displacement[coordinate.component % 3];
+    own.rate = rates[coordinate.component];
+    if (actuator.servo) {
+      own.servo.outputs.assign(outputs_of(*actuator.servo), 0.0);
+      own.servo.delayed_rate = -own.rate;
+      own.servo.measured = own.angle - actuator.servo->sample_time * own.rate;
+    }
+    if (actuator.gyroscope) {
+      const auto& [node, axis, inertia, ratio] = *actuator.gyroscope;
+      own.rate += axis.dot(state.nodes[node].angular_velocity) / ratio;
+    }
+  }
   for_each_element(model.beams, [&](const auto& element) {
     constexpr int N = std::decay_t<decltype(element)>::kNodes;
     const ElementConfiguration<N> nodes(element, state);

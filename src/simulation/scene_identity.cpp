@@ -72,13 +72,16 @@ class SceneFingerprint {
     all(ea, ga2, ga3, gj, ei2, ei3, mass, j1, j2, j3);
   }
   void add(const scene::MatrixSection& section) { all(section.stiffness, section.inertia); }
+  void add(const scene::SectionStations& stations) { all(stations.arc_lengths, stations.sections); }
   void add(const scene::CentrelinePiece& piece) {
     const auto& [kind, to, center, twist, location] = piece;
     all(kind, to, center, twist);
   }
+  void add(const scene::HubDescription& hub) { all(hub.end, hub.mass, hub.inertia); }
   void add(const scene::BeamDescription& beam) {
-    const auto& [elements, order, centreline, section_y, section, stiffness_damping, mass_damping, location] = beam;
-    all(elements, order, centreline, section_y, section, stiffness_damping, mass_damping);
+    const auto& [elements, order, centreline, section_y, section, stiffness_damping, mass_damping, hubs, location] =
+        beam;
+    all(elements, order, centreline, section_y, section, stiffness_damping, mass_damping, hubs);
   }
 
   // ---- links and joints
@@ -108,6 +111,19 @@ class SceneFingerprint {
     all(name, kind, parent, child, origin, axis, axis2, ratio, offset, direction, slide, limits, effort_limit, damping,
         friction, friction_law, mimic, child_origin);
     if (profile) add(profile->numbers());
+  }
+
+  void add(const scene::SpringDescription& spring) { all(spring.coordinate, spring.stiffness, spring.rest); }
+  void add(const scene::DriveDescription& drive) {
+    const auto& [coordinate, gear, rotor_inertia, stiffness, damping, backlash, friction, efficiency, effort_limit,
+                 velocity_limit, axis, location] = drive;
+    all(coordinate, gear, rotor_inertia, stiffness, damping, backlash, friction, efficiency, effort_limit,
+        velocity_limit, axis);
+  }
+  void add(const scene::ServoDescription& servo) {
+    const auto& [coordinate, mode, kp, kd, ki, set_point, feedforward, effort_limit, anti_windup, side, sample_time,
+                 delay, location] = servo;
+    all(coordinate, mode, kp, kd, ki, set_point, feedforward, effort_limit, anti_windup, side, sample_time, delay);
   }
 
   // ---- simulation
@@ -157,11 +173,13 @@ std::string named_lines(const char* kind, const Parts& parts) {
 }  // namespace
 
 std::string scene_identity(const scene::SceneDescription& scene) {
-  const auto& [name, file, root, links, joints, loop_joints, gravity, integrator, integrator_location, initial_joints,
-               initial_links, loads, distributed_loads, motions, efforts, probes, sensors, point_springs,
-               lock_massless] = scene;
+  const auto& [name, file, root, links, joints, loop_joints, springs, drives, servos, gravity, integrator,
+               integrator_location, initial_joints, initial_links, loads, distributed_loads, motions, efforts, probes,
+               sensors, point_springs, lock_massless] = scene;
   return integrator_line(integrator) + "\n" + named_lines("link", links) + named_lines("joint", joints) +
          named_lines("loop_joint", loop_joints) +
+         fmt::format("spring {}\ndrive {}\nservo {}\n", SceneFingerprint::of(springs), SceneFingerprint::of(drives),
+                     SceneFingerprint::of(servos)) +
          fmt::format("gravity {}\ninitial {}\nload {}\ndistributed_load {}\nmotion {}\neffort {}\n",
                      SceneFingerprint::of(gravity),
                      SceneFingerprint::of(root, initial_joints, initial_links, lock_massless),

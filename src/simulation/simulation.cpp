@@ -255,6 +255,31 @@ void Simulation::release_command(std::size_t index) {
   implementation_->state.commands.at(index) = std::numeric_limits<double>::quiet_NaN();
 }
 
+namespace {
+
+ServoState* servo_of(const Model& model, std::size_t index, State& state) {
+  const int actuator = model.coordinates.at(index).actuator;
+  return actuator >= 0 && model.actuators[actuator].servo ? &state.actuators[actuator].servo : nullptr;
+}
+
+}  // namespace
+
+void Simulation::command_set_point(std::size_t index, double set_point) {
+  if (!std::isfinite(set_point)) throw std::invalid_argument("a commanded set point must be finite");
+  ServoState* servo = servo_of(implementation_->model, index, implementation_->state);
+  if (!servo) throw std::invalid_argument("joint coordinate '" + coordinate_names()[index] + "' has no servo");
+  servo->set_point = set_point;
+}
+
+void Simulation::release_set_point(std::size_t index) {
+  ServoState* servo = servo_of(implementation_->model, index, implementation_->state);
+  if (servo) servo->set_point = std::numeric_limits<double>::quiet_NaN();
+}
+
+bool Simulation::has_servo(std::size_t index) const {
+  return servo_of(implementation_->model, index, implementation_->state) != nullptr;
+}
+
 bool Simulation::is_commandable(std::size_t index) const {
   const Coordinate& coordinate = implementation_->model.coordinates.at(index);
   return coordinate.motion < 0 && coordinate.mimicked < 0;

@@ -58,6 +58,10 @@ void check_sizes(const State& initial, const State& state, Flaw& flaw) {
   flaw.require_range("the number of past forces of joints", state.transmitted.count, 0, StepMeans::kLength);
   flaw.require_size("the number of samples", state.samples.size(), initial.samples.size());
   flaw.require_size("the number of marks of rest", state.rests.size(), initial.rests.size());
+  flaw.require_size("the number of actuators", state.actuators.size(), initial.actuators.size());
+  for (std::size_t i = 0; i < std::min(state.actuators.size(), initial.actuators.size()); ++i)
+    flaw.require_size("the number of a servo's outputs", state.actuators[i].servo.outputs.size(),
+                      initial.actuators[i].servo.outputs.size());
   flaw.require_size("the number of strain memories", state.strain_memory.size(), initial.strain_memory.size());
   flaw.require_size("the number of rotations of stiffness points", state.stiffness_rotations.size(),
                     initial.stiffness_rotations.size());
@@ -102,7 +106,11 @@ std::string state_flaw(const Model& built, const State& initial, int finest_halv
   };
   for (const NodeState& node : state.nodes) require_unit("the norm of a node's orientation", node.orientation);
   for (const Released& released : state.released) require_unit("the norm of a joint's rotation", released.rotation);
-  for (const double rest : state.rests) flaw.require(rest == 0 || rest == 1, "a mark of rest", rest, "0 or 1");
+  const auto require_mark = [&](double rest) {
+    flaw.require(rest == 0 || rest == 1, "a mark of rest", rest, "0 or 1");
+  };
+  for (const double rest : state.rests) require_mark(rest);
+  for (const ActuatorState& actuator : state.actuators) require_mark(actuator.rest);
   return flaw.text();
 }
 

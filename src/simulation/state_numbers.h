@@ -38,6 +38,17 @@ void for_each_number(AnyState& state, const Visit& visit) {
   for (auto& command : state.commands) visit(kCommand, command);
   for (auto& effort : state.efforts) visit("an effort", effort);
   for (auto& rest : state.rests) visit("a mark of rest", rest);
+  for (auto& actuator : state.actuators) {
+    visit("a rotor's angle", actuator.angle);
+    visit("a rotor's rate", actuator.rate);
+    visit("a rotor's acceleration", actuator.acceleration);
+    visit("a mark of rest", actuator.rest);
+    auto& servo = actuator.servo;
+    visit(kCommand, servo.set_point);
+    for (auto* number : {&servo.integral, &servo.average, &servo.delayed_rate, &servo.samples, &servo.measured})
+      visit("the memory of a servo", *number);
+    for (auto& output : servo.outputs) visit("the memory of a servo", output);
+  }
   for (auto& made : state.history.increments)
     for (auto& increment : made) visit("an increment", increment);
   for (auto& step : state.history.steps) visit("the length of a past step", step);

@@ -52,10 +52,11 @@ void BorderedElimination::reserve() {
     int own = 12;  // a slave and a master, or an inboard node
     for (const int variable : part.complete) own += dof_.size[variable];
     for (const int e : part.elements) own += 6 * order_.parts()[e].node_count;
+    own += 6 * static_cast<int>(part.closures.size()) + static_cast<int>(part.mimics.size());
     const int size = own + riders, lanes = lanes_for(size);
     most = std::max(most, size);
     scalars += 4 * static_cast<std::size_t>(size);
-    fours += static_cast<std::size_t>(lanes) * (3 * own + 16 + riders);
+    fours += static_cast<std::size_t>(lanes) * (3 * own + 16 + 2 * riders);
   }
   scalars_.reserve(scalars);
   memory_.resize(fours);

@@ -155,31 +155,63 @@ void TreeOrder::update() {
   old_ = false;
 }
 
-/// Beside the inboard node a slider brings as many nodes into borders as a step may touch, a closure a node and its
-/// multipliers with the coordinates that wait for them, a mimic a coordinate, a beam between two joints a node; each on
-/// the way from where it comes in to where it is eliminated.
-void TreeOrder::count_riders() {
-  const int end = static_cast<int>(parts_.size()) - 1;
-  most_riders_.assign(parts_.size(), 0);
-  const auto ride = [&](int from, int to, std::size_t scalars) {
-    for (int p = from; p <= to; ++p) most_riders_[p] += static_cast<int>(scalars);
-  };
+/// The parts that couple a variable themselves, wherever the sliders are, per variable.
+std::vector<std::vector<int>> TreeOrder::parts_of_variables() const {
+  std::vector<std::vector<int>> parts(last_.size());
+  for (std::size_t p = 0; p < parts_.size(); ++p)
+    for_each_of_its_own(parts_[p], [&](int variable) {
+      if (parts[variable].empty() || parts[variable].back() != static_cast<int>(p))
+        parts[variable].push_back(static_cast<int>(p));
+    });
+  return parts;
+}
+
+/// The part to which each may pass something on next, -1: none. As if every slider coupled its whole line: for any
+/// windows a part passes on to some of those that follow it here. (Liu, The role of elimination trees in sparse
+/// factorization, 1990)
+std::vector<int> TreeOrder::elimination_tree(std::vector<std::vector<int>> parts) const {
   for (std::size_t j = 0; j < model_.joints.size(); ++j) {
     const JointMap& joint = model_.joints[j];
     if (joint.kind != JointMapKind::Slide) continue;
+    for (const int node : model_.slide_lines[joint.line].nodes) parts[node].push_back(completion_[joint.slave]);
+  }
+  std::vector<std::vector<int>> ending(parts_.size());  // variables that stay in borders up to a part
+  for (std::size_t v = 0; v < last_.size(); ++v) ending[last_[v]].push_back(static_cast<int>(v));
+  std::vector<int> next(parts_.size(), -1), ancestor(parts_.size(), -1);
+  for (int p = 0; p < static_cast<int>(parts_.size()); ++p)
+    for (const int variable : ending[p])
+      for (const int part : parts[variable])
+        for (int at = part; at >= 0 && at < p;) {
+          const int above = ancestor[at];
+          ancestor[at] = p;
+          if (above < 0) next[at] = p;
+          at = above;
+        }
+  return next;
+}
+
+/// A variable rides along from behind the part that couples it up to the one that eliminates it, a slider's window up
+/// to the last part of its line. Coordinates of a loop may have to wait for pivots as long as its multipliers.
+void TreeOrder::count_riders() {
+  const std::vector<std::vector<int>> parts = parts_of_variables();
+  const std::vector<int> next = elimination_tree(parts);
+  most_riders_.assign(parts_.size(), 0);
+  std::vector<int> last_rider(parts_.size(), -1);
+  const int first_multiplier = dof_.node_count + dof_.joint_count;
+  for (int v = 0; v < static_cast<int>(parts.size()); ++v)
+    for (const int part : parts[v])
+      for (int p = next[part]; p >= 0 && p < last_[v] && last_rider[p] != v; p = next[p]) {
+        last_rider[p] = v;
+        most_riders_[p] += v < first_multiplier ? dof_.size[v] : 2 * dof_.size[v];
+      }
+  for (const JointMap& joint : model_.joints) {
+    if (joint.kind != JointMapKind::Slide) continue;
     const SlideLine& line = model_.slide_lines[joint.line];
-    ride(completion_[joint.slave], last_part_of_line(line), 6 * line.most_active_nodes());
+    const int last = last_part_of_line(line), scalars = 6 * static_cast<int>(line.most_active_nodes());
+    for (int p = completion_[joint.slave]; p >= 0 && p < last; p = next[p]) most_riders_[p] += scalars;
   }
-  for (std::size_t k = 0; k < model_.closures.size(); ++k) {
-    const int variable = dof_.variable_of_closure(static_cast<int>(k));
-    ride(completion_[variable], last_[variable], 6 + 2 * dof_.size[variable]);
-  }
-  for (const auto& [slave, master, coordinate] : dof_.mimics)
-    ride(0, std::max(completion_[slave], completion_[master]), 1);
-  for (const TreePart& part : parts_)
-    for (int i = 1; i < part.node_count; ++i)
-      if (dof_.slave_joint[part.nodes[i]] >= 0) ride(completion_[part.nodes[i]], end, 6);
-  std::size_t variables = parts_.size();
+  std::size_t variables = 0;
+  for (const std::vector<int>& own : parts) variables += own.size();
   for (const int riders : most_riders_) variables += riders;  // a node has six, a coordinate one
   border_.reserve(variables);
 }
@@ -191,10 +223,9 @@ void TreeOrder::find_borders() {
   for (std::size_t p = 0; p < parts_.size(); ++p) find_border(static_cast<int>(p));
 }
 
+/// What a part couples, but for sliders' windows and what others pass on to it.
 template <class Visit>
-void TreeOrder::for_each_coupled(const TreePart& part, const Visit& visit) const {
-  for (int child = part.first_child; child >= 0; child = parts_[child].next_sibling)
-    std::for_each_n(border(parts_[child]), parts_[child].border_count, visit);
+void TreeOrder::for_each_of_its_own(const TreePart& part, const Visit& visit) const {
   for (const int e : part.elements) std::for_each_n(parts_[e].nodes.begin(), parts_[e].node_count, visit);
   for (const int k : part.closures) {
     const LoopClosure& closure = model_.closures[k];
@@ -206,14 +237,19 @@ void TreeOrder::for_each_coupled(const TreePart& part, const Visit& visit) const
     const JointMap& joint = model_.joints[part.joint];
     const int variable = dof_.variable_of_joint(part.joint);
     if (dof_.size[variable] > 0) visit(variable);
-    if (joint.kind == JointMapKind::Slide) {
-      const std::vector<int>& nodes = model_.slide_lines[joint.line].nodes;
-      std::for_each(nodes.begin() + windows_[part.joint].first, nodes.begin() + windows_[part.joint].end, visit);
-    } else if (joint.master >= 0) {
-      visit(joint.master);
-    }
+    if (joint.kind != JointMapKind::Slide && joint.master >= 0) visit(joint.master);
   }
   for (const int i : part.mimics) visit(dof_.mimics[i].master_variable);
+}
+
+template <class Visit>
+void TreeOrder::for_each_coupled(const TreePart& part, const Visit& visit) const {
+  for (int child = part.first_child; child >= 0; child = parts_[child].next_sibling)
+    std::for_each_n(border(parts_[child]), parts_[child].border_count, visit);
+  for_each_of_its_own(part, visit);
+  if (part.joint < 0 || model_.joints[part.joint].kind != JointMapKind::Slide) return;
+  const std::vector<int>& nodes = model_.slide_lines[model_.joints[part.joint].line].nodes;
+  std::for_each(nodes.begin() + windows_[part.joint].first, nodes.begin() + windows_[part.joint].end, visit);
 }
 
 void TreeOrder::find_border(int index) {

@@ -40,7 +40,7 @@ class TreeOrder {
   const std::vector<TreePart>& parts() const { return parts_; }
   /// Part in which a variable's row and column are complete, per variable.
   int completion(int variable) const { return completion_[variable]; }
-  /// Most scalars that can ride along over a part, whatever the windows.
+  /// Most scalars in a part's front that only earlier parts have brought there, or a slider, whatever the windows.
   int most_riders(int part) const { return most_riders_[part]; }
   const int* border(const TreePart& part) const { return border_.data() + part.first_border; }
   /// Active nodes of the line on which a joint's slave slides.
@@ -54,6 +54,8 @@ class TreeOrder {
   void place_variables();
   void place_mimics();
   void place_closures();
+  std::vector<std::vector<int>> parts_of_variables() const;
+  std::vector<int> elimination_tree(std::vector<std::vector<int>> parts) const;
   void count_riders();
   std::vector<int> path_to_root(int node) const;
   int last_part_of_line(const SlideLine& line) const;
@@ -61,6 +63,8 @@ class TreeOrder {
   void find_border(int index);
   template <class Visit>
   void for_each_coupled(const TreePart& part, const Visit& visit) const;
+  template <class Visit>
+  void for_each_of_its_own(const TreePart& part, const Visit& visit) const;
 
   const Model& model_;
   const DegreesOfFreedom& dof_;

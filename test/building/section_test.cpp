@@ -148,5 +148,45 @@ TEST(Section, ReferringToTheCentroidKeepsTheStrainEnergy) {
   EXPECT_NEAR(at_reference.dot(s.stiffness * at_reference), at_center.dot(moved.stiffness * at_center), 1e-9);
 }
 
+// ---------------------------------------------------------------- along the line
+
+TEST(SectionLine, UniformEverywhere) {
+  const SectionLine line(scene::Section(scene::DirectSection{1, 2, 3, 4, 5, 6, 7, 8, 9, 10}));
+  EXPECT_TRUE(line.is_uniform());
+  EXPECT_TRUE(line.stations().empty());
+  for (const double s : {-1.0, 0.0, 3.0}) EXPECT_EQ(line.at(s).stiffness(3, 3), 4);
+}
+
+TEST(SectionLine, ShapesChangeByTheirLengths) {
+  const auto rectangle = [](double width, double height) {
+    return scene::UniformSection(scene::GeometricSection{scene::Rectangle{width, height}, kSteel});
+  };
+  const SectionLine line(
+      scene::SectionStations{{0.5, 1, 2}, {rectangle(0.1, 0.04), rectangle(0.1, 0.02), rectangle(0.2, 0.02)}});
+  const auto expect = [&](double s, double width, double height) {
+    const SectionProperties at = line.at(s), exact = of(scene::Rectangle{width, height});
+    EXPECT_LE(largest(at.stiffness - exact.stiffness), 1e-14 * largest(exact.stiffness)) << s;
+    EXPECT_LE(largest(at.inertia - exact.inertia), 1e-14 * largest(exact.inertia)) << s;
+    EXPECT_NEAR(at.mass, exact.mass, 1e-14 * exact.mass) << s;
+  };
+  expect(0, 0.1, 0.04);  // before the first
+  expect(0.5, 0.1, 0.04);
+  expect(0.75, 0.1, 0.03);
+  expect(1, 0.1, 0.02);
+  expect(1.25, 0.125, 0.02);
+  expect(3, 0.2, 0.02);  // beyond the last
+  EXPECT_EQ(line.largest_radius(), of(scene::Rectangle{0.2, 0.02}).radius);
+}
+
+TEST(SectionLine, MatricesChangeByTheirNumbers) {
+  RandomSource random(3);
+  const scene::MatrixSection a = matrix_section(random, 2, Vector3(0, 0.1, 0), random.positive_definite<3>()),
+                             b = matrix_section(random, 4, Vector3(0, 0.1, 0), random.positive_definite<3>());
+  const SectionProperties quarter = SectionLine(scene::SectionStations{{0, 1}, {a, b}}).at(0.25);
+  EXPECT_LE(largest(quarter.stiffness - (0.75 * a.stiffness + 0.25 * b.stiffness)), 1e-14 * largest(b.stiffness));
+  EXPECT_NEAR(quarter.mass, 2.5, 1e-14);
+  EXPECT_LE((quarter.center_of_mass - Vector3(0, 0.1, 0)).norm(), 1e-15);
+}
+
 }  // namespace
 }  // namespace flexarm

@@ -49,6 +49,28 @@ TEST(Check, DescribesTheModel) {
     expect_contains(outcome.output, word);
 }
 
+// A flexible link in place of a rigid one has no inertia where the drive acts; a hub or a rotor gives it one.
+TEST(Check, WarnsOfDrivenEndsWithoutInertia) {
+  const auto check = [](const std::string& hub, const std::string& drive) {
+    return shell("flexarm check " + scene_file(R"(<robot name="r"> <link name="world"/>
+      <joint name="elbow" type="continuous"> <parent link="world"/> <child link="arm"/> <axis xyz="0 1 0"/> </joint>
+      <link name="arm"> <beam> <centerline> <line to="1 0 0"/> </centerline> )" +
+                                               hub + R"(
+        <circle radius="0.01"/> <material young="70e9" poisson="0.33" density="2700"/> </beam> </link> )" +
+                                               drive +
+                                               R"( <simulation> <gravity xyz="0 0 0"/>
+      <effort joint="elbow" history="1"/> </simulation> </robot>)"));
+  };
+  const Outcome bare = check("", "");
+  EXPECT_EQ(bare.status, 0) << bare.errors;
+  expect_contains(bare.errors, "warning: joint 'elbow' is driven where beam 'arm' ends with ");
+  for (const Outcome& good : {check(R"(<hub at="start" mass="0.5" inertia="2e-3 4e-3 2e-3"/>)", ""),
+                              check("", R"(<drive joint="elbow" gear="100" rotor_inertia="3e-5"/>)")}) {
+    EXPECT_EQ(good.status, 0) << good.errors;
+    EXPECT_EQ(good.errors.find("is driven where"), std::string::npos) << good.errors;
+  }
+}
+
 TEST(Check, NamesLoopsOfBeamsAtDeadPoints) {
   const auto beam = [](const std::string& link, double length) {
     return "<link name=\"" + link + "\"><beam elements=\"2\"><centerline><line to=\"" + std::to_string(length) +

@@ -47,7 +47,7 @@ struct AdditiveStep {
     for_each_mass_point(
         step.element, nodes, with_tangent,
         [&](int k, const InterpolatedRotation<double>& point, const GeneralisedShapeFunctions<Nodes>& generalised) {
-          const RotaryRate rate = newmark_rotary_rate(step.element.inertia, step.begin_mass_rotations[k],
+          const RotaryRate rate = newmark_rotary_rate(step.element.mass_points[k].inertia, step.begin_mass_rotations[k],
                                                       point.rotation, step.mass_points[k], kRule);
           if (form == WeakForm::Additive)
             add_additive_rotary_rate(step.element, nodes, k, rate, with_tangent, system);

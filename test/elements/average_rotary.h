@@ -27,22 +27,22 @@ struct AverageRotary {
           const Quaternion relative = so3::quaternion_from_matrix(point.rotation * begin[k].transpose());
           const Vector3 increment = is_scaled ? cayley::increment(relative) : so3::log(relative);
           const Matrix3 inverse = is_scaled ? cayley::inverse_tangent(increment) : so3::inverse_tangent(increment);
-          const RotaryRate rate = average_rotary_rate(element.inertia, begin[k], point.rotation, increment, inverse,
-                                                      states[k], step, with_derivative);
+          const RotaryRate rate = average_rotary_rate(element.mass_points[k].inertia, begin[k], point.rotation,
+                                                      increment, inverse, states[k], step, with_derivative);
           add_rotary_rate(element, k, rate, generalised, with_tangent, system);
           end_rotations[k] = point.rotation;
           end_states[k] = rate.end;
           if (!energy) return;
           const double weight = element.mass_points[k].weight;
-          energy->change += weight * (kinetic(rate.end) - kinetic(states[k]));
+          energy->change += weight * (kinetic(k, rate.end) - kinetic(k, states[k]));
           for (int i = 0; i < Nodes; ++i)
             energy->gradient.template segment<3>(6 * i + 3) +=
                 weight * (generalised.values[i].transpose() * rate.energy_gradient);
         });
   }
   /// Rotary energy [J/m].
-  double kinetic(const MassPointState& state) const {
-    return 0.5 * state.angular_velocity.dot(element.inertia * state.angular_velocity);
+  double kinetic(int k, const MassPointState& state) const {
+    return 0.5 * state.angular_velocity.dot(element.mass_points[k].inertia * state.angular_velocity);
   }
 };
 

@@ -188,7 +188,8 @@ TYPED_TEST(EndpointBeam, StrainRateFollowsTheRule) {
       const Vector6 change = end[k].strain - step.begin_points[k].strain;
       EXPECT_LE(largest(change - (1 + rule.alpha) * increment), kRoundOff);
       const Vector6 rate = (1 + rule.alpha) * new_rates[k] - rule.alpha * rates[k];
-      dissipated += step.element.stiffness_points[k].weight * 0.2 * increment.dot(step.element.stiffness * rate);
+      dissipated += step.element.stiffness_points[k].weight * 0.2 *
+                    increment.dot(step.element.stiffness_points[k].stiffness * rate);
     }
     EXPECT_NEAR(system.dissipated, dissipated, kRoundOff * largest(system.residual));
   }

@@ -69,7 +69,7 @@ struct MomentumStep {
     double sum = 0;
     for (int k = 0; k < Nodes; ++k) {
       const Vector3& W = states[k].angular_velocity;
-      sum += 0.5 * step.element.mass_points[k].weight * W.dot(step.element.inertia * W);
+      sum += 0.5 * step.element.mass_points[k].weight * W.dot(step.element.mass_points[k].inertia * W);
     }
     return sum;
   }
@@ -78,8 +78,8 @@ struct MomentumStep {
                       const std::array<MassPointState, Nodes>& states) const {
     Vector6 sum = momenta<Nodes>(step.element, position, velocity);
     for (int k = 0; k < Nodes; ++k)
-      sum.tail<3>() +=
-          step.element.mass_points[k].weight * (rotations[k] * (step.element.inertia * states[k].angular_velocity));
+      sum.tail<3>() += step.element.mass_points[k].weight *
+                       (rotations[k] * (step.element.mass_points[k].inertia * states[k].angular_velocity));
     return sum;
   }
 };

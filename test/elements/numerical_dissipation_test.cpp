@@ -95,7 +95,7 @@ double stored(const RandomStep<Nodes>& step, const TimeRule& rule, const Memory<
   double energy = 0;
   for (int k = 0; k < Nodes - 1; ++k) {
     const Vector6 &y = memory[k].average, &w = memory[k].rate, &q = memory[k].delayed_rate;
-    const Matrix6 stiffness = step.element.stiffness_points[k].weight * step.element.stiffness;
+    const Matrix6 stiffness = step.element.stiffness_points[k].weight * step.element.stiffness_points[k].stiffness;
     if (d.forgetting > 0) energy += 0.5 * d.stiffness / d.forgetting * y.dot(stiffness * y);
     energy += 0.5 * (d.inertance + damper) * w.dot(stiffness * w) + 0.5 * damper * q.dot(stiffness * q);
   }
@@ -190,9 +190,9 @@ TYPED_TEST(DissipativeBeam, DampingFollowsItsDefinition) {
       const StrainMemory &begin = damped.memory[k], &end = damped.end_memory[k];
       const Vector6 rate = 0.5 * (begin.rate + end.rate), delayed = 0.5 * (begin.delayed_rate + end.delayed_rate);
       EXPECT_LE(largest(delayed + relaxation / kStep * (end.delayed_rate - begin.delayed_rate) - rate), kRoundOff);
-      const Vector6 stress =
-          step.element.stiffness * ((viscosity - delayed_dashpot) * rate + delayed_dashpot * delayed +
-                                    inertance_of(viscosity, relaxation) / kStep * (end.rate - begin.rate));
+      const Vector6 stress = step.element.stiffness_points[k].stiffness *
+                             ((viscosity - delayed_dashpot) * rate + delayed_dashpot * delayed +
+                              inertance_of(viscosity, relaxation) / kStep * (end.rate - begin.rate));
       work += step.element.stiffness_points[k].weight * kStep * rate.dot(stress);
     }
     EXPECT_NEAR(step.work(whole - elastic), work, kRoundOff * (largest(whole) + std::abs(work)));

@@ -56,8 +56,11 @@ class Lanes {
       step.set_begin_points();
       if (options.is_damped) step.element.stiffness_damping = step.element.mass_damping = 0.1 * (lane + 1);
       if (!options.is_coupled) {
-        step.element.stiffness.template topRightCorner<3, 3>().setZero();
-        step.element.stiffness.template bottomLeftCorner<3, 3>().setZero();
+        for (auto& point : step.element.stiffness_points) {
+          point.stiffness = step.element.stiffness_points[0].stiffness;  // uniform, too
+          point.stiffness.template topRightCorner<3, 3>().setZero();
+          point.stiffness.template bottomLeftCorner<3, 3>().setZero();
+        }
       }
       functions_[lane] = functions_at<Nodes>(step.element, step.begin_orientation);
       for (StrainMemory& memory : memory_[lane])

@@ -49,7 +49,8 @@ inline Vector3 nearest_vector(const Quaternion& relative, const Vector3& other) 
   return (theta - other).norm() <= (around - other).norm() ? theta : around;
 }
 
-/// An element with a curved, twisted undeformed line and full section matrices, over a random step. Local
+/// An element with a curved, twisted undeformed line and full section matrices that change along it, over a random
+/// step. Local
 /// interpolation, unless set_interpolation() chooses another.
 template <int Nodes>
 struct RandomStep {
@@ -59,9 +60,11 @@ struct RandomStep {
   RandomStep(RandomSource& random, double size) {
     BeamMesh mesh;
     mesh.order = Nodes - 1;
-    mesh.section.stiffness = random.positive_definite<6>();
-    mesh.section.inertia = random.positive_definite<3>();
-    mesh.section.mass = 1.3;
+    SectionProperties section;
+    section.stiffness = random.positive_definite<6>();
+    section.inertia = random.positive_definite<3>();
+    section.mass = 1.3;
+    mesh.section = SectionLine(section);
     MeshElement in_mesh;
     for (int i = 0; i < Nodes; ++i) {
       in_mesh.nodes.push_back(i);
@@ -73,6 +76,9 @@ struct RandomStep {
       undeformed_orientation[i] = pose.orientation;
     }
     element = beam_element<Nodes>(mesh, in_mesh, scene::BeamDescription());
+    // A section that changes along the line, by another amount at every point.
+    for (int k = 1; k < Element::kStiffnessPoints; ++k) element.stiffness_points[k].stiffness *= 1 + 0.2 * k;
+    for (int k = 1; k < Element::kMassPoints; ++k) element.mass_points[k].inertia *= 1 + 0.1 * k;
 
     const Quaternion moved = random.rotation(3.0);
     for (int i = 0; i < Nodes; ++i) {
@@ -190,7 +196,8 @@ struct RandomStep {
   double strain_energy(const std::array<PointKinematics, Element::kStiffnessPoints>& points) const {
     double energy = 0;
     for (int k = 0; k < Element::kStiffnessPoints; ++k)
-      energy += 0.5 * element.stiffness_points[k].weight * points[k].strain.dot(element.stiffness * points[k].strain);
+      energy += 0.5 * element.stiffness_points[k].weight *
+                points[k].strain.dot(element.stiffness_points[k].stiffness * points[k].strain);
     return energy;
   }
 

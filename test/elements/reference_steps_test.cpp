@@ -59,9 +59,11 @@ class Comparison {
   Comparison() : data_(Nodes), step_(data_.number("step")) {
     BeamMesh mesh;
     mesh.order = Nodes - 1;
-    mesh.section.stiffness = data_.matrix<6>("stiffness");
-    mesh.section.inertia = data_.matrix<3>("inertia");
-    mesh.section.mass = data_.number("section_mass");
+    SectionProperties section;
+    section.stiffness = data_.matrix<6>("stiffness");
+    section.inertia = data_.matrix<3>("inertia");
+    section.mass = data_.number("section_mass");
+    mesh.section = SectionLine(section);
     MeshElement in_mesh;
     for (int i = 0; i < Nodes; ++i) {
       in_mesh.nodes.push_back(i);
@@ -126,8 +128,8 @@ class Comparison {
     for_each_mass_point(
         element_, nodes_, false,
         [&](int k, const InterpolatedRotation<double>& point, const GeneralisedShapeFunctions<Nodes>& generalised) {
-          const RotaryRate rate =
-              newmark_rotary_rate(element_.inertia, begin_mass_[k].rotation, point.rotation, mass_points_[k], rule);
+          const RotaryRate rate = newmark_rotary_rate(element_.mass_points[0].inertia, begin_mass_[k].rotation,
+                                                      point.rotation, mass_points_[k], rule);
           add_rotary_rate(element_, k, rate, generalised, false, system);
         });
     return system;
@@ -173,7 +175,7 @@ class Comparison {
       double length = 0;
       for (const auto& point : element_.mass_points) length += point.weight * point.shape[i];
       NodalInertia inertia;
-      inertia.beam_rotary = length * element_.inertia;
+      inertia.beam_rotary = length * element_.mass_points[0].inertia;
       const NodePose begin{nodes_.begin[i], begin_orientation_[i], begin_orientation_[i].toRotationMatrix()};
       const NodePose end{nodes_.end[i], nodes_.orientation[i], nodes_.orientation[i].toRotationMatrix()};
       NodeState state;

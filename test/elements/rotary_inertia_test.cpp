@@ -58,7 +58,7 @@ TYPED_TEST(RotaryInertia, TangentOfAverageRule) {
   for (const bool tangent_scaled : {false, true})
     for_each_interpolation<N>(1, [&](const RandomStep<N>& step) {
       const auto rate = [&](int k, const Matrix3& begin, const Matrix3& end) {
-        return average_rate(step.element.inertia, begin, end, step.mass_points[k], tangent_scaled);
+        return average_rate(step.element.mass_points[k].inertia, begin, end, step.mass_points[k], tangent_scaled);
       };
       expect_consistent_tangent<N>(
           step, [&](const ElementNodes<N>& nodes, bool with) { return evaluate<N>(step, nodes, rate, with); });
@@ -69,7 +69,7 @@ TYPED_TEST(RotaryInertia, TangentOfNewmark) {
   constexpr int N = TypeParam::value;
   for_each_interpolation<N>(2, [&](const RandomStep<N>& step) {
     const auto rate = [&](int k, const Matrix3& begin, const Matrix3& end) {
-      return newmark_rotary_rate(step.element.inertia, begin, end, step.mass_points[k], kRule);
+      return newmark_rotary_rate(step.element.mass_points[k].inertia, begin, end, step.mass_points[k], kRule);
     };
     expect_consistent_tangent<N>(
         step, [&](const ElementNodes<N>& nodes, bool with) { return evaluate<N>(step, nodes, rate, with); });
@@ -81,7 +81,8 @@ TYPED_TEST(RotaryInertia, TangentOfMomentumRate) {
   for_each_interpolation<N>(3, [&](const RandomStep<N>& step) {
     const auto rate = [&](int k, const Matrix3& begin, const Matrix3& end) {
       const Vector3 begin_rate = (k + 1) * Vector3(0.3, -0.2, 0.5);
-      return momentum_rotary_rate(step.element.inertia, begin, end, step.mass_points[k], begin_rate, kRule);
+      return momentum_rotary_rate(step.element.mass_points[k].inertia, begin, end, step.mass_points[k], begin_rate,
+                                  kRule);
     };
     expect_consistent_tangent<N>(
         step, [&](const ElementNodes<N>& nodes, bool with) { return evaluate<N>(step, nodes, rate, with); });
@@ -94,7 +95,7 @@ TYPED_TEST(RotaryInertia, AngularMomentumBalance) {
   const RandomStep<N> step(random, 0.5);
   std::array<MassPointState, N> after;
   const auto rate = [&](int k, const Matrix3& begin, const Matrix3& end) {
-    const RotaryRate r = average_rate(step.element.inertia, begin, end, step.mass_points[k], false);
+    const RotaryRate r = average_rate(step.element.mass_points[k].inertia, begin, end, step.mass_points[k], false);
     after[k] = r.end;
     return r;
   };
@@ -104,7 +105,7 @@ TYPED_TEST(RotaryInertia, AngularMomentumBalance) {
   for (int i = 0; i < N; ++i) moment += system.residual.template segment<3>(6 * i + 3);
   for (int k = 0; k < N; ++k) {
     const Matrix3& begin = step.begin_mass_rotations[k];
-    const Matrix3& J = step.element.inertia;
+    const Matrix3& J = step.element.mass_points[k].inertia;
     expected += step.element.mass_points[k].weight / kStep *
                 (end[k] * (J * after[k].angular_velocity) - begin * (J * step.mass_points[k].angular_velocity));
     // (W_0 + W_1) / 2 is the material increment over the step.

@@ -14,7 +14,7 @@ extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, st
 namespace {
 
 constexpr std::size_t kLongestValue = 256;
-constexpr flexarm::fuzz::Limits kLimits{300, 5};
+constexpr flexarm::fuzz::Limits kLimits{300, 3};
 
 /// The value of an attribute that follows a place in the text, changed; the text stays well-formed if it was.
 void change_value(std::string& text, std::size_t place) {
@@ -47,6 +47,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const flexarm::fuzz::Trial trial =
       flexarm::fuzz::try_scene({reinterpret_cast<const char*>(data), size}, "fuzz.urdf", kLimits);
   if (trial.wrong.empty()) return 0;
-  std::fprintf(stderr, "%s\n", trial.wrong.c_str());
+  std::fprintf(stderr, "fuzz_scene: %s\n", trial.wrong.c_str());
   std::abort();
 }

@@ -21,6 +21,10 @@ def single(name, inner="", status="run"):
 class CountTests(unittest.TestCase):
     def count(self, programs, gtest=None):
         """(exit status, last line) for what ctest and the gtest `math` reported."""
+        status, lines = self.lines(programs, gtest)
+        return status, lines[-1]
+
+    def lines(self, programs, gtest=None):
         with tempfile.TemporaryDirectory() as folder:
             report = os.path.join(folder, "ctest.xml")
             with open(report, "w", encoding="utf-8") as file:
@@ -29,7 +33,7 @@ class CountTests(unittest.TestCase):
                 with open(os.path.join(folder, "gtest-math.xml"), "w", encoding="utf-8") as file:
                     file.write(gtest)
             run = subprocess.run([sys.executable, PROGRAM, report, folder], stdout=subprocess.PIPE, check=False)
-            return run.returncode, run.stdout.decode().splitlines()[-1]
+            return run.returncode, run.stdout.decode().splitlines()
 
     def test_programs(self):
         skipped, missing = '<skipped message="SKIP_RETURN_CODE=77"/>', '<skipped message="Unable to find executable"/>'
@@ -49,6 +53,14 @@ class CountTests(unittest.TestCase):
         self.assertEqual(self.count([ran], "<testsuites>"), (1, "0 passed, 1 failed, 0 skipped"))
         tests.append(single("bad", "<failure/>"))
         self.assertEqual(self.count([broke], gtest % "".join(tests)), (1, "1 passed, 1 failed, 2 skipped"))
+
+    def test_last_lines_of_what_failed(self):
+        said = "<system-out>%s</system-out>" % "\n".join("line %d &lt;" % n for n in range(100))
+        status, lines = self.lines([program("good", "run", said), program("bad", "fail", "<failure/>" + said)])
+        self.assertEqual(status, 1)
+        self.assertEqual(lines[0], "failed: bad")
+        self.assertEqual(lines[-2], "    line 99 <")
+        self.assertLess(len(lines), 30)
 
     def test_nothing_passed(self):
         self.assertEqual(self.count([]), (1, "0 passed, 0 failed, 0 skipped"))

@@ -36,7 +36,7 @@ void add_increment(const BeamElement<Nodes>& element, const State& begin, const 
                                                 interpolate<Nodes>(point.derivative, r0), point.reference_strain),
                           p1 = point_kinematics(end.stiffness_rotations[index],
                                                 interpolate<Nodes>(point.derivative, r1), point.reference_strain);
-    const Vector6 stress = element.stiffness * (0.5 * (p0.strain + p1.strain));
+    const Vector6 stress = point.stiffness * (0.5 * (p0.strain + p1.strain));
     const Vector3 n = 0.5 * (p0.rotation + p1.rotation) * stress.head<3>();
     const Vector3 w = interpolate<Nodes>(point.shape, increment);
     const double half = 0.5 * w.norm(), scaled = half > 0 ? std::tan(half) / half : 1;

@@ -253,7 +253,7 @@ TEST(GoodScene, Sensors) {
   EXPECT_EQ(cell.noise, std::vector<double>{0.05});
   EXPECT_EQ(cell.bias, (std::vector<double>{0.1, 0, 0, 0, 0, 0.2}));
   EXPECT_EQ(cell.seed, 7);
-  EXPECT_EQ(cell.location.line, 70);
+  EXPECT_EQ(cell.location.line, 74);
   EXPECT_EQ(scene.sensors[1].kind, SensorKind::Strain);
   EXPECT_EQ(scene.sensors[1].rate, 0);
   EXPECT_TRUE(scene.sensors[1].noise.empty());

@@ -51,6 +51,17 @@ TEST(LinkErrors, WhatOnlyOtherProgramsUseIsAWarning) {
   expect("iyz=\"0\"", "iyz=\"0\n \"", 14, "<inertial> of link 'upper': programs that use urdfdom cannot read it");
 }
 
+/// urdfdom hands such texts to printf as formats, where %n writes and %s reads anywhere.
+TEST(LinkErrors, PercentSignsAreNoFormats) {
+  for (const std::string sign : {"%", "&#37;", "&#x025;"}) {
+    SCOPED_TRACE(sign);
+    const std::string text = "1 " + sign + "s" + sign + "n 1";
+    expect_warning(read(good_scene_with(R"(<box size="1 1 1"/>)", "<box size=\"" + text + "\"/>")), 19, "%s%n");
+    expect_warning(read(good_scene_with(R"(<robot name="arm">)", R"(<robot name="arm" version=")" + text + "\">")), 1,
+                   "programs that use urdfdom refuse this file");
+  }
+}
+
 TEST(LinkErrors, NegativeMoments) {
   const std::string inertia = R"(<inertia ixx="0.01" ixy="0" ixz="0" iyy="0.02" iyz="0" izz="0.025"/>)";
   const auto diagonal = [](const std::string& xx, const std::string& yy, const std::string& zz) {

@@ -40,6 +40,7 @@ DenseFront front_of(const Eigen::MatrixXd& matrix) {
 /// What remains after `pivots` is the Schur complement of the rows and columns that were taken.
 void expect_schur_complement(const Eigen::MatrixXd& matrix, DenseFront& front, int pivots) {
   const int size = front.size();
+  if (pivots == size) return;
   Eigen::MatrixXd ordered(size, size);
   for (int i = 0; i < size; ++i)
     for (int k = 0; k < size; ++k) ordered(i, k) = matrix(front.rows[i], front.columns[k]);

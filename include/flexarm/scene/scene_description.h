@@ -60,7 +60,16 @@ struct MatrixSection {
   Matrix6 stiffness, inertia;
 };
 
-using Section = std::variant<GeometricSection, DirectSection, MatrixSection>;
+using UniformSection = std::variant<GeometricSection, DirectSection, MatrixSection>;
+
+/// A section that changes along the line: linear between stations in the shape's lengths, or in stiffnesses and
+/// inertias, and constant before the first and beyond the last.
+struct SectionStations {
+  std::vector<double> arc_lengths;       ///< ascending, at least two [m]
+  std::vector<UniformSection> sections;  ///< as many, all of one kind; shapes of one kind and one material
+};
+
+using Section = std::variant<GeometricSection, DirectSection, MatrixSection, SectionStations>;
 
 /// One piece of the centreline in the link frame; starts where the piece before ended (the first at the link origin).
 struct CentrelinePiece {
@@ -72,6 +81,15 @@ struct CentrelinePiece {
   SourceLocation location;
 };
 
+/// Rigid inertia on one end of a beam, such as a drive's housing or a flange.
+struct HubDescription {
+  enum class End { Start, End };
+  End end = End::Start;
+  double mass = 0;                    ///< at the centreline [kg]
+  Vector3 inertia = Vector3::Zero();  ///< about the link's axes, through the centreline's end [kg m^2]
+  SourceLocation location;
+};
+
 struct BeamDescription {
   std::optional<int> elements;  ///< number of elements; empty: "auto"
   int order = 2;                ///< 1..4, nodes per element minus one
@@ -80,6 +98,7 @@ struct BeamDescription {
   Section section;
   double stiffness_proportional_damping = 0;  ///< [s]
   double mass_proportional_damping = 0;       ///< [1/s]
+  std::vector<HubDescription> hubs;           ///< at most one at each end
   SourceLocation location;
 };
 
@@ -183,6 +202,49 @@ struct JointDescription {
   FrictionDescription friction_law;
   std::optional<Mimic> mimic;
   Pose child_origin;  ///< loop joints: joint frame in the child link frame
+  SourceLocation location;
+};
+
+// ---------------------------------------------------------------- drives
+
+/// A linear spring on a joint's coordinate, slack at `rest` [rad or m]; stiffness [N m/rad or N/m].
+struct SpringDescription {
+  std::string coordinate;
+  double stiffness = 0, rest = 0;
+  SourceLocation location;
+};
+
+/// Motor and gear of a joint's coordinate. All but the rotor's inertia is as seen at the joint: angles of the rotor
+/// over the gear's ratio, efforts times it.
+struct DriveDescription {
+  std::string coordinate;
+  std::optional<double> gear;       ///< rotor's angle per position of the coordinate [-, or rad/m]; empty: 1
+  double rotor_inertia = 0;         ///< about the motor's axis [kg m^2]
+  std::optional<double> stiffness;  ///< of the gear [N m/rad or N/m]; empty: rigid
+  double damping = 0;               ///< of the elastic gear [N m s/rad or N s/m]
+  double backlash = 0;              ///< whole play of the elastic gear [rad or m]
+  double friction = 0;              ///< of the motor [N m or N]
+  double efficiency = 1;            ///< of the gear, when the motor drives
+  double effort_limit = 0;          ///< of the motor at rest [N m or N]; 0: unlimited
+  double velocity_limit = 0;        ///< no-load speed of the motor [rad/s or m/s]; 0: unlimited
+  std::optional<Vector3> axis;      ///< of the rotor in the parent link's frame, unit; empty: without gyroscopic effect
+  SourceLocation location;
+};
+
+/// Controller of a joint's coordinate; its effort is the motor's.
+struct ServoDescription {
+  enum class Mode { Effort, Velocity, Position };
+  enum class Side { Motor, Link };
+  std::string coordinate;
+  Mode mode = Mode::Position;
+  double kp = 0, kd = 0, ki = 0;            ///< of the error of what `mode` names, its rate and its integral
+  std::optional<TimeFunction> set_point;    ///< before a command arrives; empty: where the coordinate starts, or 0
+  std::optional<TimeFunction> feedforward;  ///< added effort [N m or N]
+  double effort_limit = 0;                  ///< [N m or N]; 0: unlimited
+  double anti_windup = 0;   ///< time in which the integral follows a saturated effort [s]; 0: it does not
+  Side side = Side::Motor;  ///< where it measures
+  double sample_time = 0;   ///< [s]; 0: continuous
+  double delay = 0;         ///< from a sample to its effect [s]
   SourceLocation location;
 };
 
@@ -295,7 +357,10 @@ struct SceneDescription {
   std::vector<LinkDescription> links;
   std::vector<JointDescription> joints;
   std::vector<JointDescription> loop_joints;  ///< close loops of the tree that `joints` form
-  Vector3 gravity = Vector3(0, 0, -9.81);     ///< [m/s^2]
+  std::vector<SpringDescription> springs;
+  std::vector<DriveDescription> drives;
+  std::vector<ServoDescription> servos;
+  Vector3 gravity = Vector3(0, 0, -9.81);  ///< [m/s^2]
   IntegratorDescription integrator;
   SourceLocation integrator_location;  ///< without line: the scene has no <integrator>
   std::vector<InitialJoint> initial_joints;

@@ -91,6 +91,13 @@ class Simulation {
   void command_effort(std::size_t coordinate, double effort);
   /// Back to the scene's <effort> history (zero where there is none).
   void release_command(std::size_t coordinate);
+  /// Gives the coordinate's servo a set point [rad, m, rad/s, m/s, N or N m, as its mode says] from the next step on,
+  /// in place of the scene's.
+  /// @throws std::invalid_argument if it is not finite, or the coordinate has no servo.
+  void command_set_point(std::size_t coordinate, double set_point);
+  /// Back to the scene's set point.
+  void release_set_point(std::size_t coordinate);
+  bool has_servo(std::size_t coordinate) const;
   bool is_commandable(std::size_t coordinate) const;  ///< false for prescribed and mimic coordinates
 
   // ---- frames: every link, in the scene's order

@@ -1,0 +1,23 @@
+#pragma once
+/// Matrices of small motions of a beam's element about a configuration at rest, by {displacement, spin} of its nodes.
+/// Of sizes that are not known when they are compiled: who uses them is compiled once for all orders.
+
+#include <Eigen/Core>
+
+#include "model/model.h"
+#include "model/state.h"
+
+namespace flexarm {
+
+/// Stiffness of the material alone, without what stress adds to it.
+template <int Nodes>
+Eigen::MatrixXd material_stiffness(const BeamElement<Nodes>& element, const State& state);
+
+/// Second derivative of the energy by strains alone: the material's stiffness with variations of strains as tests.
+template <int Nodes>
+Eigen::MatrixXd material_curvature(const BeamElement<Nodes>& element, const State& state);
+
+template <int Nodes>
+Eigen::MatrixXd mass_matrix(const BeamElement<Nodes>& element, const State& state);
+
+}  // namespace flexarm

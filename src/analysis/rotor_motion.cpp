@@ -1,0 +1,97 @@
+#include "analysis/rotor_motion.h"
+
+#include <Eigen/SparseCore>
+
+#include "joints/elasticity.h"
+#include "joints/motor_step.h"
+
+namespace flexarm {
+namespace {
+
+using Sparse = Eigen::SparseMatrix<double>;
+using Triplets = std::vector<Eigen::Triplet<double>>;
+
+/// Of a spring of the tangent stiffness k between the coordinate and its rotor, and a servo on one of both.
+struct Coupling {
+  double gear, on_rotor, on_link;
+};
+
+/// Between equations `q` and `rotor`.
+void add(const Coupling& coupling, int q, int rotor, Triplets& entries) {
+  entries.emplace_back(q, q, coupling.gear);
+  entries.emplace_back(q, rotor, -coupling.gear);
+  entries.emplace_back(rotor, q, coupling.on_link - coupling.gear);
+  entries.emplace_back(rotor, rotor, coupling.gear + coupling.on_rotor);
+}
+
+/// Side of a servo on which a gain acts.
+Coupling coupling(double gear, const std::optional<Servo>& servo, double gain) {
+  if (!servo) return {gear, 0, 0};
+  return servo->on_link ? Coupling{gear, 0, gain} : Coupling{gear, gain, 0};
+}
+
+std::vector<double> values(const Sparse& pattern, const SparseTangent& own, const Triplets& added) {
+  Sparse sum(pattern.rows(), pattern.cols());
+  Triplets entries = added;
+  for (int column = 0; column < own.unknowns(); ++column)
+    for (int p = own.column_starts()[column]; p < own.column_starts()[column + 1]; ++p)
+      entries.emplace_back(own.row_indices()[p], column, own.values()[p]);
+  sum.setFromTriplets(entries.begin(), entries.end());
+  const Sparse whole = sum + pattern;  // pattern holds zeros: all entries are there
+  return {whole.valuePtr(), whole.valuePtr() + whole.nonZeros()};
+}
+
+}  // namespace
+
+std::vector<ActuatorTerms> actuator_terms(const Model& model) {
+  std::vector<ActuatorTerms> terms;
+  for (const Actuator& actuator : model.actuators) {
+    if (actuator.drive.gear) continue;
+    const Coordinate& coordinate = model.coordinates[actuator.coordinate];
+    terms.push_back({coordinate.joint, coordinate.component, actuator.servo ? actuator.servo->derivative : 0,
+                     actuator.drive.inertia});
+  }
+  return terms;
+}
+
+MotionMatrices with_rotors(const Model& model, const DegreesOfFreedom& dof, const State& state,
+                           const Actuators& resting, const SparseTangent& stiffness, const SparseTangent& damping,
+                           const SparseTangent& mass) {
+  Triplets stiff, damped, heavy, places;
+  int rotor = stiffness.unknowns();
+  for (std::size_t i = 0; i < model.actuators.size(); ++i) {
+    const Actuator& actuator = model.actuators[i];
+    const Coordinate& coordinate = model.coordinates[actuator.coordinate];
+    const int q = dof.equation[dof.scalar_of(coordinate)];
+    if (!actuator.drive.gear || q < 0) continue;
+    const double position = state.released[coordinate.joint].displacement[coordinate.component % 3];
+    CoordinateStep twist;
+    twist.begin = twist.end = state.actuators[i].angle - position;
+    const Elasticity& gear = *actuator.drive.gear;
+    const bool holds = actuator.servo && actuator.servo->mode == Servo::Mode::Position;
+    add(coupling(-elastic_effort(gear, twist).slope, actuator.servo, holds ? actuator.servo->proportional : 0), q,
+        rotor, stiff);
+    stiff.emplace_back(q, q, -resting.stiffness(i));
+    add(coupling(elastic_damping(gear, twist.end), actuator.servo, actuator.servo ? actuator.servo->derivative : 0), q,
+        rotor, damped);
+    heavy.emplace_back(rotor, rotor, actuator.drive.inertia);
+    for (const int row : {q, rotor})
+      for (const int column : {q, rotor}) places.emplace_back(row, column, 0.0);
+    ++rotor;
+  }
+  if (rotor == stiffness.unknowns()) return {};
+  for (int column = 0; column < stiffness.unknowns(); ++column)
+    for (int p = stiffness.column_starts()[column]; p < stiffness.column_starts()[column + 1]; ++p)
+      places.emplace_back(stiffness.row_indices()[p], column, 0.0);
+  Sparse pattern(rotor, rotor);
+  pattern.setFromTriplets(places.begin(), places.end());
+  MotionMatrices out;
+  out.column_starts.assign(pattern.outerIndexPtr(), pattern.outerIndexPtr() + rotor + 1);
+  out.row_indices.assign(pattern.innerIndexPtr(), pattern.innerIndexPtr() + pattern.nonZeros());
+  out.stiffness = values(pattern, stiffness, stiff);
+  out.damping = values(pattern, damping, damped);
+  out.mass = values(pattern, mass, heavy);
+  return out;
+}
+
+}  // namespace flexarm

@@ -1,0 +1,34 @@
+#pragma once
+/// Rotors in small motions about a configuration at rest.
+
+#include <vector>
+
+#include "integrators/actuators.h"
+#include "model/degrees_of_freedom.h"
+#include "model/state.h"
+#include "solver/sparse_tangent.h"
+
+namespace flexarm {
+
+/// K, D and M by columns, in one pattern.
+struct MotionMatrices {
+  std::vector<int> column_starts, row_indices;
+  std::vector<double> stiffness, damping, mass;
+};
+
+/// What motors and springs of coordinates add to the damping and the mass of their own equations, where their rotors
+/// have no angle of their own.
+struct ActuatorTerms {
+  int joint, component;
+  double damping = 0, mass = 0;
+};
+std::vector<ActuatorTerms> actuator_terms(const Model& model);
+
+/// The matrices with one row and column more for each rotor behind an elastic gear, whose angles a step solves for
+/// inside the joint: in a free motion they have inertia. `stiffness` has them follow their coordinates at rest, as
+/// `resting` says. Empty where there are none.
+MotionMatrices with_rotors(const Model& model, const DegreesOfFreedom& dof, const State& state,
+                           const Actuators& resting, const SparseTangent& stiffness, const SparseTangent& damping,
+                           const SparseTangent& mass);
+
+}  // namespace flexarm

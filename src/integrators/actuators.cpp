@@ -1,0 +1,278 @@
+#include "integrators/actuators.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "flexarm/model/model_error.h"
+#include "joints/elasticity.h"
+#include "math/cayley.h"
+#include "math/so3.h"
+
+namespace flexarm {
+namespace {
+
+/// Way of a rotor over a step below which it is taken to be at rest [rad or m].
+constexpr double kAtRest = 1e-12;
+
+}  // namespace
+
+Actuators::Actuators(StepConfiguration& configuration, const StepHistories& histories,
+                     const HhtInterpolation* interpolation)
+    : configuration_(configuration),
+      histories_(histories),
+      interpolation_(interpolation),
+      parts_(configuration.model().actuators.size()),
+      gyroscope_of_(configuration.model().joints.size(), -1) {
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    const Model& model = configuration.model();
+    const Actuator& actuator = model.actuators[i];
+    check(actuator);
+    if (actuator.gyroscope && !configuration.scheme().is_static)
+      gyroscope_of_[model.coordinates[actuator.coordinate].joint] = static_cast<int>(i);
+    if (!actuator.servo) continue;
+    parts_[i].servo.outputs.resize(outputs_of(*actuator.servo));
+    if (actuator.drive.gear && actuator.servo->on_link) configuration.keep_begin_rates();
+  }
+}
+
+void Actuators::check(const Actuator& actuator) const {
+  const Scheme& scheme = configuration_.scheme();
+  const std::string joint = " of joint '" + configuration_.model().coordinates[actuator.coordinate].name + "'";
+  const std::string backwards = "<integrator>: scheme '" + std::string(scheme.name) + "' steps backwards, in which ";
+  if (scheme.scales_velocities && actuator.drive.inertia > 0)
+    throw ModelError("<integrator>: scheme 'em_scaled' does not scale the velocity of a rotor (<drive>" + joint +
+                     "); scheme 'em' closes the energy without scaling");
+  if (scheme.is_composition && actuator.drive.sticks)
+    throw ModelError(backwards + "friction of the law 'coulomb' (<drive>" + joint +
+                     ") would drive; take another scheme or the law 'smooth'");
+  if (actuator.gyroscope && !scheme.is_incremental() && !scheme.is_static)
+    throw ModelError("<integrator>: scheme '" + std::string(scheme.name) +
+                     "' has no gyroscopic effect of rotors (axis of <drive>" + joint +
+                     "); take one of the energy-momentum family, or leave the axis out");
+  if (scheme.is_composition && actuator.servo && actuator.servo->sample_time > 0)
+    throw ModelError(backwards + "nothing can be sampled (<servo>" + joint + "); take another scheme");
+}
+
+RotorStep Actuators::rotor_step(const Actuator& actuator, const ActuatorState& state) const {
+  const Scheme& scheme = configuration_.scheme();
+  const double h = configuration_.step();
+  RotorStep out;
+  out.change = configuration_.coordinate_step(actuator.coordinate, 0);
+  out.change.begin = state.angle;
+  if (h == 0) return out;
+  out.change.begin_rate = state.rate;
+  out.rests = state.rest > 0 || std::abs(h * state.rate) <= kAtRest;
+  const double rate = state.rate, acceleration = state.acceleration;
+  if (scheme.is_incremental()) {
+    const double factor = scheme.velocity_factor();
+    out.rate_offset = -(factor - 1) * rate;
+    out.rate_slope = factor / h;
+    out.acceleration_offset = (out.rate_offset - rate) / h;
+    out.acceleration_slope = out.rate_slope / h;
+    return out;
+  }
+  const double slope = 1 / (scheme.beta * h * h);
+  const double offset = -(rate / (scheme.beta * h) + (0.5 / scheme.beta - 1) * acceleration);
+  out.rate_offset = rate + h * ((1 - scheme.gamma) * acceleration + scheme.gamma * offset);
+  out.rate_slope = h * scheme.gamma * slope;
+  // Rows are balances at the end of the step, from which accelerations of the Hilber-Hughes-Taylor family lie back:
+  // Wood, Bossak and Zienkiewicz' mean.
+  const double weight = 1 / effort_weight();
+  out.acceleration_offset = weight * offset + (1 - weight) * acceleration;
+  out.acceleration_slope = weight * slope;
+  return out;
+}
+
+void Actuators::begin() {
+  const Model& model = configuration_.model();
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    const Actuator& actuator = model.actuators[i];
+    const Coordinate& coordinate = model.coordinates[actuator.coordinate];
+    Part& part = parts_[i];
+    const ActuatorState& state = configuration_.state().actuators[i];
+    part.rotor = rotor_step(actuator, state);
+    part.demand = {};
+    if (coordinate.motion < 0)
+      part.demand.constant = histories_.effort(coordinate, configuration_.state().commands[actuator.coordinate]);
+    if (actuator.servo && coordinate.motion < 0) ask(actuator, state, part);
+    part.action = {};
+    part.action.increment = configuration_.step() * state.rate;
+  }
+}
+
+SetPoint Actuators::set_point(const Servo& servo, const ServoState& state) const {
+  if (!std::isnan(state.set_point)) return {state.set_point, state.set_point, 0};
+  if (servo.set_point < 0) return {servo.start, servo.start, 0};
+  const TimeFunction& history = configuration_.model().histories[servo.set_point];
+  const Scheme& scheme = configuration_.scheme();
+  const double begin = scheme.is_static ? 0 : configuration_.state().time, end = begin + configuration_.step();
+  const bool needs_rate = !scheme.is_static && !scheme.is_incremental();
+  return {history(begin), history(end), needs_rate ? history.derivative(end) : 0};
+}
+
+ServoInput Actuators::servo_input(const Actuator& actuator, const Part& part, const ActuatorState& state) const {
+  const Scheme& scheme = configuration_.scheme();
+  const Servo& servo = *actuator.servo;
+  ServoInput input;
+  input.time = configuration_.state().time;
+  input.measured = part.rotor.change;
+  input.begin_rate = state.rate;
+  input.rate_offset = part.rotor.rate_offset;
+  input.rate_slope = part.rotor.rate_slope;
+  if (actuator.gyroscope) {
+    const Gyroscope& gyroscope = *actuator.gyroscope;
+    input.begin_rate -=
+        gyroscope.axis.dot(configuration_.state().nodes[gyroscope.node].angular_velocity) / gyroscope.ratio;
+  }
+  if (servo.on_link) {
+    const Coordinate& coordinate = configuration_.model().coordinates[actuator.coordinate];
+    input.measured = configuration_.coordinate_step(actuator.coordinate, 0);
+    input.measured.begin = input.measured.end - configuration_.increment_of(coordinate);
+    if (actuator.drive.gear && configuration_.step() != 0) {
+      const CoordinateStep& change = input.measured;
+      input.begin_rate = configuration_.begin_rates(coordinate.joint)[coordinate.component];
+      input.rate_offset = -(1 - change.gamma) * input.begin_rate / change.gamma;
+      input.rate_slope = rate_slope(change);
+    }
+  }
+  input.set_point = set_point(servo, state.servo);
+  if (servo.feedforward >= 0) input.feedforward = histories_.factor * histories_.at_point[servo.feedforward];
+  // Sub-steps of a composition cancel each other's errors if all take the same rule.
+  if (scheme.is_incremental() && !scheme.is_composition && !scheme.is_static)
+    input.relaxation = scheme.contact_time / kContactSteps;
+  return input;
+}
+
+void Actuators::ask(const Actuator& actuator, const ActuatorState& state, Part& part) const {
+  const Servo& servo = *actuator.servo;
+  const double limit = configuration_.model().coordinates[actuator.coordinate].effort_limit;
+  part.demand.limit = limit > 0 ? std::min(limit, servo.effort_limit) : servo.effort_limit;
+  part.input = servo_input(actuator, part, state);
+  if (servo.sample_time > 0 && configuration_.step() != 0) {
+    const TimeFunction* history = servo.set_point >= 0 && std::isnan(state.servo.set_point)
+                                      ? &configuration_.model().histories[servo.set_point]
+                                      : nullptr;
+    const double time = part.input.time, period = servo.sample_time;
+    const double set_rate = history ? ((*history)(time) - (*history)(time - period)) / period : 0;
+    part.servo = state.servo;
+    sample(servo, part.input, set_rate, part.servo);
+    part.demand.constant += held_output(servo, part.servo, time, configuration_.step());
+    return;
+  }
+  const ServoDemand asked = servo_demand(servo, state.servo, part.input);
+  part.demand.constant += asked.constant;
+  (servo.on_link ? part.demand.by_link : part.demand.by_rotor) += asked.slope;
+}
+
+PassiveEffort Actuators::spring_effort(const JointSpring& spring, const CoordinateStep& link) const {
+  CoordinateStep stretch = link;
+  stretch.begin -= spring.rest;
+  stretch.end -= spring.rest;
+  return elastic_effort(spring.elasticity, stretch);
+}
+
+void Actuators::turn_carrier(const Gyroscope& gyroscope, Part& part) const {
+  const Matrix3& begin = configuration_.begin()[gyroscope.node].rotation;
+  const Vector3& increment = configuration_.increments()[gyroscope.node];
+  const Vector3 axis = begin * gyroscope.axis;
+  part.carried = axis.dot(increment) / gyroscope.ratio;
+  part.carried_by_spin = cayley::inverse_tangent(increment).transpose() * axis / gyroscope.ratio;
+}
+
+/// The rotor's momentum p about the axis a changes the carrier's by (p_1 a_1 - p_0 a_0)/h.
+void Actuators::add_moment(const Gyroscope& gyroscope, const ActuatorState& state, Part& part, Balance& balance) const {
+  const double h = configuration_.step(), inertia = gyroscope.inertia * gyroscope.ratio;
+  const Vector3 begin = configuration_.begin()[gyroscope.node].rotation * gyroscope.axis;
+  const Vector3 end = configuration_.end()[gyroscope.node].rotation * gyroscope.axis;
+  const MotorAction& action = part.action;
+  const double momentum =
+      inertia * (part.rotor.rate_offset + part.rotor.rate_slope * (action.increment + part.carried));
+  balance.residual.node(gyroscope.node).tail<3>() += (momentum * end - inertia * state.rate * begin) / h;
+  if (!balance.tangent) return;
+  const Vector3 by_increment = (inertia * part.rotor.rate_slope / h) * end;
+  part.moment_by_link = action.follows * by_increment;
+  Eigen::Map<Matrix6>(balance.tangent->diagonal_block(gyroscope.node)).bottomRightCorner<3, 3>() +=
+      (1 + action.increment_by_load * part.load_by_carried) * by_increment * part.carried_by_spin.transpose() -
+      (momentum / h) * so3::hat(end);
+}
+
+void Actuators::add_gyroscope(int joint, FoldMaps& maps) const {
+  const int index = gyroscope_of_[joint];
+  if (index < 0) return;
+  const Part& part = parts_[index];
+  maps.released_spin.row(0) -=
+      effort_weight() * part.action.effort_by_load * part.load_by_carried * part.carried_by_spin.transpose();
+  maps.moment_released.col(0) += part.moment_by_link;
+}
+
+void Actuators::evaluate(Balance& balance) {
+  const Model& model = configuration_.model();
+  const double weight = effort_weight();
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    const Actuator& actuator = model.actuators[i];
+    const Coordinate& coordinate = model.coordinates[actuator.coordinate];
+    const CoordinateStep link =
+        configuration_.coordinate_step(actuator.coordinate, configuration_.increment_of(coordinate));
+    Part& part = parts_[i];
+    part.link = link.increment;
+    RotorStep rotor = part.rotor;
+    const bool is_gyroscope = gyroscope_of_[coordinate.joint] == static_cast<int>(i);
+    if (is_gyroscope) {
+      turn_carrier(*actuator.gyroscope, part);
+      rotor.acceleration_offset += rotor.acceleration_slope * part.carried;
+      part.load_by_carried = actuator.drive.inertia * rotor.acceleration_slope;
+    }
+    part.action = motor_action(actuator.drive, part.demand, rotor, link, part.action.increment);
+    if (is_gyroscope) add_moment(*actuator.gyroscope, configuration_.state().actuators[i], part, balance);
+    const PassiveEffort spring = actuator.spring ? spring_effort(*actuator.spring, link) : PassiveEffort();
+    balance.dissipated += part.action.dissipated + spring.dissipated;
+    const int variable = configuration_.degrees_of_freedom().variable_of_joint(coordinate.joint);
+    const int k = coordinate.component;
+    balance.residual.at(variable)[k] -= weight * (part.action.effort + spring.effort);
+    if (!balance.tangent) continue;
+    const int count = released_count(model.joints[coordinate.joint].kind);
+    balance.tangent->diagonal_block(variable)[k * count + k] -= weight * (part.action.slope + spring.slope);
+  }
+}
+
+void Actuators::add_work(double& work) const {
+  const State& state = configuration_.state();
+  const Model& model = configuration_.model();
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    const MotorAction& action = parts_[i].action;
+    const int coordinate = model.actuators[i].coordinate;
+    if (model.coordinates[coordinate].motion >= 0) continue;  // whose work is the motion's
+    const double before = state.efforts[coordinate];
+    work +=
+        (configuration_.scheme().is_incremental() ? action.motor : 0.5 * (action.motor + before)) * action.increment;
+  }
+}
+
+void Actuators::accept(State& state) const {
+  const Model& model = configuration_.model();
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    const Part& part = parts_[i];
+    const RotorStep& rotor = part.rotor;
+    const MotorAction& action = part.action;
+    const Actuator& actuator = model.actuators[i];
+    ActuatorState& own = state.actuators[i];
+    if (actuator.servo && actuator.servo->sample_time > 0) {
+      if (configuration_.step() != 0) own.servo = part.servo;
+    } else if (actuator.servo) {
+      advance(*actuator.servo, part.input, actuator.servo->on_link ? part.link : action.increment,
+              action.motor - action.demand, own.servo);
+    }
+    own.angle += action.increment;
+    own.rate = rotor.rate_offset + rotor.rate_slope * (action.increment + part.carried);
+    if (!configuration_.scheme().is_incremental()) {
+      const double weight = configuration_.scheme().is_static ? 1 : 1 / effort_weight();
+      const double mean = rotor.acceleration_offset + rotor.acceleration_slope * action.increment;
+      own.acceleration = (mean - (1 - weight) * own.acceleration) / weight;
+    }
+    own.rest = action.is_stopped ? 1 : 0;
+    const int coordinate = actuator.coordinate;
+    if (model.coordinates[coordinate].motion < 0) state.efforts[coordinate] = action.motor;
+  }
+}
+
+}  // namespace flexarm

@@ -1,0 +1,70 @@
+#pragma once
+/// Springs, motors, gears and controllers of coordinates over a step.
+
+#include <vector>
+
+#include "integrators/hht_interpolation.h"
+#include "integrators/step_configuration.h"
+#include "integrators/step_histories.h"
+#include "joints/motor_step.h"
+#include "joints/servo_step.h"
+
+namespace flexarm {
+
+/// What acts on coordinates that have an Actuator: it takes the efforts over from JointFold. Rotors behind elastic
+/// gears are solved for in every evaluation, and no unknowns of the step.
+class Actuators {
+ public:
+  /// `interpolation`: null unless forces are interpolated in time.
+  /// @throws ModelError if the scheme scales velocities, of which a rotor's would be left out, or steps backwards,
+  /// against friction that sticks or samples.
+  Actuators(StepConfiguration& configuration, const StepHistories& histories, const HhtInterpolation* interpolation);
+
+  void begin();
+  /// Before joints fold their slaves.
+  void evaluate(Balance& balance);
+  /// Adds what couples a joint's coordinate to its master by a rotor's gyroscopic effect; after evaluate().
+  void add_gyroscope(int joint, FoldMaps& maps) const;
+  /// Adds the work of motors over the step to `work` [J].
+  void add_work(double& work) const;
+  /// Writes rotors and the efforts of motors.
+  void accept(State& state) const;
+  /// Of an actuator's motor on its coordinate, at the last evaluation [N m/rad or N/m].
+  double stiffness(std::size_t actuator) const { return -parts_[actuator].action.slope; }
+
+ private:
+  /// Of one actuator in this step.
+  struct Part {
+    RotorStep rotor;
+    ServoInput input;
+    ServoState servo;  // of a sampled one, after the sample at the beginning of the step
+    MotorDemand demand;
+    // ---- at the last evaluation
+    MotorAction action;
+    double link = 0;                          // increment of the coordinate
+    double carried = 0;                       // turn of a gyroscope's carrier about the axis, over the ratio
+    double load_by_carried = 0;               // derivative of the rotor's inertial effort with respect to that
+    Vector3 carried_by_spin, moment_by_link;  // its derivative, and that of the carrier's moment
+  };
+  /// By which efforts on coordinates are multiplied in their rows.
+  double effort_weight() const { return interpolation_ ? interpolation_->effort_weight() : 1.0; }
+  RotorStep rotor_step(const Actuator& actuator, const ActuatorState& state) const;
+  /// How far a gyroscope's carrier turns about the axis.
+  void turn_carrier(const Gyroscope& gyroscope, Part& part) const;
+  /// Adds the gyroscope's moment on its carrier.
+  void add_moment(const Gyroscope& gyroscope, const ActuatorState& state, Part& part, Balance& balance) const;
+  void check(const Actuator& actuator) const;
+  ServoInput servo_input(const Actuator& actuator, const Part& part, const ActuatorState& state) const;
+  SetPoint set_point(const Servo& servo, const ServoState& state) const;
+  /// Adds what the servo asks for.
+  void ask(const Actuator& actuator, const ActuatorState& state, Part& part) const;
+  PassiveEffort spring_effort(const JointSpring& spring, const CoordinateStep& link) const;
+
+  StepConfiguration& configuration_;
+  const StepHistories& histories_;
+  const HhtInterpolation* interpolation_;
+  std::vector<Part> parts_;        // per actuator
+  std::vector<int> gyroscope_of_;  // per joint: the actuator that has one, or -1
+};
+
+}  // namespace flexarm

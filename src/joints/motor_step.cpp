@@ -1,0 +1,171 @@
+#include "joints/motor_step.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "joints/elasticity.h"
+#include "joints/joint_forces.h"
+#include "math/increasing_root.h"
+
+namespace flexarm {
+namespace {
+
+/// The motor's effort, and its derivatives with respect to the increments of rotor and coordinate.
+struct MotorEffort {
+  double value, by_rotor, by_link;
+};
+
+/// The largest effort up to `limit` that a motor can give at a speed at which it pushes forth, and its derivative.
+ValueAndSlope available(const Drive& drive, double limit, double rate) {
+  const double part = std::clamp(1 - rate / drive.velocity_limit, 0.0, 1.0);
+  const double effort = part == 1 ? drive.effort_limit : part * drive.effort_limit;
+  if (effort >= limit) return {limit, 0};
+  return {effort, part > 0 && part < 1 ? -drive.effort_limit / drive.velocity_limit : 0};
+}
+
+MotorEffort motor_effort(const Drive& drive, const MotorDemand& demand, const CoordinateStep& rotor, double link) {
+  const double asked = demand.at(rotor.increment, link);
+  const bool is_static = rotor.step == 0;
+  const double rate = is_static ? 0 : rate_of(rotor), slope = is_static ? 0 : rate_slope(rotor);
+  const ValueAndSlope forth = available(drive, demand.limit, rate), back = available(drive, demand.limit, -rate);
+  if (asked > forth.value) return {forth.value, forth.slope * slope, 0};
+  if (asked < -back.value) return {-back.value, back.slope * slope, 0};
+  return {asked, demand.by_rotor, demand.by_link};
+}
+
+CoordinateStep with_increment(CoordinateStep change, double increment) {
+  change.increment = increment;
+  change.end = change.begin + increment;
+  return change;
+}
+
+/// Of a rotor that turns with its coordinate. What the gear transmits, T, loses loss |T| against the motion.
+MotorAction rigid_action(const Drive& drive, const MotorDemand& demand, const RotorStep& rotor,
+                         const CoordinateStep& link) {
+  const double u = link.increment;
+  const MotorEffort motor = motor_effort(drive, demand, with_increment(rotor.change, u), u);
+  const SmoothDirection direction = drive.loss > 0 ? smooth_direction(link) : SmoothDirection();
+  const double net = motor.value - drive.inertia * (rotor.acceleration_offset + rotor.acceleration_slope * u);
+  const double net_slope = motor.by_rotor + motor.by_link - drive.inertia * rotor.acceleration_slope;
+  const double sign = net < 0 ? -1 : 1, part = 1 + drive.loss * sign * direction.value;
+  MotorAction out;
+  out.effort = net / part;
+  out.slope = (net_slope - out.effort * drive.loss * sign * direction.slope) / part;
+  out.increment = u;
+  out.follows = 1;
+  out.effort_by_load = -1 / part;
+  out.motor = motor.value;
+  out.demand = demand.at(u, u);
+  out.dissipated = (net - out.effort) * u;
+  return out;
+}
+
+/// The balance of a rotor behind an elastic gear, with friction that acts in a direction known, or in that of its rate.
+class RotorBalance {
+ public:
+  RotorBalance(const Drive& drive, const MotorDemand& demand, const RotorStep& rotor, const CoordinateStep& link)
+      : drive_(drive), demand_(demand), rotor_(rotor), link_(link) {}
+
+  struct Terms {
+    PassiveEffort gear;  // on the twist
+    MotorEffort motor;
+    double capacity, without_friction;       // of friction; the balance but for it
+    double own_slope, transmitted_by_twist;  // of the rotor's own terms; d|transmitted|/d(twist)
+  };
+  Terms terms(double u) const {
+    Terms out;
+    out.gear = elastic_effort(*drive_.gear, twist(u));
+    out.motor = motor_effort(drive_, demand_, with_increment(rotor_.change, u), link_.increment);
+    out.capacity = is_static() ? 0 : drive_.friction + drive_.loss * std::abs(out.gear.effort);
+    out.without_friction = drive_.inertia * (rotor_.acceleration_offset + rotor_.acceleration_slope * u) -
+                           out.gear.effort - out.motor.value;
+    out.own_slope = drive_.inertia * rotor_.acceleration_slope - out.motor.by_rotor;
+    out.transmitted_by_twist = out.gear.effort > 0 ? out.gear.slope : -out.gear.slope;
+    return out;
+  }
+  SmoothDirection smooth(double u) const { return smooth_direction(with_increment(rotor_.change, u)); }
+
+  /// With friction in this direction.
+  ValueAndSlope value(const Terms& t, const SmoothDirection& direction) const {
+    return {t.without_friction + t.capacity * direction.value,
+            t.own_slope - t.gear.slope + drive_.loss * t.transmitted_by_twist * direction.value +
+                t.capacity * direction.slope};
+  }
+  double root(const SmoothDirection& direction, double guess) const {
+    return increasing_root([&](double u) { return value(terms(u), direction); }, guess, scale());
+  }
+  double smooth_root(double guess) const {
+    return increasing_root([&](double u) { return value(terms(u), smooth(u)); }, guess, scale());
+  }
+
+  /// `slides`: the rotor follows the coordinate; else friction holds it.
+  MotorAction action(double u, const SmoothDirection& direction, bool slides) const {
+    const Terms t = terms(u);
+    const ValueAndSlope balance = value(t, direction);
+    const double by_link = t.gear.slope - drive_.loss * t.transmitted_by_twist * direction.value - t.motor.by_link;
+    // Where nothing holds the rotor, as within the play at rest, it does not feel the coordinate either.
+    const double yields = slides && balance.slope != 0 ? 1 / balance.slope : 0;
+    MotorAction out;
+    out.follows = -by_link * yields;
+    out.effort = -t.gear.effort;
+    out.slope = -t.gear.slope * (out.follows - 1);
+    out.effort_by_load = t.gear.slope * yields;
+    out.increment_by_load = -yields;
+    out.increment = u;
+    out.motor = t.motor.value;
+    out.demand = demand_.at(u, link_.increment);
+    out.dissipated = t.gear.dissipated;
+    if (!is_static()) out.dissipated += (slides ? t.capacity * direction.value : -t.without_friction) * u;
+    return out;
+  }
+
+ private:
+  bool is_static() const { return link_.step == 0; }
+  /// The twist's step if the rotor's increment is u.
+  CoordinateStep twist(double u) const {
+    CoordinateStep twist = rotor_.change;
+    twist.begin -= link_.begin;
+    twist.begin_rate -= link_.begin_rate;
+    return with_increment(twist, u - link_.increment);
+  }
+  double scale() const { return std::max(std::abs(link_.increment), 1e-6); }
+
+  const Drive& drive_;
+  const MotorDemand& demand_;
+  const RotorStep& rotor_;
+  const CoordinateStep& link_;
+};
+
+/// With Coulomb's law: the staircase of StickSlip in one unknown, whose branch shows by itself.
+MotorAction sticking_action(const RotorBalance& balance, const RotorStep& rotor, double guess) {
+  const double rest = rotor.rests ? 0 : -rotor.rate_offset / rotor.rate_slope;
+  const double low = std::min(rest, 0.0), high = std::max(rest, 0.0);
+  const auto held = [&](double u) {
+    MotorAction out = balance.action(u, {}, false);
+    out.is_stopped = u == rest;
+    return out;
+  };
+  const auto slipping = [&](double direction) {
+    return balance.action(balance.root({direction, 0}, guess), {direction, 0}, true);
+  };
+  const auto at_low = balance.terms(low), at_high = balance.terms(high);
+  if (at_low.without_friction - at_low.capacity > 0) return slipping(-1);
+  if (at_high.without_friction + at_high.capacity < 0) return slipping(1);
+  // Below its rest a coordinate that comes to rest is not pushed on by friction, beyond its start not back.
+  if (low == high || at_low.without_friction >= 0) return held(low);
+  if (at_high.without_friction <= 0) return held(high);
+  return slipping(0);
+}
+
+}  // namespace
+
+MotorAction motor_action(const Drive& drive, const MotorDemand& demand, const RotorStep& rotor,
+                         const CoordinateStep& link, double guess) {
+  if (!drive.gear) return rigid_action(drive, demand, rotor, link);
+  const RotorBalance balance(drive, demand, rotor, link);
+  if (drive.sticks && link.step != 0) return sticking_action(balance, rotor, guess);
+  const double u = balance.smooth_root(guess);
+  return balance.action(u, balance.smooth(u), true);
+}
+
+}  // namespace flexarm

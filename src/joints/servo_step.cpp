@@ -1,0 +1,164 @@
+#include "joints/servo_step.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "schemes/scheme.h"
+
+namespace flexarm {
+namespace {
+
+/// Spectral radius of an infinitely stiff controller in steps of the scene: what a step leaves of its error.
+constexpr double kStiffRemainder = 0.5;
+/// Of a step, by which times of samples may be missed: they are sums.
+constexpr double kRoundOff = 1e-6;
+
+double error_at_begin(const Servo& servo, const ServoState& state, const ServoInput& input) {
+  return servo.mode == Servo::Mode::Velocity ? state.integral : input.set_point.begin - input.measured.begin;
+}
+
+/// Of the error over the step, but for what is measured.
+double set_increment(const Servo& servo, const ServoInput& input) {
+  const SetPoint& s = input.set_point;
+  return servo.mode == Servo::Mode::Velocity ? 0.5 * input.measured.step * (s.begin + s.end) : s.end - s.begin;
+}
+
+/// The proportional effort for an increment s of the error, per gain: offset + slope s.
+struct Term {
+  double offset = 0, slope = 0;
+};
+
+Term proportional_term(double error, const ServoState& state, const ServoInput& input) {
+  const double h = input.measured.step;
+  if (h == 0 || input.measured.at_end) return {error, 1};
+  Term out{error, 0.5};
+  if (input.relaxation == 0) return out;
+  const NumericalDissipation d = numerical_dissipation(2, kStiffRemainder, input.relaxation);
+  out.slope += d.stiffness;
+  out.offset -= d.stiffness * state.average;
+  return out;
+}
+
+/// What resists the acceleration of what is measured, per second of its effort: an inertance [s^2], and with the
+/// derivative one of [s].
+double inertance(const Servo& servo, const ServoInput& input) {
+  if (input.relaxation == 0) return 0;
+  return servo.proportional * numerical_dissipation(2, kStiffRemainder, input.relaxation).inertance +
+         servo.derivative * 0.25 * input.relaxation;
+}
+
+/// The same of the derivative's, for an increment of what is measured, backwards.
+Term derivative_term(const ServoState& state, const ServoInput& input) {
+  const double h = input.measured.step, relaxation = input.relaxation;
+  if (relaxation == 0) return {0, 1 / h};
+  const double follows = 1 / (h + 2 * relaxation);
+  return {0.25 * 2 * relaxation * follows * state.delayed_rate, 0.75 / h + 0.25 * follows};
+}
+
+double integral_share(const ServoInput& input) {
+  return input.measured.at_end ? 1.0 : 0.5;
+}
+
+}  // namespace
+
+ServoDemand servo_demand(const Servo& servo, const ServoState& state, const ServoInput& input) {
+  const double h = input.measured.step;
+  const SetPoint& set = input.set_point;
+  if (servo.mode == Servo::Mode::Effort) {
+    const bool is_mean = h != 0 && !input.measured.at_end;
+    return {input.feedforward + (is_mean ? 0.5 * (set.begin + set.end) : set.end), 0};
+  }
+  const double error = error_at_begin(servo, state, input);
+  Term sum{input.feedforward, 0};  // in terms of the error's increment
+  const auto add = [&](double gain, const Term& term) {
+    sum.offset += gain * term.offset;
+    sum.slope += gain * term.slope;
+  };
+  add(servo.proportional, proportional_term(error, state, input));
+  const double share = integral_share(input);
+  add(servo.integral, {state.integral + share * h * error, 0.5 * share * h});
+  const double by_set = set_increment(servo, input);
+  ServoDemand out{sum.offset + sum.slope * by_set, -sum.slope};
+  if (h == 0) {
+    if (servo.mode == Servo::Mode::Velocity) out.slope = 0;  // nothing has a rate
+    return out;
+  }
+  if (input.measured.at_end) {  // the rate at the end
+    const double set_rate = servo.mode == Servo::Mode::Velocity ? set.end : set.rate_at_end;
+    out.constant += servo.derivative * (set_rate - input.rate_offset);
+    out.slope -= servo.derivative * input.rate_slope;
+    return out;
+  }
+  const Term derivative = derivative_term(state, input);
+  out.constant += servo.derivative * (by_set / h + derivative.offset);
+  out.slope -= servo.derivative * derivative.slope;
+  // (v_1 - v_0)/h = 2 (u/h - v_0)/h
+  const double resisting = 2 * inertance(servo, input) / h;
+  out.constant += resisting * input.begin_rate;
+  out.slope -= resisting / h;
+  return out;
+}
+
+void advance(const Servo& servo, const ServoInput& input, double increment, double excess, ServoState& state) {
+  const double h = input.measured.step;
+  if (h == 0) return;
+  const double error = error_at_begin(servo, state, input), s = set_increment(servo, input) - increment;
+  const bool is_velocity = servo.mode == Servo::Mode::Velocity;
+  state.integral += is_velocity ? s : h * (error + 0.5 * s);
+  const double gain = is_velocity ? servo.proportional : servo.integral;
+  if (servo.tracking_time > 0 && gain > 0) {
+    // The effort that would be asked for follows the one that is given.
+    const double lag = integral_share(input) * h / servo.tracking_time;
+    state.integral += h * excess / (gain * servo.tracking_time * (1 + lag));
+  }
+  if (input.relaxation == 0) return;
+  const NumericalDissipation d = numerical_dissipation(2, kStiffRemainder, input.relaxation);
+  state.average += d.forgetting * (s - state.average);
+  const double mean = (2 * input.relaxation * state.delayed_rate - increment) / (h + 2 * input.relaxation);
+  state.delayed_rate = 2 * mean - state.delayed_rate;
+}
+
+// ---------------------------------------------------------------- sampled controllers
+
+std::size_t outputs_of(const Servo& servo) {
+  return servo.sample_time > 0 ? 2 + static_cast<std::size_t>(std::ceil(servo.delay / servo.sample_time)) : 0;
+}
+
+void sample(const Servo& servo, const ServoInput& input, double set_rate, ServoState& state) {
+  const double period = servo.sample_time;
+  if (input.time < state.samples * period - kRoundOff * input.measured.step) return;
+  const double measured = input.measured.begin, rate = (measured - state.measured) / period;
+  double output = input.feedforward;
+  if (servo.mode == Servo::Mode::Effort) {
+    output += input.set_point.begin;
+  } else {
+    const bool is_velocity = servo.mode == Servo::Mode::Velocity;
+    const double error_rate = (is_velocity ? input.set_point.begin : set_rate) - rate;
+    const double error = input.set_point.begin - measured;
+    state.integral += period * (is_velocity ? error_rate : error);
+    output += servo.proportional * (is_velocity ? state.integral : error) + servo.derivative * error_rate +
+              servo.integral * state.integral;
+  }
+  const double cut = std::clamp(output, -servo.effort_limit, servo.effort_limit);
+  const double gain = servo.mode == Servo::Mode::Velocity ? servo.proportional : servo.integral;
+  if (servo.tracking_time > 0 && gain > 0) state.integral += period * (cut - output) / (gain * servo.tracking_time);
+  std::rotate(state.outputs.begin(), state.outputs.end() - 1, state.outputs.end());
+  state.outputs.front() = cut;
+  state.measured = measured;
+  ++state.samples;
+}
+
+double held_output(const Servo& servo, const ServoState& state, double time, double step) {
+  double sum = 0;
+  for (std::size_t i = 0; i < state.outputs.size(); ++i) {
+    const double number = state.samples - 1 - static_cast<double>(i);
+    if (number < 0) break;
+    const double from = number * servo.sample_time + servo.delay;
+    const double until = i == 0 ? time + step : from + servo.sample_time;
+    const double part = (std::min(time + step, until) - std::max(time, from)) / step;
+    if (part > kRoundOff) sum += state.outputs[i] * (part > 1 - kRoundOff ? 1.0 : part);
+  }
+  return sum;
+}
+
+}  // namespace flexarm

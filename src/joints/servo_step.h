@@ -1,0 +1,54 @@
+#pragma once
+/// Controllers over a step. (docs/notes/drives.md)
+///
+/// What a continuous controller asks for is affine in the increment of what it measures, and so known at the beginning
+/// of the step. It is that of means over the step, to which two terms of second order are added that bring stiff gains
+/// to rest: with the error's increment s, its average a and the rate v of what is measured,
+///   proportional [(s - a) stiffness - (v_1 - v_0)/h inertance]   with a_1 = a_0 + forgetting (s - a_0)
+/// as NumericalDissipation of the second order has it, and the three parts of DamperParts against v. Without them the
+/// mid-point rule would let an error that infinite gains leave alternate for ever.
+///
+/// A sampled one measures at the beginning of the step in which a sample is due, and holds its output.
+
+#include "joints/coordinate_step.h"
+#include "model/actuator.h"
+
+namespace flexarm {
+
+/// Over a step, of the set point.
+struct SetPoint {
+  double begin = 0, end = 0;
+  double rate_at_end = 0;
+};
+
+struct ServoInput {
+  double time = 0;          ///< at the beginning [s]
+  CoordinateStep measured;  ///< its increment and end are left open
+  double begin_rate = 0;    ///< of what is measured; with conserving schemes by their own rule
+  /// Rate at the end, where efforts are those at the end: offset + slope increment.
+  double rate_offset = 0, rate_slope = 0;
+  SetPoint set_point;
+  double feedforward = 0;
+  double relaxation = 0;  ///< of stiff gains [s]; 0: none, as where efforts are those at an instant
+};
+
+/// What a controller asks for over a step: constant + slope increment.
+struct ServoDemand {
+  double constant = 0, slope = 0;
+};
+
+ServoDemand servo_demand(const Servo& servo, const ServoState& state, const ServoInput& input);
+/// Its memory at the end of the step, in which what is measured moved by `increment`, and `excess` is what the motor
+/// gave less what was asked of it.
+void advance(const Servo& servo, const ServoInput& input, double increment, double excess, ServoState& state);
+
+// ---- sampled controllers
+
+/// Takes a sample if one is due. `set_rate`: of the set point since the last sample.
+void sample(const Servo& servo, const ServoInput& input, double set_rate, ServoState& state);
+/// Mean over the step of what is held.
+double held_output(const Servo& servo, const ServoState& state, double time, double step);
+/// Outputs that are to be remembered.
+std::size_t outputs_of(const Servo& servo);
+
+}  // namespace flexarm

@@ -1,0 +1,159 @@
+#include "scene/drive_reader.h"
+
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "math/parse_number.h"
+#include "scene/choice.h"
+#include "scene/limits.h"
+
+namespace flexarm::scene {
+namespace {
+
+constexpr NumberRange kEfficiency{"> 0 and at most 1", [](double x) { return x > 0 && x <= 1; }};
+
+/// Ratios that are written with less digits are the same.
+constexpr double kSameRatio = 1e-6;
+
+/// What may not be left out where something else is given.
+void check_conditions(const XmlElement& drive, const DriveDescription& description) {
+  for (const char* attribute : {"damping", "backlash"})
+    if (drive.has(attribute) && !drive.has("stiffness"))
+      drive.attribute_error(attribute, "a rigid gear has none; give its stiffness > 0, or leave this out");
+  if (drive.has("stiffness") && description.rotor_inertia <= 0)
+    drive.error("an elastic gear needs the inertia of the rotor behind it, rotor_inertia > 0");
+  if (drive.has("velocity_limit") && !drive.has("effort_limit"))
+    drive.attribute_error("velocity_limit", "the line from rest to the no-load speed begins at effort_limit: give it");
+  if (!drive.has("stiffness") && description.efficiency <= 0.5)
+    drive.attribute_error("efficiency",
+                          "a gear of at most 0.5 holds whatever its load; give it a stiffness, or more than 0.5");
+}
+
+constexpr Choice<ServoDescription::Mode> kModes[] = {{"effort", ServoDescription::Mode::Effort},
+                                                     {"velocity", ServoDescription::Mode::Velocity},
+                                                     {"position", ServoDescription::Mode::Position}};
+constexpr Choice<ServoDescription::Side> kSides[] = {{"motor", ServoDescription::Side::Motor},
+                                                     {"link", ServoDescription::Side::Link}};
+
+/// Which gains go with a mode, and what only goes with another attribute.
+void check_gains(const XmlElement& servo, ServoDescription::Mode mode) {
+  const auto refuse = [&](const char* attribute, const char* why) {
+    if (servo.has(attribute)) servo.attribute_error(attribute, why);
+  };
+  if (mode == ServoDescription::Mode::Effort) {
+    for (const char* gain : {"kp", "kd", "ki", "anti_windup"})
+      refuse(gain, "mode 'effort' has no error to control; leave this out");
+  } else if (mode == ServoDescription::Mode::Velocity) {
+    refuse("kd", "mode 'velocity' has kp and ki only; leave this out");
+  }
+  if (!servo.has("ki")) refuse("anti_windup", "there is no integral without ki; leave this out");
+  if (!servo.has("sample_time")) refuse("delay", "only a sampled servo has a delay; give its sample_time > 0");
+  if (servo.has("delay") && servo.has("sample_time")) {
+    const double delay = servo.number("delay", kNonNegative, 0);
+    const double period = servo.number("sample_time", kPositive).value_or(delay);
+    if (delay > kLongestDelay * period)
+      servo.attribute_error("delay", fmt::format("delay must be at most {} sample times", kLongestDelay));
+  }
+}
+
+/// Children of this name.
+std::vector<XmlElement> children(const XmlElement& element, const char* tag) {
+  std::vector<XmlElement> out;
+  for (const XmlElement& child : element.children())
+    if (child.tag() == tag) out.push_back(child);
+  return out;
+}
+
+}  // namespace
+
+SpringDescription read_spring(const XmlElement& spring) {
+  spring.expect_only({"joint", "stiffness", "rest"});
+  return {spring.text("joint").value_or(""), spring.number("stiffness", kNonNegative).value_or(0),
+          spring.number("rest", kAnyNumber, 0), spring.location()};
+}
+
+DriveDescription read_drive(const XmlElement& drive) {
+  drive.expect_only({"joint", "gear", "rotor_inertia", "stiffness", "damping", "backlash", "friction", "efficiency",
+                     "effort_limit", "velocity_limit", "axis"});
+  DriveDescription out;
+  out.location = drive.location();
+  out.coordinate = drive.text("joint").value_or("");
+  if (drive.has("gear")) out.gear = drive.number("gear", kPositive);
+  out.rotor_inertia = drive.number("rotor_inertia", kNonNegative, 0);
+  if (drive.has("stiffness")) out.stiffness = drive.number("stiffness", kPositive);
+  out.damping = drive.number("damping", kNonNegative, 0);
+  out.backlash = drive.number("backlash", kNonNegative, 0);
+  out.friction = drive.number("friction", kNonNegative, 0);
+  out.efficiency = drive.number("efficiency", kEfficiency, 1);
+  if (drive.has("effort_limit")) out.effort_limit = drive.number("effort_limit", kPositive).value_or(0);
+  if (drive.has("velocity_limit")) out.velocity_limit = drive.number("velocity_limit", kPositive).value_or(0);
+  if (drive.has("axis")) out.axis = drive.direction("axis");
+  check_conditions(drive, out);
+  return out;
+}
+
+ServoDescription read_servo(const XmlElement& servo) {
+  servo.expect_only({"joint", "mode", "kp", "kd", "ki", "set_point", "feedforward", "effort_limit", "anti_windup",
+                     "side", "sample_time", "delay"});
+  ServoDescription out;
+  out.location = servo.location();
+  out.coordinate = servo.text("joint").value_or("");
+  const std::optional<ServoDescription::Mode> mode = read_choice(servo, "mode", kModes);
+  out.mode = mode.value_or(out.mode);
+  out.kp = servo.number("kp", kNonNegative, 0);
+  out.kd = servo.number("kd", kNonNegative, 0);
+  out.ki = servo.number("ki", kNonNegative, 0);
+  if (servo.has("set_point")) out.set_point = servo.function("set_point");
+  if (servo.has("feedforward")) out.feedforward = servo.function("feedforward");
+  if (servo.has("effort_limit")) out.effort_limit = servo.number("effort_limit", kPositive).value_or(0);
+  if (servo.has("anti_windup")) out.anti_windup = servo.number("anti_windup", kPositive).value_or(0);
+  out.side = read_choice(servo, "side", kSides, out.side);
+  if (servo.has("sample_time")) out.sample_time = servo.number("sample_time", kPositive).value_or(0);
+  out.delay = servo.number("delay", kNonNegative, 0);
+  if (mode) check_gains(servo, *mode);
+  return out;
+}
+
+std::optional<Transmission> read_transmission(const XmlElement& transmission) {
+  const std::vector<XmlElement> joints = children(transmission, "joint");
+  const std::vector<XmlElement> actuators = children(transmission, "actuator");
+  if (joints.size() != 1 || actuators.size() > 1) return std::nullopt;
+  const char* joint = joints.front().xml().Attribute("name");
+  std::optional<XmlElement> reduction;
+  for (const std::vector<XmlElement>* places : {&joints, &actuators})  // older files have it in <joint>
+    for (const XmlElement& place : *places)
+      if (const std::optional<XmlElement> found = place.child("mechanicalReduction")) reduction = found;
+  if (!joint || !reduction) return std::nullopt;
+  const char* text = reduction->xml().GetText();
+  return Transmission{joint, text ? text : "", reduction->line()};
+}
+
+void settle_gears(const std::vector<Transmission>& transmissions, std::vector<DriveDescription>& drives,
+                  Findings& findings) {
+  std::map<std::string, const Transmission*> of_joint;
+  for (const Transmission& transmission : transmissions) of_joint.emplace(transmission.joint, &transmission);
+  for (DriveDescription& drive : drives) {
+    const auto found = of_joint.find(drive.coordinate);
+    if (found == of_joint.end()) continue;
+    const Transmission& transmission = *found->second;
+    std::string_view text = transmission.reduction;
+    const std::optional<double> reduction = parse_number(next_word(text));
+    if (!reduction || *reduction == 0 || !next_word(text).empty()) {
+      findings.error(transmission.line, "<mechanicalReduction> of the transmission of " + quoted(drive.coordinate),
+                     "a number different from 0 is expected, since a <drive> is behind it",
+                     quoted(transmission.reduction));
+      continue;
+    }
+    const double ratio = std::abs(*reduction);  // its sign says which way the motor turns
+    if (!drive.gear) drive.gear = ratio;
+    if (std::abs(*drive.gear - ratio) > kSameRatio * ratio)
+      findings.error(
+          drive.location.line, "<drive> of robot",
+          fmt::format("gear must be that of the joint's <transmission>, {} (line {})", ratio, transmission.line),
+          quoted(fmt::format("{}", *drive.gear)));
+  }
+}
+
+}  // namespace flexarm::scene

@@ -1,0 +1,431 @@
+// Drives: rotors, elastic gears with backlash, losses and limits of motors, against closed formulas.
+#include <Eigen/Eigenvalues>
+
+#include "reference/dynamics_runs.h"
+
+namespace flexarm::test {
+namespace {
+
+using scene::JointKind;
+
+constexpr double kMass = 2.0;
+const double kInertia = 0.4;  // about the joint's axis, of the body below
+
+/// A mass on a rail along x; no gravity.
+SceneBuilder slider(double position, double velocity) {
+  SceneBuilder b;
+  b.body("block", kMass, {0.1, 0.2, 0}, Matrix3::Identity());
+  b.joint("rail", JointKind::Prismatic, "world", "block", {0, 0, 0}, {1, 0, 0});
+  initial_joint(b, "rail", position, velocity);
+  return b;
+}
+
+/// A body on a shaft along z; no gravity.
+SceneBuilder wheel(double velocity) {
+  SceneBuilder b;
+  b.body("wheel", 1, {0, 0, 0.3}, Vector3(1, 1, kInertia).asDiagonal());
+  b.joint("shaft", JointKind::Revolute, "world", "wheel", {0, 0, 0}, {0, 0, 1});
+  initial_joint(b, "shaft", 0, velocity);
+  return b;
+}
+
+scene::DriveDescription& add_drive(SceneBuilder& b, const std::string& joint, double gear, double rotor_inertia) {
+  scene::DriveDescription drive;
+  drive.coordinate = joint;
+  drive.gear = gear;
+  drive.rotor_inertia = rotor_inertia;
+  b.scene.drives.push_back(drive);
+  return b.scene.drives.back();
+}
+
+double balance(const Simulation& simulation) {
+  const Energies e = simulation.energies();
+  return e.total() - e.work + e.dissipated;
+}
+
+// gear^2 times the rotor's inertia is added to the joint's: it moves as a heavier block does.
+TEST(Drive, RotorAddsItsReflectedInertia) {
+  for (const char* scheme : {"em", "em4", "edmc2", "m1", "m2", "std", "newmark", "hht1", "hht2", "hht3"}) {
+    SceneBuilder b = slider(0, 0.5), heavy = slider(0, 0.5);
+    add_drive(b, "rail", 50, 4e-4);
+    heavy.scene.links.back().inertial->mass += 2500 * 4e-4;
+    Simulation simulation(b.scene, options(scheme, 0.01)), expected(heavy.scene, options(scheme, 0.01));
+    for (Simulation* s : {&simulation, &expected}) {
+      s->command_effort(0, 6);
+      run(*s, 100);
+    }
+    EXPECT_NEAR(simulation.position(0), expected.position(0), 1e-9) << scheme;
+    EXPECT_NEAR(simulation.velocity(0), expected.velocity(0), 1e-9) << scheme;
+    EXPECT_NEAR(simulation.energies().kinetic, expected.energies().kinetic, 1e-9) << scheme;
+    EXPECT_NEAR(simulation.energies().work, expected.energies().work, 1e-9) << scheme;
+  }
+  SceneBuilder b = wheel(0);
+  add_drive(b, "shaft", 100, 2e-5);
+  Simulation simulation(b.scene, options("em", 1e-4));
+  simulation.command_effort(0, 1);
+  run(simulation, 1000);
+  // The wheel's own increments are tangent-scaled: of second order in 1e-5 rad a step.
+  EXPECT_NEAR(simulation.velocity(0), 0.1 / (kInertia + 0.2), 1e-9);
+}
+
+// A joint that moves nothing with inertia but its rotor is no longer refused.
+TEST(Drive, RotorIsEnoughToMove) {
+  SceneBuilder b;
+  b.body("nothing", 0, Vector3::Zero(), Matrix3::Zero());
+  b.joint("shaft", JointKind::Revolute, "world", "nothing", {0, 0, 0}, {0, 0, 1});
+  EXPECT_THROW(Simulation(b.scene), ModelError);
+  add_drive(b, "shaft", 10, 1e-3);
+  Simulation simulation(b.scene, options("em", 1e-3));
+  simulation.command_effort(0, 0.3);
+  run(simulation, 1000);
+  EXPECT_NEAR(simulation.velocity(0), 0.3 / 0.1, 1e-5) << "published rates are those of tangent-scaled increments";
+}
+
+/// Frequencies and mode shapes {1, s} of a mass on a spring with a rotor on the gear behind it.
+struct TwoMasses {
+  double mass, rotor, gear, spring;
+  double square(int mode) const {  // omega^2
+    const double a = (spring + gear) / mass, d = gear / rotor, c = gear / std::sqrt(mass * rotor);
+    return 0.5 * (a + d) + (mode == 0 ? -1 : 1) * std::sqrt(0.25 * (a - d) * (a - d) + c * c);
+  }
+  double shape(int mode) const { return gear / (gear - rotor * square(mode)); }  // of the rotor
+  double modal_part(int mode) const {                                            // of the start {1, 1}
+    const double s = shape(mode);
+    return (mass + rotor * s) / (mass + rotor * s * s);
+  }
+};
+
+// The mid-point rule gives every mode of a linear system the frequency 2/h atan(omega h / 2), and nothing else changes.
+TEST(Drive, ElasticGearHasTheFrequenciesOfTwoMasses) {
+  const TwoMasses system{kMass, 0.5, 800, 300};
+  const double h = 0.01, start = 0.05;
+  SceneBuilder b = slider(start, 0);
+  add_drive(b, "rail", 10, system.rotor / 100).stiffness = system.gear;
+  b.scene.springs.push_back({"rail", system.spring, 0, {}});
+  for (const std::string scheme : {"em", "newmark"}) {
+    Simulation simulation(b.scene, options(scheme, h, 1e-13));
+    double largest = 0;
+    int n = 0;
+    run(simulation, 2000, [&] {
+      double expected = 0;
+      ++n;
+      for (const int mode : {0, 1}) {
+        const double phase = 2 * std::atan(0.5 * h * std::sqrt(system.square(mode)));
+        expected += start * system.modal_part(mode) * std::cos(n * phase);
+      }
+      largest = std::max(largest, std::abs(simulation.position(0) - expected));
+    });
+    // 2000 steps are 200 to 1000 rad: frequencies agree to 1e-8 at least. Newmark's rule starts from accelerations by a
+    // difference.
+    EXPECT_LT(largest, (scheme == "em" ? 1e-8 : 1e-6) * start) << scheme;
+    EXPECT_NEAR(simulation.degrees_of_freedom(), 1, 0) << "the rotor is no unknown of the step";
+  }
+}
+
+// Accelerations of the Hilber-Hughes-Taylor family belong to another instant than the balance of a joint.
+TEST(Drive, ElasticGearIsOfSecondOrderInAllFamilies) {
+  const TwoMasses system{kMass, 0.5, 800, 300};
+  SceneBuilder b = slider(0.05, 0);
+  add_drive(b, "rail", 10, system.rotor / 100).stiffness = system.gear;
+  b.scene.springs.push_back({"rail", system.spring, 0, {}});
+  double exact = 0;
+  for (const int mode : {0, 1})
+    exact += 0.05 * system.modal_part(mode) * std::cos(0.5 * std::sqrt(system.square(mode)));
+  for (const char* scheme : {"em", "m1", "edmc2", "newmark", "hht1", "hht2", "hht3"}) {
+    double error[2];
+    for (const int k : {0, 1}) {
+      const int steps = 800 << k;
+      Simulation simulation(b.scene, options(scheme, 0.5 / steps, 1e-13));
+      run(simulation, steps);
+      error[k] = std::abs(simulation.position(0) - exact);
+    }
+    EXPECT_LT(error[1], 1e-5) << scheme;
+    EXPECT_NEAR(std::log2(error[0] / error[1]), 2, 0.2) << scheme;
+  }
+}
+
+// The play is entered and left at any place of a step, and nothing is lost or won.
+TEST(Drive, EnergyAccountThroughAThousandPassagesOfABacklash) {
+  for (const double damping : {0.0, 0.02}) {
+    SceneBuilder b = slider(0, 0.3);
+    scene::DriveDescription& drive = add_drive(b, "rail", 10, 5e-3);
+    drive.stiffness = 4000;
+    drive.backlash = 0.002;
+    drive.damping = damping;
+    b.scene.springs.push_back({"rail", 200, 0.01, {}});
+    b.scene.efforts.push_back({"rail", TimeFunction::parse("3*sin(40*t)"), {}});
+    SimulationOptions options = test::options("em", 1e-3, 1e-13);
+    options.reuse_factorisation = false;  // quadratic: nothing is left of Newton's remainder
+    Simulation simulation(b.scene, options);
+    const double begin = balance(simulation);
+    double drift = 0, scale = 0, side = 0;
+    int passages = 0;
+    for (int n = 0; n < 200000 && passages < 1000; ++n) {
+      ASSERT_TRUE(simulation.step().converged);
+      const double twist = state_of(simulation).actuators[0].angle - simulation.position(0);
+      if (std::abs(twist) > 0.001 && twist * side <= 0) {
+        passages += side != 0;
+        side = twist;
+      }
+      const Energies e = simulation.energies();
+      drift = std::max(drift, std::abs(balance(simulation) - begin));
+      scale = std::max({scale, e.total(), e.dissipated, std::abs(e.work)});
+    }
+    EXPECT_EQ(passages, 1000);
+    EXPECT_LT(drift, 1e-10 * scale);
+  }
+}
+
+// v' = (L/m) (1 - v/V): the motor's own line is a damping.
+TEST(Drive, RunsUpToItsNoLoadSpeed) {
+  const double limit = 5, speed = 2;
+  double error[2];
+  for (const int k : {0, 1}) {
+    SceneBuilder b = slider(0, 0);
+    scene::DriveDescription& drive = add_drive(b, "rail", 1, 0);
+    drive.effort_limit = limit;
+    drive.velocity_limit = speed;
+    SimulationOptions options = test::options("em", 0.01 / (1 + k), 1e-12);
+    options.reuse_factorisation = false;
+    Simulation simulation(b.scene, options);
+    simulation.command_effort(0, 100);
+    run(simulation, 1);
+    EXPECT_NEAR(simulation.effort(0), limit, 0.1) << "stalls at its limit";
+    run(simulation, (100 << k) - 1);
+    error[k] = std::abs(simulation.velocity(0) - speed * (1 - std::exp(-limit / (kMass * speed))));
+    EXPECT_NEAR(balance(simulation), 0, 1e-10);
+    run(simulation, 4000);
+    EXPECT_NEAR(simulation.velocity(0), speed, 1e-6);
+    EXPECT_NEAR(simulation.effort(0), 0, 1e-6);
+  }
+  EXPECT_NEAR(std::log2(error[0] / error[1]), 2, 0.2);
+  // Against a load it runs where the line is the load.
+  SceneBuilder b = slider(0, 0);
+  scene::DriveDescription& drive = add_drive(b, "rail", 10, 2e-3);
+  drive.stiffness = 2000;
+  drive.damping = 2;
+  drive.effort_limit = limit;
+  drive.velocity_limit = speed;
+  b.load("block", Vector3::Zero(), {-3, 0, 0});
+  Simulation simulation(b.scene, options("em", 1e-3));
+  simulation.command_effort(0, 100);
+  run(simulation, 12000);
+  EXPECT_NEAR(simulation.effort(0), 3, 1e-4);
+  EXPECT_NEAR(simulation.velocity(0), speed * (1 - 3 / limit), 1e-4);
+}
+
+// Driving, efficiency of the effort arrives; driven, 2 - 1/efficiency of the load gets through to the motor.
+TEST(Drive, LosesByItsEfficiency) {
+  for (const bool is_elastic : {false, true}) {
+    const double rotor = 0.5, efficiency = 0.8;
+    SceneBuilder b = slider(0, 1);
+    scene::DriveDescription& drive = add_drive(b, "rail", 10, rotor / 100);
+    drive.efficiency = efficiency;
+    if (is_elastic) drive.stiffness = 1e6, drive.damping = 500;
+    Simulation simulation(b.scene, options("em", 1e-3, 1e-12));
+    simulation.command_effort(0, 4);
+    const double begin = balance(simulation);
+    run(simulation, 1000);
+    const double driving = 4 * efficiency / (kMass + rotor * efficiency);
+    EXPECT_NEAR(simulation.velocity(0), 1 + driving, is_elastic ? 1e-3 : 1e-6);
+    EXPECT_NEAR(balance(simulation), begin, 1e-9);
+    b.load("block", Vector3::Zero(), {3, 0, 0});
+    Simulation driven(b.scene, options("em", 1e-3, 1e-12));
+    run(driven, 1000);
+    const double back = 1 / (2 - 1 / efficiency);  // the rotor resists by this much more
+    EXPECT_NEAR(driven.velocity(0), 1 + 3 / (kMass + rotor * back), is_elastic ? 1e-3 : 1e-6);
+  }
+}
+
+// Friction of the motor, behind the gear: by the joint's own law.
+TEST(Drive, RotorSticks) {
+  SceneBuilder b = slider(0, 0);
+  b.scene.joints[0].friction_law.law = scene::FrictionDescription::Law::Coulomb;
+  scene::DriveDescription& drive = add_drive(b, "rail", 10, 5e-3);
+  drive.stiffness = 100;
+  drive.friction = 2;
+  b.load("block", Vector3::Zero(), {0.9, 0, 0});
+  Simulation simulation(b.scene, options("em", 1e-3, 1e-12));
+  const double h = 1e-3, omega = 2 / h * std::atan(0.5 * h * std::sqrt(100 / kMass));
+  double largest = 0;
+  int n = 0;
+  run(simulation, 3000, [&] {
+    EXPECT_EQ(state_of(simulation).actuators[0].angle, 0) << "the spring's 0.9 (1 - cos) stays below 2";
+    const double expected = 0.009 * (1 - std::cos(omega * h * ++n));
+    largest = std::max(largest, std::abs(simulation.position(0) - expected));
+  });
+  EXPECT_LT(largest, 1e-9);
+  simulation.command_effort(0, 5);
+  const double begin = balance(simulation);
+  run(simulation, 2000);
+  EXPECT_GT(state_of(simulation).actuators[0].angle, 0.1);
+  EXPECT_NEAR(balance(simulation), begin, 1e-9 * simulation.energies().dissipated);
+}
+
+// A flexible arm on an elastic gear keeps its account.
+TEST(Drive, FlexibleArmKeepsItsAccount) {
+  SceneBuilder b;
+  b.scene.gravity = {0, 0, -9.81};
+  b.beam("arm", {{1, 0, 0}}, scene::DirectSection{2e4, 1e4, 1e4, 20, 25, 30, 0.5, 0.02, 0.01, 0.01}, 2, 2);
+  b.joint("shoulder", JointKind::Revolute, "world", "arm", {0, 0, 0}, {0, 1, 0});
+  scene::DriveDescription& drive = add_drive(b, "shoulder", 100, 2e-5);
+  drive.stiffness = 500;
+  drive.damping = 0.5;
+  drive.backlash = 1e-3;
+  drive.friction = 0.2;
+  drive.efficiency = 0.85;
+  b.scene.springs.push_back({"shoulder", 3, -0.5, {}});
+  b.scene.efforts.push_back({"shoulder", TimeFunction::parse("-2+3*sin(8*t)"), {}});
+  Simulation simulation(b.scene, options("em", 1e-3, 1e-11));
+  const double begin = balance(simulation);
+  double scale = 0;
+  run(simulation, 2000, [&] {
+    const Energies e = simulation.energies();
+    scale = std::max({scale, e.kinetic, e.strain, std::abs(e.potential), e.dissipated});
+    ASSERT_LT(std::abs(balance(simulation) - begin), 1e-9 * (scale + 1));
+  });
+  EXPECT_GT(simulation.energies().dissipated, 0.1);
+}
+
+// Where the motor's effort is given, an elastic gear bends but does not change the equilibrium.
+TEST(Drive, StaticsOfSpringAndGear) {
+  SceneBuilder b = slider(0, 0);
+  b.scene.initial_joints.clear();
+  scene::DriveDescription& drive = add_drive(b, "rail", 10, 5e-3);
+  drive.stiffness = 50;
+  b.scene.springs.push_back({"rail", 40, 0.1, {}});
+  b.scene.efforts.push_back({"rail", TimeFunction(2.0), {}});
+  b.load("block", Vector3::Zero(), {6, 0, 0});
+  Simulation simulation(b.scene);
+  ASSERT_TRUE(simulation.solve_static(2).converged);
+  EXPECT_NEAR(simulation.position(0), 0.1 + (6 + 2) / 40.0, 1e-12);
+  EXPECT_NEAR(state_of(simulation).actuators[0].angle, simulation.position(0) + 2 / 50.0, 1e-12);
+  run(simulation, 10);
+  EXPECT_NEAR(simulation.position(0), 0.3, 1e-12) << "and stays there";
+}
+
+double angular_frequency(const Mode& mode) {
+  return 2 * 3.14159265358979323846 * mode.frequency;
+}
+
+// In a free motion a rotor has inertia, of which an equilibrium knows nothing.
+TEST(Drive, ModesOfTwoMasses) {
+  const TwoMasses system{kMass, 0.5, 800, 300};
+  SceneBuilder b = slider(0, 0);
+  scene::DriveDescription& drive = add_drive(b, "rail", 10, system.rotor / 100);
+  b.scene.springs.push_back({"rail", system.spring, 0, {}});
+  std::vector<Mode> modes = Simulation(b.scene).natural_modes(4);
+  ASSERT_EQ(modes.size(), 1u) << "a rigid gear";
+  EXPECT_NEAR(angular_frequency(modes[0]), std::sqrt(300 / (kMass + 0.5)), 1e-10);
+  drive.stiffness = system.gear;
+  modes = Simulation(b.scene).natural_modes(4);
+  ASSERT_EQ(modes.size(), 2u);
+  for (const int mode : {0, 1}) {
+    EXPECT_NEAR(angular_frequency(modes[mode]), std::sqrt(system.square(mode)), 1e-8 * std::sqrt(system.square(mode)));
+    EXPECT_TRUE(modes[mode].rate == 0);
+  }
+  // With a servo on the motor in place of the spring, and its damping.
+  b.scene.springs.clear();
+  scene::ServoDescription servo;
+  servo.coordinate = "rail";
+  servo.kp = 500;
+  servo.kd = 20;
+  b.scene.servos.push_back(servo);
+  modes = Simulation(b.scene).natural_modes(4);
+  Eigen::Matrix4d matrix;
+  const double gear = system.gear, rotor = system.rotor;
+  matrix << 0, 0, 1, 0, 0, 0, 0, 1, -gear / kMass, gear / kMass, 0, 0, gear / rotor, -(gear + 500) / rotor, 0,
+      -20 / rotor;
+  const Eigen::Vector4cd exact = matrix.eigenvalues();
+  ASSERT_EQ(modes.size(), 2u);
+  for (const Mode& mode : modes) {
+    const std::complex<double> found(mode.rate, angular_frequency(mode));
+    EXPECT_LT((exact.array() - found).abs().minCoeff(), 1e-8 * std::abs(found));
+  }
+}
+
+/// A frame on a ball joint that carries a wheel on its axis z, spinning relative to it, and a pendulum's weight. With a
+/// rotor the wheel's inertia about the axis is the drive's.
+SceneBuilder gyroscope(bool is_rotor, double spin) {
+  const double axial = 0.02;
+  SceneBuilder b;
+  b.scene.gravity = {0, 0, -9.81};
+  b.beam("stem", {{0, 0, 0.4}}, scene::DirectSection{2e4, 1e4, 1e4, 60, 80, 90, 0.3, 2e-4, 1e-4, 1e-4}, 2, 2);
+  b.joint("ball", JointKind::Spherical, "world", "stem", {0, 0, 0});
+  b.body("housing", 0.8, {0, 0, 0.05}, Vector3(0.01, 0.012, 0.008).asDiagonal());
+  b.joint("weld", JointKind::Fixed, "stem", "housing", {0, 0, 0.4});
+  b.body("wheel", 0.5, {0, 0, 0}, Vector3(0.006, 0.006, is_rotor ? 1e-5 : axial).asDiagonal());
+  b.joint("shaft", JointKind::Revolute, "housing", "wheel", {0, 0, 0.1}, {0, 0, 1});
+  initial_joint(b, "ball/ry", 0.5, 0);
+  initial_joint(b, "shaft", 0, spin);
+  if (is_rotor) {
+    scene::DriveDescription& drive = add_drive(b, "shaft", 1, axial - 1e-5);
+    drive.axis = Vector3::UnitZ();
+  }
+  return b;
+}
+
+// A rotor with an axis is a wheel on its parent: precession and nutation of a flexible top agree with those of a body.
+TEST(Drive, RotorIsAGyroscope) {
+  for (const char* scheme : {"em", "m1", "std"}) {
+    double error[2];
+    for (const int k : {0, 1}) {
+      const int steps = 500 << k;
+      Simulation rotor(gyroscope(true, 60).scene, options(scheme, 0.5 / steps, 1e-11)),
+          body(gyroscope(false, 60).scene, options(scheme, 0.5 / steps, 1e-11));
+      run(rotor, steps);
+      run(body, steps);
+      error[k] = (rotor.link_pose(3).position - body.link_pose(3).position).norm();
+      EXPECT_GT((rotor.link_pose(3).position - Simulation(gyroscope(true, 60).scene).link_pose(3).position).norm(),
+                0.05)
+          << "it precesses";
+      EXPECT_NEAR(rotor.energies().kinetic, body.energies().kinetic, 1e-3 * body.energies().kinetic);
+    }
+    // The wheel's increments are tangent-scaled, the rotor's are not: both are of second order.
+    EXPECT_LT(error[1], 2e-4) << scheme;
+    EXPECT_GT(std::log2(error[0] / error[1]), 1.7) << scheme;
+  }
+}
+
+// Without weight and with a motor that works between frame and rotor nothing of energy and angular momentum is lost.
+TEST(Drive, GyroscopeKeepsEnergyAndAngularMomentum) {
+  for (const bool is_elastic : {false, true}) {
+    SceneBuilder b;
+    b.body("frame", 1.5, {0.05, 0.02, 0}, Vector3(0.03, 0.05, 0.06).asDiagonal());
+    b.joint("flight", JointKind::Floating, "world", "frame");
+    b.beam("arm", {{0.5, 0, 0}}, scene::DirectSection{2e4, 1e4, 1e4, 60, 80, 90, 0.3, 2e-4, 1e-4, 1e-4}, 2, 2);
+    b.joint("shoulder", JointKind::Revolute, "frame", "arm", {0.1, 0, 0}, {0, 1, 0});
+    b.body("hand", 0.4, {0.1, 0.03, 0}, Vector3(2e-3, 3e-3, 2e-3).asDiagonal());
+    b.joint("elbow", JointKind::Revolute, "arm", "hand", {0.5, 0, 0}, {0, 0.6, 0.8});
+    for (const char* joint : {"shoulder", "elbow"}) {
+      scene::DriveDescription& drive = add_drive(b, joint, 50, 2e-5);
+      drive.axis = Vector3(0.6, 0, 0.8);
+      if (is_elastic) drive.stiffness = 400, drive.backlash = 1e-3;
+    }
+    initial_field(b, "frame", {0, 0, 0}, {1, -2, 3});
+    b.scene.initial_joints.push_back({"shoulder", 0.3, 2, {}, true});
+    b.scene.initial_joints.push_back({"elbow", 0.3, -3, {}, true});
+    b.scene.efforts.push_back({"shoulder", TimeFunction::parse("3*sin(9*t)"), {}});
+    b.scene.efforts.push_back({"elbow", TimeFunction::parse("cos(7*t)"), {}});
+    SimulationOptions options = test::options("em", 2e-3, 1e-13);
+    options.reuse_factorisation = false;
+    Simulation simulation(b.scene, options);
+    InvariantDrift drift(simulation);
+    run(simulation, 1500, [&] { drift.observe(); });
+    EXPECT_LT(drift.energy(), 1e-10);
+    EXPECT_LT(drift.angular_momentum(), 1e-10);
+    EXPECT_LT(drift.momentum(), 1e-10);
+  }
+}
+
+TEST(Drive, GyroscopeIsRefusedWhereItIsNotKnown) {
+  EXPECT_THROW(Simulation(gyroscope(true, 60).scene, options("newmark", 1e-3)), ModelError);
+  SceneBuilder b = gyroscope(true, 60);
+  b.scene.drives[0].stiffness = 100;
+  for (scene::JointDescription& joint : b.scene.joints)
+    joint.friction_law.law = scene::FrictionDescription::Law::Coulomb;
+  EXPECT_THROW(Simulation(b.scene), ModelError);
+}
+
+}  // namespace
+}  // namespace flexarm::test

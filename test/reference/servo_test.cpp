@@ -1,0 +1,310 @@
+// Servos: continuous ones against closed formulas and a reference integration, sampled ones against the stability
+// limits of their difference equations.
+#include <array>
+
+#include <Eigen/Eigenvalues>
+
+#include "reference/dynamics_runs.h"
+
+namespace flexarm::test {
+namespace {
+
+using Mode = scene::ServoDescription::Mode;
+
+constexpr double kMass = 2.0;
+
+/// A mass on a rail along x; no gravity.
+SceneBuilder slider(double position = 0, double velocity = 0) {
+  SceneBuilder b;
+  b.body("block", kMass, {0.1, 0.2, 0}, Matrix3::Identity());
+  b.joint("rail", scene::JointKind::Prismatic, "world", "block", {0, 0, 0}, {1, 0, 0});
+  initial_joint(b, "rail", position, velocity);
+  return b;
+}
+
+scene::ServoDescription& add_servo(SceneBuilder& b, Mode mode, double kp, double kd = 0, double ki = 0) {
+  scene::ServoDescription servo;
+  servo.coordinate = b.scene.joints.front().name;
+  servo.mode = mode;
+  servo.kp = kp;
+  servo.kd = kd;
+  servo.ki = ki;
+  b.scene.servos.push_back(servo);
+  return b.scene.servos.back();
+}
+
+scene::DriveDescription& add_drive(SceneBuilder& b, double rotor_inertia) {
+  scene::DriveDescription drive;
+  drive.coordinate = b.scene.joints.front().name;
+  drive.gear = 10;
+  drive.rotor_inertia = rotor_inertia / 100;
+  b.scene.drives.push_back(drive);
+  return b.scene.drives.back();
+}
+
+double balance(const Simulation& simulation) {
+  const Energies e = simulation.energies();
+  return e.total() - e.work + e.dissipated;
+}
+
+double observed_order(const std::array<double, 2>& error) {
+  return std::log2(error[0] / error[1]);
+}
+
+// m q'' + kd q' + kp q = kp: a step of the set point.
+TEST(Servo, PositionRespondsAsTheSecondOrderSystem) {
+  const double kp = 60, kd = 8, rotor = 1, mass = kMass + rotor;
+  const double decay = kd / (2 * mass), omega = std::sqrt(kp / mass - decay * decay), end = 0.8;
+  const double expected = 1 - std::exp(-decay * end) * (std::cos(omega * end) + decay / omega * std::sin(omega * end));
+  for (const char* scheme : {"em", "m1", "edmc2", "newmark", "hht1", "hht3", "em4"}) {
+    std::array<double, 2> error;
+    for (const int k : {0, 1}) {
+      SceneBuilder b = slider();
+      add_drive(b, rotor);
+      add_servo(b, Mode::Position, kp, kd).set_point = TimeFunction(1.0);
+      const int steps = 100 << k;
+      Simulation simulation(b.scene, options(scheme, end / steps, 1e-12));
+      run(simulation, steps);
+      error[k] = std::abs(simulation.position(0) - expected);
+    }
+    EXPECT_LT(error[1], 1e-3) << scheme;
+    // Of second order at least: only the continuous mean of the composition is better.
+    EXPECT_GT(observed_order(error), 1.85) << scheme;
+  }
+}
+
+// m v' = kp (w - v)
+TEST(Servo, VelocityRespondsAsTheFirstOrderSystem) {
+  const double kp = 6, wanted = 1.5, end = 0.5;
+  const double expected = wanted * (1 - std::exp(-kp / kMass * end));
+  for (const char* scheme : {"em", "newmark"}) {
+    std::array<double, 2> error;
+    for (const int k : {0, 1}) {
+      SceneBuilder b = slider();
+      add_servo(b, Mode::Velocity, kp).set_point = TimeFunction(wanted);
+      const int steps = 100 << k;
+      Simulation simulation(b.scene, options(scheme, end / steps, 1e-12));
+      run(simulation, steps);
+      error[k] = std::abs(simulation.velocity(0) - expected);
+    }
+    EXPECT_LT(error[1], 1e-3) << scheme;
+    EXPECT_GT(observed_order(error), 1.85) << scheme;
+  }
+  // The integral takes a load away.
+  SceneBuilder b = slider();
+  add_servo(b, Mode::Velocity, 20, 0, 60).set_point = TimeFunction(wanted);
+  b.load("block", Vector3::Zero(), {-30, 0, 0});
+  Simulation simulation(b.scene, options("em", 1e-3));
+  run(simulation, 5000);
+  EXPECT_NEAR(simulation.velocity(0), wanted, 1e-6);
+  EXPECT_NEAR(simulation.effort(0), 30, 1e-5);
+}
+
+/// exp(matrix t) start.
+Eigen::Vector4d evolved(const Eigen::Matrix4d& matrix, const Eigen::Vector4d& start, double t) {
+  const Eigen::EigenSolver<Eigen::Matrix4d> solver(matrix);
+  const Eigen::Matrix4cd vectors = solver.eigenvectors();
+  const Eigen::Vector4cd parts = vectors.partialPivLu().solve(start.cast<std::complex<double>>());
+  return (vectors * (solver.eigenvalues().array() * t).exp().matrix().asDiagonal() * parts).real();
+}
+
+// On the motor's side of an elastic gear, and on the link's, where the rotor is between it and what it controls.
+TEST(Servo, OnEitherSideOfAnElasticGear) {
+  const double kp = 60, kd = 8, rotor = 0.5, gear = 400, damping = 1, end = 0.6;
+  for (const bool on_link : {false, true})
+    for (const char* scheme : {"em", "newmark"}) {  // dampers of joints are of first order in hht*
+      Eigen::Matrix4d matrix;                       // of {q, theta, q', theta'} less what is asked for
+      const double on_q = on_link ? 1 : 0, on_theta = 1 - on_q;
+      matrix << 0, 0, 1, 0,  //
+          0, 0, 0, 1,        //
+          -gear / kMass, gear / kMass, -damping / kMass, damping / kMass, (gear - kp * on_q) / rotor,
+          -(gear + kp * on_theta) / rotor, (damping - kd * on_q) / rotor, -(damping + kd * on_theta) / rotor;
+      const double expected = 1 + evolved(matrix, {-1, -1, 0, 0}, end)[0];
+      std::array<double, 2> error;
+      for (const int k : {0, 1}) {
+        SceneBuilder b = slider();
+        scene::DriveDescription& drive = add_drive(b, rotor);
+        drive.stiffness = gear;
+        drive.damping = damping;
+        scene::ServoDescription& servo = add_servo(b, Mode::Position, kp, kd);
+        servo.set_point = TimeFunction(1.0);
+        if (on_link) servo.side = scene::ServoDescription::Side::Link;
+        const int steps = 400 << k;
+        Simulation simulation(b.scene, options(scheme, end / steps, 1e-12));
+        run(simulation, steps);
+        error[k] = std::abs(simulation.position(0) - expected);
+      }
+      EXPECT_LT(error[1], 1e-3) << scheme << on_link;
+      EXPECT_GT(observed_order(error), 1.8) << scheme << on_link;
+    }
+}
+
+// An infinite gain is stiff, and what it is asked to do is done in some steps, for good. (Gains that the steps resolve
+// ring without a damping, as they do in time.)
+TEST(Servo, AnyGainIsStable) {
+  for (const double kp : {1e8, 1e10, 1e12})
+    for (const double kd : {0.0, 1e-3 * kp})
+      for (const bool is_elastic : {false, true}) {
+        SceneBuilder b = slider();
+        scene::DriveDescription& drive = add_drive(b, 0.5);
+        if (is_elastic) drive.stiffness = 1e4, drive.damping = 50;
+        add_servo(b, Mode::Position, kp, kd);
+        b.load("block", Vector3::Zero(), {50, 0, 0});
+        Simulation simulation(b.scene, options("em", 1e-3));
+        simulation.command_set_point(0, 0.3);
+        run(simulation, 3000);
+        const double bent = is_elastic ? 50 / 1e4 : 0;
+        EXPECT_NEAR(simulation.position(0), 0.3 + 50 / kp + bent, 1e-6) << kp << " " << kd << is_elastic;
+        EXPECT_NEAR(state_of(simulation).actuators[0].rate, 0, 1e-6) << kp << " " << kd << is_elastic;
+        EXPECT_NEAR(simulation.effort(0), -50, kp < 1e12 ? 1e-3 : 1) << "to the digits of a position, times kp";
+      }
+}
+
+/// By Runge and Kutta's rule in short steps: q'' = M/m, I' = e + (M - raw)/(ki T), M = raw = kp e - kd q' + ki I, cut.
+double reference_position(double kp, double kd, double ki, double limit, double tracking, double end) {
+  using State = Eigen::Vector3d;  // q, q', I
+  const auto rate = [&](const State& s) {
+    const double error = 1 - s[0], raw = kp * error - kd * s[1] + ki * s[2], motor = std::clamp(raw, -limit, limit);
+    return State(s[1], motor / kMass, error + (tracking > 0 ? (motor - raw) / (ki * tracking) : 0.0));
+  };
+  State s = State::Zero();
+  const int steps = 200000;
+  const double h = end / steps;
+  for (int n = 0; n < steps; ++n) {
+    const State a = rate(s), b = rate(s + 0.5 * h * a), c = rate(s + 0.5 * h * b), d = rate(s + h * c);
+    s += h / 6 * (a + 2 * b + 2 * c + d);
+  }
+  return s[0];
+}
+
+TEST(Servo, SaturatesWithAndWithoutWindup) {
+  const double kp = 40, kd = 12, ki = 80, limit = 6, end = 3;
+  double position[2];
+  for (const double tracking : {0.0, 0.2}) {
+    const double expected = reference_position(kp, kd, ki, limit, tracking, end);
+    std::array<double, 2> error;
+    for (const int k : {0, 1}) {
+      SceneBuilder b = slider();
+      scene::ServoDescription& servo = add_servo(b, Mode::Position, kp, kd, ki);
+      servo.set_point = TimeFunction(1.0);
+      servo.effort_limit = limit;
+      servo.anti_windup = tracking;
+      const int steps = 1000 << k;
+      Simulation simulation(b.scene, options("em", end / steps, 1e-12));
+      run(simulation, steps, [&] { EXPECT_LE(std::abs(simulation.effort(0)), limit); });
+      error[k] = std::abs(simulation.position(0) - expected);
+      position[tracking > 0] = simulation.position(0);
+    }
+    EXPECT_LT(error[1], 1e-4) << tracking;
+    EXPECT_GT(observed_order(error), 1.5) << "kinks lie anywhere in a step: " << tracking;
+  }
+  EXPECT_GT(std::abs(position[0] - 1), 3 * std::abs(position[1] - 1)) << "wound up it is farther off";
+}
+
+// Of m v' = -K w, held over T, where w is the difference quotient of positions of the sample before: with x = K T/m the
+// roots of z^2 + (x/2 - 1) z + x/2 leave the unit circle at x = 2; with a delay of T those of z^3 - z^2 + x (z + 1)/2
+// at x = 2 (sqrt(2) - 1).
+TEST(Servo, SampledHasTheStabilityLimitOfItsDifferenceEquation) {
+  const double period = 0.004;
+  for (const bool is_late : {false, true}) {
+    const double limit = is_late ? 2 * (std::sqrt(2) - 1) : 2.0;
+    for (const char* scheme : {"em", "m1"})
+      for (const double part : {0.97, 1.03}) {
+        SceneBuilder b = slider(0, 1);
+        scene::ServoDescription& servo = add_servo(b, Mode::Velocity, part * limit * kMass / period);
+        servo.sample_time = period;
+        servo.delay = is_late ? period : 0;
+        Simulation simulation(b.scene, options(scheme, 0.001));
+        double early = 0, late = 0;
+        int n = 0;
+        run(simulation, 4000, [&] {
+          ++n;
+          double& largest = n < 400 ? early : late;
+          if (n < 400 || n > 3600) largest = std::max(largest, std::abs(state_of(simulation).actuators[0].rate));
+        });
+        if (part < 1)
+          EXPECT_LT(late, 1e-2 * early) << scheme << is_late;
+        else
+          EXPECT_GT(late, 1e2 * early) << scheme << is_late;
+      }
+  }
+}
+
+// A delay that is no multiple of the step splits it.
+TEST(Servo, SampledOutputsActAfterTheirDelay) {
+  SceneBuilder b = slider();
+  scene::ServoDescription& servo = add_servo(b, Mode::Effort, 0);
+  servo.set_point = TimeFunction(4.0);
+  servo.sample_time = 0.01;
+  servo.delay = 0.0175;
+  Simulation simulation(b.scene, options("em", 0.005));
+  run(simulation, 10);
+  EXPECT_NEAR(simulation.velocity(0), 4 * (0.05 - 0.0175) / kMass, 1e-12);
+  EXPECT_DOUBLE_EQ(simulation.effort(0), 4);
+}
+
+TEST(Servo, WorkIsInTheAccount) {
+  for (const double sample_time : {0.0, 0.004}) {
+    SceneBuilder b = slider(0.2, -1);
+    scene::DriveDescription& drive = add_drive(b, 0.5);
+    drive.stiffness = 900;
+    drive.damping = 3;
+    drive.backlash = 0.01;
+    drive.effort_limit = 40;
+    drive.velocity_limit = 3;
+    scene::ServoDescription& servo = add_servo(b, Mode::Position, 200, 20, 100);
+    servo.set_point = TimeFunction::parse("0.3*sin(5*t)");
+    servo.feedforward = TimeFunction::parse("cos(3*t)");
+    servo.anti_windup = 0.1;
+    servo.sample_time = sample_time;
+    servo.delay = sample_time;
+    SimulationOptions options = test::options("em", 1e-3, 1e-13);
+    options.reuse_factorisation = false;
+    Simulation simulation(b.scene, options);
+    const double begin = balance(simulation);
+    double scale = 0;
+    run(simulation, 3000, [&] {
+      const Energies e = simulation.energies();
+      scale = std::max({scale, e.total(), e.dissipated, std::abs(e.work)});
+      ASSERT_LT(std::abs(balance(simulation) - begin), 1e-10 * scale);
+    });
+    EXPECT_NEAR(simulation.position(0), 0.3 * std::sin(15), 0.15) << "follows it";
+  }
+}
+
+TEST(Servo, TakesCommands) {
+  SceneBuilder b = slider(0.1);
+  add_servo(b, Mode::Position, 1e3, 100);
+  Simulation simulation(b.scene, options("em", 1e-3));
+  EXPECT_TRUE(simulation.has_servo(0));
+  run(simulation, 100);
+  EXPECT_NEAR(simulation.position(0), 0.1, 1e-12) << "holds where it starts";
+  simulation.command_set_point(0, 0.4);
+  run(simulation, 2000);
+  EXPECT_NEAR(simulation.position(0), 0.4, 1e-6);
+  simulation.release_set_point(0);
+  run(simulation, 2000);
+  EXPECT_NEAR(simulation.position(0), 0.1, 1e-6);
+  EXPECT_THROW(simulation.command_set_point(0, std::nan("")), std::invalid_argument);
+  Simulation without(slider().scene);
+  EXPECT_FALSE(without.has_servo(0));
+  EXPECT_THROW(without.command_set_point(0, 1), std::invalid_argument);
+}
+
+TEST(Servo, HoldsInStatics) {
+  for (const bool is_elastic : {false, true}) {
+    SceneBuilder b = slider(0.1);
+    scene::DriveDescription& drive = add_drive(b, 0.5);
+    if (is_elastic) drive.stiffness = 300;
+    add_servo(b, Mode::Position, 200, 10).set_point = TimeFunction(0.2);
+    b.load("block", Vector3::Zero(), {6, 0, 0});
+    Simulation simulation(b.scene);
+    ASSERT_TRUE(simulation.solve_static(1).converged);
+    EXPECT_NEAR(simulation.position(0), 0.2 + 6 / 200.0 + (is_elastic ? 6 / 300.0 : 0), 1e-12);
+    run(simulation, 20);
+    EXPECT_NEAR(simulation.velocity(0), 0, 1e-9) << "at rest there";
+  }
+}
+
+}  // namespace
+}  // namespace flexarm::test
