@@ -22,8 +22,7 @@ STEPS = 2000  # of 1 ms: the arm has come to rest by then
 class Sensors(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.arm = SimulatedArm()
-        cls.arm.pause()
+        cls.arm = SimulatedArm()  # paused from the start: nothing is on its way
         cls.received = {name: [] for name in TOPICS}
         subscribers = [
             rospy.Subscriber("sensors/" + name, message_type, cls.received[name].append, queue_size=10000)
