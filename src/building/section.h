@@ -30,7 +30,8 @@ SectionProperties referred_to_center_of_mass(const SectionProperties& section);
 /// The section along a line, by arc length of the reference line [m].
 class SectionLine {
  public:
-  explicit SectionLine(const scene::Section& section = scene::DirectSection());
+  SectionLine() : SectionLine(scene::Section()) {}
+  explicit SectionLine(const scene::Section& section);
   /// The same section everywhere; for tests.
   explicit SectionLine(const SectionProperties& uniform) : uniform_(uniform) {}
 
