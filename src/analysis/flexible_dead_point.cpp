@@ -110,8 +110,6 @@ std::string link_strained_in_second_order(const Model& model, const State& start
     mechanism.move(mechanism.answer(mechanism.forces(kHoldingDrag * stiffness)));
   const double left = mechanism.strain_energy() - before;
   const double least = kStrains * stiffness * std::pow(kWay, 4);
-  fprintf(stderr, "dot %g vs %g strained %g left %g least %g stiffness %g\n", motion.dot(free),
-          drag * ways.sum_of_squares(), strained, left, least, stiffness);
   return left > std::max(kLeft * strained, least) ? most_strained_link(model, mechanism.state()) : "";
 }
 
@@ -122,7 +120,7 @@ std::string link_at_dead_point(const Model& model, const State& start, double co
   const Eigen::Index unknowns = DegreesOfFreedom(model).unknowns;
   for (int k = 0; k < kMotions; ++k) {
     const Eigen::VectorXd general = general_vector(unknowns + k).tail(unknowns);
-    const std::string link = link_strained_in_second_order(model, start, contact_time, general);
+    std::string link = link_strained_in_second_order(model, start, contact_time, general);
     if (!link.empty()) return link;
   }
   return "";

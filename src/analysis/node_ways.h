@@ -43,6 +43,7 @@ inline std::vector<ComplexVector6> node_motion_of_solution(const StepSystem& sys
   const DegreesOfFreedom& dof = system.degrees_of_freedom();
   const double* scalars = system.tangent().expanded_solution();
   std::vector<ComplexVector6> motion;
+  motion.reserve(dof.node_count);
   for (int node = 0; node < dof.node_count; ++node)
     motion.emplace_back(Eigen::Map<const Vector6>(scalars + dof.first[node]).cast<std::complex<double>>());
   return motion;
