@@ -20,7 +20,7 @@ constexpr NumberRange kRate{"> 0 and at most 1e9", [](double x) { return x > 0 &
 /// One number for all errors, or one for each.
 std::vector<double> read_errors(const XmlElement& sensor, const char* attribute, std::size_t count) {
   if (!sensor.has(attribute)) return {};
-  const std::vector<double> errors = sensor.all_numbers(attribute, kMostErrors).value_or(std::vector<double>());
+  std::vector<double> errors = sensor.all_numbers(attribute, kMostErrors).value_or(std::vector<double>());
   if (errors.empty() || errors.size() == 1 || errors.size() == count) return errors;
   sensor.attribute_error(attribute, count == 1 ? fmt::format("{} must be 1 number", attribute)
                                                : fmt::format("{} must be 1 number or {}", attribute, count));

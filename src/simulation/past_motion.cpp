@@ -45,7 +45,7 @@ Vector3 MeanRates::change_at_end() const {
   const auto slope = [&](int i, int k) { return Vector3((rate[i] - rate[k]) / (middle[i] - middle[k])); };
   if (count == 2) return slope(0, 1);
   // Means of two steps have lost what alternates.
-  const Vector3 mean = slope(0, 2);
+  Vector3 mean = slope(0, 2);
   if (count == 3) return mean;
   const auto place = [&](int i) { return 0.5 * (middle[i] + middle[i + 1]); };
   const Vector3 last = (slope(0, 1) - slope(1, 2)) / (place(0) - place(1));
