@@ -1,15 +1,23 @@
 #include "recording/replaced_file.h"
 
-#include <filesystem>
 #include <stdexcept>
 
 namespace flexarm::recording {
+namespace {
 
-namespace fs = std::filesystem;
+template <class Work>
+void naming(const std::string& path, const Work& work) {
+  try {
+    work();
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error("'" + path + "' " + error.what());
+  }
+}
 
-ReplacedFile::~ReplacedFile() {
-  std::error_code ignored;
-  fs::remove(unfinished_, ignored);
+}  // namespace
+
+ReplacedFile::ReplacedFile(const std::string& path) : path_(path) {
+  naming(path_, [&] { file_.emplace(path); });
 }
 
 void ReplacedFile::fail(const std::string& reason) const {
@@ -17,9 +25,7 @@ void ReplacedFile::fail(const std::string& reason) const {
 }
 
 void ReplacedFile::put_in_place() {
-  std::error_code error;
-  fs::rename(unfinished_, path_, error);
-  if (error) fail(error.message());
+  naming(path_, [&] { file_->put_in_place(); });
 }
 
 }  // namespace flexarm::recording

@@ -64,14 +64,11 @@ class Descriptor {
 
 }  // namespace
 
-UnfinishedFile::UnfinishedFile(const std::string& path, std::string_view text)
-    : place_(place_of(path)), temporary_(place_ + ".partial") {
+UnfinishedFile::UnfinishedFile(const std::string& path) : place_(place_of(path)), temporary_(place_ + ".partial") {}
+
+UnfinishedFile::UnfinishedFile(const std::string& path, std::string_view text) : UnfinishedFile(path) {
   Descriptor file(temporary_, O_WRONLY | O_CREAT | O_TRUNC);
-  if (!file.is_open()) fail_by_errno();
-  if (file.write(text) && file.synchronise() && file.close()) return;
-  const int error = errno;
-  std::remove(temporary_.c_str());
-  fail(std::strerror(error));
+  if (!file.is_open() || !file.write(text) || !file.synchronise() || !file.close()) fail_by_errno();
 }
 
 UnfinishedFile::~UnfinishedFile() {
@@ -79,6 +76,8 @@ UnfinishedFile::~UnfinishedFile() {
 }
 
 void UnfinishedFile::put_in_place() {
+  const Descriptor file(temporary_, O_RDONLY);
+  if (!file.is_open() || !file.synchronise()) fail_by_errno();
   if (std::rename(temporary_.c_str(), place_.c_str()) != 0) fail_by_errno();
   temporary_.clear();
   // The new name, too, is to outlive a loss of power; where folders cannot be synchronised, it comes as it may.

@@ -6,9 +6,12 @@
 
 namespace flexarm {
 
-/// Text that is on the disk beside the place that it is for, and is removed again unless it is put there.
+/// A file beside the place that it is for, which is removed again unless it is put there.
 class UnfinishedFile {
  public:
+  /// Others write it, at temporary().
+  /// @throws std::runtime_error saying why nothing can be put at `path`.
+  explicit UnfinishedFile(const std::string& path);
   /// Writes `text` to where it outlives a loss of power.
   /// @throws std::runtime_error saying why that cannot be, or why nothing can be put at `path`.
   UnfinishedFile(const std::string& path, std::string_view text);
@@ -16,7 +19,8 @@ class UnfinishedFile {
   UnfinishedFile(const UnfinishedFile&) = delete;
   UnfinishedFile& operator=(const UnfinishedFile&) = delete;
 
-  /// In the place of what is at `path`.
+  const std::string& temporary() const { return temporary_; }
+  /// In the place of what is at `path`, where it outlives a loss of power; who wrote it has closed it.
   /// @throws std::runtime_error saying why that cannot be.
   void put_in_place();
 

@@ -110,6 +110,22 @@ class Recording(unittest.TestCase):
             self.assertEqual(result.returncode, 2, result.stderr)
             self.assertIn("cannot write '%s'" % self.path(name), result.stderr)
 
+    def test_links_stay_links(self):
+        for name in ("arm.h5", "arm.bag"):
+            self.record(name, "--until", "0.01")
+            os.symlink(name, self.path("link_to_" + name))
+            before = os.stat(self.path(name)).st_ino
+            self.record("link_to_" + name, "--until", "0.01")
+            self.assertTrue(os.path.islink(self.path("link_to_" + name)))
+            self.assertNotEqual(os.stat(self.path(name)).st_ino, before)
+
+    def test_only_files_are_replaced(self):
+        for name in ("arm.h5", "arm.bag"):
+            os.mkfifo(self.path(name))
+            result = self.simulate(self.path(name), "--until", "0.01")
+            self.assertEqual(result.returncode, 2, result.stderr)
+            self.assertIn("'%s' cannot be written: it is no regular file" % self.path(name), result.stderr)
+
     def test_nothing_unfinished_is_left(self):
         self.record("arm.h5", "--until", "0.01")
         self.record("arm.bag", "--until", "0.01")
