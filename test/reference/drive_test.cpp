@@ -1,33 +1,12 @@
 // Drives: rotors, elastic gears with backlash, losses and limits of motors, against closed formulas.
 #include <Eigen/Eigenvalues>
 
-#include "reference/dynamics_runs.h"
+#include "reference/one_coordinate_scenes.h"
 
 namespace flexarm::test {
 namespace {
 
 using scene::JointKind;
-
-constexpr double kMass = 2.0;
-const double kInertia = 0.4;  // about the joint's axis, of the body below
-
-/// A mass on a rail along x; no gravity.
-SceneBuilder slider(double position, double velocity) {
-  SceneBuilder b;
-  b.body("block", kMass, {0.1, 0.2, 0}, Matrix3::Identity());
-  b.joint("rail", JointKind::Prismatic, "world", "block", {0, 0, 0}, {1, 0, 0});
-  initial_joint(b, "rail", position, velocity);
-  return b;
-}
-
-/// A body on a shaft along z; no gravity.
-SceneBuilder wheel(double velocity) {
-  SceneBuilder b;
-  b.body("wheel", 1, {0, 0, 0.3}, Vector3(1, 1, kInertia).asDiagonal());
-  b.joint("shaft", JointKind::Revolute, "world", "wheel", {0, 0, 0}, {0, 0, 1});
-  initial_joint(b, "shaft", 0, velocity);
-  return b;
-}
 
 scene::DriveDescription& add_drive(SceneBuilder& b, const std::string& joint, double gear, double rotor_inertia) {
   scene::DriveDescription drive;
@@ -38,15 +17,10 @@ scene::DriveDescription& add_drive(SceneBuilder& b, const std::string& joint, do
   return b.scene.drives.back();
 }
 
-double balance(const Simulation& simulation) {
-  const Energies e = simulation.energies();
-  return e.total() - e.work + e.dissipated;
-}
-
 // gear^2 times the rotor's inertia is added to the joint's: it moves as a heavier block does.
 TEST(Drive, RotorAddsItsReflectedInertia) {
   for (const char* scheme : {"em", "em4", "edmc2", "m1", "m2", "std", "newmark", "hht1", "hht2", "hht3"}) {
-    SceneBuilder b = slider(0, 0.5), heavy = slider(0, 0.5);
+    SceneBuilder b = block_on_rail(0, 0.5), heavy = block_on_rail(0, 0.5);
     add_drive(b, "rail", 50, 4e-4);
     heavy.scene.links.back().inertial->mass += 2500 * 4e-4;
     Simulation simulation(b.scene, options(scheme, 0.01)), expected(heavy.scene, options(scheme, 0.01));
@@ -59,13 +33,13 @@ TEST(Drive, RotorAddsItsReflectedInertia) {
     EXPECT_NEAR(simulation.energies().kinetic, expected.energies().kinetic, 1e-9) << scheme;
     EXPECT_NEAR(simulation.energies().work, expected.energies().work, 1e-9) << scheme;
   }
-  SceneBuilder b = wheel(0);
+  SceneBuilder b = wheel_on_shaft(0);
   add_drive(b, "shaft", 100, 2e-5);
   Simulation simulation(b.scene, options("em", 1e-4));
   simulation.command_effort(0, 1);
   run(simulation, 1000);
   // The wheel's own increments are tangent-scaled: of second order in 1e-5 rad a step.
-  EXPECT_NEAR(simulation.velocity(0), 0.1 / (kInertia + 0.2), 1e-9);
+  EXPECT_NEAR(simulation.velocity(0), 0.1 / (kWheelInertia + 0.2), 1e-9);
 }
 
 // A joint that moves nothing with inertia but its rotor is no longer refused.
@@ -97,9 +71,9 @@ struct TwoMasses {
 
 // The mid-point rule gives every mode of a linear system the frequency 2/h atan(omega h / 2), and nothing else changes.
 TEST(Drive, ElasticGearHasTheFrequenciesOfTwoMasses) {
-  const TwoMasses system{kMass, 0.5, 800, 300};
+  const TwoMasses system{kBlockMass, 0.5, 800, 300};
   const double h = 0.01, start = 0.05;
-  SceneBuilder b = slider(start, 0);
+  SceneBuilder b = block_on_rail(start, 0);
   add_drive(b, "rail", 10, system.rotor / 100).stiffness = system.gear;
   b.scene.springs.push_back({"rail", system.spring, 0, {}});
   for (const std::string scheme : {"em", "newmark"}) {
@@ -124,8 +98,8 @@ TEST(Drive, ElasticGearHasTheFrequenciesOfTwoMasses) {
 
 // Accelerations of the Hilber-Hughes-Taylor family belong to another instant than the balance of a joint.
 TEST(Drive, ElasticGearIsOfSecondOrderInAllFamilies) {
-  const TwoMasses system{kMass, 0.5, 800, 300};
-  SceneBuilder b = slider(0.05, 0);
+  const TwoMasses system{kBlockMass, 0.5, 800, 300};
+  SceneBuilder b = block_on_rail(0.05, 0);
   add_drive(b, "rail", 10, system.rotor / 100).stiffness = system.gear;
   b.scene.springs.push_back({"rail", system.spring, 0, {}});
   double exact = 0;
@@ -147,7 +121,7 @@ TEST(Drive, ElasticGearIsOfSecondOrderInAllFamilies) {
 // The play is entered and left at any place of a step, and nothing is lost or won.
 TEST(Drive, EnergyAccountThroughAThousandPassagesOfABacklash) {
   for (const double damping : {0.0, 0.02}) {
-    SceneBuilder b = slider(0, 0.3);
+    SceneBuilder b = block_on_rail(0, 0.3);
     scene::DriveDescription& drive = add_drive(b, "rail", 10, 5e-3);
     drive.stiffness = 4000;
     drive.backlash = 0.002;
@@ -157,7 +131,7 @@ TEST(Drive, EnergyAccountThroughAThousandPassagesOfABacklash) {
     SimulationOptions options = test::options("em", 1e-3, 1e-13);
     options.reuse_factorisation = false;  // quadratic: nothing is left of Newton's remainder
     Simulation simulation(b.scene, options);
-    const double begin = balance(simulation);
+    const double begin = energy_account(simulation);
     double drift = 0, scale = 0, side = 0;
     int passages = 0;
     for (int n = 0; n < 200000 && passages < 1000; ++n) {
@@ -168,7 +142,7 @@ TEST(Drive, EnergyAccountThroughAThousandPassagesOfABacklash) {
         side = twist;
       }
       const Energies e = simulation.energies();
-      drift = std::max(drift, std::abs(balance(simulation) - begin));
+      drift = std::max(drift, std::abs(energy_account(simulation) - begin));
       scale = std::max({scale, e.total(), e.dissipated, std::abs(e.work)});
     }
     EXPECT_EQ(passages, 1000);
@@ -181,7 +155,7 @@ TEST(Drive, RunsUpToItsNoLoadSpeed) {
   const double limit = 5, speed = 2;
   double error[2];
   for (const int k : {0, 1}) {
-    SceneBuilder b = slider(0, 0);
+    SceneBuilder b = block_on_rail(0, 0);
     scene::DriveDescription& drive = add_drive(b, "rail", 1, 0);
     drive.effort_limit = limit;
     drive.velocity_limit = speed;
@@ -192,15 +166,15 @@ TEST(Drive, RunsUpToItsNoLoadSpeed) {
     run(simulation, 1);
     EXPECT_NEAR(simulation.effort(0), limit, 0.1) << "stalls at its limit";
     run(simulation, (100 << k) - 1);
-    error[k] = std::abs(simulation.velocity(0) - speed * (1 - std::exp(-limit / (kMass * speed))));
-    EXPECT_NEAR(balance(simulation), 0, 1e-10);
+    error[k] = std::abs(simulation.velocity(0) - speed * (1 - std::exp(-limit / (kBlockMass * speed))));
+    EXPECT_NEAR(energy_account(simulation), 0, 1e-10);
     run(simulation, 4000);
     EXPECT_NEAR(simulation.velocity(0), speed, 1e-6);
     EXPECT_NEAR(simulation.effort(0), 0, 1e-6);
   }
   EXPECT_NEAR(std::log2(error[0] / error[1]), 2, 0.2);
   // Against a load it runs where the line is the load.
-  SceneBuilder b = slider(0, 0);
+  SceneBuilder b = block_on_rail(0, 0);
   scene::DriveDescription& drive = add_drive(b, "rail", 10, 2e-3);
   drive.stiffness = 2000;
   drive.damping = 2;
@@ -218,35 +192,35 @@ TEST(Drive, RunsUpToItsNoLoadSpeed) {
 TEST(Drive, LosesByItsEfficiency) {
   for (const bool is_elastic : {false, true}) {
     const double rotor = 0.5, efficiency = 0.8;
-    SceneBuilder b = slider(0, 1);
+    SceneBuilder b = block_on_rail(0, 1);
     scene::DriveDescription& drive = add_drive(b, "rail", 10, rotor / 100);
     drive.efficiency = efficiency;
     if (is_elastic) drive.stiffness = 1e6, drive.damping = 500;
     Simulation simulation(b.scene, options("em", 1e-3, 1e-12));
     simulation.command_effort(0, 4);
-    const double begin = balance(simulation);
+    const double begin = energy_account(simulation);
     run(simulation, 1000);
-    const double driving = 4 * efficiency / (kMass + rotor * efficiency);
+    const double driving = 4 * efficiency / (kBlockMass + rotor * efficiency);
     EXPECT_NEAR(simulation.velocity(0), 1 + driving, is_elastic ? 1e-3 : 1e-6);
-    EXPECT_NEAR(balance(simulation), begin, 1e-9);
+    EXPECT_NEAR(energy_account(simulation), begin, 1e-9);
     b.load("block", Vector3::Zero(), {3, 0, 0});
     Simulation driven(b.scene, options("em", 1e-3, 1e-12));
     run(driven, 1000);
     const double back = 1 / (2 - 1 / efficiency);  // the rotor resists by this much more
-    EXPECT_NEAR(driven.velocity(0), 1 + 3 / (kMass + rotor * back), is_elastic ? 1e-3 : 1e-6);
+    EXPECT_NEAR(driven.velocity(0), 1 + 3 / (kBlockMass + rotor * back), is_elastic ? 1e-3 : 1e-6);
   }
 }
 
 // Friction of the motor, behind the gear: by the joint's own law.
 TEST(Drive, RotorSticks) {
-  SceneBuilder b = slider(0, 0);
+  SceneBuilder b = block_on_rail(0, 0);
   b.scene.joints[0].friction_law.law = scene::FrictionDescription::Law::Coulomb;
   scene::DriveDescription& drive = add_drive(b, "rail", 10, 5e-3);
   drive.stiffness = 100;
   drive.friction = 2;
   b.load("block", Vector3::Zero(), {0.9, 0, 0});
   Simulation simulation(b.scene, options("em", 1e-3, 1e-12));
-  const double h = 1e-3, omega = 2 / h * std::atan(0.5 * h * std::sqrt(100 / kMass));
+  const double h = 1e-3, omega = 2 / h * std::atan(0.5 * h * std::sqrt(100 / kBlockMass));
   double largest = 0;
   int n = 0;
   run(simulation, 3000, [&] {
@@ -256,10 +230,10 @@ TEST(Drive, RotorSticks) {
   });
   EXPECT_LT(largest, 1e-9);
   simulation.command_effort(0, 5);
-  const double begin = balance(simulation);
+  const double begin = energy_account(simulation);
   run(simulation, 2000);
   EXPECT_GT(state_of(simulation).actuators[0].angle, 0.1);
-  EXPECT_NEAR(balance(simulation), begin, 1e-9 * simulation.energies().dissipated);
+  EXPECT_NEAR(energy_account(simulation), begin, 1e-9 * simulation.energies().dissipated);
 }
 
 // A flexible arm on an elastic gear keeps its account.
@@ -277,19 +251,19 @@ TEST(Drive, FlexibleArmKeepsItsAccount) {
   b.scene.springs.push_back({"shoulder", 3, -0.5, {}});
   b.scene.efforts.push_back({"shoulder", TimeFunction::parse("-2+3*sin(8*t)"), {}});
   Simulation simulation(b.scene, options("em", 1e-3, 1e-11));
-  const double begin = balance(simulation);
+  const double begin = energy_account(simulation);
   double scale = 0;
   run(simulation, 2000, [&] {
     const Energies e = simulation.energies();
     scale = std::max({scale, e.kinetic, e.strain, std::abs(e.potential), e.dissipated});
-    ASSERT_LT(std::abs(balance(simulation) - begin), 1e-9 * (scale + 1));
+    ASSERT_LT(std::abs(energy_account(simulation) - begin), 1e-9 * (scale + 1));
   });
   EXPECT_GT(simulation.energies().dissipated, 0.1);
 }
 
 // Where the motor's effort is given, an elastic gear bends but does not change the equilibrium.
 TEST(Drive, StaticsOfSpringAndGear) {
-  SceneBuilder b = slider(0, 0);
+  SceneBuilder b = block_on_rail(0, 0);
   b.scene.initial_joints.clear();
   scene::DriveDescription& drive = add_drive(b, "rail", 10, 5e-3);
   drive.stiffness = 50;
@@ -310,13 +284,13 @@ double angular_frequency(const Mode& mode) {
 
 // In a free motion a rotor has inertia, of which an equilibrium knows nothing.
 TEST(Drive, ModesOfTwoMasses) {
-  const TwoMasses system{kMass, 0.5, 800, 300};
-  SceneBuilder b = slider(0, 0);
+  const TwoMasses system{kBlockMass, 0.5, 800, 300};
+  SceneBuilder b = block_on_rail(0, 0);
   scene::DriveDescription& drive = add_drive(b, "rail", 10, system.rotor / 100);
   b.scene.springs.push_back({"rail", system.spring, 0, {}});
   std::vector<Mode> modes = Simulation(b.scene).natural_modes(4);
   ASSERT_EQ(modes.size(), 1u) << "a rigid gear";
-  EXPECT_NEAR(angular_frequency(modes[0]), std::sqrt(300 / (kMass + 0.5)), 1e-10);
+  EXPECT_NEAR(angular_frequency(modes[0]), std::sqrt(300 / (kBlockMass + 0.5)), 1e-10);
   drive.stiffness = system.gear;
   modes = Simulation(b.scene).natural_modes(4);
   ASSERT_EQ(modes.size(), 2u);
@@ -334,7 +308,7 @@ TEST(Drive, ModesOfTwoMasses) {
   modes = Simulation(b.scene).natural_modes(4);
   Eigen::Matrix4d matrix;
   const double gear = system.gear, rotor = system.rotor;
-  matrix << 0, 0, 1, 0, 0, 0, 0, 1, -gear / kMass, gear / kMass, 0, 0, gear / rotor, -(gear + 500) / rotor, 0,
+  matrix << 0, 0, 1, 0, 0, 0, 0, 1, -gear / kBlockMass, gear / kBlockMass, 0, 0, gear / rotor, -(gear + 500) / rotor, 0,
       -20 / rotor;
   const Eigen::Vector4cd exact = matrix.eigenvalues();
   ASSERT_EQ(modes.size(), 2u);

@@ -1,6 +1,6 @@
 // What acts in joints: damping, friction, stops, motors, mimics and prescribed motions, against closed formulas.
 #include "joints/joint_forces.h"
-#include "reference/dynamics_runs.h"
+#include "reference/one_coordinate_scenes.h"
 #include "schemes/scheme.h"
 #include "simulation/inside.h"
 
@@ -9,54 +9,35 @@ namespace {
 
 using scene::JointKind;
 
-constexpr double kMass = 2.0;
-const double kInertia = 0.4;  // about the joint's axis, of the rotor below
-
-/// A mass on a rail along x, a rotor on a shaft along z; no gravity.
-SceneBuilder slider(double velocity) {
-  SceneBuilder b;
-  b.body("block", kMass, {0.1, 0.2, 0}, Matrix3::Identity());
-  b.joint("rail", JointKind::Prismatic, "world", "block", {0, 0, 0}, {1, 0, 0});
-  initial_joint(b, "rail", 0, velocity);
-  return b;
-}
-SceneBuilder rotor(double velocity) {
-  SceneBuilder b;
-  b.body("rotor", 1, {0, 0, 0.3}, Vector3(1, 1, kInertia).asDiagonal());
-  b.joint("shaft", JointKind::Revolute, "world", "rotor", {0, 0, 0}, {0, 0, 1});
-  initial_joint(b, "shaft", 0, velocity);
-  return b;
-}
-
 TEST(JointDamping, DecaysExponentially) {
-  SceneBuilder b = slider(3);
+  SceneBuilder b = block_on_rail(0, 3);
   b.scene.joints[0].damping = 4;
   double error[2];
   for (int k = 0; k < 2; ++k) {
     const int steps = 100 << k;
     Simulation simulation(b.scene, options("em", 1.0 / steps));
     run(simulation, steps);
-    error[k] = std::abs(simulation.velocity(0) - 3 * std::exp(-4 / kMass));
+    error[k] = std::abs(simulation.velocity(0) - 3 * std::exp(-4 / kBlockMass));
   }
   EXPECT_LT(error[1], 1e-3);
   EXPECT_NEAR(std::log2(error[0] / error[1]), 2, 0.1);
 }
 
 TEST(JointFriction, SlidesWithConstantDeceleration) {
-  SceneBuilder b = slider(2);
+  SceneBuilder b = block_on_rail(0, 2);
   b.scene.joints[0].friction = 3;
   Simulation simulation(b.scene, options("em", 0.01));
   run(simulation, 100);
   // tanh(v / 1 mm/s) is 1 to round-off while it slides.
-  EXPECT_NEAR(simulation.velocity(0), 2 - 3 / kMass, 1e-9);
+  EXPECT_NEAR(simulation.velocity(0), 2 - 3 / kBlockMass, 1e-9);
   EXPECT_NEAR(simulation.energies().dissipated, 3 * simulation.position(0), 1e-9);
   run(simulation, 200);  // would stop at 4/3 s
   EXPECT_NEAR(simulation.velocity(0), 0, 1e-3);
-  EXPECT_NEAR(simulation.position(0), 0.5 * kMass * 4 / 3, 0.01) << "stopping distance m v^2 / 2 F";
+  EXPECT_NEAR(simulation.position(0), 0.5 * kBlockMass * 4 / 3, 0.01) << "stopping distance m v^2 / 2 F";
 }
 
 TEST(JointFriction, SticksBelowItsLimit) {
-  SceneBuilder b = slider(0);
+  SceneBuilder b = block_on_rail(0, 0);
   b.scene.joints[0].friction = 3;
   Simulation simulation(b.scene, options("em", 0.01));
   simulation.command_effort(0, 2.4);
@@ -66,7 +47,7 @@ TEST(JointFriction, SticksBelowItsLimit) {
   simulation.command_effort(0, 4);
   const double before = simulation.velocity(0);
   run(simulation, 100);
-  EXPECT_NEAR(simulation.velocity(0) - before, (4 - 3) / kMass, 5e-3) << "slides above it";
+  EXPECT_NEAR(simulation.velocity(0) - before, (4 - 3) / kBlockMass, 5e-3) << "slides above it";
 }
 
 double restitution(const SceneBuilder& builder, double step, double speed) {
@@ -87,17 +68,17 @@ double restitution(const SceneBuilder& builder, double step, double speed) {
 // The documented restitution 0.3 is that of the continuous impact; ten steps resolve it to a few per cent.
 TEST(JointLimit, ReboundsWithTheDocumentedRestitution) {
   for (const double speed : {0.2, 2.0}) {
-    SceneBuilder b = slider(speed);
+    SceneBuilder b = block_on_rail(0, speed);
     b.scene.joints[0].limits = scene::JointLimits{-1, 0.5};
     EXPECT_NEAR(restitution(b, 1e-3, speed), 0.3, 0.02) << speed;
   }
-  SceneBuilder b = rotor(3);
+  SceneBuilder b = wheel_on_shaft(3);
   b.scene.joints[0].limits = scene::JointLimits{-1, 0.5};
   EXPECT_NEAR(restitution(b, 1e-3, 3), 0.3, 0.02);
 }
 
 TEST(JointLimit, HoldsAgainstAnEffort) {
-  SceneBuilder b = slider(0);
+  SceneBuilder b = block_on_rail(0, 0);
   b.scene.joints[0].limits = scene::JointLimits{-1, 0.01};
   Simulation simulation(b.scene, options("em", 1e-3));
   simulation.command_effort(0, 5);
@@ -110,14 +91,14 @@ TEST(JointLimit, HoldsAgainstAnEffort) {
 }
 
 TEST(JointMotor, EffortSaturatesAtItsLimit) {
-  SceneBuilder b = slider(0);
+  SceneBuilder b = block_on_rail(0, 0);
   b.scene.joints[0].limits = scene::JointLimits{-100, 100};
   b.scene.joints[0].effort_limit = 3;
   Simulation simulation(b.scene, options("em", 0.01));
   simulation.command_effort(0, 10);
   run(simulation, 100);
   EXPECT_DOUBLE_EQ(simulation.effort(0), 3);
-  EXPECT_NEAR(simulation.velocity(0), 3 / kMass, 1e-9);
+  EXPECT_NEAR(simulation.velocity(0), 3 / kBlockMass, 1e-9);
   simulation.command_effort(0, -10);
   run(simulation, 100);
   EXPECT_DOUBLE_EQ(simulation.effort(0), -3);
@@ -125,13 +106,13 @@ TEST(JointMotor, EffortSaturatesAtItsLimit) {
 }
 
 TEST(JointMotor, EffortHistoryGivesItsImpulse) {
-  SceneBuilder b = rotor(0);
+  SceneBuilder b = wheel_on_shaft(0);
   b.scene.efforts.push_back({"shaft", TimeFunction::parse("0:0 1:5 2:0"), {}});
   Simulation simulation(b.scene, options("em", 0.01));
   run(simulation, 200);
   // The tangent-scaled rotation increment differs from the angle by (w h)^2 / 12; the energy balance knows nothing of
   // it.
-  const double speed = 5 / kInertia;
+  const double speed = 5 / kWheelInertia;
   EXPECT_NEAR(simulation.velocity(0), speed, speed * std::pow(speed * 0.01, 2) / 12);
   EXPECT_NEAR(simulation.energies().work, simulation.energies().kinetic, 1e-10 * simulation.energies().kinetic);
 }

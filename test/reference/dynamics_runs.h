@@ -42,13 +42,19 @@ inline double total_mass(const Simulation& simulation) {
   return mass;
 }
 
+/// What stays the same: energy, less what came in, with what went out [J].
+inline double energy_account(const Simulation& simulation) {
+  const Energies e = simulation.energies();
+  return e.total() - e.work + e.dissipated;
+}
+
 /// Largest change of energy and momenta since construction, relative to their largest values; that of the linear
 /// momentum relative to sqrt(2 m T), because the total may vanish while its parts do not.
 class InvariantDrift {
  public:
   explicit InvariantDrift(const Simulation& simulation)
       : simulation_(simulation),
-        balance_(balance()),
+        balance_(energy_account(simulation)),
         linear_(simulation.momentum()),
         angular_(simulation.angular_momentum()) {
     observe();
@@ -58,7 +64,7 @@ class InvariantDrift {
     energy_scale_ = std::max({energy_scale_, e.kinetic, e.strain, std::abs(e.potential), e.dissipated});
     linear_scale_ = std::max(linear_scale_, std::sqrt(2 * total_mass(simulation_) * e.kinetic));
     angular_scale_ = std::max(angular_scale_, simulation_.angular_momentum().norm());
-    energy_ = std::max(energy_, std::abs(balance() - balance_));
+    energy_ = std::max(energy_, std::abs(energy_account(simulation_) - balance_));
     linear_drift_ = std::max(linear_drift_, (simulation_.momentum() - linear_).norm());
     angular_drift_ = std::max(angular_drift_, (simulation_.angular_momentum() - angular_).norm());
   }
@@ -68,10 +74,6 @@ class InvariantDrift {
   double angular_momentum() const { return angular_drift_ / angular_scale_; }
 
  private:
-  double balance() const {
-    const Energies e = simulation_.energies();
-    return e.total() - e.work + e.dissipated;
-  }
   const Simulation& simulation_;
   double balance_;
   Vector3 linear_, angular_;

@@ -4,23 +4,12 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "reference/dynamics_runs.h"
+#include "reference/one_coordinate_scenes.h"
 
 namespace flexarm::test {
 namespace {
 
 using Mode = scene::ServoDescription::Mode;
-
-constexpr double kMass = 2.0;
-
-/// A mass on a rail along x; no gravity.
-SceneBuilder slider(double position = 0, double velocity = 0) {
-  SceneBuilder b;
-  b.body("block", kMass, {0.1, 0.2, 0}, Matrix3::Identity());
-  b.joint("rail", scene::JointKind::Prismatic, "world", "block", {0, 0, 0}, {1, 0, 0});
-  initial_joint(b, "rail", position, velocity);
-  return b;
-}
 
 scene::ServoDescription& add_servo(SceneBuilder& b, Mode mode, double kp, double kd = 0, double ki = 0) {
   scene::ServoDescription servo;
@@ -42,24 +31,19 @@ scene::DriveDescription& add_drive(SceneBuilder& b, double rotor_inertia) {
   return b.scene.drives.back();
 }
 
-double balance(const Simulation& simulation) {
-  const Energies e = simulation.energies();
-  return e.total() - e.work + e.dissipated;
-}
-
 double observed_order(const std::array<double, 2>& error) {
   return std::log2(error[0] / error[1]);
 }
 
 // m q'' + kd q' + kp q = kp: a step of the set point.
 TEST(Servo, PositionRespondsAsTheSecondOrderSystem) {
-  const double kp = 60, kd = 8, rotor = 1, mass = kMass + rotor;
+  const double kp = 60, kd = 8, rotor = 1, mass = kBlockMass + rotor;
   const double decay = kd / (2 * mass), omega = std::sqrt(kp / mass - decay * decay), end = 0.8;
   const double expected = 1 - std::exp(-decay * end) * (std::cos(omega * end) + decay / omega * std::sin(omega * end));
   for (const char* scheme : {"em", "m1", "edmc2", "newmark", "hht1", "hht3", "em4"}) {
     std::array<double, 2> error;
     for (const int k : {0, 1}) {
-      SceneBuilder b = slider();
+      SceneBuilder b = block_on_rail();
       add_drive(b, rotor);
       add_servo(b, Mode::Position, kp, kd).set_point = TimeFunction(1.0);
       const int steps = 100 << k;
@@ -76,11 +60,11 @@ TEST(Servo, PositionRespondsAsTheSecondOrderSystem) {
 // m v' = kp (w - v)
 TEST(Servo, VelocityRespondsAsTheFirstOrderSystem) {
   const double kp = 6, wanted = 1.5, end = 0.5;
-  const double expected = wanted * (1 - std::exp(-kp / kMass * end));
+  const double expected = wanted * (1 - std::exp(-kp / kBlockMass * end));
   for (const char* scheme : {"em", "newmark"}) {
     std::array<double, 2> error;
     for (const int k : {0, 1}) {
-      SceneBuilder b = slider();
+      SceneBuilder b = block_on_rail();
       add_servo(b, Mode::Velocity, kp).set_point = TimeFunction(wanted);
       const int steps = 100 << k;
       Simulation simulation(b.scene, options(scheme, end / steps, 1e-12));
@@ -91,7 +75,7 @@ TEST(Servo, VelocityRespondsAsTheFirstOrderSystem) {
     EXPECT_GT(observed_order(error), 1.85) << scheme;
   }
   // The integral takes a load away.
-  SceneBuilder b = slider();
+  SceneBuilder b = block_on_rail();
   add_servo(b, Mode::Velocity, 20, 0, 60).set_point = TimeFunction(wanted);
   b.load("block", Vector3::Zero(), {-30, 0, 0});
   Simulation simulation(b.scene, options("em", 1e-3));
@@ -117,12 +101,13 @@ TEST(Servo, OnEitherSideOfAnElasticGear) {
       const double on_q = on_link ? 1 : 0, on_theta = 1 - on_q;
       matrix << 0, 0, 1, 0,  //
           0, 0, 0, 1,        //
-          -gear / kMass, gear / kMass, -damping / kMass, damping / kMass, (gear - kp * on_q) / rotor,
-          -(gear + kp * on_theta) / rotor, (damping - kd * on_q) / rotor, -(damping + kd * on_theta) / rotor;
+          -gear / kBlockMass, gear / kBlockMass, -damping / kBlockMass, damping / kBlockMass,
+          (gear - kp * on_q) / rotor, -(gear + kp * on_theta) / rotor, (damping - kd * on_q) / rotor,
+          -(damping + kd * on_theta) / rotor;
       const double expected = 1 + evolved(matrix, {-1, -1, 0, 0}, end)[0];
       std::array<double, 2> error;
       for (const int k : {0, 1}) {
-        SceneBuilder b = slider();
+        SceneBuilder b = block_on_rail();
         scene::DriveDescription& drive = add_drive(b, rotor);
         drive.stiffness = gear;
         drive.damping = damping;
@@ -145,7 +130,7 @@ TEST(Servo, AnyGainIsStable) {
   for (const double kp : {1e8, 1e10, 1e12})
     for (const double kd : {0.0, 1e-3 * kp})
       for (const bool is_elastic : {false, true}) {
-        SceneBuilder b = slider();
+        SceneBuilder b = block_on_rail();
         scene::DriveDescription& drive = add_drive(b, 0.5);
         if (is_elastic) drive.stiffness = 1e4, drive.damping = 50;
         add_servo(b, Mode::Position, kp, kd);
@@ -165,7 +150,7 @@ double reference_position(double kp, double kd, double ki, double limit, double 
   using State = Eigen::Vector3d;  // q, q', I
   const auto rate = [&](const State& s) {
     const double error = 1 - s[0], raw = kp * error - kd * s[1] + ki * s[2], motor = std::clamp(raw, -limit, limit);
-    return State(s[1], motor / kMass, error + (tracking > 0 ? (motor - raw) / (ki * tracking) : 0.0));
+    return State(s[1], motor / kBlockMass, error + (tracking > 0 ? (motor - raw) / (ki * tracking) : 0.0));
   };
   State s = State::Zero();
   const int steps = 200000;
@@ -184,7 +169,7 @@ TEST(Servo, SaturatesWithAndWithoutWindup) {
     const double expected = reference_position(kp, kd, ki, limit, tracking, end);
     std::array<double, 2> error;
     for (const int k : {0, 1}) {
-      SceneBuilder b = slider();
+      SceneBuilder b = block_on_rail();
       scene::ServoDescription& servo = add_servo(b, Mode::Position, kp, kd, ki);
       servo.set_point = TimeFunction(1.0);
       servo.effort_limit = limit;
@@ -210,8 +195,8 @@ TEST(Servo, SampledHasTheStabilityLimitOfItsDifferenceEquation) {
     const double limit = is_late ? 2 * (std::sqrt(2) - 1) : 2.0;
     for (const char* scheme : {"em", "m1"})
       for (const double part : {0.97, 1.03}) {
-        SceneBuilder b = slider(0, 1);
-        scene::ServoDescription& servo = add_servo(b, Mode::Velocity, part * limit * kMass / period);
+        SceneBuilder b = block_on_rail(0, 1);
+        scene::ServoDescription& servo = add_servo(b, Mode::Velocity, part * limit * kBlockMass / period);
         servo.sample_time = period;
         servo.delay = is_late ? period : 0;
         Simulation simulation(b.scene, options(scheme, 0.001));
@@ -232,20 +217,20 @@ TEST(Servo, SampledHasTheStabilityLimitOfItsDifferenceEquation) {
 
 // A delay that is no multiple of the step splits it.
 TEST(Servo, SampledOutputsActAfterTheirDelay) {
-  SceneBuilder b = slider();
+  SceneBuilder b = block_on_rail();
   scene::ServoDescription& servo = add_servo(b, Mode::Effort, 0);
   servo.set_point = TimeFunction(4.0);
   servo.sample_time = 0.01;
   servo.delay = 0.0175;
   Simulation simulation(b.scene, options("em", 0.005));
   run(simulation, 10);
-  EXPECT_NEAR(simulation.velocity(0), 4 * (0.05 - 0.0175) / kMass, 1e-12);
+  EXPECT_NEAR(simulation.velocity(0), 4 * (0.05 - 0.0175) / kBlockMass, 1e-12);
   EXPECT_DOUBLE_EQ(simulation.effort(0), 4);
 }
 
 TEST(Servo, WorkIsInTheAccount) {
   for (const double sample_time : {0.0, 0.004}) {
-    SceneBuilder b = slider(0.2, -1);
+    SceneBuilder b = block_on_rail(0.2, -1);
     scene::DriveDescription& drive = add_drive(b, 0.5);
     drive.stiffness = 900;
     drive.damping = 3;
@@ -261,19 +246,19 @@ TEST(Servo, WorkIsInTheAccount) {
     SimulationOptions options = test::options("em", 1e-3, 1e-13);
     options.reuse_factorisation = false;
     Simulation simulation(b.scene, options);
-    const double begin = balance(simulation);
+    const double begin = energy_account(simulation);
     double scale = 0;
     run(simulation, 3000, [&] {
       const Energies e = simulation.energies();
       scale = std::max({scale, e.total(), e.dissipated, std::abs(e.work)});
-      ASSERT_LT(std::abs(balance(simulation) - begin), 1e-10 * scale);
+      ASSERT_LT(std::abs(energy_account(simulation) - begin), 1e-10 * scale);
     });
     EXPECT_NEAR(simulation.position(0), 0.3 * std::sin(15), 0.15) << "follows it";
   }
 }
 
 TEST(Servo, TakesCommands) {
-  SceneBuilder b = slider(0.1);
+  SceneBuilder b = block_on_rail(0.1);
   add_servo(b, Mode::Position, 1e3, 100);
   Simulation simulation(b.scene, options("em", 1e-3));
   EXPECT_TRUE(simulation.has_servo(0));
@@ -286,14 +271,14 @@ TEST(Servo, TakesCommands) {
   run(simulation, 2000);
   EXPECT_NEAR(simulation.position(0), 0.1, 1e-6);
   EXPECT_THROW(simulation.command_set_point(0, std::nan("")), std::invalid_argument);
-  Simulation without(slider().scene);
+  Simulation without(block_on_rail().scene);
   EXPECT_FALSE(without.has_servo(0));
   EXPECT_THROW(without.command_set_point(0, 1), std::invalid_argument);
 }
 
 TEST(Servo, HoldsInStatics) {
   for (const bool is_elastic : {false, true}) {
-    SceneBuilder b = slider(0.1);
+    SceneBuilder b = block_on_rail(0.1);
     scene::DriveDescription& drive = add_drive(b, 0.5);
     if (is_elastic) drive.stiffness = 300;
     add_servo(b, Mode::Position, 200, 10).set_point = TimeFunction(0.2);
