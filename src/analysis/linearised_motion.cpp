@@ -56,9 +56,7 @@ double work_of_forces(const Model& model) {
 double round_off(const Model& model, const State& equilibrium, const std::vector<ComplexVector6>& node_motion) {
   double elastic = 0, largest_spin = 0;
   for_each_element(model.beams, [&](const auto& element) {
-    constexpr int N = std::decay_t<decltype(element)>::kNodes;
-    Eigen::Matrix<double, 6 * N, 1> motion;
-    for (int i = 0; i < N; ++i) motion.template segment<6>(6 * i) = node_motion[element.nodes[i]].cwiseAbs();
+    const Eigen::VectorXd motion = motion_of(element, node_motion).cwiseAbs();
     elastic += motion.dot(material_stiffness(element, equilibrium).cwiseAbs().lazyProduct(motion));
   });
   for (const PointSpring& spring : model.springs) {

@@ -151,8 +151,7 @@ BeamMesh mesh_beam(const scene::BeamDescription& beam, const Centreline& centrel
     if ((section.center_of_mass - mesh.centroid).norm() > kCentroidTolerance * section.radius)
       throw std::invalid_argument(
           fmt::format("its centre of mass must be in the same place in all sections, y = {}, z = {} as at the first "
-                      "station, and at "
-                      "{} m is y = {}, z = {}",
+                      "station, and at {} m is y = {}, z = {}",
                       mesh.centroid[1], mesh.centroid[2], s, section.center_of_mass[1], section.center_of_mass[2]));
   }
   mesh.order = beam.order;

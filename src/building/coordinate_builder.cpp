@@ -127,8 +127,7 @@ void add_gyroscope(const ScenePlan& plan, const scene::DriveDescription& drive, 
   const scene::JointDescription& joint = joint_of(plan.scene, drive.coordinate);
   if (actuator.drive.sticks)
     throw ModelError(where + "the rotor of '" + drive.coordinate +
-                     "' may stick by the law 'coulomb' or have an axis, "
-                     "but not both");
+                     "' may stick by the law 'coulomb' or have an axis, but not both");
   const Attachment parent = attachment(plan, model, joint.parent, joint.origin.position);
   if (parent.node < 0) return;  // an axis that stands still
   if (map.kind != JointMapKind::Scalar || map.master != parent.node)

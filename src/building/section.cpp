@@ -153,6 +153,7 @@ SectionProperties section_properties(const scene::UniformSection& section) {
 }
 
 SectionProperties referred_to_center_of_mass(const SectionProperties& section) {
+  if (section.center_of_mass.isZero(0)) return section;
   Matrix6 transform = Matrix6::Identity();  // {Gamma, K} at the reference line from those at the centroid
   transform.topRightCorner<3, 3>() = so3::hat(section.center_of_mass);
   SectionProperties out = section;

@@ -19,7 +19,6 @@ constexpr double kSmallPart = 1e-2, kFast = 1;
 /// An end of a beam.
 struct BeamEnd {
   std::size_t link;
-  int node;
   double arc_length, element_length;  // of the last element there [m]
 };
 
@@ -30,7 +29,7 @@ std::optional<BeamEnd> beam_end(const Model& model, int node) {
     const std::vector<double>& ends = link.beam->element_ends;
     const bool is_start = link.frame.node == node;
     const double before = ends.size() > 1 ? ends[ends.size() - 2] : 0;
-    return is_start ? BeamEnd{i, node, 0, ends.front()} : BeamEnd{i, node, ends.back(), ends.back() - before};
+    return is_start ? BeamEnd{i, 0, ends.front()} : BeamEnd{i, ends.back(), ends.back() - before};
   }
   return std::nullopt;
 }
@@ -102,7 +101,6 @@ std::vector<std::string> warnings_of_driven_ends(const Simulation& simulation) {
     if (!is_driven(model, coordinate) || joint.kind != JointMapKind::Scalar || joint.rotation.isZero(0)) continue;
     Vector3 axis = joint.rotation.normalized();
     if (joint.master >= 0) axis = model.nodes[joint.master].rotation * axis;
-    const double moved = moved_inertia(model, joint, axis) + armature(model, coordinate);
     for (const int node : {joint.slave, joint.master}) {
       const std::optional<BeamEnd> end = beam_end(model, node);
       if (!end) continue;
@@ -112,13 +110,14 @@ std::vector<std::string> warnings_of_driven_ends(const Simulation& simulation) {
       const double bending = 4 / end->element_length * own.dot(stiffness.bottomRightCorner<3, 3>() * own);
       const double inertia = own_inertia(model, node, axis) + (node == joint.slave ? armature(model, coordinate) : 0.0);
       const double turn = std::sqrt(bending / inertia) * simulation.step_size();
-      if (inertia > kSmallPart * moved || !(turn > kFast)) continue;
+      if (!(turn > kFast)) continue;
+      const double moved = moved_inertia(model, joint, axis) + armature(model, coordinate);
+      if (inertia > kSmallPart * moved) continue;
       warnings.push_back(
           fmt::format("joint '{}' is driven where beam '{}' ends with {:.2g} kg m^2 of its own, beside {:.2g} kg m^2 "
-                      "that the joint "
-                      "moves: its fastest motion turns by {:.2g} rad in a step of {} s (1 is well resolved); <hub> "
-                      "puts the inertia "
-                      "of the drive's housing or flange there, <drive rotor_inertia> that of the motor",
+                      "that the joint moves: its fastest motion turns by {:.2g} rad in a step of {} s (1 is well "
+                      "resolved); <hub> puts the inertia of the drive's housing or flange there, <drive "
+                      "rotor_inertia> that of the motor",
                       coordinate.name, model.links[end->link].name, inertia, moved, turn, simulation.step_size()));
     }
   }

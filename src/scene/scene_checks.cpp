@@ -241,7 +241,7 @@ class ReferenceCheck {
   }
 
   void check_coordinates_of_simulation() const {
-    std::set<std::string> moved, placed, driven;
+    std::set<std::string> moved, placed;
     for (const PrescribedMotion& motion : scene_.motions)
       check_coordinate(motion.coordinate, motion.location, "<motion> of simulation", moved);
     for (const InitialJoint& initial : scene_.initial_joints) {
@@ -252,23 +252,19 @@ class ReferenceCheck {
     }
     for (const PrescribedMotion& motion : scene_.motions)
       if (motion.position(0.0) != 0) check_no_loop(motion.coordinate, motion.location, "<motion> of simulation");
-    std::set<std::string> sprung, geared, controlled;
-    for (const ServoDescription& servo : scene_.servos) {
-      const char* element = "<servo> of robot";
-      check_coordinate(servo.coordinate, servo.location, element, controlled);
-      check_not_prescribed(servo.coordinate, servo.location, element, moved);
-    }
-    for (const SpringDescription& spring : scene_.springs)
-      check_coordinate(spring.coordinate, spring.location, "<spring> of robot", sprung);
-    for (const DriveDescription& drive : scene_.drives) {
-      const char* element = "<drive> of robot";
-      check_coordinate(drive.coordinate, drive.location, element, geared);
-      check_not_prescribed(drive.coordinate, drive.location, element, moved);
-    }
-    for (const JointEffort& effort : scene_.efforts) {
-      const char* element = "<effort> of simulation";
-      check_coordinate(effort.coordinate, effort.location, element, driven);
-      check_not_prescribed(effort.coordinate, effort.location, element, moved);
+    check_free_coordinates(scene_.servos, "<servo> of robot", moved);
+    check_free_coordinates(scene_.drives, "<drive> of robot", moved);
+    check_free_coordinates(scene_.efforts, "<effort> of simulation", moved);
+    check_free_coordinates(scene_.springs, "<spring> of robot", {});
+  }
+
+  /// Entries of one kind, none on a coordinate in `moved`.
+  template <class Entries>
+  void check_free_coordinates(const Entries& entries, const char* element, const std::set<std::string>& moved) const {
+    std::set<std::string> used;
+    for (const auto& entry : entries) {
+      check_coordinate(entry.coordinate, entry.location, element, used);
+      check_not_prescribed(entry.coordinate, entry.location, element, moved);
     }
   }
 
