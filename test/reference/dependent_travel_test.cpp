@@ -1,6 +1,7 @@
 // Screw, rack and pinion, worm and cam: travel that depends on an angle, against closed forms and by their invariants.
 #include <cmath>
 
+#include "math/pi.h"
 #include "reference/dynamics_joint_chain.h"
 
 namespace flexarm::test {
@@ -89,7 +90,7 @@ TEST(DependentTravel, CamKeepsItsEnergyAndFollowsItsProfile) {
       least = std::min(least, rate);
       most = std::max(most, rate);
     });
-    EXPECT_GT(angle(simulation), 2 * 3.14159265);  // more than a turn
+    EXPECT_GT(angle(simulation), 2 * kPi);  // more than a turn
     EXPECT_GT(most, 1.2 * least);
   }
 }

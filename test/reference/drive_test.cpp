@@ -1,6 +1,7 @@
 // Drives: rotors, elastic gears with backlash, losses and limits of motors, against closed formulas.
 #include <Eigen/Eigenvalues>
 
+#include "math/pi.h"
 #include "reference/one_coordinate_scenes.h"
 
 namespace flexarm::test {
@@ -279,7 +280,7 @@ TEST(Drive, StaticsOfSpringAndGear) {
 }
 
 double angular_frequency(const Mode& mode) {
-  return 2 * 3.14159265358979323846 * mode.frequency;
+  return 2 * kPi * mode.frequency;
 }
 
 // In a free motion a rotor has inertia, of which an equilibrium knows nothing.

@@ -87,6 +87,17 @@ TEST_F(Allocation, IsCounted) {
             2);
 }
 
+/// `look(result)` after each of the `steps` that allocate nothing.
+template <class Look>
+void expect_none_after_the_first_step(Simulation& simulation, int steps, const Look& look) {
+  ASSERT_TRUE(simulation.step().converged) << simulation.scheme();
+  EXPECT_EQ(allocations_in([&] {
+              for (int n = 0; n < steps; ++n) look(simulation.step());
+            }),
+            0)
+      << simulation.scheme();
+}
+
 TEST_P(Allocation, NoneInAThousandSteps) {
   const auto [scheme, reuse] = GetParam();
   SimulationOptions options;
@@ -138,17 +149,12 @@ TEST_F(Allocation, NoneWhereFrictionSticks) {
       options.scheme = scheme;
       options.reuse_factorisation = reuse;
       Simulation simulation(rubbing_scene().scene, options);
-      ASSERT_TRUE(simulation.step().converged);
       int converged = 0;
       double held = 0;
-      EXPECT_EQ(allocations_in([&] {
-                  for (int n = 0; n < 300; ++n) {
-                    converged += simulation.step().converged;
-                    for (const double rest : state_of(simulation).rests) held += rest;
-                  }
-                }),
-                0)
-          << scheme;
+      expect_none_after_the_first_step(simulation, 300, [&](const StepResult& result) {
+        converged += result.converged;
+        for (const double rest : state_of(simulation).rests) held += rest;
+      });
       EXPECT_EQ(converged, 300) << scheme;
       EXPECT_GT(held, 0) << scheme;
     }
@@ -159,13 +165,8 @@ TEST_F(Allocation, NoneInDrivesAndServos) {
     SimulationOptions options;
     options.scheme = scheme;
     Simulation simulation(driven_scene().scene, options);
-    ASSERT_TRUE(simulation.step().converged);
     int converged = 0;
-    EXPECT_EQ(allocations_in([&] {
-                for (int n = 0; n < 300; ++n) converged += simulation.step().converged;
-              }),
-              0)
-        << scheme;
+    expect_none_after_the_first_step(simulation, 300, [&](const StepResult& result) { converged += result.converged; });
     EXPECT_EQ(converged, 300) << scheme;
   }
 }
@@ -176,12 +177,7 @@ TEST_F(Allocation, NoneInLoopsOfRigidLinks) {
     options.scheme = scheme;
     options.step = 0.002;
     Simulation simulation(free_ring(scene::JointKind::Universal).scene, options);
-    ASSERT_TRUE(simulation.step().converged);
-    EXPECT_EQ(allocations_in([&] {
-                for (int n = 0; n < 200; ++n) simulation.step();
-              }),
-              0)
-        << scheme;
+    expect_none_after_the_first_step(simulation, 200, [](const StepResult&) {});
   }
 }
 
@@ -216,13 +212,8 @@ TEST_F(Allocation, NoneWhereStopsAreHitFast) {
     b.joint("rail", scene::JointKind::Prismatic, "world", "block").limits = scene::JointLimits{-0.5, 0.5};
     b.scene.initial_joints.push_back({"rail", 0, 100.0, {}});
     Simulation simulation(b.scene, options);
-    ASSERT_TRUE(simulation.step().converged);
     int halvings = 0;
-    EXPECT_EQ(allocations_in([&] {
-                for (int n = 0; n < 20; ++n) halvings += simulation.step().halvings;
-              }),
-              0)
-        << scheme;
+    expect_none_after_the_first_step(simulation, 20, [&](const StepResult& result) { halvings += result.halvings; });
     EXPECT_GT(halvings, 0) << scheme;
   }
 }

@@ -2,12 +2,13 @@
 #include <gtest/gtest.h>
 
 #include "building/expect_model_error.h"
+#include "math/pi.h"
 #include "support/scene_builder.h"
 
 namespace flexarm::test {
 namespace {
 
-constexpr double kStiffness = 300, kPi = 3.14159265358979323846;
+constexpr double kStiffness = 300;
 
 void add_spring(SceneBuilder& b, const std::string& from, const Vector3& from_at, const std::string& to,
                 const Vector3& to_at, std::optional<double> rest_length = {}, double damping = 0) {
