@@ -43,13 +43,15 @@ Vector12 gradient_of(const PointSpring& spring, const Model& model, const State&
 
 }  // namespace
 
-double work_of_forces(const Model& model) {
+double work_of_forces(const Model& model, const State& equilibrium) {
   double work = 0;
+  const auto add = [&](const NodalLoad& load, double value) {
+    work += std::abs(value) * (load.force.norm() * model.length_scale + load.moment.norm());
+  };
   for (const NodalInertia& inertia : model.inertias)
     work += inertia.total_mass * model.gravity.norm() * model.length_scale;
-  for (const NodalLoad& load : model.loads)
-    work +=
-        std::abs(model.histories[load.history](0.0)) * (load.force.norm() * model.length_scale + load.moment.norm());
+  for (const NodalLoad& load : model.loads) add(load, model.histories[load.history](0.0));
+  for (const NodalLoad& wrench : equilibrium.wrenches) add(wrench, 1);
   return work;
 }
 
@@ -68,7 +70,7 @@ double round_off(const Model& model, const State& equilibrium, const std::vector
   }
   // A force changes its work by a second order of rotations, times an arm.
   for (const ComplexVector6& motion : node_motion) largest_spin = std::max(largest_spin, motion.tail<3>().norm());
-  return kStiffnessRoundOff * (elastic + work_of_forces(model) * largest_spin * largest_spin);
+  return kStiffnessRoundOff * (elastic + work_of_forces(model, equilibrium) * largest_spin * largest_spin);
 }
 
 bool is_circulatory(const Model& model, const State& equilibrium) {
@@ -78,7 +80,8 @@ bool is_circulatory(const Model& model, const State& equilibrium) {
     const Coordinate& coordinate = model.coordinates[i];
     return coordinate.is_angle && (coordinate.effort >= 0 || !std::isnan(equilibrium.commands[i]));
   };
-  if (std::any_of(model.loads.begin(), model.loads.end(), load_circulates)) return true;
+  for (const std::vector<NodalLoad>* loads : {&model.loads, &equilibrium.wrenches})
+    if (std::any_of(loads->begin(), loads->end(), load_circulates)) return true;
   for (std::size_t i = 0; i < model.coordinates.size(); ++i)
     if (effort_circulates(i)) return true;
   // A servo that measures beyond its gear pushes at another place than it feels.

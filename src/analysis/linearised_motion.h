@@ -20,8 +20,8 @@ struct JointMaps {
   std::vector<MimicMap> mimics;
 };
 
-/// What weight and loads at time 0 do over the model's length scale, or a turn of 1 rad [J].
-double work_of_forces(const Model& model);
+/// What weight, loads at time 0 and applied wrenches do over the model's length scale, or a turn of 1 rad [J].
+double work_of_forces(const Model& model, const State& equilibrium);
 
 /// Relative round-off of a term of the stiffness, which has some sixty operations behind it: interpolation, rotations,
 /// section, folding, factorisation.

@@ -54,7 +54,7 @@ Eigen::VectorXd least_ritz_vector(Inverse& inverse, Eigen::Index size) {
 
 UnstableMotion falling_motion(const Model& model, const Scheme& scheme, const State& equilibrium) {
   StepSystem system(model, exact_equilibrium(scheme.contact_time));
-  const double neutral = neutral_curvature(model);
+  const double neutral = neutral_curvature(model, equilibrium);
   system.begin_equilibrium(equilibrium, 1.0, neutral);
   if (!system.evaluate(true)) throw std::runtime_error("the stiffness is not finite");
   if (!system.tangent().factorise() || !system.tangent().expanded_solution()) return {};

@@ -78,8 +78,8 @@ std::vector<Eigen::VectorXd> soft_motions(const Matrix& whole, Eigen::Index mult
 
 }  // namespace
 
-double neutral_curvature(const Model& model) {
-  return kNeutral * work_of_forces(model);
+double neutral_curvature(const Model& model, const State& equilibrium) {
+  return kNeutral * work_of_forces(model, equilibrium);
 }
 
 Stability judge_stability(const Model& model, const Scheme& scheme, const State& equilibrium) {
@@ -91,7 +91,7 @@ Stability judge_stability(const Model& model, const Scheme& scheme, const State&
   }
   const LinearisedMotion system(model, equilibrium, scheme.contact_time);
   if (system.freedoms() <= 0) return stability;
-  const double neutral = neutral_curvature(model);
+  const double neutral = neutral_curvature(model, equilibrium);
   const Matrix curvature = system.curvature();
   for (const Eigen::VectorXd& motion : soft_motions(curvature, (system.unknowns() - system.freedoms()) / 2)) {
     const std::vector<ComplexVector6> nodes = system.expand(motion.cast<std::complex<double>>()).node_motion;

@@ -26,7 +26,7 @@ struct Stability {
 
 /// Curvature of the potential that counts as none, beside that of Drag with strength 1: a millionth of what weight and
 /// loads do over the length scale, since equilibria are found up to a tolerance [J].
-double neutral_curvature(const Model& model);
+double neutral_curvature(const Model& model, const State& equilibrium);
 
 /// By the signs of the pivots of the tangent's symmetric part, in motions that loops allow (Sylvester's law of
 /// inertia); of chains of more than a thousand joints by falling_motion(). The potential is that of local interpolation

@@ -22,7 +22,7 @@ class EquilibriumSearch {
         state_(state),
         system_(model, statics_of(scheme)),
         newton_(system_, settings),
-        settling_(system_, newton_, neutral_curvature(model), settings.tolerance) {}
+        settling_(system_, newton_, neutral_curvature(model, state), settings.tolerance) {}
 
   const State& state() const { return state_; }
   const StaticResult& result() const { return result_; }

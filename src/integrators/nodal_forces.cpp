@@ -47,6 +47,13 @@ void NodalForces::add_damping(int node, Balance& balance) const {
   balance.dissipated += damping.dissipated;
 }
 
+template <class Visit>
+void NodalForces::for_each_load(const Visit& visit) const {
+  for (const NodalLoad& load : configuration_.model().loads)
+    visit(load, histories_.at_point[load.history], histories_.at_beginning[load.history]);
+  for (const NodalLoad& wrench : configuration_.state().wrenches) visit(wrench, 1.0, 1.0);
+}
+
 void NodalForces::evaluate(Balance& balance) const {
   const Model& model = configuration_.model();
   const Scheme& scheme = configuration_.scheme();
@@ -56,30 +63,27 @@ void NodalForces::evaluate(Balance& balance) const {
   const std::vector<NodePose>&begin = configuration_.begin(), &end = configuration_.end();
   const LoadPoint point = scheme.is_incremental() ? LoadPoint::Mean : LoadPoint::End;
   const std::vector<NodePose>& loaded = interpolation_ ? interpolation_->configuration() : end;
-  for (const NodalLoad& load : model.loads) {
-    const LoadAction action = load_action(load, histories_.factor * histories_.at_point[load.history],
-                                          begin[load.node].rotation, loaded[load.node].rotation, point);
+  for_each_load([&](const NodalLoad& load, double value, double) {
+    const LoadAction action =
+        load_action(load, histories_.factor * value, begin[load.node].rotation, loaded[load.node].rotation, point);
     add(load.node, -action.wrench, -action.derivative, true, balance.tangent != nullptr, balance);
-  }
+  });
 }
 
 void NodalForces::add_work(double& work) const {
-  for (const NodalLoad& load : configuration_.model().loads) {
+  for_each_load([&](const NodalLoad& load, double value, double value_at_beginning) {
     const NodePose &begin = configuration_.begin()[load.node], &end = configuration_.end()[load.node];
-    const double value = histories_.at_point[load.history];
     Vector6 wrench, increment;
     increment << end.position - begin.position, configuration_.increments()[load.node];
     if (configuration_.scheme().is_incremental()) {
       wrench = load_action(load, value, begin.rotation, end.rotation, LoadPoint::Mean).wrench;
     } else {  // trapezoidal rule
       increment.tail<3>() = cayley::to_rotation_vector(configuration_.increments()[load.node]);
-      wrench =
-          0.5 * (load_action(load, value, begin.rotation, end.rotation, LoadPoint::End).wrench +
-                 load_action(load, histories_.at_beginning[load.history], end.rotation, begin.rotation, LoadPoint::End)
-                     .wrench);
+      wrench = 0.5 * (load_action(load, value, begin.rotation, end.rotation, LoadPoint::End).wrench +
+                      load_action(load, value_at_beginning, end.rotation, begin.rotation, LoadPoint::End).wrench);
     }
     work += wrench.dot(increment);
-  }
+  });
 }
 
 }  // namespace flexarm

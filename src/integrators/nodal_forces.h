@@ -1,5 +1,5 @@
 #pragma once
-/// Weights, loads and dampers at the nodes of a model over a step.
+/// Weights, loads and dampers at the nodes of a model over a step, and wrenches from outside.
 
 #include "integrators/hht_interpolation.h"
 #include "integrators/step_histories.h"
@@ -16,6 +16,9 @@ class NodalForces {
   void add_work(double& work) const;
 
  private:
+  /// visit(load, its value where the scheme evaluates forces, its value at the beginning)
+  template <class Visit>
+  void for_each_load(const Visit& visit) const;
   void add_weight(int node, Balance& balance) const;
   void add_damping(int node, Balance& balance) const;
   void add(int node, const Vector6& force, Eigen::Matrix<double, 6, 3> rotational, bool of_configuration,

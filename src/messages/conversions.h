@@ -1,5 +1,5 @@
 #pragma once
-/// From the core's types to messages.
+/// From the core's types to messages, and back.
 
 #include <geometry_msgs/Point.h>
 #include <geometry_msgs/Pose.h>
@@ -9,6 +9,12 @@
 #include "flexarm/math/pose.h"
 
 namespace flexarm::messages {
+
+/// Of a message with x, y and z.
+template <class Message>
+Vector3 to_vector(const Message& message) {
+  return {message.x, message.y, message.z};
+}
 
 inline geometry_msgs::Vector3 to_vector3(const Vector3& vector) {
   geometry_msgs::Vector3 message;

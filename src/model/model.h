@@ -12,6 +12,7 @@
 #include "model/beam_element.h"
 #include "model/joint.h"
 #include "model/loop_closure.h"
+#include "model/nodal_load.h"
 #include "model/point_spring.h"
 #include "model/slide_line.h"
 
@@ -25,14 +26,6 @@ struct NodalInertia {
   Matrix3 rotary_damping = Matrix3::Zero();  ///< mass-proportional damping of the beams' rotation [kg m^2/s]
   double total_mass = 0;                     ///< with the beams' share int I^i mass ds: weight and momentum [kg]
   bool empty() const { return mass == 0 && rotary.isZero(0) && beam_rotary.isZero(0) && rotary_damping.isZero(0); }
-};
-
-/// A load on a node: force at the material point `arm` of its frame, and a moment; scaled by history(t).
-struct NodalLoad {
-  int node = -1;
-  Vector3 arm = Vector3::Zero(), force = Vector3::Zero(), moment = Vector3::Zero();  ///< world or node frame
-  bool follows = false;  ///< force and moment turn with the node; else they are fixed in the world
-  int history = 0;       ///< index into Model::histories
 };
 
 /// Of a stop's damper, over the critical one of the oscillator that the stop makes of its coordinate: where forces are

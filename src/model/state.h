@@ -9,6 +9,7 @@
 #include "model/actuator.h"
 #include "model/increment_history.h"
 #include "model/joint.h"
+#include "model/nodal_load.h"
 #include "model/step_means.h"
 
 namespace flexarm {
@@ -71,6 +72,7 @@ struct State {
   std::vector<Vector6> reactions;        ///< per node: what joints transmitted to it in the last step
   std::vector<Vector3> momentum_rates;   ///< d(Lambda J W)/dt per mass point, then per node
   std::vector<double> commands;          ///< per coordinate: commanded effort, NaN where none holds
+  std::vector<NodalLoad> wrenches;       ///< applied from outside, beside the scene's loads
   std::vector<double> efforts;           ///< per coordinate: applied in the last step
   std::vector<double> rests;             ///< per coordinate: 1 where dry friction stopped it in the last step, else 0
   std::vector<ActuatorState> actuators;  ///< per actuator

@@ -3,8 +3,11 @@
 #include <ros/console.h>
 #include <ros/init.h>
 
+#include <algorithm>
+#include <limits>
 #include <vector>
 
+#include "flexarm/simulation/checkpoint.h"
 #include "messages/scene_extent.h"
 
 namespace flexarm::node {
@@ -38,6 +41,7 @@ Node::Node()
       status_publisher_(private_node_, simulation_, run_, parameters_.status_rate, root_frame()),
       diagnostics_(node_, private_node_, simulation_, run_),
       command_interface_(node_, private_node_, simulation_, parameters_.command_timeout),
+      wrenches_(simulation_),
       frame_watch_(node_, state_publisher_.frames()),
       services_(private_node_, *this) {
   for (const scene::Diagnostic& held : simulation_.held_joints()) ROS_WARN_STREAM(held.text());
@@ -70,6 +74,7 @@ void Node::tick() {
 
 bool Node::advance() {
   command_interface_.expire(run_.simulated_time);
+  wrenches_.update(run_.simulated_time);
   const SteadyClock::time_point start = SteadyClock::now();
   const StepResult result = simulation_.step();
   slowest_step_.note(std::chrono::duration<double>(SteadyClock::now() - start).count(), simulation_.time(), result);
@@ -162,14 +167,34 @@ bool Node::resume() {
 
 void Node::reset() {
   simulation_.reset();
+  ROS_INFO("reset");
+  begin_anew();
+}
+
+void Node::load_state(const std::string& file) {
+  read_checkpoint(simulation_, file);
+  ROS_INFO("at t = %g s, from '%s'", simulation_.time(), file.c_str());
+  begin_anew();
+}
+
+void Node::begin_anew() {
   command_interface_.forget_commands();
+  wrenches_.clear();
   marker_publisher_.forget_largest_strain();
   run_.failure.clear();
   run_.last_step = {};
   pacer_.clear_backlog();
-  ROS_INFO("reset");
-  clock_publisher_.advance();  // the initial state is news, too
+  clock_publisher_.advance();  // the new state is news, too
   publish(true);
+}
+
+void Node::apply_wrench(const AppliedWrench& wrench, const ros::Time& start, double duration) {
+  if (duration == 0) return;
+  const double delay = (start - clock_publisher_.stamp().value_or(start)).toSec(),
+               begin = run_.simulated_time + std::max(delay, 0.0);
+  const double end =
+      duration < 0 ? std::numeric_limits<double>::infinity() : begin + std::max(duration, simulation_.step_size());
+  wrenches_.add(wrench, begin, end);
 }
 
 bool Node::step(std::uint32_t steps) {

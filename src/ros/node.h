@@ -23,6 +23,7 @@
 #include "services.h"
 #include "state_publisher.h"
 #include "status_publisher.h"
+#include "wrench_schedule.h"
 
 namespace flexarm::node {
 
@@ -41,6 +42,14 @@ class Node {
   bool resume();
   /// Back to the scene's initial state; time of the stamps goes on, and paused stays paused.
   void reset();
+  /// Goes on from a state in a file; time of the stamps goes on, and paused stays paused. Applied wrenches are over.
+  /// @throws std::runtime_error as read_checkpoint(); all is as before then.
+  void load_state(const std::string& file);
+  /// @param start     by the stamps of messages; in the past: with the next step
+  /// @param duration  [s]; < 0: for ever, 0: nothing, less than a step: one step
+  /// @throws std::invalid_argument as Simulation::apply_wrenches().
+  void apply_wrench(const AppliedWrench& wrench, const ros::Time& start, double duration);
+  void clear_wrenches() { wrenches_.clear(); }
   /// Makes steps whatever the wall clock says. @returns false if one failed; run().failure says why
   bool step(std::uint32_t steps);
 
@@ -55,6 +64,8 @@ class Node {
   /// Where steps have been dropped since the last warning, not too often: how many, and why.
   void warn_if_slow();
   void publish(bool force);
+  /// The state is another one than the last step's.
+  void begin_anew();
   /// Sets ~view, which tells displays where to look.
   void describe_view() const;
   std::string root_frame() const { return parameters_.frame_prefix + simulation_.scene().root_link; }
@@ -85,6 +96,7 @@ class Node {
   StatusPublisher status_publisher_;
   Diagnostics diagnostics_;
   CommandInterface command_interface_;
+  WrenchSchedule wrenches_;
   FrameWatch frame_watch_;
   Services services_;
   ros::SteadyTimer timer_;

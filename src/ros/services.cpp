@@ -1,7 +1,11 @@
 #include "services.h"
 
+#include <algorithm>
+#include <filesystem>
 #include <stdexcept>
 
+#include "flexarm/simulation/checkpoint.h"
+#include "messages/conversions.h"
 #include "node.h"
 
 namespace flexarm::node {
@@ -9,10 +13,14 @@ namespace flexarm::node {
 constexpr std::uint32_t kMostSteps = 1000000;  ///< of one call: nothing else is served meanwhile
 
 Services::Services(ros::NodeHandle& private_node, Node& simulator) : simulator_(simulator) {
-  pause_server_ = private_node.advertiseService("pause", &Services::pause, this);
-  resume_server_ = private_node.advertiseService("resume", &Services::resume, this);
-  reset_server_ = private_node.advertiseService("reset", &Services::reset, this);
-  step_server_ = private_node.advertiseService("step", &Services::step, this);
+  servers_ = {private_node.advertiseService("pause", &Services::pause, this),
+              private_node.advertiseService("resume", &Services::resume, this),
+              private_node.advertiseService("reset", &Services::reset, this),
+              private_node.advertiseService("step", &Services::step, this),
+              private_node.advertiseService("save_state", &Services::save_state, this),
+              private_node.advertiseService("load_state", &Services::load_state, this),
+              private_node.advertiseService("apply_wrench", &Services::apply_wrench, this),
+              private_node.advertiseService("clear_wrenches", &Services::clear_wrenches, this)};
 }
 
 bool Services::pause(std_srvs::Empty::Request&, std_srvs::Empty::Response&) {
@@ -41,6 +49,56 @@ bool Services::step(Step::Request& request, Step::Response& response) {
     if (!response.success) response.message = simulator_.run().failure;
   }
   response.time = simulator_.simulation().time();
+  return true;
+}
+
+bool Services::save_state(SaveState::Request& request, SaveState::Response& response) {
+  try {
+    write_checkpoint(simulator_.simulation(), request.file);
+    response.success = true;
+    response.message = std::filesystem::absolute(request.file);
+  } catch (const std::runtime_error& error) {
+    response.message = error.what();
+  }
+  response.time = simulator_.simulation().time();
+  return true;
+}
+
+bool Services::load_state(LoadState::Request& request, LoadState::Response& response) {
+  try {
+    simulator_.load_state(request.file);
+    response.success = true;
+  } catch (const std::runtime_error& error) {
+    response.message = error.what();
+  }
+  response.time = simulator_.simulation().time();
+  return true;
+}
+
+bool Services::apply_wrench(ApplyWrench::Request& request, ApplyWrench::Response& response) {
+  const std::vector<std::string>& links = simulator_.simulation().link_names();
+  const auto link = std::find(links.begin(), links.end(), request.link);
+  if (link == links.end()) {
+    response.message = "there is no link '" + request.link + "'";
+  } else if (request.frame != "" && request.frame != "world" && request.frame != "follower") {
+    response.message = "frame must be 'world' or 'follower', got '" + request.frame + "'";
+  } else {
+    const AppliedWrench wrench{static_cast<std::size_t>(link - links.begin()),
+                               messages::to_vector(request.point),
+                               {messages::to_vector(request.wrench.force), messages::to_vector(request.wrench.torque)},
+                               request.frame == "follower"};
+    try {
+      simulator_.apply_wrench(wrench, request.start, request.duration.toSec());
+      response.success = true;
+    } catch (const std::invalid_argument& error) {
+      response.message = error.what();
+    }
+  }
+  return true;
+}
+
+bool Services::clear_wrenches(std_srvs::Empty::Request&, std_srvs::Empty::Response&) {
+  simulator_.clear_wrenches();
   return true;
 }
 

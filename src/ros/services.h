@@ -1,10 +1,15 @@
 #pragma once
-/// ~pause, ~resume, ~reset and ~step.
+/// ~pause, ~resume, ~reset, ~step; ~save_state, ~load_state; ~apply_wrench, ~clear_wrenches.
 
+#include <flexarm/ApplyWrench.h>
+#include <flexarm/LoadState.h>
+#include <flexarm/SaveState.h>
 #include <flexarm/Step.h>
 #include <ros/node_handle.h>
 #include <ros/service_server.h>
 #include <std_srvs/Empty.h>
+
+#include <vector>
 
 namespace flexarm::node {
 
@@ -21,9 +26,13 @@ class Services {
   bool resume(std_srvs::Empty::Request& request, std_srvs::Empty::Response& response);
   bool reset(std_srvs::Empty::Request& request, std_srvs::Empty::Response& response);
   bool step(Step::Request& request, Step::Response& response);
+  bool save_state(SaveState::Request& request, SaveState::Response& response);
+  bool load_state(LoadState::Request& request, LoadState::Response& response);
+  bool apply_wrench(ApplyWrench::Request& request, ApplyWrench::Response& response);
+  bool clear_wrenches(std_srvs::Empty::Request& request, std_srvs::Empty::Response& response);
 
   Node& simulator_;
-  ros::ServiceServer pause_server_, resume_server_, reset_server_, step_server_;
+  std::vector<ros::ServiceServer> servers_;
 };
 
 }  // namespace flexarm::node

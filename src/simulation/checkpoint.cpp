@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <sstream>
@@ -59,7 +60,7 @@ class Reader {
  public:
   explicit Reader(const std::string& path) : path_(path) {
     std::ifstream in(path, std::ios::binary);
-    if (!in) fail("cannot be opened");
+    if (!in || std::filesystem::is_directory(path)) fail("cannot be opened");
     const std::string text{std::istreambuf_iterator<char>(in), {}};
     lines_.str(text);
     if (const std::string header = next(); header != kHeader)
@@ -113,12 +114,20 @@ class Reader {
   int number_ = 0;
 };
 
+/// Where they act; empty if there are none.
+std::string wrenches_text(const std::vector<NodalLoad>& wrenches) {
+  if (wrenches.empty()) return "";
+  std::string text = fmt::format(" wrenches {}", wrenches.size());
+  for (const NodalLoad& wrench : wrenches) text += fmt::format(" {} {:d}", wrench.node, wrench.follows);
+  return text;
+}
+
 std::string counts_line(const State& state) {
-  return fmt::format("steps {} level {} good {} increments {} of {} order {} drives {} reactions {} left {} {}\n",
+  return fmt::format("steps {} level {} good {} increments {} of {} order {} drives {} reactions {} left {} {}{}\n",
                      state.steps, state.halving_level, state.good_steps, state.history.increments[0].size(),
                      state.history.count, state.history.order, state.drives.count, state.reactions.size(),
-                     state.left_lines.size(), fmt::join(state.left_lines, " ")) +
-         // Of scenes with sensors only: what others have kept before can still be read.
+                     state.left_lines.size(), fmt::join(state.left_lines, " "), wrenches_text(state.wrenches)) +
+         // Where there are some only: what was kept before can still be read.
          (state.samples.empty() ? "" : fmt::format("transmitted {}\n", state.transmitted.count));
 }
 
@@ -133,7 +142,8 @@ void read_counts(Reader& reader, State& state) {
       history.count >> word >> history.order >> word >> state.drives.count >> word >> reactions >> word >> left;
   const auto require = [&](bool ok) {
     if (!ok)
-      reader.fail_line(line, "the numbers of steps, increments, reactions and joints that have left their lines");
+      reader.fail_line(line,
+                       "the numbers of steps, increments, reactions, joints that have left their lines, wrenches");
   };
   require(in && left <= state.released.size());
   resize_nodes(state, state.nodes.size() - state.left_lines.size() + left);
@@ -142,6 +152,10 @@ void read_counts(Reader& reader, State& state) {
   require(in && increments <= 6 * state.nodes.size() + 6 * state.released.size() && reactions <= state.nodes.size());
   state.reactions.assign(reactions, Vector6::Zero());
   for (std::vector<double>& made : history.increments) made.assign(increments, 0.0);
+  std::size_t wrenches = 0;
+  if (in >> word) require(in >> wrenches && wrenches <= line.size());  // each takes some of its characters
+  state.wrenches.assign(wrenches, {});
+  for (NodalLoad& wrench : state.wrenches) require(static_cast<bool>(in >> wrench.node >> wrench.follows));
   if (state.samples.empty()) return;
   const std::string transmitted = reader.next();
   std::istringstream numbers(transmitted);

@@ -23,6 +23,7 @@
 #include "simulation/published_motion.h"
 #include "simulation/sensors.h"
 #include "simulation/state_flaw.h"
+#include "simulation/wrenches.h"
 
 namespace flexarm {
 namespace {
@@ -283,6 +284,13 @@ bool Simulation::has_servo(std::size_t index) const {
 bool Simulation::is_commandable(std::size_t index) const {
   const Coordinate& coordinate = implementation_->model.coordinates.at(index);
   return coordinate.motion < 0 && coordinate.mimicked < 0;
+}
+
+void Simulation::apply_wrenches(const std::vector<AppliedWrench>& wrenches) {
+  std::vector<NodalLoad> loads;
+  loads.reserve(wrenches.size());
+  for (const AppliedWrench& wrench : wrenches) loads.push_back(placed_wrench(implementation_->model, wrench));
+  implementation_->state.wrenches = std::move(loads);
 }
 
 // ---------------------------------------------------------------- frames

@@ -76,6 +76,11 @@ void check_sizes(const State& initial, const State& state, Flaw& flaw) {
     flaw.require_size("the number of reactions", state.reactions.size(), state.nodes.size());
 }
 
+void check_wrenches(const State& state, Flaw& flaw) {
+  for (const NodalLoad& wrench : state.wrenches)
+    flaw.require_range("the node of a wrench", wrench.node, 0, static_cast<double>(state.nodes.size()) - 1);
+}
+
 void check_history(const IncrementHistory& history, Flaw& flaw) {
   flaw.require_range("the number of past increments", history.count, 0, IncrementHistory::kLength);
   flaw.require_range("the order of extrapolation", history.order, IncrementHistory::kNoMotion,
@@ -93,6 +98,7 @@ std::string state_flaw(const Model& built, const State& initial, int finest_halv
   Flaw flaw;
   check_left_lines(built, state, flaw);
   check_sizes(initial, state, flaw);
+  check_wrenches(state, flaw);
   check_history(state.history, flaw);
   flaw.require(state.steps >= 0, "the number of steps", static_cast<double>(state.steps), "0 or more");
   flaw.require_range("the halving level", state.halving_level, 0, finest_halving);

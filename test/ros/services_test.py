@@ -2,15 +2,18 @@
 """Pause, step, resume, reset and failure of a simulation that is the clock of everybody; time never runs backwards."""
 
 import math
+import os
+import tempfile
 import time
 import unittest
 
+import rospkg
 import rospy
 import rostest
 from flexarm.msg import JointForceCommand, SimulatorStatus
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
-from simulated_arm import CommandTopic, SimulatedArm, force_command, wait_until
+from simulated_arm import CommandTopic, Joint, SimulatedArm, force_command, wait_until
 from tf2_msgs.msg import TFMessage
 
 
@@ -68,6 +71,10 @@ class ClockedArm(unittest.TestCase):
     def pause_and_wait(self):
         self.arm.pause()
         time.sleep(0.2)  # what was sent before arrives
+
+    def states_when_paused(self):
+        time.sleep(0.2)  # the same
+        return self.log.last["/joint_states"]
 
 
 class Services(ClockedArm):
@@ -145,6 +152,131 @@ class Services(ClockedArm):
         wait_until(lambda: not self.status().paused, "the resumption")
         for _ in range(3):
             self.arm.reset()
+
+
+class States(ClockedArm):
+    def setUp(self):
+        super().setUp()
+        self.pause_and_wait()
+        self.folder = tempfile.TemporaryDirectory()
+        self.file = os.path.join(self.folder.name, "state")
+        self.assertTrue(self.arm.apply_wrench("left_boom", force=(0, 3, 1), at=(1, 0, 0), duration=0.05).success)
+        self.assertTrue(self.arm.step(100).success)
+
+    def tearDown(self):
+        self.folder.cleanup()
+        super().tearDown()
+
+    def test_what_was_saved_comes_back_and_goes_on_the_same_way(self):
+        answer = self.arm.save_state(self.file)
+        self.assertTrue(answer.success, answer.message)
+        self.assertEqual(answer.message, self.file)
+        saved, saved_status = self.states_when_paused(), self.status()
+        self.assertTrue(self.arm.step(200).success)
+        later, later_stamp = self.states_when_paused(), self.status().header.stamp
+
+        answer = self.arm.load_state(self.file)
+        self.assertTrue(answer.success, answer.message)
+        self.assertEqual(answer.time, saved_status.time)
+        wait_until(lambda: self.status().header.stamp > later_stamp, "the status after the state was loaded")
+        self.assertEqual(self.states_when_paused().position, saved.position)
+        self.assertTrue(self.arm.step(200).success)
+        # Kept factors of the tangent are not part of a state: the same to within Newton's tolerance.
+        for position, expected in zip(self.states_when_paused().position, later.position):
+            self.assertAlmostEqual(position, expected, delta=1e-6)
+
+    def test_files_that_are_no_states_are_refused(self):
+        before = self.states_when_paused()
+        for file in (self.file, self.folder.name, rospkg.RosPack().get_path("flexarm") + "/package.xml", ""):
+            answer = self.arm.load_state(file)
+            self.assertFalse(answer.success, file)
+            self.assertIn(file, answer.message)
+        self.assertEqual(self.states_when_paused().position, before.position)
+        for file in (self.folder.name + "/no/such/folder", self.folder.name, ""):
+            answer = self.arm.save_state(file)
+            self.assertFalse(answer.success, file)
+            self.assertNotEqual(answer.message, "")
+
+
+class Wrenches(ClockedArm):
+    TORQUE, STEPS = 0.2, 200
+
+    def setUp(self):
+        super().setUp()
+        self.pause_and_wait()
+        self.arm.reset()
+
+    def angle(self, name="right_shoulder"):
+        return Joint(self.states_when_paused(), name).position
+
+    def pull(self, **fields):
+        answer = self.arm.apply_wrench("right_arm", moment=(0, 0, self.TORQUE), **fields)
+        self.assertTrue(answer.success, answer.message)
+
+    def make_steps(self, steps=STEPS):
+        self.assertTrue(self.arm.step(steps).success)
+
+    def test_moment_about_a_joint_does_what_its_effort_does(self):
+        force = CommandTopic("joint_force_command", JointForceCommand)
+        force.send(force_command(["right_shoulder"], [self.TORQUE]))
+        time.sleep(0.2)  # until the command is there
+        self.make_steps()
+        expected = self.angle()
+        force.send(force_command(["right_shoulder"], [0.0]))
+        time.sleep(0.2)
+        self.arm.reset()
+        self.pull(frame="follower")
+        self.make_steps()
+        self.assertGreater(expected, 1e-3)
+        self.assertAlmostEqual(self.angle(), expected, delta=1e-6 * expected)
+
+    def test_they_add_up_until_they_are_cleared(self):
+        self.pull()
+        self.make_steps()
+        once = self.angle()
+        self.arm.reset()
+        self.make_steps()
+        self.assertEqual(self.angle(), 0)  # a reset takes them away
+        for _ in range(2):
+            self.pull()
+        self.make_steps()
+        self.assertAlmostEqual(self.angle(), 2 * once, delta=0.01 * once)  # the hand's share turns with the angle
+        self.arm.clear_wrenches()
+        self.arm.reset()
+        self.make_steps()
+        self.assertEqual(self.angle(), 0)
+
+    def rate_after(self, **fields):
+        """After so many steps, from rest."""
+        self.arm.reset()
+        self.pull(**fields)
+        self.make_steps()
+        return Joint(self.states_when_paused(), "right_shoulder").velocity
+
+    def test_each_has_its_time(self):
+        one_step = self.rate_after(duration=1e-6)
+        self.assertGreater(one_step, 0)
+        self.assertEqual(self.rate_after(duration=0), 0)
+        for steps in (1, 2, 20):
+            rate = self.rate_after(duration=steps * self.step_size)
+            self.assertAlmostEqual(rate, steps * one_step, delta=0.01 * steps * one_step)
+        # What begins after half of the steps acts in the other half.
+        self.arm.reset()
+        time.sleep(0.2)  # until the status is there
+        self.pull(start=self.status().header.stamp + rospy.Duration.from_sec(self.STEPS / 2 * self.step_size))
+        self.make_steps()
+        half = Joint(self.states_when_paused(), "right_shoulder").velocity
+        self.assertAlmostEqual(half, self.STEPS / 2 * one_step, delta=1.01 * one_step)
+
+    def test_what_cannot_act_is_refused(self):
+        for fields, told in ((dict(link="no_link"), "no_link"), (dict(link="base"), "fixed to the world"),
+                             (dict(link="right_arm", force=(math.nan, 0, 0)), "finite"),
+                             (dict(link="right_arm", frame="body"), "body")):
+            answer = self.arm.apply_wrench(**fields)
+            self.assertFalse(answer.success, fields)
+            self.assertIn(told, answer.message)
+        self.make_steps()
+        self.assertEqual(self.angle(), 0)
 
 
 class Failure(ClockedArm):

@@ -4,7 +4,8 @@ import time
 
 import rospy
 from flexarm.msg import JointForceCommand, SimulatorStatus
-from flexarm.srv import Step
+from flexarm.srv import ApplyWrench, LoadState, SaveState, Step
+from geometry_msgs.msg import Point, Vector3, Wrench
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Empty
 
@@ -37,6 +38,15 @@ class SimulatedArm:
         self.resume = rospy.ServiceProxy(namespace + "/flexarm/resume", Empty)
         self.reset = rospy.ServiceProxy(namespace + "/flexarm/reset", Empty)
         self.step = rospy.ServiceProxy(namespace + "/flexarm/step", Step)
+        self.save_state = rospy.ServiceProxy(namespace + "/flexarm/save_state", SaveState)
+        self.load_state = rospy.ServiceProxy(namespace + "/flexarm/load_state", LoadState)
+        self.clear_wrenches = rospy.ServiceProxy(namespace + "/flexarm/clear_wrenches", Empty)
+        self.call_apply_wrench = rospy.ServiceProxy(namespace + "/flexarm/apply_wrench", ApplyWrench)
+
+    def apply_wrench(self, link, force=(0, 0, 0), moment=(0, 0, 0), at=(0, 0, 0), frame="", start=rospy.Time(),
+                     duration=-1.0):
+        return self.call_apply_wrench(link=link, point=Point(*at), wrench=Wrench(Vector3(*force), Vector3(*moment)),
+                                      frame=frame, start=start, duration=rospy.Duration.from_sec(duration))
 
     # While the simulation is paused, a new subscriber gets what was sent before the last service answered.
     def status(self):

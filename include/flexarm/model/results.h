@@ -141,6 +141,14 @@ struct Wrench {
   Vector3 moment = Vector3::Zero();  ///< [N m]
 };
 
+/// A wrench on a link from outside, beside the scene's loads.
+struct AppliedWrench {
+  std::size_t link = 0;          ///< in the order of the scene
+  Vector3 at = Vector3::Zero();  ///< where: in the undeformed link's frame [m]
+  Wrench wrench;                 ///< moment about that point
+  bool follows = false;          ///< axes are those of the link's material there, and turn with it; else the world's
+};
+
 /// What a sensor has measured, with bias and noise; it holds until the sensor's next sample.
 struct SensorSample {
   static constexpr std::size_t kMostValues = 7;

@@ -100,6 +100,12 @@ class Simulation {
   bool has_servo(std::size_t coordinate) const;
   bool is_commandable(std::size_t coordinate) const;  ///< false for prescribed and mimic coordinates
 
+  /// Applies wrenches from the next step on, in place of all that were applied before; none: takes these away. They
+  /// belong to the state: snapshots and checkpoints have them, reset() forgets them. A point of a flexible link is
+  /// carried by the section of the nearest node.
+  /// @throws std::invalid_argument if one is not finite, or its link is fixed to the world; nothing has changed then.
+  void apply_wrenches(const std::vector<AppliedWrench>& wrenches);
+
   // ---- frames: every link, in the scene's order
   const std::vector<std::string>& link_names() const;
   Pose link_pose(std::size_t link) const;  ///< in the world (= root link) frame

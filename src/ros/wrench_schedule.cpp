@@ -1,0 +1,40 @@
+#include "wrench_schedule.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace flexarm::node {
+
+void WrenchSchedule::add(const AppliedWrench& wrench, double begin, double end) {
+  // What cannot act is refused here, not where it would begin.
+  simulation_.apply_wrenches({wrench});
+  entries_.push_back({wrench, begin, end, false});
+  apply();
+}
+
+void WrenchSchedule::update(double time) {
+  const double middle = time + simulation_.step_size() / 2;
+  const auto is_over = [&](const Entry& entry) { return entry.end <= middle; };
+  const auto over = std::remove_if(entries_.begin(), entries_.end(), is_over);
+  bool changed = over != entries_.end();
+  entries_.erase(over, entries_.end());
+  for (Entry& entry : entries_) {
+    const bool acts = entry.begin <= middle;
+    changed |= std::exchange(entry.acts, acts) != acts;
+  }
+  if (changed) apply();
+}
+
+void WrenchSchedule::clear() {
+  entries_.clear();
+  apply();
+}
+
+void WrenchSchedule::apply() {
+  std::vector<AppliedWrench> wrenches;
+  for (const Entry& entry : entries_)
+    if (entry.acts) wrenches.push_back(entry.wrench);
+  simulation_.apply_wrenches(wrenches);
+}
+
+}  // namespace flexarm::node

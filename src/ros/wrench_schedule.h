@@ -1,0 +1,36 @@
+#pragma once
+/// Wrenches that services apply, each for its time.
+
+#include <vector>
+
+#include "flexarm/simulation/simulation.h"
+
+namespace flexarm::node {
+
+/// Hands the simulation the wrenches of each step. Times are simulated ones that no reset sets back [s].
+class WrenchSchedule {
+ public:
+  explicit WrenchSchedule(Simulation& simulation) : simulation_(simulation) {}
+
+  /// It acts in the steps whose middle is from `begin` to `end`.
+  /// @throws std::invalid_argument as Simulation::apply_wrenches().
+  void add(const AppliedWrench& wrench, double begin, double end);
+  /// Before each step, from `time` on.
+  void update(double time);
+  /// Takes all away, those that are yet to come, too.
+  void clear();
+
+ private:
+  struct Entry {
+    AppliedWrench wrench;
+    double begin, end;
+    bool acts;
+  };
+
+  void apply();
+
+  Simulation& simulation_;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace flexarm::node

@@ -1,0 +1,15 @@
+#pragma once
+/// Wrenches that somebody applies to links.
+
+#include "flexarm/model/results.h"
+#include "model/model.h"
+
+namespace flexarm {
+
+/// On a rigid link at the point, on a flexible one carried by the section of the node that is nearest in the undeformed
+/// link.
+/// @throws std::invalid_argument if it is not finite, or its link is fixed to the world; std::out_of_range if there is
+///   no such link.
+NodalLoad placed_wrench(const Model& model, const AppliedWrench& wrench);
+
+}  // namespace flexarm
