@@ -48,6 +48,15 @@ class Unloaded {
     if (!system_.tangent().solve(forces)) throw std::runtime_error("the stiffness is not finite");
     return forces;
   }
+  /// The general forces without those on multipliers, which would pull loops apart.
+  Eigen::VectorXd on_bodies(Eigen::VectorXd general) const {
+    const DegreesOfFreedom& dof = system_.degrees_of_freedom();
+    for (std::size_t k = 0; k < model_.closures.size(); ++k) {
+      const int variable = dof.variable_of_closure(static_cast<int>(k));
+      for (int i = 0; i < dof.size[variable]; ++i) general[dof.equation[dof.first[variable] + i]] = 0;
+    }
+    return general;
+  }
   void move(const Eigen::VectorXd& motion) {
     system_.update(motion);
     if (!system_.evaluate(false)) throw std::runtime_error("the stiffness is not finite");
@@ -99,7 +108,8 @@ std::string link_strained_in_second_order(const Model& model, const State& start
   const double drag = kLittleDrag * stiffness;
   mechanism.forces(drag);
   // Inverse iteration: what is soft, but not free, goes with the square of the drag.
-  const Eigen::VectorXd free = mechanism.answer(general).normalized(), motion = mechanism.answer(free);
+  const Eigen::VectorXd free = mechanism.on_bodies(mechanism.answer(mechanism.on_bodies(general))).normalized();
+  const Eigen::VectorXd motion = mechanism.answer(free);
   if (!mechanism.system().tangent().expanded_solution()) return "";  // of a matrix, not of a tree
   const NodeWays ways(model, node_motion_of_solution(mechanism.system()));
   // Twice the energy of strains and drag: where nothing is free, strains take far more.
@@ -116,7 +126,7 @@ std::string link_strained_in_second_order(const Model& model, const State& start
 }  // namespace
 
 std::string link_at_dead_point(const Model& model, const State& start, double contact_time) {
-  if (!model.closures.empty() || model.stiffness_point_count == 0) return "";
+  if (model.stiffness_point_count == 0) return "";
   const Eigen::Index unknowns = DegreesOfFreedom(model).unknowns;
   for (int k = 0; k < kMotions; ++k) {
     const Eigen::VectorXd general = general_vector(unknowns + k).tail(unknowns);

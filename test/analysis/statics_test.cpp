@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
+#include <string>
 
 #include "analysis/flexible_dead_point.h"
 #include "analysis/stability.h"
@@ -149,14 +151,20 @@ TEST(Stability, OfThousandsOfJoints) {
   EXPECT_LE(stability.motion.curvature, -9.81 * 0.5 / 3);
 }
 
-/// Cranks of 1 m on a line, with a coupler of 2 m, all of them beams, turned by an angle from it. `left`: the left
-/// crank's joints.
-SceneBuilder flexible_parallelogram(double angle, JointKind left) {
+/// Cranks of 1 m on a line, with a coupler of 2 m, turned by an angle from it, beams but for those named in `rigid`.
+/// `left`: the left crank's joints.
+SceneBuilder flexible_parallelogram(double angle, JointKind left, const std::set<std::string>& rigid = {}) {
   SceneBuilder b;
   const Vector3 across(0, 1, 0), crank(std::cos(angle), 0, std::sin(angle));
-  b.beam("left", {crank}, section(1e5, 5e4, 10, 10, 1, 1e-2, 5e-3), 2, 2);
-  b.beam("coupler", {{2, 0, 0}}, section(1e5, 5e4, 10, 10, 1, 1e-2, 5e-3), 4, 2);
-  b.beam("right", {crank}, section(1e5, 5e4, 10, 10, 1, 1e-2, 5e-3), 2, 2);
+  const auto link = [&](const std::string& name, const Vector3& along, int elements) {
+    if (rigid.count(name))
+      b.body(name, 1, along / 2, 0.05 * Matrix3::Identity());
+    else
+      b.beam(name, {along}, section(1e5, 5e4, 10, 10, 1, 1e-2, 5e-3), elements, 2);
+  };
+  link("left", crank, 2);
+  link("coupler", {2, 0, 0}, 4);
+  link("right", crank, 2);
   b.joint("left_foot", left, "world", "left", {0, 0, 0}, across);
   b.joint("left_head", left, "left", "coupler", crank, across);
   b.joint("right_foot", JointKind::Continuous, "world", "right", {2, 0, 0}, across);
@@ -177,6 +185,13 @@ TEST(Stability, FlexibleLoopsAtDeadPoints) {
     EXPECT_EQ(dead_link(flexible_parallelogram(angle, JointKind::Continuous)), "") << angle;
   EXPECT_EQ(dead_link(flexible_parallelogram(0, JointKind::Fixed)), "");
   EXPECT_EQ(dead_link(column(0, 0)), "");
+
+  const std::set<std::string> rigid = {"coupler", "right"};  // closed by multipliers
+  EXPECT_EQ(dead_link(flexible_parallelogram(0, JointKind::Continuous, rigid)), "left");
+  for (const double angle : {0.01, 0.3, kPi / 2})
+    EXPECT_EQ(dead_link(flexible_parallelogram(angle, JointKind::Continuous, rigid)), "") << angle;
+  EXPECT_EQ(dead_link(flexible_parallelogram(0, JointKind::Fixed, rigid)), "");
+  ASSERT_EQ(build_model(flexible_parallelogram(0, JointKind::Continuous, rigid).scene).closures.size(), 1u);
   for (const double slenderness : {1e5, 1e8}) {  // soft is not free
     SceneBuilder soft = flexible_parallelogram(0, JointKind::Fixed);
     for (scene::LinkDescription& link : soft.scene.links)
