@@ -1,13 +1,17 @@
 #include "flexarm/math/time_function.h"
 
 #include <algorithm>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 #include <variant>
 #include <vector>
 
+#include <fmt/format.h>
 #include <muParser.h>
 
+#include "math/cubic_spline.h"
 #include "math/parse_number.h"
 
 namespace flexarm {
@@ -62,29 +66,45 @@ class Expression {
   mu::Parser parser_;
 };
 
-using Function = std::variant<double, Table, Expression>;
+using Function = std::variant<double, Table, CubicSpline, Expression>;
 
-Table parse_table(std::string_view text) {
+/// The numbers of "1:2:3"; none where a part is no number.
+std::vector<double> parse_entry(std::string_view word) {
+  std::vector<double> numbers;
+  for (std::size_t begin = 0; begin <= word.size();) {
+    const std::size_t end = std::min(word.find(':', begin), word.size());
+    const std::optional<double> number = parse_number(word.substr(begin, end - begin));
+    if (!number) return {};
+    numbers.push_back(*number);
+    begin = end + 1;
+  }
+  return numbers;
+}
+
+void read_table(std::string_view text, Function& function) {
   if (text.size() > kLongestTable)
     throw std::invalid_argument("table of " + std::to_string(text.size()) + " characters, expected at most " +
                                 std::to_string(kLongestTable));
-  Table table;
+  CubicSpline table;
   std::string_view rest = text;
   for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
-    const std::size_t colon = word.find(':');
-    std::optional<double> time, value;
-    if (colon != std::string_view::npos) {
-      time = parse_number(word.substr(0, colon));
-      value = parse_number(word.substr(colon + 1));
-    }
-    if (!time || !value)
-      throw std::invalid_argument("entry " + quoted(word) + " of a table, expected TIME:VALUE with two numbers");
-    if (!table.times.empty() && *time <= table.times.back())
-      throw std::invalid_argument("entry " + quoted(word) + " of a table, expected strictly increasing times");
-    table.times.push_back(*time);
-    table.values.push_back(*value);
+    const std::vector<double> entry = parse_entry(word);
+    const auto fail = [&](const char* expected) {
+      throw std::invalid_argument("entry " + quoted(word) + " of a table, expected " + expected);
+    };
+    if (entry.size() != 2 && entry.size() != 3) fail("TIME:VALUE or TIME:VALUE:RATE with numbers");
+    if (!table.times.empty() && entry[0] <= table.times.back()) fail("strictly increasing times");
+    table.times.push_back(entry[0]);
+    table.values.push_back(entry[1]);
+    if (entry.size() == 3) table.rates.push_back(entry[2]);
+    if (!table.rates.empty() && table.rates.size() != table.times.size()) fail("a rate in all entries or in none");
   }
-  return table;
+  if (table.rates.empty()) {
+    function.emplace<Table>(Table{std::move(table.times), std::move(table.values)});
+    return;
+  }
+  if (table.times.size() < 2) throw std::invalid_argument("a single point with a rate, expected at least two");
+  function.emplace<CubicSpline>(std::move(table));
 }
 
 /// Position of an '=' that assigns: muParser would let an expression change t.
@@ -132,14 +152,16 @@ TimeFunction::TimeFunction() : TimeFunction(1.0) {}
 TimeFunction::TimeFunction(double constant) {
   char text[32];
   const std::to_chars_result result = std::to_chars(text, text + sizeof text, constant);
-  implementation_ = std::make_unique<const Implementation>(Implementation{std::string(text, result.ptr), constant});
+  implementation_ = std::make_shared<const Implementation>(Implementation{std::string(text, result.ptr), constant});
 }
 
-TimeFunction::TimeFunction(std::unique_ptr<const Implementation> implementation)
+TimeFunction::TimeFunction(std::shared_ptr<const Implementation> implementation)
     : implementation_(std::move(implementation)) {}
 
 TimeFunction::TimeFunction(const TimeFunction& other)
-    : implementation_(std::make_unique<const Implementation>(*other.implementation_)) {}
+    : implementation_(std::holds_alternative<Expression>(other.implementation_->function)
+                          ? std::make_shared<const Implementation>(*other.implementation_)
+                          : other.implementation_) {}
 TimeFunction::TimeFunction(TimeFunction&&) noexcept = default;
 TimeFunction::~TimeFunction() = default;
 
@@ -155,27 +177,47 @@ TimeFunction TimeFunction::parse(std::string_view text) {
   if (text.find('\0') != std::string_view::npos)
     throw std::invalid_argument("a zero byte, expected an expression of t or a table TIME:VALUE ...");
 
-  auto implementation = std::make_unique<Implementation>();
+  auto implementation = std::make_shared<Implementation>();
   const std::optional<double> constant = next_word(rest).empty() ? parse_number(first) : std::nullopt;
   if (constant) {
     implementation->function = *constant;
   } else if (text.find(':') != std::string_view::npos && text.find('?') == std::string_view::npos) {
-    implementation->function = parse_table(text);
+    read_table(text, implementation->function);
   } else {
     compile(text, implementation->function);
   }
   implementation->text = text;
-  return TimeFunction(std::unique_ptr<const Implementation>(std::move(implementation)));
+  return TimeFunction(std::move(implementation));
+}
+
+TimeFunction TimeFunction::spline(std::vector<double> times, std::vector<double> values, std::vector<double> rates) {
+  if (times.size() < 2) throw std::invalid_argument("at least two points are expected");
+  if (values.size() != times.size() || (!rates.empty() && rates.size() != times.size()))
+    throw std::invalid_argument("as many values as times are expected, and as many rates or none");
+  if (std::adjacent_find(times.begin(), times.end(), std::greater_equal<>()) != times.end())
+    throw std::invalid_argument("strictly increasing times are expected");
+  if (rates.empty()) rates = smoothest_rates(times, values);
+  CubicSpline spline{std::move(times), std::move(values), std::move(rates)};
+  fmt::memory_buffer text;
+  for (std::size_t i = 0; i < spline.times.size(); ++i) {
+    if (!std::isfinite(spline.times[i]) || !std::isfinite(spline.values[i]) || !std::isfinite(spline.rates[i]))
+      throw std::invalid_argument("finite numbers, and finite rates between them, are expected");
+    fmt::format_to(std::back_inserter(text), "{}{}:{}:{}", i > 0 ? " " : "", spline.times[i], spline.values[i],
+                   spline.rates[i]);
+  }
+  return TimeFunction(std::make_shared<const Implementation>(Implementation{to_string(text), std::move(spline)}));
 }
 
 double TimeFunction::operator()(double t) const {
   const Function& function = implementation_->function;
   if (const double* constant = std::get_if<double>(&function)) return *constant;
   if (const Table* table = std::get_if<Table>(&function)) return (*table)(t);
+  if (const CubicSpline* spline = std::get_if<CubicSpline>(&function)) return (*spline)(t);
   return std::get<Expression>(function)(t);
 }
 
 double TimeFunction::derivative(double t) const {
+  if (const CubicSpline* spline = std::get_if<CubicSpline>(&implementation_->function)) return spline->derivative(t);
   const double step = std::cbrt(std::numeric_limits<double>::epsilon()) * std::max(1.0, std::abs(t));
   // Around the start the function may not exist for negative times: second-order forward difference.
   if (t >= 0 && t < step) return (-3 * (*this)(t) + 4 * (*this)(t + step) - (*this)(t + 2 * step)) / (2 * step);

@@ -7,6 +7,7 @@
 
 #include "math/parse_number.h"
 #include "scene/limits.h"
+#include "scene/trajectory.h"
 
 namespace flexarm::scene {
 namespace {
@@ -208,6 +209,7 @@ std::optional<Vector3> XmlElement::direction(const char* attribute) const {
 std::optional<TimeFunction> XmlElement::function(const char* attribute) const {
   const std::optional<std::string> value = text(attribute);
   if (!value) return std::nullopt;
+  if (names_column(*value)) return read_trajectory(*this, attribute, *value);
   try {
     const TimeFunction function = TimeFunction::parse(*value);
     if (std::isfinite(function(0))) return function;

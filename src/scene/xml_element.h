@@ -81,7 +81,7 @@ class XmlElement {
   Vector3 vector(const char* attribute, const Vector3& fallback) const;
   /// A vector of unit length from one of any length but zero.
   std::optional<Vector3> direction(const char* attribute) const;
-  /// A function of time, finite at t = 0.
+  /// A function of time, finite at t = 0, as a formula or as a column of a table (see trajectory.h).
   std::optional<TimeFunction> function(const char* attribute) const;
 
  private:

@@ -257,6 +257,29 @@ TEST(Servo, WorkIsInTheAccount) {
   }
 }
 
+// A trajectory that is a cubic is followed as the formula is: the set point and, where a scheme takes it, its rate.
+TEST(Servo, FollowsATrajectoryAsTheFormula) {
+  const TimeFunction formula = TimeFunction::parse("t < 0 ? 0 : t*t*(3-2*t)");
+  const TimeFunction trajectory = TimeFunction::spline({0, 0.3, 1}, {0, 0.216, 1}, {0, 1.26, 0});
+  // Derivatives of formulas are differences, which are exact to eps^(2/3); the error follows within kd / kp times that.
+  const double tolerance = 4 * std::pow(std::numeric_limits<double>::epsilon(), 2.0 / 3.0);
+  for (const char* scheme : {"em", "newmark"})
+    for (const double sample_time : {0.0, 0.004}) {
+      std::vector<std::vector<double>> positions(2);
+      for (const int k : {0, 1}) {
+        SceneBuilder b = block_on_rail();
+        scene::ServoDescription& servo = add_servo(b, Mode::Position, 4000, 200);
+        servo.set_point = k == 0 ? formula : trajectory;
+        servo.sample_time = sample_time;
+        Simulation simulation(b.scene, options(scheme, 1e-3, 1e-13));
+        run(simulation, 900, [&] { positions[k].push_back(simulation.position(0)); });
+      }
+      for (std::size_t n = 0; n < positions[0].size(); ++n)
+        ASSERT_NEAR(positions[0][n], positions[1][n], tolerance) << scheme << sample_time << " " << n;
+      EXPECT_NEAR(positions[1].back(), formula(0.9), 1e-2) << "follows it";
+    }
+}
+
 TEST(Servo, TakesCommands) {
   SceneBuilder b = block_on_rail(0.1);
   add_servo(b, Mode::Position, 1e3, 100);

@@ -36,6 +36,15 @@ inline ReadResult read(const std::string& text) {
   return read_scene_text(text, "scene.urdf");
 }
 
+/// The same from a file beside which lies a table.
+inline ReadResult read_with_table(const std::string& text, const std::string& name, const std::string& table) {
+  const std::string folder = testing::TempDir();
+  std::ofstream(folder + name) << table;
+  const std::string path = folder + "beside_" + name + ".urdf";
+  std::ofstream(path) << text;
+  return read_scene_file(path);
+}
+
 /// Expects exactly one error, at this line, whose text contains the fragment.
 inline void expect_one_error(const std::string& text, int line, const std::string& fragment) {
   const ReadResult result = read(text);

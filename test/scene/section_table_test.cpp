@@ -1,6 +1,4 @@
 // Sections along a beam: as stations in the scene, and as a table beside it.
-#include <fstream>
-
 #include <gtest/gtest.h>
 
 #include "scene_text.h"
@@ -27,27 +25,21 @@ TEST(Stations, ShapesShareTheMaterial) {
   EXPECT_EQ(last.material.young, 70e9);
 }
 
-/// The good scene in a folder of its own, with a table beside it.
-class SectionTable : public testing::Test {
- protected:
-  ReadResult read_with(const std::string& table) {
-    const std::string folder = testing::TempDir() + "flexarm_section_table_";
-    std::ofstream(folder + "blade.csv") << table;
-    std::string text = good_scene_with(kTube, R"(<stations file="flexarm_section_table_blade.csv"/>)");
-    text.erase(text.find(kMaterial), kMaterial.size());
-    std::ofstream(folder + "scene.urdf") << text;
-    return read_scene_file(folder + "scene.urdf");
-  }
-  void expect_error(const std::string& table, const std::string& fragment) {
-    const ReadResult result = read_with(table);
-    EXPECT_FALSE(result.scene) << table;
-    EXPECT_NE(to_text(result.diagnostics).find(fragment), std::string::npos) << to_text(result.diagnostics);
-  }
-};
+ReadResult read_with(const std::string& table) {
+  std::string text = good_scene_with(kTube, R"(<stations file="flexarm_blade.csv"/>)");
+  text.erase(text.find(kMaterial), kMaterial.size());
+  return read_with_table(text, "flexarm_blade.csv", table);
+}
+
+void expect_table_error(const std::string& table, const std::string& fragment) {
+  const ReadResult result = read_with(table);
+  EXPECT_FALSE(result.scene) << table;
+  EXPECT_NE(to_text(result.diagnostics).find(fragment), std::string::npos) << to_text(result.diagnostics);
+}
 
 const std::string kDirectHeader = "at,ea,ga2,ga3,gj,ei2,ei3,mass,j1,j2,j3\n";
 
-TEST_F(SectionTable, DirectStiffnesses) {
+TEST(SectionTable, DirectStiffnesses) {
   const ReadResult result =
       read_with("mass, at,ea,ga2,ga3,gj,ei2,ei3,j1,j2,j3\r\n7,0,1,2,3,4,5,6,8,9,10\r\n\n14,2,2,4,6,8,10,12,16,18,20\n");
   ASSERT_TRUE(result.scene) << to_text(result.diagnostics);
@@ -57,7 +49,7 @@ TEST_F(SectionTable, DirectStiffnesses) {
   EXPECT_EQ(std::get<DirectSection>(stations.sections[1]).mass, 14);
 }
 
-TEST_F(SectionTable, Matrices) {
+TEST(SectionTable, Matrices) {
   std::string table = "at", row;
   for (const char letter : {'k', 'm'})
     for (int i = 1; i <= 6; ++i)
@@ -77,17 +69,18 @@ TEST_F(SectionTable, Matrices) {
   EXPECT_EQ(section.inertia(2, 2), 2);
 }
 
-TEST_F(SectionTable, Errors) {
+TEST(SectionTable, Errors) {
   const std::string row = ",1,2,3,4,5,6,7,8,9,10\n";
-  expect_error("", "blade.csv:1: the columns ea, ga2");
-  expect_error("at,ea\n0,1\n", "blade.csv:1: the columns ea, ga2");
-  expect_error(kDirectHeader, "at least two stations are expected");
-  expect_error(kDirectHeader + "0" + row, "at least two stations are expected");
-  expect_error(kDirectHeader + "0" + row + "0" + row, "blade.csv:3: at must be > 0, that of the line before, got '0'");
-  expect_error(kDirectHeader + "-1" + row, "blade.csv:2: at must be >= 0, got '-1'");
-  expect_error(kDirectHeader + "0" + row + "1,1,2,3\n", "blade.csv:3: 11 numbers are expected, got '4'");
-  expect_error(kDirectHeader + "0,1,2,3,4,5,6,7,8,9,nan\n", "blade.csv:2: j3 must be a finite number, got 'nan'");
-  expect_error(kDirectHeader + "0,1,2,3,0,5,6,7,8,9,10\n", "blade.csv:2: gj must be > 0, got '0'");
+  expect_table_error("", "blade.csv:1: the columns ea, ga2");
+  expect_table_error("at,ea\n0,1\n", "blade.csv:1: the columns ea, ga2");
+  expect_table_error(kDirectHeader, "at least two stations are expected");
+  expect_table_error(kDirectHeader + "0" + row, "at least two stations are expected");
+  expect_table_error(kDirectHeader + "0" + row + "0" + row,
+                     "blade.csv:3: at must be > 0, that of the line before, got '0'");
+  expect_table_error(kDirectHeader + "-1" + row, "blade.csv:2: at must be >= 0, got '-1'");
+  expect_table_error(kDirectHeader + "0" + row + "1,1,2,3\n", "blade.csv:3: 11 numbers are expected, got '4'");
+  expect_table_error(kDirectHeader + "0,1,2,3,4,5,6,7,8,9,nan\n", "blade.csv:2: j3 must be a finite number, got 'nan'");
+  expect_table_error(kDirectHeader + "0,1,2,3,0,5,6,7,8,9,10\n", "blade.csv:2: gj must be > 0, got '0'");
 }
 
 }  // namespace

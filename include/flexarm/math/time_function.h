@@ -1,9 +1,10 @@
 #pragma once
-/// Scalar functions of time as a scene writes them: a constant, a muParser expression of t, or a table.
+/// Scalar functions of time as a scene writes them: a constant, a muParser expression of t, a table, or a spline.
 
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace flexarm {
 
@@ -19,22 +20,28 @@ class TimeFunction {
   TimeFunction& operator=(TimeFunction other) noexcept;
   ~TimeFunction();
   explicit TimeFunction(double constant);
-  /// Parses `text`: an expression in t ("t < 1 ? t : 0", "sin(2*_pi*t)") or a table "0:0 1:50 2:0"
-  /// (linear between its points, constant outside; strictly increasing times).
+  /// Parses `text`: an expression in t ("t < 1 ? t : 0", "sin(2*_pi*t)"), a table "0:0 1:50 2:0"
+  /// (linear between its points, constant outside; strictly increasing times), or one with rates "0:0:0 2:1:0" (as
+  /// `spline`).
   /// @throws std::invalid_argument with a message that says what was read and what was expected.
   static TimeFunction parse(std::string_view text);
+  /// Cubic between points at strictly increasing times [s] and constant outside, with these rates [1/s]; without any,
+  /// twice continuously differentiable between the ends, at which it rests.
+  /// @throws std::invalid_argument with fewer than two points, other sizes, or numbers or rates that are not finite.
+  static TimeFunction spline(std::vector<double> times, std::vector<double> values, std::vector<double> rates = {});
 
   /// Value at time t; may be non-finite where the expression is (the caller checks).
   double operator()(double t) const;
-  /// Central difference with a step of cbrt(machine epsilon) * max(1, |t|); one-sided (forward) at t = 0.
+  /// Exact of a spline; else a central difference with a step of cbrt(machine epsilon) * max(1, |t|), one-sided
+  /// (forward) at t = 0.
   double derivative(double t) const;
-  /// Text from which the function was made.
+  /// Text from which the function was made, or could have been.
   const std::string& text() const;
 
  private:
   struct Implementation;
-  explicit TimeFunction(std::unique_ptr<const Implementation> implementation);
-  std::unique_ptr<const Implementation> implementation_;
+  explicit TimeFunction(std::shared_ptr<const Implementation> implementation);
+  std::shared_ptr<const Implementation> implementation_;  // shared by copies where evaluation writes nothing
 };
 
 }  // namespace flexarm
