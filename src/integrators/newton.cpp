@@ -190,8 +190,8 @@ bool NewtonIteration::has_converged(const Progress& progress, Factors factors) c
   const bool may_have_begun_anew = settings_.reuse_factorisation && system_.configuration().step() != 0 &&
                                    progress.iteration + 1 < settings_.max_iterations;
   if (factors == Factors::Fresh && !may_have_begun_anew) return progress.norm <= settings_.tolerance;
-  const bool stagnates = !progress.with_kept && progress.norm <= kStagnation && progress.contraction > kStalled &&
-                         progress.since_revision > 1;
+  const bool stagnates =
+      progress.norm <= kStagnation && progress.contraction > kStalled && progress.since_revision > 1;
   return stagnates || remainder_after(progress) <= std::max(settings_.tolerance * settings_.tolerance, kRoundOff);
 }
 
