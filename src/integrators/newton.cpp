@@ -20,8 +20,8 @@ constexpr int kPatience = 5;
 constexpr double kStalled = 0.5;
 /// Growth of updates by kept factors with which a solve begins anew: it happens where these are of another branch.
 constexpr double kAstray = 10;
-/// Updates by new factors that no longer shrink below this are the round-off of a stiff system: its condition, up to
-/// 1e4 in the test scenes of stiff bodies, times that of a double.
+/// Updates that no longer shrink below this are the round-off of a stiff system: its condition, up to 1e4 in the test
+/// scenes of stiff bodies, times that of a double.
 constexpr double kStagnation = 1e-12;
 /// Solves that may end after one update, because an earlier one has shown what it leaves, until one more shows it anew.
 constexpr int kTrust = 8;
@@ -134,9 +134,10 @@ bool NewtonIteration::diverges(const Progress& progress) const {
   return progress.norm > kDivergence * std::max(norms_.front(), kSmallestFirstUpdate);
 }
 
-/// Kept factors that make updates grow so lead astray; full Newton begins anew.
+/// Kept factors that make updates grow so lead astray; full Newton begins anew. Round-off may grow as it likes.
 bool NewtonIteration::is_led_astray(const Progress& progress) const {
-  return progress.with_kept && progress.since_revision > 0 && progress.contraction > kAstray;
+  return progress.with_kept && progress.since_revision > 0 && progress.contraction > kAstray &&
+         progress.norm > kStagnation;
 }
 
 /// A steep law (friction near sticking, the touch of a stop) makes full updates jump to and fro; statics has none.
@@ -190,8 +191,7 @@ bool NewtonIteration::has_converged(const Progress& progress, Factors factors) c
   const bool may_have_begun_anew = settings_.reuse_factorisation && system_.configuration().step() != 0 &&
                                    progress.iteration + 1 < settings_.max_iterations;
   if (factors == Factors::Fresh && !may_have_begun_anew) return progress.norm <= settings_.tolerance;
-  const bool stagnates = !progress.with_kept && progress.norm <= kStagnation && progress.contraction > kStalled &&
-                         progress.since_revision > 1;
+  const bool stagnates = progress.norm <= kStagnation && progress.contraction > kStalled && progress.since_revision > 1;
   return stagnates || remainder_after(progress) <= std::max(settings_.tolerance * settings_.tolerance, kRoundOff);
 }
 

@@ -21,7 +21,7 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme, BackendChoice b
       friction_(configuration_, interpolation_.get()),
       actuators_(configuration_, histories_, interpolation_.get()),
       joints_(configuration_, histories_, friction_, actuators_),
-      reactions_(configuration_, friction_),
+      reactions_(configuration_, friction_, loops_),
       reversals_(configuration_),
       contacts_(configuration_),
       rows_(model, dof_),
@@ -157,6 +157,8 @@ void StepSystem::accept_rest(State& state) {
   std::fill(state.strain_memory.begin(), state.strain_memory.end(), StrainMemory());
   state.drives.restart(joints_.efforts());
   reactions_.accept_rest(rows_, state);
+  state.reactions.clear();
+  std::fill(state.momentum_rates.begin(), state.momentum_rates.end(), Vector3::Zero());
   state.history.clear();
 }
 

@@ -319,7 +319,7 @@ struct PointSpring {
 };
 
 enum class SensorKind {
-  Wrench,        ///< what carries a link does to it, in the link's axes about the sensor's place
+  Wrench,        ///< what a joint does to its link, in the link's axes about the sensor's place
   Reaction,      ///< the same in world axes
   SectionForce,  ///< of a flexible link: elastic force and moment in the section's axes, about its reference line
   Strain,        ///< of a flexible link: of the fibre through the sensor's place, along the line
@@ -343,6 +343,7 @@ struct Sensor {
   std::string name;
   SensorKind kind = SensorKind::Pose;
   std::string link;
+  std::string joint;             ///< Wrench, Reaction: a loop joint of the link; empty: the joint that carries it
   Vector3 at = Vector3::Zero();  ///< in the undeformed link frame [m]
   double rate = 0;  ///< samples per second, each at the end of the first step that reaches it [Hz]; 0: every step
   std::vector<double> noise, bias;  ///< standard deviations and means of the errors; empty: none, one: all alike
@@ -372,7 +373,8 @@ struct SceneDescription {
   std::vector<Probe> probes;
   std::vector<Sensor> sensors;
   std::vector<PointSpring> point_springs;
-  bool lock_massless = false;  ///< joints that move nothing with inertia are held where they start, not refused
+  bool lock_massless = false;          ///< joints that move nothing with inertia are held where they start, not refused
+  bool starts_in_equilibrium = false;  ///< at rest, where loads, gravity and servos at t = 0 hold it
 };
 
 /// Suffixes of the released coordinates of a joint in their order: {""} for one coordinate, {} for none,
