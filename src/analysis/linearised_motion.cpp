@@ -189,7 +189,7 @@ void LinearisedMotion::assemble_mass() {
     block.topLeftCorner<3, 3>().diagonal().array() += inertia.mass;
     block.bottomRightCorner<3, 3>() += rotation * inertia.rotary * rotation.transpose();
   }
-  for (const ActuatorTerms& terms : actuator_terms(model_)) diagonal(mass_, terms.joint, terms.component) += terms.mass;
+  for (const ActuatorTerms& terms : actuator_terms(model_, state_)) diagonal(mass_, terms.joint, terms.component) += terms.mass;
   fold(mass_);
 }
 
@@ -212,7 +212,7 @@ void LinearisedMotion::assemble_damping() {
   for (const Coordinate& coordinate : model_.coordinates)
     diagonal(damping_, coordinate.joint, coordinate.component) +=
         damping_of(coordinate, stop_penalty(coordinate, contact_time_), state_.released[coordinate.joint]);
-  for (const ActuatorTerms& terms : actuator_terms(model_))
+  for (const ActuatorTerms& terms : actuator_terms(model_, state_))
     diagonal(damping_, terms.joint, terms.component) += terms.damping;
   for (const PointSpring& spring : model_.springs) {
     const Vector12 gradient = gradient_of(spring, model_, state_);

@@ -95,6 +95,7 @@ void Actuators::begin() {
     if (coordinate.motion < 0)
       part.demand.constant = histories_.effort(coordinate, configuration_.state().commands[actuator.coordinate]);
     if (actuator.servo && coordinate.motion < 0) ask(actuator, state, part);
+    if (state.servo.off > 0) part.demand = {0, 0, 0, 0};  // it goes on measuring
     part.action = {};
     part.action.increment = configuration_.step() * state.rate;
   }
@@ -262,6 +263,7 @@ void Actuators::accept(State& state) const {
       advance(*actuator.servo, part.input, actuator.servo->on_link ? part.link : action.increment,
               action.motor - action.demand, own.servo);
     }
+    if (own.servo.off > 0) own.servo.integral = 0;
     own.angle += action.increment;
     own.rate = rotor.rate_offset + rotor.rate_slope * (action.increment + part.carried);
     if (!configuration_.scheme().is_incremental()) {
