@@ -189,7 +189,8 @@ void LinearisedMotion::assemble_mass() {
     block.topLeftCorner<3, 3>().diagonal().array() += inertia.mass;
     block.bottomRightCorner<3, 3>() += rotation * inertia.rotary * rotation.transpose();
   }
-  for (const ActuatorTerms& terms : actuator_terms(model_, state_)) diagonal(mass_, terms.joint, terms.component) += terms.mass;
+  for (const ActuatorTerms& terms : actuator_terms(model_, state_))
+    diagonal(mass_, terms.joint, terms.component) += terms.mass;
   fold(mass_);
 }
 
@@ -198,7 +199,7 @@ void LinearisedMotion::assemble_damping() {
   for_each_element(model_.beams, [&](const auto& element) {
     constexpr int N = std::decay_t<decltype(element)>::kNodes;
     if (element.stiffness_damping == 0 && element.mass_damping == 0) return;
-    Eigen::MatrixXd damping = element.stiffness_damping * material_stiffness(element, state_);
+    Eigen::MatrixXd damping = element.stiffness_damping * material_stiffness(with_damped_stiffness(element), state_);
     for (int i = 0; i < N; ++i)
       for (int j = 0; j < N; ++j)
         damping.block<3, 3>(6 * i, 6 * j).diagonal().array() += element.mass_damping * element.mass(i, j);

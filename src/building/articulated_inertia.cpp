@@ -35,7 +35,11 @@ SpatialInertia moved(const SpatialInertia& inertia, const Vector3& way) {
 class Articulation {
  public:
   Articulation(const std::vector<int>& parents, const Model& model)
-      : parents_(parents), model_(model), joint_of_(model.nodes.size(), -1), leads_(model.coordinates.size(), false) {
+      : parents_(parents),
+        model_(model),
+        joint_of_(model.nodes.size(), -1),
+        leads_(model.coordinates.size(), false),
+        inertias_(model.coordinates.size(), 0.0) {
     for (std::size_t j = 0; j < model.joints.size(); ++j) joint_of_[model.joints[j].slave] = static_cast<int>(j);
     for (const Coordinate& coordinate : model.coordinates)
       if (coordinate.mimicked >= 0) leads_[coordinate.mimicked] = true;
@@ -51,7 +55,7 @@ class Articulation {
     return false;
   }
 
-  std::vector<int> dependent_coordinates() {
+  void factorise() {
     for (int i = static_cast<int>(articulated_.size()) - 1; i >= 0; --i) {  // parents come before their children
       const int joint = joint_of_[i], parent = parents_[i];
       if (joint >= 0 && model_.joints[joint].kind != JointMapKind::Slide) yield(joint, i);
@@ -60,8 +64,9 @@ class Articulation {
       articulated_[parent] += moved(articulated_[i], way);
       locked_[parent] += moved(locked_[i], way);
     }
-    return dependent_;
   }
+  const std::vector<int>& dependent_coordinates() const { return dependent_; }
+  const std::vector<double>& inertias() const { return inertias_; }
 
  private:
   using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6>;
@@ -80,6 +85,7 @@ class Articulation {
         const Columns forces = articulated_[node] * columns;
         const Square resisting = Square(columns.transpose() * forces) + rotors(j, free);
         articulated_[node] -= forces * resisting.ldlt().solve(forces.transpose());
+        if (columns.cols() == 1) inertias_[model_.first_coordinate[j] + free.front()] = resisting(0, 0);
         return;
       }
       dependent_.push_back(model_.first_coordinate[j] + free[dependent]);
@@ -135,13 +141,21 @@ class Articulation {
   std::vector<bool> leads_;                           // per coordinate: others follow it
   std::vector<SpatialInertia> articulated_, locked_;  // per node: of what is outboard, if joints yield and if not
   std::vector<int> dependent_;
+  std::vector<double> inertias_;  // per coordinate
 };
 
 }  // namespace
 
 std::vector<int> coordinates_without_own_inertia(const std::vector<int>& parents, const Model& model) {
   Articulation articulation(parents, model);
-  return articulation.has_loops() ? std::vector<int>() : articulation.dependent_coordinates();
+  if (!articulation.has_loops()) articulation.factorise();
+  return articulation.dependent_coordinates();
+}
+
+std::vector<double> articulated_inertias(const std::vector<int>& parents, const Model& model) {
+  Articulation articulation(parents, model);
+  if (!articulation.has_loops()) articulation.factorise();
+  return articulation.inertias();
 }
 
 }  // namespace flexarm
