@@ -9,6 +9,8 @@
 
 namespace flexarm {
 
+class SparseTangent;
+
 /// Stiffness of the material alone, without what stress adds to it.
 template <int Nodes>
 Eigen::MatrixXd material_stiffness(const BeamElement<Nodes>& element, const State& state);
@@ -19,5 +21,8 @@ Eigen::MatrixXd material_curvature(const BeamElement<Nodes>& element, const Stat
 
 template <int Nodes>
 Eigen::MatrixXd mass_matrix(const BeamElement<Nodes>& element, const State& state);
+
+/// Adds the matrix of the element whose first block is `first`.
+void add_element(SparseTangent& sum, std::size_t first, const Eigen::MatrixXd& matrix);
 
 }  // namespace flexarm

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include <Eigen/Eigenvalues>
-
 #include "analysis/linearised_motion.h"
 #include "analysis/node_ways.h"
+#include "math/dense_eigenpairs.h"
 #include "math/general_vector.h"
 
 namespace flexarm {
@@ -46,8 +45,7 @@ Eigen::VectorXd least_ritz_vector(Inverse& inverse, Eigen::Index size) {
     left = next.norm();
   }
   const Eigen::MatrixXd projected = basis.leftCols(count).transpose() * images.leftCols(count);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(0.5 * (projected + projected.transpose()));
-  return basis.leftCols(count) * solver.eigenvectors().col(0);
+  return basis.leftCols(count) * symmetric_eigenpairs(0.5 * (projected + projected.transpose())).vectors.col(0);
 }
 
 }  // namespace

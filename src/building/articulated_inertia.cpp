@@ -1,8 +1,7 @@
 #include "building/articulated_inertia.h"
 
-#include <Eigen/Eigenvalues>
-
 #include "joints/joint_kinematics.h"
+#include "math/dense_eigenpairs.h"
 #include "math/so3.h"
 
 namespace flexarm {
@@ -82,10 +81,7 @@ class Articulation {
       for (std::size_t k = 0; k < free.size(); ++k) columns.col(k) = maps.right.col(free[k]);
       const int dependent = dependent_of(columns, rotors(j, free), node);
       if (dependent < 0) {
-        const Columns forces = articulated_[node] * columns;
-        const Square resisting = Square(columns.transpose() * forces) + rotors(j, free);
-        articulated_[node] -= forces * resisting.ldlt().solve(forces.transpose());
-        if (columns.cols() == 1) inertias_[model_.first_coordinate[j] + free.front()] = resisting(0, 0);
+        for (const int component : free) yield_along(maps.right.col(component), j, component, node);
         return;
       }
       dependent_.push_back(model_.first_coordinate[j] + free[dependent]);
@@ -93,11 +89,21 @@ class Articulation {
     }
   }
 
-  /// Inertia of the rotors that turn with these components.
+  /// What resists others is less by what this coordinate's own motion, with the inertia of its rotor, takes up.
+  void yield_along(const Vector6& column, int j, int component, int node) {
+    const Vector6 force = articulated_[node] * column;
+    const double resisting = column.dot(force) + rotor(j, component);
+    articulated_[node] -= force * force.transpose() / resisting;
+    inertias_[model_.first_coordinate[j] + component] = resisting;
+  }
+
+  /// Inertia of the rotor that turns with a component of a joint.
+  double rotor(int j, int component) const {
+    return armature(model_, model_.coordinates[model_.first_coordinate[j] + component]);
+  }
   Square rotors(int j, const std::vector<int>& free) const {
     Square out = Square::Zero(free.size(), free.size());
-    for (std::size_t k = 0; k < free.size(); ++k)
-      out(k, k) = armature(model_, model_.coordinates[model_.first_coordinate[j] + free[k]]);
+    for (std::size_t k = 0; k < free.size(); ++k) out(k, k) = rotor(j, free[k]);
     return out;
   }
 
@@ -119,19 +125,18 @@ class Articulation {
 
   /// The one of the columns that moves most in a motion that is without inertia once joints outboard yield; -1: none.
   int dependent_of(const Columns& columns, const Square& rotors, int node) const {
-    using Pairs = Eigen::SelfAdjointEigenSolver<Square>;
     const Square locked = Square(columns.transpose() * locked_[node] * columns) + rotors;
     const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> scale = locked.diagonal().cwiseSqrt().cwiseInverse();
-    const Pairs principal(Square(scale.asDiagonal() * locked * scale.asDiagonal()));
-    const auto count = (principal.eigenvalues().array() > kJudgeable).count();
+    const auto [inertias, directions] = symmetric_eigenpairs(scale.asDiagonal() * locked * scale.asDiagonal());
+    const auto count = (inertias.array() > kJudgeable).count();
     // Motions of equal inertia with joints locked.
-    const Square motions = scale.asDiagonal() * principal.eigenvectors().rightCols(count) *
-                           principal.eigenvalues().tail(count).cwiseSqrt().cwiseInverse().asDiagonal();
+    const Square motions =
+        scale.asDiagonal() * directions.rightCols(count) * inertias.tail(count).cwiseSqrt().cwiseInverse().asDiagonal();
     const Square yielding = Square(columns.transpose() * articulated_[node] * columns) + rotors;
-    const Pairs pairs(Square(motions.transpose() * yielding * motions));
-    if (pairs.eigenvalues()[0] > kRoundOff) return -1;
+    const SymmetricEigenpairs pairs = symmetric_eigenpairs(motions.transpose() * yielding * motions);
+    if (pairs.values[0] > kRoundOff) return -1;
     Eigen::Index most = 0;
-    scale.cwiseInverse().cwiseProduct(motions * pairs.eigenvectors().col(0)).cwiseAbs().maxCoeff(&most);
+    scale.cwiseInverse().cwiseProduct(motions * pairs.vectors.col(0)).cwiseAbs().maxCoeff(&most);
     return static_cast<int>(most);
   }
 

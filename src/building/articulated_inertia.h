@@ -16,7 +16,7 @@ std::vector<int> coordinates_without_own_inertia(const std::vector<int>& node_pa
 
 /// Per coordinate what it moves at the start while those outboard of it are free to move, a rotor that turns with it
 /// included [kg m^2 or kg]; 0 where that is not known: in mechanisms with loops, on slides, of coordinates that are
-/// prescribed, follow others or are followed, and of joints that turn or fly freely.
+/// prescribed, follow others or are followed. Of a joint with several, those before it are free, too.
 std::vector<double> articulated_inertias(const std::vector<int>& node_parents, const Model& model);
 
 }  // namespace flexarm

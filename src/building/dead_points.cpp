@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/QR>
-
 #include "joints/joint_kinematics.h"
 #include "math/general_vector.h"
+#include "math/least_squares.h"
 
 namespace flexarm {
 namespace {
@@ -17,18 +16,10 @@ constexpr double kStep = 1e-4;
 /// leave.
 constexpr double kCurvature = 1e-5;
 
-/// x of least size by which B x comes next to b.
-Eigen::VectorXd least_squares(const Eigen::MatrixXd& block, const Eigen::VectorXd& b) {
-  if (block.cols() == 0) return Eigen::VectorXd(0);
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
-  decomposition.setThreshold(kIndependent);
-  return decomposition.compute(block).solve(b);
-}
-
 /// What of a general motion the constraints allow, to first order; its largest component is 1.
 Eigen::VectorXd allowed_motion(const Eigen::MatrixXd& block) {
   const Eigen::VectorXd wanted = general_vector(block.cols());
-  const Eigen::VectorXd motion = wanted - least_squares(block, block * wanted);
+  const Eigen::VectorXd motion = wanted - smallest_least_squares(block, block * wanted, kIndependent);
   const double largest = motion.lpNorm<Eigen::Infinity>();
   return largest > kIndependent ? Eigen::VectorXd(motion / largest)
                                 : Eigen::VectorXd(Eigen::VectorXd::Zero(motion.size()));
@@ -92,7 +83,7 @@ std::string loop_at_dead_point(const Model& model, const DegreesOfFreedom& dof, 
   for (const ConstraintGroup& group : groups) {
     Eigen::VectorXd own(static_cast<Eigen::Index>(group.rows.size()));
     for (std::size_t i = 0; i < group.rows.size(); ++i) own[static_cast<Eigen::Index>(i)] = bent[group.rows[i]];
-    if (group.block.cols() > 0) own -= group.block * least_squares(group.block, own);
+    own -= group.block * smallest_least_squares(group.block, own, kIndependent);
     Eigen::Index worst = 0;
     if (own.cwiseAbs().maxCoeff(&worst) > kCurvature) return name_of_row(model, group.rows[worst]);
   }

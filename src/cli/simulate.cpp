@@ -12,11 +12,11 @@
 #include "cli/files.h"
 #include "cli/interruption.h"
 #include "cli/progress_bar.h"
+#include "cli/recording_library.h"
 #include "cli/scene_input.h"
 #include "flexarm/simulation/checkpoint.h"
 #include "flexarm/simulation/csv_writer.h"
 #include "flexarm/simulation/run_summary.h"
-#include "recording/writers.h"
 
 namespace flexarm::cli {
 namespace {
@@ -88,9 +88,9 @@ class CheckpointTimes {
 /// The kind of file is what its name ends with.
 std::unique_ptr<ResultWriter> make_writer(const Arguments& arguments, const Simulation& simulation) {
   const std::string& path = arguments.output;
-  if (ends_with(path, ".bag")) return recording::make_bag_writer(path, simulation);
+  if (ends_with(path, ".bag")) return recording_writers().bag(path, simulation);
   ResultColumns columns(simulation, ResultColumns::Solver::With, arguments.columns);
-  if (ends_with(path, ".h5")) return recording::make_hdf5_writer(path, simulation, std::move(columns));
+  if (ends_with(path, ".h5")) return recording_writers().hdf5(path, simulation, std::move(columns));
   return std::make_unique<CsvWriter>(path, std::move(columns));
 }
 

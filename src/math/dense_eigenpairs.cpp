@@ -1,12 +1,42 @@
 #include "math/dense_eigenpairs.h"
 
-#include <Eigen/Eigenvalues>
+#include <utility>
+
+#include <Spectra/LinAlg/UpperHessenbergEigen.h>
+#include <Eigen/Householder>
 
 namespace flexarm {
+namespace {
+
+/// A = Q H Q^T, where H has one diagonal below its main one.
+struct Hessenberg {
+  Eigen::MatrixXd reduced, basis;
+};
+
+/// By a reflection for each column. Eigen's HessenbergDecomposition does the same, but takes 140 MB more to compile.
+Hessenberg hessenberg(Eigen::MatrixXd matrix) {
+  const Eigen::Index n = matrix.rows();
+  Hessenberg out{std::move(matrix), Eigen::MatrixXd::Identity(n, n)};
+  Eigen::VectorXd directions(n), workspace(n);
+  for (Eigen::Index k = 0; k + 2 < n; ++k) {
+    const Eigen::Index below = n - k - 1;
+    auto direction = directions.head(below - 1);
+    double factor, length;
+    out.reduced.col(k).tail(below).makeHouseholder(direction, factor, length);
+    out.reduced.bottomRows(below).applyHouseholderOnTheLeft(direction, factor, workspace.data());
+    out.reduced.rightCols(below).applyHouseholderOnTheRight(direction, factor, workspace.data());
+    out.basis.rightCols(below).applyHouseholderOnTheRight(direction, factor, workspace.data());
+    out.reduced.col(k).tail(below - 1).setZero();
+  }
+  return out;
+}
+
+}  // namespace
 
 Eigenpairs dense_eigenpairs(const Eigen::MatrixXd& matrix) {
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(matrix);
-  return {solver.eigenvalues(), solver.eigenvectors()};
+  const Hessenberg hessenberg = flexarm::hessenberg(matrix);
+  Spectra::UpperHessenbergEigen<double> solver(hessenberg.reduced);
+  return {solver.eigenvalues(), hessenberg.basis * solver.eigenvectors()};
 }
 
 }  // namespace flexarm

@@ -8,8 +8,12 @@ Eigen::VectorXd least_squares(const Eigen::MatrixXd& matrix, const Eigen::Vector
   return matrix.colPivHouseholderQr().solve(right);
 }
 
-Eigen::VectorXd smallest_least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right) {
-  return matrix.completeOrthogonalDecomposition().solve(right);
+Eigen::VectorXd smallest_least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right,
+                                       std::optional<double> threshold) {
+  if (matrix.cols() == 0) return Eigen::VectorXd(0);
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
+  if (threshold) decomposition.setThreshold(*threshold);
+  return decomposition.compute(matrix).solve(right);
 }
 
 std::vector<Eigen::Index> independent_rows(const Eigen::MatrixXd& matrix, double threshold) {

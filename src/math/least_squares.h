@@ -2,6 +2,7 @@
 /// Dense systems of equations that need not be square. Kept in a file of its own: Eigen's pivoting factorisations take
 /// long to compile.
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -11,8 +12,10 @@ namespace flexarm {
 /// x that makes |matrix x - right| least; for a matrix of full column rank.
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
 
-/// Of all x that make |matrix x - right| least the smallest; for a matrix of any rank.
-Eigen::VectorXd smallest_least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
+/// Of all x that make |matrix x - right| least the smallest; for a matrix of any rank, which is the number of pivots
+/// larger than this part of the largest one (round-off of a matrix of this size, where none is given).
+Eigen::VectorXd smallest_least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right,
+                                       std::optional<double> threshold = {});
 
 /// Rows of a matrix that are linearly independent, the one with the largest pivot first: those whose pivots are larger
 /// than `threshold`, and than this part of the largest.

@@ -6,7 +6,6 @@
 
 #include "flexarm/scene/scene_description.h"
 #include "messages/sensor_messages.h"
-#include "recording/writers.h"
 
 namespace flexarm::recording {
 namespace {
@@ -88,10 +87,6 @@ void BagWriter::write_samples(const Simulation& simulation) {
 void BagWriter::close() {
   checked([&] { bag_.close(); });
   place_.put_in_place();
-}
-
-std::unique_ptr<ResultWriter> make_bag_writer(const std::string& path, const Simulation& simulation) {
-  return std::make_unique<BagWriter>(path, simulation);
 }
 
 }  // namespace flexarm::recording

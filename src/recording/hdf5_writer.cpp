@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "flexarm/scene/scene_description.h"
-#include "recording/writers.h"
 
 namespace flexarm::recording {
 namespace {
@@ -119,11 +118,6 @@ void Hdf5Writer::close() {
   is_closed = file_.close() && is_closed;
   if (!is_closed) place_.fail(errno != 0 ? std::strerror(errno) : "HDF5 cannot end it");
   place_.put_in_place();
-}
-
-std::unique_ptr<ResultWriter> make_hdf5_writer(const std::string& path, const Simulation& simulation,
-                                               ResultColumns columns) {
-  return std::make_unique<Hdf5Writer>(path, simulation, std::move(columns));
 }
 
 }  // namespace flexarm::recording

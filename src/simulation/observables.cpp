@@ -64,13 +64,17 @@ struct DeformedElement {
     }
   }
 
-  /// `centroid`: in the section; `begin`, `end`: arc lengths of the element's ends [m].
-  BeamPoint point(double xi, const Vector3& centroid, double begin, double end) const {
+  /// Without its pose. `centroid`: in the section; `begin`, `end`: arc lengths of the element's ends [m].
+  BeamPoint stress(double xi, const Vector3& centroid, double begin, double end) const {
     BeamPoint point;
     point.arc_length = begin + 0.5 * (1 + xi) * (end - begin);
+    set_stress(extended<Nodes>(strains, xi), extended<Nodes>(resultants, xi), centroid, point);
+    return point;
+  }
+  BeamPoint point(double xi, const Vector3& centroid, double begin, double end) const {
+    BeamPoint point = stress(xi, centroid, begin, end);
     point.pose = section_pose<Nodes>(nodes.position, local, xi);
     point.pose.position = point.pose * Vector3(-centroid);
-    set_stress(extended<Nodes>(strains, xi), extended<Nodes>(resultants, xi), centroid, point);
     return point;
   }
 
@@ -79,10 +83,10 @@ struct DeformedElement {
   std::array<Vector6, Nodes - 1> strains, resultants;
 };
 
-}  // namespace
-
-void beam_points(const Model& model, const State& state, const BeamLink& beam, int between,
-                 std::vector<BeamPoint>& points) {
+/// `visit(deformed element, xi, arc length at the element's beginning, at its end)` of every node of a beam, and of
+/// `between` points inside each pair of nodes.
+template <class Visit>
+void visit_points(const Model& model, const State& state, const BeamLink& beam, int between, const Visit& visit) {
   double begin = 0;
   for (std::size_t e = 0; e < beam.elements.size(); ++e) {
     const double end = beam.element_ends[e];
@@ -93,12 +97,30 @@ void beam_points(const Model& model, const State& state, const BeamLink& beam, i
       for (int k = e == 0 ? 0 : 1; k <= steps; ++k) {
         const int pair = std::min(k / (between + 1), N - 2);
         const double left = node_coordinate<N>(pair), right = node_coordinate<N>(pair + 1);
-        const double xi = left + (right - left) * (k - pair * (between + 1)) / (between + 1);
-        points.push_back(deformed.point(xi, beam.centroid, begin, end));
+        visit(deformed, left + (right - left) * (k - pair * (between + 1)) / (between + 1), begin, end);
       }
     });
     begin = end;
   }
+}
+
+}  // namespace
+
+void beam_points(const Model& model, const State& state, const BeamLink& beam, int between,
+                 std::vector<BeamPoint>& points) {
+  visit_points(model, state, beam, between, [&](const auto& element, double xi, double begin, double end) {
+    points.push_back(element.point(xi, beam.centroid, begin, end));
+  });
+}
+
+EdgeStrain largest_edge_strain(const Model& model, const State& state, const BeamLink& beam) {
+  EdgeStrain largest;
+  visit_points(model, state, beam, 0, [&](const auto& element, double xi, double begin, double end) {
+    const BeamPoint point = element.stress(xi, beam.centroid, begin, end);
+    if (const double strain = edge_strain(point, beam.radius); strain > largest.amount)
+      largest = {strain, point.arc_length};
+  });
+  return largest;
 }
 
 BeamPoint section_point(const Model& model, const State& state, const BeamLink& beam, int element, double xi) {
@@ -136,11 +158,9 @@ Pose probe_pose(const Model& model, const State& state, const ProbePoint& probe)
   return pose;
 }
 
-Pose probe_pose_in_world(const Model& model, const State& state, const ProbePoint& probe) {
+Vector3 probe_origin(const Model& model, const State& state, const ProbePoint& probe) {
   const bool is_on_world = probe.element < 0 && probe.attachment.node < 0;
-  Pose pose = probe_pose(model, state, probe);
-  pose.position += is_on_world ? model.origin : world_origin(model, state);
-  return pose;
+  return is_on_world ? model.origin : world_origin(model, state);
 }
 
 ProbeState probe_state(const Model& model, const State& state, const std::vector<Vector6>& velocities,

@@ -13,6 +13,12 @@ namespace flexarm {
 void beam_points(const Model& model, const State& state, const BeamLink& beam, int between,
                  std::vector<BeamPoint>& points);
 
+/// The largest strain of a beam's edge at its nodes, see edge_strain(), and the arc length where it is [m].
+struct EdgeStrain {
+  double amount = 0, arc_length = 0;
+};
+EdgeStrain largest_edge_strain(const Model& model, const State& state, const BeamLink& beam);
+
 /// The section of a beam at the shape parameter `xi` of one of its elements.
 BeamPoint section_point(const Model& model, const State& state, const BeamLink& beam, int element, double xi);
 
@@ -22,7 +28,8 @@ double fibre_strain(const Model& model, const State& state, const ProbePoint& po
 
 /// About the origin of the state; of a point on the world, about that of the model.
 Pose probe_pose(const Model& model, const State& state, const ProbePoint& probe);
-Pose probe_pose_in_world(const Model& model, const State& state, const ProbePoint& probe);
+/// Where in the world that is what probe_pose() is about.
+Vector3 probe_origin(const Model& model, const State& state, const ProbePoint& probe);
 /// `velocities`: {v, w} per node, world axes.
 ProbeState probe_state(const Model& model, const State& state, const std::vector<Vector6>& velocities,
                        const ProbePoint& probe);

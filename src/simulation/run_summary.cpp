@@ -10,6 +10,7 @@
 #include "schemes/scheme.h"
 #include "simulation/failure_text.h"
 #include "simulation/inside.h"
+#include "simulation/observables.h"
 
 namespace flexarm {
 namespace {
@@ -51,13 +52,11 @@ void RunSummary::count(const Simulation& simulation, const StepResult& result) {
 
 void RunSummary::look(const Simulation& simulation) {
   const double time = simulation.time();
-  for (std::size_t link = 0; link < simulation.link_names().size(); ++link) {
-    points_.clear();
-    simulation.beam_points(link, 0, points_);
-    const double radius = simulation.beam_radius(link);
-    for (const BeamPoint& point : points_)
-      if (const double strain = edge_strain(point, radius); strain > strain_.amount)
-        strain_ = {strain, time, static_cast<int>(link), point.arc_length};
+  const std::vector<LinkFrame>& links = model_of(simulation).links;
+  for (std::size_t link = 0; link < links.size(); ++link) {
+    if (!links[link].beam) continue;
+    const EdgeStrain strain = largest_edge_strain(model_of(simulation), state_of(simulation), *links[link].beam);
+    if (strain.amount > strain_.amount) strain_ = {strain.amount, time, static_cast<int>(link), strain.arc_length};
   }
   const Energies e = simulation.energies();
   energy_scale_ = std::max(

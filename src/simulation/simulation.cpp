@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -94,7 +95,10 @@ struct Simulation::Implementation {
   State initial, state;
   std::vector<std::string> coordinate_names, link_names;
   std::map<std::string, std::size_t, std::less<>> coordinate_indices;  ///< by name
-  mutable PublishedMotion published;                                   // of `state`
+  // What was made of `state`, for those who ask again.
+  mutable PublishedMotion published;
+  mutable std::optional<Energies> energies;
+  mutable std::optional<Momenta> momenta;
   std::vector<double> static_norms;  // of the last solve for an equilibrium; empty after steps
 
   Implementation(scene::SceneDescription description, const SimulationOptions& options)
@@ -115,6 +119,21 @@ struct Simulation::Implementation {
     published.velocities(view());  // their memory is there from the start
     take_samples(true);
     initial.samples = state.samples;
+  }
+
+  void forget_published() {
+    published.forget();
+    energies.reset();
+    momenta.reset();
+  }
+
+  const Energies& published_energies() const {
+    if (!energies) energies = flexarm::energies(model, scheme, state);
+    return *energies;
+  }
+  const Momenta& published_momenta() const {
+    if (!momenta) momenta = flexarm::momenta(model, scheme, state);
+    return *momenta;
   }
 
   MotionView view() const { return {model, stepper->degrees_of_freedom(), scheme, state}; }
@@ -154,7 +173,7 @@ struct Simulation::Implementation {
   void set_state(const State& other) {
     fit_to_state(other);
     state = other;
-    published.forget();
+    forget_published();
     stepper->invalidate();
   }
 
@@ -179,7 +198,7 @@ StepResult Simulation::step() {
   StepResult result = implementation_->stepper->advance(implementation_->state);
   implementation_->release_from_lines();
   carry_origin(implementation_->model, implementation_->state);
-  implementation_->published.forget();
+  implementation_->forget_published();
   implementation_->static_norms.clear();
   implementation_->take_samples(false);
   return result;
@@ -328,13 +347,13 @@ double Simulation::beam_radius(std::size_t link) const {
 // ---------------------------------------------------------------- observables and analyses
 
 Energies Simulation::energies() const {
-  return flexarm::energies(implementation_->model, implementation_->scheme, implementation_->state);
+  return implementation_->published_energies();
 }
 Vector3 Simulation::momentum() const {
-  return momenta(implementation_->model, implementation_->scheme, implementation_->state).linear;
+  return implementation_->published_momenta().linear;
 }
 Vector3 Simulation::angular_momentum() const {
-  const Momenta momenta = flexarm::momenta(implementation_->model, implementation_->scheme, implementation_->state);
+  const Momenta& momenta = implementation_->published_momenta();
   return world_origin(implementation_->model, implementation_->state).cross(momenta.linear) + momenta.angular;
 }
 ProbeState Simulation::probe(std::size_t index) const {
@@ -342,7 +361,7 @@ ProbeState Simulation::probe(std::size_t index) const {
   const MotionView view = s.view();
   const ProbePoint& point = view.model.probes.at(index);
   ProbeState probe = probe_state(view.model, view.state, s.published.velocities(view).nodes(), point);
-  probe.pose = probe_pose_in_world(view.model, view.state, point);
+  probe.pose.position += probe_origin(view.model, view.state, point);
   return probe;
 }
 ProbeAcceleration Simulation::probe_acceleration(std::size_t index) const {
@@ -376,7 +395,7 @@ const SensorSample& Simulation::sample(std::size_t sensor) const {
 
 StaticResult Simulation::solve_static(int load_steps, Equilibrium wanted) {
   if (load_steps < 1) throw std::invalid_argument("the number of load steps must be >= 1");
-  implementation_->published.forget();
+  implementation_->forget_published();
   Implementation& s = *implementation_;
   StaticResult result =
       flexarm::solve_static(s.model, s.scheme, s.settings, load_steps, wanted, s.state, &s.static_norms);

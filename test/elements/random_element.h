@@ -25,8 +25,12 @@ class RandomSource {
     return v;
   }
   Vector3 unit() { return vector().normalized(); }
-  /// By an angle up to `angle`.
-  Quaternion rotation(double angle) { return so3::exp_quaternion(Vector3(angle * number() * unit())); }
+  /// By an angle up to `angle`. Compilers differ in which factor of a product they evaluate first: one after the other,
+  /// the numbers are the same everywhere.
+  Quaternion rotation(double angle) {
+    const Vector3 axis = unit();
+    return so3::exp_quaternion(Vector3(angle * number() * axis));
+  }
   Pose pose(double length, double angle) { return {length * vector(), rotation(angle)}; }
   template <int Size>
   Eigen::Matrix<double, Size, Size> positive_definite() {

@@ -41,7 +41,6 @@ class RunSummary {
   Energies start_;
   double energy_scale_ = 0;  // largest energy of the motion [J]
   Largest rotation_, strain_, energy_;
-  std::vector<BeamPoint> points_;
 };
 
 }  // namespace flexarm

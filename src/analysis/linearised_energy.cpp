@@ -1,0 +1,96 @@
+// What small motions do to the energy, and which digits of it are round-off.
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/element_matrices.h"
+#include "analysis/linearised_motion.h"
+#include "elements/spring_action.h"
+
+namespace flexarm {
+namespace {
+
+/// {displacement, spin} of an element's nodes.
+template <int Nodes>
+Eigen::VectorXcd motion_of(const BeamElement<Nodes>& element, const std::vector<ComplexVector6>& node_motion) {
+  Eigen::VectorXcd motion(6 * Nodes);
+  for (int i = 0; i < Nodes; ++i) motion.segment<6>(6 * i) = node_motion[element.nodes[i]];
+  return motion;
+}
+
+}  // namespace
+
+double work_of_forces(const Model& model) {
+  double work = 0;
+  for (const NodalInertia& inertia : model.inertias)
+    work += inertia.total_mass * model.gravity.norm() * model.length_scale;
+  for (const NodalLoad& load : model.loads)
+    work +=
+        std::abs(model.histories[load.history](0.0)) * (load.force.norm() * model.length_scale + load.moment.norm());
+  return work;
+}
+
+double round_off(const Model& model, const State& equilibrium, const std::vector<ComplexVector6>& node_motion) {
+  double elastic = 0, largest_spin = 0;
+  for_each_element(model.beams, [&](const auto& element) {
+    const Eigen::VectorXd motion = motion_of(element, node_motion).cwiseAbs();
+    elastic += motion.dot(material_stiffness(element, equilibrium).cwiseAbs().lazyProduct(motion));
+  });
+  for (const PointSpring& spring : model.springs) {
+    const LoopClosure& ends = model.closures[spring.closure];
+    const Vector12 gradient = spring_gradient(ends, closure_poses(ends, equilibrium)).cwiseAbs();
+    double stretch = gradient.head<6>().dot(node_motion[ends.child].cwiseAbs());
+    if (ends.parent >= 0) stretch += gradient.tail<6>().dot(node_motion[ends.parent].cwiseAbs());
+    elastic += spring.stiffness * stretch * stretch;
+  }
+  // A force changes its work by a second order of rotations, times an arm.
+  for (const ComplexVector6& motion : node_motion) largest_spin = std::max(largest_spin, motion.tail<3>().norm());
+  return kStiffnessRoundOff * (elastic + work_of_forces(model) * largest_spin * largest_spin);
+}
+
+bool is_circulatory(const Model& model, const State& equilibrium) {
+  const auto load_circulates = [](const NodalLoad& load) { return load.follows || !load.moment.isZero(0); };
+  // The moment on a free rotation has axes that stand still while it turns.
+  const auto effort_circulates = [&](std::size_t i) {
+    const Coordinate& coordinate = model.coordinates[i];
+    return coordinate.is_angle && (coordinate.effort >= 0 || !std::isnan(equilibrium.commands[i]));
+  };
+  if (std::any_of(model.loads.begin(), model.loads.end(), load_circulates)) return true;
+  for (std::size_t i = 0; i < model.coordinates.size(); ++i)
+    if (effort_circulates(i)) return true;
+  // A servo that measures beyond its gear pushes at another place than it feels.
+  return std::any_of(model.actuators.begin(), model.actuators.end(), [](const Actuator& actuator) {
+    return actuator.drive.gear && actuator.servo && actuator.servo->on_link;
+  });
+}
+
+Eigen::SparseMatrix<double> LinearisedMotion::curvature() const {
+  SparseTangent difference(model_, dof_);
+  difference.set_zero();
+  for_each_element(model_.beams, [&](const auto& element) {
+    add_element(difference, element.first_block,
+                material_curvature(element, state_) - material_stiffness(element, state_));
+  });
+  fold(difference);
+  const Eigen::SparseMatrix<double> sum = matrix(stiffness_) + matrix(difference);
+  return 0.5 * (sum + Eigen::SparseMatrix<double>(sum.transpose()));
+}
+
+double LinearisedMotion::strain_energy(const std::vector<ComplexVector6>& node_motion) const {
+  double energy = 0;
+  for_each_element(model_.beams, [&](const auto& element) {
+    const Eigen::VectorXcd motion = motion_of(element, node_motion);
+    const Eigen::VectorXd real = motion.real(), imaginary = motion.imag();
+    const Eigen::MatrixXd curvature = material_curvature(element, state_);
+    energy += real.dot(curvature.lazyProduct(real)) + imaginary.dot(curvature.lazyProduct(imaginary));
+  });
+  for (const PointSpring& spring : model_.springs) {
+    const LoopClosure& ends = model_.closures[spring.closure];
+    const Vector12 gradient = spring_gradient(ends, closure_poses(ends, state_));
+    std::complex<double> stretch = (gradient.head<6>().transpose() * node_motion[ends.child]).value();
+    if (ends.parent >= 0) stretch += (gradient.tail<6>().transpose() * node_motion[ends.parent]).value();
+    energy += spring.stiffness * std::norm(stretch);
+  }
+  return energy;
+}
+
+}  // namespace flexarm
