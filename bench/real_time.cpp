@@ -3,7 +3,7 @@
 //   bench_real_time SCENE [STEPS] [JOINT EFFORT PERIOD]
 //
 // JOINT is driven by a square wave of EFFORT [N m or N] with PERIOD [s]; the demo by
-//   bench_real_time config/demo_arm.urdf 1000 shoulder_yaw 1000 0.62
+//   bench_real_time config/demo_arm.urdf 1000 shoulder_yaw 1000 0.5
 #include <algorithm>
 #include <chrono>
 #include <cmath>

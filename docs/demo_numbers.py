@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Prints the numbers of docs/demo.md.
 
-It makes variants of config/demo_arm.urdf (braked joints; the torques of config/demo_commands.yaml as <effort>), hands
+It makes variants of config/demo_arm.urdf (locked motors; the torques of config/demo_commands.yaml as <effort>), hands
 them to the command line program, and evaluates what comes out.
 """
 
@@ -27,11 +27,13 @@ def read_scene():
 
 
 def braked(with_payload):
-    """The straight arm with every joint locked."""
+    """The straight arm with every motor locked: of the drives the springs of their gears are left."""
     tree = read_scene()
     robot = tree.getroot()
+    for drive in robot.findall("drive"):
+        ElementTree.SubElement(robot, "spring", joint=drive.get("joint"), stiffness=drive.get("stiffness"))
+        robot.remove(drive)
     for joint in robot.findall("joint"):
-        joint.set("type", "fixed")
         if not with_payload and joint.get("name") == "grapple":
             robot.remove(joint)
     simulation = robot.find("simulation")
@@ -80,8 +82,10 @@ def run(program, tree, command, *options):
 def frequencies(program, tree, count):
     """Without damping, which is so strong in the joints that some motions do not oscillate."""
     for element in tree.getroot().iter():
-        for damping in element.findall("damping") + element.findall("dynamics"):
+        for damping in element.findall("damping") + element.findall("dynamics") + element.findall("servo"):
             element.remove(damping)
+    for drive in tree.getroot().findall("drive"):
+        drive.set("damping", "0")
     modes = run(program, tree, "modes", "--count", str(count))
     return [float(f) for f in re.findall(r"^mode \d+: (\S+) Hz", modes, re.M)]
 

@@ -93,8 +93,9 @@ SpeedProblem double_pendulum() {
 }
 
 SpeedProblem demo_arm() {
+  // Not em4 as the reference: it steps backwards, in which the brakes would drive.
   SpeedProblem p{
-      "demo_arm", "The demo's arm", "demo_arm.urdf", "demo_commands.yaml", "payload", 10, 0.1, {"em4", 3, 8, 0.0025},
+      "demo_arm", "The demo's arm", "demo_arm.urdf", "demo_commands.yaml", "payload", 10, 0.1, {"em", 3, 8, 0.00025},
       {}};
   // The demo's torques change at multiples of 5 ms.
   add_em(p, {{2, 2}, {4, 2}, {6, 2}, {2, 3}, {4, 3}}, {2, 5, 10, 20});

@@ -1,64 +1,33 @@
 #include "cli/scene_input.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 #include "cli/commands.h"
 #include "flexarm/scene/scene_description.h"
 #include "math/parse_number.h"
+#include "simulation/inside.h"
 
 namespace flexarm::cli {
-namespace {
-
-/// Of the largest motion of a node; a joint that moves less is not named.
-constexpr double kMoves = 1e-3;
-constexpr std::size_t kMostNames = 6;
-
-/// Names of the joints that move in some free motion.
-std::vector<std::string> unheld_joints(const Simulation& simulation, const std::vector<Mode>& modes) {
-  const auto moves = [&](const std::string& coordinate) {
-    const std::size_t index = simulation.find_coordinate(coordinate).value();
-    return std::any_of(modes.begin(), modes.end(), [&](const Mode& mode) {
-      return mode.is_free() && std::abs(mode.coordinate_motion[index]) > kMoves;
-    });
-  };
-  std::vector<std::string> names;
-  const scene::SceneDescription& scene = simulation.scene();
-  for (const auto* joints : {&scene.joints, &scene.loop_joints})
-    for (const scene::JointDescription& joint : *joints) {
-      const std::vector<std::string>& suffixes = scene::coordinate_suffixes(joint);
-      if (std::any_of(suffixes.begin(), suffixes.end(), [&](const std::string& suffix) {
-            const std::string name = joint.name + suffix;
-            return simulation.find_coordinate(name) && moves(name);
-          }))
-        names.push_back(joint.name);
-    }
-  return names;
-}
-
-/// "joint 'a'", or "joints 'a', 'b' and 3 others".
-std::string listed(const std::vector<std::string>& names) {
-  std::string text = names.size() == 1 ? "joint" : "joints";
-  for (std::size_t i = 0; i < std::min(names.size(), kMostNames); ++i)
-    text += fmt::format("{} '{}'", i > 0 ? "," : "", names[i]);
-  if (names.size() > kMostNames) text += fmt::format(" and {} others", names.size() - kMostNames);
-  return text;
-}
-
-}  // namespace
 
 void add_scene(CLI::App& command, SceneInput& input) {
   command.add_option("scene", input.path, "scene file")->required();
-  const auto add_choice = [&](const char* name, const char* value, bool& chosen, const char* description) {
-    command
-        .add_option_function<std::string>(
-            name, [&chosen](const std::string&) { chosen = true; }, description)
-        ->check(CLI::IsMember({value}));
-  };
-  add_choice("--start", "clamp", input.options.clamp_start,
-             "joints that would start outside their limits start at the nearest one");
-  add_choice("--massless", "lock", input.options.lock_massless, "joints that move nothing with inertia are held");
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--start",
+          [&input](const std::vector<std::string>& choices) {
+            for (const std::string& choice : choices)
+              (choice == "clamp" ? input.options.clamp_start : input.options.equilibrium_start) = true;
+          },
+          "clamp: joints that would start outside their limits start at the nearest one; equilibrium: everything "
+          "starts at rest where loads, gravity and servos hold it; or both, with a comma between them")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember({"clamp", "equilibrium"}));
+  command
+      .add_option_function<std::string>(
+          "--massless", [&input](const std::string&) { input.options.lock_massless = true; },
+          "lock: joints that move nothing with inertia are held")
+      ->check(CLI::IsMember({"lock"}));
 }
 
 void add_equilibrium(CLI::App& command, Equilibrium& wanted) {
@@ -74,7 +43,7 @@ Simulation load_simulation(const SceneInput& input, const SimulationOptions& opt
   if (!result.scene) throw InputError(findings);
   if (!findings.empty()) fmt::print(stderr, "{}\n", findings);
   Simulation simulation(std::move(*result.scene), options);
-  for (const scene::Diagnostic& held : simulation.held_joints()) fmt::print(stderr, "{}\n", held.text());
+  for (const scene::Diagnostic& warning : simulation.start_warnings()) fmt::print(stderr, "{}\n", warning.text());
   return simulation;
 }
 
@@ -107,22 +76,16 @@ std::vector<Mode> modes_about_equilibrium(Simulation& simulation, int count, Equ
 }
 
 void warn_of_instability(const StaticResult& result, Equilibrium wanted) {
-  if (!result.falling_link.empty())
-    fmt::print(stderr, "flexarm: warning: the equilibrium to which the loads lead is not stable: link '{}' {}\n",
-               result.falling_link,
-               wanted == Equilibrium::Stable
-                   ? "falls from it; this is where it comes to rest (--unstable: the one that it falls from)"
-                   : "would fall from it");
-  if (!result.loose_link.empty())
-    fmt::print(stderr,
-               "flexarm: warning: nothing holds link '{}' where it stands: it may stand elsewhere as well (a <motion> "
-               "of its joint would hold it)\n",
-               result.loose_link);
+  const char* consequence =
+      wanted == Equilibrium::Stable
+          ? "falls from it; this is where it comes to rest (--unstable: the one that it falls from)"
+          : "would fall from it";
+  for (const std::string& doubt : doubts_about_equilibrium(result, consequence))
+    fmt::print(stderr, "flexarm: warning: {}\n", doubt);
 }
 
 bool are_modes_quick(const Simulation& simulation) {
-  constexpr std::size_t kMostUnknowns = 50000, kMostCoordinates = 300;
-  return simulation.degrees_of_freedom() <= kMostUnknowns && simulation.coordinate_names().size() <= kMostCoordinates;
+  return flexarm::are_modes_quick(simulation.degrees_of_freedom(), simulation.coordinate_names().size());
 }
 
 std::vector<Mode> initial_modes(const Simulation& simulation, int count) {
@@ -131,16 +94,7 @@ std::vector<Mode> initial_modes(const Simulation& simulation, int count) {
 
 std::string lack_of_equilibrium(const Simulation& simulation, const StepResult& result,
                                 const std::vector<Mode>& modes) {
-  const std::vector<std::string> joints = unheld_joints(simulation, modes);
-  // The tangent of what moves freely is singular but for round-off.
-  const bool is_singular =
-      result.reason == StepResult::Reason::SingularTangent || result.reason == StepResult::Reason::NoConvergence ||
-      result.reason == StepResult::Reason::NeverRests || result.reason == StepResult::Reason::NotFinite;
-  if (!is_singular || joints.empty()) return fmt::format("no equilibrium found ({})", to_string(result.reason));
-  const auto free = std::count_if(modes.begin(), modes.end(), [](const Mode& mode) { return mode.is_free(); });
-  return fmt::format(
-      "no equilibrium: nothing holds {} in the initial configuration ({} free; a <motion> would hold it)",
-      listed(joints), free == 1 ? "1 motion is" : fmt::format("{} motions are", free));
+  return flexarm::lack_of_equilibrium(simulation.scene(), model_of(simulation), result, modes);
 }
 
 }  // namespace flexarm::cli

@@ -8,6 +8,7 @@
 
 #include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/simulation.h"
+#include "simulation/equilibrium_text.h"
 
 namespace flexarm::cli {
 
@@ -29,9 +30,6 @@ std::string check_positive(const std::string& text);
 std::string check_non_negative(const std::string& text);
 /// The same for a tolerance of Newton's method.
 std::string check_tolerance(const std::string& text);
-
-/// Load steps of equilibria.
-constexpr int kLoadSteps = 10;
 
 /// An option by which the equilibrium that the loads lead to is taken, stable or not; `wanted` must outlive the
 /// command.

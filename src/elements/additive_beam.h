@@ -10,7 +10,7 @@ namespace flexarm {
 /// Form of endpoint_internal with rows and columns {r_i, theta_i}. `nodes.rotation_vector`: total rotation vectors,
 /// |theta| < 2 pi; references: the undeformed points.
 struct AdditiveForm {
-  static constexpr bool kVariesSpins = false;
+  static constexpr bool needs_variation(bool) { return false; }
 
   template <int Nodes>
   static void add_point(const typename BeamElement<Nodes>::StiffnessPoint& constants, const ElementNodes<Nodes>& nodes,

@@ -18,11 +18,12 @@ endpoint::PointTangent endpoint::point_tangent(const PointKinematics& point, con
   return d;
 }
 
-template <int Nodes>
-void SpinForm::add_point(const typename BeamElement<Nodes>::StiffnessPoint& constants, const ElementNodes<Nodes>&,
-                         const GeneralisedShapeFunctions<Nodes>& generalised, const endpoint::PointForces& point,
-                         bool with_tangent, ElementSystem<Nodes>& system) {
-  const LagrangeTests<Nodes> tests{constants.shape, constants.derivative};
+namespace {
+
+template <int Nodes, class Tests>
+void add_tested_point(const typename BeamElement<Nodes>::StiffnessPoint& constants, const Tests& tests,
+                      const GeneralisedShapeFunctions<Nodes>& generalised, const endpoint::PointForces& point,
+                      bool with_tangent, ElementSystem<Nodes>& system) {
   add_point_residual<Nodes>(constants.weight, constants.derivative, tests, point.n, point.m, point.kinematics.tangent,
                             system.residual);
   if (!with_tangent) return;
@@ -32,6 +33,24 @@ void SpinForm::add_point(const typename BeamElement<Nodes>::StiffnessPoint& cons
                             point.seen_m - point.m, point.kinematics.tangent, system.carried);
   add_point_tangent<Nodes>(constants.weight, tests, {constants.derivative, generalised}, d.resultants, d.couple,
                            system.tangent);
+}
+
+}  // namespace
+
+template <int Nodes>
+void SpinForm::add_point(const typename BeamElement<Nodes>::StiffnessPoint& constants, const ElementNodes<Nodes>&,
+                         const GeneralisedShapeFunctions<Nodes>& generalised, const endpoint::PointForces& point,
+                         bool with_tangent, ElementSystem<Nodes>& system) {
+  const LagrangeTests<Nodes> tests{constants.shape, constants.derivative};
+  add_tested_point(constants, tests, generalised, point, with_tangent, system);
+}
+
+template <int Nodes>
+void VariationForm::add_point(const typename BeamElement<Nodes>::StiffnessPoint& constants, const ElementNodes<Nodes>&,
+                              const GeneralisedShapeFunctions<Nodes>& generalised, const endpoint::PointForces& point,
+                              bool with_tangent, ElementSystem<Nodes>& system) {
+  const GeneralisedTests<Nodes> tests{generalised};
+  add_tested_point(constants, tests, generalised, point, with_tangent, system);
 }
 
 template <int Nodes>
@@ -60,9 +79,10 @@ void newmark_mass_damping(const BeamElement<Nodes>& element, const ElementNodes<
 }
 
 // Compiled here once for each order of elements.
-#define COMPILE_FOR(Nodes)                                                  \
-  template decltype(SpinForm::add_point<Nodes>) SpinForm::add_point<Nodes>; \
-  template decltype(newmark_translation<Nodes>) newmark_translation<Nodes>; \
+#define COMPILE_FOR(Nodes)                                                            \
+  template decltype(SpinForm::add_point<Nodes>) SpinForm::add_point<Nodes>;           \
+  template decltype(VariationForm::add_point<Nodes>) VariationForm::add_point<Nodes>; \
+  template decltype(newmark_translation<Nodes>) newmark_translation<Nodes>;           \
   template decltype(newmark_mass_damping<Nodes>) newmark_mass_damping<Nodes>;
 FLEXARM_FOR_EACH_ORDER(COMPILE_FOR)
 #undef COMPILE_FOR

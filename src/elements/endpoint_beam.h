@@ -75,7 +75,8 @@ struct PointForces {
 
 /// Rows conjugate to the spins of the nodes (beam.md 2.2).
 struct SpinForm {
-  static constexpr bool kVariesSpins = true;  ///< columns need the generalised shape functions
+  /// Columns need the generalised shape functions.
+  static constexpr bool needs_variation(bool with_tangent) { return with_tangent; }
 
   /// Adds the virtual work of a stiffness point and its tangent.
   template <int Nodes>
@@ -84,10 +85,21 @@ struct SpinForm {
                         bool with_tangent, ElementSystem<Nodes>& system);
 };
 
+/// The derivative of the strain energy by displacements and spins of the nodes: the moment rows of the EM family at
+/// rest. The tangent leaves out how the generalised shape functions vary.
+struct VariationForm {
+  static constexpr bool needs_variation(bool) { return true; }
+
+  template <int Nodes>
+  static void add_point(const typename BeamElement<Nodes>::StiffnessPoint& constants, const ElementNodes<Nodes>& nodes,
+                        const GeneralisedShapeFunctions<Nodes>& generalised, const endpoint::PointForces& point,
+                        bool with_tangent, ElementSystem<Nodes>& system);
+};
+
 /// Internal forces of one element at the end configuration; its stiffness points go to `end`. With a rule (dynamics):
 /// stiffness-proportional damping from `begin`, the points at the beginning, and their strain rates; those at the end
-/// go to `new_strain_rates`. `Form`: SpinForm or AdditiveForm. With a tangent of the former, `carried` are the strains
-/// that its geometric part sees; null: those of the configuration (docs/notes/newton.md).
+/// go to `new_strain_rates`. `Form`: SpinForm, VariationForm or AdditiveForm. With a tangent of the first two,
+/// `carried` are the strains that its geometric part sees; null: those of the configuration (docs/notes/newton.md).
 template <int Nodes, class Form = SpinForm>
 void endpoint_internal(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const NewmarkRule* rule,
                        const PointKinematics* begin, const Vector6* strain_rates, bool with_tangent,
@@ -95,7 +107,7 @@ void endpoint_internal(const BeamElement<Nodes>& element, const ElementNodes<Nod
                        const Vector6* carried = nullptr) {
   assert(end && new_strain_rates);
   assert(!rule || (begin && strain_rates && rule->step != 0));
-  const ElementRotations<Nodes> rotations(nodes, with_tangent && Form::kVariesSpins);
+  const ElementRotations<Nodes> rotations(nodes, Form::needs_variation(with_tangent));
   const bool is_even = is_damped_evenly(element);
   for (int k = 0; k < BeamElement<Nodes>::kStiffnessPoints; ++k) {
     const auto& constants = element.stiffness_points[k];

@@ -257,8 +257,14 @@ void Actuators::accept(State& state) const {
     const MotorAction& action = part.action;
     const Actuator& actuator = model.actuators[i];
     ActuatorState& own = state.actuators[i];
-    if (actuator.servo && actuator.servo->sample_time > 0) {
-      if (configuration_.step() != 0) own.servo = part.servo;
+    if (actuator.servo && configuration_.step() == 0) {
+      const double increment = actuator.servo->on_link ? part.link : action.increment;
+      const ServoDemand asked = servo_demand(*actuator.servo, own.servo, part.input);
+      const double limit = actuator.servo->effort_limit;
+      settle(part.input.measured.begin + increment, std::clamp(asked.constant + asked.slope * increment, -limit, limit),
+             own.servo);
+    } else if (actuator.servo && actuator.servo->sample_time > 0) {
+      own.servo = part.servo;
     } else if (actuator.servo) {
       advance(*actuator.servo, part.input, actuator.servo->on_link ? part.link : action.increment,
               action.motor - action.demand, own.servo);
@@ -275,6 +281,20 @@ void Actuators::accept(State& state) const {
     const int coordinate = actuator.coordinate;
     if (model.coordinates[coordinate].motion < 0) state.efforts[coordinate] = action.motor;
   }
+}
+
+double Actuators::hand_to_integrals(State& state) const {
+  const Model& model = configuration_.model();
+  double largest = 0;
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    const Actuator& actuator = model.actuators[i];
+    if (!actuator.servo || model.coordinates[actuator.coordinate].motion >= 0) continue;
+    ServoState& servo = state.actuators[i].servo;
+    if (servo.off > 0) continue;
+    const double error = set_point(*actuator.servo, servo).end - servo.measured;
+    largest = std::max(largest, hand_to_integral(*actuator.servo, error, servo));
+  }
+  return largest;
 }
 
 }  // namespace flexarm

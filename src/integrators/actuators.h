@@ -29,6 +29,9 @@ class Actuators {
   void add_work(double& work) const;
   /// Writes rotors and the efforts of motors.
   void accept(State& state) const;
+  /// In an equilibrium: lets integrals of servos take over what their errors ask for. The largest of those errors
+  /// [rad or m].
+  double hand_to_integrals(State& state) const;
   /// Of an actuator's motor on its coordinate, at the last evaluation [N m/rad or N/m].
   double stiffness(std::size_t actuator) const { return -parts_[actuator].action.slope; }
 

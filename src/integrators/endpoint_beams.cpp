@@ -46,7 +46,9 @@ void EndpointBeams::add_forces(Balance& balance) {
     ElementSystem<N> system;
     system.set_zero();
     points_.gather(element, end, nodes);
-    const auto internal = is_additive() ? endpoint_internal<N, AdditiveForm> : endpoint_internal<N>;
+    const auto internal = is_additive()                                ? endpoint_internal<N, AdditiveForm>
+                          : configuration_.scheme().tests_vary_strains ? endpoint_internal<N, VariationForm>
+                                                                       : endpoint_internal<N, SpinForm>;
     internal(element, nodes, is_static ? nullptr : &rule_, &points_.begin_stiffness[first],
              configuration_.state().strain_rates.data() + first, with_tangent, &points_.end_stiffness[first],
              &end_strain_rates_[first], system, points_.carried(first, balance));

@@ -157,6 +157,8 @@ void StepSystem::accept_rest(State& state) {
   std::fill(state.strain_memory.begin(), state.strain_memory.end(), StrainMemory());
   state.drives.restart(joints_.efforts());
   reactions_.accept_rest(rows_, state);
+  state.reactions.clear();
+  std::fill(state.momentum_rates.begin(), state.momentum_rates.end(), Vector3::Zero());
   state.history.clear();
 }
 

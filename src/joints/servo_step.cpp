@@ -118,6 +118,18 @@ void advance(const Servo& servo, const ServoInput& input, double increment, doub
   state.delayed_rate = 2 * mean - state.delayed_rate;
 }
 
+void settle(double measured, double output, ServoState& state) {
+  state.average = state.delayed_rate = 0;
+  state.measured = measured;
+  std::fill(state.outputs.begin(), state.outputs.end(), output);
+}
+
+double hand_to_integral(const Servo& servo, double error, ServoState& state) {
+  if (servo.mode != Servo::Mode::Position || servo.integral == 0) return 0;
+  state.integral += servo.proportional * error / servo.integral;
+  return std::abs(error);
+}
+
 // ---------------------------------------------------------------- sampled controllers
 
 std::size_t outputs_of(const Servo& servo) {
@@ -151,8 +163,7 @@ void sample(const Servo& servo, const ServoInput& input, double set_rate, ServoS
 double held_output(const Servo& servo, const ServoState& state, double time, double step) {
   double sum = 0;
   for (std::size_t i = 0; i < state.outputs.size(); ++i) {
-    const double number = state.samples - 1 - static_cast<double>(i);
-    if (number < 0) break;
+    const double number = state.samples - 1 - static_cast<double>(i);  // before the first one: < 0
     const double from = number * servo.sample_time + servo.delay;
     const double until = i == 0 ? time + step : from + servo.sample_time;
     const double part = (std::min(time + step, until) - std::max(time, from)) / step;

@@ -42,6 +42,12 @@ ServoDemand servo_demand(const Servo& servo, const ServoState& state, const Serv
 /// gave less what was asked of it.
 void advance(const Servo& servo, const ServoInput& input, double increment, double excess, ServoState& state);
 
+/// Its memory where it has been at rest for ever, with that position and output.
+void settle(double measured, double output, ServoState& state);
+/// Lets the integral take over what is in proportion to the error; returns that error, in absolute value, or 0 where
+/// nothing integrates.
+double hand_to_integral(const Servo& servo, double error, ServoState& state);
+
 // ---- sampled controllers
 
 /// Takes a sample if one is due. `set_rate`: of the set point since the last sample.

@@ -40,7 +40,7 @@ Node::Node()
       command_interface_(node_, private_node_, simulation_, parameters_.command_timeout),
       frame_watch_(node_, state_publisher_.frames()),
       services_(private_node_, *this) {
-  for (const scene::Diagnostic& held : simulation_.held_joints()) ROS_WARN_STREAM(held.text());
+  for (const scene::Diagnostic& warning : simulation_.start_warnings()) ROS_WARN_STREAM(warning.text());
   run_.paused = parameters_.paused;
   ROS_INFO("scene '%s': %zu links, %zu joint coordinates, %zu degrees of freedom; scheme %s, step %g s%s",
            simulation_.scene().name.c_str(), simulation_.link_names().size(), simulation_.coordinate_names().size(),

@@ -3,6 +3,7 @@
 #include <ros/console.h>
 
 #include <cmath>
+#include <sstream>
 #include <string>
 
 #include "flexarm/scene/urdf_reader.h"
@@ -110,12 +111,28 @@ bool read_choice(ParameterReader& reader, const std::string& name, const std::st
   return value == choice;
 }
 
+/// As `--start` on the command line: words with commas between them.
+void read_start(ParameterReader& reader, scene::ReadOptions& options) {
+  std::string choices;
+  reader.read("start", choices);
+  std::stringstream words(choices);
+  for (std::string word; std::getline(words, word, ',');) {
+    if (word == "clamp")
+      options.clamp_start = true;
+    else if (word == "equilibrium")
+      options.equilibrium_start = true;
+    else
+      reader.complain("start", "must be 'clamp', 'equilibrium', both with a comma between them, or empty",
+                      "'" + choices + "'");
+  }
+}
+
 scene::ReadResult read_file_or_text(const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
   std::string path;
   scene::ReadOptions options;
   ParameterReader reader(private_node);
   reader.read("scene", path);
-  options.clamp_start = read_choice(reader, "start", "clamp");
+  read_start(reader, options);
   options.lock_massless = read_choice(reader, "massless", "lock");
   reader.throw_if_any();
   if (!path.empty()) return scene::read_scene_file(path, options);

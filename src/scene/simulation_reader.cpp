@@ -87,10 +87,17 @@ double read_initial_position(const XmlElement& initial, const std::string& coord
   return initial.number("position", kAnyNumber, 0);
 }
 
+constexpr Choice<bool> kTruth[] = {{"true", true}, {"false", false}};
+
 void read_initial(const XmlElement& initial, SceneDescription& scene, StartRequest& start) {
+  if (initial.has("equilibrium")) {
+    initial.expect_only({"equilibrium"});
+    scene.starts_in_equilibrium = read_choice(initial, "equilibrium", kTruth, false) || scene.starts_in_equilibrium;
+    return;
+  }
   const bool of_link = initial.has("link");
   if (of_link == initial.has("joint")) {
-    initial.error("either attribute 'joint' or attribute 'link' is expected");
+    initial.error("one of the attributes 'joint', 'link' and 'equilibrium' is expected");
     return;
   }
   if (of_link) {

@@ -47,6 +47,7 @@ class SceneReader {
   SceneReader(const ReadOptions& options, Findings& findings) : findings_(findings) {
     start_.clamps_all = options.clamp_start;
     scene_.lock_massless = options.lock_massless;
+    scene_.starts_in_equilibrium = options.equilibrium_start;
   }
 
   SceneDescription read(const XmlElement& unnamed) {

@@ -51,7 +51,9 @@ enum class HhtForm {
 };
 
 struct TimeRule {
-  bool is_static = false;  ///< equilibrium of forces instead of a step: nothing has inertia or a rate
+  bool is_static = false;           ///< equilibrium of forces instead of a step: nothing has inertia or a rate
+  bool tests_vary_strains = false;  ///< statics: moment rows are tested as in steps of the EM family at rest, by what
+                                    ///< strains vary with; else by Lagrange functions
   StressRule stress = StressRule::Conjugate;
   EnergyCorrection correction = EnergyCorrection::None;
   RotationRule beam_rotation = RotationRule::TangentScaled;  ///< at the mass points (or nodes) of beams

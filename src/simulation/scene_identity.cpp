@@ -180,7 +180,7 @@ std::string named_lines(const char* kind, const Parts& parts) {
 std::string scene_identity(const scene::SceneDescription& scene) {
   const auto& [name, file, root, links, joints, loop_joints, springs, drives, servos, gravity, integrator,
                integrator_location, initial_joints, initial_links, loads, distributed_loads, motions, efforts, probes,
-               sensors, point_springs, lock_massless] = scene;
+               sensors, point_springs, lock_massless, starts_in_equilibrium] = scene;
   return integrator_line(integrator) + "\n" + named_lines("link", links) + named_lines("joint", joints) +
          named_lines("loop_joint", loop_joints) +
          fmt::format("spring {}\ndrive {}\nservo {}\n", SceneFingerprint::of(springs), SceneFingerprint::of(drives),
@@ -190,7 +190,7 @@ std::string scene_identity(const scene::SceneDescription& scene) {
                      SceneFingerprint::of(root, initial_joints, initial_links, lock_massless),
                      SceneFingerprint::of(loads), SceneFingerprint::of(distributed_loads),
                      SceneFingerprint::of(motions), SceneFingerprint::of(efforts)) +
-         named_lines("sensor", sensors) +
+         (starts_in_equilibrium ? "initial equilibrium\n" : "") + named_lines("sensor", sensors) +
          (point_springs.empty() ? "" : fmt::format("springs {}\n", SceneFingerprint::of(point_springs)));
 }
 

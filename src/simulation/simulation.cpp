@@ -23,6 +23,7 @@
 #include "simulation/observables.h"
 #include "simulation/published_motion.h"
 #include "simulation/sensors.h"
+#include "simulation/start.h"
 #include "simulation/state_flaw.h"
 
 namespace flexarm {
@@ -100,6 +101,7 @@ struct Simulation::Implementation {
   mutable std::optional<Energies> energies;
   mutable std::optional<Momenta> momenta;
   std::vector<double> static_norms;  // of the last solve for an equilibrium; empty after steps
+  scene::Diagnostics start_warnings;
 
   Implementation(scene::SceneDescription description, const SimulationOptions& options)
       : scene(with_options(std::move(description), options)),
@@ -107,7 +109,8 @@ struct Simulation::Implementation {
         settings(settings_of(scene, options)),
         model(build_model(scene)),
         stepper(made_for_integrator(scene, [&] { return std::make_unique<Stepper>(model, scheme, settings); })),
-        initial(initial_state(model)) {
+        initial(initial_state(model)),
+        start_warnings(held_joints(scene, model)) {
     require_suitable_slides(scene, scheme);
     for (const Coordinate& coordinate : model.coordinates) {
       coordinate_indices.emplace(coordinate.name, coordinate_names.size());
@@ -115,6 +118,7 @@ struct Simulation::Implementation {
     }
     for (const LinkFrame& link : model.links) link_names.push_back(link.name);
     stepper->initialise(initial);
+    if (scene.starts_in_equilibrium) start_in_equilibrium(scene, model, scheme, settings, initial, start_warnings);
     state = initial;
     published.velocities(view());  // their memory is there from the start
     take_samples(true);
@@ -192,6 +196,10 @@ Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
 const scene::SceneDescription& Simulation::scene() const {
   return implementation_->scene;
+}
+
+const scene::Diagnostics& Simulation::start_warnings() const {
+  return implementation_->start_warnings;
 }
 
 StepResult Simulation::step() {

@@ -201,13 +201,13 @@ TEST(EffortSchedule, OfTheDemoIsRead) {
   const EffortSchedule schedule = read_effort_schedule(kConfig + "/demo_commands.yaml");
   EXPECT_EQ(schedule.period, 26);
   const std::vector<EffortPulse>& pulses = schedule.pulses;
-  ASSERT_EQ(pulses.size(), 2u * (1 + 8 + 7 + 1 + 1 + 1));
+  ASSERT_EQ(pulses.size(), 2u * (1 + 9 + 8 + 1 + 1 + 1));
   EXPECT_EQ(pulses[0].joint, "shoulder_yaw");
   EXPECT_EQ(pulses[0].effort, 1000);
   EXPECT_EQ(pulses.back().joint, "elbow_pitch");
-  EXPECT_EQ(pulses.back().begin, 14);
-  EXPECT_EQ(pulses.back().end, 16);
-  EXPECT_EQ(pulses.back().effort, -180);
+  EXPECT_EQ(pulses.back().begin, 17);
+  EXPECT_EQ(pulses.back().end, 20);
+  EXPECT_EQ(pulses.back().effort, -200);
 }
 
 TEST(EffortSchedule, SaysWhatItDoesNotUnderstand) {

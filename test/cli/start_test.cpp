@@ -57,6 +57,28 @@ TEST(Start, EverySubcommandTakesTheOptions) {
   }
 }
 
+// The shank hangs on its stop, and the whole leg leans so that it is in balance.
+TEST(Start, EquilibriumStaysAtRest) {
+  const std::string csv = temporary("rest.csv");
+  const Outcome outcome =
+      shell("flexarm simulate --start clamp,equilibrium " + scene_file(leg()) + " --until 0.5 --quiet --output " + csv);
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  Columns columns = read_csv(csv);
+  EXPECT_GT(columns["joint/hip/position"][0], 0.1);
+  // 500 steps' round-off of angles of one radian.
+  EXPECT_NEAR(columns["joint/hip/position"].back(), columns["joint/hip/position"][0], 500 * 2.2e-16);
+  EXPECT_LT(columns["energy/kinetic"].back(), 1e-20);
+}
+
+TEST(Start, WithoutEquilibriumNamesTheJoint) {
+  const std::string floats =
+      "<robot name=\"stone\">" + link("stone") +
+      "<simulation> <root type=\"floating\"/> <initial equilibrium=\"true\"/> </simulation> </robot>";
+  const Outcome outcome = shell("flexarm simulate " + scene_file(floats) + " --until 0.5");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_TRUE(contains(outcome.errors, "nothing holds joint 'root'")) << outcome.errors;
+}
+
 TEST(Start, AFloatingRootFalls) {
   const std::string path = scene_file("<robot name=\"stone\">" + link("stone") +
                                       "<simulation> <root type=\"floating\"/> </simulation> </robot>");

@@ -68,8 +68,9 @@ TEST(SimulationErrors, Integrator) {
 
 TEST(SimulationErrors, InitialConditions) {
   expect_entry_error(R"(<initial position="1"/>)",
-                     "<initial> of simulation: either attribute 'joint' or attribute 'link'");
-  expect_entry_error(R"(<initial joint="elbow" link="tip"/>)", "either attribute 'joint' or attribute 'link'");
+                     "<initial> of simulation: one of the attributes 'joint', 'link' and 'equilibrium'");
+  expect_entry_error(R"(<initial joint="elbow" link="tip"/>)",
+                     "one of the attributes 'joint', 'link' and 'equilibrium'");
   expect_entry_error(R"(<initial joint="elbow"/>)", "attribute 'position' or 'velocity' is missing");
   expect_entry_error(R"(<initial link="tip"/>)", "attribute 'linear' or 'angular' is missing");
   expect_entry_error(R"(<initial joint="elbow" position="x"/>)", "position must be a finite number, got 'x'");

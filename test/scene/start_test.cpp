@@ -107,6 +107,19 @@ TEST(Start, MasslessJointsAreLockedOnDemand) {
   EXPECT_TRUE(read_scene_text(kGoodScene, "scene.urdf", {false, true}).scene->lock_massless);
 }
 
+TEST(Start, EquilibriumIsOnDemand) {
+  EXPECT_FALSE(read(leg("")).scene->starts_in_equilibrium);
+  EXPECT_FALSE(read(leg(R"(<initial equilibrium="false"/>)")).scene->starts_in_equilibrium);
+  EXPECT_TRUE(read(leg(R"(<initial equilibrium="true"/>)")).scene->starts_in_equilibrium);
+  EXPECT_TRUE(read_scene_text(leg(""), "scene.urdf", {false, false, true}).scene->starts_in_equilibrium);
+  const auto expect = [](const std::string& entry, const std::string& fragment) {
+    expect_one_error(good_scene_with("<simulation>", "<simulation> " + entry), 58, fragment);
+  };
+  expect(R"(<initial equilibrium="yes"/>)", "equilibrium must be one of true, false, got 'yes'");
+  expect(R"(<initial equilibrium="true" joint="knee"/>)", "unknown attribute");
+  expect(R"(<initial velocity="1"/>)", "one of the attributes 'joint', 'link' and 'equilibrium' is expected");
+}
+
 namespace {
 
 /// A base of 3 kg with a hand.

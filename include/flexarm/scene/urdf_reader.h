@@ -19,6 +19,7 @@ struct ReadResult {
 struct ReadOptions {
   bool clamp_start = false;    ///< start="clamp": joints that would start outside their limits start at the nearest one
   bool lock_massless = false;  ///< massless="lock": see SceneDescription::lock_massless
+  bool equilibrium_start = false;  ///< <initial equilibrium="true"/>: see SceneDescription::starts_in_equilibrium
 };
 
 /// Reads a file. Never throws for bad input: every error of the file is in the diagnostics.

@@ -47,16 +47,18 @@ class Snapshot {
 /// coordinate, link or probe by its index throws std::out_of_range where there is none.
 class Simulation {
  public:
-  /// @throws ModelError if the scene cannot be built (unknown scheme, massless free link, ...).
+  /// @throws ModelError if the scene cannot be built (unknown scheme, massless free link, ...), or is to start in
+  /// equilibrium and has none.
   explicit Simulation(scene::SceneDescription scene, const SimulationOptions& options = {});
   ~Simulation();
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
 
   const scene::SceneDescription& scene() const;  ///< with the scheme and the step in use
-  /// A warning for each joint coordinate that massless="lock" holds where it starts because it moves nothing that has
-  /// inertia, in the scene's order. Only the model knows which these are.
-  scene::Diagnostics held_joints() const;
+  /// Warnings about the start that only the model can tell: joint coordinates that massless="lock" holds where they
+  /// start because they move nothing that has inertia, in the scene's order; of a start in equilibrium, that this is
+  /// not the one to which the loads lead, since it is not stable, or not the only one.
+  const scene::Diagnostics& start_warnings() const;
 
   /// Advances by one step, in smaller sub-steps where Newton asks for it. On failure the state is that of the last good
   /// sub-step. Allocates nothing after its first call, but when a slider enters another element of its line.

@@ -1,0 +1,78 @@
+#include "simulation/equilibrium_text.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace flexarm {
+namespace {
+
+/// Of the largest motion of a node; a joint that moves less is not named.
+constexpr double kMoves = 1e-3;
+constexpr std::size_t kMostNames = 6;
+
+/// Names of the joints that move in some free motion.
+std::vector<std::string> unheld_joints(const scene::SceneDescription& scene, const Model& model,
+                                       const std::vector<Mode>& modes) {
+  const auto moves = [&](const std::string& name) {
+    const auto coordinate = std::find_if(model.coordinates.begin(), model.coordinates.end(),
+                                         [&](const Coordinate& candidate) { return candidate.name == name; });
+    return coordinate != model.coordinates.end() && std::any_of(modes.begin(), modes.end(), [&](const Mode& mode) {
+             return mode.is_free() && std::abs(mode.coordinate_motion[coordinate - model.coordinates.begin()]) > kMoves;
+           });
+  };
+  std::vector<std::string> names;
+  for (const auto* joints : {&scene.joints, &scene.loop_joints})
+    for (const scene::JointDescription& joint : *joints) {
+      const std::vector<std::string>& suffixes = scene::coordinate_suffixes(joint);
+      if (std::any_of(suffixes.begin(), suffixes.end(),
+                      [&](const std::string& suffix) { return moves(joint.name + suffix); }))
+        names.push_back(joint.name);
+    }
+  return names;
+}
+
+/// "joint 'a'", or "joints 'a', 'b' and 3 others".
+std::string listed(const std::vector<std::string>& names) {
+  std::string text = names.size() == 1 ? "joint" : "joints";
+  for (std::size_t i = 0; i < std::min(names.size(), kMostNames); ++i)
+    text += fmt::format("{} '{}'", i > 0 ? "," : "", names[i]);
+  if (names.size() > kMostNames) text += fmt::format(" and {} others", names.size() - kMostNames);
+  return text;
+}
+
+}  // namespace
+
+bool are_modes_quick(std::size_t unknowns, std::size_t coordinates) {
+  constexpr std::size_t kMostUnknowns = 50000, kMostCoordinates = 300;
+  return unknowns <= kMostUnknowns && coordinates <= kMostCoordinates;
+}
+
+std::string lack_of_equilibrium(const scene::SceneDescription& scene, const Model& model, const StepResult& result,
+                                const std::vector<Mode>& modes) {
+  const std::vector<std::string> joints = unheld_joints(scene, model, modes);
+  // The tangent of what moves freely is singular but for round-off.
+  const bool is_singular =
+      result.reason == StepResult::Reason::SingularTangent || result.reason == StepResult::Reason::NoConvergence ||
+      result.reason == StepResult::Reason::NeverRests || result.reason == StepResult::Reason::NotFinite;
+  if (!is_singular || joints.empty()) return fmt::format("no equilibrium found ({})", to_string(result.reason));
+  const auto free = std::count_if(modes.begin(), modes.end(), [](const Mode& mode) { return mode.is_free(); });
+  return fmt::format(
+      "no equilibrium: nothing holds {} in the initial configuration ({} free; a <motion> would hold it)",
+      listed(joints), free == 1 ? "1 motion is" : fmt::format("{} motions are", free));
+}
+
+std::vector<std::string> doubts_about_equilibrium(const StaticResult& result, const std::string& consequence) {
+  std::vector<std::string> doubts;
+  if (!result.falling_link.empty())
+    doubts.push_back(fmt::format("the equilibrium to which the loads lead is not stable: link '{}' {}",
+                                 result.falling_link, consequence));
+  if (!result.loose_link.empty())
+    doubts.push_back(
+        fmt::format("nothing holds link '{}' where it stands: it may stand elsewhere as well (a <motion> of its joint "
+                    "would hold it)",
+                    result.loose_link));
+  return doubts;
+}
+
+}  // namespace flexarm

@@ -1,0 +1,28 @@
+#pragma once
+/// What is to be said about an equilibrium, or its lack.
+
+#include <string>
+#include <vector>
+
+#include "flexarm/model/results.h"
+#include "flexarm/scene/scene_description.h"
+#include "model/model.h"
+
+namespace flexarm {
+
+/// Load steps that lead to most equilibria.
+constexpr int kLoadSteps = 10;
+
+/// Whether a few modes take seconds and no more: without springs, there is a free one for every joint coordinate.
+bool are_modes_quick(std::size_t unknowns, std::size_t coordinates);
+
+/// Why solve_static() failed with `result`: by what nothing holds, if that is it. `modes` about the initial
+/// configuration: of all free motions; or none.
+std::string lack_of_equilibrium(const scene::SceneDescription& scene, const Model& model, const StepResult& result,
+                                const std::vector<Mode>& modes);
+
+/// That an equilibrium is not stable, or not the only one; empty if neither. `consequence`: what becomes of the link
+/// that falls.
+std::vector<std::string> doubts_about_equilibrium(const StaticResult& result, const std::string& consequence);
+
+}  // namespace flexarm

@@ -1,0 +1,90 @@
+#include "simulation/start.h"
+
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "analysis/modes.h"
+#include "analysis/statics.h"
+#include "flexarm/model/model_error.h"
+#include "model/degrees_of_freedom.h"
+#include "simulation/equilibrium_text.h"
+
+namespace flexarm {
+namespace {
+
+/// Rates of functions of time come from differences [1/s, of a value of 1].
+constexpr double kRateRoundOff = 1e-6;
+
+scene::Diagnostic warning(const scene::SourceLocation& place, const std::string& element, const std::string& text,
+                          const std::string& got = "") {
+  return {scene::Diagnostic::Severity::Warning, place.file, place.line, element, got, text};
+}
+
+/// @throws ModelError naming the first initial velocity.
+void require_rest(const scene::SceneDescription& scene) {
+  const auto refuse = [](const scene::SourceLocation& place, const std::string& what) {
+    throw ModelError(
+        fmt::format("{}:{}: <initial> of {}: a velocity is given, but the simulation is to start at rest in "
+                    "its equilibrium (<initial equilibrium=\"true\"/> or --start equilibrium)",
+                    place.file, place.line, what));
+  };
+  for (const scene::InitialJoint& initial : scene.initial_joints)
+    if (initial.velocity != 0) refuse(initial.location, "joint '" + initial.coordinate + "'");
+  for (const scene::InitialLink& initial : scene.initial_links)
+    if (!initial.linear.isZero(0) || !initial.angular.isZero(0))
+      refuse(initial.location, "link '" + initial.link + "'");
+}
+
+void warn_of_blows(const scene::SceneDescription& scene, scene::Diagnostics& warnings) {
+  for (const scene::PrescribedMotion& motion : scene.motions) {
+    const double rate = motion.position.derivative(0);
+    if (std::abs(rate) > kRateRoundOff * (1 + std::abs(motion.position(0))))
+      warnings.push_back(
+          warning(motion.location, "<motion> of '" + motion.coordinate + "'",
+                  "moves at t = 0, which is a blow to a mechanism that starts at rest in its equilibrium",
+                  fmt::format("'{:.3g}' rad/s or m/s", rate)));
+  }
+}
+
+}  // namespace
+
+scene::Diagnostics held_joints(const scene::SceneDescription& scene, const Model& model) {
+  std::set<std::string> driven;
+  for (const scene::PrescribedMotion& motion : scene.motions) driven.insert(motion.coordinate);
+  std::set<std::string> held;
+  for (const Coordinate& coordinate : model.coordinates)
+    if (coordinate.motion >= 0 && driven.count(coordinate.name) == 0) held.insert(coordinate.name);
+  scene::Diagnostics findings;
+  for (const scene::JointDescription& joint : scene.joints)
+    for (const std::string& suffix : scene::coordinate_suffixes(joint))
+      if (held.count(joint.name + suffix) > 0)
+        findings.push_back(warning(joint.location, "<joint> '" + joint.name + suffix + "'",
+                                   "is held where it starts, since it moves nothing that has inertia"));
+  return findings;
+}
+
+void start_in_equilibrium(const scene::SceneDescription& scene, const Model& model, const Scheme& scheme,
+                          const StepSettings& settings, State& state, scene::Diagnostics& warnings) {
+  require_rest(scene);
+  warn_of_blows(scene, warnings);
+  StaticResult result = solve_static(model, scheme, settings, kLoadSteps, Equilibrium::Stable, state);
+  if (result.converged && !sharpen_equilibrium(model, scheme, settings, state)) {
+    result.converged = false;
+    result.reason = StepResult::Reason::NoConvergence;
+  }
+  if (!result.converged) {
+    const int coordinates = static_cast<int>(model.coordinates.size());
+    const bool is_quick = are_modes_quick(DegreesOfFreedom(model).unknowns, coordinates);
+    const std::vector<Mode> modes =
+        is_quick ? natural_modes(model, state, 1 + coordinates, scheme.contact_time) : std::vector<Mode>();
+    throw ModelError(scene.file + ": the simulation is to start in its equilibrium: " +
+                     lack_of_equilibrium(scene, model, result, modes));
+  }
+  for (const std::string& doubt :
+       doubts_about_equilibrium(result, "falls from it; the start is where it comes to rest"))
+    warnings.push_back(warning({scene.file}, "start in equilibrium", doubt));
+}
+
+}  // namespace flexarm

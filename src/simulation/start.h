@@ -1,0 +1,21 @@
+#pragma once
+/// How a simulation starts.
+
+#include "flexarm/scene/diagnostic.h"
+#include "flexarm/scene/scene_description.h"
+#include "integrators/step_settings.h"
+#include "model/model.h"
+#include "model/state.h"
+#include "schemes/scheme.h"
+
+namespace flexarm {
+
+/// A warning for each joint coordinate that massless="lock" holds where it starts, in the scene's order.
+scene::Diagnostics held_joints(const scene::SceneDescription& scene, const Model& model);
+
+/// Brings `state` to the equilibrium of the scene, at rest; adds what is doubtful about it to `warnings`.
+/// @throws ModelError where there is none, naming joints that nothing holds, or where the scene gives a velocity.
+void start_in_equilibrium(const scene::SceneDescription& scene, const Model& model, const Scheme& scheme,
+                          const StepSettings& settings, State& state, scene::Diagnostics& warnings);
+
+}  // namespace flexarm
