@@ -17,75 +17,16 @@
 #include "math/so3.h"
 #include "model/carried_origin.h"
 #include "model/line_release.h"
-#include "schemes/slide_scheme.h"
 #include "simulation/failure_text.h"
 #include "simulation/inside.h"
 #include "simulation/observables.h"
 #include "simulation/published_motion.h"
 #include "simulation/sensors.h"
+#include "simulation/settings.h"
 #include "simulation/start.h"
 #include "simulation/state_flaw.h"
 
 namespace flexarm {
-namespace {
-
-/// "file:line: ", of <integrator>, or of the file where it has none.
-std::string integrator_place(const scene::SceneDescription& scene) {
-  const scene::SourceLocation& place = scene.integrator_location;
-  return place.line > 0 ? fmt::format("{}:{}: ", place.file, place.line) : scene.file + ": ";
-}
-
-/// What `make` returns; what it finds wrong with <integrator> says where that is.
-template <class Make>
-auto made_for_integrator(const scene::SceneDescription& scene, const Make& make) {
-  try {
-    return make();
-  } catch (const ModelError& error) {
-    throw ModelError(integrator_place(scene) + error.what());
-  }
-}
-
-StepSettings settings_of(const scene::SceneDescription& scene, const SimulationOptions& options) {
-  StepSettings settings;
-  settings.step = options.step.value_or(scene.integrator.step);
-  settings.tolerance = options.tolerance.value_or(scene.integrator.tolerance);
-  settings.max_iterations = scene.integrator.max_iterations;
-  settings.max_halvings = scene.integrator.max_halvings;
-  settings.reuse_factorisation = options.reuse_factorisation;
-  settings.on_failure = scene.integrator.on_failure;
-  settings.recovery_wall_time = options.recovery_wall_time;
-  const auto require = [&](bool ok, const std::string& what) {
-    if (!ok) throw ModelError(integrator_place(scene) + "<integrator>: " + what);
-  };
-  require(std::isfinite(settings.step) && settings.step > 0, "step must be > 0");
-  require(settings.tolerance > 0 && settings.tolerance <= kLargestTolerance, "tolerance must be > 0 and at most 1");
-  require(settings.max_iterations >= 1, "max_iterations must be >= 1");
-  require(settings.max_halvings >= 0 && settings.max_halvings <= 30, "max_halvings must be 0 to 30");
-  return settings;
-}
-
-/// The scene with the scheme and the step in use.
-scene::SceneDescription with_options(scene::SceneDescription scene, const SimulationOptions& options) {
-  if (options.scheme) scene.integrator = with_scheme(scene.integrator, *options.scheme);
-  if (options.on_failure) scene.integrator.on_failure = *options.on_failure;
-  scene.integrator.step = settings_of(scene, options).step;
-  return scene;
-}
-
-/// @throws ModelError naming the first slide that does not go with the scheme.
-void require_suitable_slides(const scene::SceneDescription& scene, const Scheme& scheme) {
-  for (const auto* joints : {&scene.joints, &scene.loop_joints})
-    for (const scene::JointDescription& joint : *joints) {
-      if (!joint.slide) continue;
-      const std::string conflict = slide_scheme_conflict(*find_slide_scheme(joint.slide->scheme), scheme);
-      const scene::SourceLocation& place = joint.slide->location;
-      if (!conflict.empty())
-        throw ModelError(fmt::format("{}:{}: <slide> of joint '{}': {}", place.file, place.line, joint.name, conflict));
-    }
-}
-
-}  // namespace
-
 struct Simulation::Implementation {
   scene::SceneDescription scene;
   Scheme scheme;

@@ -87,6 +87,16 @@ class Process(unittest.TestCase):
                 self.assertEqual(states.position[states.name.index("knee")], -0.75)
                 self.assertIn("'ankle': is held where it starts", node.output())
 
+    def test_starts_in_equilibrium(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
+            file.write(LEG)
+            file.flush()
+            with RunningNode("_scene:=" + file.name, "_start:=clamp,equilibrium", "_massless:=lock"):
+                for _ in range(3):
+                    states = rospy.wait_for_message("/joint_states", JointState, PATIENCE)
+                    # What round-off of angles of a radian makes of a step.
+                    self.assertLess(max(map(abs, states.velocity)), 1e-12)
+
     def test_counts_the_steps_that_it_cannot_make(self):
         with RunningNode("_real_time_factor:=1e6"):
             statuses = []
