@@ -92,8 +92,9 @@ LoopClosure loop_closure(const ScenePlan& plan, const Mechanism& mechanism, cons
                                         "': join two places of its line, or let the line end where it begins (within "
                                         "1e-6 of its length) for a ring"
                                   : std::string("both places belong to the same rigid body")));
-  if (child.node < 0) std::swap(parent, child);
   LoopClosure closure;
+  closure.is_reversed = child.node < 0;
+  if (closure.is_reversed) std::swap(parent, child);
   closure.name = joint.name;
   closure.parent = parent.node;
   closure.child = child.node;

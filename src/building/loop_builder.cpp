@@ -136,6 +136,7 @@ void LoopBuilder::add(const scene::JointDescription& joint) {
   }
   add_chain(joint, maps, names, onto_child ? parent.node : child.node, onto_child ? child.node : parent.node,
             onto_child ? frame : Pose{meeting.position, frame.orientation});
+  mechanism_.loop_joints.back().is_reversed = !onto_child;
 }
 
 void LoopBuilder::add_chain(const scene::JointDescription& joint, const std::vector<JointMap>& maps,

@@ -16,6 +16,7 @@ struct JointChain {
   const scene::JointDescription* joint;
   int first_map, map_count;  ///< into Model::joints
   int closed_node = -1;      ///< of a joint that closes a loop: the beam's node that its last map moves
+  bool is_reversed = false;  ///< of such a joint: that node is on its parent
 };
 
 struct Mechanism {

@@ -48,7 +48,7 @@ BuiltModel build(const scene::SceneDescription& scene) {
   model.loads = std::move(placed_loads.loads);
   model.histories = std::move(placed_loads.histories);
   model.probes = place_probes(plan, model);
-  place_sensors(plan, solvable.slave_joint, model);
+  place_sensors(plan, solvable, model);
   model.gravity = scene.gravity;
   set_stop_depths(model);
   std::vector<int> massless = finish_mass_properties(solvable.node_parents, model);

@@ -3,14 +3,29 @@
 namespace flexarm {
 
 Vector6 JointReactions::transmitted(const ReducedResidual& residual, const ReactionPlace& place) const {
+  const Model& model = configuration_.model();
   const Scheme& scheme = configuration_.scheme();
-  const int slave = configuration_.model().joints[place.joint].slave;
-  const double end = scheme.is_incremental() ? scheme.arm_weight() : 1.0;
-  const Vector3 arm = end * (configuration_.end()[slave].rotation * place.arm) +
-                      (1 - end) * (configuration_.begin()[slave].rotation * place.arm);
-  Vector6 wrench = residual.node(slave);
+  int node;
+  Vector6 wrench;
+  double end, weight;  // of the end of the step in arms, and of the wrench in the balance
+  if (place.closure >= 0) {
+    node = model.closures[place.closure].child;
+    wrench = -loops_.on_child(place.closure);
+    end = loops_.end_weight();
+    weight = 1;
+  } else {
+    node = model.joints[place.joint].slave;
+    wrench = residual.node(node);
+    end = scheme.is_incremental() ? scheme.arm_weight() : 1.0;
+    weight = friction_.effort_weight();
+  }
+  const auto arm_in = [&](const std::vector<NodePose>& nodes) {
+    const NodePose link = place.link.node < 0 ? NodePose() : nodes[place.link.node];
+    return Vector3(link.position - nodes[node].position + link.rotation * place.link.offset.position);
+  };
+  const Vector3 arm = end * arm_in(configuration_.end()) + (1 - end) * arm_in(configuration_.begin());
   wrench.tail<3>() -= arm.cross(wrench.head<3>());
-  return wrench / friction_.effort_weight();
+  return (place.is_reversed ? -1 : 1) * wrench / weight;
 }
 
 void JointReactions::accept(const ReducedResidual& residual, State& state) const {

@@ -2,6 +2,7 @@
 /// What joints transmit over a step, for output: of those that the model names.
 
 #include "integrators/dry_friction_step.h"
+#include "integrators/loop_multipliers.h"
 #include "integrators/step_configuration.h"
 #include "solver/reduced_residual.h"
 
@@ -9,11 +10,12 @@ namespace flexarm {
 
 /// The residual of a slave, once all that hangs on it has been folded, is what its joint does to it: exactly that by
 /// which the momenta of what hangs on it change in the step, less its loads. Moments are about the origin of the link
-/// that the slave carries.
+/// that the slave carries. What multipliers do to
+/// a closure's child is known as it is; what a loop joint does to its other link is the opposite.
 class JointReactions {
  public:
-  JointReactions(const StepConfiguration& configuration, const DryFrictionStep& friction)
-      : configuration_(configuration), friction_(friction) {}
+  JointReactions(const StepConfiguration& configuration, const DryFrictionStep& friction, const LoopMultipliers& loops)
+      : configuration_(configuration), friction_(friction), loops_(loops) {}
 
   /// Adds to State::transmitted, before the rest of the state is written.
   void accept(const ReducedResidual& residual, State& state) const;
@@ -25,6 +27,7 @@ class JointReactions {
 
   const StepConfiguration& configuration_;
   const DryFrictionStep& friction_;
+  const LoopMultipliers& loops_;
 };
 
 }  // namespace flexarm

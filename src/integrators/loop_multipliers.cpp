@@ -36,16 +36,30 @@ void LoopMultipliers::update(const Eigen::VectorXd& increment) {
   for_each([&](double& value, int equation) { value += increment[equation]; });
 }
 
+double LoopMultipliers::end_weight() const {
+  return configuration_.has_incremental_joints() ? 0.5 : 1.0;
+}
+
+Vector6 LoopMultipliers::on_child(int closure) const {
+  const LoopClosure& loop = configuration_.model().closures[closure];
+  const ClosurePoses begin = poses(loop, configuration_.begin()), end = poses(loop, configuration_.end());
+  Vector6 sum = Vector6::Zero();
+  ClosureMaps maps;
+  for (std::size_t i = 0; i < loop.constraints.size(); ++i) {
+    closure_maps(loop, loop.constraints[i], begin, end, end_weight(), maps);
+    sum += values_[closure][static_cast<Eigen::Index>(i)] * maps.left.child;
+  }
+  return sum;
+}
+
 void LoopMultipliers::evaluate(Balance& balance) const {
-  // Multipliers are forces of the whole step: no scheme weights them.
-  const double weight = configuration_.has_incremental_joints() ? 0.5 : 1.0;
   const std::vector<LoopClosure>& closures = configuration_.model().closures;
   ClosureMaps maps;
   for (int k = 0; k < static_cast<int>(closures.size()); ++k) {
     const LoopClosure& closure = closures[k];
     const ClosurePoses begin = poses(closure, configuration_.begin()), end = poses(closure, configuration_.end());
     for (int i = 0; i < static_cast<int>(closure.constraints.size()); ++i) {
-      closure_maps(closure, closure.constraints[i], begin, end, weight, maps);
+      closure_maps(closure, closure.constraints[i], begin, end, end_weight(), maps);
       balance.residual.add_closure(k, i, values_[k][i], maps);
       if (balance.tangent) balance.tangent->add_closure(k, i, values_[k][i], maps);
     }

@@ -17,6 +17,8 @@ class LoopMultipliers {
   /// Those of the last step.
   void extrapolate();
   void evaluate(Balance& balance) const;
+  /// What they add to the residual of a closure's child.
+  Vector6 on_child(int closure) const;
   /// A Newton update, one entry per unknown.
   void update(const Eigen::VectorXd& increment);
   /// The history keeps the multipliers in the place of increments of their own.
@@ -28,6 +30,10 @@ class LoopMultipliers {
   };
   /// Largest violation of what the closures of loops imply: not zero where a loop was singular at the start.
   Opening largest_opening() const;
+
+  /// Of the end of the step in the vectors along which they act. Multipliers are forces of the whole step: no scheme
+  /// weights them.
+  double end_weight() const;
 
  private:
   ClosurePoses poses(const LoopClosure& closure, const std::vector<NodePose>& nodes) const;

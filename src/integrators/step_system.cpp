@@ -21,7 +21,7 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme, BackendChoice b
       friction_(configuration_, interpolation_.get()),
       actuators_(configuration_, histories_, interpolation_.get()),
       joints_(configuration_, histories_, friction_, actuators_),
-      reactions_(configuration_, friction_),
+      reactions_(configuration_, friction_, loops_),
       reversals_(configuration_),
       contacts_(configuration_),
       rows_(model, dof_),

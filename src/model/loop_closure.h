@@ -24,6 +24,7 @@ struct ClosureConstraint {
 struct LoopClosure {
   std::string name;             ///< of the joint
   int parent = -1, child = -1;  ///< nodes; -1: the world
+  bool is_reversed = false;     ///< the child is on the joint's parent: that of the joint stands on the world
   Vector3 parent_arm = Vector3::Zero(),
           child_arm = Vector3::Zero();         ///< of the joint's origin, in the nodes' frames [m]
   std::vector<ClosureConstraint> constraints;  ///< independent ones at the start: each has a multiplier

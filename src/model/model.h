@@ -124,10 +124,18 @@ struct ProbePoint {
   Pose offset;  ///< in the interpolated section frame
 };
 
-/// A joint of which is kept what it transmits to the link that it carries.
+/// A joint of which is kept what it does to one of its links: one that acts upon its slave, or a closure that acts upon
+/// its child.
 struct ReactionPlace {
-  int joint = -1;                 ///< elementary; its slave carries the link
-  Vector3 arm = Vector3::Zero();  ///< from the slave to the link's origin, in the slave's frame [m]
+  int joint = -1;            ///< elementary
+  int closure = -1;          ///< if there is no such
+  bool is_reversed = false;  ///< the link is on the other side
+  Attachment link;           ///< frame of the link: moments are about its origin
+
+  bool operator==(const ReactionPlace& other) const {
+    return joint == other.joint && closure == other.closure && is_reversed == other.is_reversed &&
+           link.node == other.link.node && link.offset.position == other.link.offset.position;
+  }
 };
 
 /// Where a sensor sits.

@@ -202,8 +202,18 @@ class ReferenceCheck {
     if (needs_beam && !link->second->beam)
       findings_.error(sensor.location.line, element, "link must be flexible, that is have a <beam>",
                       quoted(sensor.link));
-    if (needs_joint && sensor.link == scene_.root_link)
+    if (!sensor.joint.empty() && !(needs_joint && closes_loop_at(sensor.joint, sensor.link)))
+      findings_.error(sensor.location.line, element,
+                      "joint is for wrenches and reactions: a loop joint that has the link as its parent or child",
+                      quoted(sensor.joint));
+    else if (needs_joint && sensor.joint.empty() && sensor.link == scene_.root_link)
       findings_.error(sensor.location.line, element, "no joint carries the root link", quoted(sensor.link));
+  }
+
+  bool closes_loop_at(const std::string& name, const std::string& link) const {
+    return std::any_of(scene_.loop_joints.begin(), scene_.loop_joints.end(), [&](const JointDescription& joint) {
+      return joint.name == name && (joint.parent == link || joint.child == link);
+    });
   }
 
   void add_joint(const JointDescription& joint) {

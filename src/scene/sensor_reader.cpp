@@ -34,8 +34,9 @@ Sensor read_sensor(const XmlElement& unnamed) {
   out.name = unnamed.name("name").value_or("");
   out.location = unnamed.location();
   const XmlElement sensor = unnamed.with_name(out.name);
-  sensor.expect_only({"name", "kind", "link", "at", "rate", "noise", "bias", "seed"});
+  sensor.expect_only({"name", "kind", "link", "joint", "at", "rate", "noise", "bias", "seed"});
   out.link = sensor.name("link").value_or("");
+  if (sensor.has("joint")) out.joint = sensor.name("joint").value_or("");
   out.at = sensor.vector("at", out.at);
   if (sensor.has("rate")) out.rate = sensor.number("rate", kRate).value_or(0);
   if (sensor.has("seed")) out.seed = sensor.integer("seed", 0, std::numeric_limits<int>::max()).value_or(0);

@@ -147,8 +147,9 @@ class SceneFingerprint {
   }
   void add(const scene::PrescribedMotion& motion) { all(motion.coordinate, motion.position); }
   void add(const scene::Sensor& sensor) {
-    const auto& [name, kind, link, at, rate, noise, bias, seed, location] = sensor;
+    const auto& [name, kind, link, joint, at, rate, noise, bias, seed, location] = sensor;
     all(name, kind, link, at, rate, noise, bias, seed);
+    if (!joint.empty()) all(joint);
   }
   void add(const scene::PointSpring& spring) {
     const auto& [from, to, from_at, to_at, stiffness, rest_length, damping, location] = spring;

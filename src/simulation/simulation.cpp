@@ -332,7 +332,9 @@ Wrench Simulation::reaction(std::size_t link) const {
   const Model& model = implementation_->model;
   const std::string& name = model.links.at(link).name;
   const auto place = std::find_if(model.sensors.begin(), model.sensors.end(), [&](const SensorPlace& sensor) {
-    return sensor.reaction >= 0 && sensor.point.link == static_cast<int>(link);
+    if (sensor.reaction < 0 || sensor.point.link != static_cast<int>(link)) return false;
+    const ReactionPlace& place = model.reactions[sensor.reaction];
+    return place.joint >= 0 && model.joints[place.joint].slave == place.link.node;
   });
   if (place == model.sensors.end())
     throw std::invalid_argument("no sensor of the scene asks what carries link '" + name + "'");

@@ -66,6 +66,16 @@ TEST_P(CamProfiles, SecantDerivativeOverTinyChanges) {
     }
 }
 
+TEST(CamProfile, ShortSecantsOverAKnot) {
+  const CamProfile profile = table();
+  const double round_off = 1e-15 / 5e-4;  // of values over the change
+  for (const double knot : {0.3, 1.0, 2.2, 3.0, 4.4, 5.9})
+    for (const double change : {5e-4, -5e-4}) {
+      const double from = knot - 0.4 * change, to = from + change;
+      EXPECT_NEAR(profile.secant(from, to), (profile.value(to) - profile.value(from)) / change, round_off) << knot;
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Kinds, CamProfiles, ::testing::Values(CamProfile::eccentric(0.4, 0.1), table()));
 
 TEST(CamProfile, EccentricTravel) {

@@ -49,24 +49,43 @@ TEST(SectionTable, DirectStiffnesses) {
   EXPECT_EQ(std::get<DirectSection>(stations.sections[1]).mass, 14);
 }
 
-TEST(SectionTable, Matrices) {
-  std::string table = "at", row;
+/// Two stations with the same entry(letter, row, column) of the matrices.
+template <class Entry>
+std::string matrix_table(const Entry& entry) {
+  std::string header = "at", row;
   for (const char letter : {'k', 'm'})
     for (int i = 1; i <= 6; ++i)
       for (int j = i; j <= 6; ++j) {
-        table += std::string(",") + letter + std::to_string(i) + std::to_string(j);
-        // Coupling of k15; a mass of 2 per length in the centreline.
-        row += letter == 'k' ? (i == j             ? ",10"
-                                : i == 1 && j == 5 ? ",3"
-                                                   : ",0")
-                             : (i == j ? (i <= 3 ? ",2" : ",1") : ",0");
+        header += std::string(",") + letter + std::to_string(i) + std::to_string(j);
+        row += "," + std::to_string(entry(letter, i, j));
       }
-  const ReadResult result = read_with(table + "\n0" + row + "\n1" + row + "\n");
+  return header + "\n0" + row + "\n1" + row + "\n";
+}
+
+/// Coupling k15; a mass of 2 per length in the centreline.
+int good_entry(char letter, int i, int j) {
+  if (i != j) return letter == 'k' && i == 1 && j == 5 ? 3 : 0;
+  return letter == 'k' ? 10 : i <= 3 ? 2 : 1;
+}
+
+TEST(SectionTable, Matrices) {
+  const ReadResult result = read_with(matrix_table(good_entry));
   ASSERT_TRUE(result.scene) << to_text(result.diagnostics);
   const auto& section = std::get<MatrixSection>(std::get<SectionStations>(forearm_section(result)).sections[1]);
   EXPECT_EQ(section.stiffness(0, 4), 3);
   EXPECT_EQ(section.stiffness(4, 0), 3);
   EXPECT_EQ(section.inertia(2, 2), 2);
+}
+
+TEST(SectionTable, ImpossibleMatrices) {
+  const auto with = [](char letter, int row, int column, int value) {
+    return matrix_table(
+        [=](char l, int i, int j) { return l == letter && i == row && j == column ? value : good_entry(l, i, j); });
+  };
+  expect_table_error(with('k', 1, 5, 10), "blade.csv:2: the stiffness k11 to k66 must be positive definite");
+  const std::string inertia = "blade.csv:2: the inertia m11 to m66 must be [[m 1, -m d^], [m d^, J]]";
+  expect_table_error(with('m', 1, 1, 3), inertia);  // another mass along x than along y
+  expect_table_error(with('m', 1, 4, 1), inertia);  // a mass centroid has no such moment
 }
 
 TEST(SectionTable, Errors) {

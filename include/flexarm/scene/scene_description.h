@@ -323,7 +323,7 @@ struct PointSpring {
 };
 
 enum class SensorKind {
-  Wrench,        ///< what carries a link does to it, in the link's axes about the sensor's place
+  Wrench,        ///< what a joint does to its link, in the link's axes about the sensor's place
   Reaction,      ///< the same in world axes
   SectionForce,  ///< of a flexible link: elastic force and moment in the section's axes, about its reference line
   Strain,        ///< of a flexible link: of the fibre through the sensor's place, along the line
@@ -347,6 +347,7 @@ struct Sensor {
   std::string name;
   SensorKind kind = SensorKind::Pose;
   std::string link;
+  std::string joint;             ///< Wrench, Reaction: a loop joint of the link; empty: the joint that carries it
   Vector3 at = Vector3::Zero();  ///< in the undeformed link frame [m]
   double rate = 0;  ///< samples per second, each at the end of the first step that reaches it [Hz]; 0: every step
   std::vector<double> noise, bias;  ///< standard deviations and means of the errors; empty: none, one: all alike

@@ -127,9 +127,9 @@ class Simulation {
   /// The section of a flexible link at an arc length of its undeformed line [m]: pose, strain, section force.
   /// @throws std::invalid_argument if the link is rigid, or its line not as long.
   BeamPoint section(std::size_t link, double arc_length) const;
-  /// What the joint that carries a link does to it, its drive and friction included: about the link's origin, world
-  /// axes, of second order in the step from the third step on. It is kept for links of which a sensor of the scene
-  /// asks it (kind Reaction or Wrench), and zero before the first step.
+  /// What the joint of the tree that carries a link does to it, its drive and friction included: about the link's
+  /// origin, world axes, of second order in the step from the third step on. It is kept for links of which a sensor of
+  /// the scene asks it (kind Reaction or Wrench), and zero before the first step. What loop joints do is in samples.
   /// @throws std::invalid_argument if none does.
   Wrench reaction(std::size_t link) const;
   /// What a sensor has measured last, in the order of scene().sensors.
