@@ -123,7 +123,8 @@ void LinearisedMotion::assemble_mass() {
     block.topLeftCorner<3, 3>().diagonal().array() += inertia.mass;
     block.bottomRightCorner<3, 3>() += rotation * inertia.rotary * rotation.transpose();
   }
-  for (const ActuatorTerms& terms : actuator_terms(model_)) diagonal(mass_, terms.joint, terms.component) += terms.mass;
+  for (const ActuatorTerms& terms : actuator_terms(model_, state_))
+    diagonal(mass_, terms.joint, terms.component) += terms.mass;
   fold(mass_);
 }
 
@@ -132,7 +133,7 @@ void LinearisedMotion::assemble_damping() {
   for_each_element(model_.beams, [&](const auto& element) {
     constexpr int N = std::decay_t<decltype(element)>::kNodes;
     if (element.stiffness_damping == 0 && element.mass_damping == 0) return;
-    Eigen::MatrixXd damping = element.stiffness_damping * material_stiffness(element, state_);
+    Eigen::MatrixXd damping = element.stiffness_damping * material_stiffness(with_damped_stiffness(element), state_);
     for (int i = 0; i < N; ++i)
       for (int j = 0; j < N; ++j)
         damping.block<3, 3>(6 * i, 6 * j).diagonal().array() += element.mass_damping * element.mass(i, j);
@@ -146,7 +147,7 @@ void LinearisedMotion::assemble_damping() {
   for (const Coordinate& coordinate : model_.coordinates)
     diagonal(damping_, coordinate.joint, coordinate.component) +=
         damping_of(coordinate, stop_penalty(coordinate, contact_time_), state_.released[coordinate.joint]);
-  for (const ActuatorTerms& terms : actuator_terms(model_))
+  for (const ActuatorTerms& terms : actuator_terms(model_, state_))
     diagonal(damping_, terms.joint, terms.component) += terms.damping;
   for (const PointSpring& spring : model_.springs) {
     const LoopClosure& ends = model_.closures[spring.closure];

@@ -24,6 +24,10 @@ void add(const Coupling& coupling, int q, int rotor, Triplets& entries) {
   entries.emplace_back(rotor, rotor, coupling.gear + coupling.on_rotor);
 }
 
+bool is_on(const Actuator& actuator, const ActuatorState& state) {
+  return actuator.servo && state.servo.off == 0;
+}
+
 /// Side of a servo on which a gain acts.
 Coupling coupling(double gear, const std::optional<Servo>& servo, double gain) {
   if (!servo) return {gear, 0, 0};
@@ -43,13 +47,14 @@ std::vector<double> values(const Sparse& pattern, const SparseTangent& own, cons
 
 }  // namespace
 
-std::vector<ActuatorTerms> actuator_terms(const Model& model) {
+std::vector<ActuatorTerms> actuator_terms(const Model& model, const State& state) {
   std::vector<ActuatorTerms> terms;
-  for (const Actuator& actuator : model.actuators) {
-    if (actuator.drive.gear) continue;
+  for (std::size_t i = 0; i < model.actuators.size(); ++i) {
+    const Actuator& actuator = model.actuators[i];
     const Coordinate& coordinate = model.coordinates[actuator.coordinate];
-    terms.push_back({coordinate.joint, coordinate.component, actuator.servo ? actuator.servo->derivative : 0,
-                     actuator.drive.inertia});
+    const double spring = actuator.spring ? actuator.spring->elasticity.damping : 0;
+    const double servo = is_on(actuator, state.actuators[i]) && !actuator.drive.gear ? actuator.servo->derivative : 0;
+    terms.push_back({coordinate.joint, coordinate.component, spring + servo, armature(model, coordinate)});
   }
   return terms;
 }
@@ -68,12 +73,13 @@ MotionMatrices with_rotors(const Model& model, const DegreesOfFreedom& dof, cons
     CoordinateStep twist;
     twist.begin = twist.end = state.actuators[i].angle - position;
     const Elasticity& gear = *actuator.drive.gear;
-    const bool holds = actuator.servo && actuator.servo->mode == Servo::Mode::Position;
+    const bool controls = is_on(actuator, state.actuators[i]);
+    const bool holds = controls && actuator.servo->mode == Servo::Mode::Position;
     add(coupling(-elastic_effort(gear, twist).slope, actuator.servo, holds ? actuator.servo->proportional : 0), q,
         rotor, stiff);
     stiff.emplace_back(q, q, -resting.stiffness(i));
-    add(coupling(elastic_damping(gear, twist.end), actuator.servo, actuator.servo ? actuator.servo->derivative : 0), q,
-        rotor, damped);
+    add(coupling(elastic_damping(gear, twist.end), actuator.servo, controls ? actuator.servo->derivative : 0), q, rotor,
+        damped);
     heavy.emplace_back(rotor, rotor, actuator.drive.inertia);
     for (const int row : {q, rotor})
       for (const int column : {q, rotor}) places.emplace_back(row, column, 0.0);

@@ -22,7 +22,7 @@ struct ActuatorTerms {
   int joint, component;
   double damping = 0, mass = 0;
 };
-std::vector<ActuatorTerms> actuator_terms(const Model& model);
+std::vector<ActuatorTerms> actuator_terms(const Model& model, const State& state);
 
 /// The matrices with one row and column more for each rotor behind an elastic gear, whose angles a step solves for
 /// inside the joint: in a free motion they have inertia. `stiffness` has them follow their coordinates at rest, as

@@ -34,7 +34,11 @@ SpatialInertia moved(const SpatialInertia& inertia, const Vector3& way) {
 class Articulation {
  public:
   Articulation(const std::vector<int>& parents, const Model& model)
-      : parents_(parents), model_(model), joint_of_(model.nodes.size(), -1), leads_(model.coordinates.size(), false) {
+      : parents_(parents),
+        model_(model),
+        joint_of_(model.nodes.size(), -1),
+        leads_(model.coordinates.size(), false),
+        inertias_(model.coordinates.size(), 0.0) {
     for (std::size_t j = 0; j < model.joints.size(); ++j) joint_of_[model.joints[j].slave] = static_cast<int>(j);
     for (const Coordinate& coordinate : model.coordinates)
       if (coordinate.mimicked >= 0) leads_[coordinate.mimicked] = true;
@@ -50,7 +54,7 @@ class Articulation {
     return false;
   }
 
-  std::vector<int> dependent_coordinates() {
+  void factorise() {
     for (int i = static_cast<int>(articulated_.size()) - 1; i >= 0; --i) {  // parents come before their children
       const int joint = joint_of_[i], parent = parents_[i];
       if (joint >= 0 && model_.joints[joint].kind != JointMapKind::Slide) yield(joint, i);
@@ -59,8 +63,9 @@ class Articulation {
       articulated_[parent] += moved(articulated_[i], way);
       locked_[parent] += moved(locked_[i], way);
     }
-    return dependent_;
   }
+  const std::vector<int>& dependent_coordinates() const { return dependent_; }
+  const std::vector<double>& inertias() const { return inertias_; }
 
  private:
   using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6>;
@@ -76,7 +81,7 @@ class Articulation {
       for (std::size_t k = 0; k < free.size(); ++k) columns.col(k) = maps.right.col(free[k]);
       const int dependent = dependent_of(columns, rotors(j, free), node);
       if (dependent < 0) {
-        for (const int component : free) yield_along(maps.right.col(component), rotor(j, component), node);
+        for (const int component : free) yield_along(maps.right.col(component), j, component, node);
         return;
       }
       dependent_.push_back(model_.first_coordinate[j] + free[dependent]);
@@ -85,9 +90,11 @@ class Articulation {
   }
 
   /// What resists others is less by what this coordinate's own motion, with the inertia of its rotor, takes up.
-  void yield_along(const Vector6& column, double rotor, int node) {
+  void yield_along(const Vector6& column, int j, int component, int node) {
     const Vector6 force = articulated_[node] * column;
-    articulated_[node] -= force * force.transpose() / (column.dot(force) + rotor);
+    const double resisting = column.dot(force) + rotor(j, component);
+    articulated_[node] -= force * force.transpose() / resisting;
+    inertias_[model_.first_coordinate[j] + component] = resisting;
   }
 
   /// Inertia of the rotor that turns with a component of a joint.
@@ -139,13 +146,21 @@ class Articulation {
   std::vector<bool> leads_;                           // per coordinate: others follow it
   std::vector<SpatialInertia> articulated_, locked_;  // per node: of what is outboard, if joints yield and if not
   std::vector<int> dependent_;
+  std::vector<double> inertias_;  // per coordinate
 };
 
 }  // namespace
 
 std::vector<int> coordinates_without_own_inertia(const std::vector<int>& parents, const Model& model) {
   Articulation articulation(parents, model);
-  return articulation.has_loops() ? std::vector<int>() : articulation.dependent_coordinates();
+  if (!articulation.has_loops()) articulation.factorise();
+  return articulation.dependent_coordinates();
+}
+
+std::vector<double> articulated_inertias(const std::vector<int>& parents, const Model& model) {
+  Articulation articulation(parents, model);
+  if (!articulation.has_loops()) articulation.factorise();
+  return articulation.inertias();
 }
 
 }  // namespace flexarm

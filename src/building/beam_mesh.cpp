@@ -191,6 +191,7 @@ template <int Nodes>
 BeamElement<Nodes> beam_element(const BeamMesh& mesh, const MeshElement& element, const scene::BeamDescription& beam) {
   BeamElement<Nodes> out;
   out.stiffness_damping = beam.stiffness_proportional_damping;
+  out.damping_scale = beam.damping_shares.cwiseSqrt();
   out.mass_damping = beam.mass_proportional_damping;
 
   std::array<Vector3, Nodes> centroid, reference;

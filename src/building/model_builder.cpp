@@ -10,6 +10,7 @@
 #include "building/articulated_inertia.h"
 #include "building/closure_builder.h"
 #include "building/coordinate_builder.h"
+#include "building/damping_ratios.h"
 #include "building/elementary_joints.h"
 #include "building/inertia_builder.h"
 #include "building/initial_velocity.h"
@@ -51,6 +52,7 @@ BuiltModel build(const scene::SceneDescription& scene) {
   model.gravity = scene.gravity;
   set_stop_depths(model);
   std::vector<int> massless = finish_mass_properties(solvable.node_parents, model);
+  set_damping_ratios(scene, solvable.node_parents, model);
   std::vector<int> dependent = coordinates_without_own_inertia(solvable.node_parents, model);
   place_springs(plan, model);
   return {std::move(model), std::move(massless), std::move(dependent)};

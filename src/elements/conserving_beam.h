@@ -279,10 +279,22 @@ void conserving_beam(const ConservingElement<Nodes, S>& element, const BeamNodes
       system.dissipated += constants.weight * damper.dissipated;
       end_memory[k].average = damper.average;
     }
+    const bool is_uneven = element.has_stiffness_damping && !element.is_damped_evenly;
+    SectionStiffness<S> damped;  // D C D, with a factor of its own
+    S damped_factor = S(0);
+    if (is_uneven) damped = section.scaled(element.damping_scale);
     if (element.has_stiffness_damping) {
+      const Vector6T<S> damped_stress = is_uneven ? damped.stress(p.own.conjugate_strain) : p.own.conjugate_stress;
       const conserving::StructuralDamper<S> damper(damper_parts, rule.damping_relaxation, memory[k],
-                                                   p.own.conjugate_strain, p.own.conjugate_stress, section, step);
-      factor += damper.factor;
+                                                   p.own.conjugate_strain, damped_stress, is_uneven ? damped : section,
+                                                   step);
+      if (is_uneven) {
+        damped_factor = damper.factor;
+        stress += damped_factor * damped_stress;
+        seen += damped_factor * damped.stress(p.seen.conjugate_strain);
+      } else {
+        factor += damper.factor;
+      }
       stress -= damper.remembered;
       seen -= damper.remembered;
       system.dissipated += constants.weight * damper.dissipated;
@@ -314,6 +326,15 @@ void conserving_beam(const ConservingElement<Nodes, S>& element, const BeamNodes
       dn.increment_derivative.setConstant(S(0));
       dm.position.setConstant(S(0));
       dm.increment.setConstant(S(0));
+    }
+    if (is_uneven) {
+      const conserving::SlopeBuilder<Nodes, S> damping(p, constants.weight, damped_factor);
+      damping.add_conjugate_strain_part(damped.forces, dn);
+      damping.add_conjugate_curvature_part(damped.moments, dm);
+      if (is_coupled) {
+        damping.add_conjugate_curvature_part(damped.coupling, dn);
+        damping.add_conjugate_strain_part(damped.coupling.transpose(), dm);
+      }
     }
     const Vector3T<S> force = seen.template head<3>();
     slope.add_turn(force, dn);

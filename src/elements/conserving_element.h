@@ -31,6 +31,17 @@ struct SectionStiffness {
     }
     return out;
   }
+  /// D C D for a diagonal D.
+  SectionStiffness scaled(const Vector6T<S>& diagonal) const {
+    SectionStiffness out = *this;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        out.forces(i, j) *= diagonal[i] * diagonal[j];
+        out.coupling(i, j) *= diagonal[i] * diagonal[j + 3];
+        out.moments(i, j) *= diagonal[i + 3] * diagonal[j + 3];
+      }
+    return out;
+  }
 };
 
 /// Constant data; units as in BeamElement.
@@ -47,7 +58,8 @@ struct ConservingElement {
   bool is_uniform = true;
   Eigen::Matrix<S, Nodes, Nodes> mass;
   S stiffness_damping, mass_damping;
-  bool has_stiffness_damping = false, has_mass_damping = false;
+  Vector6T<S> damping_scale;
+  bool has_stiffness_damping = false, has_mass_damping = false, is_damped_evenly = true;
 
   const SectionStiffness<S>& section(int point) const { return sections[is_uniform ? 0 : point]; }
 };
@@ -73,6 +85,8 @@ void set_lane(ConservingElement<Nodes, S>& pack, int lane, const BeamElement<Nod
   set_lane(pack.mass, lane, element.mass);
   set_lane(pack.stiffness_damping, lane, element.stiffness_damping);
   set_lane(pack.mass_damping, lane, element.mass_damping);
+  set_lane(pack.damping_scale, lane, element.damping_scale);
+  pack.is_damped_evenly = pack.is_damped_evenly && is_damped_evenly(element);
   pack.has_stiffness_damping = pack.has_stiffness_damping || element.stiffness_damping != 0;
   pack.has_mass_damping = pack.has_mass_damping || element.mass_damping != 0;
 }

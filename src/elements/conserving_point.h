@@ -193,6 +193,20 @@ struct SlopeBuilder {
     slopes.increment_derivative = factor * map.lazyProduct(p.average_rotation.transpose());
     set(times_hat<S>(slopes.spin_derivative, spin_curvature), adds, slopes.spin);
   }
+  /// Adds those of factor ds alone. Of a stiffness that Gamma act on.
+  void add_conjugate_strain_part(const Matrix3T<S>& stiffness, ResultantSlopes<S>& slopes) const {
+    const Matrix3T<S> map = factor * weighted_average.lazyProduct(stiffness);
+    const Matrix3T<S> conjugate = map.lazyProduct(p.average_rotation.transpose());
+    slopes.position += conjugate - times_hat<S>(conjugate, S(0.5) * p.increment);
+    slopes.increment += times_hat<S>(conjugate, p.arm);
+    slopes.spin += times_hat<S>(S(0.5) * map.lazyProduct(p.end_rotation.transpose()), p.stretch);
+  }
+  /// Of one that K act on.
+  void add_conjugate_curvature_part(const Matrix3T<S>& stiffness, ResultantSlopes<S>& slopes) const {
+    const Matrix3T<S> map = factor * weighted_average.lazyProduct(stiffness);
+    slopes.increment_derivative += map.lazyProduct(p.average_rotation.transpose());
+    slopes.spin += times_hat<S>(S(0.5) * map.lazyProduct(p.end_rotation.transpose()), p.increment_derivative);
+  }
   /// Of the turn of Lambda_bar under a constant stress.
   void add_turn(const Vector3T<S>& stress, ResultantSlopes<S>& slopes) const {
     slopes.spin -= so3::hat(Vector3T<S>(S(0.5) * (p.end_rotation * stress)));

@@ -245,7 +245,8 @@ void momentum_beam(const BeamElement<Nodes>& element, const ElementNodes<Nodes>&
     const double viscosity = element.stiffness_damping / step;
     ElementSystem<Nodes> viscous;
     viscous.set_zero();
-    add_stress<Nodes>(element, rule.stress, {-viscosity, viscosity}, points, begin, carried, with_tangent, viscous);
+    add_stress<Nodes>(with_damped_stiffness(element), rule.stress, {-viscosity, viscosity}, points, begin, carried,
+                      with_tangent, viscous);
     system.residual += viscous.residual;
     system.carried += viscous.carried;
     system.tangent += viscous.tangent;

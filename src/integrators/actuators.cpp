@@ -95,6 +95,7 @@ void Actuators::begin() {
     if (coordinate.motion < 0)
       part.demand.constant = histories_.effort(coordinate, configuration_.state().commands[actuator.coordinate]);
     if (actuator.servo && coordinate.motion < 0) ask(actuator, state, part);
+    if (state.servo.off > 0) part.demand = {0, 0, 0, 0};  // it goes on measuring
     part.action = {};
     part.action.increment = configuration_.step() * state.rate;
   }
@@ -268,6 +269,7 @@ void Actuators::accept(State& state) const {
       advance(*actuator.servo, part.input, actuator.servo->on_link ? part.link : action.increment,
               action.motor - action.demand, own.servo);
     }
+    if (own.servo.off > 0) own.servo.integral = 0;
     own.angle += action.increment;
     own.rate = rotor.rate_offset + rotor.rate_slope * (action.increment + part.carried);
     if (!configuration_.scheme().is_incremental()) {
@@ -288,6 +290,7 @@ double Actuators::hand_to_integrals(State& state) const {
     const Actuator& actuator = model.actuators[i];
     if (!actuator.servo || model.coordinates[actuator.coordinate].motion >= 0) continue;
     ServoState& servo = state.actuators[i].servo;
+    if (servo.off > 0) continue;
     const double error = set_point(*actuator.servo, servo).end - servo.measured;
     largest = std::max(largest, hand_to_integral(*actuator.servo, error, servo));
   }

@@ -13,13 +13,17 @@ Matrix3 lumped_rotary(const NodalInertia& inertia, const Scheme& scheme) {
   return scheme.nodal_rotary_inertia ? Matrix3(inertia.rotary + inertia.beam_rotary) : inertia.rotary;
 }
 
-/// Energy that the dampers' memory stores [J/m].
-double stored(const TimeRule& rule, const StrainMemory& memory, const Matrix6& stiffness, double viscosity) {
+/// Energy that the dampers' memory stores at a stiffness point [J/m].
+template <int Nodes>
+double stored(const TimeRule& rule, const StrainMemory& memory, const BeamElement<Nodes>& element, int point) {
+  const Matrix6& stiffness = element.stiffness_points[point].stiffness;
   const auto square = [&](const Vector6& strain) { return strain.dot(stiffness * strain); };
   const NumericalDissipation& d = rule.dissipation;
-  const conserving::DamperParts<double> damper(viscosity, rule.damping_relaxation);
-  double energy =
-      0.5 * ((d.inertance + damper.inertance) * square(memory.rate) + damper.inertance * square(memory.delayed_rate));
+  const conserving::DamperParts<double> damper(element.stiffness_damping, rule.damping_relaxation);
+  const Vector6 damped = element.damping_scale.cwiseProduct(memory.rate),
+                delayed = element.damping_scale.cwiseProduct(memory.delayed_rate);
+  double energy = 0.5 * (d.inertance * square(memory.rate) + damper.inertance * square(damped) +
+                         damper.inertance * square(delayed));
   if (d.forgetting > 0) energy += 0.5 * d.stiffness / d.forgetting * square(memory.average);
   return energy;
 }
@@ -40,8 +44,7 @@ Energies energies(const Model& model, const Scheme& scheme, const State& state) 
       const Vector6 strain = centroid_strain(element, nodes, local, state, k);
       out.strain += 0.5 * weight * strain.dot(point.stiffness * strain);
       if (!state.strain_memory.empty())
-        out.strain += weight * stored(scheme, state.strain_memory[element.first_stiffness_point + k], point.stiffness,
-                                      element.stiffness_damping);
+        out.strain += weight * stored(scheme, state.strain_memory[element.first_stiffness_point + k], element, k);
     }
     for (int i = 0; i < N; ++i)
       for (int j = 0; j < N; ++j) out.kinetic += 0.5 * element.mass(i, j) * nodes.velocity[i].dot(nodes.velocity[j]);

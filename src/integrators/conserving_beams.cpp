@@ -16,7 +16,8 @@ void fill_packs(const Elements& elements, Packs& packs) {
   const int count = static_cast<int>(elements.size());
   packs.resize((count + lanes - 1) / lanes);
   // Which terms there are is the same for a whole group, so that an element does not feel its neighbours.
-  bool is_uniform = true, is_coupled = false, has_stiffness_damping = false, has_mass_damping = false;
+  bool is_uniform = true, is_coupled = false, is_damped_evenly = true;
+  bool has_stiffness_damping = false, has_mass_damping = false;
   for (std::size_t p = 0; p < packs.size(); ++p) {
     auto& pack = packs[p];
     const int first = static_cast<int>(p) * lanes;
@@ -30,12 +31,14 @@ void fill_packs(const Elements& elements, Packs& packs) {
     }
     is_uniform = is_uniform && pack.element.is_uniform;
     for (const auto& section : pack.element.sections) is_coupled = is_coupled || section.is_coupled;
+    is_damped_evenly = is_damped_evenly && pack.element.is_damped_evenly;
     has_stiffness_damping = has_stiffness_damping || pack.element.has_stiffness_damping;
     has_mass_damping = has_mass_damping || pack.element.has_mass_damping;
   }
   for (auto& pack : packs) {
     pack.element.is_uniform = is_uniform;
     for (auto& section : pack.element.sections) section.is_coupled = is_coupled;
+    pack.element.is_damped_evenly = is_damped_evenly;
     pack.element.has_stiffness_damping = has_stiffness_damping;
     pack.element.has_mass_damping = has_mass_damping;
   }

@@ -74,6 +74,7 @@ struct Actuator {
 /// What time changes of a controller.
 struct ServoState {
   double set_point = std::numeric_limits<double>::quiet_NaN();  ///< commanded; NaN where no command holds
+  double off = 0;           ///< 1 where it is switched off: the motor gives nothing; else 0
   double integral = 0;      ///< of the error, or with Mode::Velocity the error itself [s times the error]
   double average = 0;       ///< of past increments of the error, which damps stiff gains
   double delayed_rate = 0;  ///< what follows the rate of what is measured, backwards, the same

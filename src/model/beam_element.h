@@ -37,10 +37,32 @@ struct BeamElement {
   std::array<StiffnessPoint, kStiffnessPoints> stiffness_points;
   std::array<MassPoint, kMassPoints> mass_points;
   Eigen::Matrix<double, Nodes, Nodes> mass;  ///< int I^i I^j mass ds [kg]
-  double stiffness_damping = 0;              ///< eta of F += eta C d(strain)/dt [s]
+  double stiffness_damping = 0;              ///< eta of F += eta D C D d(strain)/dt [s]
+  Vector6 damping_scale = Vector6::Ones();   ///< diagonal of D, at most 1: eta of a strain is eta times its square
   double mass_damping = 0;                   ///< [1/s]
   int first_block = 0;                       ///< into TangentBackend::element_block, then [i * Nodes + j]
 };
+
+/// Whether all strains have the same eta.
+template <int Nodes>
+bool is_damped_evenly(const BeamElement<Nodes>& element) {
+  return element.damping_scale == Vector6::Ones();
+}
+
+/// D C D of a stiffness point.
+template <int Nodes>
+Matrix6 damped_stiffness(const BeamElement<Nodes>& element, int point) {
+  const auto scale = element.damping_scale.asDiagonal();
+  return scale * element.stiffness_points[point].stiffness * scale;
+}
+
+/// The element with D C D in place of C.
+template <int Nodes>
+BeamElement<Nodes> with_damped_stiffness(BeamElement<Nodes> element) {
+  for (int k = 0; k < BeamElement<Nodes>::kStiffnessPoints; ++k)
+    element.stiffness_points[k].stiffness = damped_stiffness(element, k);
+  return element;
+}
 
 /// Elements of equal order, contiguous.
 template <int Nodes>

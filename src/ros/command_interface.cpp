@@ -3,122 +3,144 @@
 #include <ros/console.h>
 #include <ros/names.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
+#include <optional>
+
+#include "flexarm/scene/scene_description.h"
 
 namespace flexarm::node {
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
+using Mode = scene::ServoDescription::Mode;
+
 constexpr std::chrono::seconds kWarningPeriod(1);
 constexpr int kQueueSize = 10;
+
+CommandedQuantity efforts_of(Simulation& simulation) {
+  return {"effort",
+          [&simulation](std::size_t coordinate) {
+            return simulation.is_commandable(coordinate)
+                       ? std::string()
+                       : "the motion of '" + simulation.coordinate_names()[coordinate] + "' is prescribed";
+          },
+          [&simulation](std::size_t coordinate, double effort) { simulation.command_effort(coordinate, effort); },
+          [](std::size_t) { return true; }};
+}
+
+std::optional<Mode> mode_of_servo(const Simulation& simulation, const std::string& coordinate) {
+  for (const scene::ServoDescription& servo : simulation.scene().servos)
+    if (servo.coordinate == coordinate) return servo.mode;
+  return std::nullopt;
+}
+
+/// A position's servo holds its last set point; one of velocity or effort that hears nothing any more stops.
+CommandedQuantity set_points_of(Simulation& simulation) {
+  return {"set point",
+          [&simulation](std::size_t coordinate) {
+            return simulation.has_servo(coordinate)
+                       ? std::string()
+                       : "'" + simulation.coordinate_names()[coordinate] + "' has no servo";
+          },
+          [&simulation](std::size_t coordinate, double value) { simulation.command_set_point(coordinate, value); },
+          [&simulation](std::size_t coordinate) {
+            return mode_of_servo(simulation, simulation.coordinate_names()[coordinate]) != Mode::Position;
+          }};
+}
 
 }  // namespace
 
 CommandInterface::CommandInterface(ros::NodeHandle& node, ros::NodeHandle& private_node, Simulation& simulation,
                                    double timeout)
     : simulation_(simulation),
-      timeout_(timeout),
-      expiry_(simulation.coordinate_names().size(), kNever),
-      next_expiry_(kNever),
+      efforts_(simulation, efforts_of(simulation), timeout),
+      set_points_(simulation, set_points_of(simulation), timeout),
       last_warning_(std::chrono::steady_clock::now() - kWarningPeriod) {
-  commanded_.reserve(expiry_.size());
   const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
   subscribers_.push_back(
       node.subscribe("joint_force_command", kQueueSize, &CommandInterface::receive_force_command, this, hints));
   subscribers_.push_back(
       node.subscribe("joint_command", kQueueSize, &CommandInterface::receive_joint_state, this, hints));
   subscribers_.push_back(
+      node.subscribe("joint_set_points", kQueueSize, &CommandInterface::receive_set_points, this, hints));
+  subscribers_.push_back(
       private_node.subscribe("emergency_stop", kQueueSize, &CommandInterface::receive_emergency_stop, this, hints));
-  subscribe_to_coordinates(node);
+  for (std::size_t i = 0; i < simulation.coordinate_names().size(); ++i) {
+    const std::string& name = simulation.coordinate_names()[i];
+    subscribe_to(node, name, "command", efforts_);
+    if (simulation.has_servo(i)) subscribe_to(node, name, "set_point", set_points_);
+  }
 }
 
-void CommandInterface::subscribe_to_coordinates(ros::NodeHandle& node) {
-  for (const std::string& name : simulation_.coordinate_names()) {
-    const std::string topic = name + "/command";
-    std::string fault;
-    if (!ros::names::validate(topic, fault)) {
-      ROS_WARN_STREAM("joint '" << name << "' has no topic for commands of its own: " << fault);
-      continue;
-    }
-    const boost::function<void(const std_msgs::Float64ConstPtr&)> receive =
-        [this, name, topic](const std_msgs::Float64ConstPtr& message) { command(topic, {name}, {message->data}, 0); };
-    subscribers_.push_back(node.subscribe<std_msgs::Float64>(topic, kQueueSize, receive, ros::VoidConstPtr(),
-                                                             ros::TransportHints().tcpNoDelay()));
+void CommandInterface::subscribe_to(ros::NodeHandle& node, const std::string& name, const std::string& suffix,
+                                    TimedCommands& commands) {
+  const std::string topic = name + "/" + suffix;
+  std::string fault;
+  if (!ros::names::validate(topic, fault)) {
+    ROS_WARN_STREAM("joint '" << name << "' has no topic '" << suffix << "' of its own: " << fault);
+    return;
   }
+  const boost::function<void(const std_msgs::Float64ConstPtr&)> receive =
+      [this, name, topic, &commands](const std_msgs::Float64ConstPtr& message) {
+        command(commands, topic, {name}, {message->data});
+      };
+  subscribers_.push_back(node.subscribe<std_msgs::Float64>(topic, kQueueSize, receive, ros::VoidConstPtr(),
+                                                           ros::TransportHints().tcpNoDelay()));
 }
 
 void CommandInterface::expire(double time) {
-  time_ = time;
-  if (time_ < next_expiry_) return;
-  for (std::size_t coordinate = 0; coordinate < expiry_.size(); ++coordinate) {
-    if (time_ < expiry_[coordinate]) continue;
-    simulation_.command_effort(coordinate, 0);
-    expiry_[coordinate] = kNever;
-  }
-  next_expiry_ = *std::min_element(expiry_.begin(), expiry_.end());
+  efforts_.expire(time);
+  set_points_.expire(time);
 }
 
 void CommandInterface::forget_commands() {
-  std::fill(expiry_.begin(), expiry_.end(), kNever);
-  next_expiry_ = kNever;
-  if (stopped_) zero_efforts();
+  efforts_.forget();
+  set_points_.forget();
+  if (stopped_) stop();
 }
 
 void CommandInterface::receive_force_command(const JointForceCommand& message) {
-  command("joint_force_command", message.names, message.efforts, message.duration.toSec());
+  command(efforts_, "joint_force_command", message.names, message.efforts, message.duration.toSec());
 }
 
 void CommandInterface::receive_joint_state(const sensor_msgs::JointState& message) {
-  command("joint_command", message.name, message.effort, 0);
+  command(efforts_, "joint_command", message.name, message.effort);
+}
+
+void CommandInterface::receive_set_points(const sensor_msgs::JointState& message) {
+  const std::string topic = "joint_set_points";
+  std::vector<double> values;
+  for (std::size_t i = 0; i < message.name.size(); ++i) {
+    const std::optional<Mode> mode = mode_of_servo(simulation_, message.name[i]);
+    const bool is_position = mode == Mode::Position, is_velocity = mode == Mode::Velocity;
+    const std::vector<double>& of_mode = is_position   ? message.position
+                                         : is_velocity ? message.velocity
+                                                       : message.effort;
+    if (mode && of_mode.size() != message.name.size()) {
+      const char* what = is_position ? " positions" : is_velocity ? " velocities" : " efforts";
+      return warn(topic, "it has " + std::to_string(message.name.size()) + " names, but " +
+                             std::to_string(of_mode.size()) + what + ", which the servo of '" + message.name[i] +
+                             "' takes");
+    }
+    values.push_back(mode ? of_mode[i] : 0);
+  }
+  command(set_points_, topic, message.name, values);
 }
 
 void CommandInterface::receive_emergency_stop(const std_msgs::Bool& message) {
   if (message.data == static_cast<unsigned char>(stopped_)) return;
   stopped_ = message.data;
   if (stopped_) {
-    ROS_WARN("emergency stop: all efforts are zero, commands are refused until it is released");
+    ROS_WARN("emergency stop: all efforts are zero, servos are off, commands are refused until it is released");
     forget_commands();
   } else {
-    ROS_INFO("emergency stop released: the scene's efforts act again, commands are accepted");
-    release_efforts();
+    ROS_INFO("emergency stop released: the scene's efforts and servos act again, commands are accepted");
+    release();
   }
 }
 
-void CommandInterface::command(const std::string& topic, const std::vector<std::string>& names,
-                               const std::vector<double>& efforts, double duration) {
-  const std::string fault = find_fault(names, efforts, duration);
-  if (!fault.empty()) return warn(topic, fault);
-
-  const double lifetime = duration > 0 ? duration : timeout_ > 0 ? timeout_ : kNever;
-  for (std::size_t i = 0; i < commanded_.size(); ++i) {
-    simulation_.command_effort(commanded_[i], efforts[i]);
-    expiry_[commanded_[i]] = time_ + lifetime;
-  }
-  next_expiry_ = *std::min_element(expiry_.begin(), expiry_.end());
-}
-
-std::string CommandInterface::find_fault(const std::vector<std::string>& names, const std::vector<double>& efforts,
-                                         double duration) {
-  if (stopped_) return "the emergency stop is on";
-  if (names.empty()) return "it names no joint";
-  if (names.size() != efforts.size()) {
-    return "it has " + std::to_string(names.size()) + " names, but " + std::to_string(efforts.size()) + " efforts";
-  }
-  if (duration < 0) return "its duration is negative";
-  commanded_.clear();
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const std::optional<std::size_t> coordinate = simulation_.find_coordinate(names[i]);
-    if (!coordinate) return "there is no joint coordinate '" + names[i] + "'";
-    if (!std::isfinite(efforts[i])) return "the effort of '" + names[i] + "' is not finite";
-    if (!simulation_.is_commandable(*coordinate)) return "the motion of '" + names[i] + "' is prescribed";
-    if (std::find(commanded_.begin(), commanded_.end(), *coordinate) != commanded_.end()) {
-      return "'" + names[i] + "' is named twice";
-    }
-    commanded_.push_back(*coordinate);
-  }
-  return {};
+void CommandInterface::command(TimedCommands& commands, const std::string& topic, const std::vector<std::string>& names,
+                               const std::vector<double>& values, double duration) {
+  const std::string fault = stopped_ ? "the emergency stop is on" : commands.command(names, values, duration);
+  if (!fault.empty()) warn(topic, fault);
 }
 
 void CommandInterface::warn(const std::string& topic, const std::string& fault) {
@@ -134,14 +156,20 @@ void CommandInterface::warn(const std::string& topic, const std::string& fault) 
   unreported_ = 0;
 }
 
-void CommandInterface::zero_efforts() {
-  for (std::size_t coordinate = 0; coordinate < expiry_.size(); ++coordinate) {
-    if (simulation_.is_commandable(coordinate)) simulation_.command_effort(coordinate, 0);
+void CommandInterface::stop() {
+  for (std::size_t i = 0; i < simulation_.coordinate_names().size(); ++i) {
+    if (simulation_.is_commandable(i)) simulation_.command_effort(i, 0);
+    if (simulation_.has_servo(i)) simulation_.switch_servo(i, false);
   }
 }
 
-void CommandInterface::release_efforts() {
-  for (std::size_t coordinate = 0; coordinate < expiry_.size(); ++coordinate) simulation_.release_command(coordinate);
+void CommandInterface::release() {
+  for (std::size_t i = 0; i < simulation_.coordinate_names().size(); ++i) {
+    simulation_.release_command(i);
+    if (!simulation_.has_servo(i)) continue;
+    simulation_.release_set_point(i);
+    simulation_.switch_servo(i, true);
+  }
 }
 
 }  // namespace flexarm::node

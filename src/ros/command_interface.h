@@ -1,5 +1,5 @@
 #pragma once
-/// Joint efforts from topics.
+/// Joint efforts and set points of servos from topics.
 
 #include <flexarm/JointForceCommand.h>
 #include <ros/node_handle.h>
@@ -9,24 +9,24 @@
 #include <std_msgs/Float64.h>
 
 #include <chrono>
-#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "flexarm/simulation/simulation.h"
+#include "timed_commands.h"
 
 namespace flexarm::node {
 
-/// Hands commanded efforts to the simulation: joint_force_command, joint_command, COORDINATE/command and
-/// ~emergency_stop. A command is taken whole or refused whole. Efforts expire in simulated time.
+/// Hands commands to the simulation: efforts of joint_force_command, joint_command and COORDINATE/command, set points
+/// of joint_set_points and COORDINATE/set_point; and ~emergency_stop.
 class CommandInterface {
  public:
-  /// @param timeout  an effort returns to zero this long after its command, unless that names a duration [s]; 0: never
+  /// @param timeout  a command expires after it, unless that names a duration [s]; 0: never
   CommandInterface(ros::NodeHandle& node, ros::NodeHandle& private_node, Simulation& simulation, double timeout);
   CommandInterface(const CommandInterface&) = delete;
   CommandInterface& operator=(const CommandInterface&) = delete;
 
-  /// Before each step: zeroes the efforts that expired. `time`: simulated time that no reset sets back [s].
+  /// Before each step: zeroes what expired. `time`: simulated time that no reset sets back [s].
   void expire(double time);
   /// After a reset: no command is in force; an emergency stop still is.
   void forget_commands();
@@ -34,26 +34,23 @@ class CommandInterface {
  private:
   void receive_force_command(const JointForceCommand& message);
   void receive_joint_state(const sensor_msgs::JointState& message);
+  void receive_set_points(const sensor_msgs::JointState& message);
   void receive_emergency_stop(const std_msgs::Bool& message);
-  void subscribe_to_coordinates(ros::NodeHandle& node);
+  /// COORDINATE/`suffix`, each message of which goes to `commands`.
+  void subscribe_to(ros::NodeHandle& node, const std::string& coordinate, const std::string& suffix,
+                    TimedCommands& commands);
 
-  /// Checks a command and carries it out, or warns. @param duration  [s]; 0: the timeout counts
-  void command(const std::string& topic, const std::vector<std::string>& names, const std::vector<double>& efforts,
-               double duration);
-  /// What is wrong with a command, empty if nothing is; on success the coordinates are in `commanded_`.
-  std::string find_fault(const std::vector<std::string>& names, const std::vector<double>& efforts, double duration);
+  /// Carries a command out or warns. @param duration  [s]; 0: the timeout counts
+  void command(TimedCommands& commands, const std::string& topic, const std::vector<std::string>& names,
+               const std::vector<double>& values, double duration = 0);
   void warn(const std::string& topic, const std::string& fault);
-  /// While the emergency stop is on, no effort acts, be it commanded or the scene's own.
-  void zero_efforts();
-  void release_efforts();
+  /// While the emergency stop is on, no effort acts, be it commanded, the scene's own or a servo's.
+  void stop();
+  void release();
 
   Simulation& simulation_;
-  double timeout_;
-  double time_ = 0;                     ///< simulated, see expire()
-  bool stopped_ = false;                ///< by ~emergency_stop
-  std::vector<double> expiry_;          ///< of every coordinate's effort, simulated time [s]; infinite: never
-  double next_expiry_;                  ///< smallest of expiry_
-  std::vector<std::size_t> commanded_;  ///< scratch: coordinates of the command at hand
+  TimedCommands efforts_, set_points_;
+  bool stopped_ = false;  ///< by ~emergency_stop
   std::chrono::steady_clock::time_point last_warning_;
   int unreported_ = 0;  ///< refused commands since the last warning
   std::vector<ros::Subscriber> subscribers_;

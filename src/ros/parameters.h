@@ -27,7 +27,8 @@ struct Parameters {
   double clock_rate = 100;        ///< [Hz]
   std::string frame_prefix;       ///< of all names of frames: empty, or with a slash at its end
   double recovery_wall_time = 2;  ///< a step that has been halved is given up after so much wall time [s]; 0: never
-  double command_timeout = 0;     ///< efforts return to zero this long after the last command [s]; 0: never
+  double command_timeout =
+      0;  ///< efforts, and set points but positions, return to zero so long after a command [s]; 0: never
 };
 
 /// Reads the private parameters.

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -148,9 +150,27 @@ void read_hubs(const XmlElement& beam, BeamDescription& description) {
   }
 }
 
+constexpr std::array<const char*, 6> kStrains = {"axial", "shear_y", "shear_z", "torsion", "bending_y", "bending_z"};
+
+/// Strains that are not named are not damped. False where none is.
+bool read_damping_of_strains(const XmlElement& damping, BeamDescription& description) {
+  const auto has = [&](const char* strain) { return damping.has(strain); };
+  if (std::none_of(kStrains.begin(), kStrains.end(), has)) return false;
+  for (const char* attribute : {"stiffness_proportional", "ratio"})
+    if (damping.has(attribute)) damping.attribute_error(attribute, "damping is given for strains one by one already");
+  Vector6 coefficients;
+  for (int i = 0; i < 6; ++i) coefficients[i] = damping.number(kStrains[i], kNonNegative, 0);
+  double& largest = description.stiffness_proportional_damping = coefficients.maxCoeff();
+  if (largest > 0) description.damping_shares = coefficients / largest;
+  description.mass_proportional_damping = damping.number("mass_proportional", kNonNegative, 0);
+  return true;
+}
+
 /// By its coefficients, or by the damping ratio of modes: eta w / 2 + alpha / (2 w) at circular frequency w.
 void read_damping(const XmlElement& damping, BeamDescription& description) {
-  damping.expect_only({"stiffness_proportional", "mass_proportional", "ratio", "frequency", "frequencies"});
+  damping.expect_only({"stiffness_proportional", "mass_proportional", "ratio", "frequency", "frequencies", "axial",
+                       "shear_y", "shear_z", "torsion", "bending_y", "bending_z"});
+  if (read_damping_of_strains(damping, description)) return;
   double &eta = description.stiffness_proportional_damping, &alpha = description.mass_proportional_damping;
   if (!damping.has("ratio")) {
     for (const char* attribute : {"frequency", "frequencies"})

@@ -19,7 +19,9 @@ constexpr double kSameRatio = 1e-6;
 
 /// What may not be left out where something else is given.
 void check_conditions(const XmlElement& drive, const DriveDescription& description) {
-  for (const char* attribute : {"damping", "backlash"})
+  if (drive.has("damping") && drive.has("damping_ratio"))
+    drive.attribute_error("damping_ratio", "damping is given already; leave one of both out");
+  for (const char* attribute : {"damping", "damping_ratio", "backlash"})
     if (drive.has(attribute) && !drive.has("stiffness"))
       drive.attribute_error(attribute, "a rigid gear has none; give its stiffness > 0, or leave this out");
   if (drive.has("stiffness") && description.rotor_inertia <= 0)
@@ -69,14 +71,14 @@ std::vector<XmlElement> children(const XmlElement& element, const char* tag) {
 }  // namespace
 
 SpringDescription read_spring(const XmlElement& spring) {
-  spring.expect_only({"joint", "stiffness", "rest"});
+  spring.expect_only({"joint", "stiffness", "rest", "damping_ratio"});
   return {spring.text("joint").value_or(""), spring.number("stiffness", kNonNegative).value_or(0),
-          spring.number("rest", kAnyNumber, 0), spring.location()};
+          spring.number("rest", kAnyNumber, 0), spring.location(), spring.number("damping_ratio", kNonNegative, 0)};
 }
 
 DriveDescription read_drive(const XmlElement& drive) {
-  drive.expect_only({"joint", "gear", "rotor_inertia", "stiffness", "damping", "backlash", "friction", "efficiency",
-                     "effort_limit", "velocity_limit", "axis"});
+  drive.expect_only({"joint", "gear", "rotor_inertia", "stiffness", "damping", "damping_ratio", "backlash", "friction",
+                     "efficiency", "effort_limit", "velocity_limit", "axis"});
   DriveDescription out;
   out.location = drive.location();
   out.coordinate = drive.text("joint").value_or("");
@@ -84,6 +86,7 @@ DriveDescription read_drive(const XmlElement& drive) {
   out.rotor_inertia = drive.number("rotor_inertia", kNonNegative, 0);
   if (drive.has("stiffness")) out.stiffness = drive.number("stiffness", kPositive);
   out.damping = drive.number("damping", kNonNegative, 0);
+  out.damping_ratio = drive.number("damping_ratio", kNonNegative, 0);
   out.backlash = drive.number("backlash", kNonNegative, 0);
   out.friction = drive.number("friction", kNonNegative, 0);
   out.efficiency = drive.number("efficiency", kEfficiency, 1);

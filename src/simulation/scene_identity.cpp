@@ -79,9 +79,10 @@ class SceneFingerprint {
   }
   void add(const scene::HubDescription& hub) { all(hub.end, hub.mass, hub.inertia); }
   void add(const scene::BeamDescription& beam) {
-    const auto& [elements, order, centreline, section_y, section, stiffness_damping, mass_damping, hubs, location] =
-        beam;
+    const auto& [elements, order, centreline, section_y, section, stiffness_damping, damping_shares, mass_damping, hubs,
+                 location] = beam;
     all(elements, order, centreline, section_y, section, stiffness_damping, mass_damping, hubs);
+    if (damping_shares != Vector6::Ones()) add(damping_shares);
   }
 
   // ---- links and joints
@@ -113,12 +114,16 @@ class SceneFingerprint {
     if (profile) add(profile->numbers());
   }
 
-  void add(const scene::SpringDescription& spring) { all(spring.coordinate, spring.stiffness, spring.rest); }
+  void add(const scene::SpringDescription& spring) {
+    all(spring.coordinate, spring.stiffness, spring.rest);
+    if (spring.damping_ratio > 0) add(spring.damping_ratio);
+  }
   void add(const scene::DriveDescription& drive) {
-    const auto& [coordinate, gear, rotor_inertia, stiffness, damping, backlash, friction, efficiency, effort_limit,
-                 velocity_limit, axis, location] = drive;
+    const auto& [coordinate, gear, rotor_inertia, stiffness, damping, damping_ratio, backlash, friction, efficiency,
+                 effort_limit, velocity_limit, axis, location] = drive;
     all(coordinate, gear, rotor_inertia, stiffness, damping, backlash, friction, efficiency, effort_limit,
         velocity_limit, axis);
+    if (damping_ratio > 0) add(damping_ratio);
   }
   void add(const scene::ServoDescription& servo) {
     const auto& [coordinate, mode, kp, kd, ki, set_point, feedforward, effort_limit, anti_windup, side, sample_time,

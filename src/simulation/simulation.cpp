@@ -231,13 +231,21 @@ ServoState* servo_of(const Model& model, std::size_t index, State& state) {
   return actuator >= 0 && model.actuators[actuator].servo ? &state.actuators[actuator].servo : nullptr;
 }
 
+ServoState& commanded_servo(const Model& model, std::size_t index, State& state) {
+  ServoState* servo = servo_of(model, index, state);
+  if (!servo) throw std::invalid_argument("joint coordinate '" + model.coordinates[index].name + "' has no servo");
+  return *servo;
+}
+
 }  // namespace
 
 void Simulation::command_set_point(std::size_t index, double set_point) {
   if (!std::isfinite(set_point)) throw std::invalid_argument("a commanded set point must be finite");
-  ServoState* servo = servo_of(implementation_->model, index, implementation_->state);
-  if (!servo) throw std::invalid_argument("joint coordinate '" + coordinate_names()[index] + "' has no servo");
-  servo->set_point = set_point;
+  commanded_servo(implementation_->model, index, implementation_->state).set_point = set_point;
+}
+
+void Simulation::switch_servo(std::size_t index, bool on) {
+  commanded_servo(implementation_->model, index, implementation_->state).off = on ? 0 : 1;
 }
 
 void Simulation::release_set_point(std::size_t index) {

@@ -112,11 +112,14 @@ std::string state_flaw(const Model& built, const State& initial, int finest_halv
   };
   for (const NodeState& node : state.nodes) require_unit("the norm of a node's orientation", node.orientation);
   for (const Released& released : state.released) require_unit("the norm of a joint's rotation", released.rotation);
-  const auto require_mark = [&](double rest) {
-    flaw.require(rest == 0 || rest == 1, "a mark of rest", rest, "0 or 1");
+  const auto require_mark = [&](const char* what, double mark) {
+    flaw.require(mark == 0 || mark == 1, what, mark, "0 or 1");
   };
-  for (const double rest : state.rests) require_mark(rest);
-  for (const ActuatorState& actuator : state.actuators) require_mark(actuator.rest);
+  for (const double rest : state.rests) require_mark("a mark of rest", rest);
+  for (const ActuatorState& actuator : state.actuators) {
+    require_mark("a mark of rest", actuator.rest);
+    require_mark("a mark of what is off", actuator.servo.off);
+  }
   return flaw.text();
 }
 

@@ -47,6 +47,7 @@ void for_each_number(AnyState& state, const Visit& visit) {
     visit("a mark of rest", actuator.rest);
     auto& servo = actuator.servo;
     visit(kCommand, servo.set_point);
+    visit("a mark of what is off", servo.off);
     for (auto* number : {&servo.integral, &servo.average, &servo.delayed_rate, &servo.samples, &servo.measured})
       visit("the memory of a servo", *number);
     for (auto& output : servo.outputs) visit("the memory of a servo", output);

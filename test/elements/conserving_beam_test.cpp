@@ -40,12 +40,13 @@ class ConservingBeam : public ::testing::Test {};
 TYPED_TEST_SUITE(ConservingBeam, NodeCounts);
 
 template <bool WithMultiplier, int Nodes>
-void expect_tangents(unsigned seed) {
+void expect_tangents(unsigned seed, bool is_damped_evenly = true) {
   RandomSource random(seed);
   for (const double damping : {0.0, 0.2})
     for (const double size : {0.05, 0.5}) {
       RandomStep<Nodes> step(random, size);
       step.element.stiffness_damping = step.element.mass_damping = damping;
+      if (!is_damped_evenly) step.damp_unevenly(damping);
       expect_consistent_tangent<Nodes>(
           step,
           [&](const ElementNodes<Nodes>& nodes, bool with_tangent) {
@@ -60,6 +61,11 @@ TYPED_TEST(ConservingBeam, TangentWithoutMultiplier) {
 }
 TYPED_TEST(ConservingBeam, TangentWithMultiplier) {
   expect_tangents<true, TypeParam::value>(2);
+}
+
+TYPED_TEST(ConservingBeam, TangentWithUnevenDamping) {
+  expect_tangents<false, TypeParam::value>(1, false);
+  expect_tangents<true, TypeParam::value>(2, false);
 }
 
 // Resultant force and moment about the origin, with the mid-step arm, are the rates of the momenta of the translation.
@@ -167,12 +173,13 @@ TYPED_TEST(ConservingBeam, EnergyDefectAboutARigidTurnIsOfSecondOrder) {
 
 // The damping force alone does exactly the work that is counted as dissipated.
 template <bool WithMultiplier, int Nodes>
-void expect_exact_dissipation(double stiffness_damping, double mass_damping) {
+void expect_exact_dissipation(double stiffness_damping, double mass_damping, bool is_even = true) {
   RandomSource random(7);
   RandomStep<Nodes> step(random, 0.4);
   const ElementSystem<Nodes> without = evaluate<WithMultiplier, Nodes>(step, step.nodes, false);
   step.element.stiffness_damping = stiffness_damping;
   step.element.mass_damping = mass_damping;
+  if (!is_even) step.damp_unevenly(stiffness_damping);
   const ElementSystem<Nodes> with = evaluate<WithMultiplier, Nodes>(step, step.nodes, false);
   EXPECT_GT(with.dissipated, 0);
   EXPECT_NEAR(step.work(with.residual - without.residual), with.dissipated,
@@ -184,6 +191,7 @@ TYPED_TEST(ConservingBeam, DampingDissipatesExactlyWhatIsCounted) {
   expect_exact_dissipation<false, N>(0.2, 0);
   expect_exact_dissipation<false, N>(0, 0.2);
   expect_exact_dissipation<true, N>(0.2, 0.1);
+  expect_exact_dissipation<true, N>(0.2, 0.1, false);
 }
 
 // A step that turns and moves the element rigidly strains nothing, needs no multiplier and dissipates nothing.

@@ -47,6 +47,16 @@ TYPED_TEST(EndpointBeam, TangentWithDamping) {
       step, [&](const ElementNodes<N>& nodes, bool with) { return internal<N>(step, nodes, &kRule, with); });
 }
 
+TYPED_TEST(EndpointBeam, TangentWithUnevenDamping) {
+  constexpr int N = TypeParam::value;
+  RandomSource random(2);
+  RandomStep<N> step(random, 0.5);
+  step.damp_unevenly(0.2);
+  for (const NewmarkRule& rule : {kRule, kInterpolatedRule})
+    expect_consistent_tangent<N>(
+        step, [&](const ElementNodes<N>& nodes, bool with) { return internal<N>(step, nodes, &rule, with); });
+}
+
 // At t_{n+1+alpha} the strain rate is interpolated, and so is the velocity of mass-proportional damping.
 TYPED_TEST(EndpointBeam, TangentWithDampingOfInterpolatedKinematics) {
   constexpr int N = TypeParam::value;

@@ -107,6 +107,16 @@ TYPED_TEST(MomentumBeam, Tangents) {
       }
 }
 
+TYPED_TEST(MomentumBeam, TangentsWithUnevenDamping) {
+  constexpr int N = TypeParam::value;
+  RandomSource random(1);
+  for (const char* name : kUncorrected) {
+    MomentumStep<N> momentum(name, random, 0.5);
+    momentum.step.damp_unevenly(0.2);
+    expect_tangent<N>(momentum, 1);
+  }
+}
+
 TYPED_TEST(MomentumBeam, TangentsWithEnergyCorrection) {
   constexpr int N = TypeParam::value;
   RandomSource random(2);

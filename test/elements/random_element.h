@@ -99,6 +99,11 @@ struct RandomStep {
     set_begin_points();
     for (MassPointState& state : mass_points) state = {random.vector(), random.vector()};
   }
+  /// Every strain another amount, one of them nothing.
+  void damp_unevenly(double stiffness_damping) {
+    element.stiffness_damping = stiffness_damping;
+    element.damping_scale << 1, 0.7, 0.2, 0.9, 0, 0.5;
+  }
   // The nodes point into this object.
   RandomStep(const RandomStep&) = delete;
   RandomStep& operator=(const RandomStep&) = delete;

@@ -299,6 +299,43 @@ TEST(Servo, TakesCommands) {
   EXPECT_THROW(without.command_set_point(0, 1), std::invalid_argument);
 }
 
+// Off, nothing pushes the block, whatever is commanded; on again, the integral is empty.
+TEST(Servo, SwitchedOffItsMotorGivesNothing) {
+  const double kp = 400, kd = 30, ki = 5000, step = 1e-3;
+  for (const char* scheme : {"em", "newmark"})
+    for (const double sample_time : {0.0, 0.004}) {
+      SceneBuilder b = block_on_rail(0.1, 0.5);
+      scene::ServoDescription& servo = add_servo(b, Mode::Position, kp, kd, ki);
+      servo.set_point = TimeFunction(1.0);
+      servo.sample_time = sample_time;
+      Simulation simulation(b.scene, options(scheme, step));
+      simulation.switch_servo(0, false);
+      simulation.command_effort(0, 3);
+      run(simulation, 10);  // in the first one Newmark's rule still has the acceleration of the start
+      const double begin = simulation.position(0), velocity = simulation.velocity(0);
+      run(simulation, 990, [&] { ASSERT_EQ(simulation.effort(0), 0); });
+      EXPECT_NEAR(simulation.position(0), begin + 990 * step * velocity, 1e-10) << scheme;
+      EXPECT_TRUE(simulation.natural_modes(1)[0].is_free()) << scheme;
+      const Snapshot off = simulation.snapshot();
+      simulation.release_command(0);
+      simulation.switch_servo(0, true);
+      run(simulation, 12);
+      // kp e - kd v, what the integral has of 12 steps, and what the block has moved and gained in them.
+      const double error = 1 - begin - 990 * step * velocity;
+      EXPECT_NEAR(simulation.effort(0), kp * error - kd * velocity, 12 * step * (ki * error + kp * 1 + kd * 100))
+          << scheme << sample_time;
+      EXPECT_GT(std::abs(simulation.effort(0)), 20) << scheme << sample_time;
+      simulation.restore(off);
+      run(simulation, 10);
+      EXPECT_EQ(simulation.effort(0), 0) << "off is a part of the state";
+      simulation.reset();
+      run(simulation, 10);
+      EXPECT_GT(simulation.effort(0), 50) << "as the scene has it";
+    }
+  Simulation without(block_on_rail().scene);
+  EXPECT_THROW(without.switch_servo(0, false), std::invalid_argument);
+}
+
 TEST(Servo, HoldsInStatics) {
   for (const bool is_elastic : {false, true}) {
     SceneBuilder b = block_on_rail(0.1);

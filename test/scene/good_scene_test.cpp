@@ -280,6 +280,84 @@ TEST(GoodScene, SpringBetweenPoints) {
   EXPECT_EQ(spring.damping, 0.5);
 }
 
+TEST(GoodScene, DampingOfStrains) {
+  const std::string damping = R"(<damping stiffness_proportional="1e-4" mass_proportional="0.1"/>)";
+  const ReadResult result = read(
+      good_scene_with(damping, R"(<damping axial="1e-4" shear_z="2e-4" bending_y="4e-4" mass_proportional="3"/>)"));
+  ASSERT_TRUE(result.scene) << to_text(result.diagnostics);
+  const BeamDescription& beam = result.scene->links[2].beam.value();
+  EXPECT_EQ(beam.stiffness_proportional_damping, 4e-4);
+  Vector6 shares;
+  shares << 0.25, 0, 0.5, 0, 1, 0;
+  EXPECT_EQ(beam.damping_shares, shares);
+  EXPECT_EQ(beam.mass_proportional_damping, 3);
+  EXPECT_EQ(good_scene().links[2].beam->damping_shares, Vector6::Ones());
+}
+
+TEST(GoodScene, Hub) {
+  const BeamDescription beam = good_scene().links[4].beam.value();
+  ASSERT_EQ(beam.hubs.size(), 1u);
+  EXPECT_EQ(beam.hubs[0].end, HubDescription::End::End);
+  EXPECT_EQ(beam.hubs[0].mass, 0.1);
+  EXPECT_EQ(beam.hubs[0].inertia, Vector3(1e-3, 1e-3, 2e-3));
+}
+
+TEST(GoodScene, Springs) {
+  const SceneDescription scene = good_scene();
+  ASSERT_EQ(scene.springs.size(), 1u);
+  EXPECT_EQ(scene.springs[0].coordinate, "elbow");
+  EXPECT_EQ(scene.springs[0].stiffness, 2);
+  EXPECT_EQ(scene.springs[0].rest, 0.1);
+  EXPECT_EQ(scene.springs[0].damping_ratio, 0);
+  EXPECT_EQ(scene.springs[0].location.line, 70);
+  const ReadResult damped = read(good_scene_with("rest=\"0.1\"", "damping_ratio=\"0.2\""));
+  ASSERT_TRUE(damped.scene) << to_text(damped.diagnostics);
+  EXPECT_EQ(damped.scene->springs[0].damping_ratio, 0.2);
+}
+
+TEST(GoodScene, Drive) {
+  const SceneDescription scene = good_scene();
+  ASSERT_EQ(scene.drives.size(), 1u);
+  const DriveDescription& drive = scene.drives[0];
+  EXPECT_EQ(drive.coordinate, "elbow");
+  EXPECT_EQ(drive.gear, 50);
+  EXPECT_EQ(drive.rotor_inertia, 2e-4);
+  EXPECT_EQ(drive.stiffness, 900);
+  EXPECT_EQ(drive.damping, 0.4);
+  EXPECT_EQ(drive.damping_ratio, 0);
+  EXPECT_EQ(drive.backlash, 1e-3);
+  EXPECT_EQ(drive.friction, 0.3);
+  EXPECT_EQ(drive.efficiency, 0.8);
+  EXPECT_EQ(drive.effort_limit, 40);
+  EXPECT_EQ(drive.velocity_limit, 3);
+  EXPECT_FALSE(drive.axis);
+}
+
+TEST(GoodScene, GearOfATransmission) {
+  const ReadResult result = read(good_scene_with("gear=\"50\" ", ""));
+  ASSERT_TRUE(result.scene) << to_text(result.diagnostics);
+  EXPECT_EQ(result.scene->drives[0].gear, 50);
+}
+
+TEST(GoodScene, Servo) {
+  const SceneDescription scene = good_scene();
+  ASSERT_EQ(scene.servos.size(), 1u);
+  const ServoDescription& servo = scene.servos[0];
+  EXPECT_EQ(servo.coordinate, "elbow");
+  EXPECT_EQ(servo.mode, ServoDescription::Mode::Position);
+  EXPECT_EQ(servo.kp, 70);
+  EXPECT_EQ(servo.kd, 8);
+  EXPECT_EQ(servo.ki, 3);
+  EXPECT_EQ(servo.set_point.value()(1), std::sin(1.0));
+  EXPECT_EQ(servo.feedforward.value()(1), 0.5);
+  EXPECT_EQ(servo.feedforward->derivative(1), 0.1);
+  EXPECT_EQ(servo.effort_limit, 25);
+  EXPECT_EQ(servo.anti_windup, 0.3);
+  EXPECT_EQ(servo.side, ServoDescription::Side::Link);
+  EXPECT_EQ(servo.sample_time, 0.004);
+  EXPECT_EQ(servo.delay, 0.003);
+}
+
 TEST(GoodScene, LoadOnAPartOfALine) {
   const std::string load = "<distributed_load link=\"tip\"";
   const ReadResult result = read(good_scene_with(load, load + " from=\"0.25\" to=\"0.5\""));

@@ -8,7 +8,7 @@
 namespace flexarm {
 namespace {
 
-constexpr const char* kTexts[] = {"t < 1 ? sin(2*_pi*t) : t^2", "0:0 1:50 2:0", "7"};
+constexpr const char* kTexts[] = {"t < 1 ? sin(2*_pi*t) : t^2", "0:0 1:50 2:0", "0:0:0 1:50:1 2:0:0", "7"};
 
 double sum_of(const TimeFunction& function) {
   double sum = 0;

@@ -96,9 +96,11 @@ struct BeamDescription {
   std::vector<CentrelinePiece> centreline;
   std::optional<Vector3> section_y;  ///< the section's y axis at s = 0, in the link frame; empty: chosen reproducibly
   Section section;
-  double stiffness_proportional_damping = 0;  ///< [s]
-  double mass_proportional_damping = 0;       ///< [1/s]
-  std::vector<HubDescription> hubs;           ///< at most one at each end
+  double stiffness_proportional_damping = 0;  ///< of the strain that is damped most [s]
+  /// Of it, what the strains have: axial, shear y z, torsion, bending y z; at most 1.
+  Vector6 damping_shares = Vector6::Ones();
+  double mass_proportional_damping = 0;  ///< [1/s]
+  std::vector<HubDescription> hubs;      ///< at most one at each end
   SourceLocation location;
 };
 
@@ -211,7 +213,8 @@ struct JointDescription {
 struct SpringDescription {
   std::string coordinate;
   double stiffness = 0, rest = 0;
-  SourceLocation location;
+  SourceLocation location = {};
+  double damping_ratio = 0;  ///< of what the coordinate moves at the start, joints outboard of it free [-]
 };
 
 /// Motor and gear of a joint's coordinate. All but the rotor's inertia is as seen at the joint: angles of the rotor
@@ -222,6 +225,7 @@ struct DriveDescription {
   double rotor_inertia = 0;         ///< about the motor's axis [kg m^2]
   std::optional<double> stiffness;  ///< of the gear [N m/rad or N/m]; empty: rigid
   double damping = 0;               ///< of the elastic gear [N m s/rad or N s/m]
+  double damping_ratio = 0;         ///< the same, of what the coordinate moves at the start, the rotor held [-]
   double backlash = 0;              ///< whole play of the elastic gear [rad or m]
   double friction = 0;              ///< of the motor [N m or N]
   double efficiency = 1;            ///< of the gear, when the motor drives

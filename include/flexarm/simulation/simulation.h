@@ -99,6 +99,10 @@ class Simulation {
   void command_set_point(std::size_t coordinate, double set_point);
   /// Back to the scene's set point.
   void release_set_point(std::size_t coordinate);
+  /// Switches the coordinate's servo off or on, from the next step on. Off, its motor gives no effort, commanded ones
+  /// included; on again, it has no memory in its integral. Set points stay as they are.
+  /// @throws std::invalid_argument if the coordinate has no servo.
+  void switch_servo(std::size_t coordinate, bool on);
   bool has_servo(std::size_t coordinate) const;
   bool is_commandable(std::size_t coordinate) const;  ///< false for prescribed and mimic coordinates
 

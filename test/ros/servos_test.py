@@ -1,0 +1,186 @@
+#!/usr/bin/python3
+"""Set points reach the servos they name; bad ones are refused whole, and the emergency stop switches servos off."""
+
+import math
+import time
+import unittest
+
+import rospy
+import rostest
+from flexarm.msg import JointForceCommand
+from rosgraph_msgs.msg import Log
+from sensor_msgs.msg import JointState
+from simulated_arm import CommandTopic, SimulatedArm, force_command, wait_until
+from std_msgs.msg import Bool, Float64
+
+STEP = 0.001  # s, the scene's
+TIMEOUT = 1.0  # s, ~command_timeout
+# Critically damped at 20/s, and first order at 20/s: after one second exp(-20) is left, times 20 of the first.
+SETTLED = 5e-8
+SETTLED_RATE = 1e-5  # rad/s: the tolerance of Newton's method, 1e-8 rad, over a step
+START = 0.25  # m, the scene's set point of the lift
+
+
+class Servos(unittest.TestCase):
+    """The simulation is paused: steps are made by hand, so that nothing depends on timing."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.arm = SimulatedArm()
+        cls.set_points = CommandTopic("joint_set_points", JointState)
+        cls.stop = CommandTopic("/flexarm/emergency_stop", Bool)
+
+    def setUp(self):
+        self.arm.reset()
+        self.good_effort = 0.0
+
+    def tearDown(self):
+        self.assertFalse(self.arm.status().failed)
+
+    def run_for(self, seconds):
+        self.assertTrue(self.arm.step(round(seconds / STEP)).success)
+
+    def wait_for_effort(self, name, condition):
+        """Steps until the effort of a joint is as wanted."""
+
+        def arrived():
+            self.run_for(STEP)
+            return condition(self.arm.joint(name).effort)
+
+        wait_until(arrived, "an effort of " + name)
+
+    def wait_for_press(self, effort):
+        """The effort's servo gives its set point at once: whatever was sent before on its topic has been dealt with."""
+        self.wait_for_effort("press", lambda value: value == effort)
+
+    # ---- good set points
+
+    def test_the_scenes_set_point_holds_without_any(self):
+        self.run_for(1.0)
+        self.assertAlmostEqual(self.arm.joint("lift").position, START, delta=SETTLED)
+
+    def test_each_servo_takes_what_its_mode_says(self):
+        self.set_points.send(
+            JointState(
+                name=["spindle", "lift", "press"],
+                position=[9.0, 0.5, 9.0],
+                velocity=[3.0, 9.0, 9.0],
+                effort=[9.0, 9.0, 0.5],
+            )
+        )
+        self.wait_for_press(0.5)
+        self.run_for(TIMEOUT - 0.1)
+        self.assertAlmostEqual(self.arm.joint("spindle").velocity, 3.0, delta=SETTLED_RATE)
+        self.run_for(0.2)
+        self.assertAlmostEqual(self.arm.joint("lift").position, 0.5, delta=SETTLED)
+        self.assertEqual(self.arm.joint("loose").position, 0)
+
+    def test_arrays_that_no_servo_takes_may_be_empty(self):
+        self.set_points.send(JointState(name=["lift"], position=[0.5]))
+        self.set_points.send(JointState(name=["press"], effort=[0.25]))
+        self.wait_for_press(0.25)
+        self.run_for(1.1)
+        self.assertAlmostEqual(self.arm.joint("lift").position, 0.5, delta=SETTLED)
+
+    def test_topic_of_one_joint(self):
+        CommandTopic("press/set_point", Float64).send(-0.5)
+        self.wait_for_press(-0.5)
+        CommandTopic("spindle/set_point", Float64).send(-1.0)
+        self.wait_for_effort("spindle", lambda effort: effort < -0.1)
+
+    def test_efforts_add_to_those_of_the_servo(self):
+        force = CommandTopic("joint_force_command", JointForceCommand)
+        force.send(force_command(["press"], [0.5], 10.0))
+        self.wait_for_press(0.5)
+        CommandTopic("press/set_point", Float64).send(0.25)
+        self.wait_for_press(0.75)
+
+    def test_after_the_timeout_positions_hold_and_the_others_are_zero(self):
+        names = ["lift", "spindle", "press"]
+        self.set_points.send(JointState(name=names, position=[0.5] * 3, velocity=[1] * 3, effort=[1] * 3))
+        self.wait_for_press(1.0)
+        self.run_for(TIMEOUT - 2 * STEP)  # one step has been made
+        self.assertEqual(self.arm.joint("press").effort, 1.0)
+        self.run_for(3 * STEP)  # times are sums: round-off may cost one
+        self.assertEqual(self.arm.joint("press").effort, 0.0)
+        self.run_for(1.5)
+        self.assertAlmostEqual(self.arm.joint("spindle").velocity, 0.0, delta=SETTLED_RATE)
+        self.assertAlmostEqual(self.arm.joint("lift").position, 0.5, delta=SETTLED)
+
+    def test_reset_forgets_set_points(self):
+        self.set_points.send(JointState(name=["lift", "press"], position=[0.5, 0], effort=[0, 1.0]))
+        self.wait_for_press(1.0)
+        self.arm.reset()
+        self.run_for(1.0)
+        self.assertEqual(self.arm.joint("press").effort, 0.0)
+        self.assertAlmostEqual(self.arm.joint("lift").position, START, delta=SETTLED)
+
+    # ---- the emergency stop
+
+    def test_emergency_stop_switches_servos_off_until_released(self):
+        self.set_points.send(JointState(name=["lift", "press"], position=[0.75, 0], effort=[0, 1.0]))
+        self.wait_for_press(1.0)
+        self.assertGreater(abs(self.arm.joint("lift").effort), 1)
+        self.stop.send(True)
+        self.wait_for_press(0.0)
+        self.assertEqual(self.arm.joint("lift").effort, 0.0)
+        self.set_points.send(JointState(name=["press"], effort=[0.5]))  # is refused
+        time.sleep(0.2)
+        moved = self.arm.joint("lift").position
+        self.run_for(0.1)
+        self.assertEqual(self.arm.joint("press").effort, 0.0)
+        self.assertEqual(self.arm.joint("lift").effort, 0.0)
+        self.assertGreater(self.arm.joint("lift").position, moved)  # it coasts
+        self.arm.reset()
+        self.run_for(0.1)
+        self.assertEqual(self.arm.joint("lift").effort, 0.0)  # a reset does not release it
+        self.stop.send(False)
+        self.wait_for_effort("lift", lambda effort: effort > 1)
+        self.run_for(1.2)
+        self.assertAlmostEqual(self.arm.joint("lift").position, START, delta=SETTLED)  # the scene's own again
+        self.assertEqual(self.arm.joint("press").effort, 0.0)
+
+    # ---- bad set points
+
+    def assert_refused(self, bad):
+        """Messages of one topic arrive in order: once the good one is there, the bad one has been dealt with."""
+        self.good_effort += 0.125
+        self.set_points.send(bad)
+        self.set_points.send(JointState(name=["press"], effort=[self.good_effort]))
+        self.wait_for_press(self.good_effort)
+        self.assertEqual(self.arm.joint("spindle").effort, 0.0)
+
+    def test_refuses_unknown_joints_and_those_without_a_servo(self):
+        for name in ("nose", "loose"):
+            self.assert_refused(JointState(name=["spindle", name], velocity=[1.0, 1.0]))
+
+    def test_refuses_arrays_of_another_size(self):
+        self.assert_refused(JointState(name=["spindle"], position=[1.0], effort=[1.0]))
+        self.assert_refused(JointState(name=["spindle"], velocity=[1.0, 2.0]))
+        self.assert_refused(JointState(name=["spindle", "lift"], velocity=[1.0], position=[0.1, 0.1]))
+        self.assert_refused(JointState(name=[], velocity=[1.0]))
+
+    def test_refuses_numbers_that_are_not_finite(self):
+        for bad in (math.nan, math.inf, -math.inf):
+            self.assert_refused(JointState(name=["spindle", "lift"], velocity=[1.0, 0], position=[0, bad]))
+
+    def test_refuses_a_joint_named_twice(self):
+        self.assert_refused(JointState(name=["spindle", "spindle"], velocity=[1.0, 2.0]))
+
+    def test_warns_without_flooding(self):
+        warnings = []
+        rospy.Subscriber("/rosout", Log, lambda log: warnings.append(log.msg) if "refused" in log.msg else None)
+        time.sleep(1.2)  # the warnings of other tests are past
+        del warnings[:]
+        for _ in range(50):
+            self.set_points.send(JointState(name=["loose"], position=[1.0]))
+        wait_until(lambda: warnings, "a warning")
+        time.sleep(0.3)
+        self.assertEqual(len(warnings), 1)
+        self.assertIn("joint_set_points", warnings[0])
+        self.assertIn("'loose' has no servo", warnings[0])
+
+
+if __name__ == "__main__":
+    rospy.init_node("servos_test")
+    rostest.rosrun("flexarm", "servos", __name__)
