@@ -131,8 +131,9 @@ TEST_P(Allocation, NoneInAThousandSteps) {
             }),
             0);
   EXPECT_GE(converged, may_fail ? 1 : 1000);
-  if (!may_fail)
+  if (!may_fail) {
     EXPECT_GT(std::abs(simulation.position(*simulation.find_coordinate("hinge"))), 0.015) << "the stop must be reached";
+  }
 }
 INSTANTIATE_TEST_SUITE_P(
     Schemes, Allocation,

@@ -54,8 +54,9 @@ void expect_alike(const scene::SceneDescription& near, const scene::SceneDescrip
   for (std::size_t i = 0; i < here.link_names().size(); ++i) {
     const Vector3 moved = here.link_names()[i] == "world" ? Vector3::Zero() : place;
     EXPECT_LE((there.link_pose(i).position - here.link_pose(i).position - moved).norm(), 2 * unit);
-    if (here.is_flexible(i))
+    if (here.is_flexible(i)) {
       EXPECT_LE((there.tip_pose(i).position - here.tip_pose(i).position - place).norm(), 2 * unit);
+    }
   }
   EXPECT_LE((there.probe(0).pose.position - here.probe(0).pose.position - place).norm(), 2 * unit);
   EXPECT_LE((there.probe(1).pose.position - place).norm(), 2 * unit);

@@ -97,7 +97,9 @@ TEST_F(SmallArm, ProbeVelocityIsTheRateOfItsPosition) {
                                (secants[n - 2] - secants[n - 3]).norm();
         const Vector3 mean = 0.5 * (states[n].velocity + states[n + 1].velocity);
         EXPECT_LT((secants[n] - mean).norm(), changes) << name << ", probe " << probe;
-        if (n > 20) EXPECT_LT(changes, 0.2 * secants[n].norm()) << name << ", probe " << probe;
+        if (n > 20) {
+          EXPECT_LT(changes, 0.2 * secants[n].norm()) << name << ", probe " << probe;
+        }
       }
     }
   }
