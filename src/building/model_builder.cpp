@@ -104,6 +104,9 @@ scene::SceneDescription with_locked(scene::SceneDescription scene, const BuiltMo
   };
   drop(scene.initial_joints);
   drop(scene.efforts);
+  drop(scene.springs);
+  drop(scene.drives);
+  drop(scene.servos);
   return scene;
 }
 

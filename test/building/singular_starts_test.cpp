@@ -92,7 +92,13 @@ TEST(SingularInertia, GimbalInItsLock) {
 TEST(SingularInertia, IsHeldOnDemand) {
   SceneBuilder b = gimbal(0);
   b.scene.lock_massless = true;
+  for (const char* joint : {"first", "third"}) {  // what drives a joint that is held goes with it
+    b.scene.springs.push_back({joint, 10});
+    b.scene.servos.emplace_back().coordinate = joint;
+    b.scene.efforts.push_back({joint, TimeFunction(1), {}});
+  }
   const Model model = build_model(b.scene);
+  EXPECT_EQ(model.actuators.size(), 1u);
   EXPECT_GE(model.coordinates[0].motion, 0);
   EXPECT_LT(model.coordinates[1].motion, 0);
   EXPECT_LT(model.coordinates[2].motion, 0);
