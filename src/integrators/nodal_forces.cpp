@@ -55,7 +55,6 @@ void NodalForces::for_each_load(const Visit& visit) const {
 }
 
 void NodalForces::evaluate(Balance& balance) const {
-  const Model& model = configuration_.model();
   const Scheme& scheme = configuration_.scheme();
   for (const int node : heavy_nodes_) add_weight(node, balance);
   if (!scheme.is_static)

@@ -12,6 +12,8 @@
 namespace flexarm::scene {
 namespace {
 
+/// Its square is the rotor's share of the joint's inertia.
+constexpr NumberRange kGear{"> 0 and at most 1e9", [](double x) { return x > 0 && x <= 1e9; }};
 constexpr NumberRange kEfficiency{"> 0 and at most 1", [](double x) { return x > 0 && x <= 1; }};
 
 /// Ratios that are written with less digits are the same.
@@ -82,7 +84,7 @@ DriveDescription read_drive(const XmlElement& drive) {
   DriveDescription out;
   out.location = drive.location();
   out.coordinate = drive.text("joint").value_or("");
-  if (drive.has("gear")) out.gear = drive.number("gear", kPositive);
+  if (drive.has("gear")) out.gear = drive.number("gear", kGear);
   out.rotor_inertia = drive.number("rotor_inertia", kNonNegative, 0);
   if (drive.has("stiffness")) out.stiffness = drive.number("stiffness", kPositive);
   out.damping = drive.number("damping", kNonNegative, 0);

@@ -12,6 +12,7 @@ namespace {
 
 constexpr NumberRange kUnitInterval{"from 0 to 1", [](double x) { return x >= 0 && x <= 1; }};
 
+constexpr NumberRange kStep{"> 0 and at most 1e9", [](double x) { return x > 0 && x <= kLongestStep; }};
 constexpr NumberRange kTolerance{"> 0 and at most 1", [](double x) { return x > 0 && x <= kLargestTolerance; }};
 
 /// beta of Newmark's method divides: the explicit beta = 0 is another algorithm.
@@ -63,7 +64,7 @@ void read_integrator(const XmlElement& integrator, SceneDescription& scene) {
   integrator.expect_only({"scheme", "step", "tolerance", "max_iterations", "max_halvings", "interpolation", "weak_form",
                           "beta", "gamma", "alpha", "rho_infinity", "on_failure"});
   read_scheme(integrator, description);
-  description.step = integrator.number("step", kPositive, description.step);
+  description.step = integrator.number("step", kStep, description.step);
   description.tolerance = integrator.number("tolerance", kTolerance, description.tolerance);
   if (integrator.has("max_iterations"))
     description.max_iterations = integrator.integer("max_iterations", 1, kMostNewtonIterations).value_or(1);
@@ -93,6 +94,7 @@ void read_initial(const XmlElement& initial, SceneDescription& scene, StartReque
   if (initial.has("equilibrium")) {
     initial.expect_only({"equilibrium"});
     scene.starts_in_equilibrium = read_choice(initial, "equilibrium", kTruth, false) || scene.starts_in_equilibrium;
+    scene.equilibrium_location = initial.location();
     return;
   }
   const bool of_link = initial.has("link");

@@ -1,7 +1,5 @@
 #include "simulation/settings.h"
 
-#include <cmath>
-
 #include <fmt/format.h>
 
 #include "schemes/slide_scheme.h"
@@ -25,7 +23,7 @@ StepSettings settings_of(const scene::SceneDescription& scene, const SimulationO
   const auto require = [&](bool ok, const std::string& what) {
     if (!ok) throw ModelError(integrator_place(scene) + "<integrator>: " + what);
   };
-  require(std::isfinite(settings.step) && settings.step > 0, "step must be > 0");
+  require(settings.step > 0 && settings.step <= kLongestStep, "step must be > 0 and at most 1e9");
   require(settings.tolerance > 0 && settings.tolerance <= kLargestTolerance, "tolerance must be > 0 and at most 1");
   require(settings.max_iterations >= 1, "max_iterations must be >= 1");
   require(settings.max_halvings >= 0 && settings.max_halvings <= 30, "max_halvings must be 0 to 30");

@@ -379,6 +379,7 @@ struct SceneDescription {
   std::vector<PointSpring> point_springs;
   bool lock_massless = false;          ///< joints that move nothing with inertia are held where they start, not refused
   bool starts_in_equilibrium = false;  ///< at rest, where loads, gravity and servos at t = 0 hold it
+  SourceLocation equilibrium_location = {};  ///< of the <initial> that says so
 };
 
 /// Suffixes of the released coordinates of a joint in their order: {""} for one coordinate, {} for none,

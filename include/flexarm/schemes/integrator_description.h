@@ -30,6 +30,8 @@ enum class OnFailure {
 
 /// Of Newton's method; with more there would be nothing left of it.
 constexpr double kLargestTolerance = 1;
+/// Beyond it, servos' integrals are no numbers any more [s].
+constexpr double kLongestStep = 1e9;
 
 /// <integrator>. Options that are empty have the scheme's own values, in parentheses; docs/schemes.md says which scheme
 /// takes which.
