@@ -23,12 +23,8 @@ class LoadBuilder {
   void add(const scene::PointLoad& load) {
     const Attachment link = attachment(plan_, model_, load.link, load.at);
     if (link.node < 0) throw ModelError(at(load.location, "<load>") + "link '" + load.link + "' is fixed to the world");
-    NodalLoad out;
-    out.node = link.node;
-    out.arm = link.offset * load.at;
-    out.follows = load.frame == scene::LoadFrame::Follower;
-    out.force = out.follows ? Vector3(link.offset.orientation * load.force) : load.force;
-    out.moment = out.follows ? Vector3(link.offset.orientation * load.moment) : load.moment;
+    NodalLoad out =
+        load_on(link.node, link.offset, load.at, load.force, load.moment, load.frame == scene::LoadFrame::Follower);
     out.history = add_history(load.history);
     placed_.loads.push_back(out);
   }

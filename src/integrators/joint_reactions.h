@@ -10,8 +10,8 @@ namespace flexarm {
 
 /// The residual of a slave, once all that hangs on it has been folded, is what its joint does to it: exactly that by
 /// which the momenta of what hangs on it change in the step, less its loads. Moments are about the origin of the link
-/// that the slave carries. What multipliers do to
-/// a closure's child is known as it is; what a loop joint does to its other link is the opposite.
+/// that the slave carries. What multipliers do to a closure's child is known as it is; what a loop joint does to its
+/// other link is the opposite.
 class JointReactions {
  public:
   JointReactions(const StepConfiguration& configuration, const DryFrictionStep& friction, const LoopMultipliers& loops)

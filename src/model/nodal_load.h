@@ -13,4 +13,12 @@ struct NodalLoad {
   int history = 0;       ///< index into Model::histories; a wrench of State::wrenches has none
 };
 
+/// A force, and a moment about `point` of a link whose frame seen from the node is `link`. Their axes are the world's,
+/// or those of the link where the load follows it.
+inline NodalLoad load_on(int node, const Pose& link, const Vector3& point, const Vector3& force, const Vector3& moment,
+                         bool follows) {
+  const Quaternion turn = follows ? link.orientation : Quaternion::Identity();
+  return {node, link * point, turn * force, turn * moment, follows};
+}
+
 }  // namespace flexarm

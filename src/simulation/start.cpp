@@ -79,10 +79,14 @@ void start_in_equilibrium(const scene::SceneDescription& scene, const Model& mod
     const bool is_quick = are_modes_quick(DegreesOfFreedom(model).unknowns, coordinates);
     const std::vector<Mode> modes =
         is_quick ? natural_modes(model, state, 1 + coordinates, scheme.contact_time) : std::vector<Mode>();
-    const scene::SourceLocation& place = scene.equilibrium_location;
-    throw ModelError(
-        (place.line > 0 ? fmt::format("{}:{}", place.file, place.line) : scene.file) +
-        ": the simulation is to start in its equilibrium: " + lack_of_equilibrium(scene, model, result, modes));
+    const std::string lack = lack_of_equilibrium(scene, model, result, modes);
+    const scene::Diagnostic error{scene::Diagnostic::Severity::Error,
+                                  scene.file,
+                                  scene.equilibrium_location.line,
+                                  "",
+                                  "",
+                                  "the simulation is to start in its equilibrium: " + lack};
+    throw ModelError(error.text());
   }
   for (const std::string& doubt :
        doubts_about_equilibrium(result, "falls from it; the start is where it comes to rest"))

@@ -28,13 +28,7 @@ NodalLoad placed_wrench(const Model& model, const AppliedWrench& wrench) {
     throw std::invalid_argument(fmt::format("the wrench on link '{}' is not finite", link.name));
   if (link.frame.node < 0) throw std::invalid_argument(fmt::format("link '{}' is fixed to the world", link.name));
   const Attachment carrier = carrier_of(model, link, wrench.at);
-  NodalLoad load;
-  load.node = carrier.node;
-  load.arm = carrier.offset * wrench.at;
-  load.follows = wrench.follows;
-  load.force = load.follows ? Vector3(carrier.offset.orientation * force) : force;
-  load.moment = load.follows ? Vector3(carrier.offset.orientation * moment) : moment;
-  return load;
+  return load_on(carrier.node, carrier.offset, wrench.at, force, moment, wrench.follows);
 }
 
 }  // namespace flexarm
