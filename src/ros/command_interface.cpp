@@ -94,7 +94,10 @@ void CommandInterface::expire(double time) {
 void CommandInterface::forget_commands() {
   efforts_.forget();
   set_points_.forget();
-  if (stopped_) stop();
+  if (stopped_)
+    stop();
+  else
+    switch_servos(true);  // a state that was loaded may have been saved during a stop
 }
 
 void CommandInterface::receive_force_command(const JointForceCommand& message) {
@@ -159,16 +162,21 @@ void CommandInterface::warn(const std::string& topic, const std::string& fault) 
 void CommandInterface::stop() {
   for (std::size_t i = 0; i < simulation_.coordinate_names().size(); ++i) {
     if (simulation_.is_commandable(i)) simulation_.command_effort(i, 0);
-    if (simulation_.has_servo(i)) simulation_.switch_servo(i, false);
   }
+  switch_servos(false);
 }
 
 void CommandInterface::release() {
   for (std::size_t i = 0; i < simulation_.coordinate_names().size(); ++i) {
     simulation_.release_command(i);
-    if (!simulation_.has_servo(i)) continue;
     simulation_.release_set_point(i);
-    simulation_.switch_servo(i, true);
+  }
+  switch_servos(true);
+}
+
+void CommandInterface::switch_servos(bool on) {
+  for (std::size_t i = 0; i < simulation_.coordinate_names().size(); ++i) {
+    if (simulation_.has_servo(i)) simulation_.switch_servo(i, on);
   }
 }
 

@@ -28,7 +28,8 @@ class CommandInterface {
 
   /// Before each step: zeroes what expired. `time`: simulated time that no reset sets back [s].
   void expire(double time);
-  /// After a reset: no command is in force; an emergency stop still is.
+  /// After a reset, or where another state was loaded: no command expires; an emergency stop, or none, still is in
+  /// force.
   void forget_commands();
 
  private:
@@ -47,6 +48,7 @@ class CommandInterface {
   /// While the emergency stop is on, no effort acts, be it commanded, the scene's own or a servo's.
   void stop();
   void release();
+  void switch_servos(bool on);
 
   Simulation& simulation_;
   TimedCommands efforts_, set_points_;

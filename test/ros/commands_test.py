@@ -8,9 +8,8 @@ import unittest
 import rospy
 import rostest
 from flexarm.msg import JointForceCommand
-from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import JointState
-from simulated_arm import PATIENCE, CommandTopic, SimulatedArm, force_command, wait_until
+from simulated_arm import PATIENCE, CommandTopic, SimulatedArm, force_command, wait_until, warnings_of_flood
 from std_msgs.msg import Bool, Float64
 from visualization_msgs.msg import MarkerArray
 
@@ -176,14 +175,7 @@ class Commands(unittest.TestCase):
         self.assert_refused(force_command(["left_shoulder"], [1.0], -1.0))
 
     def test_warns_without_flooding(self):
-        warnings = []
-        rospy.Subscriber("/rosout", Log, lambda log: warnings.append(log.msg) if "refused" in log.msg else None)
-        time.sleep(1.2)  # the warnings of other tests are past
-        del warnings[:]
-        for _ in range(50):
-            self.force.send(force_command(["nose"], [1.0]))
-        wait_until(lambda: warnings, "a warning")
-        time.sleep(0.3)
+        warnings = warnings_of_flood(lambda: self.force.send(force_command(["nose"], [1.0])))
         self.assertEqual(len(warnings), 1)
         self.assertIn("nose", warnings[0])
 

@@ -2,15 +2,16 @@
 """Set points reach the servos they name; bad ones are refused whole, and the emergency stop switches servos off."""
 
 import math
+import os
+import tempfile
 import time
 import unittest
 
 import rospy
 import rostest
 from flexarm.msg import JointForceCommand
-from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import JointState
-from simulated_arm import CommandTopic, SimulatedArm, force_command, wait_until
+from simulated_arm import CommandTopic, SimulatedArm, force_command, wait_until, warnings_of_flood
 from std_msgs.msg import Bool, Float64
 
 STEP = 0.001  # s, the scene's
@@ -140,6 +141,20 @@ class Servos(unittest.TestCase):
         self.assertAlmostEqual(self.arm.joint("lift").position, START, delta=SETTLED)  # the scene's own again
         self.assertEqual(self.arm.joint("press").effort, 0.0)
 
+    def test_state_saved_during_a_stop_runs_without_it(self):
+        self.set_points.send(JointState(name=["press"], effort=[1.0]))
+        self.wait_for_press(1.0)
+        self.stop.send(True)
+        self.wait_for_press(0.0)
+        with tempfile.TemporaryDirectory() as folder:
+            state = os.path.join(folder, "state")
+            self.assertTrue(self.arm.save_state(state).success)
+            self.stop.send(False)
+            self.wait_for_effort("lift", lambda effort: effort != 0)
+            self.assertTrue(self.arm.load_state(state).success)
+        self.run_for(STEP)
+        self.assertEqual(self.arm.joint("press").effort, 1.0)  # its set point held when the state was saved
+
     # ---- bad set points
 
     def assert_refused(self, bad):
@@ -168,14 +183,7 @@ class Servos(unittest.TestCase):
         self.assert_refused(JointState(name=["spindle", "spindle"], velocity=[1.0, 2.0]))
 
     def test_warns_without_flooding(self):
-        warnings = []
-        rospy.Subscriber("/rosout", Log, lambda log: warnings.append(log.msg) if "refused" in log.msg else None)
-        time.sleep(1.2)  # the warnings of other tests are past
-        del warnings[:]
-        for _ in range(50):
-            self.set_points.send(JointState(name=["loose"], position=[1.0]))
-        wait_until(lambda: warnings, "a warning")
-        time.sleep(0.3)
+        warnings = warnings_of_flood(lambda: self.set_points.send(JointState(name=["loose"], position=[1.0])))
         self.assertEqual(len(warnings), 1)
         self.assertIn("joint_set_points", warnings[0])
         self.assertIn("'loose' has no servo", warnings[0])

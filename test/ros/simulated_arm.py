@@ -6,6 +6,7 @@ import rospy
 from flexarm.msg import JointForceCommand, SimulatorStatus
 from flexarm.srv import ApplyWrench, LoadState, SaveState, Step
 from geometry_msgs.msg import Point, Vector3, Wrench
+from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Empty
 
@@ -72,3 +73,22 @@ class CommandTopic:
 
 def force_command(names, efforts, seconds=0.0):
     return JointForceCommand(names=names, efforts=efforts, duration=rospy.Duration.from_sec(seconds))
+
+
+def warnings_of_flood(send):
+    """The texts of the node's warnings of refused commands while `send` is called fifty times."""
+    warnings = []
+
+    def receive(log):
+        if "refused" in log.msg:
+            warnings.append(log.msg)
+
+    subscriber = rospy.Subscriber("/rosout", Log, receive)
+    time.sleep(1.2)  # those of other tests are past
+    del warnings[:]
+    for _ in range(50):
+        send()
+    wait_until(lambda: warnings, "a warning")
+    time.sleep(0.3)
+    subscriber.unregister()
+    return warnings
