@@ -1,0 +1,34 @@
+"""Commands of documents, typed as they stand."""
+
+import os
+import re
+import subprocess
+import sys
+
+ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
+
+
+def text_of(name):
+    with open(os.path.join(ROOT, "docs", name), encoding="utf-8") as file:
+        return file.read()
+
+
+def commands_of(name):
+    """Those of a document in docs/, block by block."""
+    return re.findall(r"^```sh\n(.*?)^```", text_of(name), re.DOTALL | re.MULTILINE)
+
+
+def type_commands(commands, program, folder):
+    """Runs them in a folder, `flexarm` being the program, python the test's own; status, and what is printed."""
+    path = [os.path.dirname(program), os.path.dirname(sys.executable), os.environ["PATH"]]
+    result = subprocess.run(
+        ["bash", "-c", "set -e\n" + "\n".join(commands)],
+        cwd=folder,
+        env=dict(os.environ, PATH=os.pathsep.join(path)),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        universal_newlines=True,
+        check=False,
+    )
+    print(result.stdout)
+    return result.returncode, result.stdout
