@@ -38,7 +38,7 @@ class Paced(unittest.TestCase):
         self.assertGreater(made, 1000)
         wait_until(lambda: len(log.messages) >= made, "a message of each step")
         self.assertEqual(len(log.messages), made)
-        # Whatever delays a step or a message; only steps that were dropped, where the machine is overloaded, leave gaps.
+        # Whatever delays a step or a message; steps that were dropped, where the machine is overloaded, leave gaps.
         stamps = [message.header.stamp.to_nsec() for message in log.messages]
         gaps = [later - earlier for earlier, later in zip(stamps, stamps[1:])]
         self.assertEqual({gap % STEP for gap in gaps}, {0})
