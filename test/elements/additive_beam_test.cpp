@@ -1,5 +1,6 @@
 // The additive weak form: rows conjugate to total rotation vectors.
 #include "elements/additive_beam.h"
+#include "elements/additive_to_spins.h"
 
 #include "elements/kernel_checks.h"
 
