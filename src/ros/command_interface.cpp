@@ -4,13 +4,10 @@
 #include <ros/names.h>
 
 #include <optional>
-
-#include "flexarm/scene/scene_description.h"
+#include <stdexcept>
 
 namespace flexarm::node {
 namespace {
-
-using Mode = scene::ServoDescription::Mode;
 
 constexpr std::chrono::seconds kWarningPeriod(1);
 constexpr int kQueueSize = 10;
@@ -26,33 +23,41 @@ CommandedQuantity efforts_of(Simulation& simulation) {
           [](std::size_t) { return true; }};
 }
 
-std::optional<Mode> mode_of_servo(const Simulation& simulation, const std::string& coordinate) {
-  for (const scene::ServoDescription& servo : simulation.scene().servos)
-    if (servo.coordinate == coordinate) return servo.mode;
+std::optional<ServoMode> mode_called(const std::string& name) {
+  if (name == "effort") return ServoMode::Effort;
+  if (name == "velocity") return ServoMode::Velocity;
+  if (name == "position") return ServoMode::Position;
   return std::nullopt;
 }
 
 /// A position's servo holds its last set point; one of velocity or effort that hears nothing any more stops.
-CommandedQuantity set_points_of(Simulation& simulation) {
+CommandedQuantity set_points_of(Simulation& simulation, Trajectories& trajectories) {
   return {"set point",
           [&simulation](std::size_t coordinate) {
             return simulation.has_servo(coordinate)
                        ? std::string()
                        : "'" + simulation.coordinate_names()[coordinate] + "' has no servo";
           },
-          [&simulation](std::size_t coordinate, double value) { simulation.command_set_point(coordinate, value); },
-          [&simulation](std::size_t coordinate) {
-            return mode_of_servo(simulation, simulation.coordinate_names()[coordinate]) != Mode::Position;
-          }};
+          [&](std::size_t coordinate, double value) {
+            trajectories.release(coordinate, "another set point was commanded");
+            simulation.command_set_point(coordinate, value);
+          },
+          [&simulation](std::size_t coordinate) { return simulation.servo_mode(coordinate) != ServoMode::Position; }};
 }
 
 }  // namespace
 
 CommandInterface::CommandInterface(ros::NodeHandle& node, ros::NodeHandle& private_node, Simulation& simulation,
-                                   double timeout)
+                                   const CommandTimes& times)
     : simulation_(simulation),
-      efforts_(simulation, efforts_of(simulation), timeout),
-      set_points_(simulation, set_points_of(simulation), timeout),
+      now_(times.now),
+      trajectories_(node, simulation,
+                    {times.now, times.time_of, [this] { return refusal(); },
+                     [this](const std::string& fault) { warn("joint_trajectory", fault); },
+                     [this](std::size_t coordinate) { set_points_.forget(coordinate); }},
+                    times.stop_duration),
+      efforts_(simulation, efforts_of(simulation), times.timeout),
+      set_points_(simulation, set_points_of(simulation, trajectories_), times.timeout),
       last_warning_(std::chrono::steady_clock::now() - kWarningPeriod) {
   const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
   subscribers_.push_back(
@@ -86,14 +91,20 @@ void CommandInterface::subscribe_to(ros::NodeHandle& node, const std::string& na
                                                            ros::TransportHints().tcpNoDelay()));
 }
 
-void CommandInterface::expire(double time) {
-  efforts_.expire(time);
-  set_points_.expire(time);
+void CommandInterface::begin_step() {
+  efforts_.expire(now_());
+  set_points_.expire(now_());
+  trajectories_.command();
+}
+
+void CommandInterface::end_step() {
+  trajectories_.judge();
 }
 
 void CommandInterface::forget_commands() {
   efforts_.forget();
   set_points_.forget();
+  trajectories_.release_all("the simulation was put into another state");
   if (stopped_)
     stop();
   else
@@ -105,27 +116,72 @@ void CommandInterface::receive_force_command(const JointForceCommand& message) {
 }
 
 void CommandInterface::receive_joint_state(const sensor_msgs::JointState& message) {
-  command(efforts_, "joint_command", message.name, message.effort);
+  const bool has_set_points = !message.position.empty() || !message.velocity.empty();
+  if (has_set_points && message.effort.empty())
+    command_set_points("joint_command", message);
+  else
+    command(efforts_, "joint_command", message.name, message.effort);
 }
 
 void CommandInterface::receive_set_points(const sensor_msgs::JointState& message) {
-  const std::string topic = "joint_set_points";
+  command_set_points("joint_set_points", message);
+}
+
+void CommandInterface::command_set_points(const std::string& topic, const sensor_msgs::JointState& message) {
   std::vector<double> values;
-  for (std::size_t i = 0; i < message.name.size(); ++i) {
-    const std::optional<Mode> mode = mode_of_servo(simulation_, message.name[i]);
-    const bool is_position = mode == Mode::Position, is_velocity = mode == Mode::Velocity;
+  for (const std::string& name : message.name) {
+    const std::optional<std::size_t> coordinate = simulation_.find_coordinate(name);
+    if (!coordinate || !simulation_.has_servo(*coordinate)) {
+      values.push_back(0);  // whatever it is: the command is refused for the name
+      continue;
+    }
+    const ServoMode mode = simulation_.servo_mode(*coordinate);
+    const bool is_position = mode == ServoMode::Position, is_velocity = mode == ServoMode::Velocity;
     const std::vector<double>& of_mode = is_position   ? message.position
                                          : is_velocity ? message.velocity
                                                        : message.effort;
-    if (mode && of_mode.size() != message.name.size()) {
+    if (of_mode.size() != message.name.size()) {
       const char* what = is_position ? " positions" : is_velocity ? " velocities" : " efforts";
       return warn(topic, "it has " + std::to_string(message.name.size()) + " names, but " +
-                             std::to_string(of_mode.size()) + what + ", which the servo of '" + message.name[i] +
-                             "' takes");
+                             std::to_string(of_mode.size()) + what + ", which the servo of '" + name + "' takes");
     }
-    values.push_back(mode ? of_mode[i] : 0);
+    values.push_back(of_mode[values.size()]);
   }
   command(set_points_, topic, message.name, values);
+}
+
+std::string CommandInterface::switch_mode(const std::vector<std::string>& names,
+                                          const std::vector<std::string>& modes) {
+  if (const std::string refusal = this->refusal(); !refusal.empty()) return refusal;
+  if (names.size() != modes.size())
+    return std::to_string(names.size()) + " names, but " + std::to_string(modes.size()) + " modes";
+  const Snapshot before = simulation_.snapshot();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::optional<std::size_t> coordinate = simulation_.find_coordinate(names[i]);
+    const std::optional<ServoMode> mode = mode_called(modes[i]);
+    std::string fault = !coordinate ? "there is no joint coordinate '" + names[i] + "'"
+                        : !mode     ? "mode must be 'effort', 'velocity' or 'position', got '" + modes[i] + "'"
+                                    : std::string();
+    try {
+      if (fault.empty()) simulation_.switch_mode(*coordinate, *mode);
+    } catch (const std::invalid_argument& error) {
+      fault = error.what();
+    }
+    if (fault.empty()) continue;
+    simulation_.restore(before);
+    return fault;
+  }
+  for (const std::string& name : names) {
+    const std::size_t coordinate = *simulation_.find_coordinate(name);
+    set_points_.forget(coordinate);
+    if (simulation_.servo_mode(coordinate) != ServoMode::Position)
+      trajectories_.release(coordinate, "the servo of '" + name + "' was switched to another mode");
+  }
+  return {};
+}
+
+std::string CommandInterface::refusal() const {
+  return stopped_ ? "the emergency stop is on" : "";
 }
 
 void CommandInterface::receive_emergency_stop(const std_msgs::Bool& message) {
@@ -133,6 +189,7 @@ void CommandInterface::receive_emergency_stop(const std_msgs::Bool& message) {
   stopped_ = message.data;
   if (stopped_) {
     ROS_WARN("emergency stop: all efforts are zero, servos are off, commands are refused until it is released");
+    trajectories_.release_all("the emergency stop is on");
     forget_commands();
   } else {
     ROS_INFO("emergency stop released: the scene's efforts and servos act again, commands are accepted");
@@ -142,7 +199,8 @@ void CommandInterface::receive_emergency_stop(const std_msgs::Bool& message) {
 
 void CommandInterface::command(TimedCommands& commands, const std::string& topic, const std::vector<std::string>& names,
                                const std::vector<double>& values, double duration) {
-  const std::string fault = stopped_ ? "the emergency stop is on" : commands.command(names, values, duration);
+  std::string fault = refusal();
+  if (fault.empty()) fault = commands.command(names, values, duration);
   if (!fault.empty()) warn(topic, fault);
 }
 

@@ -40,7 +40,10 @@ Node::Node()
       sensor_publisher_(node_, simulation_, run_, parameters_.frame_prefix),
       status_publisher_(private_node_, simulation_, run_, parameters_.status_rate, root_frame()),
       diagnostics_(node_, private_node_, simulation_, run_),
-      command_interface_(node_, private_node_, simulation_, parameters_.command_timeout),
+      command_interface_(
+          node_, private_node_, simulation_,
+          {[this] { return run_.simulated_time; }, [this](const ros::Time& stamp) { return simulated_time(stamp); },
+           parameters_.command_timeout, parameters_.stop_duration}),
       wrenches_(simulation_),
       frame_watch_(node_, state_publisher_.frames()),
       services_(private_node_, *this) {
@@ -73,7 +76,7 @@ void Node::tick() {
 }
 
 bool Node::advance() {
-  command_interface_.expire(run_.simulated_time);
+  command_interface_.begin_step();
   wrenches_.update(run_.simulated_time);
   const SteadyClock::time_point start = SteadyClock::now();
   const StepResult result = simulation_.step();
@@ -91,6 +94,7 @@ bool Node::advance() {
   run_.failure.clear();
   ++run_.steps;
   run_.simulated_time = static_cast<double>(run_.steps) * simulation_.step_size();
+  command_interface_.end_step();
   clock_publisher_.advance();
   publish(false);
   return true;
@@ -177,10 +181,19 @@ void Node::load_state(const std::string& file) {
   begin_anew();
 }
 
+void Node::set_joint_state(const std::vector<CoordinateState>& coordinates) {
+  simulation_.set_joint_state(coordinates);
+  show_new_state();
+}
+
 void Node::begin_anew() {
   command_interface_.forget_commands();
   wrenches_.clear();
   marker_publisher_.forget_largest_strain();
+  show_new_state();
+}
+
+void Node::show_new_state() {
   run_.failure.clear();
   run_.last_step = {};
   pacer_.clear_backlog();
@@ -188,10 +201,13 @@ void Node::begin_anew() {
   publish(true);
 }
 
+double Node::simulated_time(const ros::Time& stamp) const {
+  return run_.simulated_time + (stamp - clock_publisher_.stamp().value_or(stamp)).toSec();
+}
+
 void Node::apply_wrench(const AppliedWrench& wrench, const ros::Time& start, double duration) {
   if (duration == 0) return;
-  const double delay = (start - clock_publisher_.stamp().value_or(start)).toSec(),
-               begin = run_.simulated_time + std::max(delay, 0.0);
+  const double begin = std::max(simulated_time(start), run_.simulated_time);
   const double end =
       duration < 0 ? std::numeric_limits<double>::infinity() : begin + std::max(duration, simulation_.step_size());
   wrenches_.add(wrench, begin, end);

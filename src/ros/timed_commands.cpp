@@ -49,6 +49,11 @@ void TimedCommands::forget() {
   next_expiry_ = kNever;
 }
 
+void TimedCommands::forget(std::size_t coordinate) {
+  expiry_[coordinate] = kNever;
+  next_expiry_ = *std::min_element(expiry_.begin(), expiry_.end());
+}
+
 std::string TimedCommands::find_fault(const std::vector<std::string>& names, const std::vector<double>& values,
                                       double duration) {
   if (names.empty()) return "it names no joint";

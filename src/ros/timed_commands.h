@@ -24,17 +24,18 @@ class TimedCommands {
   /// @param timeout  a command expires after it, unless that names a duration [s]; 0: never
   TimedCommands(const Simulation& simulation, CommandedQuantity quantity, double timeout);
 
+  /// What is wrong with a command, or nothing. @param duration  [s]
+  std::string find_fault(const std::vector<std::string>& names, const std::vector<double>& values, double duration);
   /// Carries a command out, or says what is wrong with it. @param duration  [s]; 0: the timeout counts
   std::string command(const std::vector<std::string>& names, const std::vector<double>& values, double duration);
   /// Before each step. `time`: simulated time that no reset sets back [s].
   void expire(double time);
   /// Nothing expires any more.
   void forget();
+  /// What was commanded to a coordinate does not expire any more.
+  void forget(std::size_t coordinate);
 
  private:
-  /// Empty if nothing is wrong; then the coordinates are in `commanded_`.
-  std::string find_fault(const std::vector<std::string>& names, const std::vector<double>& values, double duration);
-
   const Simulation& simulation_;
   CommandedQuantity quantity_;
   double timeout_;
