@@ -11,9 +11,9 @@ namespace {
 constexpr int kQueueSize = 10;
 constexpr double kFeedbackPeriod = 0.05;  ///< simulated [s]
 
-JointTrajectory trajectory_of(const trajectory_msgs::JointTrajectory& message, std::vector<std::size_t> joints,
-                              double start) {
-  JointTrajectory out{std::move(joints), start, {}};
+/// Its start is left open.
+JointTrajectory trajectory_of(const trajectory_msgs::JointTrajectory& message, std::vector<std::size_t> joints) {
+  JointTrajectory out{std::move(joints), 0, {}};
   for (const trajectory_msgs::JointTrajectoryPoint& point : message.points)
     out.points.push_back({point.time_from_start.toSec(), point.positions, point.velocities, point.accelerations});
   return out;
@@ -44,11 +44,13 @@ trajectory_msgs::JointTrajectoryPoint message_of(const std::vector<JointPoint>& 
 
 }  // namespace
 
-Trajectories::Trajectories(ros::NodeHandle& node, Simulation& simulation, Context context, double stop_duration)
-    : simulation_(simulation),
+Trajectories::Trajectories(ros::NodeHandle& node, const Simulation& shown, SteppingThread& stepping, Context context,
+                           double stop_duration)
+    : shown_(shown),
+      stepping_(stepping),
       context_(std::move(context)),
       stop_duration_(stop_duration),
-      follower_(simulation.coordinate_names().size()),
+      followed_(shown.coordinate_names().size()),
       subscriber_(node.subscribe("joint_trajectory", kQueueSize, &Trajectories::receive, this,
                                  ros::TransportHints().tcpNoDelay())),
       server_(
@@ -57,34 +59,32 @@ Trajectories::Trajectories(ros::NodeHandle& node, Simulation& simulation, Contex
   server_.start();
 }
 
-void Trajectories::command() {
-  const double now = context_.now(), end = now + simulation_.step_size();
-  for (std::size_t joint = 0; joint < follower_.joint_count(); ++joint) {
-    if (!follower_.follows(joint)) continue;
-    const JointPoint point = follower_.at(joint, end);
-    simulation_.command_set_point(joint, point.position, point.velocity, point.acceleration);
-  }
-  follower_.release_arrived(now);
+template <class Change>
+void Trajectories::change(const Change& change) {
+  stepping_.between_steps([&](Simulation& simulation) {
+    change(stepping_.trajectories(), stepping_.time(), simulation);
+    followed_ = stepping_.trajectories();
+  });
 }
 
-void Trajectories::judge() {
+void Trajectories::judge(double now) {
+  followed_.release_arrived(now);
   if (!handle_) return;
   using Verdict = TrajectoryGoal::Verdict;
-  const double now = context_.now();
   desired_.clear();
   actual_.clear();
   for (const std::size_t joint : goal_.joints) {
-    desired_.push_back(follower_.at(joint, now));
-    actual_.push_back({simulation_.position(joint), simulation_.velocity(joint)});
+    desired_.push_back(followed_.at(joint, now));
+    actual_.push_back({shown_.position(joint), shown_.velocity(joint)});
   }
   const TrajectoryGoal::Judgement judgement = goal_.judge(now, desired_, actual_);
   if (judgement.verdict == Verdict::Reached) return end_goal(Result::SUCCESSFUL, "", &GoalHandle::setSucceeded);
   if (judgement.verdict == Verdict::Underway) return publish_feedback(now, desired_, actual_);
   const bool is_path = judgement.verdict == Verdict::OffPath;
-  const std::string& name = simulation_.coordinate_names()[goal_.joints[judgement.joint]];
+  const std::string& name = shown_.coordinate_names()[goal_.joints[judgement.joint]];
   const std::string text = fmt::format("'{}' is {} by {:.3g} in {}, more than {:.3g}, at {:.3f} s", name,
                                        is_path ? "off its path" : "not at its goal", judgement.error,
-                                       judgement.quantity, judgement.allowed, simulation_.time());
+                                       judgement.quantity, judgement.allowed, shown_.time());
   const std::vector<std::size_t> joints = goal_.joints;
   end_goal(is_path ? Result::PATH_TOLERANCE_VIOLATED : Result::GOAL_TOLERANCE_VIOLATED, text, &GoalHandle::setAborted);
   stop(joints);
@@ -128,13 +128,12 @@ void Trajectories::receive_goal(GoalHandle handle) {
     return;
   }
   end_goal(Result::SUCCESSFUL, "another goal has replaced it", &GoalHandle::setCanceled);
-  goal.end = context_.now();
-  for (const std::size_t joint : goal.joints) goal.end = std::max(goal.end, follower_.end(joint));
+  for (const std::size_t joint : goal.joints) goal.end = std::max(goal.end, followed_.end(joint));
   goal.patience = std::max(message.goal_time_tolerance.toSec(), 0.0);
   goal_ = std::move(goal);
   handle_ = handle;
   handle_->setAccepted();
-  next_feedback_ = context_.now();
+  next_feedback_ = 0;
 }
 
 void Trajectories::cancel(GoalHandle handle) {
@@ -152,27 +151,30 @@ Trajectories::Fault Trajectories::follow(const trajectory_msgs::JointTrajectory&
     return {};
   }
   if (const Fault fault = read_joints(message.joint_names, joints); !fault.is_none()) return fault;
-  const double now = context_.now();
-  const double start = message.header.stamp.isZero() ? now : context_.time_of(message.header.stamp);
-  const JointTrajectory trajectory = trajectory_of(message, joints, start);
-  if (const std::string fault = follower_.find_fault(trajectory); !fault.empty()) return {Result::INVALID_GOAL, fault};
-  if (TrajectoryFollower::is_over(trajectory, now))
-    return {Result::OLD_HEADER_TIMESTAMP,
-            fmt::format("its last point is past by {:.3g} s", now - start - trajectory.points.back().time)};
-  std::vector<double> set_points;
-  for (const std::size_t joint : joints) set_points.push_back(simulation_.set_point(joint));
-  for (const std::size_t joint : joints) context_.take_over(joint);
-  follower_.follow(trajectory, now, set_points);
-  return {};
+  JointTrajectory trajectory = trajectory_of(message, joints);
+  if (const std::string fault = followed_.find_fault(trajectory); !fault.empty()) return {Result::INVALID_GOAL, fault};
+  Fault fault;
+  change([&](TrajectoryFollower& follower, double now, const Simulation& simulation) {
+    trajectory.start = message.header.stamp.isZero() ? now : context_.time_of(message.header.stamp);
+    if (TrajectoryFollower::is_over(trajectory, now)) {
+      const double since = now - trajectory.start - trajectory.points.back().time;
+      fault = {Result::OLD_HEADER_TIMESTAMP, fmt::format("its last point is past by {:.3g} s", since)};
+      return;
+    }
+    std::vector<double> set_points;
+    for (const std::size_t joint : joints) set_points.push_back(simulation.set_point(joint));
+    follower.follow(trajectory, now, set_points);
+  });
+  return fault;
 }
 
 Trajectories::Fault Trajectories::read_joints(const std::vector<std::string>& names,
                                               std::vector<std::size_t>& joints) const {
   for (const std::string& name : names) {
-    const std::optional<std::size_t> joint = simulation_.find_coordinate(name);
+    const std::optional<std::size_t> joint = shown_.find_coordinate(name);
     if (!joint) return {Result::INVALID_JOINTS, "there is no joint coordinate '" + name + "'"};
-    if (!simulation_.has_servo(*joint)) return {Result::INVALID_JOINTS, "'" + name + "' has no servo"};
-    if (simulation_.servo_mode(*joint) != ServoMode::Position)
+    if (!shown_.has_servo(*joint)) return {Result::INVALID_JOINTS, "'" + name + "' has no servo"};
+    if (shown_.servo_mode(*joint) != ServoMode::Position)
       return {Result::INVALID_JOINTS, "the servo of '" + name + "' is not in mode 'position'"};
     joints.push_back(*joint);
   }
@@ -181,19 +183,21 @@ Trajectories::Fault Trajectories::read_joints(const std::vector<std::string>& na
 
 std::vector<std::size_t> Trajectories::moving_joints() const {
   std::vector<std::size_t> joints;
-  for (std::size_t joint = 0; joint < follower_.joint_count(); ++joint)
-    if (follower_.follows(joint)) joints.push_back(joint);
+  for (std::size_t joint = 0; joint < followed_.joint_count(); ++joint)
+    if (followed_.follows(joint)) joints.push_back(joint);
   return joints;
 }
 
 void Trajectories::stop(const std::vector<std::size_t>& joints) {
-  for (const std::size_t joint : joints)
-    if (follower_.follows(joint)) follower_.stop(joint, context_.now(), stop_duration_);
+  change([&](TrajectoryFollower& follower, double now, const Simulation&) {
+    for (const std::size_t joint : joints)
+      if (follower.follows(joint)) follower.stop(joint, now, stop_duration_);
+  });
 }
 
 void Trajectories::release(std::size_t coordinate, const std::string& reason) {
-  if (!follower_.follows(coordinate)) return;
-  follower_.release(coordinate);
+  if (!followed_.follows(coordinate)) return;
+  change([&](TrajectoryFollower& follower, double, const Simulation&) { follower.release(coordinate); });
   const std::vector<std::size_t>& joints = goal_.joints;
   if (!handle_ || std::find(joints.begin(), joints.end(), coordinate) == joints.end()) return;
   stop(joints);
@@ -201,7 +205,9 @@ void Trajectories::release(std::size_t coordinate, const std::string& reason) {
 }
 
 void Trajectories::release_all(const std::string& reason) {
-  for (std::size_t joint = 0; joint < follower_.joint_count(); ++joint) follower_.release(joint);
+  change([&](TrajectoryFollower& follower, double, const Simulation&) {
+    for (std::size_t joint = 0; joint < follower.joint_count(); ++joint) follower.release(joint);
+  });
   end_goal(Result::INVALID_GOAL, reason, &GoalHandle::setAborted);
 }
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "flexarm/simulation/simulation.h"
+#include "stepping_thread.h"
 #include "trajectory_follower.h"
 #include "trajectory_goal.h"
 
@@ -23,21 +24,19 @@ namespace flexarm::node {
 class Trajectories {
  public:
   struct Context {
-    std::function<double()> now;                            ///< [s]
-    std::function<double(const ros::Time&)> time_of;        ///< of a stamp [s]
-    std::function<std::string()> refusal;                   ///< why nothing may be commanded now, or nothing
-    std::function<void(const std::string& fault)> warn;     ///< of what came by the topic
-    std::function<void(std::size_t coordinate)> take_over;  ///< other commands of its set point are over
+    std::function<double(const ros::Time&)> time_of;  ///< of a stamp, between two steps [s]
+    std::function<std::string()> refusal;             ///< why nothing may be commanded now, or nothing
+    std::function<void(const std::string&)> warn;     ///< of what came by the topic and is refused
   };
+  /// @param shown          what is stepped, as reports have it
   /// @param stop_duration  in which joints that are to stop decelerate [s]; 0: they stop at once
-  Trajectories(ros::NodeHandle& node, Simulation& simulation, Context context, double stop_duration);
+  Trajectories(ros::NodeHandle& node, const Simulation& shown, SteppingThread& stepping, Context context,
+               double stop_duration);
   Trajectories(const Trajectories&) = delete;
   Trajectories& operator=(const Trajectories&) = delete;
 
-  /// Before each step: gives servos their set points.
-  void command();
-  /// After each step: judges the goal.
-  void judge();
+  /// Judges the goal by what is shown, of the time `now` [s].
+  void judge(double now);
   /// Somebody else commands the coordinate: its trajectory is over, and so is the goal, if that is one of its.
   void release(std::size_t coordinate, const std::string& reason);
   /// Nothing is followed any more.
@@ -62,14 +61,18 @@ class Trajectories {
   Fault read_joints(const std::vector<std::string>& names, std::vector<std::size_t>& joints) const;
   std::vector<std::size_t> moving_joints() const;
   void stop(const std::vector<std::size_t>& joints);
+  /// Changes what is followed, between two steps.
+  template <class Change>
+  void change(const Change& change);
   /// Ends the goal that is under way, if there is one. `end`: tells the client how.
   void end_goal(int code, const std::string& text, void (GoalHandle::*end)(const Result&, const std::string&));
   void publish_feedback(double now, const std::vector<JointPoint>& desired, const std::vector<JointPoint>& actual);
 
-  Simulation& simulation_;
+  const Simulation& shown_;
+  SteppingThread& stepping_;
   Context context_;
   double stop_duration_;
-  TrajectoryFollower follower_;
+  TrajectoryFollower followed_;  ///< a copy of what is followed, to be looked at while steps go on
   ros::Subscriber subscriber_;
   actionlib::ActionServer<Action> server_;
   std::optional<GoalHandle> handle_;  ///< of the goal under way
