@@ -60,7 +60,7 @@ class Trajectories(unittest.TestCase):
     def setUp(self):
         self.arm.reset()
         self.feedback = []
-        wait_until(lambda: self.states and all(abs(self.position(name)) < 1e-3 for name in ("lift", "turn")), "the reset")
+        wait_until(lambda: self.states and max(abs(self.position(name)) for name in ("lift", "turn")) < 1e-3, "the reset")
 
     def position(self, name):
         return self.states[name][0]
@@ -82,7 +82,7 @@ class Trajectories(unittest.TestCase):
 
     def wait_for_end(self, state, code=None, told=""):
         terminal = (GoalStatus.SUCCEEDED, GoalStatus.ABORTED, GoalStatus.REJECTED, GoalStatus.PREEMPTED)
-        wait_until(lambda: self.client.get_state() in terminal, "the end of the goal")
+        wait_until(lambda: self.client.get_state() in terminal and self.client.get_result(), "the end of the goal")
         result = self.client.get_result()
         self.assertEqual(self.client.get_state(), state, self.client.get_goal_status_text())
         if code is not None:
@@ -196,6 +196,7 @@ class Trajectories(unittest.TestCase):
         self.send(["lift"], smooth(3.0, 1.0))
         wait_until(lambda: self.feedback, "the goal to be under way")
         stop = CommandTopic("flexarm/emergency_stop", Bool)
+        self.addCleanup(stop.send, False)
         stop.send(True)
         self.wait_for_end(GoalStatus.ABORTED, told="emergency stop")
         self.send(["lift"], smooth(0.1, 1.0))
