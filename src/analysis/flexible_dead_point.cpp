@@ -27,6 +27,11 @@ constexpr int kMotions = 3;
 /// stiffness times kWay^4. Of motions that are free it is relieved to kWay^2 of it and less.
 constexpr double kLeft = 1e-2, kStrains = 1e-6;
 
+Model without_prestrains(Model model) {
+  std::fill(model.prestrains.begin(), model.prestrains.end(), Prestrain());
+  return model;
+}
+
 /// The unloaded mechanism, moved by hand.
 class Unloaded {
  public:
@@ -89,7 +94,7 @@ std::string most_strained_link(const Model& model, const State& state) {
       const LocalRotations<N> local(nodes.orientation);
       double energy = 0;
       for (int k = 0; k < N - 1; ++k) {
-        const Vector6 strain = centroid_strain(element, nodes, local, state, k);
+        const Vector6 strain = elastic_strain(model, element, nodes, local, state, k);
         energy += element.stiffness_points[k].weight * strain.dot(element.stiffness_points[k].stiffness * strain);
       }
       if (energy <= largest) continue;
@@ -127,10 +132,11 @@ std::string link_strained_in_second_order(const Model& model, const State& start
 
 std::string link_at_dead_point(const Model& model, const State& start, double contact_time) {
   if (model.stiffness_point_count == 0) return "";
+  const Model unstressed = without_prestrains(model);
   const Eigen::Index unknowns = DegreesOfFreedom(model).unknowns;
   for (int k = 0; k < kMotions; ++k) {
     const Eigen::VectorXd general = general_vector(unknowns + k).tail(unknowns);
-    std::string link = link_strained_in_second_order(model, start, contact_time, general);
+    std::string link = link_strained_in_second_order(unstressed, start, contact_time, general);
     if (!link.empty()) return link;
   }
   return "";

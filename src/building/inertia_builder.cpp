@@ -35,14 +35,33 @@ std::vector<int> links_root_to_leaf(const ScenePlan& plan) {
   return links;
 }
 
+/// Index of a new one, or -1 where the beam has none.
+int add_prestrain(const scene::BeamDescription& beam, const Vector3& centroid, Model& model) {
+  Prestrain out;
+  out.centroid = centroid;
+  bool is_given = false;
+  for (std::size_t i = 0; i < beam.prestrain.size(); ++i) {
+    if (!beam.prestrain[i]) continue;
+    is_given = true;
+    out.histories[i] = static_cast<int>(model.histories.size());
+    model.histories.push_back(*beam.prestrain[i]);
+  }
+  if (!is_given) return -1;
+  model.prestrains.push_back(out);
+  return static_cast<int>(model.prestrains.size()) - 1;
+}
+
 template <int Nodes>
 void add_elements(const ScenePlan& plan, int link, Model& model) {
   const BeamMesh& mesh = plan.meshes[link]->mesh;
   const int first_node = model.links[link].frame.node;
   std::vector<BeamElement<Nodes>>& group = std::get<BeamGroup<Nodes>>(model.beams).elements;
   BeamLink& beam = *model.links[link].beam;
+  const scene::BeamDescription& description = *plan.scene.links[link].beam;
+  const int prestrain = add_prestrain(description, mesh.centroid, model);
   for (const MeshElement& element : mesh.elements) {
-    BeamElement<Nodes> out = beam_element<Nodes>(mesh, element, *plan.scene.links[link].beam);
+    BeamElement<Nodes> out = beam_element<Nodes>(mesh, element, description);
+    out.prestrain = prestrain;
     for (int i = 0; i < Nodes; ++i) {
       out.nodes[i] = first_node + element.nodes[i];
       NodalInertia& inertia = model.inertias[out.nodes[i]];

@@ -17,6 +17,7 @@
 #include "flexarm/simulation/checkpoint.h"
 #include "flexarm/simulation/csv_writer.h"
 #include "flexarm/simulation/run_summary.h"
+#include "simulation/background_writer.h"
 
 namespace flexarm::cli {
 namespace {
@@ -106,15 +107,39 @@ std::unique_ptr<ResultWriter> open_output(const Arguments& arguments, const Simu
   }
 }
 
+/// Writes rows, at each of which the summary looks, too.
+class SummarisedWriter : public ResultWriter {
+ public:
+  SummarisedWriter(std::unique_ptr<ResultWriter> writer, RunSummary& summary)
+      : writer_(std::move(writer)), summary_(summary) {}
+
+  void write_row(const Simulation& simulation) override {
+    writer_->write_row(simulation);
+    summary_.look(simulation);
+  }
+  void note_step(const Simulation& simulation, const StepResult& result) override {
+    writer_->note_step(simulation, result);
+  }
+  bool looks_at_steps() const override { return writer_->looks_at_steps(); }
+  void close() override { writer_->close(); }
+
+ private:
+  std::unique_ptr<ResultWriter> writer_;
+  RunSummary& summary_;
+};
+
 /// Steps to the end, to a failure or to an interruption; the output ends with the last good state.
 /// @throws std::runtime_error if results or a checkpoint on the way cannot be written.
 Run run(const Arguments& arguments, Simulation& simulation) {
-  const std::unique_ptr<ResultWriter> output = open_output(arguments, simulation);
+  std::unique_ptr<ResultWriter> output = open_output(arguments, simulation);
   CheckpointTimes checkpoints(simulation.time(), arguments.checkpoint_every);
   ProgressBar progress(simulation.time(), arguments.until, !arguments.quiet);
   const auto start = std::chrono::steady_clock::now();
   Run run{{}, RunSummary(simulation)};
   run.last.converged = true;
+  if (output)
+    output = std::make_unique<BackgroundWriter>(std::make_unique<SummarisedWriter>(std::move(output), run.summary),
+                                                simulation);
   if (output) output->write_row(simulation);
   double written = simulation.time();
   // A step that would only make up for round-off is not taken.
@@ -128,12 +153,12 @@ Run run(const Arguments& arguments, Simulation& simulation) {
     if (!output) continue;
     output->note_step(simulation, run.last);
     if (run.last.converged && run.summary.counts().steps % arguments.every != 0) continue;
-    if (simulation.time() > written) output->write_row(simulation), run.summary.look(simulation);
+    if (simulation.time() > written) output->write_row(simulation);
     written = simulation.time();
   }
   if (output && simulation.time() > written) output->write_row(simulation);
-  run.summary.look(simulation);
   if (output) output->close();
+  run.summary.look(simulation);
   run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return run;
 }

@@ -29,6 +29,7 @@ struct ElementNodes {
   std::array<Vector3, Nodes> increment;       ///< tangent-scaled rotation increments, Lambda_{n+1} = cay(w) Lambda_n
   std::array<Matrix3, Nodes> increment_inverse_tangent;  ///< S(w)^{-1}: dw = S^{-1} spin
   std::array<Vector3, Nodes> velocity, acceleration;     ///< at the beginning [m/s, m/s^2]
+  Vector6 prestrain = Vector6::Zero();                   ///< that strains of the step are measured from
   /// Of the interpolations that measure rotations from a reference; the local one has none.
   std::array<Vector3, Nodes> rotation_vector;
   RotationParameters parameters = RotationParameters::Unscaled;
@@ -92,6 +93,16 @@ PointKinematicsT<S> point_kinematics(const InterpolatedRotation<S>& interpolated
   point.strain.template head<3>() = interpolated.rotation.transpose() * tangent;
   point.strain.template tail<3>() = interpolated.curvature;
   point.strain -= reference_strain;
+  return point;
+}
+
+/// A stiffness point at the end of a step, its rotation interpolated.
+template <int Nodes>
+PointKinematics end_kinematics(const typename BeamElement<Nodes>::StiffnessPoint& constants,
+                               const ElementNodes<Nodes>& nodes, const InterpolatedRotation<double>& rotation) {
+  PointKinematics point =
+      point_kinematics(rotation, interpolate<Nodes>(constants.derivative, nodes.end), constants.reference_strain);
+  point.strain -= nodes.prestrain;
   return point;
 }
 

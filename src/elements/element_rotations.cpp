@@ -35,8 +35,7 @@ void carry_strains(const BeamElement<Nodes>& element, const ElementNodes<Nodes>&
     GeneralisedShapeFunctions<Nodes> generalised;
     const auto* reference = nodes.stiffness_reference ? nodes.stiffness_reference + k : nullptr;
     const auto rotation = rotations.evaluate(constants.shape, constants.derivative, reference, generalised);
-    const PointKinematics point =
-        point_kinematics(rotation, interpolate<Nodes>(constants.derivative, nodes.end), constants.reference_strain);
+    const PointKinematics point = end_kinematics<Nodes>(constants, nodes, rotation);
     Eigen::Matrix<double, 9, 1> variation = Eigen::Matrix<double, 9, 1>::Zero();  // {dr', spin, spin'}
     for (int i = 0; i < Nodes; ++i) {
       variation.head<3>() += constants.derivative[i] * update[i].template head<3>();

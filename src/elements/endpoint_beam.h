@@ -116,8 +116,7 @@ void endpoint_internal(const BeamElement<Nodes>& element, const ElementNodes<Nod
     GeneralisedShapeFunctions<Nodes> generalised;
     const auto* reference = nodes.stiffness_reference ? nodes.stiffness_reference + k : nullptr;
     const auto rotation = rotations.evaluate(constants.shape, constants.derivative, reference, generalised);
-    end[k] =
-        point_kinematics(rotation, interpolate<Nodes>(constants.derivative, nodes.end), constants.reference_strain);
+    end[k] = end_kinematics<Nodes>(constants, nodes, rotation);
     const auto stress_at = [&](const Vector6& strain) {
       return endpoint::point_stress(constants.stiffness, element.stiffness_damping,
                                     is_even ? constants.stiffness : damped, strain, rule, begin[k], strain_rates[k]);

@@ -61,7 +61,7 @@ void evaluate_points(const BeamElement<Nodes>& element, const ElementNodes<Nodes
     Point<Nodes>& p = points[k];
     const auto* reference = nodes.stiffness_reference ? nodes.stiffness_reference + k : nullptr;
     const auto rotation = rotations.evaluate(constants.shape, constants.derivative, reference, p.generalised);
-    p.end = point_kinematics(rotation, interpolate<Nodes>(constants.derivative, nodes.end), constants.reference_strain);
+    p.end = end_kinematics<Nodes>(constants, nodes, rotation);
     p.average_rotation = 0.5 * (begin[k].rotation + p.end.rotation);
     p.arm_weight = arm_weight;
     p.arm = (1 - arm_weight) * begin[k].tangent + arm_weight * p.end.tangent;

@@ -11,15 +11,15 @@ const std::vector<Vector3>& BeamFamily::total_rotations() const {
   return none;
 }
 
-std::unique_ptr<BeamFamily> make_beam_family(const StepConfiguration& configuration) {
+std::unique_ptr<BeamFamily> make_beam_family(const StepConfiguration& configuration, const StepPrestrains& prestrains) {
   switch (configuration.scheme().stress) {
     case StressRule::Conjugate:
-      return std::make_unique<ConservingBeams>(configuration);
+      return std::make_unique<ConservingBeams>(configuration, prestrains);
     case StressRule::EndPoint:
-      return std::make_unique<EndpointBeams>(configuration);
+      return std::make_unique<EndpointBeams>(configuration, prestrains);
     case StressRule::ExponentialMoment:
     case StressRule::CayleyMoment:
-      return std::make_unique<MomentumBeams>(configuration);
+      return std::make_unique<MomentumBeams>(configuration, prestrains);
   }
   return nullptr;
 }

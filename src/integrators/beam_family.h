@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "integrators/hht_interpolation.h"
-#include "integrators/step_configuration.h"
+#include "integrators/step_prestrains.h"
 #include "solver/reduced_residual.h"
 
 namespace flexarm {
@@ -29,6 +29,8 @@ class BeamFamily {
   virtual void carry_strains(const double*) {}
   /// Whether the geometric part of the next tangent sees other stresses than the residual.
   virtual bool carries_strains() const { return false; }
+  /// Of the trial configuration, evaluated last: what prestrains do while they change over the step [J].
+  virtual double work_of_prestrains() const = 0;
   /// Writes what the family keeps of the trial configuration, evaluated last, into the state.
   virtual void accept(State& state) = 0;
   /// The state was changed by somebody else: what was kept from the last step does not hold.
@@ -40,6 +42,6 @@ class BeamFamily {
 };
 
 /// The family of the configuration's scheme.
-std::unique_ptr<BeamFamily> make_beam_family(const StepConfiguration& configuration);
+std::unique_ptr<BeamFamily> make_beam_family(const StepConfiguration& configuration, const StepPrestrains& prestrains);
 
 }  // namespace flexarm

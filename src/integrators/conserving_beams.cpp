@@ -46,8 +46,11 @@ void fill_packs(const Elements& elements, Packs& packs) {
 
 }  // namespace
 
-ConservingBeams::ConservingBeams(const StepConfiguration& configuration)
-    : configuration_(configuration), rule_(configuration.scheme()), has_memory_(rule_.dissipation.any()) {
+ConservingBeams::ConservingBeams(const StepConfiguration& configuration, const StepPrestrains& prestrains)
+    : configuration_(configuration),
+      prestrains_(prestrains),
+      rule_(configuration.scheme()),
+      has_memory_(rule_.dissipation.any()) {
   for_each_group(configuration.model().beams, [&](const auto& group) {
     constexpr int N = std::decay_t<decltype(group.elements)>::value_type::kNodes;
     auto& packs = std::get<PackGroup<N>>(groups_);
@@ -63,7 +66,10 @@ void ConservingBeams::initialise(State& state) {
 }
 
 void ConservingBeams::begin() {
-  if (!holds_begin_points_) set_begin_points();
+  if (!holds_begin_points_) {
+    if (!configuration_.model().prestrains.empty()) set_prestrains();
+    set_begin_points();
+  }
   holds_begin_points_ = true;
   set_mid_functions();
   for_each_group(groups_, [&](auto& packs) {
@@ -73,6 +79,37 @@ void ConservingBeams::begin() {
     }
   });
   carries_strains_ = configuration_.model().stiffness_point_count > 0;
+}
+
+/// They are a part of the packs' reference strains.
+void ConservingBeams::set_prestrains() {
+  for_each_group(configuration_.model().beams, [&](const auto& group) {
+    constexpr int N = std::decay_t<decltype(group)>::kNodes;
+    for (std::size_t e = 0; e < group.elements.size(); ++e) {
+      const auto& element = group.elements[e];
+      ElementPack<N>& pack = std::get<PackGroup<N>>(groups_)[e / Pack::kLanes];
+      for (int k = 0; k < N - 1; ++k) {
+        const Vector6 reference = element.stiffness_points[k].reference_strain + prestrains_.of_step(element.prestrain);
+        set_lane(pack.element.points[k].reference_strain, static_cast<int>(e % Pack::kLanes), reference);
+      }
+    }
+  });
+}
+
+double ConservingBeams::work_of_prestrains() const {
+  double work = 0;
+  for_each_group(configuration_.model().beams, [&](const auto& group) {
+    constexpr int N = std::decay_t<decltype(group)>::kNodes;
+    for (std::size_t e = 0; e < group.elements.size(); ++e) {
+      const ElementPack<N>& pack = std::get<PackGroup<N>>(groups_)[e / Pack::kLanes];
+      const auto strain = [&](int end, int k) -> Vector6 {
+        return get_lane(pack.points[end][k].strain, static_cast<int>(e % Pack::kLanes));
+      };
+      for (int k = 0; k < N - 1; ++k)
+        work += prestrains_.work(group.elements[e], k, strain(begin_, k), strain(1 - begin_, k));
+    }
+  });
+  return work;
 }
 
 void ConservingBeams::accept(State& state) {

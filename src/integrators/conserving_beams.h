@@ -12,17 +12,19 @@ namespace flexarm {
 
 class ConservingBeams : public BeamFamily {
  public:
-  explicit ConservingBeams(const StepConfiguration& configuration);
+  ConservingBeams(const StepConfiguration& configuration, const StepPrestrains& prestrains);
 
   void initialise(State& state) override;
   void begin() override;
   void add_forces(Balance& balance) override;
   void carry_strains(const double* update) override;
   bool carries_strains() const override { return carries_strains_; }
+  double work_of_prestrains() const override;
   void accept(State& state) override;
   void invalidate() override { holds_begin_points_ = false; }
 
  private:
+  void set_prestrains();
   void set_begin_points();
   void set_mid_functions();
 
@@ -53,6 +55,7 @@ class ConservingBeams : public BeamFamily {
   static void scatter(const ElementPack<Nodes>& pack, const BlockSystem<Nodes, Pack>& system, Balance& balance);
 
   const StepConfiguration& configuration_;
+  const StepPrestrains& prestrains_;
   TimeRule rule_;
   std::tuple<PackGroup<2>, PackGroup<3>, PackGroup<4>, PackGroup<5>> groups_;
   bool has_memory_ = false;               // numerical dissipation or structural damping keep State::strain_memory

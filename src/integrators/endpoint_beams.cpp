@@ -6,9 +6,9 @@
 
 namespace flexarm {
 
-EndpointBeams::EndpointBeams(const StepConfiguration& configuration)
+EndpointBeams::EndpointBeams(const StepConfiguration& configuration, const StepPrestrains& prestrains)
     : configuration_(configuration),
-      points_(configuration),
+      points_(configuration, prestrains),
       end_strain_rates_(configuration.model().stiffness_point_count, Vector6::Zero()),
       end_momentum_rates_(configuration.model().mass_point_count, Vector3::Zero()) {}
 

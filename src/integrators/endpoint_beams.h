@@ -10,7 +10,7 @@ namespace flexarm {
 
 class EndpointBeams : public BeamFamily {
  public:
-  explicit EndpointBeams(const StepConfiguration& configuration);
+  EndpointBeams(const StepConfiguration& configuration, const StepPrestrains& prestrains);
 
   void initialise(State& state) override;
   void forget_path(State& state) override { points_.reference.forget_path(state); }
@@ -19,6 +19,7 @@ class EndpointBeams : public BeamFamily {
   void add_inertia(Balance& balance) override;
   void carry_strains(const double* update) override { points_.carry_strains(configuration_.end(), update); }
   bool carries_strains() const override { return points_.carries_strains(); }
+  double work_of_prestrains() const override { return points_.work_of_prestrains(); }
   void accept(State& state) override;
   void invalidate() override { points_.invalidate(); }
   const std::vector<Vector3>& total_rotations() const override { return points_.reference.total_rotations(); }

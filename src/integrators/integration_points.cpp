@@ -4,7 +4,7 @@
 
 namespace flexarm {
 
-IntegrationPoints::IntegrationPoints(const StepConfiguration& configuration)
+IntegrationPoints::IntegrationPoints(const StepConfiguration& configuration, const StepPrestrains& prestrains)
     : reference(configuration.model(), configuration.scheme()),
       begin_stiffness(configuration.model().stiffness_point_count),
       end_stiffness(configuration.model().stiffness_point_count),
@@ -12,6 +12,7 @@ IntegrationPoints::IntegrationPoints(const StepConfiguration& configuration)
       end_rotations(configuration.model().mass_point_count),
       end_motion(configuration.model().mass_point_count),
       configuration_(configuration),
+      prestrains_(prestrains),
       carried_strains_(configuration.model().stiffness_point_count) {}
 
 void IntegrationPoints::begin(bool carries) {
@@ -53,6 +54,7 @@ void IntegrationPoints::set_begin_points() {
       begin_stiffness[index] = point_kinematics(
           reference.is_used() ? state.stiffness_rotations[index] : local.evaluate(point.shape, point.derivative),
           interpolate<N>(point.derivative, position), point.reference_strain);
+      begin_stiffness[index].strain -= prestrains_.of_step(element.prestrain);
     }
     for (int k = 0; k < Element::kMassPoints; ++k) {
       const auto& point = element.mass_points[k];
@@ -61,6 +63,17 @@ void IntegrationPoints::set_begin_points() {
                                                    : local.evaluate(point.shape, point.derivative).rotation;
     }
   });
+}
+
+double IntegrationPoints::work_of_prestrains() const {
+  double work = 0;
+  for_each_element(configuration_.model().beams, [&](const auto& element) {
+    for (int k = 0; k < std::decay_t<decltype(element)>::kStiffnessPoints; ++k) {
+      const int index = element.first_stiffness_point + k;
+      work += prestrains_.work(element, k, begin_stiffness[index].strain, end_stiffness[index].strain);
+    }
+  });
+  return work;
 }
 
 void IntegrationPoints::accept(State& state) {

@@ -5,7 +5,7 @@
 
 #include "elements/additive_beam.h"
 #include "integrators/rotation_reference.h"
-#include "integrators/step_configuration.h"
+#include "integrators/step_prestrains.h"
 #include "solver/reduced_residual.h"
 
 namespace flexarm {
@@ -13,7 +13,7 @@ namespace flexarm {
 /// Life of a step: begin(); elements are gathered and write the points of the trial configuration; accept().
 class IntegrationPoints {
  public:
-  explicit IntegrationPoints(const StepConfiguration& configuration);
+  IntegrationPoints(const StepConfiguration& configuration, const StepPrestrains& prestrains);
 
   /// Points of the configuration at the beginning, unless those of the last step's end still hold. `carries`: strains
   /// are carried along for the tangents of the step.
@@ -30,6 +30,8 @@ class IntegrationPoints {
   bool carries_strains() const { return carries_ && holds_carried_; }
   /// A tangent has seen them.
   void drop_carried() { holds_carried_ = false; }
+  /// See BeamFamily.
+  double work_of_prestrains() const;
   /// The points at hand become those at the beginning of the next step, and the state's.
   void accept(State& state);
 
@@ -47,6 +49,7 @@ class IntegrationPoints {
       nodes.velocity[i] = c.state().nodes[node].velocity;
       nodes.acceleration[i] = c.state().nodes[node].acceleration;
     }
+    nodes.prestrain = prestrains_.of_step(element.prestrain);
     reference.gather(element, nodes);
   }
 
@@ -59,6 +62,7 @@ class IntegrationPoints {
   void set_begin_points();
 
   const StepConfiguration& configuration_;
+  const StepPrestrains& prestrains_;
   bool hold_ = false;
   bool carries_ = false, holds_carried_ = false;
   std::vector<Vector6> carried_strains_;  // of stiffness points

@@ -10,8 +10,8 @@ namespace flexarm {
 
 class MomentumBeams : public BeamFamily {
  public:
-  explicit MomentumBeams(const StepConfiguration& configuration)
-      : configuration_(configuration), points_(configuration) {}
+  MomentumBeams(const StepConfiguration& configuration, const StepPrestrains& prestrains)
+      : configuration_(configuration), points_(configuration, prestrains) {}
 
   void initialise(State& state) override { points_.reference.initialise(state); }
   void forget_path(State& state) override { points_.reference.forget_path(state); }
@@ -20,6 +20,7 @@ class MomentumBeams : public BeamFamily {
   void add_forces(Balance& balance) override;
   void carry_strains(const double* update) override { points_.carry_strains(configuration_.end(), update); }
   bool carries_strains() const override { return points_.carries_strains(); }
+  double work_of_prestrains() const override { return points_.work_of_prestrains(); }
   void accept(State& state) override;
   void invalidate() override { points_.invalidate(); }
 

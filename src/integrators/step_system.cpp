@@ -9,7 +9,8 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme, BackendChoice b
       dof_(model),
       configuration_(model, scheme, dof_),
       histories_(model),
-      beams_(make_beam_family(configuration_)),
+      prestrains_(configuration_),
+      beams_(make_beam_family(configuration_, prestrains_)),
       interpolation_(scheme.hht != HhtForm::None && !scheme.is_static
                          ? std::make_unique<HhtInterpolation>(configuration_, beams_->total_rotations())
                          : nullptr),
@@ -36,6 +37,7 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme, BackendChoice b
 void StepSystem::begin(const State& state, double step, Guess guess) {
   configuration_.begin(state, step);
   histories_.begin(configuration_);
+  if (prestrains_.begin(1)) beams_->invalidate();
   beams_->begin();
   loops_.begin();
   friction_.begin();
@@ -57,6 +59,7 @@ void StepSystem::begin_equilibrium(const State& state, double load_factor, doubl
   drag_.strength = drag;
   configuration_.begin(state, 0);
   histories_.begin(configuration_);
+  prestrains_.begin(load_factor);
   beams_->begin();
   loops_.begin();
   actuators_.begin();
@@ -130,6 +133,7 @@ void StepSystem::accept(State& state) {
   forces_.add_work(work);
   joints_.add_work(work);
   actuators_.add_work(work);
+  if (prestrains_.do_work()) work += beams_->work_of_prestrains();
   state.work += work;
   state.dissipated += dissipated_;
   configuration_.remember_increments(state.history);

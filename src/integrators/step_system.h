@@ -93,6 +93,7 @@ class StepSystem {
   DegreesOfFreedom dof_;
   StepConfiguration configuration_;
   StepHistories histories_;
+  StepPrestrains prestrains_;
   // ---- the parts
   std::unique_ptr<BeamFamily> beams_;
   std::unique_ptr<HhtInterpolation> interpolation_;  // null unless forces are interpolated in time

@@ -40,6 +40,7 @@ struct BeamElement {
   double stiffness_damping = 0;              ///< eta of F += eta D C D d(strain)/dt [s]
   Vector6 damping_scale = Vector6::Ones();   ///< diagonal of D, at most 1: eta of a strain is eta times its square
   double mass_damping = 0;                   ///< [1/s]
+  int prestrain = -1;                        ///< index into Model::prestrains; -1: none
   int first_block = 0;                       ///< into TangentBackend::element_block, then [i * Nodes + j]
 };
 

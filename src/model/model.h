@@ -14,6 +14,7 @@
 #include "model/loop_closure.h"
 #include "model/nodal_load.h"
 #include "model/point_spring.h"
+#include "model/prestrain.h"
 #include "model/slide_line.h"
 
 namespace flexarm {
@@ -153,6 +154,7 @@ struct Model {
   std::vector<int> first_coordinate;  ///< per joint; its coordinates are consecutive
   std::vector<Actuator> actuators;
   std::vector<NodalLoad> loads;
+  std::vector<Prestrain> prestrains;
   std::vector<TimeFunction> histories;
   Vector3 gravity = Vector3::Zero();
   /// All that hangs on the world does so by free joints, and nothing says where it is to be: the origin of positions

@@ -23,6 +23,7 @@ class BagWriter : public ResultWriter {
 
   void write_row(const Simulation& simulation) override;
   void note_step(const Simulation& simulation, const StepResult& result) override;
+  bool looks_at_steps() const override { return !sampled_.empty(); }
   void close() override;
 
  private:

@@ -12,15 +12,15 @@
 
 namespace flexarm::node {
 
-/// Advertises a topic on which a new subscriber gets `make_message()` at once while the simulation is paused, when
-/// nothing is sent that it could wait for. This is not latching: latched messages may reach a subscriber a second time
-/// if it connects just after they were sent, and no stamp is to be sent twice.
+/// Advertises a topic on which a new subscriber gets `make_message()` at once while the simulation is paused, or waits
+/// for a command, when nothing is sent that it could wait for. This is not latching: latched messages may reach a
+/// subscriber a second time if it connects just after they were sent, and no stamp is to be sent twice.
 template <typename Message, typename MakeMessage>
 ros::Publisher advertise(ros::NodeHandle& node, const std::string& topic, std::uint32_t queue_size, const RunState& run,
                          MakeMessage make_message) {
   return node.advertise<Message>(topic, queue_size,
                                  [&run, make_message](const ros::SingleSubscriberPublisher& subscriber) {
-                                   if (run.paused) subscriber.publish(make_message());
+                                   if (run.waits()) subscriber.publish(make_message());
                                  });
 }
 

@@ -2,26 +2,51 @@
 
 #include <ros/console.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "advertise.h"
 
 namespace flexarm::node {
 namespace {
 
 constexpr std::chrono::seconds kPatience(3);
+/// By which stamps and ROS time may come apart [s]: a backlog that is made up makes less; more, that somebody has set
+/// the clock.
+constexpr double kLargestError = 1;
 
 }  // namespace
 
-ClockPublisher::ClockPublisher(ros::NodeHandle& node, const RunState& run, bool publish, double rate, double step)
-    : is_clock_(publish), step_(step), schedule_(rate) {
+ClockPublisher::ClockPublisher(ros::NodeHandle& node, const RunState& run, bool publish, double rate, double step,
+                               double period)
+    : is_clock_(publish), step_(step), period_(period), schedule_(rate) {
   if (!is_clock_) return;
   publisher_ = advertise<rosgraph_msgs::Clock>(node, "/clock", 10, run, [this] { return make_message(); });
   if (!ros::Time::isSimTime())
     ROS_WARN("publishing /clock, but /use_sim_time is not set: other nodes will not follow it");
 }
 
-void ClockPublisher::advance() {
-  ++ticks_;
+void ClockPublisher::advance(std::uint64_t steps, std::uint64_t overruns, bool is_paced) {
+  ticks_ += std::max<std::uint64_t>(steps, 1);
+  if (!is_clock_) move_stamp(overruns, is_paced && !ros::Time::isSimTime());
   publish(false);
+}
+
+void ClockPublisher::move_stamp(std::uint64_t overruns, bool is_paced) {
+  const ros::Time now = ros::Time::now();
+  if (now.isZero()) return;
+  const ros::Time soonest = stamp_ + ros::Duration(0, 1);
+  const std::uint64_t steps = ticks_ + overruns;
+  if (is_paced && is_mapped_) {
+    const ros::Time due = origin_ + ros::Duration(static_cast<double>(steps - origin_steps_) * period_);
+    if (due >= soonest && std::abs((due - now).toSec()) < kLargestError) {
+      stamp_ = due;
+      return;
+    }
+  }
+  stamp_ = origin_ = std::max(now, soonest);
+  origin_steps_ = steps;
+  is_mapped_ = is_paced;
 }
 
 void ClockPublisher::publish_now() {
@@ -40,9 +65,9 @@ rosgraph_msgs::Clock ClockPublisher::make_message() const {
 }
 
 std::optional<ros::Time> ClockPublisher::stamp() const {
-  const ros::Time now = is_clock_ ? simulated_time() : ros::Time::now();
-  if (now.isZero()) return std::nullopt;
-  return now;
+  const ros::Time stamp = is_clock_ ? simulated_time() : stamp_;
+  if (stamp.isZero()) return std::nullopt;
+  return stamp;
 }
 
 void ClockPublisher::warn_if_missing() {

@@ -14,34 +14,48 @@
 
 namespace flexarm::node {
 
-/// The source of stamps: simulated time where this node publishes /clock, ROS time otherwise.
-/// Simulated time starts at one step, because zero means "no time yet" in ROS, and goes on across resets.
+/// The source of stamps. Where this node publishes /clock, they are simulated time, which starts at one step, because
+/// zero means "no time yet" in ROS, and goes on across resets. Else steps that keep pace with the wall clock are when
+/// they were due by it, in ROS time: as even as simulated time is, whatever delays a message. Others, and those of who
+/// follows another clock, are the present.
 class ClockPublisher {
  public:
   /// @param publish  whether this node is the clock
   /// @param rate     of /clock, in simulated time [Hz]
   /// @param step     [s]
-  ClockPublisher(ros::NodeHandle& node, const RunState& run, bool publish, double rate, double step);
+  /// @param period   of steps by the wall clock [s]
+  ClockPublisher(ros::NodeHandle& node, const RunState& run, bool publish, double rate, double step, double period);
   ClockPublisher(const ClockPublisher&) = delete;
   ClockPublisher& operator=(const ClockPublisher&) = delete;
 
-  /// One step was made; publishes /clock where it is due.
-  void advance();
+  /// Steps were made; publishes /clock where it is due. `is_paced`: by the wall clock, which has left out `overruns`
+  /// since the beginning.
+  void advance(std::uint64_t steps, std::uint64_t overruns, bool is_paced);
+  /// Something else is news.
+  void advance() { advance(1, 0, false); }
   /// Publishes /clock as it is, unless that was done already.
   void publish_now();
   /// Stamp of the current state; empty as long as ROS has no time.
   std::optional<ros::Time> stamp() const;
+  /// The simulation was resumed: the next stamp is the present.
+  void restart() { is_mapped_ = false; }
   /// Warns once of a clock that does not come: without it, nothing is published.
   void warn_if_missing();
 
  private:
   void publish(bool force);
   rosgraph_msgs::Clock make_message() const;
+  /// The next stamp, later than the last one.
+  void move_stamp(std::uint64_t overruns, bool is_paced);
   ros::Time simulated_time() const { return ros::Time(static_cast<double>(ticks_) * step_); }
 
   bool is_clock_;
-  double step_;
+  double step_, period_;
   std::uint64_t ticks_ = 1;  ///< steps, counted as an integer so that no rounding accumulates
+  // Of stamps in ROS time: the last one, and the one from which due steps are counted.
+  ros::Time stamp_, origin_;
+  std::uint64_t origin_steps_ = 0;
+  bool is_mapped_ = false;
   PublicationSchedule schedule_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   bool warned_ = false;

@@ -13,23 +13,23 @@
 #include <vector>
 
 #include "flexarm/simulation/simulation.h"
-#include "timed_commands.h"
+#include "stepping_thread.h"
 
 namespace flexarm::node {
 
-/// Hands commands to the simulation: efforts of joint_force_command, joint_command and COORDINATE/command, set points
-/// of joint_set_points and COORDINATE/set_point; and ~emergency_stop.
+/// Hands commands to the thread that steps: efforts of joint_force_command, joint_command and COORDINATE/command, set
+/// points of joint_set_points and COORDINATE/set_point; and ~emergency_stop.
 class CommandInterface {
  public:
+  /// @param scene    of what is stepped
   /// @param timeout  a command expires after it, unless that names a duration [s]; 0: never
-  CommandInterface(ros::NodeHandle& node, ros::NodeHandle& private_node, Simulation& simulation, double timeout);
+  CommandInterface(ros::NodeHandle& node, ros::NodeHandle& private_node, const Simulation& scene,
+                   SteppingThread& stepping, double timeout);
   CommandInterface(const CommandInterface&) = delete;
   CommandInterface& operator=(const CommandInterface&) = delete;
 
-  /// Before each step: zeroes what expired. `time`: simulated time that no reset sets back [s].
-  void expire(double time);
-  /// After a reset, or where another state was loaded: no command expires; an emergency stop, or none, still is in
-  /// force.
+  /// Between two steps, after a reset, or where another state was loaded: no command expires; an emergency stop, or
+  /// none, still is in force.
   void forget_commands();
 
  private:
@@ -37,22 +37,28 @@ class CommandInterface {
   void receive_joint_state(const sensor_msgs::JointState& message);
   void receive_set_points(const sensor_msgs::JointState& message);
   void receive_emergency_stop(const std_msgs::Bool& message);
-  /// COORDINATE/`suffix`, each message of which goes to `commands`.
+  /// COORDINATE/`suffix`, each message of which commands that quantity.
   void subscribe_to(ros::NodeHandle& node, const std::string& coordinate, const std::string& suffix,
-                    TimedCommands& commands);
+                    Commanded quantity);
 
-  /// Carries a command out or warns. @param duration  [s]; 0: the timeout counts
-  void command(TimedCommands& commands, const std::string& topic, const std::vector<std::string>& names,
+  /// Hands a command over, whole, or warns. @param duration  [s]; 0: the timeout counts
+  void command(Commanded quantity, const std::string& topic, const std::vector<std::string>& names,
                const std::vector<double>& values, double duration = 0);
+  /// Empty if nothing is wrong; then the command is in `message_`.
+  std::string find_fault(Commanded quantity, const std::vector<std::string>& names, const std::vector<double>& values,
+                         double duration);
+  std::string find_fault(Commanded quantity, std::size_t coordinate) const;
   void warn(const std::string& topic, const std::string& fault);
   /// While the emergency stop is on, no effort acts, be it commanded, the scene's own or a servo's.
-  void stop();
-  void release();
-  void switch_servos(bool on);
+  void stop(Simulation& simulation);
+  void release(Simulation& simulation);
+  void switch_servos(Simulation& simulation, bool on);
 
-  Simulation& simulation_;
-  TimedCommands efforts_, set_points_;
-  bool stopped_ = false;  ///< by ~emergency_stop
+  const Simulation& scene_;
+  SteppingThread& stepping_;
+  double timeout_;                ///< [s]; 0: none
+  std::vector<Command> message_;  ///< the one at hand
+  bool stopped_ = false;          ///< by ~emergency_stop
   std::chrono::steady_clock::time_point last_warning_;
   int unreported_ = 0;  ///< refused commands since the last warning
   std::vector<ros::Subscriber> subscribers_;

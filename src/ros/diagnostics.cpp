@@ -37,6 +37,14 @@ void Diagnostics::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("Step halvings", run_.counts.halvings);
   status.add("Recoveries", recoveries_text(run_.counts));
   status.add("Overruns (steps dropped)", run_.overruns);
+  status.add("Steps whose states were not published", run_.missed);
+  status.add("Steps cut short", run_.cut);
+  const auto add = [&](const std::string& what, const DurationHistogram& histogram) {
+    status.addf(what, "50 %%: %.3g, 99 %%: %.3g, 99.9 %%: %.3g, longest: %.3g", histogram.quantile(0.5),
+                histogram.quantile(0.99), histogram.quantile(0.999), histogram.largest());
+  };
+  add("Wall time of a step [s]", run_.step_times);
+  add("Lateness of its beginning [s]", run_.lateness);
 }
 
 }  // namespace flexarm::node

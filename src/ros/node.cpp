@@ -15,9 +15,7 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-const ros::WallDuration kTickPeriod(0.001);
-/// A tick ends after this wall time even if more steps are due, so that commands and services get their turn.
-constexpr std::chrono::milliseconds kTickBudget(10);
+const ros::WallDuration kTickPeriod(0.1);
 constexpr double kWarningPeriod = 10;  ///< of what goes on and on, wall time [s]
 
 SimulationOptions simulation_options(const Parameters& parameters) {
@@ -26,74 +24,102 @@ SimulationOptions simulation_options(const Parameters& parameters) {
   return options;
 }
 
+Pace pace(const Parameters& parameters) {
+  return {parameters.real_time_factor, parameters.max_catch_up, parameters.lock_step, parameters.realtime};
+}
+
 }  // namespace
 
 Node::Node()
     : parameters_(read_parameters(private_node_)),
-      simulation_(read_scene(node_, private_node_), simulation_options(parameters_)),
-      pacer_(simulation_.step_size(), parameters_.real_time_factor, parameters_.max_catch_up),
-      last_tick_(SteadyClock::now()),
-      clock_publisher_(node_, run_, parameters_.publish_clock, parameters_.clock_rate, simulation_.step_size()),
-      state_publisher_(node_, simulation_, run_, parameters_.publish_rate, parameters_.frame_prefix),
-      beam_state_publisher_(node_, simulation_, run_, parameters_.publish_rate, root_frame()),
-      marker_publisher_(node_, simulation_, run_, parameters_.marker_rate, root_frame()),
-      sensor_publisher_(node_, simulation_, run_, parameters_.frame_prefix),
-      status_publisher_(private_node_, simulation_, run_, parameters_.status_rate, root_frame()),
-      diagnostics_(node_, private_node_, simulation_, run_),
-      command_interface_(node_, private_node_, simulation_, parameters_.command_timeout),
-      wrenches_(simulation_),
+      shown_(read_scene(node_, private_node_), simulation_options(parameters_)),
+      clock_publisher_(node_, run_, parameters_.publish_clock, parameters_.clock_rate, shown_.step_size(),
+                       parameters_.real_time_factor > 0 ? shown_.step_size() / parameters_.real_time_factor : 0),
+      state_publisher_(node_, shown_, run_, parameters_.publish_rate, parameters_.frame_prefix),
+      beam_state_publisher_(node_, shown_, run_, parameters_.publish_rate, root_frame()),
+      marker_publisher_(node_, shown_, run_, parameters_.marker_rate, root_frame()),
+      sensor_publisher_(node_, shown_, run_, parameters_.frame_prefix),
+      status_publisher_(private_node_, shown_, run_, parameters_.status_rate, root_frame()),
+      diagnostics_(node_, private_node_, shown_, run_),
+      bell_([this] { take_reports(); }),
+      stepping_(shown_.copy(), pace(parameters_), [this] { bell_.ring(); }),
+      command_interface_(node_, private_node_, shown_, stepping_, parameters_.command_timeout),
       frame_watch_(node_, state_publisher_.frames()),
       services_(private_node_, *this) {
-  for (const scene::Diagnostic& warning : simulation_.start_warnings()) ROS_WARN_STREAM(warning.text());
+  for (const scene::Diagnostic& warning : shown_.start_warnings()) ROS_WARN_STREAM(warning.text());
   run_.paused = parameters_.paused;
-  ROS_INFO("scene '%s': %zu links, %zu joint coordinates, %zu degrees of freedom; scheme %s, step %g s%s",
-           simulation_.scene().name.c_str(), simulation_.link_names().size(), simulation_.coordinate_names().size(),
-           simulation_.degrees_of_freedom(), simulation_.scheme().c_str(), simulation_.step_size(),
-           run_.paused ? "; paused" : "");
+  run_.lock_step = parameters_.lock_step;
+  ROS_INFO("scene '%s': %zu links, %zu joint coordinates, %zu degrees of freedom; scheme %s, step %g s%s%s",
+           shown_.scene().name.c_str(), shown_.link_names().size(), shown_.coordinate_names().size(),
+           shown_.degrees_of_freedom(), shown_.scheme().c_str(), shown_.step_size(),
+           run_.lock_step ? "; each step waits for its command" : "", run_.paused ? "; paused" : "");
+  if (parameters_.realtime) be_real_time();
   describe_view();
+  clock_publisher_.advance();
   publish(true);
   timer_ = node_.createSteadyTimer(kTickPeriod, [this](const ros::SteadyTimerEvent&) { tick(); });
+  if (!run_.paused) stepping_.run(true);
+}
+
+void Node::be_real_time() {
+  const std::string refused = stepping_.make_real_time();
+  if (refused.empty()) return;
+  ROS_WARN_STREAM("~realtime: the system refuses " << refused << ". Steps may begin late where the processor is busy; "
+                                                   << "limits 'rtprio' and 'memlock' of this user "
+                                                   << "(/etc/security/limits.conf), or CAP_SYS_NICE and CAP_IPC_LOCK, "
+                                                   << "allow it");
 }
 
 void Node::tick() {
-  const SteadyClock::time_point now = SteadyClock::now();
-  const double elapsed = std::chrono::duration<double>(now - last_tick_).count();
-  last_tick_ = now;
-  if (!run_.paused) {
-    pacer_.elapse(elapsed);
-    run_.overruns = pacer_.overruns();
-    while (pacer_.step_due() && SteadyClock::now() - now < kTickBudget) {
-      if (!advance()) break;
-      pacer_.step_done();
-    }
-    warn_if_slow();
-  }
+  take_reports();
+  if (!run_.paused) warn_if_slow();
   diagnostics_.publish(false);
   clock_publisher_.warn_if_missing();
 }
 
-bool Node::advance() {
-  command_interface_.expire(run_.simulated_time);
-  wrenches_.update(run_.simulated_time);
-  const SteadyClock::time_point start = SteadyClock::now();
-  const StepResult result = simulation_.step();
-  slowest_step_.note(std::chrono::duration<double>(SteadyClock::now() - start).count(), simulation_.time(), result);
-  run_.last_step = result;
-  run_.counts.add(result);
-  if (!result.converged) {
-    fail(result);
-    return false;
+void Node::take_reports() {
+  SpscRing<StepReport>& reports = stepping_.reports();
+  for (std::size_t waiting = reports.size(); waiting > 0; --waiting) {
+    take(reports.front());
+    reports.pop();
   }
-  if (result.is_dissipated)
-    ROS_WARN_THROTTLE(kWarningPeriod,
-                      "the step to t = %g s was done by edmc2, as on_failure allows: %s could not do it",
-                      simulation_.time(), simulation_.scheme().c_str());
+  if (!reports.empty()) bell_.ring();  // others have their turn in between
+}
+
+void Node::take(const StepReport& report) {
+  shown_.restore(report.state);
+  run_.last_step = report.result;
+  run_.counts.add(report.result);
+  run_.overruns = report.overruns;
+  run_.step_times.add(report.duration);
+  if (report.is_paced) run_.lateness.add(report.lateness);
+  slowest_step_.note(report.duration, shown_.time(), report.result);
+  if (report.has_failed) return fail(report.result);
+  warn_of_recoveries(report);
   run_.failure.clear();
-  ++run_.steps;
-  run_.simulated_time = static_cast<double>(run_.steps) * simulation_.step_size();
-  clock_publisher_.advance();
+  if (report.steps > run_.steps + 1) run_.missed += report.steps - run_.steps - 1;
+  const std::uint64_t made = report.steps - run_.steps;
+  run_.steps = report.steps;
+  run_.simulated_time = static_cast<double>(run_.steps) * shown_.step_size();
+  clock_publisher_.advance(made, report.overruns, report.is_paced);
   publish(false);
-  return true;
+}
+
+void Node::warn_of_recoveries(const StepReport& report) {
+  if (report.result.is_dissipated)
+    ROS_WARN_THROTTLE(kWarningPeriod,
+                      "the step to t = %g s was done by edmc2, as on_failure allows: %s could not do it", shown_.time(),
+                      shown_.scheme().c_str());
+  if (report.result.converged) return;
+  ++run_.cut;
+  ROS_WARN_THROTTLE(kWarningPeriod, "only a part of the step to t = %g s was done in time, simulated time lags: %s",
+                    shown_.time(), shown_.explain(report.result).c_str());
+}
+
+bool Node::advance() {
+  const bool is_done = stepping_.advance();
+  take_reports();
+  return is_done;
 }
 
 void Node::SlowestStep::note(double new_seconds, double new_time, const StepResult& result) {
@@ -112,7 +138,7 @@ void Node::warn_if_slow() {
   ROS_WARN(
       "slower than asked for, simulated time lags: %lu steps of %g s dropped; the slowest one took %.2g s, to "
       "t = %g s: %s",
-      run_.overruns - warned_overruns_, simulation_.step_size(), slowest_step_.seconds, slowest_step_.time,
+      run_.overruns - warned_overruns_, shown_.step_size(), slowest_step_.seconds, slowest_step_.time,
       recoveries.empty() ? "the scene is too large, or the processor busy" : recoveries.c_str());
   warned_overruns_ = run_.overruns;
   last_warning_ = now;
@@ -120,8 +146,9 @@ void Node::warn_if_slow() {
 }
 
 void Node::fail(const StepResult& result) {
+  stepping_.note_failure();
   run_.paused = true;
-  run_.failure = "step from t = " + std::to_string(simulation_.time()) + " s failed: " + simulation_.explain(result);
+  run_.failure = "step from t = " + std::to_string(shown_.time()) + " s failed: " + shown_.explain(result);
   ROS_ERROR_STREAM(run_.failure << "; paused at the last good state: " << private_node_.resolveName("resume")
                                 << " goes on from it, " << private_node_.resolveName("reset") << " starts again");
   clock_publisher_.advance();  // the last good sub-step may be news, and news need a stamp of their own
@@ -130,7 +157,7 @@ void Node::fail(const StepResult& result) {
 }
 
 void Node::describe_view() const {
-  const messages::SceneExtent extent = messages::scene_extent(simulation_);
+  const messages::SceneExtent extent = messages::scene_extent(shown_);
   private_node_.setParam("view/frame", root_frame());
   private_node_.setParam("view/center", std::vector<double>{extent.center.x(), extent.center.y(), extent.center.z()});
   private_node_.setParam("view/radius", extent.radius);
@@ -140,7 +167,7 @@ void Node::publish(bool force) {
   if (force) clock_publisher_.publish_now();
   const std::optional<ros::Time> stamp = clock_publisher_.stamp();
   if (!stamp) return;
-  state_publisher_.publish(*stamp, force);
+  state_publisher_.publish(*stamp, force || run_.lock_step);  // who commands the next step waits for it
   beam_state_publisher_.publish(*stamp, force);
   marker_publisher_.publish(*stamp, force);
   sensor_publisher_.publish(*stamp);
@@ -148,9 +175,11 @@ void Node::publish(bool force) {
 }
 
 void Node::pause() {
+  stepping_.halt();
+  take_reports();
   if (run_.paused) return;
   run_.paused = true;
-  ROS_INFO("paused at t = %g s", simulation_.time());
+  ROS_INFO("paused at t = %g s", shown_.time());
   publish(true);
 }
 
@@ -159,42 +188,70 @@ bool Node::resume() {
   // Who resumes after a failure is told whether the step works now.
   if (run_.failed() && !advance()) return false;
   run_.paused = false;
-  pacer_.clear_backlog();
-  ROS_INFO("resumed at t = %g s", simulation_.time());
+  run_.step_times.clear();
+  run_.lateness.clear();
+  clock_publisher_.restart();
+  ROS_INFO("resumed at t = %g s", shown_.time());
   publish(true);
+  stepping_.run(true);
   return true;
 }
 
+void Node::show() {
+  stepping_.simulation().snapshot(snapshot_);
+  shown_.restore(snapshot_);
+}
+
+void Node::catch_up() {
+  stepping_.between_steps([this](Simulation&) {
+    take_reports();
+    show();
+  });
+}
+
 void Node::reset() {
-  simulation_.reset();
-  ROS_INFO("reset");
-  begin_anew();
+  stepping_.between_steps([this](Simulation& simulation) {
+    take_reports();
+    simulation.reset();
+    ROS_INFO("reset");
+    begin_anew();
+  });
 }
 
 void Node::load_state(const std::string& file) {
-  read_checkpoint(simulation_, file);
-  ROS_INFO("at t = %g s, from '%s'", simulation_.time(), file.c_str());
-  begin_anew();
+  stepping_.between_steps([&](Simulation& simulation) {
+    take_reports();
+    read_checkpoint(simulation, file);
+    ROS_INFO("at t = %g s, from '%s'", simulation.time(), file.c_str());
+    begin_anew();
+  });
 }
 
 void Node::begin_anew() {
   command_interface_.forget_commands();
-  wrenches_.clear();
+  stepping_.wrenches().clear();
+  show();
   marker_publisher_.forget_largest_strain();
   run_.failure.clear();
   run_.last_step = {};
-  pacer_.clear_backlog();
   clock_publisher_.advance();  // the new state is news, too
   publish(true);
 }
 
 void Node::apply_wrench(const AppliedWrench& wrench, const ros::Time& start, double duration) {
   if (duration == 0) return;
-  const double delay = (start - clock_publisher_.stamp().value_or(start)).toSec(),
-               begin = run_.simulated_time + std::max(delay, 0.0);
-  const double end =
-      duration < 0 ? std::numeric_limits<double>::infinity() : begin + std::max(duration, simulation_.step_size());
-  wrenches_.add(wrench, begin, end);
+  stepping_.between_steps([&](Simulation& simulation) {
+    take_reports();
+    const double delay = (start - clock_publisher_.stamp().value_or(start)).toSec(),
+                 begin = run_.simulated_time + std::max(delay, 0.0);
+    const double end =
+        duration < 0 ? std::numeric_limits<double>::infinity() : begin + std::max(duration, simulation.step_size());
+    stepping_.wrenches().add(wrench, begin, end);
+  });
+}
+
+void Node::clear_wrenches() {
+  stepping_.between_steps([this](Simulation&) { stepping_.wrenches().clear(); });
 }
 
 bool Node::step(std::uint32_t steps) {

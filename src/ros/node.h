@@ -1,5 +1,5 @@
 #pragma once
-/// The loop: steps the simulation at the pace of the wall clock and lets everybody know.
+/// A thread steps the simulation, this one lets everybody know.
 
 #include <ros/node_handle.h>
 #include <ros/steady_timer.h>
@@ -9,6 +9,7 @@
 #include <string>
 
 #include "beam_state_publisher.h"
+#include "bell.h"
 #include "clock_publisher.h"
 #include "command_interface.h"
 #include "diagnostics.h"
@@ -16,18 +17,18 @@
 #include "flexarm/simulation/simulation.h"
 #include "frame_watch.h"
 #include "marker_publisher.h"
-#include "pacer.h"
 #include "parameters.h"
 #include "run_state.h"
 #include "sensor_publisher.h"
 #include "services.h"
 #include "state_publisher.h"
 #include "status_publisher.h"
-#include "wrench_schedule.h"
+#include "stepping_thread.h"
 
 namespace flexarm::node {
 
-/// A simulation on the ROS graph. Everything happens in the one thread that spins: no state is shared.
+/// A simulation on the ROS graph. All but steps happens in the one thread that spins. It looks at a copy of what is
+/// stepped, which gets each state in turn.
 class Node {
  public:
   /// Reads parameters and scene, and starts.
@@ -49,26 +50,35 @@ class Node {
   /// @param duration  [s]; < 0: for ever, 0: nothing, less than a step: one step
   /// @throws std::invalid_argument as Simulation::apply_wrenches().
   void apply_wrench(const AppliedWrench& wrench, const ros::Time& start, double duration);
-  void clear_wrenches() { wrenches_.clear(); }
+  void clear_wrenches();
   /// Makes steps whatever the wall clock says. @returns false if one failed; run().failure says why
   bool step(std::uint32_t steps);
 
   const RunState& run() const { return run_; }
-  const Simulation& simulation() const { return simulation_; }
+  const Simulation& simulation() const { return shown_; }
+  /// What was commanded up to now is in simulation(), too.
+  void catch_up();
 
  private:
-  /// The timer's callback: makes the steps that are due. [real-time loop]
+  /// What is due now and then.
   void tick();
-  /// One step and what has to happen around it. @returns false, and pauses, if it failed [real-time loop]
+  /// Publishes what steps came to.
+  void take_reports();
+  void take(const StepReport& report);
+  /// One step while the thread is halted. @returns false if it failed
   bool advance();
+  void warn_of_recoveries(const StepReport& report);
+  void be_real_time();
   /// Where steps have been dropped since the last warning, not too often: how many, and why.
   void warn_if_slow();
   void publish(bool force);
-  /// The state is another one than the last step's.
+  /// Takes over the state of what is stepped, between two steps.
+  void show();
+  /// The same, where it is another one than the last step's.
   void begin_anew();
   /// Sets ~view, which tells displays where to look.
   void describe_view() const;
-  std::string root_frame() const { return parameters_.frame_prefix + simulation_.scene().root_link; }
+  std::string root_frame() const { return parameters_.frame_prefix + shown_.scene().root_link; }
   void fail(const StepResult& result);
 
   /// By the clock on the wall, since the last warning.
@@ -81,10 +91,9 @@ class Node {
 
   ros::NodeHandle node_, private_node_{"~"};
   Parameters parameters_;
-  Simulation simulation_;
+  Simulation shown_;
+  Snapshot snapshot_;  ///< scratch
   RunState run_;
-  Pacer pacer_;
-  std::chrono::steady_clock::time_point last_tick_;
   SlowestStep slowest_step_;
   std::uint64_t warned_overruns_ = 0;
   std::chrono::steady_clock::time_point last_warning_;
@@ -95,8 +104,9 @@ class Node {
   SensorPublisher sensor_publisher_;
   StatusPublisher status_publisher_;
   Diagnostics diagnostics_;
+  Bell bell_;
+  SteppingThread stepping_;
   CommandInterface command_interface_;
-  WrenchSchedule wrenches_;
   FrameWatch frame_watch_;
   Services services_;
   ros::SteadyTimer timer_;

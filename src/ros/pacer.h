@@ -17,6 +17,9 @@ class Pacer {
   /// Wall time has passed [s].
   void elapse(double wall_time);
   bool step_due() const { return as_fast_as_possible() || backlog_ >= step_; }
+  /// Since the next step has been due, wall time; negative: until it is [s]. Not where that is always.
+  double lateness() const { return (backlog_ - step_) / real_time_factor_; }
+  bool as_fast_as_possible() const { return real_time_factor_ == 0; }
   void step_done();
   /// Nothing is due any more, and nothing counts as dropped: the simulation was paused.
   void clear_backlog() { backlog_ = 0; }
@@ -25,8 +28,6 @@ class Pacer {
   std::uint64_t overruns() const { return overruns_; }
 
  private:
-  bool as_fast_as_possible() const { return real_time_factor_ == 0; }
-
   double step_, real_time_factor_;
   double max_backlog_;  ///< simulated time [s]
   double backlog_ = 0;  ///< simulated time that is due [s]

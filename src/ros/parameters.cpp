@@ -158,6 +158,8 @@ Parameters read_parameters(const ros::NodeHandle& private_node) {
   reader.read("status_rate", parameters.status_rate);
   reader.read("publish_clock", parameters.publish_clock);
   reader.read("clock_rate", parameters.clock_rate);
+  reader.read("realtime", parameters.realtime);
+  reader.read("lock_step", parameters.lock_step);
   reader.read("recovery_wall_time", parameters.recovery_wall_time, true);
   reader.read("command_timeout", parameters.command_timeout, true);
   read_frame_prefix(reader, parameters.frame_prefix);

@@ -26,6 +26,8 @@ struct Parameters {
   bool publish_clock = false;
   double clock_rate = 100;        ///< [Hz]
   std::string frame_prefix;       ///< of all names of frames: empty, or with a slash at its end
+  bool realtime = false;          ///< SCHED_FIFO and locked memory; a step that takes too long is cut, not failed
+  bool lock_step = false;         ///< each step waits for its command
   double recovery_wall_time = 2;  ///< a step that has been halved is given up after so much wall time [s]; 0: never
   double command_timeout =
       0;  ///< efforts, and set points but positions, return to zero so long after a command [s]; 0: never

@@ -12,16 +12,20 @@ class PublicationSchedule {
 
   /// True if a message with this stamp is to be sent. `force`: whatever the rate, if only the stamp is new.
   bool due(const ros::Time& stamp, bool force = false) {
-    if (stamp <= last_ || (stamp < next_ && !force)) return false;
+    if (stamp <= last_ || (stamp + kRoundOff < next_ && !force)) return false;
     last_ = stamp;
+    // After a gap, a forced message in between, or round-off the rate counts from here.
+    const bool is_early = stamp < next_;
     next_ += period_;
-    // After a gap, or a forced message in between, the rate counts from here.
-    if (next_ <= stamp || force) next_ = stamp + period_;
+    if (is_early || next_ <= stamp) next_ = stamp + period_;
     return true;
   }
   const ros::Time& last() const { return last_; }
 
  private:
+  // Stamps and periods are whole nanoseconds.
+  static inline const ros::Duration kRoundOff{0, 10};
+
   ros::Duration period_;
   ros::Time last_, next_;
 };

@@ -53,6 +53,7 @@ bool Services::step(Step::Request& request, Step::Response& response) {
 }
 
 bool Services::save_state(SaveState::Request& request, SaveState::Response& response) {
+  simulator_.catch_up();
   try {
     write_checkpoint(simulator_.simulation(), request.file);
     response.success = true;

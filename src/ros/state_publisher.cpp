@@ -1,5 +1,8 @@
 #include "state_publisher.h"
 
+#include <algorithm>
+#include <cstdint>
+
 #include "advertise.h"
 
 namespace flexarm::node {
@@ -7,10 +10,12 @@ namespace flexarm::node {
 StatePublisher::StatePublisher(ros::NodeHandle& node, const Simulation& simulation, const RunState& run, double rate,
                                const std::string& frame_prefix)
     : schedule_(rate), messages_(simulation, frame_prefix) {
-  joint_state_publisher_ =
-      advertise<sensor_msgs::JointState>(node, "joint_states", 10, run, [this] { return messages_.joint_states(); });
+  // Who takes what he gets in bursts misses nothing of a second.
+  const auto queue_size = static_cast<std::uint32_t>(std::clamp(rate, 100.0, 1e5));
+  joint_state_publisher_ = advertise<sensor_msgs::JointState>(node, "joint_states", queue_size, run,
+                                                              [this] { return messages_.joint_states(); });
   transform_publisher_ =
-      advertise<tf2_msgs::TFMessage>(node, "/tf", 100, run, [this] { return messages_.transforms(); });
+      advertise<tf2_msgs::TFMessage>(node, "/tf", queue_size, run, [this] { return messages_.transforms(); });
   static_transform_publisher_ = node.advertise<tf2_msgs::TFMessage>("/tf_static", 100, true);
   static_transform_publisher_.publish(messages_.static_transforms(ros::Time::now()));
 }

@@ -6,6 +6,19 @@
 #include "messages/conversions.h"
 
 namespace flexarm::node {
+namespace {
+
+DurationStatistics statistics_of(const DurationHistogram& histogram) {
+  DurationStatistics statistics;
+  statistics.count = histogram.count();
+  statistics.median = histogram.quantile(0.5);
+  statistics.p99 = histogram.quantile(0.99);
+  statistics.p999 = histogram.quantile(0.999);
+  statistics.max = histogram.largest();
+  return statistics;
+}
+
+}  // namespace
 
 StatusPublisher::StatusPublisher(ros::NodeHandle& private_node, const Simulation& simulation, const RunState& run,
                                  double rate, const std::string& root_frame)
@@ -33,6 +46,9 @@ SimulatorStatus StatusPublisher::make_message(const ros::Time& stamp) {
   message.message = run_.failure;
   message.real_time_factor = real_time_factor_.measure(run_.simulated_time, RealTimeFactor::Clock::now(), run_.paused);
   message.overruns = run_.overruns;
+  message.missed = run_.missed;
+  message.step_time = statistics_of(run_.step_times);
+  message.lateness = statistics_of(run_.lateness);
   message.scheme = simulation_.scheme();
   message.iterations = run_.last_step.iterations;
   message.halvings = run_.counts.halvings;

@@ -1,47 +1,45 @@
 #pragma once
 /// Numbers that topics command to joint coordinates for some time.
 
+#include <array>
 #include <cstddef>
-#include <functional>
-#include <string>
+#include <limits>
 #include <vector>
 
 #include "flexarm/simulation/simulation.h"
 
 namespace flexarm::node {
 
-/// What is commanded, and how the simulation takes it.
-struct CommandedQuantity {
-  std::string name;                                    ///< for warnings: "effort"
-  std::function<std::string(std::size_t)> find_fault;  ///< why a coordinate does not take it, or nothing
-  std::function<void(std::size_t, double)> apply;      ///< to a coordinate
-  std::function<bool(std::size_t)> expires;            ///< false: the last command holds
+enum class Commanded : std::size_t { Effort, SetPoint };
+
+/// What the thread that spins hands to the one that steps.
+struct Command {
+  static constexpr double kForEver = std::numeric_limits<double>::infinity();
+  Commanded quantity = Commanded::Effort;
+  std::size_t coordinate = 0;
+  double value = 0;
+  double lifetime = kForEver;  ///< simulated, from the beginning of the step in which it acts first [s]
+  bool ends_message = true;    ///< commands of one message act from the same step on
 };
 
-/// A command is taken whole or refused whole. What expires becomes zero, in simulated time.
+/// Gives commands to a simulation. What expires becomes zero, in simulated time.
 class TimedCommands {
  public:
-  /// @param timeout  a command expires after it, unless that names a duration [s]; 0: never
-  TimedCommands(const Simulation& simulation, CommandedQuantity quantity, double timeout);
+  explicit TimedCommands(Simulation& simulation);
 
-  /// Carries a command out, or says what is wrong with it. @param duration  [s]; 0: the timeout counts
-  std::string command(const std::vector<std::string>& names, const std::vector<double>& values, double duration);
+  void apply(const Command& command);
   /// Before each step. `time`: simulated time that no reset sets back [s].
   void expire(double time);
   /// Nothing expires any more.
   void forget();
 
  private:
-  /// Empty if nothing is wrong; then the coordinates are in `commanded_`.
-  std::string find_fault(const std::vector<std::string>& names, const std::vector<double>& values, double duration);
+  void give(Commanded quantity, std::size_t coordinate, double value);
 
-  const Simulation& simulation_;
-  CommandedQuantity quantity_;
-  double timeout_;
-  double time_ = 0;                     ///< simulated, see expire()
-  std::vector<double> expiry_;          ///< per coordinate, simulated time [s]; infinite: never
-  double next_expiry_;                  ///< smallest of expiry_
-  std::vector<std::size_t> commanded_;  ///< scratch: coordinates of the command at hand
+  Simulation& simulation_;
+  double time_ = 0;                            ///< simulated, see expire()
+  std::array<std::vector<double>, 2> expiry_;  ///< per quantity and coordinate, simulated time [s]; infinite: never
+  double next_expiry_ = Command::kForEver;     ///< no later than the earliest of expiry_
 };
 
 }  // namespace flexarm::node

@@ -196,14 +196,24 @@ void read_damping(const XmlElement& damping, BeamDescription& description) {
   }
 }
 
+void read_prestrain(const XmlElement& prestrain, BeamDescription& description) {
+  prestrain.expect_only({"axial", "shear_y", "shear_z", "torsion", "bending_y", "bending_z"});
+  const auto has = [&](const char* strain) { return prestrain.has(strain); };
+  if (std::none_of(kStrains.begin(), kStrains.end(), has))
+    prestrain.error("at least one strain is expected: axial, shear_y, shear_z, torsion, bending_y or bending_z");
+  for (std::size_t i = 0; i < kStrains.size(); ++i)
+    if (prestrain.has(kStrains[i])) description.prestrain[i] = prestrain.function(kStrains[i]);
+}
+
 }  // namespace
 
 std::optional<BeamDescription> read_beam(const XmlElement& unowned, const std::string& link) {
   const XmlElement beam = unowned.with_owner("beam " + quoted(link));
   const std::size_t errors = beam.findings().error_count();
-  beam.expect_only({"elements", "order"}, {"centerline", "orientation", "circle", "tube", "rectangle", "box_tube",
-                                           "material", "section", "section_matrix", "stations", "damping", "hub"});
-  beam.expect_at_most_one({"centerline", "orientation", "material", "stations", "damping"});
+  beam.expect_only({"elements", "order"},
+                   {"centerline", "orientation", "circle", "tube", "rectangle", "box_tube", "material", "section",
+                    "section_matrix", "stations", "damping", "prestrain", "hub"});
+  beam.expect_at_most_one({"centerline", "orientation", "material", "stations", "damping", "prestrain"});
   BeamDescription description;
   description.location = beam.location();
   read_mesh(beam, description);
@@ -212,6 +222,7 @@ std::optional<BeamDescription> read_beam(const XmlElement& unowned, const std::s
   read_orientation(beam, first_tangent, description);
   if (const std::optional<Section> section = read_section(beam)) description.section = *section;
   if (const std::optional<XmlElement> damping = beam.child("damping")) read_damping(*damping, description);
+  if (const std::optional<XmlElement> prestrain = beam.child("prestrain")) read_prestrain(*prestrain, description);
   read_hubs(beam, description);
   if (beam.findings().error_count() > errors) return std::nullopt;
   return description;

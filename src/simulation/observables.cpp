@@ -56,11 +56,11 @@ void set_stress(const Vector6& strain, const Vector6& resultant, const Vector3& 
 /// What all points of an element share.
 template <int Nodes>
 struct DeformedElement {
-  DeformedElement(const BeamElement<Nodes>& element, const State& state)
+  DeformedElement(const Model& model, const BeamElement<Nodes>& element, const State& state)
       : nodes(element, state), local(nodes.orientation) {
     for (int k = 0; k < Nodes - 1; ++k) {
       strains[k] = centroid_strain(element, nodes, local, state, k);
-      resultants[k] = element.stiffness_points[k].stiffness * strains[k];
+      resultants[k] = element.stiffness_points[k].stiffness * elastic_strain(model, element, nodes, local, state, k);
     }
   }
 
@@ -92,7 +92,7 @@ void visit_points(const Model& model, const State& state, const BeamLink& beam, 
     const double end = beam.element_ends[e];
     visit_element(model, beam, static_cast<int>(e), [&](const auto& element) {
       constexpr int N = std::decay_t<decltype(element)>::kNodes;
-      const DeformedElement<N> deformed(element, state);
+      const DeformedElement<N> deformed(model, element, state);
       const int steps = (N - 1) * (between + 1);
       for (int k = e == 0 ? 0 : 1; k <= steps; ++k) {
         const int pair = std::min(k / (between + 1), N - 2);
@@ -128,7 +128,7 @@ BeamPoint section_point(const Model& model, const State& state, const BeamLink& 
   BeamPoint point;
   visit_element(model, beam, element, [&](const auto& data) {
     constexpr int N = std::decay_t<decltype(data)>::kNodes;
-    point = DeformedElement<N>(data, state).point(xi, beam.centroid, begin, end);
+    point = DeformedElement<N>(model, data, state).point(xi, beam.centroid, begin, end);
   });
   return point;
 }

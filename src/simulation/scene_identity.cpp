@@ -79,10 +79,12 @@ class SceneFingerprint {
   }
   void add(const scene::HubDescription& hub) { all(hub.end, hub.mass, hub.inertia); }
   void add(const scene::BeamDescription& beam) {
-    const auto& [elements, order, centreline, section_y, section, stiffness_damping, damping_shares, mass_damping, hubs,
-                 location] = beam;
+    const auto& [elements, order, centreline, section_y, section, stiffness_damping, damping_shares, mass_damping,
+                 prestrain, hubs, location] = beam;
     all(elements, order, centreline, section_y, section, stiffness_damping, mass_damping, hubs);
     if (damping_shares != Vector6::Ones()) add(damping_shares);
+    for (std::size_t i = 0; i < prestrain.size(); ++i)
+      if (prestrain[i]) all(i, *prestrain[i]);
   }
 
   // ---- links and joints

@@ -3,138 +3,33 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <optional>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
 #include "analysis/modes.h"
 #include "analysis/statics.h"
-#include "building/model_builder.h"
-#include "integrators/balance.h"
-#include "integrators/stepper.h"
 #include "math/so3.h"
 #include "model/carried_origin.h"
-#include "model/line_release.h"
 #include "simulation/failure_text.h"
+#include "simulation/implementation.h"
 #include "simulation/inside.h"
 #include "simulation/observables.h"
-#include "simulation/published_motion.h"
-#include "simulation/sensors.h"
-#include "simulation/settings.h"
-#include "simulation/start.h"
-#include "simulation/state_flaw.h"
 #include "simulation/wrenches.h"
 
 namespace flexarm {
-struct Simulation::Implementation {
-  scene::SceneDescription scene;
-  Scheme scheme;
-  StepSettings settings;
-  Model model;
-  std::unique_ptr<const Model> built;  ///< once something has left its line: the model as the scene says it
-  std::unique_ptr<Stepper> stepper;
-  State initial, state;
-  std::vector<std::string> coordinate_names, link_names;
-  std::map<std::string, std::size_t, std::less<>> coordinate_indices;  ///< by name
-  // What was made of `state`, for those who ask again.
-  mutable PublishedMotion published;
-  mutable std::optional<Energies> energies;
-  mutable std::optional<Momenta> momenta;
-  std::vector<double> static_norms;  // of the last solve for an equilibrium; empty after steps
-  scene::Diagnostics start_warnings;
-
-  Implementation(scene::SceneDescription description, const SimulationOptions& options)
-      : scene(with_options(std::move(description), options)),
-        scheme(made_for_integrator(scene, [&] { return make_scheme(scene.integrator); })),
-        settings(settings_of(scene, options)),
-        model(build_model(scene)),
-        stepper(made_for_integrator(scene, [&] { return std::make_unique<Stepper>(model, scheme, settings); })),
-        initial(initial_state(model)),
-        start_warnings(held_joints(scene, model)) {
-    require_suitable_slides(scene, scheme);
-    for (const Coordinate& coordinate : model.coordinates) {
-      coordinate_indices.emplace(coordinate.name, coordinate_names.size());
-      coordinate_names.push_back(coordinate.name);
-    }
-    for (const LinkFrame& link : model.links) link_names.push_back(link.name);
-    stepper->initialise(initial);
-    if (scene.starts_in_equilibrium) start_in_equilibrium(scene, model, scheme, settings, initial, start_warnings);
-    state = initial;
-    published.velocities(view());  // their memory is there from the start
-    take_samples(true);
-    initial.samples = state.samples;
-  }
-
-  void forget_published() {
-    published.forget();
-    energies.reset();
-    momenta.reset();
-  }
-
-  const Energies& published_energies() const {
-    if (!energies) energies = flexarm::energies(model, scheme, state);
-    return *energies;
-  }
-  const Momenta& published_momenta() const {
-    if (!momenta) momenta = flexarm::momenta(model, scheme, state);
-    return *momenta;
-  }
-
-  MotionView view() const { return {model, stepper->degrees_of_freedom(), scheme, state}; }
-
-  void take_samples(bool all) { flexarm::take_samples(scene.sensors, view(), published, all, state.samples); }
-
-  /// Of a pose about the origin of the state.
-  Pose in_world(const Pose& pose) const { return {world_origin(model, state) + pose.position, pose.orientation}; }
-  Pose in_world(const Attachment& frame) const {
-    const Pose pose = attached_pose(state, frame);
-    return frame.node < 0 ? Pose{model.origin + pose.position, pose.orientation} : in_world(pose);
-  }
-
-  void release_from_lines() {
-    for (int slide; (slide = slide_beyond_end(model, state)) >= 0;) {
-      State released = state_after_release(model, state, slide);
-      if (!built) built = std::make_unique<const Model>(model);
-      set_model(model_after_release(model, state, slide));
-      state = std::move(released);
-    }
-  }
-
-  void set_model(Model changed) {
-    model = std::move(changed);
-    stepper = std::make_unique<Stepper>(model, scheme, settings);
-  }
-
-  /// The model in which these slides have left their lines.
-  void fit_to_state(const State& other) {
-    if (other.left_lines == state.left_lines) return;
-    Model changed = built ? *built : model;
-    for (const int slide : other.left_lines) changed = model_after_release(std::move(changed), other, slide);
-    if (!built) built = std::make_unique<const Model>(model);
-    set_model(std::move(changed));
-  }
-
-  void set_state(const State& other) {
-    fit_to_state(other);
-    state = other;
-    forget_published();
-    stepper->invalidate();
-  }
-
-  void restore(const State& other) {
-    const std::string flaw = state_flaw(built ? *built : model, initial, finest_halving(settings), other);
-    if (!flaw.empty()) throw std::invalid_argument("not a state of this scene: " + flaw);
-    set_state(other);
-  }
-};
 
 Simulation::Simulation(scene::SceneDescription scene, const SimulationOptions& options)
     : implementation_(std::make_unique<Implementation>(std::move(scene), options)) {}
 Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+
+Simulation::Simulation(std::unique_ptr<Implementation> implementation) : implementation_(std::move(implementation)) {}
+
+Simulation Simulation::copy() const {
+  return Simulation(std::make_unique<Implementation>(*implementation_));
+}
 
 const scene::SceneDescription& Simulation::scene() const {
   return implementation_->scene;
@@ -159,15 +54,29 @@ std::string Simulation::explain(const StepResult& result) const {
 }
 
 void Simulation::reset() {
-  implementation_->set_state(implementation_->initial);
+  implementation_->set_state(*implementation_->initial);
 }
 
 Snapshot Simulation::snapshot() const {
-  return Snapshot(std::make_shared<const State>(implementation_->state));
+  Snapshot taken;
+  snapshot(taken);
+  return taken;
+}
+
+void Simulation::snapshot(Snapshot& snapshot) const {
+  if (snapshot.state_.use_count() == 1)
+    *snapshot.state_ = implementation_->state;
+  else
+    snapshot.state_ = std::make_shared<State>(implementation_->state);
+  snapshot.initial_ = implementation_->initial;
 }
 
 void Simulation::restore(const Snapshot& snapshot) {
-  implementation_->restore(*snapshot.state_);
+  if (!snapshot.state_) throw std::invalid_argument("nothing was taken into the snapshot");
+  if (snapshot.initial_ == implementation_->initial)
+    implementation_->set_state(*snapshot.state_);
+  else
+    implementation_->restore(*snapshot.state_);
 }
 
 double Simulation::time() const {

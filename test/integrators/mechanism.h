@@ -40,6 +40,8 @@ inline scene::SceneDescription every_joint_scene(bool floating) {
     if (!floating) {
       description.stiffness_proportional_damping = 0.02;
       description.mass_proportional_damping = 0.1;
+      description.prestrain = {std::nullopt,      TimeFunction(-0.03), TimeFunction::parse("0.1*t"),
+                               TimeFunction(0.2), std::nullopt,        TimeFunction::parse("0.3*cos(t)")};
     }
   };
   const auto joint = [&](const std::string& name, JointKind kind, const std::string& parent, const std::string& child,

@@ -294,6 +294,13 @@ TEST(GoodScene, DampingOfStrains) {
   EXPECT_EQ(good_scene().links[2].beam->damping_shares, Vector6::Ones());
 }
 
+TEST(GoodScene, Prestrain) {
+  const BeamDescription beam = good_scene().links[4].beam.value();
+  EXPECT_EQ(beam.prestrain[0].value()(5), 1e-4);
+  EXPECT_EQ(beam.prestrain[4].value()(0.5), 0.1);
+  for (const int other : {1, 2, 3, 5}) EXPECT_FALSE(beam.prestrain[other]);
+}
+
 TEST(GoodScene, Hub) {
   const BeamDescription beam = good_scene().links[4].beam.value();
   ASSERT_EQ(beam.hubs.size(), 1u);

@@ -244,6 +244,22 @@ TEST_F(Allocation, NoneInHalvedOrFailedSteps) {
   EXPECT_TRUE(failed);
 }
 
+// What one thread hands to another after each step.
+TEST_F(Allocation, NoneInSnapshotsThatAreTakenAgain) {
+  Simulation simulation(driven_scene().scene);
+  Snapshot first, second;
+  ASSERT_TRUE(simulation.step().converged);
+  simulation.snapshot(first);
+  simulation.snapshot(second);
+  EXPECT_EQ(allocations_in([&] {
+              for (int n = 0; n < 100; ++n) {
+                simulation.step();
+                simulation.snapshot(n % 2 == 0 ? first : second);
+              }
+            }),
+            0);
+}
+
 // What the node reads in every cycle.
 TEST_F(Allocation, NoneInObservables) {
   Simulation simulation(everything_scene().scene);

@@ -18,6 +18,7 @@ inline SceneBuilder everything_scene() {
     scene::BeamDescription& beam = b.beam("beam" + std::to_string(order), {{0.5, 0, 0}, {0.8, 0.2, 0}}, s, 1, order);
     beam.stiffness_proportional_damping = 1e-4;
     beam.mass_proportional_damping = 0.1;
+    beam.prestrain[4] = TimeFunction::parse("0.02*sin(9*t)");
   }
   const Vector3 tip(0.8, 0.2, 0);
   const std::pair<std::string, JointKind> bodies[] = {

@@ -1,6 +1,7 @@
 #pragma once
 /// What a scene file says: names and SI numbers, immutable, no numerics.
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -100,7 +101,9 @@ struct BeamDescription {
   /// Of it, what the strains have: axial, shear y z, torsion, bending y z; at most 1.
   Vector6 damping_shares = Vector6::Ones();
   double mass_proportional_damping = 0;  ///< [1/s]
-  std::vector<HubDescription> hubs;      ///< at most one at each end
+  /// Strains at which it is free of stress: axial, shear y z [-], torsion, bending y z [1/m]; empty: zero.
+  std::array<std::optional<TimeFunction>, 6> prestrain;
+  std::vector<HubDescription> hubs;  ///< at most one at each end
   SourceLocation location;
 };
 

@@ -16,6 +16,8 @@ class ResultWriter {
   virtual void close() = 0;
   /// To be called after each step: its outcome is in the solver's counts of the next row.
   virtual void note_step(const Simulation&, const StepResult& result) { counts_.add(result); }
+  /// Whether note_step() needs the simulation as it is after the step.
+  virtual bool looks_at_steps() const { return false; }
 
  protected:
   /// Counts since the row before; the next one's start again.

@@ -9,7 +9,7 @@
 namespace flexarm {
 
 /// Counts what steps came to, and keeps the largest rotation of a node in a step, the largest strain, and the largest
-/// defect of the energy account, with where and when they were.
+/// defect of the energy account, with where and when they were. One thread may count() while another one does look().
 class RunSummary {
  public:
   /// At the beginning of the run.

@@ -35,12 +35,12 @@ struct SimulationOptions {
   double recovery_wall_time = 0;
 };
 
-/// What a simulation was like at one time, to go back to it: a value, cheap to copy.
+/// What a simulation was like at one time, to go back to it, or to show it to another thread: a value, cheap to copy.
 class Snapshot {
  private:
   friend class Simulation;
-  explicit Snapshot(std::shared_ptr<const State> state) : state_(std::move(state)) {}
-  std::shared_ptr<const State> state_;
+  std::shared_ptr<State> state_;          // changed only by who holds it alone; null: nothing was taken yet
+  std::shared_ptr<const State> initial_;  // of the simulation from which it is, and of its copies
 };
 
 /// A scene in motion. Simulations share nothing that changes: each may run in a thread of its own. What asks for a
@@ -53,6 +53,9 @@ class Simulation {
   ~Simulation();
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
+  /// Another one of the same scene and settings, in the same state. Where one thread steps, another can look at a copy
+  /// to which it restores the snapshots that it is handed (SpscRing): all looks have the same bits as at the original.
+  Simulation copy() const;
 
   const scene::SceneDescription& scene() const;  ///< with the scheme and the step in use
   /// Warnings about the start that only the model can tell: joint coordinates that massless="lock" holds where they
@@ -69,8 +72,10 @@ class Simulation {
   /// Back to the scene's initial state; commands are forgotten.
   void reset();
   Snapshot snapshot() const;
+  /// The same in the memory of an earlier snapshot, if that has no copies: nothing is allocated then.
+  void snapshot(Snapshot& snapshot) const;
   /// Back to what it was like then, commands included.
-  /// @throws std::invalid_argument if the snapshot is another scene's or scheme's.
+  /// @throws std::invalid_argument if the snapshot is empty, or another scene's or scheme's.
   void restore(const Snapshot& snapshot);
 
   double time() const;         ///< [s]
@@ -155,6 +160,7 @@ class Simulation {
 
  private:
   struct Implementation;
+  explicit Simulation(std::unique_ptr<Implementation> implementation);
   friend struct Inside;  // simulation/inside.h, beside the source
   std::unique_ptr<Implementation> implementation_;
 };

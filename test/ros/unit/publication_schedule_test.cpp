@@ -19,6 +19,14 @@ TEST(PublicationSchedule, KeepsTheMeanRateWhereStepsDoNotDivideThePeriod) {
   EXPECT_NEAR(sent, 300, 1);
 }
 
+// Stamps are whole nanoseconds, periods too.
+TEST(PublicationSchedule, SendsEveryStepOfItsOwnRate) {
+  for (const double rate : {30.0, 700.0, 1000.0, 3000.0}) {
+    PublicationSchedule schedule(rate);
+    for (int step = 1; step <= 100000; ++step) ASSERT_TRUE(schedule.due(ros::Time(step / rate))) << rate << " " << step;
+  }
+}
+
 TEST(PublicationSchedule, SendsEveryStepThatIsLongerThanThePeriod) {
   PublicationSchedule schedule(100);
   for (int step = 1; step <= 10; ++step) EXPECT_TRUE(schedule.due(ros::Time(step * 0.1)));

@@ -1,0 +1,51 @@
+#pragma once
+/// From one thread to another: states of a simulation, commands to it.
+
+#include <atomic>
+#include <cassert>
+#include <cstddef>
+#include <vector>
+
+namespace flexarm {
+
+/// A queue of a fixed number of entries, which one thread fills and one other empties: in order, without locks, waiting
+/// or allocations. Entries live as long as the ring does, and keep their memory from one use to the next.
+template <class Entry>
+class SpscRing {
+ public:
+  /// @param capacity  entries that it can hold; > 0
+  explicit SpscRing(std::size_t capacity) : entries_(capacity) {}
+
+  // ---- for the thread that fills it
+  std::size_t room() const { return entries_.size() - (pushed_.load(kOwn) - popped_.load(kOther)); }
+  /// The `index`-th entry after those that were pushed, to be filled; `index` < room().
+  Entry& free_entry(std::size_t index = 0) {
+    assert(index < room());
+    return at(pushed_.load(kOwn) + index);
+  }
+  /// Hands over the first `count` free entries, all at once.
+  void push(std::size_t count = 1) { pushed_.store(pushed_.load(kOwn) + count, std::memory_order_release); }
+
+  // ---- for the thread that empties it
+  std::size_t size() const { return pushed_.load(kOther) - popped_.load(kOwn); }
+  bool empty() const { return size() == 0; }
+  /// The oldest entry; not of an empty ring.
+  Entry& front() {
+    assert(!empty());
+    return at(popped_.load(kOwn));
+  }
+  void pop() { popped_.store(popped_.load(kOwn) + 1, std::memory_order_release); }
+
+ private:
+  static constexpr std::memory_order kOwn = std::memory_order_relaxed, kOther = std::memory_order_acquire;
+  static constexpr std::size_t kCacheLine = 64;
+
+  Entry& at(std::size_t count) { return entries_[count % entries_.size()]; }
+
+  std::vector<Entry> entries_;
+  // Each is written by one of the threads, beside nothing of the other's. They count for ever.
+  alignas(kCacheLine) std::atomic<std::size_t> pushed_{0};
+  alignas(kCacheLine) std::atomic<std::size_t> popped_{0};
+};
+
+}  // namespace flexarm

@@ -1,0 +1,24 @@
+#pragma once
+/// Strains at which a beam is free of stress, as heat, tendons or shape memory make them.
+
+#include <array>
+
+#include "flexarm/math/pose.h"
+
+namespace flexarm {
+
+struct Model;
+
+/// Of all sections of a beam, beside the strains of its undeformed line.
+struct Prestrain {
+  /// Indices into Model::histories: axial, shear y, z [-], torsion, bending y, z [1/m] of the reference line; -1: none.
+  std::array<int, 6> histories = {-1, -1, -1, -1, -1, -1};
+  Vector3 centroid = Vector3::Zero();  ///< mass centroid in the section [m]
+};
+
+/// {Gamma, K} about the mass centroid [-, 1/m].
+Vector6 prestrain_at(const Model& model, const Prestrain& prestrain, double time);
+/// Of Model::prestrains; zero where `index` is negative.
+Vector6 prestrain_at(const Model& model, int index, double time);
+
+}  // namespace flexarm

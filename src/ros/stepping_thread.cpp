@@ -1,0 +1,189 @@
+#include "stepping_thread.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+namespace flexarm::node {
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+
+/// What has to wait asks again after this time; whom it waits for wakes it sooner, where that one may.
+constexpr std::chrono::milliseconds kLongestWait{100};
+constexpr std::chrono::microseconds kWaitForRoom{100};
+constexpr std::size_t kCommands = 4096;
+/// Reports that wait for who publishes them: so many steps may pass while he is busy. A state has some 17 numbers for
+/// each unknown.
+constexpr std::size_t kFewestReports = 64, kMostReports = 1024, kBytesOfReports = 32 << 20, kBytesPerUnknown = 136;
+/// Above ordinary real-time programs' default, below the kernel's own threads.
+constexpr int kPriority = 40;
+
+std::size_t report_count(const Simulation& simulation) {
+  return std::clamp(kBytesOfReports / (kBytesPerUnknown * (simulation.degrees_of_freedom() + 1)), kFewestReports,
+                    kMostReports);
+}
+
+double seconds(SteadyClock::duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
+
+}  // namespace
+
+SteppingThread::SteppingThread(Simulation simulation, const Pace& pace, std::function<void()> notify)
+    : simulation_(std::move(simulation)),
+      timed_commands_(simulation_),
+      wrenches_(simulation_),
+      pace_(pace),
+      pacer_(simulation_.step_size(), pace.real_time_factor, pace.max_catch_up),
+      reports_(report_count(simulation_)),
+      commands_(kCommands),
+      notify_(std::move(notify)),
+      thread_([this] { loop(); }) {
+  halted_.take();
+}
+
+SteppingThread::~SteppingThread() {
+  halt();
+  is_over_.store(true);
+  start_.give();
+  thread_.join();
+}
+
+void SteppingThread::run(bool anew) {
+  if (is_running_) return;
+  if (anew) {
+    pacer_.clear_backlog();
+    last_look_ = SteadyClock::now();
+  }
+  is_running_ = true;
+  has_failed_ = false;
+  may_run_.store(true);
+  start_.give();
+}
+
+void SteppingThread::halt() {
+  if (!is_running_) return;
+  may_run_.store(false);
+  wake_.give();
+  halted_.take();
+  is_running_ = false;
+}
+
+void SteppingThread::note_failure() {
+  if (!is_running_) return;
+  halted_.take();
+  is_running_ = false;
+}
+
+bool SteppingThread::command(const std::vector<Command>& message) {
+  if (commands_.room() < message.size() && !is_running_) take_commands();
+  if (commands_.room() < message.size()) return false;
+  for (std::size_t i = 0; i < message.size(); ++i) {
+    commands_.free_entry(i) = message[i];
+    commands_.free_entry(i).ends_message = i + 1 == message.size();
+  }
+  commands_.push(message.size());
+  if (pace_.lock_step) wake_.give();
+  return true;
+}
+
+std::string SteppingThread::make_real_time() {
+  std::string refused;
+  sched_param parameters{};
+  parameters.sched_priority = kPriority;
+  if (const int error = pthread_setschedparam(thread_.native_handle(), SCHED_FIFO, &parameters); error != 0)
+    refused += "SCHED_FIFO of priority " + std::to_string(kPriority) + ": " + std::strerror(error);
+  if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0)
+    refused += (refused.empty() ? "" : "; ") + std::string("mlockall: ") + std::strerror(errno);
+  return refused;
+}
+
+// ---------------------------------------------------------------- while it is halted, or by the thread itself
+
+bool SteppingThread::advance() {
+  return make_step(0, false);
+}
+
+bool SteppingThread::make_step(double lateness, bool is_paced) {
+  take_commands();
+  if (pace_.lock_step && !commands_.empty()) take_message();
+  wrenches_.update(time());
+  const SteadyClock::time_point start = SteadyClock::now();
+  const StepResult result = simulation_.step();
+  if (result.converged) ++steps_;
+  has_failed_ = !result.converged && !(pace_.cuts_late_steps && result.reason == StepResult::Reason::OutOfTime);
+  // The last place is kept for a failure, of which nobody must miss to hear.
+  if (reports_.room() < (has_failed_ ? 1 : 2)) return !has_failed_;
+  StepReport& report = reports_.free_entry();
+  simulation_.snapshot(report.state);
+  report.result = result;
+  report.has_failed = has_failed_;
+  report.steps = steps_;
+  report.overruns = pacer_.overruns();
+  report.is_paced = is_paced;
+  report.lateness = lateness;
+  report.duration = seconds(SteadyClock::now() - start);
+  reports_.push();
+  notify_();
+  return !has_failed_;
+}
+
+void SteppingThread::take_commands() {
+  timed_commands_.expire(time());
+  while (!pace_.lock_step && !commands_.empty()) take_message();
+}
+
+void SteppingThread::take_message() {
+  for (bool is_at_end = false; !is_at_end; commands_.pop()) {
+    timed_commands_.apply(commands_.front());
+    is_at_end = commands_.front().ends_message;
+  }
+}
+
+void SteppingThread::forget_commands() {
+  while (!commands_.empty()) commands_.pop();
+  timed_commands_.forget();
+}
+
+// ---------------------------------------------------------------- the thread
+
+void SteppingThread::loop() {
+  prctl(PR_SET_TIMERSLACK, 1);  // ns: it is woken when it asked for it, not together with others
+  while (true) {
+    if (!may_run_.load()) {
+      halted_.give();
+      start_.take();
+      if (is_over_.load()) return;
+    } else if (wait_for_step()) {
+      const bool is_paced = !pace_.lock_step && !pacer_.as_fast_as_possible();
+      if (!make_step(is_paced ? pacer_.lateness() : 0, is_paced))
+        may_run_.store(false);
+      else if (is_paced)
+        pacer_.step_done();
+    }
+  }
+}
+
+bool SteppingThread::wait_for_step() {
+  const SteadyClock::time_point now = SteadyClock::now();
+  if (pace_.lock_step || pacer_.as_fast_as_possible()) {
+    const bool has_room = reports_.room() > 1, is_commanded = !pace_.lock_step || !commands_.empty();
+    if (has_room && is_commanded) return true;
+    wake_.take_until(is_commanded ? now + SteadyClock::duration(kWaitForRoom) : now + kLongestWait);
+    return false;
+  }
+  pacer_.elapse(seconds(now - std::exchange(last_look_, now)));
+  if (pacer_.step_due()) return true;
+  const std::chrono::duration<double> rest(-pacer_.lateness());
+  wake_.take_until(now + std::min<SteadyClock::duration>(std::chrono::ceil<SteadyClock::duration>(rest), kLongestWait));
+  return false;
+}
+
+}  // namespace flexarm::node

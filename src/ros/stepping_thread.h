@@ -1,0 +1,119 @@
+#pragma once
+/// The thread that steps the simulation at the pace of the wall clock.
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "flexarm/simulation/simulation.h"
+#include "flexarm/simulation/spsc_ring.h"
+#include "pacer.h"
+#include "semaphore.h"
+#include "timed_commands.h"
+#include "wrench_schedule.h"
+
+namespace flexarm::node {
+
+struct Pace {
+  double real_time_factor = 1;   ///< simulated per wall time; 0: as fast as possible
+  double max_catch_up = 0.1;     ///< backlog that is made up before steps are dropped, wall time [s]
+  bool lock_step = false;        ///< each step waits for the message that commands it, whatever the wall clock says
+  bool cuts_late_steps = false;  ///< one that runs out of time (SimulationOptions::recovery_wall_time) has not failed
+};
+
+/// What a step came to.
+struct StepReport {
+  Snapshot state;  ///< after it, or after the last good sub-step
+  StepResult result;
+  bool has_failed = false;
+  std::uint64_t steps = 0;     ///< that were done since the beginning
+  std::uint64_t overruns = 0;  ///< dropped since then
+  bool is_paced = false;       ///< it was due by the wall clock,
+  double lateness = 0;         ///< and began so much later [s]
+  double duration = 0;         ///< by the wall clock [s]
+};
+
+/// Steps and reports while it runs; while it is halted the simulation belongs to the thread that halted it, the one
+/// that spins. Neither waits for the other meanwhile: commands go one way through a ring, reports the other way.
+class SteppingThread {
+ public:
+  /// Halted. @param notify  is called by this thread after each report
+  SteppingThread(Simulation simulation, const Pace& pace, std::function<void()> notify);
+  ~SteppingThread();
+  SteppingThread(const SteppingThread&) = delete;
+  SteppingThread& operator=(const SteppingThread&) = delete;
+
+  // ---- for the thread that spins
+  /// @param anew  time that has passed meanwhile does not count
+  void run(bool anew);
+  /// Returns at the end of the step that is under way.
+  void halt();
+  /// A report tells that a step has failed, after which the thread is halted.
+  void note_failure();
+  /// Halts for as long as `act(simulation)` takes, if it runs.
+  template <class Act>
+  void between_steps(const Act& act);
+  /// A message acts from the next step on; in lock step, each makes one. @returns false if too many wait already
+  bool command(const std::vector<Command>& message);
+  /// What steps came to, in order. Where the caller does not keep up and the clock does not wait, it misses some.
+  SpscRing<StepReport>& reports() { return reports_; }
+  /// The thread has the processor before all that is not real-time, too, and its memory stays there.
+  /// @returns what the system refuses; empty: nothing
+  std::string make_real_time();
+
+  // ---- for who has halted it
+  Simulation& simulation() { return simulation_; }
+  WrenchSchedule& wrenches() { return wrenches_; }
+  /// One step and what belongs to it. @returns false if it failed
+  bool advance();
+  /// What was commanded acts now, but in lock step, where it is for the steps to come.
+  void take_commands();
+  /// Commands that wait are dropped, and none expires any more.
+  void forget_commands();
+
+ private:
+  /// Simulated, since the beginning; a reset does not set it back [s].
+  double time() const { return static_cast<double>(steps_) * simulation_.step_size(); }
+  void loop();
+  /// True once the next step may begin; else waits for a while.
+  bool wait_for_step();
+  bool make_step(double lateness, bool is_paced);
+  void take_message();
+
+  Simulation simulation_;
+  TimedCommands timed_commands_;
+  WrenchSchedule wrenches_;
+  Pace pace_;
+  Pacer pacer_;
+  std::chrono::steady_clock::time_point last_look_;  ///< at the clock
+  std::uint64_t steps_ = 0;
+  bool has_failed_ = false;  ///< the last step
+  SpscRing<StepReport> reports_;
+  SpscRing<Command> commands_;
+  std::function<void()> notify_;
+  bool is_running_ = false;  ///< as the thread that spins knows it
+  std::atomic<bool> may_run_{false}, is_over_{false};
+  Semaphore wake_, halted_, start_;
+  std::thread thread_;
+};
+
+template <class Act>
+void SteppingThread::between_steps(const Act& act) {
+  struct Pause {
+    SteppingThread& thread;
+    const bool was_running = thread.is_running_;
+    ~Pause() {
+      if (was_running && !thread.has_failed_) thread.run(false);
+    }
+  };
+  const Pause pause{*this};
+  halt();
+  take_commands();
+  act(simulation_);
+}
+
+}  // namespace flexarm::node

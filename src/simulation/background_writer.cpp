@@ -1,0 +1,116 @@
+#include "simulation/background_writer.h"
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <utility>
+
+#include "simulation/inside.h"
+#include "simulation/state_numbers.h"
+
+namespace flexarm {
+namespace {
+
+/// Who finds nothing to do looks again after this time: to be woken for every row would cost the other thread more
+/// than to hand it over.
+constexpr std::chrono::microseconds kPause{500};
+/// Of states on their way.
+constexpr std::size_t kMostBytes = 1 << 22;
+constexpr std::size_t kFewest = 16, kMost = 1024;
+
+std::size_t entries_for(const State& state) {
+  std::size_t numbers = 0;
+  for_each_number(state, [&](const char*, double) { ++numbers; });
+  return std::clamp(kMostBytes / (numbers * sizeof(double)), kFewest, kMost);
+}
+
+/// While it lives, no signal is delivered to this thread and to those that it starts: those are the main thread's.
+class SignalsBlocked {
+ public:
+  SignalsBlocked() {
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before_);
+  }
+  ~SignalsBlocked() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  SignalsBlocked(const SignalsBlocked&) = delete;
+  SignalsBlocked& operator=(const SignalsBlocked&) = delete;
+
+ private:
+  sigset_t before_;
+};
+
+}  // namespace
+
+BackgroundWriter::BackgroundWriter(std::unique_ptr<ResultWriter> writer, const Simulation& simulation)
+    : writer_(std::move(writer)), mirror_(simulation.copy()), ring_(entries_for(state_of(simulation))) {
+  const SignalsBlocked blocked;
+  thread_ = std::thread([this] { write_entries(); });
+}
+
+BackgroundWriter::~BackgroundWriter() {
+  finish();
+}
+
+void BackgroundWriter::write_row(const Simulation& simulation) {
+  Entry& entry = next_entry();
+  entry.is_row = entry.has_state = true;
+  simulation.snapshot(entry.state);
+  ring_.push();
+}
+
+void BackgroundWriter::note_step(const Simulation& simulation, const StepResult& result) {
+  Entry& entry = next_entry();
+  entry.is_row = false;
+  entry.result = result;
+  entry.has_state = looks_at_steps();
+  if (entry.has_state) simulation.snapshot(entry.state);
+  ring_.push();
+}
+
+void BackgroundWriter::close() {
+  finish();
+  throw_error();
+  writer_->close();
+}
+
+BackgroundWriter::Entry& BackgroundWriter::next_entry() {
+  throw_error();
+  while (ring_.room() == 0) {
+    std::this_thread::sleep_for(kPause);
+    throw_error();
+  }
+  return ring_.free_entry();
+}
+
+void BackgroundWriter::throw_error() {
+  if (has_failed_.load(std::memory_order_acquire)) std::rethrow_exception(error_);
+}
+
+void BackgroundWriter::finish() {
+  is_over_.store(true, std::memory_order_release);
+  if (thread_.joinable()) thread_.join();
+}
+
+void BackgroundWriter::write_entries() {
+  try {
+    for (bool was_over = false; !was_over;) {
+      was_over = is_over_.load(std::memory_order_acquire);
+      if (ring_.empty() && !was_over) std::this_thread::sleep_for(kPause);
+      for (; !ring_.empty(); ring_.pop()) write(ring_.front());
+    }
+  } catch (...) {
+    error_ = std::current_exception();
+    has_failed_.store(true, std::memory_order_release);
+  }
+}
+
+void BackgroundWriter::write(const Entry& entry) {
+  if (entry.has_state) mirror_.restore(entry.state);
+  if (entry.is_row)
+    writer_->write_row(mirror_);
+  else
+    writer_->note_step(mirror_, entry.result);
+}
+
+}  // namespace flexarm

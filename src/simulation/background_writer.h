@@ -1,0 +1,49 @@
+#pragma once
+/// Results that a thread of its own writes while the simulation goes on.
+
+#include <atomic>
+#include <exception>
+#include <memory>
+#include <thread>
+
+#include "flexarm/simulation/result_writer.h"
+#include "flexarm/simulation/spsc_ring.h"
+
+namespace flexarm {
+
+/// Hands another writer the same rows, all of them and in the same order, from copies of the states. Who is ahead of
+/// the writer by more than some rows waits for it. Where it fails, its error comes out of the next call.
+class BackgroundWriter : public ResultWriter {
+ public:
+  BackgroundWriter(std::unique_ptr<ResultWriter> writer, const Simulation& simulation);
+  /// All rows that were handed over are written.
+  ~BackgroundWriter() override;
+
+  void write_row(const Simulation& simulation) override;
+  void note_step(const Simulation& simulation, const StepResult& result) override;
+  bool looks_at_steps() const override { return writer_->looks_at_steps(); }
+  void close() override;
+
+ private:
+  struct Entry {
+    bool is_row = false;
+    StepResult result;  // of a step, which is no row
+    bool has_state = false;
+    Snapshot state;
+  };
+
+  Entry& next_entry();
+  void throw_error();
+  void finish();
+  void write_entries();
+  void write(const Entry& entry);
+
+  std::unique_ptr<ResultWriter> writer_;
+  Simulation mirror_;  // never steps: what the writer looks at
+  SpscRing<Entry> ring_;
+  std::atomic<bool> is_over_{false}, has_failed_{false};
+  std::exception_ptr error_;  // once it has failed
+  std::thread thread_;
+};
+
+}  // namespace flexarm

@@ -1,0 +1,144 @@
+#pragma once
+/// What a simulation keeps.
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "building/model_builder.h"
+#include "flexarm/scene/scene_description.h"
+#include "flexarm/simulation/simulation.h"
+#include "integrators/balance.h"
+#include "integrators/stepper.h"
+#include "model/carried_origin.h"
+#include "model/line_release.h"
+#include "simulation/observables.h"
+#include "simulation/published_motion.h"
+#include "simulation/sensors.h"
+#include "simulation/settings.h"
+#include "simulation/start.h"
+#include "simulation/state_flaw.h"
+
+namespace flexarm {
+
+struct Simulation::Implementation {
+  scene::SceneDescription scene;
+  Scheme scheme;
+  StepSettings settings;
+  Model model;
+  std::unique_ptr<const Model> built;  ///< once something has left its line: the model as the scene says it
+  std::unique_ptr<Stepper> stepper;
+  std::shared_ptr<const State> initial;  ///< of this simulation and its copies
+  State state;
+  std::vector<std::string> coordinate_names, link_names;
+  std::map<std::string, std::size_t, std::less<>> coordinate_indices;  ///< by name
+  // What was made of `state`, for those who ask again.
+  mutable PublishedMotion published;
+  mutable std::optional<Energies> energies;
+  mutable std::optional<Momenta> momenta;
+  std::vector<double> static_norms;  // of the last solve for an equilibrium; empty after steps
+  scene::Diagnostics start_warnings;
+
+  Implementation(scene::SceneDescription description, const SimulationOptions& options)
+      : scene(with_options(std::move(description), options)),
+        scheme(made_for_integrator(scene, [&] { return make_scheme(scene.integrator); })),
+        settings(settings_of(scene, options)),
+        model(build_model(scene)),
+        stepper(made_for_integrator(scene, [&] { return std::make_unique<Stepper>(model, scheme, settings); })),
+        state(initial_state(model)),
+        start_warnings(held_joints(scene, model)) {
+    require_suitable_slides(scene, scheme);
+    for (const Coordinate& coordinate : model.coordinates) {
+      coordinate_indices.emplace(coordinate.name, coordinate_names.size());
+      coordinate_names.push_back(coordinate.name);
+    }
+    for (const LinkFrame& link : model.links) link_names.push_back(link.name);
+    stepper->initialise(state);
+    if (scene.starts_in_equilibrium) start_in_equilibrium(scene, model, scheme, settings, state, start_warnings);
+    published.velocities(view());  // their memory is there from the start
+    take_samples(true);
+    initial = std::make_shared<const State>(state);
+  }
+
+  Implementation(const Implementation& other)
+      : scene(other.scene),
+        scheme(other.scheme),
+        settings(other.settings),
+        model(other.model),
+        built(other.built ? std::make_unique<const Model>(*other.built) : nullptr),
+        stepper(std::make_unique<Stepper>(model, scheme, settings)),
+        initial(other.initial),
+        state(other.state),
+        coordinate_names(other.coordinate_names),
+        link_names(other.link_names),
+        coordinate_indices(other.coordinate_indices),
+        static_norms(other.static_norms),
+        start_warnings(other.start_warnings) {}
+
+  void forget_published() {
+    published.forget();
+    energies.reset();
+    momenta.reset();
+  }
+
+  const Energies& published_energies() const {
+    if (!energies) energies = flexarm::energies(model, scheme, state);
+    return *energies;
+  }
+  const Momenta& published_momenta() const {
+    if (!momenta) momenta = flexarm::momenta(model, scheme, state);
+    return *momenta;
+  }
+
+  MotionView view() const { return {model, stepper->degrees_of_freedom(), scheme, state}; }
+
+  void take_samples(bool all) { flexarm::take_samples(scene.sensors, view(), published, all, state.samples); }
+
+  /// Of a pose about the origin of the state.
+  Pose in_world(const Pose& pose) const { return {world_origin(model, state) + pose.position, pose.orientation}; }
+  Pose in_world(const Attachment& frame) const {
+    const Pose pose = attached_pose(state, frame);
+    return frame.node < 0 ? Pose{model.origin + pose.position, pose.orientation} : in_world(pose);
+  }
+
+  void release_from_lines() {
+    for (int slide; (slide = slide_beyond_end(model, state)) >= 0;) {
+      State released = state_after_release(model, state, slide);
+      if (!built) built = std::make_unique<const Model>(model);
+      set_model(model_after_release(model, state, slide));
+      state = std::move(released);
+    }
+  }
+
+  void set_model(Model changed) {
+    model = std::move(changed);
+    stepper = std::make_unique<Stepper>(model, scheme, settings);
+  }
+
+  /// The model in which these slides have left their lines.
+  void fit_to_state(const State& other) {
+    if (other.left_lines == state.left_lines) return;
+    Model changed = built ? *built : model;
+    for (const int slide : other.left_lines) changed = model_after_release(std::move(changed), other, slide);
+    if (!built) built = std::make_unique<const Model>(model);
+    set_model(std::move(changed));
+  }
+
+  void set_state(const State& other) {
+    fit_to_state(other);
+    state = other;
+    forget_published();
+    stepper->invalidate();
+  }
+
+  void restore(const State& other) {
+    const std::string flaw = state_flaw(built ? *built : model, *initial, finest_halving(settings), other);
+    if (!flaw.empty()) throw std::invalid_argument("not a state of this scene: " + flaw);
+    set_state(other);
+  }
+};
+
+}  // namespace flexarm

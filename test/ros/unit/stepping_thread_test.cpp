@@ -1,0 +1,199 @@
+#include "ros/stepping_thread.h"
+
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "support/scene_builder.h"
+
+namespace flexarm::node {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// A rotor on a hinge, which fails where it is driven too fast; step [s].
+Simulation rotor(double step) {
+  test::SceneBuilder b;
+  b.body("rotor", 1, {0.1, 0, 0}, Matrix3::Identity());
+  b.joint("shaft", scene::JointKind::Continuous, "world", "rotor", {0, 0, 0}, {0, 0, 1});
+  b.scene.integrator.step = step;
+  b.scene.integrator.max_halvings = 2;
+  return Simulation(b.scene);
+}
+
+std::vector<Command> effort(double value, double lifetime = Command::kForEver) {
+  return {{Commanded::Effort, 0, value, lifetime}};
+}
+
+/// What one step after the other came to.
+class Reports {
+ public:
+  explicit Reports(SteppingThread& thread) : thread_(thread), shown_(thread.simulation().copy()) {}
+
+  /// Takes `count` of them, for which it waits.
+  void take(std::size_t count) {
+    for (; count > 0; --count) {
+      while (thread_.reports().empty()) std::this_thread::sleep_for(milliseconds(1));
+      StepReport& report = thread_.reports().front();
+      shown_.restore(report.state);
+      steps.push_back(report.steps);
+      efforts.push_back(shown_.effort(0));
+      positions.push_back(shown_.position(0));
+      last = report;
+      thread_.reports().pop();
+    }
+  }
+  void take_all() { take(thread_.reports().size()); }
+
+  std::vector<std::uint64_t> steps;
+  std::vector<double> efforts, positions;
+  StepReport last;
+
+ private:
+  SteppingThread& thread_;
+  Simulation shown_;
+};
+
+bool are_consecutive(const std::vector<std::uint64_t>& steps) {
+  for (std::size_t i = 0; i < steps.size(); ++i)
+    if (steps[i] != i + 1) return false;
+  return true;
+}
+
+TEST(SteppingThread, KeepsPaceWithTheClock) {
+  SteppingThread thread(rotor(0.001), {}, [] {});
+  Reports reports(thread);
+  const auto begin = std::chrono::steady_clock::now();
+  thread.run(true);
+  reports.take(200);
+  thread.halt();
+  const double wall_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  EXPECT_TRUE(are_consecutive(reports.steps));
+  EXPECT_GE(wall_time, 0.2);
+  EXPECT_TRUE(reports.last.is_paced);
+  EXPECT_GE(reports.last.lateness, 0);
+}
+
+TEST(SteppingThread, WaitsForNobodyWhereTheClockDoesNot) {
+  SteppingThread thread(rotor(1e-4), {}, [] {});
+  thread.run(true);
+  std::this_thread::sleep_for(milliseconds(300));  // 3000 steps, of which 1024 may wait
+  thread.halt();
+  Reports reports(thread);
+  reports.take_all();
+  EXPECT_TRUE(are_consecutive(reports.steps));
+  EXPECT_TRUE(thread.advance());
+  reports.take(1);
+  EXPECT_GT(reports.last.steps, reports.steps.size());
+}
+
+TEST(SteppingThread, AsFastAsPossibleMissesNothing) {
+  int notices = 0;
+  Pace pace;
+  pace.real_time_factor = 0;
+  SteppingThread thread(rotor(0.001), pace, [&] { ++notices; });
+  Reports reports(thread);
+  thread.run(true);
+  for (int n = 0; n < 5; ++n) {
+    std::this_thread::sleep_for(milliseconds(5));
+    reports.take(1000);
+  }
+  thread.halt();
+  reports.take_all();
+  EXPECT_TRUE(are_consecutive(reports.steps));
+  EXPECT_EQ(static_cast<std::size_t>(notices), reports.steps.size());
+}
+
+TEST(SteppingThread, CommandsActFromTheNextStepForAsLongAsTheyLive) {
+  SteppingThread thread(rotor(0.001), {}, [] {});
+  Reports reports(thread);
+  ASSERT_TRUE(thread.advance());
+  ASSERT_TRUE(thread.command(effort(2, 0.003)));
+  for (int n = 0; n < 5; ++n) ASSERT_TRUE(thread.advance());
+  reports.take(6);
+  EXPECT_EQ(reports.efforts, (std::vector<double>{0, 2, 2, 2, 0, 0}));
+  EXPECT_TRUE(thread.command(effort(2)));
+  thread.forget_commands();
+  ASSERT_TRUE(thread.advance());
+  reports.take(1);
+  EXPECT_EQ(reports.efforts.back(), 0);
+}
+
+TEST(SteppingThread, AFloodWhileItIsHaltedLeavesTheLastCommand) {
+  SteppingThread thread(rotor(0.001), {}, [] {});
+  Reports reports(thread);
+  for (int n = 0; n <= 20000; ++n) ASSERT_TRUE(thread.command(effort(n * 1e-4)));
+  ASSERT_TRUE(thread.advance());
+  reports.take(1);
+  EXPECT_EQ(reports.efforts.back(), 2);
+}
+
+/// Positions after each of the steps that messages command, which come with such pauses between them.
+std::vector<double> positions_in_lock_step(milliseconds pause) {
+  Pace pace;
+  pace.lock_step = true;
+  SteppingThread thread(rotor(0.001), pace, [] {});
+  Reports reports(thread);
+  thread.run(true);
+  for (int n = 0; n < 50; ++n) {
+    thread.command(effort(0.1 * n));
+    if (n % 10 == 0) std::this_thread::sleep_for(pause);
+  }
+  reports.take(50);
+  std::this_thread::sleep_for(milliseconds(20));
+  EXPECT_TRUE(thread.reports().empty()) << "a step that nobody commanded";
+  return reports.positions;
+}
+
+TEST(SteppingThread, LockStepMakesAStepOfEachMessageWhenever) {
+  const std::vector<double> at_once = positions_in_lock_step(milliseconds(0));
+  EXPECT_EQ(positions_in_lock_step(milliseconds(5)), at_once);
+  EXPECT_EQ(std::set<double>(at_once.begin(), at_once.end()).size(), at_once.size()) << "each effort moves it on";
+}
+
+TEST(SteppingThread, BetweenStepsTheSimulationIsTheCallers) {
+  SteppingThread thread(rotor(0.001), {}, [] {});
+  Reports reports(thread);
+  thread.run(true);
+  for (int n = 0; n < 20; ++n)
+    thread.between_steps([&](Simulation& simulation) {
+      const double time = simulation.time();
+      std::this_thread::sleep_for(milliseconds(1));
+      EXPECT_EQ(simulation.time(), time);
+    });
+  reports.take(20);
+  thread.halt();
+  reports.take_all();
+  EXPECT_TRUE(are_consecutive(reports.steps));
+}
+
+TEST(SteppingThread, HaltsWhereAStepFailsAndGoesOn) {
+  SteppingThread thread(rotor(0.1), {}, [] {});
+  Reports reports(thread);
+  thread.command(effort(1e6));
+  thread.run(true);
+  while (!reports.last.has_failed) reports.take(1);
+  thread.note_failure();
+  EXPECT_FALSE(reports.last.result.converged);
+  std::this_thread::sleep_for(milliseconds(250));
+  EXPECT_TRUE(thread.reports().empty());
+  thread.between_steps([](Simulation& simulation) { simulation.reset(); });
+  thread.run(true);
+  reports.take(1);
+  EXPECT_FALSE(reports.last.has_failed);
+}
+
+TEST(SteppingThread, MayBeHaltedWhereAStepFails) {
+  for (int n = 0; n < 20; ++n) {
+    Pace pace;
+    pace.real_time_factor = 0;
+    SteppingThread thread(rotor(0.1), pace, [] {});
+    thread.command(effort(1e6));
+    thread.run(true);
+    thread.between_steps([](Simulation&) {});
+    thread.halt();
+  }
+}
+
+}  // namespace
+}  // namespace flexarm::node
