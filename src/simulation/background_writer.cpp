@@ -13,7 +13,7 @@ namespace {
 
 /// Who finds nothing to do looks again after this time: to be woken for every row would cost the other thread more
 /// than to hand it over.
-constexpr std::chrono::microseconds kPause{500};
+constexpr std::chrono::microseconds kPause{200};
 /// Of states on their way.
 constexpr std::size_t kMostBytes = 1 << 22;
 constexpr std::size_t kFewest = 16, kMost = 1024;
@@ -43,7 +43,10 @@ class SignalsBlocked {
 }  // namespace
 
 BackgroundWriter::BackgroundWriter(std::unique_ptr<ResultWriter> writer, const Simulation& simulation)
-    : writer_(std::move(writer)), mirror_(simulation.copy()), ring_(entries_for(state_of(simulation))) {
+    : writer_(std::move(writer)),
+      mirror_(simulation.copy()),
+      ring_(entries_for(state_of(simulation))),
+      returned_(entries_for(state_of(simulation))) {
   const SignalsBlocked blocked;
   thread_ = std::thread([this] { write_entries(); });
 }
@@ -55,7 +58,7 @@ BackgroundWriter::~BackgroundWriter() {
 void BackgroundWriter::write_row(const Simulation& simulation) {
   Entry& entry = next_entry();
   entry.is_row = entry.has_state = true;
-  simulation.snapshot(entry.state);
+  entry.state = snapshot_of(simulation);
   ring_.push();
 }
 
@@ -64,7 +67,7 @@ void BackgroundWriter::note_step(const Simulation& simulation, const StepResult&
   entry.is_row = false;
   entry.result = result;
   entry.has_state = looks_at_steps();
-  if (entry.has_state) simulation.snapshot(entry.state);
+  if (entry.has_state) entry.state = snapshot_of(simulation);
   ring_.push();
 }
 
@@ -81,6 +84,19 @@ BackgroundWriter::Entry& BackgroundWriter::next_entry() {
     throw_error();
   }
   return ring_.free_entry();
+}
+
+/// In the memory that came back last, which is still in the processor's cache: to go round all of the ring's would take
+/// three times as long.
+Snapshot BackgroundWriter::snapshot_of(const Simulation& simulation) {
+  for (; !returned_.empty(); returned_.pop()) free_.push_back(std::move(returned_.front()));
+  Snapshot snapshot;
+  if (!free_.empty()) {
+    snapshot = std::move(free_.back());
+    free_.pop_back();
+  }
+  simulation.snapshot(snapshot);
+  return snapshot;
 }
 
 void BackgroundWriter::throw_error() {
@@ -105,8 +121,12 @@ void BackgroundWriter::write_entries() {
   }
 }
 
-void BackgroundWriter::write(const Entry& entry) {
-  if (entry.has_state) mirror_.restore(entry.state);
+void BackgroundWriter::write(Entry& entry) {
+  if (entry.has_state) {
+    mirror_.restore(entry.state);
+    returned_.free_entry() = std::move(entry.state);
+    returned_.push();
+  }
   if (entry.is_row)
     writer_->write_row(mirror_);
   else

@@ -5,6 +5,7 @@
 #include <exception>
 #include <memory>
 #include <thread>
+#include <vector>
 
 #include "flexarm/simulation/result_writer.h"
 #include "flexarm/simulation/spsc_ring.h"
@@ -33,14 +34,17 @@ class BackgroundWriter : public ResultWriter {
   };
 
   Entry& next_entry();
+  Snapshot snapshot_of(const Simulation& simulation);
   void throw_error();
   void finish();
   void write_entries();
-  void write(const Entry& entry);
+  void write(Entry& entry);
 
   std::unique_ptr<ResultWriter> writer_;
   Simulation mirror_;  // never steps: what the writer looks at
   SpscRing<Entry> ring_;
+  SpscRing<Snapshot> returned_;  // memory, by the thread that writes
+  std::vector<Snapshot> free_;   // memory, what came back last at the end
   std::atomic<bool> is_over_{false}, has_failed_{false};
   std::exception_ptr error_;  // once it has failed
   std::thread thread_;

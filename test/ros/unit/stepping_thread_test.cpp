@@ -12,13 +12,13 @@ namespace {
 using std::chrono::milliseconds;
 
 /// A rotor on a hinge, which fails where it is driven too fast; step [s].
-Simulation rotor(double step) {
+Simulation rotor(double step, int max_halvings = 2, const SimulationOptions& options = {}) {
   test::SceneBuilder b;
   b.body("rotor", 1, {0.1, 0, 0}, Matrix3::Identity());
   b.joint("shaft", scene::JointKind::Continuous, "world", "rotor", {0, 0, 0}, {0, 0, 1});
   b.scene.integrator.step = step;
-  b.scene.integrator.max_halvings = 2;
-  return Simulation(b.scene);
+  b.scene.integrator.max_halvings = max_halvings;
+  return Simulation(b.scene, options);
 }
 
 std::vector<Command> effort(double value, double lifetime = Command::kForEver) {
@@ -33,7 +33,8 @@ class Reports {
   /// Takes `count` of them, for which it waits.
   void take(std::size_t count) {
     for (; count > 0; --count) {
-      while (thread_.reports().empty()) std::this_thread::sleep_for(milliseconds(1));
+      for (int n = 0; thread_.reports().empty() && n < kPatience; ++n) std::this_thread::sleep_for(milliseconds(1));
+      ASSERT_FALSE(thread_.reports().empty());
       StepReport& report = thread_.reports().front();
       shown_.restore(report.state);
       steps.push_back(report.steps);
@@ -50,6 +51,8 @@ class Reports {
   StepReport last;
 
  private:
+  static constexpr int kPatience = 10000;  // ms
+
   SteppingThread& thread_;
   Simulation shown_;
 };
@@ -172,7 +175,7 @@ TEST(SteppingThread, HaltsWhereAStepFailsAndGoesOn) {
   Reports reports(thread);
   thread.command(effort(1e6));
   thread.run(true);
-  while (!reports.last.has_failed) reports.take(1);
+  while (!reports.last.has_failed && !HasFatalFailure()) reports.take(1);
   thread.note_failure();
   EXPECT_FALSE(reports.last.result.converged);
   std::this_thread::sleep_for(milliseconds(250));
@@ -181,6 +184,28 @@ TEST(SteppingThread, HaltsWhereAStepFailsAndGoesOn) {
   thread.run(true);
   reports.take(1);
   EXPECT_FALSE(reports.last.has_failed);
+}
+
+TEST(SteppingThread, GoesOnWhereAStepIsCutForLackOfTime) {
+  SimulationOptions options;
+  options.recovery_wall_time = 1e-9;  // over whenever it is looked at
+  Pace pace;
+  pace.real_time_factor = 0;
+  pace.cuts_late_steps = true;
+  SteppingThread thread(rotor(0.1, 30, options), pace, [] {});
+  Reports reports(thread);
+  thread.command(effort(300));  // too fast for a whole step
+  thread.run(true);
+  int cut = 0;
+  for (int n = 0; n < 50; ++n) {
+    reports.take(1);
+    EXPECT_FALSE(reports.last.has_failed);
+    cut += !reports.last.result.converged;
+    if (!reports.last.result.converged) EXPECT_EQ(reports.last.result.reason, StepResult::Reason::OutOfTime);
+  }
+  thread.halt();
+  EXPECT_GT(cut, 0);
+  EXPECT_NE(reports.positions.back(), reports.positions.front());
 }
 
 TEST(SteppingThread, MayBeHaltedWhereAStepFails) {
