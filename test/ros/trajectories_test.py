@@ -60,10 +60,13 @@ class Trajectories(unittest.TestCase):
     def setUp(self):
         self.arm.reset()
         self.feedback = []
-        wait_until(lambda: self.states and max(abs(self.position(name)) for name in ("lift", "turn")) < 1e-3, "the reset")
+        wait_until(lambda: self.states and self.is_at_start("lift") and self.is_at_start("turn"), "the reset")
 
     def position(self, name):
         return self.states[name][0]
+
+    def is_at_start(self, name):
+        return abs(self.position(name)) < 1e-3
 
     def velocity(self, name):
         return self.states[name][1]
