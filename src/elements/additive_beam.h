@@ -23,8 +23,4 @@ template <int Nodes>
 void add_additive_rotary_rate(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, int k,
                               const RotaryRate& rate, bool with_tangent, ElementSystem<Nodes>& system);
 
-/// From {r, theta} to {r, spin} of the nodes: rows T_i^{-T}, columns T_j^{-1}, and the variation of the former.
-template <int Nodes>
-void additive_to_spins(const ElementNodes<Nodes>& nodes, bool with_tangent, ElementSystem<Nodes>& system);
-
 }  // namespace flexarm

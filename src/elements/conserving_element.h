@@ -15,6 +15,13 @@ inline S dot6(const Vector6T<S>& a, const Vector6T<S>& b) {
   return (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) + (a[3] * b[3] + a[4] * b[4] + a[5] * b[5]);
 }
 
+template <int Nodes, typename S>
+Vector3T<S> mean_of(const std::array<Vector3T<S>, Nodes>& vectors) {
+  Vector3T<S> sum = vectors[0];
+  for (int i = 1; i < Nodes; ++i) sum += vectors[i];
+  return S(1.0 / Nodes) * sum;
+}
+
 /// Stiffness of a section by blocks: the symmetric C of {N, M} = C {Gamma, K}.
 template <typename S>
 struct SectionStiffness {

@@ -1,6 +1,6 @@
 #pragma once
-/// A stiffness point in the energy-momentum family: strains over a step, nodal forces of its stress resultants, and
-/// their linearisation, by 3 x 3 blocks in world axes. (beam.md 3.2, beyond.md 1.3)
+/// A stiffness point in the energy-momentum family: strains over a step, and nodal forces of its stress resultants.
+/// (beam.md 3.2, beyond.md 1.3)
 
 #include "elements/beam_point.h"
 #include "elements/conserving_element.h"
@@ -51,6 +51,9 @@ struct Point {
   Vector3T<S> stretch;                              // x = Delta r' + arm x w
   PointStress<S> own, seen;                         // of the trial configuration, and of what is carried
   Vector6T<S> half_defect_stress;                   // C (Delta Sigma - s) / 2
+  // What the forces leave for the tangent.
+  Vector6T<S> seen_resultants;  // weighted, with dampers; by the geometric part
+  S factor, damped_factor;      // of s in the stress: of C s, and of D C D s
 };
 
 /// The averages of begin and end, and the conjugate strain s. `mid`: generalised shape functions at about the middle.
@@ -141,86 +144,6 @@ PointForm<S> strain_form(const Point<Nodes, S>& p, const Vector6T<S>& conjugate,
   return form;
 }
 
-/// Adds a form of a point as a row of the nodes' {dr, spin}.
-template <int Nodes, typename S>
-void add_form(const PointForm<S>& form, const NodalValues<Nodes, S>& derivative,
-              const GeneralisedShapeFunctions<Nodes, S>& generalised, const GeneralisedShapeFunctions<Nodes, S>& mid,
-              const std::array<Matrix3T<S>, Nodes>& inverse_tangent, std::array<Vector6T<S>, Nodes>& row) {
-  for (int j = 0; j < Nodes; ++j) {
-    row[j].template head<3>() += derivative[j] * form.position;
-    const Vector3T<S> increment =
-        mid.values[j].transpose() * form.increment + mid.derivatives[j].transpose() * form.increment_derivative;
-    row[j].template tail<3>() += generalised.values[j].transpose() * form.spin;
-    row[j].template tail<3>() += generalised.derivatives[j].transpose() * form.spin_derivative;
-    row[j].template tail<3>() += inverse_tangent[j].transpose() * increment;
-  }
-}
-
-/// Slopes of a stress resultant with respect to a point's {dr', spin, spin', dw, dw'}, in world axes.
-template <typename S>
-struct ResultantSlopes {
-  Matrix3T<S> position, spin, spin_derivative, increment, increment_derivative;
-};
-
-/// The contributions of stiffness blocks to the slopes of weight Lambda_bar (C (d(strain at the end) / 2 + factor ds)).
-template <int Nodes, typename S>
-struct SlopeBuilder {
-  const Point<Nodes, S>& p;
-  Matrix3T<S> weighted_average;
-  Vector3T<S> spin_strain, spin_curvature;  // r'_{n+1} + factor x, factor w'
-  S factor;
-
-  SlopeBuilder(const Point<Nodes, S>& p, const S& weight, const S& factor)
-      : p(p),
-        weighted_average(weight * p.average_rotation),
-        spin_strain(p.end_tangent + factor * p.stretch),
-        spin_curvature(factor * p.increment_derivative),
-        factor(factor) {}
-
-  /// Of a stiffness that strains Gamma act on. Sets all that Gamma depends on, or adds to the spin.
-  void set_strain_part(const Matrix3T<S>& stiffness, bool adds, ResultantSlopes<S>& slopes) const {
-    const Matrix3T<S> map = weighted_average.lazyProduct(stiffness);
-    const Matrix3T<S> end = S(0.5) * map.lazyProduct(p.end_rotation.transpose());
-    const Matrix3T<S> conjugate = factor * map.lazyProduct(p.average_rotation.transpose());
-    slopes.position = end + conjugate - times_hat<S>(conjugate, S(0.5) * p.increment);
-    slopes.increment = times_hat<S>(conjugate, p.arm);
-    set(times_hat<S>(end, spin_strain), adds, slopes.spin);
-  }
-  /// Of one that curvatures K act on.
-  void set_curvature_part(const Matrix3T<S>& stiffness, bool adds, ResultantSlopes<S>& slopes) const {
-    const Matrix3T<S> map = weighted_average.lazyProduct(stiffness);
-    slopes.spin_derivative = S(0.5) * map.lazyProduct(p.end_rotation.transpose());
-    slopes.increment_derivative = factor * map.lazyProduct(p.average_rotation.transpose());
-    set(times_hat<S>(slopes.spin_derivative, spin_curvature), adds, slopes.spin);
-  }
-  /// Adds those of factor ds alone. Of a stiffness that Gamma act on.
-  void add_conjugate_strain_part(const Matrix3T<S>& stiffness, ResultantSlopes<S>& slopes) const {
-    const Matrix3T<S> map = factor * weighted_average.lazyProduct(stiffness);
-    const Matrix3T<S> conjugate = map.lazyProduct(p.average_rotation.transpose());
-    slopes.position += conjugate - times_hat<S>(conjugate, S(0.5) * p.increment);
-    slopes.increment += times_hat<S>(conjugate, p.arm);
-    slopes.spin += times_hat<S>(S(0.5) * map.lazyProduct(p.end_rotation.transpose()), p.stretch);
-  }
-  /// Of one that K act on.
-  void add_conjugate_curvature_part(const Matrix3T<S>& stiffness, ResultantSlopes<S>& slopes) const {
-    const Matrix3T<S> map = factor * weighted_average.lazyProduct(stiffness);
-    slopes.increment_derivative += map.lazyProduct(p.average_rotation.transpose());
-    slopes.spin += times_hat<S>(S(0.5) * map.lazyProduct(p.end_rotation.transpose()), p.increment_derivative);
-  }
-  /// Of the turn of Lambda_bar under a constant stress.
-  void add_turn(const Vector3T<S>& stress, ResultantSlopes<S>& slopes) const {
-    slopes.spin -= so3::hat(Vector3T<S>(S(0.5) * (p.end_rotation * stress)));
-  }
-
- private:
-  static void set(const Matrix3T<S>& value, bool adds, Matrix3T<S>& target) {
-    if (adds)
-      target += value;
-    else
-      target = value;
-  }
-};
-
 /// Adds {I^i' n, I_t^i' m - I_t^i (arm x n)} to the residual. The test functions sum to I, their derivatives to 0: the
 /// last node takes what the others leave.
 template <int Nodes, typename S>
@@ -240,57 +163,15 @@ void add_residual(const NodalValues<Nodes, S>& derivative, const GeneralisedShap
   residual[Nodes - 1].template tail<3>() += rest;
 }
 
-/// Rows of the moments: tests' m - tests couple for every node, `visit(i, rows)`.
-template <int Nodes, typename S, class Visit>
-void for_moment_rows(const GeneralisedShapeFunctions<Nodes, S>& tests, const Matrix3T<S>* m, const Matrix3T<S>& couple,
-                     const Visit& visit) {
-  Matrix3T<S> rest = -couple;
-  for (int i = 0; i < Nodes - 1; ++i) {
-    Matrix3T<S> rows = -(tests.values[i].transpose().lazyProduct(couple));
-    if (m) rows.noalias() += tests.derivatives[i].transpose().lazyProduct(*m);
-    rest -= rows;
-    visit(i, rows);
-  }
-  visit(Nodes - 1, rest);
-}
-
-/// Adds the tangent of add_residual. `n`: weighted; `dn`, `dm`: slopes of n and m.
+/// All stiffness points of an element over a step, at the trial configuration.
 template <int Nodes, typename S>
-void add_tangent(const NodalValues<Nodes, S>& derivative, const GeneralisedShapeFunctions<Nodes, S>& tests,
-                 const Point<Nodes, S>& p, const std::array<Matrix3T<S>, Nodes>& inverse_tangent, bool is_coupled,
-                 const Vector3T<S>& n, const ResultantSlopes<S>& dn, const ResultantSlopes<S>& dm,
-                 BlockTangent<Nodes, S>& tangent) {
-  {
-    Matrix3T<S> couple = hat_times<S>(p.arm, dn.position);
-    couple -= so3::hat(Vector3T<S>(S(0.5) * n));
-    for_moment_rows<Nodes, S>(tests, is_coupled ? &dm.position : nullptr, couple, [&](int i, const Matrix3T<S>& rows) {
-      for (int j = 0; j < Nodes; ++j) {
-        Matrix6T<S>& block = tangent[i][j];
-        block.template topLeftCorner<3, 3>() += (derivative[i] * derivative[j]) * dn.position;
-        block.template bottomLeftCorner<3, 3>() += derivative[j] * rows;
-      }
-    });
-  }
-  for (int j = 0; j < Nodes; ++j) {
-    const Matrix3T<S>&spin = p.generalised.values[j], &spin_derivative = p.generalised.derivatives[j];
-    Matrix3T<S> by_increment = dn.increment.lazyProduct(tests.values[j]);
-    if (is_coupled) by_increment += dn.increment_derivative.lazyProduct(tests.derivatives[j]);
-    Matrix3T<S> force = dn.spin.lazyProduct(spin);
-    force += by_increment.lazyProduct(inverse_tangent[j]);
-    if (is_coupled) force += dn.spin_derivative.lazyProduct(spin_derivative);
+struct StepPoints {
+  std::array<Point<Nodes, S>, Nodes - 1> points;
+  ElementFunctions<Nodes, S> averages;    // where the mid functions are symmetric
+  const ElementFunctions<Nodes, S>* mid;  // of about the middle of the step
 
-    by_increment = dm.increment_derivative.lazyProduct(tests.derivatives[j]);
-    if (is_coupled) by_increment += dm.increment.lazyProduct(tests.values[j]);
-    Matrix3T<S> moment = dm.spin.lazyProduct(spin);
-    moment += dm.spin_derivative.lazyProduct(spin_derivative);
-    moment += by_increment.lazyProduct(inverse_tangent[j]);
-
-    for_moment_rows<Nodes, S>(tests, &moment, hat_times<S>(p.arm, force), [&](int i, const Matrix3T<S>& rows) {
-      Matrix6T<S>& block = tangent[i][j];
-      block.template topRightCorner<3, 3>() += derivative[i] * force;
-      block.template bottomRightCorner<3, 3>() += rows;
-    });
-  }
-}
+  StepPoints() = default;
+  StepPoints(const StepPoints&) = delete;  // `mid` may point to its own
+};
 
 }  // namespace flexarm::conserving

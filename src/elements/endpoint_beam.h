@@ -2,8 +2,6 @@
 /// Beam residual and tangent at one configuration: statics, natural modes and the Newmark family
 /// (beam.md 2.2, 2.5, 3.1).
 
-#include <cassert>
-
 #include "elements/beam_point.h"
 #include "math/so3.h"
 
@@ -36,31 +34,6 @@ struct PointTangent {
 /// `stress_slope`: d(stress)/d(strain) = stress_slope * stiffness (1, or more with damping).
 PointTangent point_tangent(const PointKinematics& point, const Matrix6& stiffness, double stress_slope,
                            const Vector3& n, const Vector3& m);
-
-/// Stress at a point with stiffness-proportional damping.
-struct PointStress {
-  Vector6 stress, strain_rate;
-  double slope = 1;       ///< d(stress)/d(strain) = stiffness + (slope - 1) damped
-  double dissipated = 0;  ///< over the step [J/m]
-};
-
-/// `damping`: eta of BeamElement::stiffness_damping; `damped`: D C D of the same. `rule` null: statics. `begin`,
-/// `strain_rate`: at the beginning of the step, used where there is damping.
-inline PointStress point_stress(const Matrix6& stiffness, double damping, const Matrix6& damped, const Vector6& strain,
-                                const NewmarkRule* rule, const PointKinematics& begin, const Vector6& strain_rate) {
-  PointStress out;
-  out.stress = stiffness * strain;
-  out.strain_rate.setZero();
-  if (!rule || damping == 0) return out;
-  const Vector6 increment = (strain - begin.strain) / (1 + rule->alpha);
-  out.strain_rate = (increment / rule->step - (1 - rule->gamma) * strain_rate) / rule->gamma;
-  const Vector6 rate = (1 + rule->alpha) * out.strain_rate - rule->alpha * strain_rate;
-  const Vector6 damping_stress = damping * (damped * rate);
-  out.stress += damping_stress;
-  out.slope += damping / (rule->gamma * rule->step);
-  out.dissipated = damping_stress.dot(increment);
-  return out;
-}
 
 /// What a stiffness point hands to the weak form, n and m in space.
 struct PointForces {
@@ -104,40 +77,7 @@ template <int Nodes, class Form = SpinForm>
 void endpoint_internal(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const NewmarkRule* rule,
                        const PointKinematics* begin, const Vector6* strain_rates, bool with_tangent,
                        PointKinematics* end, Vector6* new_strain_rates, ElementSystem<Nodes>& system,
-                       const Vector6* carried = nullptr) {
-  assert(end && new_strain_rates);
-  assert(!rule || (begin && strain_rates && rule->step != 0));
-  const ElementRotations<Nodes> rotations(nodes, Form::needs_variation(with_tangent));
-  const bool is_even = is_damped_evenly(element);
-  for (int k = 0; k < BeamElement<Nodes>::kStiffnessPoints; ++k) {
-    const auto& constants = element.stiffness_points[k];
-    Matrix6 damped;
-    if (!is_even) damped = damped_stiffness(element, k);
-    GeneralisedShapeFunctions<Nodes> generalised;
-    const auto* reference = nodes.stiffness_reference ? nodes.stiffness_reference + k : nullptr;
-    const auto rotation = rotations.evaluate(constants.shape, constants.derivative, reference, generalised);
-    end[k] = end_kinematics<Nodes>(constants, nodes, rotation);
-    const auto stress_at = [&](const Vector6& strain) {
-      return endpoint::point_stress(constants.stiffness, element.stiffness_damping,
-                                    is_even ? constants.stiffness : damped, strain, rule, begin[k], strain_rates[k]);
-    };
-    const endpoint::PointStress point = stress_at(end[k].strain);
-    system.dissipated += constants.weight * point.dissipated;
-    new_strain_rates[k] = point.strain_rate;
-    const auto in_space = [&](const Vector3& material) -> Vector3 { return end[k].rotation * material; };
-    const Vector3 n = in_space(point.stress.template head<3>()), m = in_space(point.stress.template tail<3>());
-    const double slope = is_even ? point.slope : 1;
-    Matrix6 sum;
-    if (!is_even) sum = constants.stiffness + (point.slope - 1) * damped;
-    endpoint::PointForces forces{end[k], is_even ? constants.stiffness : sum, slope, n, m, n, m};
-    if (carried) {
-      const endpoint::PointStress seen = stress_at(carried[k]);
-      forces.seen_n = in_space(seen.stress.template head<3>());
-      forces.seen_m = in_space(seen.stress.template tail<3>());
-    }
-    Form::add_point(constants, nodes, generalised, forces, with_tangent, system);
-  }
-}
+                       const Vector6* carried = nullptr);
 
 /// Newmark translational inertia.
 template <int Nodes>

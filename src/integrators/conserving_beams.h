@@ -5,8 +5,8 @@
 #include <tuple>
 #include <vector>
 
-#include "elements/conserving_pack.h"
 #include "integrators/beam_family.h"
+#include "integrators/element_pack.h"
 
 namespace flexarm {
 
@@ -27,21 +27,6 @@ class ConservingBeams : public BeamFamily {
   void set_prestrains();
   void set_begin_points();
   void set_mid_functions();
-
-  /// Elements side by side; the last one fills what the group leaves of its last pack.
-  template <int Nodes>
-  struct ElementPack {
-    static constexpr int kNodes = Nodes;
-    int lanes = 0;  // in use
-    std::array<std::array<int, Nodes>, Pack::kLanes> nodes;
-    std::array<int, Pack::kLanes> first_block, first_stiffness_point;
-    ConservingElement<Nodes, Pack> element;
-    ElementFunctions<Nodes, Pack> mid_functions;
-    CarriedStrains<Nodes, Pack> carried;
-    std::array<std::array<PointKinematicsT<Pack>, Nodes - 1>, 2> points;  // at the beginning and at the end
-  };
-  template <int Nodes>
-  using PackGroup = std::vector<ElementPack<Nodes>>;
 
   template <int Nodes>
   static BeamNodes<Nodes, Pack> gather(const ElementPack<Nodes>& pack, const StepMotion& step);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "elements/additive_to_spins.h"
 #include "elements/nodal_inertia.h"
 
 namespace flexarm {

@@ -55,8 +55,10 @@ class Conserving {
   CarriedStrains<Nodes> strains(const ElementNodes<Nodes>& nodes, const Update<Nodes>& update) const {
     KernelData<Nodes, double> data = data_at(nodes);
     CarriedStrains<Nodes> carried;
-    carry_strains<Nodes, double>(data.element, data.nodes, rule_, functions_, data.begin.data(), update,
-                                 data.end.data(), carried);
+    conserving::StepPoints<Nodes, double> at;
+    conserving::set_points<Nodes, double>(data.element, data.nodes, rule_, functions_, true, data.end.data(), at);
+    conserving::set_strains<Nodes, double>(data.element, data.nodes, data.begin.data(), data.end.data(), nullptr, at);
+    conserving::carry_strains<Nodes, double>(data.element, data.nodes, at, update, data.end.data(), carried);
     return carried;
   }
   /// Residual, tangent and, in `of_carried`, the residual in which the strains are variables of their own.

@@ -2,6 +2,8 @@
 /// The kernel of the energy-momentum family as tests call it: elements in and systems out, lane by lane.
 
 #include "elements/conserving_beam.h"
+#include "elements/conserving_points.h"
+#include "elements/conserving_tangent.h"
 #include "elements/random_element.h"
 
 namespace flexarm::test {
@@ -52,8 +54,13 @@ struct KernelData {
     }
   }
   void evaluate(const TimeRule& rule, double step, bool with_tangent) {
-    conserving_beam<Nodes, S>(element, nodes, rule, functions, begin.data(), memory.data(), step, with_tangent, carried,
-                              end.data(), end_memory.data(), system);
+    conserving::StepPoints<Nodes, S> at;
+    conserving::EnergyMultiplier<Nodes, S> multiplier;
+    conserving::set_points<Nodes, S>(element, nodes, rule, functions, with_tangent, end.data(), at);
+    conserving::set_strains<Nodes, S>(element, nodes, begin.data(), end.data(), carried, at);
+    conserving::set_forces<Nodes, S>(element, nodes, rule, begin.data(), end.data(), memory.data(), step, with_tangent,
+                                     carried != nullptr, end_memory.data(), at, multiplier, system);
+    if (with_tangent) conserving::add_tangent<Nodes, S>(element, nodes, rule, at, multiplier, system);
   }
   void get(int lane, bool with_tangent, ElementSystem<Nodes>& out) const {
     out.set_zero();

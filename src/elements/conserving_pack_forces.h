@@ -1,0 +1,41 @@
+#pragma once
+/// Forces on packs, for the units that compile them.
+
+#include "elements/conserving_beam.h"
+#include "elements/conserving_pack.h"
+#include "elements/conserving_pack_stages.h"
+#include "math/simd.h"
+
+namespace flexarm::packs {
+
+template <int Nodes>
+void conserving_beam(const ConservingElement<Nodes, Pack>& element, const BeamNodes<Nodes, Pack>& nodes,
+                     const TimeRule& rule, const ElementFunctions<Nodes, Pack>& functions,
+                     const PointKinematicsT<Pack>* begin, const StrainMemoryT<Pack>* memory, double step,
+                     bool with_tangent, const CarriedStrains<Nodes, Pack>* carried, PointKinematicsT<Pack>* end,
+                     StrainMemoryT<Pack>* end_memory, BlockSystem<Nodes, Pack>& system) {
+  conserving::StepPoints<Nodes, Pack> at;
+  conserving::EnergyMultiplier<Nodes, Pack> multiplier;
+  set_points<Nodes>(element, nodes, rule, functions, with_tangent, end, at);
+  simd::run([&] {
+    conserving::set_strains<Nodes, Pack>(element, nodes, begin, end, carried, at);
+    conserving::set_forces<Nodes, Pack>(element, nodes, rule, begin, end, memory, step, with_tangent,
+                                        carried != nullptr, end_memory, at, multiplier, system);
+  });
+  if (with_tangent) add_tangent<Nodes>(element, nodes, rule, at, multiplier, system);
+}
+
+template <int Nodes>
+void carry_strains(const ConservingElement<Nodes, Pack>& element, const BeamNodes<Nodes, Pack>& nodes,
+                   const TimeRule& rule, const ElementFunctions<Nodes, Pack>& functions,
+                   const PointKinematicsT<Pack>* begin, const std::array<Vector6T<Pack>, Nodes>& update,
+                   PointKinematicsT<Pack>* end, CarriedStrains<Nodes, Pack>& carried) {
+  conserving::StepPoints<Nodes, Pack> at;
+  set_points<Nodes>(element, nodes, rule, functions, true, end, at);
+  simd::run([&] {
+    conserving::set_strains<Nodes, Pack>(element, nodes, begin, end, nullptr, at);
+    conserving::carry_strains<Nodes, Pack>(element, nodes, at, update, end, carried);
+  });
+}
+
+}  // namespace flexarm::packs

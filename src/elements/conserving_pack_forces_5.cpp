@@ -1,0 +1,8 @@
+#include "elements/conserving_pack_forces.h"
+
+namespace flexarm::packs {
+
+template decltype(conserving_beam<5>) conserving_beam<5>;
+template decltype(carry_strains<5>) carry_strains<5>;
+
+}  // namespace flexarm::packs

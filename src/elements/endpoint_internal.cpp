@@ -1,0 +1,84 @@
+#include <cassert>
+
+#include "elements/additive_beam.h"
+#include "elements/endpoint_beam.h"
+#include "elements/orders.h"
+
+namespace flexarm {
+namespace {
+
+/// Stress at a point with stiffness-proportional damping.
+struct PointStress {
+  Vector6 stress, strain_rate;
+  double slope = 1;       ///< d(stress)/d(strain) = stiffness + (slope - 1) damped
+  double dissipated = 0;  ///< over the step [J/m]
+};
+
+/// `damping`: eta of BeamElement::stiffness_damping; `damped`: D C D of the same. `rule` null: statics. `begin`,
+/// `strain_rate`: at the beginning of the step, used where there is damping.
+PointStress point_stress(const Matrix6& stiffness, double damping, const Matrix6& damped, const Vector6& strain,
+                         const NewmarkRule* rule, const PointKinematics& begin, const Vector6& strain_rate) {
+  PointStress out;
+  out.stress = stiffness * strain;
+  out.strain_rate.setZero();
+  if (!rule || damping == 0) return out;
+  const Vector6 increment = (strain - begin.strain) / (1 + rule->alpha);
+  out.strain_rate = (increment / rule->step - (1 - rule->gamma) * strain_rate) / rule->gamma;
+  const Vector6 rate = (1 + rule->alpha) * out.strain_rate - rule->alpha * strain_rate;
+  const Vector6 damping_stress = damping * (damped * rate);
+  out.stress += damping_stress;
+  out.slope += damping / (rule->gamma * rule->step);
+  out.dissipated = damping_stress.dot(increment);
+  return out;
+}
+
+}  // namespace
+
+template <int Nodes, class Form>
+void endpoint_internal(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const NewmarkRule* rule,
+                       const PointKinematics* begin, const Vector6* strain_rates, bool with_tangent,
+                       PointKinematics* end, Vector6* new_strain_rates, ElementSystem<Nodes>& system,
+                       const Vector6* carried) {
+  assert(end && new_strain_rates);
+  assert(!rule || (begin && strain_rates && rule->step != 0));
+  const ElementRotations<Nodes> rotations(nodes, Form::needs_variation(with_tangent));
+  const bool is_even = is_damped_evenly(element);
+  for (int k = 0; k < BeamElement<Nodes>::kStiffnessPoints; ++k) {
+    const auto& constants = element.stiffness_points[k];
+    Matrix6 damped;
+    if (!is_even) damped = damped_stiffness(element, k);
+    GeneralisedShapeFunctions<Nodes> generalised;
+    const auto* reference = nodes.stiffness_reference ? nodes.stiffness_reference + k : nullptr;
+    const auto rotation = rotations.evaluate(constants.shape, constants.derivative, reference, generalised);
+    end[k] = end_kinematics<Nodes>(constants, nodes, rotation);
+    const auto stress_at = [&](const Vector6& strain) {
+      return point_stress(constants.stiffness, element.stiffness_damping, is_even ? constants.stiffness : damped,
+                          strain, rule, begin[k], strain_rates[k]);
+    };
+    const PointStress point = stress_at(end[k].strain);
+    system.dissipated += constants.weight * point.dissipated;
+    new_strain_rates[k] = point.strain_rate;
+    const auto in_space = [&](const Vector3& material) -> Vector3 { return end[k].rotation * material; };
+    const Vector3 n = in_space(point.stress.template head<3>()), m = in_space(point.stress.template tail<3>());
+    const double slope = is_even ? point.slope : 1;
+    Matrix6 sum;
+    if (!is_even) sum = constants.stiffness + (point.slope - 1) * damped;
+    endpoint::PointForces forces{end[k], is_even ? constants.stiffness : sum, slope, n, m, n, m};
+    if (carried) {
+      const PointStress seen = stress_at(carried[k]);
+      forces.seen_n = in_space(seen.stress.template head<3>());
+      forces.seen_m = in_space(seen.stress.template tail<3>());
+    }
+    Form::add_point(constants, nodes, generalised, forces, with_tangent, system);
+  }
+}
+
+// Compiled here once for each order of elements.
+#define COMPILE_FOR(Nodes)                                                                            \
+  template decltype(endpoint_internal<Nodes, SpinForm>) endpoint_internal<Nodes, SpinForm>;           \
+  template decltype(endpoint_internal<Nodes, VariationForm>) endpoint_internal<Nodes, VariationForm>; \
+  template decltype(endpoint_internal<Nodes, AdditiveForm>) endpoint_internal<Nodes, AdditiveForm>;
+FLEXARM_FOR_EACH_ORDER(COMPILE_FOR)
+#undef COMPILE_FOR
+
+}  // namespace flexarm
