@@ -24,8 +24,9 @@ void add(const Coupling& coupling, int q, int rotor, Triplets& entries) {
   entries.emplace_back(rotor, rotor, coupling.gear + coupling.on_rotor);
 }
 
-bool is_on(const Actuator& actuator, const ActuatorState& state) {
-  return actuator.servo && state.servo.off == 0;
+/// Of the controller in force; null where none is, or it is off.
+const ServoLaw* law_in_force(const Actuator& actuator, const ActuatorState& state) {
+  return actuator.servo && state.servo.off == 0 ? &law_of(*actuator.servo, state.servo) : nullptr;
 }
 
 /// Side of a servo on which a gain acts.
@@ -53,7 +54,8 @@ std::vector<ActuatorTerms> actuator_terms(const Model& model, const State& state
     const Actuator& actuator = model.actuators[i];
     const Coordinate& coordinate = model.coordinates[actuator.coordinate];
     const double spring = actuator.spring ? actuator.spring->elasticity.damping : 0;
-    const double servo = is_on(actuator, state.actuators[i]) && !actuator.drive.gear ? actuator.servo->derivative : 0;
+    const ServoLaw* law = law_in_force(actuator, state.actuators[i]);
+    const double servo = law && !actuator.drive.gear ? law->derivative : 0;
     terms.push_back({coordinate.joint, coordinate.component, spring + servo, armature(model, coordinate)});
   }
   return terms;
@@ -73,13 +75,11 @@ MotionMatrices with_rotors(const Model& model, const DegreesOfFreedom& dof, cons
     CoordinateStep twist;
     twist.begin = twist.end = state.actuators[i].angle - position;
     const Elasticity& gear = *actuator.drive.gear;
-    const bool controls = is_on(actuator, state.actuators[i]);
-    const bool holds = controls && actuator.servo->mode == Servo::Mode::Position;
-    add(coupling(-elastic_effort(gear, twist).slope, actuator.servo, holds ? actuator.servo->proportional : 0), q,
-        rotor, stiff);
+    const ServoLaw* law = law_in_force(actuator, state.actuators[i]);
+    const bool holds = law && law->mode == ServoMode::Position;
+    add(coupling(-elastic_effort(gear, twist).slope, actuator.servo, holds ? law->proportional : 0), q, rotor, stiff);
     stiff.emplace_back(q, q, -resting.stiffness(i));
-    add(coupling(elastic_damping(gear, twist.end), actuator.servo, controls ? actuator.servo->derivative : 0), q, rotor,
-        damped);
+    add(coupling(elastic_damping(gear, twist.end), actuator.servo, law ? law->derivative : 0), q, rotor, damped);
     heavy.emplace_back(rotor, rotor, actuator.drive.inertia);
     for (const int row : {q, rotor})
       for (const int column : {q, rotor}) places.emplace_back(row, column, 0.0);

@@ -165,9 +165,14 @@ bool is_multiple(double sample_time, double step) {
   return steps >= 1 && std::abs(sample_time - steps * step) <= 1e-9 * sample_time;
 }
 
+/// Of a velocity's error the integral is what a position's error is.
+ServoLaw servo_law(const scene::ServoDescription::Gains& gains) {
+  if (gains.mode == ServoMode::Velocity) return {gains.mode, gains.ki, gains.kp, 0, gains.anti_windup};
+  return {gains.mode, gains.kp, gains.kd, gains.ki, gains.anti_windup};
+}
+
 void add_servo(const ScenePlan& plan, const scene::ServoDescription& servo, const CoordinateNames& names,
                Model& model) {
-  using Mode = scene::ServoDescription::Mode;
   const std::string where = at(servo.location, "<servo>");
   const int index = scalar_coordinate(model, names, servo.coordinate, where);
   const Coordinate& coordinate = model.coordinates[index];
@@ -177,20 +182,14 @@ void add_servo(const ScenePlan& plan, const scene::ServoDescription& servo, cons
                                  plan.scene.integrator.step, servo.sample_time));
   Actuator& actuator = actuator_of(index, model);
   Servo& out = actuator.servo.emplace();
-  out.mode = servo.mode == Mode::Effort     ? Servo::Mode::Effort
-             : servo.mode == Mode::Velocity ? Servo::Mode::Velocity
-                                            : Servo::Mode::Position;
-  // Of a velocity's error the integral is what a position's error is.
-  const bool is_velocity = servo.mode == Mode::Velocity;
-  out.proportional = is_velocity ? servo.ki : servo.kp;
-  out.derivative = is_velocity ? servo.kp : servo.kd;
-  out.integral = is_velocity ? 0 : servo.ki;
+  out.laws.push_back(servo_law({servo.mode, servo.kp, servo.kd, servo.ki, servo.anti_windup}));
+  for (const scene::ServoDescription::Gains& gains : servo.other_modes) out.laws.push_back(servo_law(gains));
+  if (servo.mode != ServoMode::Effort) out.laws.push_back(servo_law({ServoMode::Effort}));  // which needs no gains
   if (servo.set_point) out.set_point = add_history(*servo.set_point, model);
   if (servo.feedforward) out.feedforward = add_history(*servo.feedforward, model);
-  if (servo.mode == Mode::Position)
+  if (servo.mode == ServoMode::Position)
     out.start = model.initial_released[coordinate.joint].displacement[coordinate.component % 3];
   if (servo.effort_limit > 0) out.effort_limit = servo.effort_limit;
-  out.tracking_time = servo.anti_windup;
   out.on_link = servo.side == scene::ServoDescription::Side::Link || !actuator.drive.gear;
   out.sample_time = servo.sample_time;
   out.delay = servo.delay;

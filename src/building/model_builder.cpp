@@ -54,6 +54,7 @@ BuiltModel build(const scene::SceneDescription& scene) {
   std::vector<int> massless = finish_mass_properties(solvable.node_parents, model);
   set_damping_ratios(scene, solvable.node_parents, model);
   std::vector<int> dependent = coordinates_without_own_inertia(solvable.node_parents, model);
+  model.node_parents = std::move(solvable.node_parents);
   place_springs(plan, model);
   return {std::move(model), std::move(massless), std::move(dependent)};
 }

@@ -128,6 +128,12 @@ class SummarisedWriter : public ResultWriter {
   RunSummary& summary_;
 };
 
+/// A step that begins there, or later, would only make up for the round-off of all those before it.
+double last_beginning(double until, double step) {
+  const double round_off = until / step * std::numeric_limits<double>::epsilon() * until;
+  return until - std::clamp(round_off, 1e-6 * step, 0.5 * step);
+}
+
 /// Steps to the end, to a failure or to an interruption; the output ends with the last good state.
 /// @throws std::runtime_error if results or a checkpoint on the way cannot be written.
 Run run(const Arguments& arguments, Simulation& simulation) {
@@ -142,8 +148,7 @@ Run run(const Arguments& arguments, Simulation& simulation) {
                                                 simulation);
   if (output) output->write_row(simulation);
   double written = simulation.time();
-  // A step that would only make up for round-off is not taken.
-  const double end = arguments.until - 1e-6 * simulation.step_size();
+  const double end = last_beginning(arguments.until, simulation.step_size());
   while (run.last.converged && simulation.time() < end && interruption() == 0) {
     run.last = simulation.step();
     run.summary.count(simulation, run.last);

@@ -13,6 +13,8 @@ namespace {
 
 /// Way of a rotor over a step below which it is taken to be at rest [rad or m].
 constexpr double kAtRest = 1e-12;
+/// Of a step, by which its end may miss a time: it is a sum.
+constexpr double kRoundOff = 1e-6;
 
 }  // namespace
 
@@ -101,8 +103,25 @@ void Actuators::begin() {
   }
 }
 
+/// Of a commanded set point that moves; 0 where it has arrived.
+double Actuators::rate_of_command(const ServoState& state, double time) const {
+  const double ahead = time - state.set_time;
+  return ahead <= kRoundOff * configuration_.step() ? state.set_rate + state.set_acceleration * std::min(ahead, 0.0)
+                                                    : 0;
+}
+
+SetPoint Actuators::commanded_set_point(const ServoState& state) const {
+  if (configuration_.scheme().is_static) return {state.set_point, state.set_point, 0};
+  const auto value = [&](double time) {
+    const double ahead = std::min(time - state.set_time, 0.0);
+    return state.set_point + ahead * (state.set_rate + 0.5 * ahead * state.set_acceleration);
+  };
+  const double begin = configuration_.state().time, end = begin + configuration_.step();
+  return {value(begin), value(end), rate_of_command(state, end)};
+}
+
 SetPoint Actuators::set_point(const Servo& servo, const ServoState& state) const {
-  if (!std::isnan(state.set_point)) return {state.set_point, state.set_point, 0};
+  if (!std::isnan(state.set_point)) return commanded_set_point(state);
   if (servo.set_point < 0) return {servo.start, servo.start, 0};
   const TimeFunction& history = configuration_.model().histories[servo.set_point];
   const Scheme& scheme = configuration_.scheme();
@@ -154,13 +173,14 @@ void Actuators::ask(const Actuator& actuator, const ActuatorState& state, Part& 
                                       ? &configuration_.model().histories[servo.set_point]
                                       : nullptr;
     const double time = part.input.time, period = servo.sample_time;
-    const double set_rate = history ? ((*history)(time) - (*history)(time - period)) / period : 0;
+    const double set_rate = history ? ((*history)(time) - (*history)(time - period)) / period
+                                    : rate_of_command(state.servo, time - 0.5 * period);
     part.servo = state.servo;
     sample(servo, part.input, set_rate, part.servo);
     part.demand.constant += held_output(servo, part.servo, time, configuration_.step());
     return;
   }
-  const ServoDemand asked = servo_demand(servo, state.servo, part.input);
+  const ServoDemand asked = servo_demand(law_of(servo, state.servo), state.servo, part.input);
   part.demand.constant += asked.constant;
   (servo.on_link ? part.demand.by_link : part.demand.by_rotor) += asked.slope;
 }
@@ -259,14 +279,14 @@ void Actuators::accept(State& state) const {
     ActuatorState& own = state.actuators[i];
     if (actuator.servo && configuration_.step() == 0) {
       const double increment = actuator.servo->on_link ? part.link : action.increment;
-      const ServoDemand asked = servo_demand(*actuator.servo, own.servo, part.input);
+      const ServoDemand asked = servo_demand(law_of(*actuator.servo, own.servo), own.servo, part.input);
       const double limit = actuator.servo->effort_limit;
       settle(part.input.measured.begin + increment, std::clamp(asked.constant + asked.slope * increment, -limit, limit),
              own.servo);
     } else if (actuator.servo && actuator.servo->sample_time > 0) {
       own.servo = part.servo;
     } else if (actuator.servo) {
-      advance(*actuator.servo, part.input, actuator.servo->on_link ? part.link : action.increment,
+      advance(law_of(*actuator.servo, own.servo), part.input, actuator.servo->on_link ? part.link : action.increment,
               action.motor - action.demand, own.servo);
     }
     if (own.servo.off > 0) own.servo.integral = 0;
@@ -292,7 +312,7 @@ double Actuators::hand_to_integrals(State& state) const {
     ServoState& servo = state.actuators[i].servo;
     if (servo.off > 0) continue;
     const double error = set_point(*actuator.servo, servo).end - servo.measured;
-    largest = std::max(largest, hand_to_integral(*actuator.servo, error, servo));
+    largest = std::max(largest, hand_to_integral(law_of(*actuator.servo, servo), error, servo));
   }
   return largest;
 }

@@ -59,6 +59,8 @@ class Actuators {
   void check(const Actuator& actuator) const;
   ServoInput servo_input(const Actuator& actuator, const Part& part, const ActuatorState& state) const;
   SetPoint set_point(const Servo& servo, const ServoState& state) const;
+  SetPoint commanded_set_point(const ServoState& state) const;
+  double rate_of_command(const ServoState& state, double time) const;
   /// Adds what the servo asks for.
   void ask(const Actuator& actuator, const ActuatorState& state, Part& part) const;
   PassiveEffort spring_effort(const JointSpring& spring, const CoordinateStep& link) const;

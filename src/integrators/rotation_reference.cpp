@@ -29,15 +29,20 @@ RotationReference::RotationReference(const Model& model, const TimeRule& rule)
       total_(model.nodes.size(), Vector3::Zero()) {
   if (!is_used()) return;
   State state;
-  initialise(state);
+  set_points(model.nodes, state);
   stiffness_ = end_stiffness_ = state.stiffness_rotations;
   mass_ = end_mass_ = state.mass_rotations;
   for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_[i] = model.nodes[i].orientation;
 }
 
 void RotationReference::initialise(State& state) const {
-  if (keeps_total_) state.total_rotations.assign(model_.nodes.size(), Vector3::Zero());
-  set_points(model_.nodes, state);
+  if (keeps_total_) {
+    state.total_rotations.resize(model_.nodes.size(), Vector3::Zero());
+    for (std::size_t i = 0; i < state.nodes.size(); ++i)
+      state.total_rotations[i] =
+          nearest_vector(total_rotation(i, state.nodes[i].orientation), state.total_rotations[i]);
+  }
+  forget_path(state);
 }
 
 void RotationReference::forget_path(State& state) const {
@@ -64,6 +69,10 @@ void RotationReference::set_points(const std::vector<NodePose>& nodes, State& st
   });
 }
 
+Vector3 RotationReference::total_rotation(std::size_t node, const Quaternion& orientation) const {
+  return so3::log(orientation * model_.nodes[node].orientation.conjugate());
+}
+
 void RotationReference::begin(const State& state) {
   if (keeps_total_) std::copy(state.total_rotations.begin(), state.total_rotations.end(), begin_total_.begin());
   if (!is_used() || interpolation_ == Interpolation::Total) return;
@@ -75,8 +84,7 @@ void RotationReference::begin(const State& state) {
 void RotationReference::set_trial(const std::vector<NodePose>& nodes) {
   if (keeps_total_)
     for (std::size_t i = 0; i < nodes.size(); ++i)
-      total_[i] =
-          nearest_vector(so3::log(nodes[i].orientation * model_.nodes[i].orientation.conjugate()), begin_total_[i]);
+      total_[i] = nearest_vector(total_rotation(i, nodes[i].orientation), begin_total_[i]);
   if (!is_used()) return;
   if (interpolation_ == Interpolation::Total) {
     std::copy(total_.begin(), total_.end(), vectors_.begin());

@@ -16,7 +16,8 @@ class RotationReference {
   RotationReference(const Model& model, const TimeRule& rule);
 
   bool is_used() const { return interpolation_ != Interpolation::Local; }
-  /// Adds to a state what this interpolation keeps there, for the configuration of the model.
+  /// Adds to a state what this interpolation keeps there, for the configuration of its nodes. Total rotations go on
+  /// from those that it has.
   void initialise(State& state) const;
   /// The points' rotations become those that follow from the nodes of the state, whatever way has led there.
   void forget_path(State& state) const;
@@ -39,6 +40,8 @@ class RotationReference {
   const std::vector<Vector3>& total_rotations() const { return total_; }
 
  private:
+  /// From the undeformed state, of the shortest angle.
+  Vector3 total_rotation(std::size_t node, const Quaternion& orientation) const;
   /// The points' rotations that follow from those of nodes.
   void set_points(const std::vector<NodePose>& nodes, State& state) const;
   void compute_points(std::vector<PointRotation>& stiffness, std::vector<PointRotation>& mass) const;

@@ -13,14 +13,14 @@ constexpr double kStiffRemainder = 0.5;
 /// Of a step, by which times of samples may be missed: they are sums.
 constexpr double kRoundOff = 1e-6;
 
-double error_at_begin(const Servo& servo, const ServoState& state, const ServoInput& input) {
-  return servo.mode == Servo::Mode::Velocity ? state.integral : input.set_point.begin - input.measured.begin;
+double error_at_begin(const ServoLaw& law, const ServoState& state, const ServoInput& input) {
+  return law.mode == ServoMode::Velocity ? state.integral : input.set_point.begin - input.measured.begin;
 }
 
 /// Of the error over the step, but for what is measured.
-double set_increment(const Servo& servo, const ServoInput& input) {
+double set_increment(const ServoLaw& law, const ServoInput& input) {
   const SetPoint& s = input.set_point;
-  return servo.mode == Servo::Mode::Velocity ? 0.5 * input.measured.step * (s.begin + s.end) : s.end - s.begin;
+  return law.mode == ServoMode::Velocity ? 0.5 * input.measured.step * (s.begin + s.end) : s.end - s.begin;
 }
 
 /// The proportional effort for an increment s of the error, per gain: offset + slope s.
@@ -41,10 +41,10 @@ Term proportional_term(double error, const ServoState& state, const ServoInput& 
 
 /// What resists the acceleration of what is measured, per second of its effort: an inertance [s^2], and with the
 /// derivative one of [s].
-double inertance(const Servo& servo, const ServoInput& input) {
+double inertance(const ServoLaw& law, const ServoInput& input) {
   if (input.relaxation == 0) return 0;
-  return servo.proportional * numerical_dissipation(2, kStiffRemainder, input.relaxation).inertance +
-         servo.derivative * 0.25 * input.relaxation;
+  return law.proportional * numerical_dissipation(2, kStiffRemainder, input.relaxation).inertance +
+         law.derivative * 0.25 * input.relaxation;
 }
 
 /// The same of the derivative's, for an increment of what is measured, backwards.
@@ -61,55 +61,55 @@ double integral_share(const ServoInput& input) {
 
 }  // namespace
 
-ServoDemand servo_demand(const Servo& servo, const ServoState& state, const ServoInput& input) {
+ServoDemand servo_demand(const ServoLaw& law, const ServoState& state, const ServoInput& input) {
   const double h = input.measured.step;
   const SetPoint& set = input.set_point;
-  if (servo.mode == Servo::Mode::Effort) {
+  if (law.mode == ServoMode::Effort) {
     const bool is_mean = h != 0 && !input.measured.at_end;
     return {input.feedforward + (is_mean ? 0.5 * (set.begin + set.end) : set.end), 0};
   }
-  const double error = error_at_begin(servo, state, input);
+  const double error = error_at_begin(law, state, input);
   Term sum{input.feedforward, 0};  // in terms of the error's increment
   const auto add = [&](double gain, const Term& term) {
     sum.offset += gain * term.offset;
     sum.slope += gain * term.slope;
   };
-  add(servo.proportional, proportional_term(error, state, input));
+  add(law.proportional, proportional_term(error, state, input));
   const double share = integral_share(input);
-  add(servo.integral, {state.integral + share * h * error, 0.5 * share * h});
-  const double by_set = set_increment(servo, input);
+  add(law.integral, {state.integral + share * h * error, 0.5 * share * h});
+  const double by_set = set_increment(law, input);
   ServoDemand out{sum.offset + sum.slope * by_set, -sum.slope};
   if (h == 0) {
-    if (servo.mode == Servo::Mode::Velocity) out.slope = 0;  // nothing has a rate
+    if (law.mode == ServoMode::Velocity) out.slope = 0;  // nothing has a rate
     return out;
   }
   if (input.measured.at_end) {  // the rate at the end
-    const double set_rate = servo.mode == Servo::Mode::Velocity ? set.end : set.rate_at_end;
-    out.constant += servo.derivative * (set_rate - input.rate_offset);
-    out.slope -= servo.derivative * input.rate_slope;
+    const double set_rate = law.mode == ServoMode::Velocity ? set.end : set.rate_at_end;
+    out.constant += law.derivative * (set_rate - input.rate_offset);
+    out.slope -= law.derivative * input.rate_slope;
     return out;
   }
   const Term derivative = derivative_term(state, input);
-  out.constant += servo.derivative * (by_set / h + derivative.offset);
-  out.slope -= servo.derivative * derivative.slope;
+  out.constant += law.derivative * (by_set / h + derivative.offset);
+  out.slope -= law.derivative * derivative.slope;
   // (v_1 - v_0)/h = 2 (u/h - v_0)/h
-  const double resisting = 2 * inertance(servo, input) / h;
+  const double resisting = 2 * inertance(law, input) / h;
   out.constant += resisting * input.begin_rate;
   out.slope -= resisting / h;
   return out;
 }
 
-void advance(const Servo& servo, const ServoInput& input, double increment, double excess, ServoState& state) {
+void advance(const ServoLaw& law, const ServoInput& input, double increment, double excess, ServoState& state) {
   const double h = input.measured.step;
   if (h == 0) return;
-  const double error = error_at_begin(servo, state, input), s = set_increment(servo, input) - increment;
-  const bool is_velocity = servo.mode == Servo::Mode::Velocity;
+  const double error = error_at_begin(law, state, input), s = set_increment(law, input) - increment;
+  const bool is_velocity = law.mode == ServoMode::Velocity;
   state.integral += is_velocity ? s : h * (error + 0.5 * s);
-  const double gain = is_velocity ? servo.proportional : servo.integral;
-  if (servo.tracking_time > 0 && gain > 0) {
+  const double gain = is_velocity ? law.proportional : law.integral;
+  if (law.tracking_time > 0 && gain > 0) {
     // The effort that would be asked for follows the one that is given.
-    const double lag = integral_share(input) * h / servo.tracking_time;
-    state.integral += h * excess / (gain * servo.tracking_time * (1 + lag));
+    const double lag = integral_share(input) * h / law.tracking_time;
+    state.integral += h * excess / (gain * law.tracking_time * (1 + lag));
   }
   if (input.relaxation == 0) return;
   const NumericalDissipation d = numerical_dissipation(2, kStiffRemainder, input.relaxation);
@@ -124,9 +124,9 @@ void settle(double measured, double output, ServoState& state) {
   std::fill(state.outputs.begin(), state.outputs.end(), output);
 }
 
-double hand_to_integral(const Servo& servo, double error, ServoState& state) {
-  if (servo.mode != Servo::Mode::Position || servo.integral == 0) return 0;
-  state.integral += servo.proportional * error / servo.integral;
+double hand_to_integral(const ServoLaw& law, double error, ServoState& state) {
+  if (law.mode != ServoMode::Position || law.integral == 0) return 0;
+  state.integral += law.proportional * error / law.integral;
   return std::abs(error);
 }
 
@@ -139,21 +139,22 @@ std::size_t outputs_of(const Servo& servo) {
 void sample(const Servo& servo, const ServoInput& input, double set_rate, ServoState& state) {
   const double period = servo.sample_time;
   if (input.time < state.samples * period - kRoundOff * input.measured.step) return;
+  const ServoLaw& law = law_of(servo, state);
   const double measured = input.measured.begin, rate = (measured - state.measured) / period;
   double output = input.feedforward;
-  if (servo.mode == Servo::Mode::Effort) {
+  if (law.mode == ServoMode::Effort) {
     output += input.set_point.begin;
   } else {
-    const bool is_velocity = servo.mode == Servo::Mode::Velocity;
+    const bool is_velocity = law.mode == ServoMode::Velocity;
     const double error_rate = (is_velocity ? input.set_point.begin : set_rate) - rate;
     const double error = input.set_point.begin - measured;
     state.integral += period * (is_velocity ? error_rate : error);
-    output += servo.proportional * (is_velocity ? state.integral : error) + servo.derivative * error_rate +
-              servo.integral * state.integral;
+    output += law.proportional * (is_velocity ? state.integral : error) + law.derivative * error_rate +
+              law.integral * state.integral;
   }
   const double cut = std::clamp(output, -servo.effort_limit, servo.effort_limit);
-  const double gain = servo.mode == Servo::Mode::Velocity ? servo.proportional : servo.integral;
-  if (servo.tracking_time > 0 && gain > 0) state.integral += period * (cut - output) / (gain * servo.tracking_time);
+  const double gain = law.mode == ServoMode::Velocity ? law.proportional : law.integral;
+  if (law.tracking_time > 0 && gain > 0) state.integral += period * (cut - output) / (gain * law.tracking_time);
   std::rotate(state.outputs.begin(), state.outputs.end() - 1, state.outputs.end());
   state.outputs.front() = cut;
   state.measured = measured;

@@ -37,16 +37,16 @@ struct ServoDemand {
   double constant = 0, slope = 0;
 };
 
-ServoDemand servo_demand(const Servo& servo, const ServoState& state, const ServoInput& input);
+ServoDemand servo_demand(const ServoLaw& law, const ServoState& state, const ServoInput& input);
 /// Its memory at the end of the step, in which what is measured moved by `increment`, and `excess` is what the motor
 /// gave less what was asked of it.
-void advance(const Servo& servo, const ServoInput& input, double increment, double excess, ServoState& state);
+void advance(const ServoLaw& law, const ServoInput& input, double increment, double excess, ServoState& state);
 
 /// Its memory where it has been at rest for ever, with that position and output.
 void settle(double measured, double output, ServoState& state);
 /// Lets the integral take over what is in proportion to the error; returns that error, in absolute value, or 0 where
 /// nothing integrates.
-double hand_to_integral(const Servo& servo, double error, ServoState& state);
+double hand_to_integral(const ServoLaw& law, double error, ServoState& state);
 
 // ---- sampled controllers
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "flexarm/math/pose.h"
+#include "flexarm/model/results.h"
 
 namespace flexarm {
 
@@ -35,24 +36,24 @@ struct Drive {
   double velocity_limit = kInfinity;  ///< its no-load speed, up to which it loses its effort in proportion
 };
 
-/// Controller of a coordinate over a motor. Of the error e between the set point and what is measured, its effort is
+/// What a controller makes of the error e between the set point and what is measured: the effort
 ///   proportional e + derivative de/dt + integral (int e dt) + feedforward,
-/// cut at its limit.
-struct Servo {
-  enum class Mode {
-    Effort,    ///< the set point is the effort
-    Velocity,  ///< the set point is a velocity, and e the integral of its error
-    Position
-  };
-  Mode mode = Mode::Position;
+/// where e of a velocity is the integral of its error. With ServoMode::Effort the set point is the effort.
+struct ServoLaw {
+  ServoMode mode = ServoMode::Position;
   double proportional = 0, derivative = 0, integral = 0;
+  double tracking_time = 0;  ///< in which the integral follows a saturated effort [s]; 0: it does not
+};
+
+/// Controller of a coordinate over a motor. Its effort is cut at its limit.
+struct Servo {
+  std::vector<ServoLaw> laws;            ///< the first is that of the start; the others are there to be switched to
   int set_point = -1, feedforward = -1;  ///< histories; -1: none
   double start = 0;                      ///< set point where there is no history
   double effort_limit = Drive::kInfinity;
-  double tracking_time = 0;  ///< in which the integral follows a saturated effort [s]; 0: it does not
-  bool on_link = false;      ///< measures the coordinate, else the rotor
-  double sample_time = 0;    ///< [s]; 0: continuous
-  double delay = 0;          ///< [s]
+  bool on_link = false;    ///< measures the coordinate, else the rotor
+  double sample_time = 0;  ///< [s]; 0: continuous
+  double delay = 0;        ///< [s]
 };
 
 /// Of a rotor whose axis is carried round by the parent link.
@@ -74,8 +75,11 @@ struct Actuator {
 /// What time changes of a controller.
 struct ServoState {
   double set_point = std::numeric_limits<double>::quiet_NaN();  ///< commanded; NaN where no command holds
+  // Until `set_time` [s] it moves, arriving with this rate and acceleration; then it stays.
+  double set_rate = 0, set_acceleration = 0, set_time = 0;
+  double law = 0;           ///< in force, of Servo::laws; another one than the first only under a command
   double off = 0;           ///< 1 where it is switched off: the motor gives nothing; else 0
-  double integral = 0;      ///< of the error, or with Mode::Velocity the error itself [s times the error]
+  double integral = 0;      ///< of the error, or with ServoMode::Velocity the error itself [s times the error]
   double average = 0;       ///< of past increments of the error, which damps stiff gains
   double delayed_rate = 0;  ///< what follows the rate of what is measured, backwards, the same
   // Sampled controllers:
@@ -83,6 +87,10 @@ struct ServoState {
   double measured = 0;          ///< in the last sample
   std::vector<double> outputs;  ///< of the last samples, newest first [N m or N]
 };
+
+inline const ServoLaw& law_of(const Servo& servo, const ServoState& state) {
+  return servo.laws[static_cast<std::size_t>(state.law)];
+}
 
 /// What time changes of an actuator.
 struct ActuatorState {

@@ -45,6 +45,8 @@ Model model_after_release(Model model, const State& state, int slide) {
     }
   });
   joint.leaving = -1;
+  model.node_parents[model.joints[last].slave] = -1;
+  model.node_parents.push_back(model.joints[last].master);
   model.joints[last].slave = static_cast<int>(model.nodes.size());
   model.nodes.push_back(model.nodes.back());
   model.inertias.emplace_back();

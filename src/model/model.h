@@ -141,6 +141,7 @@ struct SensorPlace {
 struct Model {
   // ---- mechanics
   std::vector<NodePose> nodes;         ///< initial poses (released coordinates at their initial values)
+  std::vector<int> node_parents;       ///< node that a node moves with when joints outboard of it move; -1: world
   std::vector<NodalInertia> inertias;  ///< per node
   BeamGroups beams;
   int stiffness_point_count = 0, mass_point_count = 0;

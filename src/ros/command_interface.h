@@ -1,5 +1,5 @@
 #pragma once
-/// Joint efforts and set points of servos from topics.
+/// Joint efforts, set points of servos and trajectories from topics, and the modes of servos.
 
 #include <flexarm/JointForceCommand.h>
 #include <ros/node_handle.h>
@@ -9,34 +9,50 @@
 #include <std_msgs/Float64.h>
 
 #include <chrono>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "flexarm/simulation/simulation.h"
 #include "stepping_thread.h"
+#include "trajectories.h"
 
 namespace flexarm::node {
 
+/// What commands are told of time.
+struct CommandTimes {
+  std::function<double(const ros::Time&)> time_of;  ///< simulated, that no reset sets back, of a stamp [s]
+  double timeout = 0;        ///< a command expires after it, unless that names a duration [s]; 0: never
+  double stop_duration = 0;  ///< in which joints on trajectories decelerate that are to stop [s]; 0: at once
+};
+
 /// Hands commands to the thread that steps: efforts of joint_force_command, joint_command and COORDINATE/command, set
-/// points of joint_set_points and COORDINATE/set_point; and ~emergency_stop.
+/// points of joint_set_points, joint_command and COORDINATE/set_point; trajectories; and ~emergency_stop.
 class CommandInterface {
  public:
-  /// @param scene    of what is stepped
-  /// @param timeout  a command expires after it, unless that names a duration [s]; 0: never
-  CommandInterface(ros::NodeHandle& node, ros::NodeHandle& private_node, const Simulation& scene,
-                   SteppingThread& stepping, double timeout);
+  /// @param shown  what is stepped, as reports have it
+  CommandInterface(ros::NodeHandle& node, ros::NodeHandle& private_node, const Simulation& shown,
+                   SteppingThread& stepping, CommandTimes times);
   CommandInterface(const CommandInterface&) = delete;
   CommandInterface& operator=(const CommandInterface&) = delete;
 
   /// Between two steps, after a reset, or where another state was loaded: no command expires; an emergency stop, or
   /// none, still is in force.
   void forget_commands();
+  /// Between two steps: switches the modes of servos, all or none. @returns why not, or nothing
+  std::string switch_mode(Simulation& simulation, const std::vector<std::string>& names,
+                          const std::vector<std::string>& modes);
+  /// After a report, of the time `now`: simulated, not set back [s].
+  void judge_trajectories(double now) { trajectories_.judge(now); }
 
  private:
   void receive_force_command(const JointForceCommand& message);
   void receive_joint_state(const sensor_msgs::JointState& message);
   void receive_set_points(const sensor_msgs::JointState& message);
   void receive_emergency_stop(const std_msgs::Bool& message);
+  void command_set_points(const std::string& topic, const sensor_msgs::JointState& message);
+  /// Why nothing may be commanded now, or nothing.
+  std::string refusal() const;
   /// COORDINATE/`suffix`, each message of which commands that quantity.
   void subscribe_to(ros::NodeHandle& node, const std::string& coordinate, const std::string& suffix,
                     Commanded quantity);
@@ -54,9 +70,10 @@ class CommandInterface {
   void release(Simulation& simulation);
   void switch_servos(Simulation& simulation, bool on);
 
-  const Simulation& scene_;
+  const Simulation& shown_;
   SteppingThread& stepping_;
-  double timeout_;                ///< [s]; 0: none
+  CommandTimes times_;
+  Trajectories trajectories_;
   std::vector<Command> message_;  ///< the one at hand
   bool stopped_ = false;          ///< by ~emergency_stop
   std::chrono::steady_clock::time_point last_warning_;

@@ -43,7 +43,9 @@ Node::Node()
       diagnostics_(node_, private_node_, shown_, run_),
       bell_([this] { take_reports(); }),
       stepping_(shown_.copy(), pace(parameters_), [this] { bell_.ring(); }),
-      command_interface_(node_, private_node_, shown_, stepping_, parameters_.command_timeout),
+      command_interface_(node_, private_node_, shown_, stepping_,
+                         {[this](const ros::Time& stamp) { return simulated_time(stamp); }, parameters_.command_timeout,
+                          parameters_.stop_duration}),
       frame_watch_(node_, state_publisher_.frames()),
       services_(private_node_, *this) {
   for (const scene::Diagnostic& warning : shown_.start_warnings()) ROS_WARN_STREAM(warning.text());
@@ -101,6 +103,7 @@ void Node::take(const StepReport& report) {
   const std::uint64_t made = report.steps - run_.steps;
   run_.steps = report.steps;
   run_.simulated_time = static_cast<double>(run_.steps) * shown_.step_size();
+  command_interface_.judge_trajectories(run_.simulated_time);
   clock_publisher_.advance(made, report.overruns, report.is_paced);
   publish(false);
 }
@@ -227,23 +230,48 @@ void Node::load_state(const std::string& file) {
   });
 }
 
+void Node::set_joint_state(const std::vector<CoordinateState>& coordinates) {
+  stepping_.between_steps([&](Simulation& simulation) {
+    take_reports();
+    simulation.set_joint_state(coordinates);
+    show_new_state();
+  });
+}
+
+std::string Node::switch_mode(const std::vector<std::string>& names, const std::vector<std::string>& modes) {
+  std::string fault;
+  stepping_.between_steps([&](Simulation& simulation) {
+    take_reports();
+    fault = command_interface_.switch_mode(simulation, names, modes);
+    show();
+  });
+  return fault;
+}
+
 void Node::begin_anew() {
   command_interface_.forget_commands();
   stepping_.wrenches().clear();
-  show();
   marker_publisher_.forget_largest_strain();
+  show_new_state();
+}
+
+void Node::show_new_state() {
+  show();
   run_.failure.clear();
   run_.last_step = {};
   clock_publisher_.advance();  // the new state is news, too
   publish(true);
 }
 
+double Node::simulated_time(const ros::Time& stamp) const {
+  return run_.simulated_time + (stamp - clock_publisher_.stamp().value_or(stamp)).toSec();
+}
+
 void Node::apply_wrench(const AppliedWrench& wrench, const ros::Time& start, double duration) {
   if (duration == 0) return;
   stepping_.between_steps([&](Simulation& simulation) {
     take_reports();
-    const double delay = (start - clock_publisher_.stamp().value_or(start)).toSec(),
-                 begin = run_.simulated_time + std::max(delay, 0.0);
+    const double begin = std::max(simulated_time(start), run_.simulated_time);
     const double end =
         duration < 0 ? std::numeric_limits<double>::infinity() : begin + std::max(duration, simulation.step_size());
     stepping_.wrenches().add(wrench, begin, end);

@@ -46,6 +46,11 @@ class Node {
   /// Goes on from a state in a file; time of the stamps goes on, and paused stays paused. Applied wrenches are over.
   /// @throws std::runtime_error as read_checkpoint(); all is as before then.
   void load_state(const std::string& file);
+  /// Puts joints elsewhere, or gives them other velocities; commands and what they follow go on.
+  /// @throws std::invalid_argument as Simulation::set_joint_state(); all is as before then.
+  void set_joint_state(const std::vector<CoordinateState>& coordinates);
+  /// @returns why the modes cannot be switched, or nothing
+  std::string switch_mode(const std::vector<std::string>& names, const std::vector<std::string>& modes);
   /// @param start     by the stamps of messages; in the past: with the next step
   /// @param duration  [s]; < 0: for ever, 0: nothing, less than a step: one step
   /// @throws std::invalid_argument as Simulation::apply_wrenches().
@@ -74,8 +79,12 @@ class Node {
   void publish(bool force);
   /// Takes over the state of what is stepped, between two steps.
   void show();
-  /// The same, where it is another one than the last step's.
+  /// The same, where it is another one than the last step's, and tells everybody.
+  void show_new_state();
+  /// That, and nothing that was commanded before acts any more.
   void begin_anew();
+  /// That no reset sets back, when messages have that stamp [s].
+  double simulated_time(const ros::Time& stamp) const;
   /// Sets ~view, which tells displays where to look.
   void describe_view() const;
   std::string root_frame() const { return parameters_.frame_prefix + shown_.scene().root_link; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 
 #include "flexarm/simulation/checkpoint.h"
@@ -19,6 +20,8 @@ Services::Services(ros::NodeHandle& private_node, Node& simulator) : simulator_(
               private_node.advertiseService("step", &Services::step, this),
               private_node.advertiseService("save_state", &Services::save_state, this),
               private_node.advertiseService("load_state", &Services::load_state, this),
+              private_node.advertiseService("set_joint_state", &Services::set_joint_state, this),
+              private_node.advertiseService("switch_mode", &Services::switch_mode, this),
               private_node.advertiseService("apply_wrench", &Services::apply_wrench, this),
               private_node.advertiseService("clear_wrenches", &Services::clear_wrenches, this)};
 }
@@ -73,6 +76,41 @@ bool Services::load_state(LoadState::Request& request, LoadState::Response& resp
     response.message = error.what();
   }
   response.time = simulator_.simulation().time();
+  return true;
+}
+
+bool Services::set_joint_state(SetJointState::Request& request, SetJointState::Response& response) {
+  const std::size_t count = request.names.size();
+  for (const std::vector<double>* values : {&request.positions, &request.velocities}) {
+    if (values->empty() || values->size() == count) continue;
+    response.message = std::to_string(count) + " names, but " + std::to_string(values->size()) +
+                       (values == &request.positions ? " positions" : " velocities");
+    return true;
+  }
+  std::vector<CoordinateState> coordinates;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::optional<std::size_t> coordinate = simulator_.simulation().find_coordinate(request.names[i]);
+    if (!coordinate) {
+      response.message = "there is no joint coordinate '" + request.names[i] + "'";
+      return true;
+    }
+    CoordinateState& wanted = coordinates.emplace_back();
+    wanted.coordinate = *coordinate;
+    if (!request.positions.empty()) wanted.position = request.positions[i];
+    if (!request.velocities.empty()) wanted.velocity = request.velocities[i];
+  }
+  try {
+    simulator_.set_joint_state(coordinates);
+    response.success = true;
+  } catch (const std::invalid_argument& error) {
+    response.message = error.what();
+  }
+  return true;
+}
+
+bool Services::switch_mode(SwitchMode::Request& request, SwitchMode::Response& response) {
+  response.message = simulator_.switch_mode(request.names, request.modes);
+  response.success = response.message.empty();
   return true;
 }
 

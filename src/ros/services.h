@@ -1,10 +1,13 @@
 #pragma once
-/// ~pause, ~resume, ~reset, ~step; ~save_state, ~load_state; ~apply_wrench, ~clear_wrenches.
+/// ~pause, ~resume, ~reset, ~step; ~save_state, ~load_state, ~set_joint_state; ~switch_mode; ~apply_wrench,
+/// ~clear_wrenches.
 
 #include <flexarm/ApplyWrench.h>
 #include <flexarm/LoadState.h>
 #include <flexarm/SaveState.h>
+#include <flexarm/SetJointState.h>
 #include <flexarm/Step.h>
+#include <flexarm/SwitchMode.h>
 #include <ros/node_handle.h>
 #include <ros/service_server.h>
 #include <std_srvs/Empty.h>
@@ -28,6 +31,8 @@ class Services {
   bool step(Step::Request& request, Step::Response& response);
   bool save_state(SaveState::Request& request, SaveState::Response& response);
   bool load_state(LoadState::Request& request, LoadState::Response& response);
+  bool set_joint_state(SetJointState::Request& request, SetJointState::Response& response);
+  bool switch_mode(SwitchMode::Request& request, SwitchMode::Response& response);
   bool apply_wrench(ApplyWrench::Request& request, ApplyWrench::Response& response);
   bool clear_wrenches(std_srvs::Empty::Request& request, std_srvs::Empty::Response& response);
 

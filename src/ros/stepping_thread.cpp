@@ -40,6 +40,7 @@ SteppingThread::SteppingThread(Simulation simulation, const Pace& pace, std::fun
     : simulation_(std::move(simulation)),
       timed_commands_(simulation_),
       wrenches_(simulation_),
+      trajectories_(simulation_.coordinate_names().size()),
       pace_(pace),
       pacer_(simulation_.step_size(), pace.real_time_factor, pace.max_catch_up),
       reports_(report_count(simulation_)),
@@ -114,6 +115,7 @@ bool SteppingThread::advance() {
 bool SteppingThread::make_step(double lateness, bool is_paced) {
   take_commands();
   if (pace_.lock_step && !commands_.empty()) take_message();
+  follow_trajectories();
   wrenches_.update(time());
   const SteadyClock::time_point start = SteadyClock::now();
   const StepResult result = simulation_.step();
@@ -142,9 +144,20 @@ void SteppingThread::take_commands() {
 
 void SteppingThread::take_message() {
   for (bool is_at_end = false; !is_at_end; commands_.pop()) {
-    timed_commands_.apply(commands_.front());
+    const Command& command = commands_.front();
+    if (command.quantity == Commanded::SetPoint) trajectories_.release(command.coordinate);
+    timed_commands_.apply(command);
     is_at_end = commands_.front().ends_message;
   }
+}
+
+void SteppingThread::follow_trajectories() {
+  for (std::size_t joint = 0; joint < trajectories_.joint_count(); ++joint) {
+    if (!trajectories_.follows(joint)) continue;
+    const JointPoint point = trajectories_.at(joint, time() + simulation_.step_size());
+    simulation_.command_set_point(joint, point.position, point.velocity, point.acceleration);
+  }
+  trajectories_.release_arrived(time());
 }
 
 void SteppingThread::forget_commands() {

@@ -14,6 +14,7 @@
 #include "pacer.h"
 #include "semaphore.h"
 #include "timed_commands.h"
+#include "trajectory_follower.h"
 #include "wrench_schedule.h"
 
 namespace flexarm::node {
@@ -68,25 +69,32 @@ class SteppingThread {
   // ---- for who has halted it
   Simulation& simulation() { return simulation_; }
   WrenchSchedule& wrenches() { return wrenches_; }
+  /// Its times are those of time(). Joints whose set points are commanded leave it.
+  TrajectoryFollower& trajectories() { return trajectories_; }
+  /// Simulated, since the beginning; a reset does not set it back [s].
+  double time() const { return static_cast<double>(steps_) * simulation_.step_size(); }
   /// One step and what belongs to it. @returns false if it failed
   bool advance();
   /// What was commanded acts now, but in lock step, where it is for the steps to come.
   void take_commands();
   /// Commands that wait are dropped, and none expires any more.
   void forget_commands();
+  /// What was commanded as the set point of a coordinate does not expire.
+  void forget_set_point(std::size_t coordinate) { timed_commands_.forget_set_point(coordinate); }
 
  private:
-  /// Simulated, since the beginning; a reset does not set it back [s].
-  double time() const { return static_cast<double>(steps_) * simulation_.step_size(); }
   void loop();
   /// True once the next step may begin; else waits for a while.
   bool wait_for_step();
   bool make_step(double lateness, bool is_paced);
   void take_message();
+  /// Set points of the next step.
+  void follow_trajectories();
 
   Simulation simulation_;
   TimedCommands timed_commands_;
   WrenchSchedule wrenches_;
+  TrajectoryFollower trajectories_;
   Pace pace_;
   Pacer pacer_;
   std::chrono::steady_clock::time_point last_look_;  ///< at the clock

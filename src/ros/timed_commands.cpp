@@ -43,4 +43,8 @@ void TimedCommands::forget() {
   next_expiry_ = Command::kForEver;
 }
 
+void TimedCommands::forget_set_point(std::size_t coordinate) {
+  expiry_[static_cast<std::size_t>(Commanded::SetPoint)][coordinate] = Command::kForEver;
+}
+
 }  // namespace flexarm::node

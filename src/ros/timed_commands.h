@@ -32,6 +32,8 @@ class TimedCommands {
   void expire(double time);
   /// Nothing expires any more.
   void forget();
+  /// The set point of a coordinate does not.
+  void forget_set_point(std::size_t coordinate);
 
  private:
   void give(Commanded quantity, std::size_t coordinate, double value);

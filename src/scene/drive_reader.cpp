@@ -1,5 +1,6 @@
 #include "scene/drive_reader.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -70,6 +71,27 @@ std::vector<XmlElement> children(const XmlElement& element, const char* tag) {
   return out;
 }
 
+/// `mode`: that of the servo.
+std::vector<ServoDescription::Gains> read_other_modes(const XmlElement& servo, ServoDescription::Mode mode) {
+  std::vector<ServoDescription::Gains> out;
+  for (const XmlElement& gains : children(servo, "gains")) {
+    gains.expect_only({"mode", "kp", "kd", "ki", "anti_windup"});
+    const std::optional<ServoDescription::Mode> other = read_choice(gains, "mode", kModes);
+    if (!other) continue;
+    check_gains(gains, *other);
+    const auto is_same = [&](const ServoDescription::Gains& earlier) { return earlier.mode == *other; };
+    if (*other == mode || std::any_of(out.begin(), out.end(), is_same))
+      gains.attribute_error("mode", "the gains of this mode are given already");
+    else if (*other == ServoDescription::Mode::Effort)
+      gains.attribute_error("mode", "mode 'effort' needs no gains, and is always there; leave this out");
+    else
+      out.push_back({*other, gains.number("kp", kNonNegative, 0), gains.number("kd", kNonNegative, 0),
+                     gains.number("ki", kNonNegative, 0),
+                     gains.has("anti_windup") ? gains.number("anti_windup", kPositive).value_or(0) : 0});
+  }
+  return out;
+}
+
 }  // namespace
 
 SpringDescription read_spring(const XmlElement& spring) {
@@ -101,7 +123,8 @@ DriveDescription read_drive(const XmlElement& drive) {
 
 ServoDescription read_servo(const XmlElement& servo) {
   servo.expect_only({"joint", "mode", "kp", "kd", "ki", "set_point", "feedforward", "effort_limit", "anti_windup",
-                     "side", "sample_time", "delay"});
+                     "side", "sample_time", "delay"},
+                    {"gains"});
   ServoDescription out;
   out.location = servo.location();
   out.coordinate = servo.text("joint").value_or("");
@@ -118,6 +141,7 @@ ServoDescription read_servo(const XmlElement& servo) {
   if (servo.has("sample_time")) out.sample_time = servo.number("sample_time", kPositive).value_or(0);
   out.delay = servo.number("delay", kNonNegative, 0);
   if (mode) check_gains(servo, *mode);
+  if (mode) out.other_modes = read_other_modes(servo, *mode);
   return out;
 }
 

@@ -129,8 +129,9 @@ class SceneFingerprint {
   }
   void add(const scene::ServoDescription& servo) {
     const auto& [coordinate, mode, kp, kd, ki, set_point, feedforward, effort_limit, anti_windup, side, sample_time,
-                 delay, location] = servo;
+                 delay, other_modes, location] = servo;
     all(coordinate, mode, kp, kd, ki, set_point, feedforward, effort_limit, anti_windup, side, sample_time, delay);
+    for (const auto& [mode, kp, kd, ki, anti_windup] : servo.other_modes) all(mode, kp, kd, ki, anti_windup);
   }
 
   // ---- simulation

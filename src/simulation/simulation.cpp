@@ -14,7 +14,9 @@
 #include "simulation/failure_text.h"
 #include "simulation/implementation.h"
 #include "simulation/inside.h"
+#include "simulation/joint_state.h"
 #include "simulation/observables.h"
+#include "simulation/servo_commands.h"
 #include "simulation/wrenches.h"
 
 namespace flexarm {
@@ -133,42 +135,52 @@ void Simulation::release_command(std::size_t index) {
   implementation_->state.commands.at(index) = std::numeric_limits<double>::quiet_NaN();
 }
 
-namespace {
-
-ServoState* servo_of(const Model& model, std::size_t index, State& state) {
-  const int actuator = model.coordinates.at(index).actuator;
-  return actuator >= 0 && model.actuators[actuator].servo ? &state.actuators[actuator].servo : nullptr;
+void Simulation::command_set_point(std::size_t index, double set_point, double rate, double acceleration) {
+  Implementation& s = *implementation_;
+  flexarm::command_set_point(servo_of(s.model, index, s.state), set_point, rate, acceleration,
+                             s.state.time + s.settings.step);
 }
 
-ServoState& commanded_servo(const Model& model, std::size_t index, State& state) {
-  ServoState* servo = servo_of(model, index, state);
-  if (!servo) throw std::invalid_argument("joint coordinate '" + model.coordinates[index].name + "' has no servo");
-  return *servo;
-}
-
-}  // namespace
-
-void Simulation::command_set_point(std::size_t index, double set_point) {
-  if (!std::isfinite(set_point)) throw std::invalid_argument("a commanded set point must be finite");
-  commanded_servo(implementation_->model, index, implementation_->state).set_point = set_point;
-}
-
-void Simulation::switch_servo(std::size_t index, bool on) {
-  commanded_servo(implementation_->model, index, implementation_->state).off = on ? 0 : 1;
+double Simulation::set_point(std::size_t index) const {
+  const Implementation& s = *implementation_;
+  return flexarm::set_point(servo_of(s.model, index), s.model, servo_of(s.model, index, implementation_->state),
+                            s.state.time + s.settings.step);
 }
 
 void Simulation::release_set_point(std::size_t index) {
-  ServoState* servo = servo_of(implementation_->model, index, implementation_->state);
-  if (servo) servo->set_point = std::numeric_limits<double>::quiet_NaN();
+  flexarm::release_set_point(implementation_->model, index, implementation_->state);
+}
+
+void Simulation::switch_servo(std::size_t index, bool on) {
+  servo_of(implementation_->model, index, implementation_->state).off = on ? 0 : 1;
+}
+
+void Simulation::switch_mode(std::size_t index, ServoMode mode) {
+  servo_of(implementation_->model, index);
+  flexarm::switch_mode(implementation_->model, index, mode, position(index), velocity(index), implementation_->state);
+}
+
+ServoMode Simulation::servo_mode(std::size_t index) const {
+  return law_of(servo_of(implementation_->model, index),
+                servo_of(implementation_->model, index, implementation_->state))
+      .mode;
 }
 
 bool Simulation::has_servo(std::size_t index) const {
-  return servo_of(implementation_->model, index, implementation_->state) != nullptr;
+  return flexarm::has_servo(implementation_->model, index);
 }
 
 bool Simulation::is_commandable(std::size_t index) const {
   const Coordinate& coordinate = implementation_->model.coordinates.at(index);
   return coordinate.motion < 0 && coordinate.mimicked < 0;
+}
+
+void Simulation::set_joint_state(const std::vector<CoordinateState>& coordinates) {
+  Implementation& s = *implementation_;
+  State moved = with_joint_state(s.model, s.stepper->degrees_of_freedom(), s.state, coordinates);
+  s.stepper->initialise(moved);
+  moved.work += flexarm::energies(s.model, s.scheme, moved).total() - s.published_energies().total();
+  s.set_state(moved);
 }
 
 void Simulation::apply_wrenches(const std::vector<AppliedWrench>& wrenches) {

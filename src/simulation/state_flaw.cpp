@@ -76,6 +76,18 @@ void check_sizes(const State& initial, const State& state, Flaw& flaw) {
     flaw.require_size("the number of reactions", state.reactions.size(), state.nodes.size());
 }
 
+void check_servos(const Model& built, const State& state, Flaw& flaw) {
+  for (std::size_t i = 0; i < std::min(state.actuators.size(), built.actuators.size()); ++i) {
+    const ServoState& servo = state.actuators[i].servo;
+    const auto& description = built.actuators[i].servo;
+    const double last = description ? static_cast<double>(description->laws.size()) - 1 : 0;
+    flaw.require(servo.law == std::floor(servo.law) && servo.law >= 0 && servo.law <= last, "the mode of a servo",
+                 servo.law, fmt::format("a whole number from 0 to {}", last));
+    flaw.require(servo.law == 0 || !std::isnan(servo.set_point), "the set point of a servo", servo.set_point,
+                 "a number where its mode has been switched");
+  }
+}
+
 void check_wrenches(const State& state, Flaw& flaw) {
   for (const NodalLoad& wrench : state.wrenches)
     flaw.require_range("the node of a wrench", wrench.node, 0, static_cast<double>(state.nodes.size()) - 1);
@@ -98,6 +110,7 @@ std::string state_flaw(const Model& built, const State& initial, int finest_halv
   Flaw flaw;
   check_left_lines(built, state, flaw);
   check_sizes(initial, state, flaw);
+  check_servos(built, state, flaw);
   check_wrenches(state, flaw);
   check_history(state.history, flaw);
   flaw.require(state.steps >= 0, "the number of steps", static_cast<double>(state.steps), "0 or more");

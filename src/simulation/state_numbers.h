@@ -47,6 +47,8 @@ void for_each_number(AnyState& state, const Visit& visit) {
     visit("a mark of rest", actuator.rest);
     auto& servo = actuator.servo;
     visit(kCommand, servo.set_point);
+    for (auto* number : {&servo.set_rate, &servo.set_acceleration, &servo.set_time, &servo.law})
+      visit("how a set point moves", *number);
     visit("a mark of what is off", servo.off);
     for (auto* number : {&servo.integral, &servo.average, &servo.delayed_rate, &servo.samples, &servo.measured})
       visit("the memory of a servo", *number);

@@ -48,13 +48,17 @@ struct Rows {
 
 template <int Nodes>
 [[gnu::always_inline]] inline void gather(const double* blocks, double* const* diagonals, Rows<Nodes>& rows) {
-  std::memset(rows.value, 0, sizeof(rows.value));
+  // What fills the lanes up.
+  for (auto& row : rows.value) row[Sizes<Nodes>::pivot_lanes - 1] = row[Sizes<Nodes>::row_lanes - 1] = Lanes{};
   for (int i = 1; i < Nodes; ++i)
     for (int j = 0; j < Nodes; ++j) {
       const double* block = blocks + 36 * (i * Nodes + j);
       for (int r = 0; r < 6; ++r) {
         double* to = j == 0 ? rows.right(6 * (i - 1) + r) : rows.row(6 * (i - 1) + r) + 6 * (j - 1);
-        for (int c = 0; c < 6; ++c) to[c] = block[6 * c + r] + (i == j ? diagonals[i][6 * c + r] : 0.0);
+        if (i == j)
+          for (int c = 0; c < 6; ++c) to[c] = block[6 * c + r] + diagonals[i][6 * c + r];
+        else
+          for (int c = 0; c < 6; ++c) to[c] = block[6 * c + r];
       }
     }
 }
@@ -96,15 +100,15 @@ template <int Nodes>
   double reciprocal[n];
   gather<Nodes>(blocks, diagonals, rows);
   if (!factorise<Nodes>(rows, reciprocal, pivots)) return false;
-  for (int k = n - 1; k >= 0; --k) {  // X
-    Lanes first = rows.value[k][right], second = rows.value[k][right + 1];
-    for (int j = k + 1; j < n; ++j) {
-      const double upper = rows.row(k)[j];
-      first -= upper * rows.value[j][right];
-      second -= upper * rows.value[j][right + 1];
+  for (int k = n - 1; k >= 0; --k) {  // X; column by column, so that rows do not wait for each other
+    const Lanes first = reciprocal[k] * rows.value[k][right], second = reciprocal[k] * rows.value[k][right + 1];
+    rows.value[k][right] = first;
+    rows.value[k][right + 1] = second;
+    for (int i = k - 1; i >= 0; --i) {
+      const double upper = rows.row(i)[k];
+      rows.value[i][right] -= upper * first;
+      rows.value[i][right + 1] -= upper * second;
     }
-    rows.value[k][right] = reciprocal[k] * first;
-    rows.value[k][right + 1] = reciprocal[k] * second;
   }
   for (int r = 0; r < 6; ++r) {  // S
     Lanes sums[2] = {Lanes{}, Lanes{}};

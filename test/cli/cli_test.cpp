@@ -165,6 +165,19 @@ TEST(Simulate, NumbersAreReadBackBitForBit) {
   }
 }
 
+// 0.05 s, as often as this, are less than 0.05 times their number by more than a millionth of a step.
+TEST(Simulate, RoundOffOfManyStepsIsNoStep) {
+  const std::string csv = temporary("many.csv");
+  const Outcome outcome = shell("flexarm simulate " + scene_file(R"(<robot name="r"> <link name="world"/>
+    <link name="wheel"> <inertial> <mass value="1"/>
+      <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
+    <joint name="shaft" type="continuous"> <parent link="world"/> <child link="wheel"/> <axis xyz="0 0 1"/> </joint>
+    </robot>)") + " --step 0.05 --until 13073.65 --every 10000000 --quiet --output " +
+                                csv);
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_NEAR(read_csv(csv)["time"].back(), 261473 * 0.05, 1e-6);
+}
+
 TEST(Simulate, QuietSaysNothing) {
   const Outcome outcome = shell("flexarm simulate " + example("cantilever") + " --until 0.01 --quiet");
   EXPECT_EQ(outcome.status, 0);

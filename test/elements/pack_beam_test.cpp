@@ -117,20 +117,23 @@ struct Output {
   }
 };
 
-enum class Version { Baseline, Wide };
+enum class Version { Baseline, Wide, ManyRegisters };
 
 template <int Nodes>
 void evaluate(KernelData<Nodes, Pack>& data, const TimeRule& rule, Version version) {
   const auto work = [&] { data.evaluate(rule, kStep, true); };
   if (version == Version::Baseline)
     simd::run_baseline(work);
-  else
+  else if (version == Version::Wide)
     simd::run_wide(work);
+  else
+    simd::run_with_many_registers(work);
 }
 
 std::vector<Version> versions() {
   std::vector<Version> out = {Version::Baseline};
   if (simd::is_wide()) out.push_back(Version::Wide);
+  if (simd::has_many_registers()) out.push_back(Version::ManyRegisters);
   return out;
 }
 

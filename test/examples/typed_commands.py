@@ -18,11 +18,12 @@ def commands_of(name):
     return re.findall(r"^```sh\n(.*?)^```", text_of(name), re.DOTALL | re.MULTILINE)
 
 
-def type_commands(commands, program, folder):
-    """Runs them in a folder, `flexarm` being the program, python the test's own; status, and what is printed."""
+def type_commands(commands, program, folder, setup=None):
+    """Runs them in a folder, `flexarm` being the program, python the test's own; status, and what is printed. `setup`:
+    a script that is sourced first."""
     path = [os.path.dirname(program), os.path.dirname(sys.executable), os.environ["PATH"]]
     result = subprocess.run(
-        ["bash", "-c", "set -e\n" + "\n".join(commands)],
+        ["bash", "-c", "\n".join([f"source {setup}" if setup else "", "set -e", *commands])],
         cwd=folder,
         env=dict(os.environ, PATH=os.pathsep.join(path)),
         stdout=subprocess.PIPE,

@@ -1,10 +1,11 @@
 #!/usr/bin/python3
-"""A PD controller that closes its loop on joint_states holds the guide's second arm and the demo."""
+"""A PD controller that closes its loop on joint_states holds the guide's second arm, the demo, and a six-axis robot."""
 
 import math
 import time
 import unittest
 
+import numpy
 import rospy
 import rostest
 from flexarm.msg import JointForceCommand
@@ -15,7 +16,8 @@ DURATION = 10.0  # s, of each loop
 
 
 class Controller:
-    """Efforts stiffness (set point - position) - damping velocity on every joint, at every `every`-th message."""
+    """Efforts stiffness (set point - position) - damping velocity on every joint, at every `every`-th message;
+    `stiffness`, `damping`: for all joints, or one for each."""
 
     def __init__(self, namespace, stiffness, damping, offset, every):
         self.stiffness, self.damping, self.offset, self.every = stiffness, damping, offset, every
@@ -33,7 +35,8 @@ class Controller:
         errors = [goal - position for goal, position in zip(self.set_points, state.position)]
         self.states.append((state.header.stamp.to_sec(), errors, state.velocity))
         if self.received % self.every == 0:
-            efforts = [self.stiffness * e - self.damping * v for e, v in zip(errors, state.velocity)]
+            gains = zip(numpy.broadcast_to(self.stiffness, len(errors)), numpy.broadcast_to(self.damping, len(errors)))
+            efforts = [k * e - d * v for (k, d), e, v in zip(gains, errors, state.velocity)]
             self.commands.send(force_command(list(state.name), efforts))
         self.received += 1
 
@@ -73,6 +76,37 @@ class Control(unittest.TestCase):
 
     def test_demo_at_100_hz(self):
         self.hold("/demo", 2000, 300, 0.03, inertia=100, every=10)
+
+
+    # Its servos, switched to mode effort, give what holds the robot up; the controller is springs and dampers beside
+    # that. It sees joints, its efforts act on motors behind elastic gears: what it takes out of a vibration of the gear
+    # is less than the gear's own damping as long as it damps less than that, times (J + j)^2 / (J j), with J, j of link
+    # and rotor.
+    def test_robot_at_1000_hz(self):
+        stiffness = numpy.array([2000, 2000, 800, 60, 60, 20])
+        damping = [60, 60, 24, 1.5, 1.5, 0.5]
+        force, levers = 20, numpy.array([1.3, 1.3, 1.3, 0.2, 0.2, 0.2])  # N, m
+        arm = SimulatedArm("/robot")
+        arm.reset()
+        names = arm.joint_states().name
+        self.assertTrue(arm.switch_mode(names=names, modes=["effort"] * 6).success)
+        controller = Controller("/robot", stiffness, damping, 0, 1)
+        wait_until(lambda: controller.states, "joint states of the robot")
+        arm.resume()
+        time.sleep(1)
+        self.assertTrue(arm.apply_wrench("flange", force=(0, 0, force), duration=1.0).success)
+        time.sleep(DURATION)
+        arm.pause()
+        controller.subscriber.unregister()
+        self.assertFalse(arm.status().failed)
+        self.assertGreater(len(controller.states), 0.5 * 1000 * DURATION)
+        errors = numpy.array([errors for _, errors, _ in controller.states])
+        # The springs take up at most what a sudden force does on its way: sum of k e^2 / 2 <= force * sum of lever e;
+        # gravity, which changes with the pose, is a twentieth of them.
+        energies = errors**2 @ stiffness
+        self.assertLess(math.sqrt(energies.max()), 1.05 * 2 * force * math.sqrt((levers**2 / stiffness).sum()))
+        self.assertGreater(numpy.abs(errors).max(), 1e-3)
+        self.assertLess(numpy.abs(errors[-1]).max(), 1e-3)
 
 
 if __name__ == "__main__":

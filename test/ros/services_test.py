@@ -198,6 +198,50 @@ class States(ClockedArm):
             self.assertNotEqual(answer.message, "")
 
 
+class JointStates(ClockedArm):
+    def setUp(self):
+        super().setUp()
+        self.pause_and_wait()
+        self.assertTrue(self.arm.step(50).success)
+
+    def test_joints_are_where_they_are_set_and_go_on_from_there(self):
+        before, status = self.states_when_paused(), self.status()
+        answer = self.arm.set_joint_state(names=["right_shoulder", "wrist/rx"], positions=[0.7, 0.2],
+                                          velocities=[1.5, 0.0])
+        self.assertTrue(answer.success, answer.message)
+        wait_until(lambda: self.status().header.stamp > status.header.stamp, "the status after the joints were set")
+        states = self.states_when_paused()
+        self.assertEqual(Joint(states, "right_shoulder").position, 0.7)
+        self.assertAlmostEqual(Joint(states, "right_shoulder").velocity, 1.5, delta=1e-12)
+        self.assertAlmostEqual(Joint(states, "wrist/rx").position, 0.2, delta=1e-12)
+        self.assertEqual(Joint(states, "mirror").position, -0.7)
+        self.assertEqual(Joint(states, "left_shoulder").position, Joint(before, "left_shoulder").position)
+        self.assertEqual(self.status().time, status.time)
+        self.assertTrue(self.arm.step(10).success)
+        turned = Joint(self.states_when_paused(), "right_shoulder").position - 0.7
+        self.assertAlmostEqual(turned, 10 * self.step_size * 1.5, delta=1e-4)  # the hand's share changes slowly
+
+    def test_what_is_not_given_stays(self):
+        self.assertTrue(self.arm.set_joint_state(names=["right_shoulder"], velocities=[0.4]).success)
+        self.assertTrue(self.arm.set_joint_state(names=["right_shoulder"], positions=[-0.3]).success)
+        joint = Joint(self.states_when_paused(), "right_shoulder")
+        self.assertEqual(joint.position, -0.3)
+        self.assertAlmostEqual(joint.velocity, 0.4, delta=1e-12)
+
+    def test_what_cannot_be_set_is_refused_whole(self):
+        before = self.states_when_paused()
+        for told, fields in (("no joint coordinate 'nose'", dict(names=["right_shoulder", "nose"], positions=[1, 1])),
+                             ("1 positions", dict(names=["right_shoulder", "wrist/rx"], positions=[1])),
+                             ("2 velocities", dict(names=["right_shoulder"], positions=[1], velocities=[1, 2])),
+                             ("finite", dict(names=["right_shoulder"], positions=[math.nan])),
+                             ("named twice", dict(names=["right_shoulder"] * 2, positions=[1, 2])),
+                             ("follows 'right_shoulder'", dict(names=["mirror"], positions=[1]))):
+            answer = self.arm.set_joint_state(**fields)
+            self.assertFalse(answer.success, fields)
+            self.assertIn(told, answer.message)
+        self.assertEqual(self.states_when_paused().position, before.position)
+
+
 class Wrenches(ClockedArm):
     TORQUE, STEPS = 0.2, 200
 

@@ -116,6 +116,50 @@ class Servos(unittest.TestCase):
         self.assertEqual(self.arm.joint("press").effort, 0.0)
         self.assertAlmostEqual(self.arm.joint("lift").position, START, delta=SETTLED)
 
+    def test_joint_command_takes_positions_and_velocities_to_servos(self):
+        command = CommandTopic("joint_command", JointState)
+        command.send(JointState(name=["lift", "spindle"], position=[0.5, 9.0], velocity=[9.0, 3.0]))
+        self.wait_for_effort("spindle", lambda effort: effort != 0)
+        self.run_for(0.9)
+        self.assertAlmostEqual(self.arm.joint("spindle").velocity, 3.0, delta=SETTLED_RATE)
+        self.run_for(0.2)
+        self.assertAlmostEqual(self.arm.joint("lift").position, 0.5, delta=SETTLED)
+        command.send(JointState(name=["press"], position=[1.0], velocity=[1.0], effort=[0.5]))  # as ever an effort
+        self.wait_for_press(0.5)
+
+    # ---- modes
+
+    def test_modes_are_switched_and_come_back(self):
+        self.run_for(2.0)  # until it stands: the velocity of now is held
+        answer = self.arm.switch_mode(names=["lift", "spindle"], modes=["velocity", "effort"])
+        self.assertTrue(answer.success, answer.message)
+        self.run_for(0.5)
+        self.assertAlmostEqual(self.arm.joint("lift").position, START, delta=SETTLED)  # no bump
+        self.set_points.send(JointState(name=["lift"], velocity=[0.1]))
+        self.wait_for_effort("lift", lambda effort: effort > 0)
+        self.run_for(0.9)
+        self.assertAlmostEqual(self.arm.joint("lift").velocity, 0.1, delta=SETTLED_RATE)
+        self.assertTrue(self.arm.switch_mode(names=["lift"], modes=["position"]).success)
+        self.run_for(1.5)  # longer than the timeout of the velocity
+        held = self.arm.joint("lift").position
+        self.assertGreater(held, START + 0.08)
+        self.run_for(0.5)
+        self.assertAlmostEqual(self.arm.joint("lift").position, held, delta=SETTLED)
+        self.arm.reset()
+        self.set_points.send(JointState(name=["lift"], position=[0.5]))  # the scene's mode again
+        self.wait_for_effort("lift", lambda effort: effort > 50)
+
+    def test_modes_that_are_not_there_are_refused_whole(self):
+        for told, names, modes in (("no gains of mode 'velocity'", ["lift", "press"], ["velocity", "velocity"]),
+                                   ("<servo joint=\"loose\"", ["lift", "loose"], ["effort", "effort"]),
+                                   ("no joint coordinate", ["nose"], ["effort"]),
+                                   ("'torque'", ["lift"], ["torque"]), ("2 names", ["lift", "press"], ["effort"])):
+            answer = self.arm.switch_mode(names=names, modes=modes)
+            self.assertFalse(answer.success)
+            self.assertIn(told, answer.message)
+        self.set_points.send(JointState(name=["lift"], position=[0.5]))
+        self.wait_for_effort("lift", lambda effort: effort > 50)
+
     # ---- the emergency stop
 
     def test_emergency_stop_switches_servos_off_until_released(self):

@@ -4,7 +4,7 @@ import time
 
 import rospy
 from flexarm.msg import JointForceCommand, SimulatorStatus
-from flexarm.srv import ApplyWrench, LoadState, SaveState, Step
+from flexarm.srv import ApplyWrench, LoadState, SaveState, SetJointState, Step, SwitchMode
 from geometry_msgs.msg import Point, Vector3, Wrench
 from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import JointState
@@ -41,6 +41,8 @@ class SimulatedArm:
         self.step = rospy.ServiceProxy(namespace + "/flexarm/step", Step)
         self.save_state = rospy.ServiceProxy(namespace + "/flexarm/save_state", SaveState)
         self.load_state = rospy.ServiceProxy(namespace + "/flexarm/load_state", LoadState)
+        self.set_joint_state = rospy.ServiceProxy(namespace + "/flexarm/set_joint_state", SetJointState)
+        self.switch_mode = rospy.ServiceProxy(namespace + "/flexarm/switch_mode", SwitchMode)
         self.clear_wrenches = rospy.ServiceProxy(namespace + "/flexarm/clear_wrenches", Empty)
         self.call_apply_wrench = rospy.ServiceProxy(namespace + "/flexarm/apply_wrench", ApplyWrench)
 

@@ -6,6 +6,7 @@ import unittest
 
 import rospy
 import rostest
+from diagnostic_msgs.msg import DiagnosticArray
 from flexarm.msg import JointForceCommand
 from sensor_msgs.msg import JointState
 from simulated_arm import CommandTopic, SimulatedArm, force_command, wait_until
@@ -52,6 +53,27 @@ class Paced(unittest.TestCase):
             self.assertLessEqual(statistics.p99, statistics.p999)
             self.assertLessEqual(statistics.p999, statistics.max)
         self.assertGreater(after.step_time.median, 0)
+
+
+    def test_stamps_keep_the_pace(self):
+        log = Log("/slow/joint_states", JointState)
+        wait_until(lambda: len(log.messages) > 100, "a hundred messages")
+        stamps = [message.header.stamp.to_nsec() for message in log.messages]
+        # Steps of 1 ms at a quarter of the clock's speed; of them as many as make 100 Hz of stamps or less.
+        self.assertEqual({(later - earlier) % (4 * STEP) for earlier, later in zip(stamps, stamps[1:])}, {0})
+        self.assertLess(abs(log.messages[-1].header.stamp.to_sec() - time.time()), 2)
+
+    def test_diagnostics_tell_of_times(self):
+        values = {}
+
+        def receive(message):
+            for status in message.status:
+                if "paced" in status.name:
+                    values.update((value.key, value.value) for value in status.values)
+
+        rospy.Subscriber("/diagnostics", DiagnosticArray, receive)
+        for key in ("Wall time of a step [s]", "Lateness of its beginning [s]"):
+            wait_until(lambda key=key: "99.9 %: " in values.get(key, ""), key)
 
 
 class LockStep(unittest.TestCase):

@@ -363,6 +363,12 @@ TEST(GoodScene, Servo) {
   EXPECT_EQ(servo.side, ServoDescription::Side::Link);
   EXPECT_EQ(servo.sample_time, 0.004);
   EXPECT_EQ(servo.delay, 0.003);
+  ASSERT_EQ(servo.other_modes.size(), 1u);
+  EXPECT_EQ(servo.other_modes[0].mode, ServoDescription::Mode::Velocity);
+  EXPECT_EQ(servo.other_modes[0].kp, 9);
+  EXPECT_EQ(servo.other_modes[0].kd, 0);
+  EXPECT_EQ(servo.other_modes[0].ki, 2);
+  EXPECT_EQ(servo.other_modes[0].anti_windup, 0.2);
 }
 
 TEST(GoodScene, LoadOnAPartOfALine) {

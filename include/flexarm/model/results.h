@@ -4,6 +4,7 @@
 #include <array>
 #include <complex>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -147,6 +148,20 @@ struct AppliedWrench {
   Vector3 at = Vector3::Zero();  ///< where: in the undeformed link's frame [m]
   Wrench wrench;                 ///< moment about that point
   bool follows = false;          ///< axes are those of the link's material there, and turn with it; else the world's
+};
+
+/// What a servo controls, and its set points are.
+enum class ServoMode {
+  Effort,  ///< the set point is the effort
+  Velocity,
+  Position
+};
+
+/// Where a joint coordinate is to be, and how fast; what is not given stays as it is.
+struct CoordinateState {
+  std::size_t coordinate = 0;
+  std::optional<double> position;  ///< [rad or m]
+  std::optional<double> velocity;  ///< [rad/s or m/s]
 };
 
 /// What a sensor has measured, with bias and noise; it holds until the sensor's next sample.

@@ -11,6 +11,7 @@
 #include "flexarm/math/cam_profile.h"
 #include "flexarm/math/pose.h"
 #include "flexarm/math/time_function.h"
+#include "flexarm/model/results.h"
 #include "flexarm/schemes/integrator_description.h"
 
 namespace flexarm::scene {
@@ -240,8 +241,13 @@ struct DriveDescription {
 
 /// Controller of a joint's coordinate; its effort is the motor's.
 struct ServoDescription {
-  enum class Mode { Effort, Velocity, Position };
+  using Mode = ServoMode;
   enum class Side { Motor, Link };
+  /// Of another mode, to which programs may switch.
+  struct Gains {
+    Mode mode = Mode::Velocity;
+    double kp = 0, kd = 0, ki = 0, anti_windup = 0;  ///< as below
+  };
   std::string coordinate;
   Mode mode = Mode::Position;
   double kp = 0, kd = 0, ki = 0;            ///< of the error of what `mode` names, its rate and its integral
@@ -252,6 +258,7 @@ struct ServoDescription {
   Side side = Side::Motor;  ///< where it measures
   double sample_time = 0;   ///< [s]; 0: continuous
   double delay = 0;         ///< from a sample to its effect [s]
+  std::vector<Gains> other_modes;
   SourceLocation location;
 };
 

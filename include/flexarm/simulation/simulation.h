@@ -82,6 +82,13 @@ class Simulation {
   double step_size() const;    ///< [s]
   std::string scheme() const;  ///< name of the scheme in use
 
+  /// Puts joint coordinates elsewhere at once, or gives them other velocities; what hangs on them is moved with them as
+  /// it is, with its strains, twists of gears and their rates, its own joints' positions and velocities. Time, commands
+  /// and memories of servos stay. What that changes of the energy counts as work, so that the account goes on.
+  /// @throws std::invalid_argument if a number is not finite, a position beyond its joint's limits, a coordinate named
+  /// twice, prescribed or a follower of another one, or if a loop does not stay closed; nothing has changed then.
+  void set_joint_state(const std::vector<CoordinateState>& coordinates);
+
   // ---- released coordinates: one per scalar joint, several for the others ("wrist/rx")
   const std::vector<std::string>& coordinate_names() const;
   std::optional<std::size_t> find_coordinate(std::string_view name) const;
@@ -99,16 +106,26 @@ class Simulation {
   /// Back to the scene's <effort> history (zero where there is none).
   void release_command(std::size_t coordinate);
   /// Gives the coordinate's servo a set point [rad, m, rad/s, m/s, N or N m, as its mode says] from the next step on,
-  /// in place of the scene's.
+  /// in place of the scene's. One that moves is given as it is at the end of the next step, with its rate and its
+  /// acceleration there [over s and s^2]; it comes to a stand then if no other follows.
   /// @throws std::invalid_argument if it is not finite, or the coordinate has no servo.
-  void command_set_point(std::size_t coordinate, double set_point);
-  /// Back to the scene's set point.
+  void command_set_point(std::size_t coordinate, double set_point, double rate = 0, double acceleration = 0);
+  /// What the coordinate's servo is asked for at the end of the next step.
+  /// @throws std::invalid_argument if the coordinate has no servo.
+  double set_point(std::size_t coordinate) const;
+  /// Back to the scene's set point and mode.
   void release_set_point(std::size_t coordinate);
   /// Switches the coordinate's servo off or on, from the next step on. Off, its motor gives no effort, commanded ones
   /// included; on again, it has no memory in its integral. Set points stay as they are.
   /// @throws std::invalid_argument if the coordinate has no servo.
   void switch_servo(std::size_t coordinate, bool on);
   bool has_servo(std::size_t coordinate) const;
+  /// Lets the coordinate's servo control something else, from the next step on, without a bump: its set point is the
+  /// position, velocity or effort of now, and its integral, if it has one, gives what the motor has given.
+  /// @throws std::invalid_argument if the coordinate has no servo, or that no gains of this mode (`<gains>`).
+  void switch_mode(std::size_t coordinate, ServoMode mode);
+  /// @throws std::invalid_argument if the coordinate has no servo.
+  ServoMode servo_mode(std::size_t coordinate) const;
   bool is_commandable(std::size_t coordinate) const;  ///< false for prescribed and mimic coordinates
 
   /// Applies wrenches from the next step on, in place of all that were applied before; none: takes these away. They

@@ -148,6 +148,27 @@ std::vector<double> positions_in_lock_step(milliseconds pause) {
   return reports.positions;
 }
 
+TEST(SteppingThread, FollowsTrajectoriesUntilAnotherSetPointIsCommanded) {
+  scene::SceneDescription scene = rotor(0.001).scene();
+  scene::ServoDescription servo;
+  servo.coordinate = "shaft";
+  servo.kp = 100;
+  servo.kd = 20;
+  scene.servos.push_back(servo);
+  SteppingThread thread(Simulation(scene), {}, [] {});
+  thread.trajectories().follow({{0}, 0, {{0.1, {0.5}, {}, {}}}}, 0, {0.0});
+  for (int n = 1; n <= 50; ++n) {
+    ASSERT_TRUE(thread.advance());
+    EXPECT_NEAR(thread.simulation().set_point(0), 5 * n * 0.001, 1e-12);
+  }
+  EXPECT_GT(thread.simulation().position(0), 0);
+  EXPECT_TRUE(thread.trajectories().follows(0));
+  EXPECT_TRUE(thread.command({{Commanded::SetPoint, 0, 2}}));
+  ASSERT_TRUE(thread.advance());
+  EXPECT_EQ(thread.simulation().set_point(0), 2);
+  EXPECT_FALSE(thread.trajectories().follows(0));
+}
+
 TEST(SteppingThread, LockStepMakesAStepOfEachMessageWhenever) {
   const std::vector<double> at_once = positions_in_lock_step(milliseconds(0));
   EXPECT_EQ(positions_in_lock_step(milliseconds(5)), at_once);

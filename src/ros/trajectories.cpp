@@ -1,0 +1,225 @@
+#include "trajectories.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace flexarm::node {
+namespace {
+
+constexpr int kQueueSize = 10;
+constexpr double kFeedbackPeriod = 0.05;  ///< simulated [s]
+
+/// Its start is left open.
+JointTrajectory trajectory_of(const trajectory_msgs::JointTrajectory& message, std::vector<std::size_t> joints) {
+  JointTrajectory out{std::move(joints), 0, {}};
+  for (const trajectory_msgs::JointTrajectoryPoint& point : message.points)
+    out.points.push_back({point.time_from_start.toSec(), point.positions, point.velocities, point.accelerations});
+  return out;
+}
+
+/// Per name of the trajectory. @returns why they cannot be used, or nothing
+std::string read_tolerances(const std::vector<flexarm::JointTolerance>& given, const std::vector<std::string>& names,
+                            std::vector<node::JointTolerance>& tolerances) {
+  tolerances.assign(names.size(), {});
+  for (const flexarm::JointTolerance& tolerance : given) {
+    const auto name = std::find(names.begin(), names.end(), tolerance.name);
+    if (name == names.end()) return "a tolerance is of '" + tolerance.name + "', which the trajectory does not name";
+    if (!std::isfinite(tolerance.position) || !std::isfinite(tolerance.velocity))
+      return "a tolerance of '" + tolerance.name + "' is not finite";
+    tolerances[name - names.begin()] = {tolerance.position, tolerance.velocity};
+  }
+  return {};
+}
+
+trajectory_msgs::JointTrajectoryPoint message_of(const std::vector<JointPoint>& points) {
+  trajectory_msgs::JointTrajectoryPoint message;
+  for (const JointPoint& point : points) {
+    message.positions.push_back(point.position);
+    message.velocities.push_back(point.velocity);
+  }
+  return message;
+}
+
+}  // namespace
+
+Trajectories::Trajectories(ros::NodeHandle& node, const Simulation& shown, SteppingThread& stepping, Context context,
+                           double stop_duration)
+    : shown_(shown),
+      stepping_(stepping),
+      context_(std::move(context)),
+      stop_duration_(stop_duration),
+      followed_(shown.coordinate_names().size()),
+      subscriber_(node.subscribe("joint_trajectory", kQueueSize, &Trajectories::receive, this,
+                                 ros::TransportHints().tcpNoDelay())),
+      server_(
+          node, "follow_joint_trajectory", [this](GoalHandle handle) { receive_goal(handle); },
+          [this](GoalHandle handle) { cancel(handle); }, false) {
+  server_.start();
+}
+
+template <class Change>
+void Trajectories::change(const Change& change) {
+  stepping_.between_steps([&](Simulation& simulation) {
+    change(stepping_.trajectories(), stepping_.time(), simulation);
+    followed_ = stepping_.trajectories();
+  });
+}
+
+void Trajectories::judge(double now) {
+  followed_.release_arrived(now);
+  if (!handle_) return;
+  using Verdict = TrajectoryGoal::Verdict;
+  desired_.clear();
+  actual_.clear();
+  for (const std::size_t joint : goal_.joints) {
+    desired_.push_back(followed_.at(joint, now));
+    actual_.push_back({shown_.position(joint), shown_.velocity(joint)});
+  }
+  const TrajectoryGoal::Judgement judgement = goal_.judge(now, desired_, actual_);
+  if (judgement.verdict == Verdict::Reached) return end_goal(Result::SUCCESSFUL, "", &GoalHandle::setSucceeded);
+  if (judgement.verdict == Verdict::Underway) return publish_feedback(now, desired_, actual_);
+  const bool is_path = judgement.verdict == Verdict::OffPath;
+  const std::string& name = shown_.coordinate_names()[goal_.joints[judgement.joint]];
+  const std::string text = fmt::format("'{}' is {} by {:.3g} in {}, more than {:.3g}, at {:.3f} s", name,
+                                       is_path ? "off its path" : "not at its goal", judgement.error,
+                                       judgement.quantity, judgement.allowed, shown_.time());
+  const std::vector<std::size_t> joints = goal_.joints;
+  end_goal(is_path ? Result::PATH_TOLERANCE_VIOLATED : Result::GOAL_TOLERANCE_VIOLATED, text, &GoalHandle::setAborted);
+  stop(joints);
+}
+
+void Trajectories::publish_feedback(double now, const std::vector<JointPoint>& desired,
+                                    const std::vector<JointPoint>& actual) {
+  if (now < next_feedback_) return;
+  next_feedback_ = now + kFeedbackPeriod;
+  FollowJointTrajectoryFeedback feedback;
+  feedback.header.stamp = ros::Time::now();
+  feedback.joint_names = handle_->getGoal()->trajectory.joint_names;
+  std::vector<JointPoint> error;
+  for (std::size_t k = 0; k < desired.size(); ++k)
+    error.push_back({desired[k].position - actual[k].position, desired[k].velocity - actual[k].velocity});
+  feedback.desired = message_of(desired);
+  feedback.actual = message_of(actual);
+  feedback.error = message_of(error);
+  handle_->publishFeedback(feedback);
+}
+
+void Trajectories::receive(const trajectory_msgs::JointTrajectory& message) {
+  std::vector<std::size_t> joints;
+  const Fault fault = follow(message, joints);
+  if (!fault.is_none()) return context_.warn(fault.text);
+  end_goal(Result::SUCCESSFUL, "another trajectory has replaced it", &GoalHandle::setCanceled);
+}
+
+void Trajectories::receive_goal(GoalHandle handle) {
+  const FollowJointTrajectoryGoal& message = *handle.getGoal();
+  TrajectoryGoal goal;
+  const std::vector<std::string>& names = message.trajectory.joint_names;
+  Fault fault{Result::INVALID_GOAL, read_tolerances(message.path_tolerance, names, goal.path)};
+  if (fault.is_none()) fault.text = read_tolerances(message.goal_tolerance, names, goal.at_end);
+  if (fault.is_none()) fault = follow(message.trajectory, goal.joints);
+  if (!fault.is_none()) {
+    Result result;
+    result.error_code = fault.code;
+    result.error_string = fault.text;
+    handle.setRejected(result, fault.text);
+    return;
+  }
+  end_goal(Result::SUCCESSFUL, "another goal has replaced it", &GoalHandle::setCanceled);
+  for (const std::size_t joint : goal.joints) goal.end = std::max(goal.end, followed_.end(joint));
+  goal.patience = std::max(message.goal_time_tolerance.toSec(), 0.0);
+  goal_ = std::move(goal);
+  handle_ = handle;
+  handle_->setAccepted();
+  next_feedback_ = 0;
+}
+
+void Trajectories::cancel(GoalHandle handle) {
+  if (!handle_ || handle != *handle_) return;
+  stop(goal_.joints);
+  end_goal(Result::SUCCESSFUL, "cancelled", &GoalHandle::setCanceled);
+}
+
+Trajectories::Fault Trajectories::follow(const trajectory_msgs::JointTrajectory& message,
+                                         std::vector<std::size_t>& joints) {
+  if (const std::string refusal = context_.refusal(); !refusal.empty()) return {Result::INVALID_GOAL, refusal};
+  if (message.points.empty()) {
+    joints = moving_joints();
+    stop(joints);
+    return {};
+  }
+  if (const Fault fault = read_joints(message.joint_names, joints); !fault.is_none()) return fault;
+  JointTrajectory trajectory = trajectory_of(message, joints);
+  if (const std::string fault = followed_.find_fault(trajectory); !fault.empty()) return {Result::INVALID_GOAL, fault};
+  Fault fault;
+  change([&](TrajectoryFollower& follower, double now, const Simulation& simulation) {
+    trajectory.start = message.header.stamp.isZero() ? now : context_.time_of(message.header.stamp);
+    if (TrajectoryFollower::is_over(trajectory, now)) {
+      const double since = now - trajectory.start - trajectory.points.back().time;
+      fault = {Result::OLD_HEADER_TIMESTAMP, fmt::format("its last point is past by {:.3g} s", since)};
+      return;
+    }
+    std::vector<double> set_points;
+    for (const std::size_t joint : joints) set_points.push_back(simulation.set_point(joint));
+    follower.follow(trajectory, now, set_points);
+  });
+  return fault;
+}
+
+Trajectories::Fault Trajectories::read_joints(const std::vector<std::string>& names,
+                                              std::vector<std::size_t>& joints) const {
+  for (const std::string& name : names) {
+    const std::optional<std::size_t> joint = shown_.find_coordinate(name);
+    if (!joint) return {Result::INVALID_JOINTS, "there is no joint coordinate '" + name + "'"};
+    if (!shown_.has_servo(*joint)) return {Result::INVALID_JOINTS, "'" + name + "' has no servo"};
+    if (shown_.servo_mode(*joint) != ServoMode::Position)
+      return {Result::INVALID_JOINTS, "the servo of '" + name + "' is not in mode 'position'"};
+    joints.push_back(*joint);
+  }
+  return {};
+}
+
+std::vector<std::size_t> Trajectories::moving_joints() const {
+  std::vector<std::size_t> joints;
+  for (std::size_t joint = 0; joint < followed_.joint_count(); ++joint)
+    if (followed_.follows(joint)) joints.push_back(joint);
+  return joints;
+}
+
+void Trajectories::stop(const std::vector<std::size_t>& joints) {
+  change([&](TrajectoryFollower& follower, double now, const Simulation&) {
+    for (const std::size_t joint : joints)
+      if (follower.follows(joint)) follower.stop(joint, now, stop_duration_);
+  });
+}
+
+void Trajectories::release(std::size_t coordinate, const std::string& reason) {
+  if (!followed_.follows(coordinate)) return;
+  change([&](TrajectoryFollower& follower, double, const Simulation&) { follower.release(coordinate); });
+  const std::vector<std::size_t>& joints = goal_.joints;
+  if (!handle_ || std::find(joints.begin(), joints.end(), coordinate) == joints.end()) return;
+  stop(joints);
+  end_goal(Result::INVALID_GOAL, reason, &GoalHandle::setAborted);
+}
+
+void Trajectories::release_all(const std::string& reason) {
+  change([&](TrajectoryFollower& follower, double, const Simulation&) {
+    for (std::size_t joint = 0; joint < follower.joint_count(); ++joint) follower.release(joint);
+  });
+  end_goal(Result::INVALID_GOAL, reason, &GoalHandle::setAborted);
+}
+
+void Trajectories::end_goal(int code, const std::string& text,
+                            void (GoalHandle::*end)(const Result&, const std::string&)) {
+  if (!handle_) return;
+  GoalHandle handle = *handle_;
+  handle_.reset();
+  Result result;
+  result.error_code = code;
+  result.error_string = text;
+  (handle.*end)(result, text);
+}
+
+}  // namespace flexarm::node

@@ -1,0 +1,35 @@
+#pragma once
+/// Whether joints do what a trajectory asks of them.
+
+#include <cstddef>
+#include <vector>
+
+#include "trajectory_follower.h"
+
+namespace flexarm::node {
+
+/// How far a joint may be from where it is to be; 0 or less: as far as it likes.
+struct JointTolerance {
+  double position = 0, velocity = 0;  ///< [rad or m; over s]
+};
+
+/// What somebody wants to be told about.
+struct TrajectoryGoal {
+  enum class Verdict { Underway, Reached, OffPath, NotReached };
+  struct Judgement {
+    Verdict verdict = Verdict::Underway;
+    std::size_t joint = 0;          ///< of the goal, that is off its path or not where it is to be
+    const char* quantity = "";      ///< "position" or "velocity"
+    double error = 0, allowed = 0;  ///< of that quantity
+  };
+
+  std::vector<std::size_t> joints;
+  std::vector<JointTolerance> path, at_end;  ///< per joint
+  double end = 0;                            ///< of its trajectory [s]
+  double patience = 0;                       ///< how long after that joints may still be beyond their tolerances [s]
+
+  /// `desired`, `actual`: of each of its joints, at `time` [s].
+  Judgement judge(double time, const std::vector<JointPoint>& desired, const std::vector<JointPoint>& actual) const;
+};
+
+}  // namespace flexarm::node

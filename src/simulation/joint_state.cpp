@@ -1,0 +1,260 @@
+#include "simulation/joint_state.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "joints/closure_maps.h"
+#include "joints/joint_kinematics.h"
+#include "math/so3.h"
+#include "model/carried_origin.h"
+#include "simulation/observables.h"
+
+namespace flexarm {
+namespace {
+
+/// Gaps of closed loops over the size of the mechanism, and their angles [rad]: as at the start of a scene.
+constexpr double kClosed = 1e-6;
+/// The same of what opens a loop, over the fastest motion.
+constexpr double kStaysClosed = 1e-6;
+
+/// A mechanism as it stands and moves.
+struct Motion {
+  std::vector<NodePose> poses;        // per node
+  std::vector<Vector6> velocities;    // per node, spatial {v, w}
+  std::vector<Released> released;     // per joint
+  std::vector<ReleasedVector> rates;  // per joint
+};
+
+Motion motion_of(const Model& model, const State& state) {
+  Motion motion;
+  for (const NodeState& node : state.nodes) {
+    motion.poses.push_back(node_pose(node));
+    motion.velocities.push_back(spatial_velocity(node));
+  }
+  motion.released = state.released;
+  for (int j = 0; j < static_cast<int>(model.joints.size()); ++j)
+    motion.rates.push_back(released_rates(model, j, motion.poses, motion.released[j], motion.velocities));
+  return motion;
+}
+
+[[noreturn]] void refuse(const Coordinate& coordinate, const std::string& why) {
+  throw std::invalid_argument("joint coordinate '" + coordinate.name + "' " + why);
+}
+
+void check(const Model& model, const Coordinate& coordinate, const CoordinateState& wanted) {
+  if (coordinate.motion >= 0) refuse(coordinate, "cannot be set: its motion is prescribed");
+  if (coordinate.mimicked >= 0)
+    refuse(coordinate, "cannot be set: it follows '" + model.coordinates[coordinate.mimicked].name + "'; set that");
+  for (const std::optional<double>& number : {wanted.position, wanted.velocity})
+    if (number && !std::isfinite(*number)) refuse(coordinate, "needs finite numbers");
+  if (!wanted.position) return;
+  const JointMap& joint = model.joints[coordinate.joint];
+  const auto require = [&](bool is_inside, const char* what, double least, double most) {
+    if (!is_inside)
+      refuse(coordinate, fmt::format("cannot be set to {}: {} {} to {}", *wanted.position, what, least, most));
+  };
+  if (coordinate.limit)
+    require(*wanted.position >= coordinate.limit->lower && *wanted.position <= coordinate.limit->upper,
+            "its limits are", coordinate.limit->lower, coordinate.limit->upper);
+  if (joint.kind == JointMapKind::Slide) {
+    const SlideLine& line = model.slide_lines[joint.line];
+    require(*wanted.position >= line.begin() && *wanted.position <= line.end(), "its line goes from", line.begin(),
+            line.end());
+  }
+}
+
+/// Sets what is given, and lets mimics follow.
+void set_coordinates(const Model& model, const DegreesOfFreedom& dof, const State& state,
+                     const std::vector<CoordinateState>& coordinates, Motion& motion) {
+  std::set<std::size_t> named;
+  for (const CoordinateState& wanted : coordinates) {
+    const Coordinate& coordinate = model.coordinates.at(wanted.coordinate);
+    if (!named.insert(wanted.coordinate).second) refuse(coordinate, "is named twice");
+    check(model, coordinate, wanted);
+    Released& released = motion.released[coordinate.joint];
+    const int component = coordinate.component % 3;
+    if (wanted.velocity) motion.rates[coordinate.joint][coordinate.component] = *wanted.velocity;
+    if (!wanted.position) continue;
+    if (coordinate.is_angle) {
+      Vector3 rotation = so3::log(released.rotation);
+      rotation[component] = *wanted.position;
+      released.rotation = so3::exp_quaternion(rotation);
+    } else {
+      const JointMap& joint = model.joints[coordinate.joint];
+      released.displacement[component] = *wanted.position - carried_translation(joint, state)[component];
+    }
+  }
+  for (auto mimic = dof.mimics.rbegin(); mimic != dof.mimics.rend(); ++mimic) {  // masters come last there
+    const Coordinate& follower = model.coordinates[mimic->coordinate];
+    const Coordinate& master = model.coordinates[follower.mimicked];
+    const double position = motion.released[master.joint].displacement[master.component];
+    motion.released[follower.joint].displacement[follower.component] = follower.mimic.value(position);
+    motion.rates[follower.joint][follower.component] =
+        follower.mimic.derivative(position) * motion.rates[master.joint][master.component];
+  }
+}
+
+Vector6 carried_velocity(const NodePose& parent, const Vector6& velocity, const Vector3& point) {
+  Vector6 carried = velocity;
+  carried.head<3>() += velocity.tail<3>().cross(point - parent.position);
+  return carried;
+}
+
+/// Lets nodes follow the joints, root to leaf: those that no joint places move with their parents as they did.
+class Follower {
+ public:
+  Follower(const Model& model, const DegreesOfFreedom& dof, const Motion& before, Motion& after)
+      : model_(model), dof_(dof), before_(before), after_(after) {}
+
+  void follow() {
+    for (int node = 0; node < dof_.node_count; ++node) {
+      const int joint = dof_.slave_joint[node];
+      if (joint >= 0 && !closes_loop(joint))
+        follow_joint(joint);
+      else
+        follow_parent(node);
+    }
+    for (int joint = 0; joint < dof_.joint_count; ++joint)
+      if (closes_loop(joint)) close(joint);
+  }
+
+ private:
+  /// Its slave hangs on another node already.
+  bool closes_loop(int joint) const {
+    return model_.node_parents[model_.joints[joint].slave] != model_.joints[joint].master;
+  }
+  void follow_joint(int joint) {
+    const int slave = model_.joints[joint].slave;
+    after_.poses[slave] = slave_pose(model_, joint, after_.poses, after_.released[joint]);
+    set_velocity(joint);
+  }
+  void set_velocity(int joint) {
+    const SlaveVelocity velocity =
+        slave_velocity(model_, joint, after_.poses, after_.released[joint], after_.velocities);
+    after_.velocities[model_.joints[joint].slave] = velocity.carried + velocity.columns * after_.rates[joint];
+  }
+  void follow_parent(int node) {
+    const int parent = model_.node_parents[node];
+    if (parent < 0) return;  // it hangs on the world
+    const NodePose &from = before_.poses[parent], &to = after_.poses[parent], &old = before_.poses[node];
+    const Quaternion turn = to.orientation * from.orientation.conjugate();
+    NodePose& pose = after_.poses[node];
+    pose.position = to.position + turn * (old.position - from.position);
+    pose.orientation = (turn * old.orientation).normalized();
+    pose.rotation = pose.orientation.toRotationMatrix();
+    const Vector6 relative =
+        before_.velocities[node] - carried_velocity(from, before_.velocities[parent], old.position);
+    Vector6& velocity = after_.velocities[node];
+    velocity = carried_velocity(to, after_.velocities[parent], pose.position);
+    velocity.head<3>() += turn * Vector3(relative.head<3>());
+    velocity.tail<3>() += turn * Vector3(relative.tail<3>());
+  }
+  /// The end that a joint holds is where that has it, but for round-off.
+  void close(int joint) {
+    NodePose& hanging = after_.poses[model_.joints[joint].slave];
+    const NodePose held = slave_pose(model_, joint, after_.poses, after_.released[joint]);
+    const double gap = (held.position - hanging.position).norm();
+    const double angle = so3::log(held.orientation * hanging.orientation.conjugate()).norm();
+    if (gap > kClosed * model_.length_scale || angle > kClosed)
+      throw std::invalid_argument(fmt::format(
+          "a loop opens, by {:.3g} m and {:.3g} rad at the joint that closes it: give the positions of all its joints, "
+          "those of the loop joint as well",
+          gap, angle));
+    hanging = held;
+    set_velocity(joint);
+  }
+
+  const Model& model_;
+  const DegreesOfFreedom& dof_;
+  const Motion& before_;
+  Motion& after_;
+};
+
+/// @throws std::invalid_argument where a loop of rigid links opens.
+void check_closures(const Model& model, const Motion& motion) {
+  double fastest = 0;
+  for (const Vector6& velocity : motion.velocities)
+    fastest = std::max({fastest, velocity.head<3>().norm(), model.length_scale * velocity.tail<3>().norm()});
+  const auto check = [&](const LoopClosure& closure, const ClosureConstraint& constraint) {
+    const auto pose = [&](int node) { return node < 0 ? kWorld : motion.poses[node]; };
+    const auto velocity = [&](int node) { return node < 0 ? Vector6(Vector6::Zero()) : motion.velocities[node]; };
+    const ClosurePoses poses{pose(closure.parent), pose(closure.child)};
+    const double unit = constraint.kind == ClosureConstraint::Kind::Gap ? model.length_scale : 1.0;
+    const double value = closure_value(closure, constraint, poses);
+    if (std::abs(value) > kClosed * unit)
+      throw std::invalid_argument(
+          fmt::format("the loop that joint '{}' closes opens, by {:.3g} {}: give the positions of all its joints",
+                      closure.name, value, constraint.kind == ClosureConstraint::Kind::Gap ? "m" : "rad"));
+    const ClosureRows rows = closure_rows(closure, constraint, poses);
+    const double rate = rows.parent.dot(velocity(closure.parent)) + rows.child.dot(velocity(closure.child));
+    if (std::abs(rate) > kStaysClosed * unit * fastest / model.length_scale)
+      throw std::invalid_argument("the velocities open the loop that joint '" + closure.name +
+                                  "' closes: give those of all its joints");
+  };
+  for (const LoopClosure& closure : model.closures)
+    for (const auto* constraints : {&closure.constraints, &closure.implied})
+      for (const ClosureConstraint& constraint : *constraints) check(closure, constraint);
+}
+
+/// Rotors and controllers go with their coordinates: twists of gears and memories stay.
+ActuatorState carried(const Model& model, const Actuator& actuator, ActuatorState own, const Motion& before,
+                      const Motion& after) {
+  const Coordinate& coordinate = model.coordinates[actuator.coordinate];
+  const int j = coordinate.joint, k = coordinate.component;
+  const double way = after.released[j].displacement[k] - before.released[j].displacement[k];
+  const double rate = after.rates[j][k] - before.rates[j][k];
+  own.angle += way;
+  own.rate += rate;
+  if (actuator.servo) {
+    own.servo.measured += way - actuator.servo->sample_time * rate;
+    own.servo.delayed_rate -= rate;
+  }
+  if (actuator.gyroscope) {
+    const auto& [node, axis, inertia, ratio] = *actuator.gyroscope;
+    const auto spin = [node = node, &axis = axis](const Motion& motion) {
+      return (motion.poses[node].rotation * axis).dot(motion.velocities[node].tail<3>());
+    };
+    own.rate += (spin(after) - spin(before)) / ratio;
+  }
+  return own;
+}
+
+}  // namespace
+
+State with_joint_state(const Model& model, const DegreesOfFreedom& dof, const State& state,
+                       const std::vector<CoordinateState>& coordinates) {
+  const Motion before = motion_of(model, state);
+  Motion after = before;
+  set_coordinates(model, dof, state, coordinates, after);
+  Follower(model, dof, before, after).follow();
+  check_closures(model, after);
+
+  // As if the mechanism had been built there.
+  Model placed = model;
+  placed.nodes = after.poses;
+  placed.initial_released = after.released;
+  placed.initial_velocity = after.velocities;
+  placed.initial_origin = state.origin;
+  State out = initial_state(placed);
+  out.time = state.time;
+  out.steps = state.steps;
+  out.left_lines = state.left_lines;
+  out.strain_rates = state.strain_rates;
+  out.total_rotations = state.total_rotations;
+  out.commands = state.commands;
+  out.wrenches = state.wrenches;
+  out.efforts = state.efforts;
+  out.samples = state.samples;
+  out.work = state.work;
+  out.dissipated = state.dissipated;
+  out.energy_defect = state.energy_defect;
+  for (std::size_t i = 0; i < out.actuators.size(); ++i)
+    out.actuators[i] = carried(model, model.actuators[i], state.actuators[i], before, after);
+  return out;
+}
+
+}  // namespace flexarm

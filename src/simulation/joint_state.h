@@ -1,0 +1,18 @@
+#pragma once
+/// Joint coordinates that somebody puts elsewhere.
+
+#include <vector>
+
+#include "flexarm/model/results.h"
+#include "model/degrees_of_freedom.h"
+#include "model/model.h"
+#include "model/state.h"
+
+namespace flexarm {
+
+/// The state after Simulation::set_joint_state(), but for what a scheme adds to an initial one and for the work.
+/// @throws std::invalid_argument as that does.
+State with_joint_state(const Model& model, const DegreesOfFreedom& dof, const State& state,
+                       const std::vector<CoordinateState>& coordinates);
+
+}  // namespace flexarm

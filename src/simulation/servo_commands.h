@@ -1,0 +1,26 @@
+#pragma once
+/// What programs tell servos.
+
+#include <cstddef>
+
+#include "model/model.h"
+#include "model/state.h"
+
+namespace flexarm {
+
+bool has_servo(const Model& model, std::size_t coordinate);
+/// @throws std::invalid_argument if the coordinate has none.
+const Servo& servo_of(const Model& model, std::size_t coordinate);
+ServoState& servo_of(const Model& model, std::size_t coordinate, State& state);
+
+/// As Simulation::command_set_point(). `arrival`: end of the next step [s].
+void command_set_point(ServoState& servo, double set_point, double rate, double acceleration, double arrival);
+/// In force at a time, where the one that is commanded has arrived.
+double set_point(const Servo& servo, const Model& model, const ServoState& state, double time);
+/// As Simulation::release_set_point().
+void release_set_point(const Model& model, std::size_t coordinate, State& state);
+/// As Simulation::switch_mode(). `position`, `velocity`: of the coordinate.
+void switch_mode(const Model& model, std::size_t coordinate, ServoMode mode, double position, double velocity,
+                 State& state);
+
+}  // namespace flexarm

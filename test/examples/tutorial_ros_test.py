@@ -1,0 +1,25 @@
+#!/usr/bin/python3
+"""The commands of the tutorial about ROS, typed as they stand: `tutorial_ros_test.py PROGRAM SETUP`."""
+
+import os
+import sys
+import tempfile
+import unittest
+
+from typed_commands import commands_of, type_commands
+
+
+class TutorialRos(unittest.TestCase):
+    def test_commands(self):
+        commands = commands_of("tutorial_ros.md")
+        self.assertEqual(len(commands), 4)
+        with tempfile.TemporaryDirectory() as folder:
+            os.environ.update(ROS_HOSTNAME="localhost", ROS_HOME=os.path.join(folder, "ros"))
+            status, printed = type_commands(commands, PROGRAM, folder, SETUP)
+        self.assertEqual(status, 0)
+        self.assertEqual(printed.count("RESULT: SUCCESS"), 2)  # held by C++, and by Python
+
+
+if __name__ == "__main__":
+    PROGRAM, SETUP = map(os.path.abspath, sys.argv[1:])
+    unittest.main(argv=sys.argv[:1])

@@ -1,0 +1,224 @@
+// Joint coordinates that somebody puts elsewhere, or gives other velocities.
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "schemes/scheme.h"
+#include "simulation/inside.h"
+#include "simulation/same_bits.h"
+#include "support/loops.h"
+
+namespace flexarm::test {
+namespace {
+
+using scene::JointKind;
+
+constexpr double kRoundOff = 1e-13;           ///< of numbers about 1 that some hundred operations have led to
+constexpr double kStep = 0.002, kTime = 0.2;  // [s]
+/// Of motions from starts that differ by round-off, over a hundred steps: each solves to a residual of Newton's method
+/// that was below its tolerance of 1e-11 before the last, quadratic, update.
+constexpr double kSameMotion = 1e-10;
+/// Accelerations of the Newmark family come from a step that is shorter by 1e-2: round-off over its square, and what
+/// that makes of the way.
+constexpr double kSameAcceleration = 1e-16 / (1e-4 * kStep * kStep) * kTime * kTime / 2;
+/// What a scheme's own velocities lack to fit to joints is of second order, h^2/12 times third derivatives; about those
+/// of an arm that falls and swings at 2 Hz [m/s].
+constexpr double kUnfitVelocity = kStep * kStep / 12 * 10 * 4 * 4 * M_PI * M_PI;
+
+/// A shoulder with an elastic gear and a servo, a flexible arm, an elbow that a slider mimics, a ball joint, and a body
+/// that flies.
+SceneBuilder arm() {
+  SceneBuilder b;
+  b.scene.gravity = {0, 0, -9.81};
+  b.scene.integrator.tolerance = 1e-11;
+  b.scene.integrator.step = kStep;
+  const Matrix3 inertia = Vector3(0.02, 0.03, 0.025).asDiagonal();
+  b.body("upper", 1, {0.2, 0, 0}, inertia);
+  b.beam("forearm", {{0.6, 0, 0}}, section(2e4, 1e4, 150, 200, 0.5, 0.02, 0.01), 2, 2).stiffness_proportional_damping =
+      1e-3;
+  b.body("slider", 0.3, {0, 0, 0}, 0.1 * inertia);
+  b.body("ball", 0.5, {0, 0, -0.1}, 0.1 * inertia);
+  b.body("satellite", 2, {0.1, 0, 0}, inertia);
+  b.joint("shoulder", JointKind::Revolute, "world", "upper", {0, 0, 0}, {0, 1, 0});
+  b.joint("elbow", JointKind::Revolute, "upper", "forearm", {0.4, 0, 0}, {0, 1, 0});
+  b.joint("slide", JointKind::Prismatic, "upper", "slider", {0.1, 0.1, 0}, {1, 0, 0}).mimic =
+      scene::Mimic{"elbow", 0.1, 0.02};
+  b.joint("wrist", JointKind::Spherical, "forearm", "ball", {0.6, 0, 0});
+  b.joint("flight", JointKind::Floating, "world", "satellite", {0, 2, 0});
+  scene::DriveDescription drive;
+  drive.coordinate = "shoulder";
+  drive.gear = 50;
+  drive.rotor_inertia = 1e-5;
+  drive.stiffness = 2000;
+  drive.damping = 1;
+  b.scene.drives.push_back(drive);
+  scene::ServoDescription servo;
+  servo.coordinate = "shoulder";
+  servo.kp = 300;
+  servo.kd = 10;
+  servo.ki = 50;
+  servo.set_point = TimeFunction(0.2);
+  b.scene.servos.push_back(servo);
+  return b;
+}
+
+struct Given {
+  const char* coordinate;
+  double position, velocity;
+};
+constexpr Given kElsewhere[] = {{"shoulder", 0.4, -0.3}, {"elbow", 0.7, 1.2},   {"wrist/rx", 0.2, 0.5},
+                                {"wrist/rz", -0.3, 0.1}, {"flight/y", 0.4, -1}, {"flight/rz", 2.5, 3}};
+
+std::vector<CoordinateState> given(const Simulation& simulation) {
+  std::vector<CoordinateState> out;
+  for (const Given& wanted : kElsewhere)
+    out.push_back({*simulation.find_coordinate(wanted.coordinate), wanted.position, wanted.velocity});
+  return out;
+}
+
+void run(Simulation& simulation, double seconds) {
+  for (int i = static_cast<int>(std::lround(seconds / kStep)); i > 0; --i) ASSERT_TRUE(simulation.step().converged);
+}
+
+double account(const Simulation& simulation) {
+  const Energies e = simulation.energies();
+  return e.total() - e.work + e.dissipated;
+}
+
+void expect_same_motion(const Simulation& a, const Simulation& b, double tolerance, const std::string& what) {
+  for (std::size_t i = 0; i < a.coordinate_names().size(); ++i) {
+    EXPECT_NEAR(a.position(i), b.position(i), tolerance) << what << ": " << a.coordinate_names()[i];
+  }
+  const State &x = state_of(a), &y = state_of(b);
+  for (std::size_t i = 0; i < x.nodes.size(); ++i) {
+    EXPECT_LT((x.nodes[i].position - y.nodes[i].position).norm(), tolerance) << what << ": node " << i;
+    EXPECT_LT(x.nodes[i].orientation.angularDistance(y.nodes[i].orientation), 4 * tolerance) << what << ": node " << i;
+  }
+}
+
+TEST(JointState, WhatIsSetGoesOnAsASceneThatStartsThere) {
+  for (const char* scheme : {"em", "em0", "m1", "m2", "edmc2", "std", "newmark", "hht1", "hht3", "em4"}) {
+    SceneBuilder b = arm();
+    b.scene.integrator.scheme = scheme;
+    Simulation moved(b.scene);
+    moved.set_joint_state(given(moved));
+    for (const Given& wanted : kElsewhere)
+      b.scene.initial_joints.push_back({wanted.coordinate, wanted.position, wanted.velocity, {}});
+    Simulation started(b.scene);
+    expect_same_motion(moved, started, kRoundOff, scheme);
+    for (std::size_t i = 0; i < moved.coordinate_names().size(); ++i)
+      EXPECT_NEAR(moved.velocity(i), started.velocity(i), 10 * kRoundOff) << scheme;
+    run(moved, kTime);
+    run(started, kTime);
+    const bool has_accelerations = !find_scheme(scheme)->is_incremental();
+    expect_same_motion(moved, started, has_accelerations ? kSameAcceleration : kSameMotion, scheme);
+  }
+}
+
+TEST(JointState, WhatIsNotNamedStaysAsItIs) {
+  SceneBuilder b = arm();
+  Simulation simulation(b.scene);
+  run(simulation, kTime);
+  const State before = state_of(simulation);
+  const double energy = simulation.energies().total();
+  const double energy_scale = 4.6 * 4;  // of bodies of 4.6 kg, at up to 4 m/s
+  simulation.set_joint_state({});
+  const State& after = state_of(simulation);
+  for (std::size_t i = 0; i < before.nodes.size(); ++i) {
+    EXPECT_LT((before.nodes[i].position - after.nodes[i].position).norm(), kRoundOff);
+    EXPECT_LT((before.nodes[i].velocity - after.nodes[i].velocity).norm(), kUnfitVelocity);
+  }
+  EXPECT_NEAR(simulation.energies().total(), energy, energy_scale * kUnfitVelocity);
+  EXPECT_EQ(before.time, after.time);
+  EXPECT_EQ(before.steps, after.steps);
+  EXPECT_EQ(before.actuators[0].servo.integral, after.actuators[0].servo.integral);
+}
+
+TEST(JointState, StrainsAndTwistsOfGearsGoWithWhatIsMoved) {
+  Simulation simulation(arm().scene);
+  simulation.command_set_point(0, 0.35);
+  run(simulation, kTime);
+  const std::size_t elbow = *simulation.find_coordinate("elbow"), forearm = 2;
+  ASSERT_EQ(simulation.link_names()[forearm], "forearm");
+  const BeamPoint before = simulation.section(forearm, 0.25);
+  const ActuatorState rotor = state_of(simulation).actuators[0];
+  const double time = simulation.time(), slack = rotor.angle - simulation.position(0), books = account(simulation);
+  simulation.set_joint_state({{0, -0.5, {}}, {elbow, 0.9, 0.0}});
+  const BeamPoint after = simulation.section(forearm, 0.25);
+  EXPECT_GT(before.strain.norm(), 1e-4);
+  EXPECT_LT((before.strain - after.strain).norm(), kRoundOff);
+  EXPECT_EQ(simulation.position(0), -0.5);
+  EXPECT_EQ(simulation.position(elbow), 0.9);
+  EXPECT_NEAR(state_of(simulation).actuators[0].angle - simulation.position(0), slack, kRoundOff);
+  EXPECT_EQ(state_of(simulation).actuators[0].servo.set_point, 0.35);
+  EXPECT_EQ(simulation.position(*simulation.find_coordinate("slide")), 0.02 + 0.1 * 0.9);
+  EXPECT_EQ(simulation.time(), time);
+  EXPECT_NEAR(account(simulation), books, kRoundOff * (1 + std::abs(books)));
+  run(simulation, kTime);
+  EXPECT_NEAR(account(simulation), books, 1e-9 * (1 + std::abs(books)));  // what Newton's tolerance leaves
+}
+
+TEST(JointState, WhatCannotBeSetIsRefusedAndChangesNothing) {
+  SceneBuilder b = arm();
+  b.scene.joints[1].limits = scene::JointLimits{-1, 1};
+  b.scene.motions.push_back({"flight/x", TimeFunction(0.0), {}});
+  Simulation simulation(b.scene);
+  run(simulation, 5 * kStep);
+  const State before = state_of(simulation);
+  const auto coordinate = [&](const char* name) { return *simulation.find_coordinate(name); };
+  const auto refused = [&](const std::vector<CoordinateState>& wanted, const char* told) {
+    try {
+      simulation.set_joint_state(wanted);
+      ADD_FAILURE() << told;
+    } catch (const std::invalid_argument& error) {
+      EXPECT_NE(std::string(error.what()).find(told), std::string::npos) << error.what();
+    }
+    EXPECT_TRUE(same_bits(before, state_of(simulation)));
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  refused({{0, nan, {}}}, "'shoulder' needs finite");
+  refused({{0, 1, {}}, {coordinate("wrist/ry"), {}, 1 / 0.0}}, "'wrist/ry' needs finite");
+  refused({{coordinate("elbow"), 1.1, {}}}, "'elbow' cannot be set to 1.1: its limits are -1 to 1");
+  refused({{0, 0.1, {}}, {0, {}, 1.0}}, "'shoulder' is named twice");
+  refused({{coordinate("slide"), 0.1, {}}}, "follows 'elbow'");
+  refused({{coordinate("flight/x"), 0.1, {}}}, "prescribed");
+  EXPECT_THROW(simulation.set_joint_state({{1000, 0.1, {}}}), std::out_of_range);
+}
+
+// ---------------------------------------------------------------- closed loops
+
+/// A parallelogram of rigid links, or with a flexible rocker.
+Simulation parallelogram(bool is_flexible) {
+  SceneBuilder b;
+  b.body("crank", 1, {0, 0, 0.1}, 1e-3 * Matrix3::Identity());
+  b.body("coupler", 0.5, {0.25, 0, 0}, 4e-3 * Matrix3::Identity());
+  if (is_flexible)
+    b.beam("rocker", {{0, 0, -0.2}}, section(2e5, 1e5, 30, 40, 0.8, 2e-4, 1e-4), 2, 2);
+  else
+    b.body("rocker", 0.5, {0, 0, -0.1}, 1e-3 * Matrix3::Identity());
+  b.joint("crank", JointKind::Continuous, "world", "crank", {0, 0, 0}, {0, 1, 0});
+  b.joint("knee", JointKind::Continuous, "crank", "coupler", {0, 0, 0.2}, {0, 1, 0});
+  b.joint("hip", JointKind::Continuous, "coupler", "rocker", {0.6, 0, 0}, {0, 1, 0});
+  close_loop(b, "foot", JointKind::Continuous, "world", "rocker", {0, 0, -0.2}, {0, 1, 0});
+  return Simulation(b.scene);
+}
+
+TEST(JointState, LoopsStayClosedOrAreRefused) {
+  for (const bool is_flexible : {false, true}) {
+    Simulation simulation = parallelogram(is_flexible);
+    EXPECT_THROW(simulation.set_joint_state({{0, 0.3, {}}}), std::invalid_argument);
+    std::vector<CoordinateState> wanted = {{0, 0.3, 1.0}, {1, -0.3, -1.0}, {2, 0.3, 1.0}};
+    if (is_flexible) wanted.push_back({*simulation.find_coordinate("foot"), 0.3, 1.0});
+    simulation.set_joint_state(wanted);
+    const double books = account(simulation);
+    run(simulation, kTime);
+    EXPECT_NEAR(account(simulation), books, 1e-9) << is_flexible;  // no loop was torn, nothing is strained
+    EXPECT_NEAR(simulation.position(1), -simulation.position(0), is_flexible ? 1e-3 : 1e-7);
+    if (is_flexible) continue;
+    EXPECT_THROW(simulation.set_joint_state({{0, {}, 5.0}}), std::invalid_argument);
+  }
+}
+
+}  // namespace
+}  // namespace flexarm::test

@@ -1,0 +1,183 @@
+// Servos that are switched to other modes while they run, and set points that move.
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "flexarm/simulation/checkpoint.h"
+#include "simulation/inside.h"
+#include "simulation/same_bits.h"
+#include "support/scene_builder.h"
+
+namespace flexarm::test {
+namespace {
+
+using scene::JointKind;
+using Mode = ServoMode;
+
+constexpr double kStep = 1e-3, kLoad = 5, kMass = 2;
+/// Forces and ways of a block that rests: Newton's tolerance, 1e-12 of a metre, times kp and over a step.
+constexpr double kRest = 1e-8;
+
+/// A block on a rail that a constant force pushes, with a servo of mode position and gains of mode velocity.
+SceneBuilder block_on_rail() {
+  SceneBuilder b;
+  b.scene.integrator.step = kStep;
+  b.scene.integrator.tolerance = 1e-12;
+  b.body("block", kMass, Vector3::Zero(), 1e-3 * Matrix3::Identity());
+  b.joint("rail", JointKind::Prismatic, "world", "block", Vector3::Zero(), Vector3::UnitX());
+  b.load("block", Vector3::Zero(), {kLoad, 0, 0});
+  scene::ServoDescription servo;
+  servo.coordinate = "rail";
+  servo.kp = 800;
+  servo.kd = 80;
+  servo.ki = 2000;
+  servo.set_point = TimeFunction(0.25);
+  servo.other_modes.push_back({Mode::Velocity, 60, 0, 300, 0});
+  b.scene.servos.push_back(servo);
+  return b;
+}
+
+void run(Simulation& simulation, double seconds) {
+  for (int i = std::lround(seconds / kStep); i > 0; --i) ASSERT_TRUE(simulation.step().converged);
+}
+
+TEST(ServoModes, SwitchingIsNoBump) {
+  for (const char* scheme : {"em", "newmark"})
+    for (const double sample_time : {0.0, 0.002})
+      for (const bool is_elastic : {false, true}) {
+        SceneBuilder b = block_on_rail();
+        b.scene.integrator.scheme = scheme;
+        b.scene.servos[0].sample_time = sample_time;
+        if (is_elastic) {
+          scene::DriveDescription drive;
+          drive.coordinate = "rail";
+          drive.rotor_inertia = 0.3;
+          drive.stiffness = 1e4;
+          drive.damping = 40;
+          b.scene.drives.push_back(drive);
+        }
+        Simulation simulation(b.scene);
+        run(simulation, 8);
+        const double rest = simulation.position(0);
+        EXPECT_NEAR(rest, 0.25 + (is_elastic ? kLoad / 1e4 : 0), 1e-6) << "where the integral has brought it";
+        for (const Mode mode : {Mode::Velocity, Mode::Effort, Mode::Position, Mode::Effort, Mode::Velocity}) {
+          simulation.switch_mode(0, mode);
+          EXPECT_EQ(simulation.servo_mode(0), mode);
+          for (int i = 0; i < 50; ++i) {
+            ASSERT_TRUE(simulation.step().converged);
+            EXPECT_NEAR(simulation.effort(0), -kLoad, 1e-4) << scheme << sample_time << is_elastic;
+          }
+          EXPECT_NEAR(simulation.position(0), rest, 1e-6) << scheme << sample_time << is_elastic;
+        }
+      }
+}
+
+TEST(ServoModes, EachTakesSetPointsOfItsOwn) {
+  Simulation simulation(block_on_rail().scene);
+  simulation.switch_mode(0, Mode::Velocity);
+  simulation.command_set_point(0, 0.1);
+  run(simulation, 3);
+  EXPECT_NEAR(simulation.velocity(0), 0.1, kRest);
+  const double begin = simulation.position(0);
+  run(simulation, 1);
+  EXPECT_NEAR(simulation.position(0) - begin, 0.1, kRest);
+  simulation.switch_mode(0, Mode::Effort);
+  simulation.command_set_point(0, 3 - kLoad);  // 3 N are left
+  const double rate = simulation.velocity(0);
+  run(simulation, 1);
+  EXPECT_NEAR(simulation.velocity(0) - rate, 3 / kMass, kRest);
+  const double there = simulation.position(0);
+  simulation.switch_mode(0, Mode::Position);
+  EXPECT_EQ(simulation.set_point(0), there);
+  run(simulation, 8);
+  EXPECT_NEAR(simulation.position(0), there, 1e-6);
+  simulation.switch_mode(0, Mode::Velocity);
+  simulation.release_set_point(0);
+  EXPECT_EQ(simulation.servo_mode(0), Mode::Position);
+  run(simulation, 8);
+  EXPECT_NEAR(simulation.position(0), 0.25, 1e-6) << "as the scene has it";
+}
+
+TEST(ServoModes, AreAPartOfTheState) {
+  Simulation simulation(block_on_rail().scene), other(block_on_rail().scene);
+  simulation.switch_mode(0, Mode::Velocity);
+  simulation.command_set_point(0, 0.3, 0.2);
+  run(simulation, 0.1);
+  const std::string file = std::filesystem::temp_directory_path() / "flexarm_servo_modes_test";
+  write_checkpoint(simulation, file);
+  read_checkpoint(other, file);
+  std::filesystem::remove(file);
+  EXPECT_EQ(other.servo_mode(0), Mode::Velocity);
+  EXPECT_TRUE(same_bits(state_of(simulation), state_of(other)));
+  run(simulation, 0.1);
+  run(other, 0.1);
+  EXPECT_NEAR(simulation.position(0), other.position(0), kRest);
+  other.reset();
+  EXPECT_EQ(other.servo_mode(0), Mode::Position);
+  State state = state_of(simulation);
+  for (const double law : {3.0, -1.0, 0.5}) {
+    state.actuators[0].servo.law = law;
+    EXPECT_THROW(restore(other, state), std::invalid_argument) << law;
+  }
+  state.actuators[0].servo.law = 1;
+  state.actuators[0].servo.set_point = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(restore(other, state), std::invalid_argument);
+}
+
+TEST(ServoModes, WithoutAServoOrGainsItIsSaidWhatToWrite) {
+  SceneBuilder b = block_on_rail();
+  b.scene.servos[0].other_modes.clear();
+  Simulation simulation(b.scene);
+  const State before = state_of(simulation);
+  const auto told = [](Simulation& of, Mode mode) -> std::string {
+    try {
+      of.switch_mode(0, mode);
+      return "";
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+  };
+  EXPECT_EQ(told(simulation, Mode::Velocity),
+            "the servo of 'rail' has no gains of mode 'velocity': write <gains mode=\"velocity\" kp=\"...\"/> into its "
+            "<servo>");
+  EXPECT_TRUE(same_bits(before, state_of(simulation)));
+  EXPECT_EQ(told(simulation, Mode::Effort), "");
+  b.scene.servos.clear();
+  Simulation without(b.scene);
+  EXPECT_EQ(told(without, Mode::Effort),
+            "joint coordinate 'rail' has no servo: write <servo joint=\"rail\" mode=\"...\" .../> into the scene");
+  EXPECT_THROW(without.servo_mode(0), std::invalid_argument);
+  EXPECT_THROW(without.set_point(0), std::invalid_argument);
+}
+
+// A set point that is a polynomial of degree 2 is told exactly by its value, rate and acceleration.
+TEST(MovingSetPoints, DoWhatAFunctionOfTheSceneDoes) {
+  const double c0 = 0.1, c1 = 0.2, c2 = 0.15;
+  for (const char* scheme : {"em", "newmark", "hht1"})
+    for (const double sample_time : {0.0, 0.004}) {
+      SceneBuilder b = block_on_rail();
+      b.scene.integrator.scheme = scheme;
+      b.scene.servos[0].sample_time = sample_time;
+      b.scene.servos[0].set_point = TimeFunction::parse("0.1+0.2*t+0.15*t^2");
+      Simulation function(b.scene), commanded(b.scene);
+      for (int n = 1; n <= 500; ++n) {
+        const double t = n * kStep;
+        commanded.command_set_point(0, c0 + t * (c1 + t * c2), c1 + 2 * c2 * t, 2 * c2);
+        ASSERT_TRUE(function.step().converged);
+        ASSERT_TRUE(commanded.step().converged);
+        // Rates of functions are differences, good to 1e-9, and so are efforts to kd times that.
+        ASSERT_NEAR(commanded.position(0), function.position(0), 1e-9) << scheme << sample_time << " " << n;
+      }
+      EXPECT_NEAR(commanded.set_point(0), c0 + 0.5 * (c1 + 0.5 * c2), 1e-15);
+      run(commanded, 8);
+      EXPECT_NEAR(commanded.position(0), c0 + 0.5 * (c1 + 0.5 * c2), 1e-6) << "it stays where the last one was";
+    }
+  Simulation simulation(block_on_rail().scene);
+  EXPECT_THROW(simulation.command_set_point(0, 0.1, 1 / 0.0), std::invalid_argument);
+  EXPECT_THROW(simulation.command_set_point(0, 0.1, 1, std::nan("")), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace flexarm::test
