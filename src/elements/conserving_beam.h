@@ -14,7 +14,8 @@
 #include "elements/strain_dampers.h"
 #include "math/cayley.h"
 
-namespace flexarm::conserving {
+namespace flexarm {
+namespace conserving {
 
 /// Translational inertia (1/h) int I^i I^j mass (v_{n+1} - v_n), v_{n+1} = factor Delta r / h - (factor - 1) v_n, and
 /// mass-proportional damping by the mean velocity Delta r / h. Sets the system.
@@ -176,4 +177,5 @@ void carry_strains(const ConservingElement<Nodes, S>& element, const BeamNodes<N
   carried.has_conjugate = true;
 }
 
-}  // namespace flexarm::conserving
+}  // namespace conserving
+}  // namespace flexarm
