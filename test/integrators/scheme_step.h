@@ -49,11 +49,11 @@ class SchemeStep : public ::testing::TestWithParam<SchemeVariant> {
     }
     system.begin(state, 30.0, Guess::Unchanged);
     system.update(random_update(system.degrees_of_freedom().unknowns, random, 0.01));
-    // A beta correction divides by a work of the increments, here 0.01: the residual changes its shape over a part of
-    // that.
-    const bool divides =
-        scheme().correction == EnergyCorrection::AxialBeta || scheme().correction == EnergyCorrection::FullBeta;
-    expect_consistent_tangent(system, divides ? 0.001 : 0.03);
+    expect_consistent_tangent(system, divides_by_work() ? 0.001 : 0.03);
+  }
+  /// A beta correction divides by a work of the increments: the residual changes its shape over a part of them.
+  bool divides_by_work() const {
+    return scheme().correction == EnergyCorrection::AxialBeta || scheme().correction == EnergyCorrection::FullBeta;
   }
 };
 

@@ -238,7 +238,9 @@ TEST_F(DamagedCheckpoint, WrongContentIsRefused) {
                    line_of(numbers) + time + "', expected the time as a finite hexadecimal number");
   expect_refused(sealed(head + line + others), "a number is missing", "expected ");
   expect_refused(sealed(head + line + rest + "0p+0\n"), "a number too many", "expected the checksum");
-  expect_refused(sealed("flexarm-checkpoint 8" + text_.substr(20, end - 20)), "format", "'flexarm-checkpoint 9'");
+  const std::size_t first_line = text_.find('\n');
+  expect_refused(sealed("flexarm-checkpoint 8" + text_.substr(first_line, end - first_line)), "format",
+                 "expected '" + text_.substr(0, first_line) + "'");
 }
 
 // Finite numbers, of which each alone could be.
