@@ -84,8 +84,8 @@ void SteppingThread::note_failure() {
 }
 
 bool SteppingThread::command(const std::vector<Command>& message) {
-  if (commands_.room() < message.size() && !is_running_) take_commands();
-  if (commands_.room() < message.size()) return false;
+  if (!commands_.has_room(message.size()) && !is_running_) take_commands();
+  if (!commands_.has_room(message.size())) return false;
   for (std::size_t i = 0; i < message.size(); ++i) {
     commands_.free_entry(i) = message[i];
     commands_.free_entry(i).ends_message = i + 1 == message.size();
@@ -122,7 +122,7 @@ bool SteppingThread::make_step(double lateness, bool is_paced) {
   if (result.converged) ++steps_;
   has_failed_ = !result.converged && !(pace_.cuts_late_steps && result.reason == StepResult::Reason::OutOfTime);
   // The last place is kept for a failure, of which nobody must miss to hear.
-  if (reports_.room() < (has_failed_ ? 1 : 2)) return !has_failed_;
+  if (!reports_.has_room(has_failed_ ? 1 : 2)) return !has_failed_;
   StepReport& report = reports_.free_entry();
   simulation_.snapshot(report.state);
   report.result = result;
@@ -187,7 +187,7 @@ void SteppingThread::loop() {
 bool SteppingThread::wait_for_step() {
   const SteadyClock::time_point now = SteadyClock::now();
   if (pace_.lock_step || pacer_.as_fast_as_possible()) {
-    const bool has_room = reports_.room() > 1, is_commanded = !pace_.lock_step || !commands_.empty();
+    const bool has_room = reports_.has_room(2), is_commanded = !pace_.lock_step || !commands_.empty();
     if (has_room && is_commanded) return true;
     wake_.take_until(is_commanded ? now + SteadyClock::duration(kWaitForRoom) : now + kLongestWait);
     return false;

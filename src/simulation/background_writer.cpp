@@ -56,19 +56,28 @@ BackgroundWriter::~BackgroundWriter() {
 }
 
 void BackgroundWriter::write_row(const Simulation& simulation) {
-  Entry& entry = next_entry();
+  Entry& entry = step_waits_ ? ring_.free_entry() : next_entry();
   entry.is_row = entry.has_state = true;
   entry.state = snapshot_of(simulation);
   ring_.push();
+  step_waits_ = false;
 }
 
 void BackgroundWriter::note_step(const Simulation& simulation, const StepResult& result) {
+  push_step();
   Entry& entry = next_entry();
-  entry.is_row = false;
+  entry.is_step = true;
   entry.result = result;
-  entry.has_state = looks_at_steps();
-  if (entry.has_state) entry.state = snapshot_of(simulation);
-  ring_.push();
+  step_waits_ = true;
+  if (!looks_at_steps()) return;  // one entry with the row after it costs less
+  entry.has_state = true;
+  entry.state = snapshot_of(simulation);
+  push_step();
+}
+
+void BackgroundWriter::push_step() {
+  if (step_waits_) ring_.push();
+  step_waits_ = false;
 }
 
 void BackgroundWriter::close() {
@@ -79,11 +88,13 @@ void BackgroundWriter::close() {
 
 BackgroundWriter::Entry& BackgroundWriter::next_entry() {
   throw_error();
-  while (ring_.room() == 0) {
+  while (!ring_.has_room()) {
     std::this_thread::sleep_for(kPause);
     throw_error();
   }
-  return ring_.free_entry();
+  Entry& entry = ring_.free_entry();
+  entry.is_step = entry.is_row = entry.has_state = false;
+  return entry;
 }
 
 /// In the memory that came back last, which is still in the processor's cache: to go round all of the ring's would take
@@ -104,6 +115,7 @@ void BackgroundWriter::throw_error() {
 }
 
 void BackgroundWriter::finish() {
+  push_step();
   is_over_.store(true, std::memory_order_release);
   if (thread_.joinable()) thread_.join();
 }
@@ -127,10 +139,8 @@ void BackgroundWriter::write(Entry& entry) {
     returned_.free_entry() = std::move(entry.state);
     returned_.push();
   }
-  if (entry.is_row)
-    writer_->write_row(mirror_);
-  else
-    writer_->note_step(mirror_, entry.result);
+  if (entry.is_step) writer_->note_step(mirror_, entry.result);
+  if (entry.is_row) writer_->write_row(mirror_);
 }
 
 }  // namespace flexarm

@@ -27,13 +27,15 @@ class BackgroundWriter : public ResultWriter {
 
  private:
   struct Entry {
-    bool is_row = false;
-    StepResult result;  // of a step, which is no row
+    bool is_step = false, is_row = false;  // or a step and the row after it
+    StepResult result;                     // of the step
     bool has_state = false;
     Snapshot state;
   };
 
   Entry& next_entry();
+  /// A step that waits for its row.
+  void push_step();
   Snapshot snapshot_of(const Simulation& simulation);
   void throw_error();
   void finish();
@@ -45,6 +47,7 @@ class BackgroundWriter : public ResultWriter {
   SpscRing<Entry> ring_;
   SpscRing<Snapshot> returned_;  // memory, by the thread that writes
   std::vector<Snapshot> free_;   // memory, what came back last at the end
+  bool step_waits_ = false;      // in the next free entry
   std::atomic<bool> is_over_{false}, has_failed_{false};
   std::exception_ptr error_;  // once it has failed
   std::thread thread_;

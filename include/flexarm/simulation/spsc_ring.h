@@ -9,7 +9,8 @@
 namespace flexarm {
 
 /// A queue of a fixed number of entries, which one thread fills and one other empties: in order, without locks, waiting
-/// or allocations. Entries live as long as the ring does, and keep their memory from one use to the next.
+/// or allocations. Entries live as long as the ring does, and keep their memory from one use to the next. A thread
+/// reads the other's count only where it has to, for each time costs both a way between their processors.
 template <class Entry>
 class SpscRing {
  public:
@@ -17,18 +18,30 @@ class SpscRing {
   explicit SpscRing(std::size_t capacity) : entries_(capacity) {}
 
   // ---- for the thread that fills it
-  std::size_t room() const { return entries_.size() - (pushed_.load(kOwn) - popped_.load(kOther)); }
-  /// The `index`-th entry after those that were pushed, to be filled; `index` < room().
+  /// Whether so many entries are free.
+  bool has_room(std::size_t count = 1) {
+    const std::size_t pushed = pushed_.load(kOwn);
+    if (entries_.size() - (pushed - seen_popped_) < count) seen_popped_ = popped_.load(kOther);
+    return entries_.size() - (pushed - seen_popped_) >= count;
+  }
+  /// The `index`-th entry after those that were pushed, to be filled; where there is room for it.
   Entry& free_entry(std::size_t index = 0) {
-    assert(index < room());
+    assert(has_room(index + 1));
     return at(pushed_.load(kOwn) + index);
   }
   /// Hands over the first `count` free entries, all at once.
   void push(std::size_t count = 1) { pushed_.store(pushed_.load(kOwn) + count, std::memory_order_release); }
 
   // ---- for the thread that empties it
-  std::size_t size() const { return pushed_.load(kOther) - popped_.load(kOwn); }
-  bool empty() const { return size() == 0; }
+  std::size_t size() {
+    seen_pushed_ = pushed_.load(kOther);
+    return seen_pushed_ - popped_.load(kOwn);
+  }
+  bool empty() {
+    const std::size_t popped = popped_.load(kOwn);
+    if (seen_pushed_ == popped) seen_pushed_ = pushed_.load(kOther);
+    return seen_pushed_ == popped;
+  }
   /// The oldest entry; not of an empty ring.
   Entry& front() {
     assert(!empty());
@@ -45,7 +58,9 @@ class SpscRing {
   std::vector<Entry> entries_;
   // Each is written by one of the threads, beside nothing of the other's. They count for ever.
   alignas(kCacheLine) std::atomic<std::size_t> pushed_{0};
+  std::size_t seen_popped_ = 0;
   alignas(kCacheLine) std::atomic<std::size_t> popped_{0};
+  std::size_t seen_pushed_ = 0;
 };
 
 }  // namespace flexarm
