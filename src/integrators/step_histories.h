@@ -9,6 +9,12 @@
 
 namespace flexarm {
 
+/// What a coordinate is commanded, NaN where nothing is, or else the scene's effort for it; cut at its limit.
+inline double applied_effort(const Coordinate& coordinate, double commanded, double of_scene) {
+  const double effort = std::isnan(commanded) ? of_scene : commanded, limit = coordinate.effort_limit;
+  return limit > 0 ? std::clamp(effort, -limit, limit) : effort;
+}
+
 /// Loads and efforts follow histories, times a factor by which statics lets them grow.
 struct StepHistories {
   explicit StepHistories(const Model& model) : at_point(model.histories.size()), at_beginning(model.histories.size()) {}
@@ -25,15 +31,8 @@ struct StepHistories {
     }
   }
 
-  /// What a coordinate is commanded, NaN where nothing is, or else the scene's effort for it; cut at its limit.
   double effort(const Coordinate& coordinate, double commanded) const {
-    double effort = 0;
-    if (!std::isnan(commanded))
-      effort = commanded;
-    else if (coordinate.effort >= 0)
-      effort = at_point[coordinate.effort];
-    if (coordinate.effort_limit > 0) effort = std::clamp(effort, -coordinate.effort_limit, coordinate.effort_limit);
-    return factor * effort;
+    return factor * applied_effort(coordinate, commanded, coordinate.effort < 0 ? 0.0 : at_point[coordinate.effort]);
   }
 
   std::vector<double> at_point;      ///< where in the step the scheme evaluates forces; at time 0 in statics

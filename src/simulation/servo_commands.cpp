@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "integrators/step_histories.h"
+
 namespace flexarm {
 namespace {
 
@@ -18,7 +20,7 @@ const char* name_of(ServoMode mode) {
 double other_efforts(const Model& model, const Servo& servo, const Coordinate& coordinate, double command,
                      double time) {
   const auto value = [&](int history) { return history >= 0 ? model.histories[history](time) : 0.0; };
-  return (std::isnan(command) ? value(coordinate.effort) : command) + value(servo.feedforward);
+  return applied_effort(coordinate, command, value(coordinate.effort)) + value(servo.feedforward);
 }
 
 /// The integral with which the servo gives that effort where it has no error; 0 where nothing integrates.

@@ -74,6 +74,23 @@ TEST(ServoModes, SwitchingIsNoBump) {
       }
 }
 
+// What is commanded beyond the joint's limit acts as the limit does.
+TEST(ServoModes, SwitchingIsNoBumpBesideACommandThatIsCut) {
+  SceneBuilder b = block_on_rail();
+  b.scene.joints[0].effort_limit = 4 * kLoad;
+  b.scene.initial_joints.push_back({"rail", 0.25, 0, {}});
+  Simulation simulation(b.scene);
+  simulation.command_effort(0, -20 * kLoad);
+  run(simulation, 8);
+  const double rest = simulation.position(0), given = simulation.effort(0);
+  for (const Mode mode : {Mode::Velocity, Mode::Effort, Mode::Position}) {
+    simulation.switch_mode(0, mode);
+    run(simulation, 0.1);
+    EXPECT_NEAR(simulation.effort(0), given, 1e-4);
+    EXPECT_NEAR(simulation.position(0), rest, 1e-6);
+  }
+}
+
 TEST(ServoModes, EachTakesSetPointsOfItsOwn) {
   Simulation simulation(block_on_rail().scene);
   simulation.switch_mode(0, Mode::Velocity);
