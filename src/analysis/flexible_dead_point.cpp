@@ -94,7 +94,7 @@ std::string most_strained_link(const Model& model, const State& state) {
       const LocalRotations<N> local(nodes.orientation);
       double energy = 0;
       for (int k = 0; k < N - 1; ++k) {
-        const Vector6 strain = elastic_strain(model, element, nodes, local, state, k);
+        const Vector6 strain = centroid_strain(element, nodes, local, state, k);
         energy += element.stiffness_points[k].weight * strain.dot(element.stiffness_points[k].stiffness * strain);
       }
       if (energy <= largest) continue;

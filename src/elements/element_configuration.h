@@ -2,7 +2,6 @@
 /// The nodal motion of one element in a state.
 
 #include "elements/beam_point.h"
-#include "model/model.h"
 #include "model/state.h"
 
 namespace flexarm {
@@ -40,14 +39,6 @@ Vector6 centroid_strain(const BeamElement<Nodes>& element, const ElementConfigur
   return point_kinematics(point_rotation(local, point, state.stiffness_rotations, element.first_stiffness_point + k),
                           interpolate<Nodes>(point.derivative, nodes.position), point.reference_strain)
       .strain;
-}
-
-/// The part of it that makes stresses: without the prestrain.
-template <int Nodes>
-Vector6 elastic_strain(const Model& model, const BeamElement<Nodes>& element, const ElementConfiguration<Nodes>& nodes,
-                       const LocalRotations<Nodes>& local, const State& state, int k) {
-  const Vector6 strain = centroid_strain(element, nodes, local, state, k);
-  return element.prestrain < 0 ? strain : strain - prestrain_at(model, element.prestrain, state.time);
 }
 
 }  // namespace flexarm

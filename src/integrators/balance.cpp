@@ -38,10 +38,11 @@ Energies energies(const Model& model, const Scheme& scheme, const State& state) 
     constexpr int N = std::decay_t<decltype(element)>::kNodes;
     const ElementConfiguration<N> nodes(element, state);
     const LocalRotations<N> local(nodes.orientation);
+    const Vector6 prestrain = prestrain_at(model, element.prestrain, state.time);
     for (int k = 0; k < N - 1; ++k) {
       const auto& point = element.stiffness_points[k];
       const double weight = point.weight;
-      const Vector6 strain = elastic_strain(model, element, nodes, local, state, k);
+      const Vector6 strain = centroid_strain(element, nodes, local, state, k) - prestrain;
       out.strain += 0.5 * weight * strain.dot(point.stiffness * strain);
       if (!state.strain_memory.empty())
         out.strain += weight * stored(scheme, state.strain_memory[element.first_stiffness_point + k], element, k);

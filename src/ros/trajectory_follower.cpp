@@ -7,9 +7,6 @@
 namespace flexarm::node {
 namespace {
 
-/// By which times that are sums may miss each other [s].
-constexpr double kRoundOff = 1e-9;
-
 bool are_finite(const std::vector<double>& numbers) {
   return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
 }
@@ -52,10 +49,10 @@ JointPoint JointSpline::Piece::at(double t) const {
 
 JointPoint JointSpline::at(double time) const {
   const auto after = std::find_if(pieces_.rbegin(), pieces_.rend(),
-                                  [&](const Piece& piece) { return piece.begin <= time + kRoundOff; });
+                                  [&](const Piece& piece) { return piece.begin <= time + kTimeRoundOff; });
   if (after == pieces_.rend()) return {pieces_.empty() ? rest_ : pieces_.front().coefficients[0]};
   const double since = std::max(time - after->begin, 0.0);
-  if (since > after->duration + kRoundOff) return {after->at(after->duration).position};
+  if (since > after->duration + kTimeRoundOff) return {after->at(after->duration).position};
   return after->at(std::min(since, after->duration));
 }
 
@@ -146,7 +143,7 @@ void TrajectoryFollower::stop(std::size_t index, double now, double duration) {
 
 void TrajectoryFollower::release_arrived(double time) {
   for (Joint& joint : joints_)
-    if (joint.follows && !joint.way.is_moving(time + kRoundOff)) joint.follows = false;
+    if (joint.follows && !joint.way.is_moving(time + kTimeRoundOff)) joint.follows = false;
 }
 
 }  // namespace flexarm::node

@@ -8,6 +8,9 @@
 
 namespace flexarm::node {
 
+/// By which times that are sums may miss each other [s].
+constexpr double kTimeRoundOff = 1e-9;
+
 /// Of a joint at an instant [rad or m; over s; over s^2].
 struct JointPoint {
   double position = 0, velocity = 0, acceleration = 0;

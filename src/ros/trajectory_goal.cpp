@@ -5,9 +5,6 @@
 namespace flexarm::node {
 namespace {
 
-/// By which times that are sums may miss each other [s].
-constexpr double kRoundOff = 1e-9;
-
 using Judgement = TrajectoryGoal::Judgement;
 
 /// The first joint beyond its tolerance makes it `violated`; else it is `kept`.
@@ -30,8 +27,8 @@ Judgement compared(const std::vector<JointTolerance>& tolerances, const std::vec
 
 Judgement TrajectoryGoal::judge(double time, const std::vector<JointPoint>& desired,
                                 const std::vector<JointPoint>& actual) const {
-  if (time < end - kRoundOff) return compared(path, desired, actual, Verdict::Underway, Verdict::OffPath);
-  const bool has_time = time < end + patience - kRoundOff;
+  if (time < end - kTimeRoundOff) return compared(path, desired, actual, Verdict::Underway, Verdict::OffPath);
+  const bool has_time = time < end + patience - kTimeRoundOff;
   return compared(at_end, desired, actual, Verdict::Reached, has_time ? Verdict::Underway : Verdict::NotReached);
 }
 

@@ -58,9 +58,10 @@ template <int Nodes>
 struct DeformedElement {
   DeformedElement(const Model& model, const BeamElement<Nodes>& element, const State& state)
       : nodes(element, state), local(nodes.orientation) {
+    const Vector6 prestrain = prestrain_at(model, element.prestrain, state.time);
     for (int k = 0; k < Nodes - 1; ++k) {
       strains[k] = centroid_strain(element, nodes, local, state, k);
-      resultants[k] = element.stiffness_points[k].stiffness * elastic_strain(model, element, nodes, local, state, k);
+      resultants[k] = element.stiffness_points[k].stiffness * (strains[k] - prestrain);
     }
   }
 
