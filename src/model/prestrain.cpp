@@ -4,17 +4,15 @@
 
 namespace flexarm {
 
-Vector6 prestrain_at(const Model& model, const Prestrain& prestrain, double time) {
+Vector6 prestrain_at(const Model& model, int index, double time) {
   Vector6 strain = Vector6::Zero();
+  if (index < 0) return strain;
+  const Prestrain& prestrain = model.prestrains[index];
   for (int i = 0; i < 6; ++i)
     if (const int history = prestrain.histories[i]; history >= 0) strain[i] = model.histories[history](time);
   // r_c = r + Lambda c, hence Gamma_c = Gamma - c x K.
   strain.head<3>() -= prestrain.centroid.cross(strain.tail<3>());
   return strain;
-}
-
-Vector6 prestrain_at(const Model& model, int index, double time) {
-  return index < 0 ? Vector6::Zero() : prestrain_at(model, model.prestrains[index], time);
 }
 
 }  // namespace flexarm

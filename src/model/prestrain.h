@@ -16,9 +16,7 @@ struct Prestrain {
   Vector3 centroid = Vector3::Zero();  ///< mass centroid in the section [m]
 };
 
-/// {Gamma, K} about the mass centroid [-, 1/m].
-Vector6 prestrain_at(const Model& model, const Prestrain& prestrain, double time);
-/// Of Model::prestrains; zero where `index` is negative.
+/// {Gamma, K} about the mass centroid [-, 1/m] of Model::prestrains at a time [s]; zero where `index` is negative.
 Vector6 prestrain_at(const Model& model, int index, double time);
 
 }  // namespace flexarm

@@ -9,6 +9,10 @@
 
 namespace flexarm {
 
+const char* to_string(ServoMode mode) {
+  return mode == ServoMode::Effort ? "effort" : mode == ServoMode::Velocity ? "velocity" : "position";
+}
+
 const char* to_string(StepResult::Reason reason) {
   switch (reason) {
     case StepResult::Reason::None:

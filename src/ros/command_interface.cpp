@@ -15,9 +15,8 @@ constexpr std::chrono::seconds kWarningPeriod(1);
 constexpr int kQueueSize = 10;
 
 std::optional<ServoMode> mode_called(const std::string& name) {
-  if (name == "effort") return ServoMode::Effort;
-  if (name == "velocity") return ServoMode::Velocity;
-  if (name == "position") return ServoMode::Position;
+  for (const ServoMode mode : {ServoMode::Effort, ServoMode::Velocity, ServoMode::Position})
+    if (name == to_string(mode)) return mode;
   return std::nullopt;
 }
 

@@ -56,6 +56,23 @@ void SceneBuilder::load(const std::string& link, const Vector3& at, const Vector
   scene.loads.push_back(load);
 }
 
+DriveDescription& SceneBuilder::drive(const std::string& coordinate, double gear, double rotor_inertia) {
+  DriveDescription& drive = scene.drives.emplace_back();
+  drive.coordinate = coordinate;
+  drive.gear = gear;
+  drive.rotor_inertia = rotor_inertia;
+  return drive;
+}
+
+ServoDescription& SceneBuilder::servo(const std::string& coordinate, double kp, double kd, double ki) {
+  ServoDescription& servo = scene.servos.emplace_back();
+  servo.coordinate = coordinate;
+  servo.kp = kp;
+  servo.kd = kd;
+  servo.ki = ki;
+  return servo;
+}
+
 void SceneBuilder::sensor(const std::string& name, SensorKind kind, const std::string& link, const Vector3& at) {
   Sensor sensor;
   sensor.name = name;

@@ -25,6 +25,10 @@ class SceneBuilder {
   /// `at` in the link frame [m]; force [N] and moment [N m] in `frame`, times the history (see TimeFunction::parse).
   void load(const std::string& link, const Vector3& at, const Vector3& force, const Vector3& moment = Vector3::Zero(),
             const std::string& history = "1", LoadFrame frame = LoadFrame::World);
+  /// On a joint's coordinate; `rotor_inertia` about the motor's own axis [kg m^2].
+  DriveDescription& drive(const std::string& coordinate, double gear, double rotor_inertia);
+  /// Of mode position, on a joint's coordinate; gains as in ServoDescription.
+  ServoDescription& servo(const std::string& coordinate, double kp, double kd = 0, double ki = 0);
   /// `at` in the link frame [m].
   void sensor(const std::string& name, SensorKind kind, const std::string& link, const Vector3& at = Vector3::Zero());
   /// `at` in the link frame [m].

@@ -12,10 +12,6 @@
 namespace flexarm {
 namespace {
 
-const char* name_of(ServoMode mode) {
-  return mode == ServoMode::Effort ? "effort" : mode == ServoMode::Velocity ? "velocity" : "position";
-}
-
 /// Of a motor, what neither the servo's error nor its integral asks for [N m or N].
 double other_efforts(const Model& model, const Servo& servo, const Coordinate& coordinate, double command,
                      double time) {
@@ -80,7 +76,7 @@ void switch_mode(const Model& model, std::size_t coordinate, ServoMode mode, dou
   if (law == servo.laws.end())
     throw std::invalid_argument(fmt::format(
         "the servo of '{}' has no gains of mode '{}': write <gains mode=\"{}\" kp=\"...\"/> into its <servo>",
-        model.coordinates[coordinate].name, name_of(mode), name_of(mode)));
+        model.coordinates[coordinate].name, to_string(mode), to_string(mode)));
   ServoState& own = servo_of(model, coordinate, state);
   if (&law_of(servo, own) == &*law) return;
   const Coordinate& place = model.coordinates[coordinate];

@@ -2,7 +2,6 @@
 #include <Eigen/Eigenvalues>
 
 #include "math/pi.h"
-#include "reference/drives.h"
 #include "reference/one_coordinate_scenes.h"
 
 namespace flexarm::test {
@@ -14,7 +13,7 @@ using scene::JointKind;
 TEST(Drive, RotorAddsItsReflectedInertia) {
   for (const char* scheme : {"em", "em4", "edmc2", "m1", "m2", "std", "newmark", "hht1", "hht2", "hht3"}) {
     SceneBuilder b = block_on_rail(0, 0.5), heavy = block_on_rail(0, 0.5);
-    add_drive(b, "rail", 50, 4e-4);
+    b.drive("rail", 50, 4e-4);
     heavy.scene.links.back().inertial->mass += 2500 * 4e-4;
     Simulation simulation(b.scene, options(scheme, 0.01)), expected(heavy.scene, options(scheme, 0.01));
     for (Simulation* s : {&simulation, &expected}) {
@@ -27,7 +26,7 @@ TEST(Drive, RotorAddsItsReflectedInertia) {
     EXPECT_NEAR(simulation.energies().work, expected.energies().work, 1e-9) << scheme;
   }
   SceneBuilder b = wheel_on_shaft(0);
-  add_drive(b, "shaft", 100, 2e-5);
+  b.drive("shaft", 100, 2e-5);
   Simulation simulation(b.scene, options("em", 1e-4));
   simulation.command_effort(0, 1);
   run(simulation, 1000);
@@ -41,7 +40,7 @@ TEST(Drive, RotorIsEnoughToMove) {
   b.body("nothing", 0, Vector3::Zero(), Matrix3::Zero());
   b.joint("shaft", JointKind::Revolute, "world", "nothing", {0, 0, 0}, {0, 0, 1});
   EXPECT_THROW(Simulation(b.scene), ModelError);
-  add_drive(b, "shaft", 10, 1e-3);
+  b.drive("shaft", 10, 1e-3);
   Simulation simulation(b.scene, options("em", 1e-3));
   simulation.command_effort(0, 0.3);
   run(simulation, 1000);
@@ -67,7 +66,7 @@ TEST(Drive, ElasticGearHasTheFrequenciesOfTwoMasses) {
   const TwoMasses system{kBlockMass, 0.5, 800, 300};
   const double h = 0.01, start = 0.05;
   SceneBuilder b = block_on_rail(start, 0);
-  add_drive(b, "rail", 10, system.rotor / 100).stiffness = system.gear;
+  b.drive("rail", 10, system.rotor / 100).stiffness = system.gear;
   b.scene.springs.push_back({"rail", system.spring, 0, {}});
   for (const std::string scheme : {"em", "newmark"}) {
     Simulation simulation(b.scene, options(scheme, h, 1e-13));
@@ -93,7 +92,7 @@ TEST(Drive, ElasticGearHasTheFrequenciesOfTwoMasses) {
 TEST(Drive, ElasticGearIsOfSecondOrderInAllFamilies) {
   const TwoMasses system{kBlockMass, 0.5, 800, 300};
   SceneBuilder b = block_on_rail(0.05, 0);
-  add_drive(b, "rail", 10, system.rotor / 100).stiffness = system.gear;
+  b.drive("rail", 10, system.rotor / 100).stiffness = system.gear;
   b.scene.springs.push_back({"rail", system.spring, 0, {}});
   double exact = 0;
   for (const int mode : {0, 1})
@@ -115,7 +114,7 @@ TEST(Drive, ElasticGearIsOfSecondOrderInAllFamilies) {
 TEST(Drive, EnergyAccountThroughAThousandPassagesOfABacklash) {
   for (const double damping : {0.0, 0.02}) {
     SceneBuilder b = block_on_rail(0, 0.3);
-    scene::DriveDescription& drive = add_drive(b, "rail", 10, 5e-3);
+    scene::DriveDescription& drive = b.drive("rail", 10, 5e-3);
     drive.stiffness = 4000;
     drive.backlash = 0.002;
     drive.damping = damping;
@@ -149,7 +148,7 @@ TEST(Drive, RunsUpToItsNoLoadSpeed) {
   double error[2];
   for (const int k : {0, 1}) {
     SceneBuilder b = block_on_rail(0, 0);
-    scene::DriveDescription& drive = add_drive(b, "rail", 1, 0);
+    scene::DriveDescription& drive = b.drive("rail", 1, 0);
     drive.effort_limit = limit;
     drive.velocity_limit = speed;
     SimulationOptions options = test::options("em", 0.01 / (1 + k), 1e-12);
@@ -168,7 +167,7 @@ TEST(Drive, RunsUpToItsNoLoadSpeed) {
   EXPECT_NEAR(std::log2(error[0] / error[1]), 2, 0.2);
   // Against a load it runs where the line is the load.
   SceneBuilder b = block_on_rail(0, 0);
-  scene::DriveDescription& drive = add_drive(b, "rail", 10, 2e-3);
+  scene::DriveDescription& drive = b.drive("rail", 10, 2e-3);
   drive.stiffness = 2000;
   drive.damping = 2;
   drive.effort_limit = limit;
@@ -186,7 +185,7 @@ TEST(Drive, LosesByItsEfficiency) {
   for (const bool is_elastic : {false, true}) {
     const double rotor = 0.5, efficiency = 0.8;
     SceneBuilder b = block_on_rail(0, 1);
-    scene::DriveDescription& drive = add_drive(b, "rail", 10, rotor / 100);
+    scene::DriveDescription& drive = b.drive("rail", 10, rotor / 100);
     drive.efficiency = efficiency;
     if (is_elastic) drive.stiffness = 1e6, drive.damping = 500;
     Simulation simulation(b.scene, options("em", 1e-3, 1e-12));
@@ -208,7 +207,7 @@ TEST(Drive, LosesByItsEfficiency) {
 TEST(Drive, RotorSticks) {
   SceneBuilder b = block_on_rail(0, 0);
   b.scene.joints[0].friction_law.law = scene::FrictionDescription::Law::Coulomb;
-  scene::DriveDescription& drive = add_drive(b, "rail", 10, 5e-3);
+  scene::DriveDescription& drive = b.drive("rail", 10, 5e-3);
   drive.stiffness = 100;
   drive.friction = 2;
   b.load("block", Vector3::Zero(), {0.9, 0, 0});
@@ -235,7 +234,7 @@ TEST(Drive, FlexibleArmKeepsItsAccount) {
   b.scene.gravity = {0, 0, -9.81};
   b.beam("arm", {{1, 0, 0}}, scene::DirectSection{2e4, 1e4, 1e4, 20, 25, 30, 0.5, 0.02, 0.01, 0.01}, 2, 2);
   b.joint("shoulder", JointKind::Revolute, "world", "arm", {0, 0, 0}, {0, 1, 0});
-  scene::DriveDescription& drive = add_drive(b, "shoulder", 100, 2e-5);
+  scene::DriveDescription& drive = b.drive("shoulder", 100, 2e-5);
   drive.stiffness = 500;
   drive.damping = 0.5;
   drive.backlash = 1e-3;
@@ -258,7 +257,7 @@ TEST(Drive, FlexibleArmKeepsItsAccount) {
 TEST(Drive, StaticsOfSpringAndGear) {
   SceneBuilder b = block_on_rail(0, 0);
   b.scene.initial_joints.clear();
-  scene::DriveDescription& drive = add_drive(b, "rail", 10, 5e-3);
+  scene::DriveDescription& drive = b.drive("rail", 10, 5e-3);
   drive.stiffness = 50;
   b.scene.springs.push_back({"rail", 40, 0.1, {}});
   b.scene.efforts.push_back({"rail", TimeFunction(2.0), {}});
@@ -279,7 +278,7 @@ double angular_frequency(const Mode& mode) {
 TEST(Drive, ModesOfTwoMasses) {
   const TwoMasses system{kBlockMass, 0.5, 800, 300};
   SceneBuilder b = block_on_rail(0, 0);
-  scene::DriveDescription& drive = add_drive(b, "rail", 10, system.rotor / 100);
+  scene::DriveDescription& drive = b.drive("rail", 10, system.rotor / 100);
   b.scene.springs.push_back({"rail", system.spring, 0, {}});
   std::vector<Mode> modes = Simulation(b.scene).natural_modes(4);
   ASSERT_EQ(modes.size(), 1u) << "a rigid gear";
@@ -293,11 +292,7 @@ TEST(Drive, ModesOfTwoMasses) {
   }
   // With a servo on the motor in place of the spring, and its damping.
   b.scene.springs.clear();
-  scene::ServoDescription servo;
-  servo.coordinate = "rail";
-  servo.kp = 500;
-  servo.kd = 20;
-  b.scene.servos.push_back(servo);
+  b.servo("rail", 500, 20);
   modes = Simulation(b.scene).natural_modes(4);
   Eigen::Matrix4d matrix;
   const double gear = system.gear, rotor = system.rotor;

@@ -1,7 +1,6 @@
 // Rotors that have an axis: gyroscopes, against spinning bodies and by what is conserved.
 #include <cmath>
 
-#include "reference/drives.h"
 #include "reference/dynamics_runs.h"
 
 namespace flexarm::test {
@@ -24,7 +23,7 @@ SceneBuilder gyroscope(bool is_rotor, double spin) {
   initial_joint(b, "ball/ry", 0.5, 0);
   initial_joint(b, "shaft", 0, spin);
   if (is_rotor) {
-    scene::DriveDescription& drive = add_drive(b, "shaft", 1, axial - 1e-5);
+    scene::DriveDescription& drive = b.drive("shaft", 1, axial - 1e-5);
     drive.axis = Vector3::UnitZ();
   }
   return b;
@@ -63,7 +62,7 @@ TEST(Gyroscope, KeepsEnergyAndAngularMomentum) {
     b.body("hand", 0.4, {0.1, 0.03, 0}, Vector3(2e-3, 3e-3, 2e-3).asDiagonal());
     b.joint("elbow", JointKind::Revolute, "arm", "hand", {0.5, 0, 0}, {0, 0.6, 0.8});
     for (const char* joint : {"shoulder", "elbow"}) {
-      scene::DriveDescription& drive = add_drive(b, joint, 50, 2e-5);
+      scene::DriveDescription& drive = b.drive(joint, 50, 2e-5);
       drive.axis = Vector3(0.6, 0, 0.8);
       if (is_elastic) drive.stiffness = 400, drive.backlash = 1e-3;
     }

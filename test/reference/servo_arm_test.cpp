@@ -98,12 +98,8 @@ Eigen::Vector2d simulated(const char* scheme, int steps) {
       .hubs.push_back({scene::HubDescription::End::Start, 0, {0, 0, kHub}, {}});
   b.joint("hinge", scene::JointKind::Revolute, "world", "arm");
   b.probe("tip", "arm", {kLength, 0, 0});
-  scene::ServoDescription servo;
-  servo.coordinate = "hinge";
-  servo.kp = kProportional;
-  servo.kd = kDerivative;
-  servo.set_point = TimeFunction::parse(fmt::format("{}*(1-9/8*cos(6*t)+1/8*cos(18*t))", kAmplitude));
-  b.scene.servos.push_back(servo);
+  b.servo("hinge", kProportional, kDerivative).set_point =
+      TimeFunction::parse(fmt::format("{}*(1-9/8*cos(6*t)+1/8*cos(18*t))", kAmplitude));
   Simulation simulation(b.scene, options(scheme, kEnd / steps, 1e-12));
   run(simulation, steps);
   return {simulation.position(0), simulation.probe(0).pose.position.y()};

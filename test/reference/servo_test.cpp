@@ -12,23 +12,13 @@ namespace {
 using Mode = scene::ServoDescription::Mode;
 
 scene::ServoDescription& add_servo(SceneBuilder& b, Mode mode, double kp, double kd = 0, double ki = 0) {
-  scene::ServoDescription servo;
-  servo.coordinate = b.scene.joints.front().name;
+  scene::ServoDescription& servo = b.servo(b.scene.joints.front().name, kp, kd, ki);
   servo.mode = mode;
-  servo.kp = kp;
-  servo.kd = kd;
-  servo.ki = ki;
-  b.scene.servos.push_back(servo);
-  return b.scene.servos.back();
+  return servo;
 }
 
 scene::DriveDescription& add_drive(SceneBuilder& b, double rotor_inertia) {
-  scene::DriveDescription drive;
-  drive.coordinate = b.scene.joints.front().name;
-  drive.gear = 10;
-  drive.rotor_inertia = rotor_inertia / 100;
-  b.scene.drives.push_back(drive);
-  return b.scene.drives.back();
+  return b.drive(b.scene.joints.front().name, 10, rotor_inertia / 100);
 }
 
 double observed_order(const std::array<double, 2>& error) {

@@ -146,11 +146,7 @@ TEST(DampingOfJoints, TakesTheArticulatedInertia) {
     double rotor = 0;
     if (is_driven) {
       for (SceneBuilder* b : {&shoulder, &elbow}) {
-        scene::DriveDescription drive;
-        drive.coordinate = b == &shoulder ? "shoulder" : "elbow";
-        drive.gear = 10;
-        drive.rotor_inertia = 0.02;
-        b->scene.drives.push_back(drive);
+        b->drive(b == &shoulder ? "shoulder" : "elbow", 10, 0.02);
       }
       rotor = 2;
     }
@@ -164,12 +160,9 @@ TEST(DampingOfJoints, TakesTheArticulatedInertia) {
 
 TEST(DampingOfJoints, RatioOnAnElasticGear) {
   SceneBuilder b = wheel_on_shaft();
-  scene::DriveDescription drive;
-  drive.coordinate = "shaft";
-  drive.rotor_inertia = 1e9;  // is held
+  scene::DriveDescription& drive = b.drive("shaft", 1, 1e9);  // its rotor is held
   drive.stiffness = 500;
   drive.damping_ratio = 0.05;
-  b.scene.drives.push_back(drive);
   for (const Mode& mode : Simulation(b.scene).natural_modes(2))
     if (mode.frequency > 0) {
       EXPECT_NEAR(2 * kPi * mode.frequency, std::sqrt(500 / kWheelInertia * (1 - 0.05 * 0.05)), 1e-6);

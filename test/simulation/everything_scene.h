@@ -91,30 +91,17 @@ inline SceneBuilder rubbing_scene() {
 /// The same with motors behind rigid and elastic gears, springs, and servos, one of them sampled.
 inline SceneBuilder driven_scene() {
   SceneBuilder b = everything_scene();
-  const auto drive = [&](const std::string& joint) -> scene::DriveDescription& {
-    scene::DriveDescription out;
-    out.coordinate = joint;
-    out.gear = 10;
-    out.rotor_inertia = 1e-4;
-    b.scene.drives.push_back(out);
-    return b.scene.drives.back();
-  };
   const auto servo = [&](const std::string& joint, double kp, double kd, double ki) -> scene::ServoDescription& {
-    scene::ServoDescription out;
-    out.coordinate = joint;
-    out.kp = kp;
-    out.kd = kd;
-    out.ki = ki;
+    scene::ServoDescription& out = b.servo(joint, kp, kd, ki);
     out.set_point = TimeFunction::parse("0.1*sin(3*t)");
-    b.scene.servos.push_back(out);
-    return b.scene.servos.back();
+    return out;
   };
-  scene::DriveDescription& elastic = drive("elbow");
+  scene::DriveDescription& elastic = b.drive("elbow", 10, 1e-4);
   elastic.stiffness = 200;
   elastic.damping = 0.2;
   elastic.backlash = 1e-3;
   elastic.efficiency = 0.8;
-  drive("continuous").friction = 0.1;
+  b.drive("continuous", 10, 1e-4).friction = 0.1;
   servo("elbow", 20, 1, 5).anti_windup = 0.1;
   servo("prismatic", 500, 10, 0);
   scene::ServoDescription& sampled = servo("continuous", 5, 0.2, 1);

@@ -46,20 +46,10 @@ SceneBuilder arm() {
       scene::Mimic{"elbow", 0.1, 0.02};
   b.joint("wrist", JointKind::Spherical, "forearm", "ball", {0.6, 0, 0});
   b.joint("flight", JointKind::Floating, "world", "satellite", {0, 2, 0});
-  scene::DriveDescription drive;
-  drive.coordinate = "shoulder";
-  drive.gear = 50;
-  drive.rotor_inertia = 1e-5;
+  scene::DriveDescription& drive = b.drive("shoulder", 50, 1e-5);
   drive.stiffness = 2000;
   drive.damping = 1;
-  b.scene.drives.push_back(drive);
-  scene::ServoDescription servo;
-  servo.coordinate = "shoulder";
-  servo.kp = 300;
-  servo.kd = 10;
-  servo.ki = 50;
-  servo.set_point = TimeFunction(0.2);
-  b.scene.servos.push_back(servo);
+  b.servo("shoulder", 300, 10, 50).set_point = TimeFunction(0.2);
   return b;
 }
 

@@ -28,14 +28,9 @@ SceneBuilder block_on_rail() {
   b.body("block", kMass, Vector3::Zero(), 1e-3 * Matrix3::Identity());
   b.joint("rail", JointKind::Prismatic, "world", "block", Vector3::Zero(), Vector3::UnitX());
   b.load("block", Vector3::Zero(), {kLoad, 0, 0});
-  scene::ServoDescription servo;
-  servo.coordinate = "rail";
-  servo.kp = 800;
-  servo.kd = 80;
-  servo.ki = 2000;
+  scene::ServoDescription& servo = b.servo("rail", 800, 80, 2000);
   servo.set_point = TimeFunction(0.25);
   servo.other_modes.push_back({Mode::Velocity, 60, 0, 300, 0});
-  b.scene.servos.push_back(servo);
   return b;
 }
 
@@ -51,12 +46,9 @@ TEST(ServoModes, SwitchingIsNoBump) {
         b.scene.integrator.scheme = scheme;
         b.scene.servos[0].sample_time = sample_time;
         if (is_elastic) {
-          scene::DriveDescription drive;
-          drive.coordinate = "rail";
-          drive.rotor_inertia = 0.3;
+          scene::DriveDescription& drive = b.drive("rail", 1, 0.3);
           drive.stiffness = 1e4;
           drive.damping = 40;
-          b.scene.drives.push_back(drive);
         }
         Simulation simulation(b.scene);
         run(simulation, 8);

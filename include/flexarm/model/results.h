@@ -157,6 +157,9 @@ enum class ServoMode {
   Position
 };
 
+/// As scenes name it.
+const char* to_string(ServoMode mode);
+
 /// Where a joint coordinate is to be, and how fast; what is not given stays as it is.
 struct CoordinateState {
   std::size_t coordinate = 0;
