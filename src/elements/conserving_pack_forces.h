@@ -25,17 +25,4 @@ void conserving_beam(const ConservingElement<Nodes, Pack>& element, const BeamNo
   if (with_tangent) add_tangent<Nodes>(element, nodes, rule, at, multiplier, system);
 }
 
-template <int Nodes>
-void carry_strains(const ConservingElement<Nodes, Pack>& element, const BeamNodes<Nodes, Pack>& nodes,
-                   const TimeRule& rule, const ElementFunctions<Nodes, Pack>& functions,
-                   const PointKinematicsT<Pack>* begin, const std::array<Vector6T<Pack>, Nodes>& update,
-                   PointKinematicsT<Pack>* end, CarriedStrains<Nodes, Pack>& carried) {
-  conserving::StepPoints<Nodes, Pack> at;
-  set_points<Nodes>(element, nodes, rule, functions, true, end, at);
-  simd::run([&] {
-    conserving::set_strains<Nodes, Pack>(element, nodes, begin, end, nullptr, at);
-    conserving::carry_strains<Nodes, Pack>(element, nodes, at, update, end, carried);
-  });
-}
-
 }  // namespace flexarm::packs

@@ -3,6 +3,5 @@
 namespace flexarm::packs {
 
 template decltype(conserving_beam<2>) conserving_beam<2>;
-template decltype(carry_strains<2>) carry_strains<2>;
 
 }  // namespace flexarm::packs

@@ -3,6 +3,5 @@
 namespace flexarm::packs {
 
 template decltype(conserving_beam<4>) conserving_beam<4>;
-template decltype(carry_strains<4>) carry_strains<4>;
 
 }  // namespace flexarm::packs

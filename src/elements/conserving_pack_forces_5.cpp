@@ -3,6 +3,5 @@
 namespace flexarm::packs {
 
 template decltype(conserving_beam<5>) conserving_beam<5>;
-template decltype(carry_strains<5>) carry_strains<5>;
 
 }  // namespace flexarm::packs

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "elements/orders.h"
+
 namespace flexarm {
 
 IntegrationPoints::IntegrationPoints(const StepConfiguration& configuration, const StepPrestrains& prestrains)
@@ -81,5 +83,27 @@ void IntegrationPoints::accept(State& state) {
   std::swap(begin_stiffness, end_stiffness);
   std::swap(begin_rotations, end_rotations);
 }
+
+template <int Nodes>
+void scatter(const BeamElement<Nodes>& element, const ElementSystem<Nodes>& system, Balance& balance, bool is_first) {
+  const bool sets = is_first && balance.tangent && balance.tangent->keeps_elements_apart();
+  balance.dissipated += system.dissipated;
+  for (int i = 0; i < Nodes; ++i) {
+    balance.residual.node(element.nodes[i]) += system.residual.template segment<6>(6 * i);
+    if (balance.carried) balance.carried->node(element.nodes[i]) += system.carried.template segment<6>(6 * i);
+    for (int j = 0; j < Nodes && balance.tangent; ++j) {
+      Eigen::Map<Matrix6> block(balance.tangent->element_block(element.first_block + i * Nodes + j));
+      if (sets)
+        block = system.tangent.template block<6, 6>(6 * i, 6 * j);
+      else
+        block += system.tangent.template block<6, 6>(6 * i, 6 * j);
+    }
+  }
+}
+
+// Compiled here once for each order of elements.
+#define COMPILE_FOR(Nodes) template decltype(scatter<Nodes>) scatter<Nodes>;
+FLEXARM_FOR_EACH_ORDER(COMPILE_FOR)
+#undef COMPILE_FOR
 
 }  // namespace flexarm

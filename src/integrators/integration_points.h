@@ -70,20 +70,6 @@ class IntegrationPoints {
 
 /// Adds an element's system to the balance. `is_first`: nothing else of this element has been added before.
 template <int Nodes>
-void scatter(const BeamElement<Nodes>& element, const ElementSystem<Nodes>& system, Balance& balance, bool is_first) {
-  const bool sets = is_first && balance.tangent && balance.tangent->keeps_elements_apart();
-  balance.dissipated += system.dissipated;
-  for (int i = 0; i < Nodes; ++i) {
-    balance.residual.node(element.nodes[i]) += system.residual.template segment<6>(6 * i);
-    if (balance.carried) balance.carried->node(element.nodes[i]) += system.carried.template segment<6>(6 * i);
-    for (int j = 0; j < Nodes && balance.tangent; ++j) {
-      Eigen::Map<Matrix6> block(balance.tangent->element_block(element.first_block + i * Nodes + j));
-      if (sets)
-        block = system.tangent.template block<6, 6>(6 * i, 6 * j);
-      else
-        block += system.tangent.template block<6, 6>(6 * i, 6 * j);
-    }
-  }
-}
+void scatter(const BeamElement<Nodes>& element, const ElementSystem<Nodes>& system, Balance& balance, bool is_first);
 
 }  // namespace flexarm

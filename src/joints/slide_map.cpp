@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "slide_step.h"
+#include "joints/slide_step.h"
 
 namespace flexarm {
 

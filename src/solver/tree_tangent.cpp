@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "math/simd.h"
 #include "solver/element_front.h"
 
 namespace flexarm {
@@ -23,28 +22,6 @@ auto with_front(int node_count, Visitor&& visit) {
   }
 }
 
-/// K with the columns that a rigid arm to the master gives: d{r, spin} = {dr_m + spin_m x lever, spin_m}.
-Matrix6 columns_at_master(const Matrix6& tangent, const Vector3& lever) {
-  Matrix6 out = tangent;
-  out.col(3) += lever.y() * tangent.col(2) - lever.z() * tangent.col(1);
-  out.col(4) += lever.z() * tangent.col(0) - lever.x() * tangent.col(2);
-  out.col(5) += lever.x() * tangent.col(1) - lever.y() * tangent.col(0);
-  return out;
-}
-
-/// Rows {f, phi} moved to the master: {f, lever x f + phi}.
-template <int Columns>
-void move_rows(const Vector3& lever, Eigen::Matrix<double, 6, Columns>& rows) {
-  for (int k = 0; k < Columns; ++k) rows.col(k).template tail<3>() += lever.cross(rows.col(k).template head<3>());
-}
-
-/// What a joint leaves at its master, whose block on the diagonal is `to`.
-void add_to_master(const Matrix6& tangent, const FoldMaps& maps, double* to) {
-  Eigen::Map<Matrix6> master(to);
-  master += tangent;
-  master.bottomRightCorner<3, 3>() += maps.moment_spin;
-}
-
 }  // namespace
 
 bool TreeTangent::suits(const Model& model, const DegreesOfFreedom& dof) {
@@ -57,20 +34,10 @@ TreeTangent::TreeTangent(const Model& model, const DegreesOfFreedom& dof)
       blocks_(model, dof),
       order_(model, dof),
       bordered_(model, dof, order_, blocks_),
-      joints_(model.joints.size()),
       values_(dof.scalar_count) {
-  for (std::size_t j = 0; j < joints_.size(); ++j) {
-    JointFront& front = joints_[j];
-    front.slave = model.joints[j].slave;
-    front.master = model.joints[j].master;
-    front.variable = dof.variable_of_joint(static_cast<int>(j));
-    for (int k = 0; k < dof.size[front.variable]; ++k) {
-      const int scalar = dof.first[front.variable] + k;
-      if (dof.equation[scalar] < 0) continue;
-      front.components[front.count] = k;
-      front.scalars[front.count++] = scalar;
-    }
-  }
+  joints_.reserve(model.joints.size());
+  for (const JointMap& joint : model.joints)
+    joints_.emplace_back(joint, dof.variable_of_joint(static_cast<int>(joints_.size())), dof);
   std::size_t pivots = 0;
   for (const TreePart& part : order_.parts()) {
     first_pivot_.push_back(pivots);
@@ -126,12 +93,12 @@ void TreeTangent::hold_row(int joint, int component, int first, const ReleasedVe
 void TreeTangent::hold_rows() {
   for (const auto& [joint, component, first, coefficients] : blocks_.held) {
     const JointFront& front = joints_[joint];
-    if (order_.parts()[order_.completion(front.variable)].has_border) continue;
+    if (order_.parts()[order_.completion(front.variable())].has_border) continue;
     FoldMaps& maps = blocks_.maps[joint];
     const int size = static_cast<int>(maps.left.cols());
     maps.left.col(component).setZero();
-    if (front.master >= 0) maps.released_spin.row(component).setZero();
-    Eigen::Map<ReleasedSquare>(diagonal_block(front.variable), size, size).row(component).setZero();
+    if (front.has_master()) maps.released_spin.row(component).setZero();
+    Eigen::Map<ReleasedSquare>(diagonal_block(front.variable()), size, size).row(component).setZero();
     maps.released_released.row(component).setZero();
     maps.released_released.row(component).segment(first, coefficients.size()) = coefficients.transpose();
   }
@@ -154,75 +121,16 @@ bool TreeTangent::eliminate_element(int p) {
   });
 }
 
-template <int Size>
-bool TreeTangent::eliminate_released(int joint) {
-  using Square = Eigen::Matrix<double, Size, Size>;
-  using Columns = Eigen::Matrix<double, 6, Size>;
-  using Rows = Eigen::Matrix<double, Size, 6>;
-  JointFront& front = joints_[joint];
-  const FoldMaps& maps = blocks_.maps[joint];
-  const Eigen::Map<const Matrix6> tangent(diagonal_block(front.slave));
-  const int size = static_cast<int>(maps.left.cols());
-  const Eigen::Map<const ReleasedSquare> own(diagonal_block(front.variable), size, size);
-  Columns left = Columns::Zero(), right = Columns::Zero();
-  Square pivot = Square::Identity();
-  for (int k = 0; k < front.count; ++k) {
-    left.col(k) = maps.left.col(front.components[k]);
-    right.col(k) = maps.right.col(front.components[k]);
-    for (int i = 0; i < front.count; ++i)
-      pivot(i, k) = maps.released_released(front.components[i], front.components[k]) +
-                    own(front.components[i], front.components[k]);
-  }
-  front.left.template leftCols<Size>() = left;
-  front.right.template leftCols<Size>() = right;
-  Columns moved = tangent.lazyProduct(right);
-  pivot += left.transpose().lazyProduct(moved);
-  const Square inverse = pivot.inverse();
-  if (!inverse.allFinite()) return false;
-  front.inverse.template topLeftCorner<Size, Size>() = inverse;
-  if (front.master < 0) return true;
-
-  Matrix6 at_master = columns_at_master(tangent, maps.lever_right);
-  Rows row = left.transpose().lazyProduct(at_master);
-  move_rows(maps.lever_left, moved);
-  for (int k = 0; k < front.count; ++k) {
-    row.row(k).template tail<3>() += maps.released_spin.row(front.components[k]);
-    moved.col(k).template tail<3>() += maps.moment_released.col(front.components[k]);
-  }
-  const Rows elimination = inverse.lazyProduct(row);
-  front.elimination.template topRows<Size>() = elimination;
-  front.coupling.template leftCols<Size>() = moved;
-  move_rows(maps.lever_left, at_master);
-  at_master.noalias() -= moved.lazyProduct(elimination);
-  add_to_master(at_master, maps, diagonal_block(front.master));
-  return true;
-}
-
-bool TreeTangent::eliminate_joint(int joint) {
-  const JointFront& front = joints_[joint];
-  if (front.count == 1) {
-    bool done = false;
-    simd::run([&] { done = eliminate_released<1>(joint); });
-    return done;
-  }
-  if (front.count > 1) return eliminate_released<6>(joint);
-  if (front.master < 0) return true;
-  const FoldMaps& maps = blocks_.maps[joint];
-  Matrix6 at_master = columns_at_master(Eigen::Map<const Matrix6>(diagonal_block(front.slave)), maps.lever_right);
-  move_rows(maps.lever_left, at_master);
-  add_to_master(at_master, maps, diagonal_block(front.master));
-  return true;
-}
-
 bool TreeTangent::factorise() {
   order_.update();
   hold_rows();
   bordered_.begin();
   const std::vector<TreePart>& parts = order_.parts();
   for (int p = 0; p < static_cast<int>(parts.size()); ++p)
-    if (!(parts[p].has_border   ? bordered_.eliminate(p)
-          : parts[p].joint >= 0 ? eliminate_joint(parts[p].joint)
-                                : eliminate_element(p))) {
+    if (!(parts[p].has_border ? bordered_.eliminate(p)
+          : parts[p].joint >= 0
+              ? joints_[parts[p].joint].eliminate(blocks_.maps[parts[p].joint], diagonal_blocks_.data())
+              : eliminate_element(p))) {
       singular_variable_ =
           parts[p].joint >= 0 ? dof_.variable_of_joint(parts[p].joint) : parts[p].nodes[parts[p].node_count - 1];
       return false;
@@ -247,37 +155,6 @@ void TreeTangent::backward_element(int p) {
              [&](auto front) { front.backward(blocks_.elements.data() + 36 * part.first_block, r.data()); });
 }
 
-void TreeTangent::forward_joint(int joint) {
-  const JointFront& front = joints_[joint];
-  const Eigen::Map<const Vector6> slave(values_.data() + 6 * static_cast<std::size_t>(front.slave));
-  const int count = front.count;
-  std::array<double, 6> rows, released{};
-  for (int k = 0; k < count; ++k) rows[k] = values_[front.scalars[k]] + front.left.col(k).dot(slave);
-  for (int i = 0; i < count; ++i) {
-    for (int k = 0; k < count; ++k) released[i] += front.inverse(i, k) * rows[k];
-    values_[front.scalars[i]] = released[i];
-  }
-  if (front.master < 0) return;
-  Eigen::Map<Vector6> master(values_.data() + 6 * static_cast<std::size_t>(front.master));
-  master += slave;
-  master.tail<3>() += blocks_.maps[joint].lever_left.cross(slave.head<3>());
-  for (int k = 0; k < count; ++k) master -= released[k] * front.coupling.col(k);
-}
-
-void TreeTangent::backward_joint(int joint) {
-  const JointFront& front = joints_[joint];
-  Eigen::Map<Vector6> slave(values_.data() + 6 * static_cast<std::size_t>(front.slave));
-  Vector6 moved = Vector6::Zero();
-  if (front.master >= 0) {
-    const Eigen::Map<const Vector6> master(values_.data() + 6 * static_cast<std::size_t>(front.master));
-    for (int k = 0; k < front.count; ++k) values_[front.scalars[k]] -= front.elimination.row(k).dot(master);
-    moved = master;
-    moved.head<3>() += master.tail<3>().cross(blocks_.maps[joint].lever_right);
-  }
-  for (int k = 0; k < front.count; ++k) moved += values_[front.scalars[k]] * front.right.col(k);
-  slave = moved;
-}
-
 bool TreeTangent::solve(Eigen::VectorXd& b) {
   const std::vector<TreePart>& parts = order_.parts();
   const int part_count = static_cast<int>(parts.size());
@@ -287,11 +164,11 @@ bool TreeTangent::solve(Eigen::VectorXd& b) {
   }
   for (int p = 0; p < part_count; ++p)
     parts[p].has_border   ? bordered_.forward(p, b, values_)
-    : parts[p].joint >= 0 ? forward_joint(parts[p].joint)
+    : parts[p].joint >= 0 ? joints_[parts[p].joint].forward(blocks_.maps[parts[p].joint], values_.data())
                           : forward_element(p);
   for (int p = part_count - 1; p >= 0; --p)
     parts[p].has_border   ? bordered_.backward(p, values_)
-    : parts[p].joint >= 0 ? backward_joint(parts[p].joint)
+    : parts[p].joint >= 0 ? joints_[parts[p].joint].backward(blocks_.maps[parts[p].joint], values_.data())
                           : backward_element(p);
   for (int scalar = 0; scalar < dof_.scalar_count; ++scalar)
     if (dof_.equation[scalar] >= 0) b[dof_.equation[scalar]] = values_[scalar];

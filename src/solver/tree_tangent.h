@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "solver/bordered_elimination.h"
+#include "solver/joint_front.h"
 #include "solver/tangent_backend.h"
 #include "solver/tree_blocks.h"
 #include "solver/tree_order.h"
@@ -14,13 +15,10 @@ namespace flexarm {
 /// Solves with the tangent of a mechanism of beams and joints.
 ///
 /// Every element is a dense front of its nodes; elimination of all but the inboard one leaves a 6 x 6 Schur complement
-/// there (ElementFront). At a joint the slave carries what its whole outboard part has left, K; with the fold maps
-/// N = [R L] of the released coordinates u and the master m
-///   A = R_left^T K R_right + G_uu,  B = R_left^T K L_right + G_um,  C = L_left^T K R_right + G_mu,
-///   K_m += L_left^T K L_right + G_mm - C A^-1 B:
-/// the articulated-body algorithm with the tangent in the place of the inertia. No matrix of the whole is ever formed,
-/// so a chain of joints costs no more than its length. Where sliders, loops or mimics couple more than that, the parts
-/// concerned are fronts with a border (BorderedElimination).
+/// there (ElementFront). A joint takes what its whole outboard part has left at the slave over to its master, less what
+/// its released coordinates give way (JointFront): the articulated-body algorithm with the tangent in the place of the
+/// inertia. No matrix of the whole is ever formed, so a chain of joints costs no more than its length. Where sliders,
+/// loops or mimics couple more than that, the parts concerned are fronts with a border (BorderedElimination).
 class TreeTangent : public TangentBackend {
  public:
   /// True if every node hangs on the root by one chain of joints and elements, which may meet in loops.
@@ -45,24 +43,10 @@ class TreeTangent : public TangentBackend {
   double cost_of_factors() const override;
 
  private:
-  /// A joint's factors. Components that are not unknown have zero columns and a unit pivot.
-  struct JointFront {
-    int slave = -1, master = -1, variable = -1;
-    int count = 0;  // of unknown components
-    std::array<int, 6> components{}, scalars{};
-    Matrix6 left, right;                     // columns of the unknown components
-    Matrix6 inverse, elimination, coupling;  // A^-1, A^-1 B, C
-  };
-
   void hold_rows();
-  template <int Size>
-  bool eliminate_released(int joint);
   bool eliminate_element(int part);
-  bool eliminate_joint(int joint);
   void forward_element(int part);
-  void forward_joint(int joint);
   void backward_element(int part);
-  void backward_joint(int joint);
   std::array<double*, 5> node_values(const TreePart& part, std::vector<double>& values, int size) const;
 
   const Model& model_;
