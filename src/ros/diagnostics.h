@@ -1,11 +1,15 @@
 #pragma once
 /// /diagnostics: whether the simulation runs, and keeps up.
 
-#include <diagnostic_updater/diagnostic_updater.h>
+#include <ros/node_handle.h>
 
-#include <cstdint>
+#include <memory>
 
-#include "run_state.h"
+#include "diagnostic_report.h"
+
+namespace diagnostic_updater {
+class Updater;
+}
 
 namespace flexarm::node {
 
@@ -13,17 +17,16 @@ class Diagnostics {
  public:
   Diagnostics(const ros::NodeHandle& node, const ros::NodeHandle& private_node, const Simulation& simulation,
               const RunState& run);
+  ~Diagnostics();
+  Diagnostics(const Diagnostics&) = delete;
+  Diagnostics& operator=(const Diagnostics&) = delete;
 
   /// Sends the diagnostics if they are due (parameter ~diagnostic_period, 1 s); `force`: in any case.
   void publish(bool force);
 
  private:
-  void report(diagnostic_updater::DiagnosticStatusWrapper& status);
-
-  const Simulation& simulation_;
-  const RunState& run_;
-  std::uint64_t reported_overruns_ = 0;
-  diagnostic_updater::Updater updater_;
+  DiagnosticReport report_;
+  std::unique_ptr<diagnostic_updater::Updater> updater_;  // its header is a large one
 };
 
 }  // namespace flexarm::node
