@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The commands of the tutorial about the library, typed as they stand: `tutorial_library_test.py PROGRAM SETUP BUILD`."""
+"""The commands of the tutorial about the library, typed: `tutorial_library_test.py PROGRAM SETUP BUILD`."""
 
 import os
 import re
