@@ -1,116 +1,14 @@
 // One tester for the maps of all elementary joints.
-#include "joints/joint_map.h"
-
 #include <gtest/gtest.h>
 
 #include "elements/differences.h"
-#include "elements/random_element.h"
+#include "joints/joint_step.h"
 #include "math/pi.h"
 
 namespace flexarm {
 namespace {
 
 using namespace test;
-
-/// A joint over a step.
-struct JointStep {
-  JointMap joint;
-  NodePose master_begin, master_end;
-  Released begin, end;
-
-  int released() const { return released_count(joint.kind); }
-  /// Scalars that the slave depends on: the released ones, then {dr, spin} of the master where that is a node.
-  int columns() const { return released() + (joint.master < 0 ? 0 : 6); }
-  NodePose slave_begin() const { return slave_pose(joint, master_begin, begin); }
-  NodePose slave_end() const { return slave_pose(joint, master_end, end); }
-  /// The same joint without an arm.
-  JointStep without_arm() const {
-    JointStep out = *this;
-    out.joint.arm.setZero();
-    return out;
-  }
-
-  /// The end displaced by h along one of columns().
-  JointStep perturbed(int column, double h) const {
-    JointStep out = *this;
-    const int count = released();
-    if (column < count) {
-      out.end = updated(joint, end, h * ReleasedVector::Unit(count, column));
-    } else if (column < count + 3) {
-      out.master_end.position[column - count] += h;
-    } else {
-      const Vector3 spin = h * Vector3::Unit(column - count - 3);
-      out.master_end.orientation = (so3::exp_quaternion(spin) * master_end.orientation).normalized();
-      out.master_end.rotation = out.master_end.orientation.toRotationMatrix();
-    }
-    return out;
-  }
-};
-
-NodePose node(const Vector3& position, const Quaternion& orientation) {
-  return {position, orientation, orientation.toRotationMatrix()};
-}
-
-struct KindOfJoint {
-  const char* name;
-  JointMapKind kind;
-  bool translates, rotates;  // Scalar
-  bool by_profile = false;   // its travel
-};
-
-const KindOfJoint kKinds[] = {
-    {"Rigid", JointMapKind::Rigid, false, false},     {"Revolute", JointMapKind::Scalar, false, true},
-    {"Prismatic", JointMapKind::Scalar, true, false}, {"Coupled", JointMapKind::Scalar, true, true},
-    {"Cam", JointMapKind::Scalar, true, true, true},  {"Spherical", JointMapKind::Spherical, false, false},
-    {"Free", JointMapKind::Free, false, false}};
-
-/// Increments of size `size` in everything; axes are neither unit vectors nor parallel to each other.
-JointStep random_step(RandomSource& random, const KindOfJoint& kind, bool world, double size) {
-  JointStep out;
-  out.joint.kind = kind.kind;
-  out.joint.master = world ? -1 : 0;
-  out.joint.slave = 1;
-  out.joint.origin = random.pose(1, 3);
-  out.joint.slave_orientation = random.rotation(3);
-  out.joint.arm = random.vector();
-  if (kind.translates) out.joint.translation = 0.7 * random.unit();
-  if (kind.rotates) out.joint.rotation = 1.2 * random.unit();
-  if (kind.kind == JointMapKind::Scalar) place(out.joint, Pose());
-  if (kind.by_profile)  // analytic: differences must not cross knots
-    out.joint.profile = std::make_shared<CamProfile>(CamProfile::eccentric(0.6, 0.1));
-  if (!world) {
-    out.master_begin = node(random.vector(), random.rotation(3));
-    out.master_end = node(out.master_begin.position + size * random.vector(),
-                          so3::exp_quaternion(Vector3(size * random.unit())) * out.master_begin.orientation);
-  }
-  const double sign = random.number() < 0 ? -1 : 1;
-  if (kind.kind == JointMapKind::Scalar) {
-    out.begin.displacement[0] = 2 * random.number();
-    out.end.displacement[0] = out.begin.displacement[0] + sign * size;
-  } else if (kind.kind != JointMapKind::Rigid) {
-    out.begin.rotation = random.rotation(3);
-    out.end.rotation = (so3::exp_quaternion(Vector3(size * random.unit())) * out.begin.rotation).normalized();
-    if (kind.kind == JointMapKind::Free) {
-      out.begin.displacement = random.vector();
-      out.end.displacement = out.begin.displacement + size * random.vector();
-    }
-  }
-  return out;
-}
-
-enum class Form { Variational, Incremental };
-
-FoldMaps maps_of(const JointStep& step, const Vector6& g, Form form, bool with_tangent = true,
-                 double arm_weight = 0.5) {
-  FoldMaps maps;
-  const NodePose slave_begin = step.slave_begin(), slave_end = step.slave_end();
-  const JointPose begin{step.master_begin, slave_begin, step.begin}, end{step.master_end, slave_end, step.end};
-  if (form == Form::Variational)
-    variational_maps(step.joint, end, g, maps);
-  else
-    incremental_maps(step.joint, begin, end, g, maps, with_tangent, arm_weight);
-  return maps;
-}
 
 /// {released rows, master rows} of the slave's residual.
 Eigen::VectorXd folded(const FoldMaps& maps, const Vector6& g) {
@@ -126,13 +24,8 @@ Eigen::VectorXd folded(const JointStep& step, const Vector6& g, Form form) {
 /// Increments from tiny to large, on both sides of where a series hands over to a closed form (0.05 / 1.2).
 const double kSizes[] = {1e-10, 1e-5, 0.0416, 0.0417, 0.3, 1.0, 1.7};
 
-using Parameter = std::tuple<KindOfJoint, bool>;
-class JointMaps : public ::testing::TestWithParam<Parameter> {
- protected:
-  JointStep random(double size) { return random_step(source, std::get<0>(GetParam()), std::get<1>(GetParam()), size); }
-  RandomSource source{7};
-};
-class JointMapsOnANode : public JointMaps {};  // the world takes the reactions of the others
+class JointMaps : public OfEveryJoint {};
+class JointMapsOnANode : public OfEveryJoint {};  // the world takes the reactions of the others
 
 // The slave's displacement and tangent-scaled rotation increment are the left map of the released and master
 // increments.
@@ -252,64 +145,6 @@ TEST_P(JointMaps, LeftMapsAreTheSameWithoutATangent) {
   const FoldMaps with = maps_of(step, g, Form::Incremental), without = maps_of(step, g, Form::Incremental, false);
   EXPECT_EQ(with.left, without.left);
   EXPECT_EQ(with.lever_left, without.lever_left);
-}
-
-TEST_P(JointMaps, VelocitiesAndRatesAreInverse) {
-  const JointStep step = random(0.5);
-  const Vector6 master = step.joint.master < 0 ? Vector6(Vector6::Zero()) : source.vector6();
-  ReleasedVector rates(step.released());
-  for (int k = 0; k < rates.size(); ++k) rates[k] = source.number();
-  const NodePose pose = step.slave_end();
-  const Vector6 slave = slave_velocity(step.joint, {step.master_end, pose, step.end}, master, rates);
-  Vector6 remainder;
-  const ReleasedVector found = released_rates(step.joint, {step.master_end, pose, step.end}, master, slave, &remainder);
-  EXPECT_LE(largest(found - rates), 1e-13);
-  EXPECT_LE(largest(remainder), 1e-13);
-
-  // Against the motion itself.
-  const Vector6 expected = difference([&](double h) {
-    const Vector3 spin = h * master.tail<3>();
-    const NodePose moved_master =
-        node(step.master_end.position + h * master.head<3>(), so3::exp_quaternion(spin) * step.master_end.orientation);
-    const NodePose moved = slave_pose(step.joint, moved_master, updated(step.joint, step.end, h * rates));
-    Vector6 increment;
-    increment << moved.position - pose.position, cayley::increment(pose.orientation, moved.orientation);
-    return increment;
-  });
-  EXPECT_LE(largest(slave - expected), difference_tolerance);
-}
-
-// A velocity that the joint does not allow: what remains is orthogonal to what it allows (least squares), at the moved
-// joint frame's origin.
-TEST_P(JointMaps, RemainderIsOrthogonal) {
-  const JointStep step = random(0.5);
-  const Vector6 slave = source.vector6();
-  Vector6 remainder;
-  const NodePose pose = step.slave_end();
-  const ReleasedVector rates =
-      released_rates(step.joint, {step.master_end, pose, step.end}, Vector6::Zero(), slave, &remainder);
-  const FoldMaps maps = maps_of(step, Vector6::Zero(), Form::Variational);
-  EXPECT_LE(largest(maps.right * rates + remainder - slave), 1e-13);
-  Vector6 at_frame = remainder;
-  at_frame.head<3>() -= Vector3(remainder.tail<3>()).cross(pose.rotation * step.joint.arm);
-  const FoldMaps without_arm = maps_of(step.without_arm(), Vector6::Zero(), Form::Variational);
-  EXPECT_LE(largest(without_arm.right.transpose() * at_frame), 1e-13);
-}
-
-TEST_P(JointMaps, UpdatesAndIncrementsAgree) {
-  const JointStep step = random(0.5);
-  const int count = step.released();
-  ReleasedVector update(count);
-  for (int k = 0; k < count; ++k) update[k] = source.number();
-  const Released moved = updated(step.joint, step.begin, update);
-  ReleasedVector expected = update;
-  if (count >= 3) expected.tail<3>() = cayley::from_rotation_vector(Vector3(update.tail<3>()));
-  EXPECT_LE(largest(released_increment(step.joint, step.begin, moved) - expected), 1e-13);
-  EXPECT_EQ(released_increment(step.joint, step.begin, step.begin), ReleasedVector(ReleasedVector::Zero(count)));
-}
-
-std::string parameter_name(const ::testing::TestParamInfo<Parameter>& info) {
-  return std::string(std::get<0>(info.param).name) + (std::get<1>(info.param) ? "OnTheWorld" : "OnANode");
 }
 
 INSTANTIATE_TEST_SUITE_P(All, JointMaps, ::testing::Combine(::testing::ValuesIn(kKinds), ::testing::Bool()),
