@@ -60,6 +60,7 @@ void expect_same_rows(const scene::SceneDescription& scene, int steps) {
   ASSERT_EQ(here.size(), there.size());
   for (std::size_t i = 0; i < here.size(); ++i) {
     ASSERT_EQ(here[i].size(), there[i].size()) << "row " << i;
+    if (here[i].empty()) continue;  // has no address
     EXPECT_EQ(std::memcmp(here[i].data(), there[i].data(), here[i].size() * sizeof(double)), 0) << "row " << i;
   }
 }
