@@ -4,6 +4,7 @@
 
 #include "integrators/balance.h"
 #include "integrators/initial_strain_memory.h"
+#include "model/room_for_wrenches.h"
 
 namespace flexarm {
 namespace {
@@ -29,7 +30,10 @@ DissipativeSubstitute::DissipativeSubstitute(const Model& model, const Scheme& s
     : model_(model),
       scheme_(scheme),
       dissipative_(dissipative_scheme(scheme, settings.step)),
-      stepper_(model, dissipative_, without_substitute(settings)) {}
+      stepper_(model, dissipative_, without_substitute(settings)) {
+  begin_.wrenches.reserve(kRoomForWrenches);
+  trial_.wrenches.reserve(kRoomForWrenches);
+}
 
 bool DissipativeSubstitute::advance(State& state, StepResult& result) {
   trial_ = begin_;

@@ -8,6 +8,7 @@
 #include "integrators/dissipative_substitute.h"
 #include "integrators/failure_place.h"
 #include "math/flush_subnormals.h"
+#include "model/room_for_wrenches.h"
 
 namespace flexarm {
 namespace {
@@ -46,6 +47,7 @@ Stepper::Stepper(const Model& model, const Scheme& scheme, const StepSettings& s
     : model_(model), scheme_(scheme), settings_(settings), system_(model, scheme), newton_(system_, settings_) {
   for (std::vector<double>& increment : before_.history.increments)
     increment.reserve(system_.degrees_of_freedom().unknowns);
+  before_.wrenches.reserve(kRoomForWrenches);
   if (scheme.scales_velocities) scaling_.emplace(model, scheme);
   if (settings.on_failure == OnFailure::Dissipate)
     substitute_ = std::make_unique<DissipativeSubstitute>(model, scheme, settings);

@@ -15,6 +15,8 @@
 #include "integrators/stepper.h"
 #include "model/carried_origin.h"
 #include "model/line_release.h"
+#include "model/room_for_wrenches.h"
+#include "simulation/joint_state.h"
 #include "simulation/observables.h"
 #include "simulation/published_motion.h"
 #include "simulation/sensors.h"
@@ -39,7 +41,8 @@ struct Simulation::Implementation {
   mutable PublishedMotion published;
   mutable std::optional<Energies> energies;
   mutable std::optional<Momenta> momenta;
-  std::vector<double> static_norms;  // of the last solve for an equilibrium; empty after steps
+  std::vector<NodalLoad> placed_wrenches;  // scratch
+  std::vector<double> static_norms;        // of the last solve for an equilibrium; empty after steps
   scene::Diagnostics start_warnings;
 
   Implementation(scene::SceneDescription description, const SimulationOptions& options)
@@ -56,6 +59,7 @@ struct Simulation::Implementation {
       coordinate_names.push_back(coordinate.name);
     }
     for (const LinkFrame& link : model.links) link_names.push_back(link.name);
+    make_room();
     stepper->initialise(state);
     if (scene.starts_in_equilibrium) start_in_equilibrium(scene, model, scheme, settings, state, start_warnings);
     published.velocities(view());  // their memory is there from the start
@@ -76,7 +80,15 @@ struct Simulation::Implementation {
         link_names(other.link_names),
         coordinate_indices(other.coordinate_indices),
         static_norms(other.static_norms),
-        start_warnings(other.start_warnings) {}
+        start_warnings(other.start_warnings) {
+    make_room();
+  }
+
+  /// For wrenches, which threads apply that must not allocate memory.
+  void make_room() {
+    placed_wrenches.reserve(kRoomForWrenches);
+    state.wrenches.reserve(kRoomForWrenches);
+  }
 
   void forget_published() {
     published.forget();
@@ -132,6 +144,38 @@ struct Simulation::Implementation {
     state = other;
     forget_published();
     stepper->invalidate();
+  }
+
+  /// Means of steps of another length do not count; what they are at the end of the last one does.
+  static StepMeans begun_anew(StepMeans means) {
+    std::vector<double> forces(means.count > 0 ? means.means[0].size() : 0);
+    for (std::size_t i = 0; i < forces.size(); ++i) forces[i] = means.at_end(i);
+    if (means.count > 0) means.restart(forces);
+    return means;
+  }
+
+  /// As a state of this simulation, the one in which another one of the same mechanism is.
+  State state_of_other(const Implementation& from) {
+    fit_to_state(from.state);
+    const bool is_same = from.scheme.name == scheme.name;
+    State state = is_same ? from.state : with_joint_state(model, stepper->degrees_of_freedom(), from.state, {});
+    if (is_same && from.settings.step == settings.step) return state;
+    // What steps have left behind begins anew: how often they are halved, forces averaged over them.
+    state.halving_level = state.good_steps = 0;
+    state.drives = begun_anew(from.state.drives);
+    state.transmitted = begun_anew(from.state.transmitted);
+    state.last_transmitted = from.state.last_transmitted;
+    if (is_same) return state;
+    // Not as joints' rates have it: schemes may let slaves move a little beside them.
+    for (std::size_t i = 0; i < state.nodes.size(); ++i) {
+      const NodeState& node = from.state.nodes[i];
+      state.nodes[i] = {node.position, node.orientation, node.velocity, node.angular_velocity};
+    }
+    state.released = from.state.released;
+    if (!scheme.is_incremental() && !from.scheme.is_incremental()) state.mass_points = from.state.mass_points;
+    if (initial->total_rotations.empty()) state.total_rotations.clear();
+    stepper->initialise(state);
+    return state;
   }
 
   void restore(const State& other) {

@@ -70,6 +70,7 @@ void Simulation::snapshot(Snapshot& snapshot) const {
     *snapshot.state_ = implementation_->state;
   else
     snapshot.state_ = std::make_shared<State>(implementation_->state);
+  snapshot.state_->wrenches.reserve(kRoomForWrenches);
   snapshot.initial_ = implementation_->initial;
 }
 
@@ -184,10 +185,26 @@ void Simulation::set_joint_state(const std::vector<CoordinateState>& coordinates
 }
 
 void Simulation::apply_wrenches(const std::vector<AppliedWrench>& wrenches) {
-  std::vector<NodalLoad> loads;
-  loads.reserve(wrenches.size());
+  std::vector<NodalLoad>& loads = implementation_->placed_wrenches;
+  loads.clear();
   for (const AppliedWrench& wrench : wrenches) loads.push_back(placed_wrench(implementation_->model, wrench));
-  implementation_->state.wrenches = std::move(loads);
+  implementation_->state.wrenches.assign(loads.begin(), loads.end());
+}
+
+void Simulation::take_over(const Simulation& other) {
+  Implementation& s = *implementation_;
+  const Implementation& from = *other.implementation_;
+  if (s.coordinate_names != from.coordinate_names || s.link_names != from.link_names)
+    throw std::invalid_argument("other joints or links");
+  const State before = s.state;
+  try {
+    s.restore(s.state_of_other(from));
+  } catch (const std::invalid_argument&) {
+    s.set_state(before);
+    throw;
+  }
+  s.state.work += s.published_energies().total() - from.published_energies().total();
+  s.forget_published();
 }
 
 // ---------------------------------------------------------------- frames

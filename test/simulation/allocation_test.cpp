@@ -1,79 +1,20 @@
 // A step allocates nothing after the first one.
-#include <atomic>
-#include <cstdlib>
+#include <algorithm>
 
 #include <gtest/gtest.h>
 
 #include "simulation/everything_scene.h"
 #include "simulation/inside.h"
+#include "support/allocations.h"
 #include "support/closed_ring.h"
-
-// Interposes the allocator of the whole program, libraries included; it only counts, glibc does the work.
-namespace {
-std::atomic<bool> g_counting{false};
-std::atomic<long> g_allocations{0};
-[[maybe_unused]] void count() {
-  if (g_counting.load(std::memory_order_relaxed)) g_allocations.fetch_add(1, std::memory_order_relaxed);
-}
-}  // namespace
-
-// Sanitizers have an allocator of their own, without which they see nothing.
-#ifndef __has_feature  // clang's way to say what it was told; GCC has macros
-#define __has_feature(feature) 0
-#endif
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && \
-    !__has_feature(address_sanitizer) && !__has_feature(thread_sanitizer)
-#define FLEXARM_COUNTS_ALLOCATIONS 1
-extern "C" {
-void* __libc_malloc(std::size_t);
-void* __libc_calloc(std::size_t, std::size_t);
-void* __libc_realloc(void*, std::size_t);
-void* __libc_memalign(std::size_t, std::size_t);
-
-void* malloc(std::size_t size) {
-  count();
-  return __libc_malloc(size);
-}
-void* calloc(std::size_t number, std::size_t size) {
-  count();
-  return __libc_calloc(number, size);
-}
-void* realloc(void* memory, std::size_t size) {
-  count();
-  return __libc_realloc(memory, size);
-}
-void* memalign(std::size_t alignment, std::size_t size) {
-  count();
-  return __libc_memalign(alignment, size);
-}
-void* aligned_alloc(std::size_t alignment, std::size_t size) {
-  return memalign(alignment, size);
-}
-int posix_memalign(void** memory, std::size_t alignment, std::size_t size) {
-  *memory = memalign(alignment, size);
-  return *memory || size == 0 ? 0 : 12;  // ENOMEM
-}
-}
-#else
-#define FLEXARM_COUNTS_ALLOCATIONS 0
-#endif
 
 namespace flexarm::test {
 namespace {
 
-template <class Function>
-long allocations_in(const Function& function) {
-  g_allocations = 0;
-  g_counting = true;
-  function();
-  g_counting = false;
-  return g_allocations;
-}
-
 class Allocation : public ::testing::TestWithParam<std::tuple<std::string, bool>> {
  protected:
   void SetUp() override {
-    if (!FLEXARM_COUNTS_ALLOCATIONS) GTEST_SKIP() << "this C library's allocator cannot be counted";
+    if (!kCountsAllocations) GTEST_SKIP() << "this C library's allocator cannot be counted";
   }
 };
 
@@ -255,6 +196,27 @@ TEST_F(Allocation, NoneInSnapshotsThatAreTakenAgain) {
               for (int n = 0; n < 100; ++n) {
                 simulation.step();
                 simulation.snapshot(n % 2 == 0 ? first : second);
+              }
+            }),
+            0);
+}
+
+// Services apply them in other threads; that they begin and end is seen to between steps.
+TEST_F(Allocation, NoneWhereWrenchesBeginAndEnd) {
+  Simulation simulation(everything_scene().scene);
+  const auto& links = simulation.link_names();
+  const auto link = static_cast<std::size_t>(std::find(links.begin(), links.end(), "beam2") - links.begin());
+  std::vector<AppliedWrench> none, one(1), many(16);
+  for (std::vector<AppliedWrench>* wrenches : {&one, &many})
+    for (AppliedWrench& wrench : *wrenches) wrench = {link, {0.01, 0, 0}, {{0, 0, 1e-3}, {0, 0, 0}}, false};
+  Snapshot snapshot;
+  ASSERT_TRUE(simulation.step().converged);
+  simulation.snapshot(snapshot);
+  EXPECT_EQ(allocations_in([&] {
+              for (int n = 0; n < 60; ++n) {
+                simulation.apply_wrenches(n % 3 == 0 ? one : n % 3 == 1 ? many : none);
+                simulation.step();
+                simulation.snapshot(snapshot);
               }
             }),
             0);

@@ -78,6 +78,12 @@ class Simulation {
   /// @throws std::invalid_argument if the snapshot is empty, or another scene's or scheme's.
   void restore(const Snapshot& snapshot);
 
+  /// Goes on from where another one is, commands and wrenches included, of the same scene but for its <integrator>, its
+  /// gravity and the gains of its servos. Joints and links stand and move as they did; what the energy of this state
+  /// changes by, gravity's above all, counts as work.
+  /// @throws std::invalid_argument if it is not the same mechanism; nothing has changed then.
+  void take_over(const Simulation& other);
+
   double time() const;         ///< [s]
   double step_size() const;    ///< [s]
   std::string scheme() const;  ///< name of the scheme in use

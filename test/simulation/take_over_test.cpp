@@ -1,0 +1,106 @@
+// A simulation goes on from the state of another one with other settings.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "simulation/everything_scene.h"
+#include "simulation/inside.h"
+#include "support/scene_builder.h"
+
+namespace flexarm::test {
+namespace {
+
+Simulation after_steps(const scene::SceneDescription& scene, int steps) {
+  Simulation simulation(scene);
+  for (int n = 0; n < steps; ++n) EXPECT_TRUE(simulation.step().converged);
+  return simulation;
+}
+
+/// Bit for bit, whatever the schemes make of it.
+void expect_same_motion(const Simulation& a, const Simulation& b) {
+  EXPECT_EQ(a.time(), b.time());
+  for (std::size_t i = 0; i < a.coordinate_names().size(); ++i)
+    EXPECT_EQ(a.position(i), b.position(i)) << a.coordinate_names()[i];
+  const State &left = state_of(a), &right = state_of(b);
+  ASSERT_EQ(left.nodes.size(), right.nodes.size());
+  for (std::size_t i = 0; i < left.nodes.size(); ++i) {
+    EXPECT_EQ(left.nodes[i].position, right.nodes[i].position);
+    EXPECT_EQ(left.nodes[i].orientation.coeffs(), right.nodes[i].orientation.coeffs());
+    EXPECT_EQ(left.nodes[i].velocity, right.nodes[i].velocity);
+    EXPECT_EQ(left.nodes[i].angular_velocity, right.nodes[i].angular_velocity);
+  }
+}
+
+double account(const Simulation& simulation) {
+  const Energies energies = simulation.energies();
+  return energies.total() - energies.work + energies.dissipated;
+}
+
+TEST(TakeOver, OfTheSameSettingsIsACopy) {
+  Simulation from = after_steps(driven_scene().scene, 50);
+  Simulation to(driven_scene().scene);
+  to.take_over(from);
+  for (int n = 0; n < 50; ++n) {
+    ASSERT_TRUE(from.step().converged);
+    ASSERT_TRUE(to.step().converged);
+  }
+  // Kept factors of the tangent are not part of a state: the same to within Newton's tolerance.
+  for (std::size_t i = 0; i < from.coordinate_names().size(); ++i)
+    EXPECT_NEAR(to.position(i), from.position(i), 1e-6) << from.coordinate_names()[i];
+}
+
+TEST(TakeOver, OtherSchemesAndStepsGoOnWithoutAJump) {
+  scene::SceneDescription scene = driven_scene().scene;
+  for (const char* before : {"em", "newmark", "hht1", "edmc2"})
+    for (const char* after : {"em", "m1", "newmark", "hht1", "hht3", "edmc2"})
+      for (const double factor : {1.0, 0.5}) {
+        scene.integrator = with_scheme(scene.integrator, before);
+        scene::SceneDescription other = scene;
+        other.integrator = with_scheme(scene.integrator, after);
+        other.integrator.step *= factor;
+        Simulation from = after_steps(scene, 40), to(other);
+        from.apply_wrenches({{1, Vector3::Zero(), {{0, 0, 0.01}, Vector3::Zero()}, false}});
+        to.take_over(from);
+        SCOPED_TRACE(std::string(before) + " to " + after + " by " + std::to_string(factor));
+        expect_same_motion(to, from);
+        EXPECT_NEAR(account(to), account(from), 1e-9 * (1 + std::abs(account(from))));
+        EXPECT_EQ(state_of(to).wrenches.size(), 1u);
+        for (int n = 0; n < 20; ++n) ASSERT_TRUE(to.step().converged);
+        EXPECT_NO_THROW(to.restore(to.snapshot()));
+        to.reset();
+        ASSERT_TRUE(to.step().converged) << "the scene's own start is there, too";
+      }
+}
+
+TEST(TakeOver, GravityAndGainsAreTheOtherOnes) {
+  SceneBuilder b;
+  b.body("block", 2, Vector3::Zero(), Matrix3::Identity());
+  b.joint("rail", scene::JointKind::Prismatic, "world", "block", Vector3::Zero(), Vector3::UnitZ());
+  scene::ServoDescription servo;
+  servo.coordinate = "rail";
+  servo.kp = 400;
+  servo.kd = 80;
+  b.scene.servos.push_back(servo);
+  b.scene.gravity = {0, 0, -10};
+  Simulation from = after_steps(b.scene, 3000);
+  EXPECT_NEAR(from.position(0), -20.0 / 400, 1e-6);
+  b.scene.servos[0].kp = 1000;
+  b.scene.gravity = {0, 0, -5};
+  Simulation to(b.scene);
+  to.take_over(from);
+  EXPECT_EQ(to.position(0), from.position(0));
+  EXPECT_NEAR(account(to), account(from), 1e-9);
+  for (int n = 0; n < 5000; ++n) ASSERT_TRUE(to.step().converged);
+  EXPECT_NEAR(to.position(0), -10.0 / 1000, 1e-6);
+}
+
+TEST(TakeOver, AnotherMechanismIsRefused) {
+  Simulation simulation(driven_scene().scene);
+  const State before = state_of(simulation);
+  EXPECT_THROW(simulation.take_over(Simulation(rubbing_scene().scene)), std::invalid_argument);
+  EXPECT_EQ(state_of(simulation).time, before.time);
+  EXPECT_TRUE(simulation.step().converged);
+}
+
+}  // namespace
+}  // namespace flexarm::test
