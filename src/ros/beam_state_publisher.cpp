@@ -1,13 +1,14 @@
 #include "beam_state_publisher.h"
 
 #include "advertise.h"
+#include "flexarm/scene/scene_description.h"
 #include "messages/conversions.h"
 
 namespace flexarm::node {
 
 BeamStatePublisher::BeamStatePublisher(ros::NodeHandle& node, const Simulation& simulation, const RunState& run,
-                                       double rate, const std::string& root_frame)
-    : simulation_(simulation), schedule_(rate), root_frame_(root_frame) {
+                                       double rate, const std::string& frame_prefix)
+    : simulation_(simulation), schedule_(rate), frame_prefix_(frame_prefix) {
   publisher_ = advertise<BeamStateArray>(node, "beam_states", 10, run, [this] { return make_message(stamp_); });
 }
 
@@ -20,7 +21,7 @@ void BeamStatePublisher::publish(const ros::Time& stamp, bool force) {
 BeamStateArray BeamStatePublisher::make_message(const ros::Time& stamp) {
   BeamStateArray message;
   message.header.stamp = stamp;
-  message.header.frame_id = root_frame_;
+  message.header.frame_id = frame_prefix_ + simulation_.scene().root_link;
   for (std::size_t link = 0; link < simulation_.link_names().size(); ++link) {
     if (!simulation_.is_flexible(link)) continue;
     points_.clear();

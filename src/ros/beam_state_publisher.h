@@ -18,10 +18,12 @@ namespace flexarm::node {
 class BeamStatePublisher {
  public:
   BeamStatePublisher(ros::NodeHandle& node, const Simulation& simulation, const RunState& run, double rate,
-                     const std::string& root_frame);
+                     const std::string& frame_prefix);
   BeamStatePublisher(const BeamStatePublisher&) = delete;
   BeamStatePublisher& operator=(const BeamStatePublisher&) = delete;
 
+  /// Begins anew at a rate [Hz], with any stamp.
+  void set_rate(double rate) { schedule_ = PublicationSchedule(rate); }
   void publish(const ros::Time& stamp, bool force);
 
  private:
@@ -29,7 +31,7 @@ class BeamStatePublisher {
 
   const Simulation& simulation_;
   PublicationSchedule schedule_;
-  std::string root_frame_;
+  std::string frame_prefix_;
   ros::Time stamp_;                ///< of the current state
   std::vector<BeamPoint> points_;  ///< scratch
   ros::Publisher publisher_;

@@ -11,6 +11,7 @@
 
 #include "publication_schedule.h"
 #include "run_state.h"
+#include "stepped_time.h"
 
 namespace flexarm::node {
 
@@ -29,29 +30,33 @@ class ClockPublisher {
   ClockPublisher& operator=(const ClockPublisher&) = delete;
 
   /// Steps were made; publishes /clock where it is due. `is_paced`: by the wall clock, which has left out `overruns`
-  /// since the beginning.
-  void advance(std::uint64_t steps, std::uint64_t overruns, bool is_paced);
-  /// Something else is news.
-  void advance() { advance(1, 0, false); }
+  /// since the beginning. @returns false if somebody has set ROS time back, and stamps with it
+  [[nodiscard]] bool advance(std::uint64_t steps, std::uint64_t overruns, bool is_paced);
   /// Publishes /clock as it is, unless that was done already.
   void publish_now();
   /// Stamp of the current state; empty as long as ROS has no time.
   std::optional<ros::Time> stamp() const;
   /// The simulation was resumed: the next stamp is the present.
   void restart() { is_mapped_ = false; }
+  /// Of the steps to come, as of the constructor [s].
+  void set_pace(double step, double period);
+  bool is_clock() const { return is_clock_; }
+  /// Simulated time starts again at one step; /clock jumps back.
+  void begin_anew();
   /// Warns once of a clock that does not come: without it, nothing is published.
   void warn_if_missing();
 
  private:
   void publish(bool force);
   rosgraph_msgs::Clock make_message() const;
-  /// The next stamp, later than the last one.
-  void move_stamp(std::uint64_t overruns, bool is_paced);
-  ros::Time simulated_time() const { return ros::Time(static_cast<double>(ticks_) * step_); }
+  /// The next stamp, later than the last one, or false.
+  bool move_stamp(std::uint64_t overruns, bool is_paced);
+  ros::Time simulated_time() const { return ros::Time(time_.seconds()); }
 
   bool is_clock_;
-  double step_, period_;
-  std::uint64_t ticks_ = 1;  ///< steps, counted as an integer so that no rounding accumulates
+  double rate_, step_, period_;
+  std::uint64_t ticks_ = 1;  ///< steps
+  SteppedTime time_;         ///< the same
   // Of stamps in ROS time: the last one, and the one from which due steps are counted.
   ros::Time stamp_, origin_;
   std::uint64_t origin_steps_ = 0;

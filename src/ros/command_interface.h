@@ -10,9 +10,11 @@
 
 #include <chrono>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
+#include "command_reader.h"
 #include "flexarm/simulation/simulation.h"
 #include "stepping_thread.h"
 #include "trajectories.h"
@@ -32,10 +34,13 @@ class CommandInterface {
  public:
   /// @param shown  what is stepped, as reports have it
   CommandInterface(ros::NodeHandle& node, ros::NodeHandle& private_node, const Simulation& shown,
-                   SteppingThread& stepping, CommandTimes times);
+                   SteppingThread& stepping, const CommandTimes& times);
   CommandInterface(const CommandInterface&) = delete;
   CommandInterface& operator=(const CommandInterface&) = delete;
 
+  /// Between two steps: the simulation is of another scene now, which may have other joints. Topics that both have
+  /// stay.
+  void adopt_scene();
   /// Between two steps, after a reset, or where another state was loaded: no command expires; an emergency stop, or
   /// none, still is in force.
   void forget_commands();
@@ -47,38 +52,34 @@ class CommandInterface {
 
  private:
   void receive_force_command(const JointForceCommand& message);
-  void receive_joint_state(const sensor_msgs::JointState& message);
+  void receive_joint_command(const sensor_msgs::JointState& message);
   void receive_set_points(const sensor_msgs::JointState& message);
   void receive_emergency_stop(const std_msgs::Bool& message);
-  void command_set_points(const std::string& topic, const sensor_msgs::JointState& message);
   /// Why nothing may be commanded now, or nothing.
   std::string refusal() const;
   /// COORDINATE/`suffix`, each message of which commands that quantity.
-  void subscribe_to(ros::NodeHandle& node, const std::string& coordinate, const std::string& suffix,
-                    Commanded quantity);
+  ros::Subscriber subscribe_to(const std::string& coordinate, const std::string& suffix, Commanded quantity);
 
-  /// Hands a command over, whole, or warns. @param duration  [s]; 0: the timeout counts
-  void command(Commanded quantity, const std::string& topic, const std::vector<std::string>& names,
-               const std::vector<double>& values, double duration = 0);
-  /// Empty if nothing is wrong; then the command is in `message_`.
-  std::string find_fault(Commanded quantity, const std::vector<std::string>& names, const std::vector<double>& values,
-                         double duration);
-  std::string find_fault(Commanded quantity, std::size_t coordinate) const;
+  /// Hands over what `read` reads into `message_`, whole, or warns.
+  template <class Read>
+  void command(const std::string& topic, const Read& read);
   void warn(const std::string& topic, const std::string& fault);
   /// While the emergency stop is on, no effort acts, be it commanded, the scene's own or a servo's.
   void stop(Simulation& simulation);
   void release(Simulation& simulation);
   void switch_servos(Simulation& simulation, bool on);
 
+  ros::NodeHandle node_;
   const Simulation& shown_;
   SteppingThread& stepping_;
-  CommandTimes times_;
+  CommandReader reader_;
   Trajectories trajectories_;
   std::vector<Command> message_;  ///< the one at hand
   bool stopped_ = false;          ///< by ~emergency_stop
   std::chrono::steady_clock::time_point last_warning_;
   int unreported_ = 0;  ///< refused commands since the last warning
   std::vector<ros::Subscriber> subscribers_;
+  std::map<std::string, ros::Subscriber> joint_subscribers_;  ///< by topic
 };
 
 }  // namespace flexarm::node

@@ -2,6 +2,8 @@
 
 #include <diagnostic_updater/diagnostic_updater.h>
 
+#include <utility>
+
 namespace flexarm::node {
 
 Diagnostics::Diagnostics(const ros::NodeHandle& node, const ros::NodeHandle& private_node, const Simulation& simulation,
@@ -14,7 +16,9 @@ Diagnostics::Diagnostics(const ros::NodeHandle& node, const ros::NodeHandle& pri
 Diagnostics::~Diagnostics() = default;
 
 void Diagnostics::publish(bool force) {
-  if (force) {
+  const ros::Time now = ros::Time::now();
+  const bool is_set_back = now < std::exchange(last_time_, now);  // the updater would wait until it is that late again
+  if (force || is_set_back) {
     updater_->force_update();
   } else {
     updater_->update();

@@ -8,6 +8,7 @@
 
 #include <string>
 #include <unordered_set>
+#include <utility>
 
 namespace flexarm::node {
 
@@ -16,6 +17,8 @@ namespace flexarm::node {
 class FrameWatch {
  public:
   FrameWatch(ros::NodeHandle& node, std::unordered_set<std::string> frames);
+  /// Others are this arm's now.
+  void watch(std::unordered_set<std::string> frames) { frames_ = std::move(frames); }
   FrameWatch(const FrameWatch&) = delete;
   FrameWatch& operator=(const FrameWatch&) = delete;
 

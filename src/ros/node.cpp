@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "flexarm/simulation/checkpoint.h"
@@ -16,6 +17,8 @@ namespace {
 using SteadyClock = std::chrono::steady_clock;
 
 const ros::WallDuration kTickPeriod(0.1);
+/// Who clears his frames as the clock jumps back must not get any of before after that.
+const ros::WallDuration kWayOfMessages(0.1);
 constexpr double kWarningPeriod = 10;  ///< of what goes on and on, wall time [s]
 
 SimulationOptions simulation_options(const Parameters& parameters) {
@@ -28,18 +31,23 @@ Pace pace(const Parameters& parameters) {
   return {parameters.real_time_factor, parameters.max_catch_up, parameters.lock_step, parameters.realtime};
 }
 
+/// Of steps by the wall clock [s]; 0: there is none.
+double period(double step, const Parameters& parameters) {
+  return parameters.real_time_factor > 0 ? step / parameters.real_time_factor : 0;
+}
+
 }  // namespace
 
 Node::Node()
     : parameters_(read_parameters(private_node_)),
       shown_(read_scene(node_, private_node_), simulation_options(parameters_)),
       clock_publisher_(node_, run_, parameters_.publish_clock, parameters_.clock_rate, shown_.step_size(),
-                       parameters_.real_time_factor > 0 ? shown_.step_size() / parameters_.real_time_factor : 0),
+                       period(shown_.step_size(), parameters_)),
       state_publisher_(node_, shown_, run_, parameters_.publish_rate, parameters_.frame_prefix),
-      beam_state_publisher_(node_, shown_, run_, parameters_.publish_rate, root_frame()),
-      marker_publisher_(node_, shown_, run_, parameters_.marker_rate, root_frame()),
+      beam_state_publisher_(node_, shown_, run_, parameters_.publish_rate, parameters_.frame_prefix),
+      marker_publisher_(node_, shown_, run_, parameters_.marker_rate, parameters_.frame_prefix),
       sensor_publisher_(node_, shown_, run_, parameters_.frame_prefix),
-      status_publisher_(private_node_, shown_, run_, parameters_.status_rate, root_frame()),
+      status_publisher_(private_node_, shown_, run_, parameters_.status_rate, parameters_.frame_prefix),
       diagnostics_(node_, private_node_, shown_, run_),
       bell_([this] { take_reports(); }),
       stepping_(shown_.copy(), pace(parameters_), [this] { bell_.ring(); }),
@@ -47,20 +55,25 @@ Node::Node()
                          {[this](const ros::Time& stamp) { return simulated_time(stamp); }, parameters_.command_timeout,
                           parameters_.stop_duration}),
       frame_watch_(node_, state_publisher_.frames()),
-      services_(private_node_, *this) {
-  for (const scene::Diagnostic& warning : shown_.start_warnings()) ROS_WARN_STREAM(warning.text());
+      services_(private_node_, *this),
+      reconfiguration_(private_node_, *this),
+      master_watch_(service_names()) {
   run_.paused = parameters_.paused;
   run_.lock_step = parameters_.lock_step;
+  announce();
+  if (parameters_.realtime) be_real_time();
+  describe_view();
+  publish_news();
+  timer_ = node_.createSteadyTimer(kTickPeriod, [this](const ros::SteadyTimerEvent&) { tick(); });
+  if (!run_.paused) stepping_.run(true);
+}
+
+void Node::announce() const {
+  for (const scene::Diagnostic& warning : shown_.start_warnings()) ROS_WARN_STREAM(warning.text());
   ROS_INFO("scene '%s': %zu links, %zu joint coordinates, %zu degrees of freedom; scheme %s, step %g s%s%s",
            shown_.scene().name.c_str(), shown_.link_names().size(), shown_.coordinate_names().size(),
            shown_.degrees_of_freedom(), shown_.scheme().c_str(), shown_.step_size(),
            run_.lock_step ? "; each step waits for its command" : "", run_.paused ? "; paused" : "");
-  if (parameters_.realtime) be_real_time();
-  describe_view();
-  clock_publisher_.advance();
-  publish(true);
-  timer_ = node_.createSteadyTimer(kTickPeriod, [this](const ros::SteadyTimerEvent&) { tick(); });
-  if (!run_.paused) stepping_.run(true);
 }
 
 void Node::be_real_time() {
@@ -72,11 +85,20 @@ void Node::be_real_time() {
                                                    << "allow it");
 }
 
+std::vector<std::string> Node::service_names() const {
+  std::vector<std::string> names = services_.names();
+  for (const char* of_roscpp : {"get_loggers", "set_logger_level"})
+    names.push_back(private_node_.resolveName(of_roscpp));
+  names.push_back(reconfiguration_.service());
+  return names;
+}
+
 void Node::tick() {
   take_reports();
   if (!run_.paused) warn_if_slow();
   diagnostics_.publish(false);
   clock_publisher_.warn_if_missing();
+  if (master_watch_.has_come_back()) describe_view();
 }
 
 void Node::take_reports() {
@@ -102,9 +124,9 @@ void Node::take(const StepReport& report) {
   if (report.steps > run_.steps + 1) run_.missed += report.steps - run_.steps - 1;
   const std::uint64_t made = report.steps - run_.steps;
   run_.steps = report.steps;
-  run_.simulated_time = static_cast<double>(run_.steps) * shown_.step_size();
+  run_.simulated_time = report.time;
   command_interface_.judge_trajectories(run_.simulated_time);
-  clock_publisher_.advance(made, report.overruns, report.is_paced);
+  advance_clock(made, report.overruns, report.is_paced);
   publish(false);
 }
 
@@ -154,14 +176,13 @@ void Node::fail(const StepResult& result) {
   run_.failure = "step from t = " + std::to_string(shown_.time()) + " s failed: " + shown_.explain(result);
   ROS_ERROR_STREAM(run_.failure << "; paused at the last good state: " << private_node_.resolveName("resume")
                                 << " goes on from it, " << private_node_.resolveName("reset") << " starts again");
-  clock_publisher_.advance();  // the last good sub-step may be news, and news need a stamp of their own
-  publish(true);
+  publish_news();  // the last good sub-step may be
   diagnostics_.publish(true);
 }
 
 void Node::describe_view() const {
   const messages::SceneExtent extent = messages::scene_extent(shown_);
-  private_node_.setParam("view/frame", root_frame());
+  private_node_.setParam("view/frame", parameters_.frame_prefix + shown_.scene().root_link);
   private_node_.setParam("view/center", std::vector<double>{extent.center.x(), extent.center.y(), extent.center.z()});
   private_node_.setParam("view/radius", extent.radius);
 }
@@ -175,6 +196,29 @@ void Node::publish(bool force) {
   marker_publisher_.publish(*stamp, force);
   sensor_publisher_.publish(*stamp);
   status_publisher_.publish(*stamp, force);
+}
+
+void Node::advance_clock(std::uint64_t steps, std::uint64_t overruns, bool is_paced) {
+  if (clock_publisher_.advance(steps, overruns, is_paced)) return;
+  ROS_WARN("ROS time was set back, to %.9g s: stamps begin there again", clock_publisher_.stamp()->toSec());
+  set_rates();
+}
+
+void Node::publish_news() {
+  advance_clock(1, run_.overruns, false);  // news need a stamp of their own
+  publish(true);
+}
+
+void Node::set_rates() {
+  state_publisher_.set_rate(parameters_.publish_rate);
+  beam_state_publisher_.set_rate(parameters_.publish_rate);
+  marker_publisher_.set_rate(parameters_.marker_rate);
+  status_publisher_.set_rate(parameters_.status_rate);
+}
+
+void Node::set_pace() {
+  stepping_.set_pace(pace(parameters_));
+  clock_publisher_.set_pace(shown_.step_size(), period(shown_.step_size(), parameters_));
 }
 
 void Node::pause() {
@@ -221,6 +265,61 @@ void Node::reset() {
   });
 }
 
+std::string Node::reset_with_clock() {
+  if (!clock_publisher_.is_clock())
+    return "this node does not publish /clock (~publish_clock), so that it cannot set ROS time back";
+  stepping_.between_steps([this](Simulation& simulation) {
+    take_reports();
+    simulation.reset();
+    ROS_INFO("reset, and /clock set back");
+    kWayOfMessages.sleep();
+    clock_publisher_.begin_anew();
+    set_rates();
+    begin_anew();
+  });
+  return {};
+}
+
+void Node::adopt_scene() {
+  shown_ = stepping_.simulation().copy();
+  set_pace();
+  state_publisher_.adopt_scene();
+  marker_publisher_.adopt_scene();
+  sensor_publisher_.adopt_scene();
+  command_interface_.adopt_scene();
+  frame_watch_.watch(state_publisher_.frames());
+  describe_view();
+}
+
+void Node::reload() {
+  Simulation other(read_scene(node_, private_node_), simulation_options(parameters_));  // while this one steps
+  stepping_.between_steps([&](Simulation&) {
+    take_reports();
+    stepping_.begin_with(std::move(other));
+    adopt_scene();
+    announce();
+    begin_anew();
+  });
+  reconfiguration_.describe();
+}
+
+void Node::change(std::optional<scene::SceneDescription> scene, const Parameters& parameters) {
+  std::optional<Simulation> changed;
+  if (scene) changed.emplace(*std::move(scene), simulation_options(parameters));  // while the other one steps
+  stepping_.between_steps([&](Simulation& running) {
+    take_reports();
+    if (changed) {
+      changed->take_over(running);
+      stepping_.go_on_with(*std::move(changed));
+      shown_ = running.copy();
+    }
+    parameters_ = parameters;
+    set_pace();
+    set_rates();
+    publish_news();
+  });
+}
+
 void Node::load_state(const std::string& file) {
   stepping_.between_steps([&](Simulation& simulation) {
     take_reports();
@@ -259,8 +358,7 @@ void Node::show_new_state() {
   show();
   run_.failure.clear();
   run_.last_step = {};
-  clock_publisher_.advance();  // the new state is news, too
-  publish(true);
+  publish_news();
 }
 
 double Node::simulated_time(const ros::Time& stamp) const {

@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "beam_state_publisher.h"
@@ -17,7 +18,9 @@
 #include "flexarm/simulation/simulation.h"
 #include "frame_watch.h"
 #include "marker_publisher.h"
+#include "master_watch.h"
 #include "parameters.h"
+#include "reconfiguration.h"
 #include "run_state.h"
 #include "sensor_publisher.h"
 #include "services.h"
@@ -43,6 +46,17 @@ class Node {
   bool resume();
   /// Back to the scene's initial state; time of the stamps goes on, and paused stays paused.
   void reset();
+  /// The same, and time begins again at zero: /clock jumps back, and all stamps with it.
+  /// @returns why not, or nothing
+  std::string reset_with_clock();
+  /// Reads the scene again, from where it came, and begins with its initial state; joints, links and sensors may be
+  /// others. Time of the stamps goes on, and paused stays paused; commands, wrenches and trajectories are over.
+  /// @throws ParameterError, ModelError, and others if it cannot be used; all is as before then.
+  void reload();
+  /// Goes on, from the state of now, by other parameters, and by another scene if there is one, which must be the same
+  /// but for its <integrator>, gravity and gains of servos. What was commanded goes on.
+  /// @throws ModelError, std::invalid_argument if they cannot be used; all is as before then.
+  void change(std::optional<scene::SceneDescription> scene, const Parameters& parameters);
   /// Goes on from a state in a file; time of the stamps goes on, and paused stays paused. Applied wrenches are over.
   /// @throws std::runtime_error as read_checkpoint(); all is as before then.
   void load_state(const std::string& file);
@@ -60,11 +74,14 @@ class Node {
   bool step(std::uint32_t steps);
 
   const RunState& run() const { return run_; }
+  const Parameters& parameters() const { return parameters_; }
   const Simulation& simulation() const { return shown_; }
   /// What was commanded up to now is in simulation(), too.
   void catch_up();
 
  private:
+  /// The names of all services.
+  std::vector<std::string> service_names() const;
   /// What is due now and then.
   void tick();
   /// Publishes what steps came to.
@@ -77,6 +94,17 @@ class Node {
   /// Where steps have been dropped since the last warning, not too often: how many, and why.
   void warn_if_slow();
   void publish(bool force);
+  /// Says what is simulated.
+  void announce() const;
+  /// What is stepped is of another scene than what is shown.
+  void adopt_scene();
+  /// Tells the clocks how fast steps are to be.
+  void set_pace();
+  /// Topics begin anew with their rates, and with any stamp.
+  void set_rates();
+  /// Steps were made (see ClockPublisher), or something else is news.
+  void advance_clock(std::uint64_t steps, std::uint64_t overruns, bool is_paced);
+  void publish_news();
   /// Takes over the state of what is stepped, between two steps.
   void show();
   /// The same, where it is another one than the last step's, and tells everybody.
@@ -87,7 +115,6 @@ class Node {
   double simulated_time(const ros::Time& stamp) const;
   /// Sets ~view, which tells displays where to look.
   void describe_view() const;
-  std::string root_frame() const { return parameters_.frame_prefix + shown_.scene().root_link; }
   void fail(const StepResult& result);
 
   /// By the clock on the wall, since the last warning.
@@ -118,6 +145,8 @@ class Node {
   CommandInterface command_interface_;
   FrameWatch frame_watch_;
   Services services_;
+  Reconfiguration reconfiguration_;
+  MasterWatch master_watch_;
   ros::SteadyTimer timer_;
 };
 

@@ -1,5 +1,7 @@
 #include "sensor_publisher.h"
 
+#include <type_traits>
+#include <utility>
 #include <variant>
 
 #include "advertise.h"
@@ -9,30 +11,45 @@
 namespace flexarm::node {
 SensorPublisher::SensorPublisher(ros::NodeHandle& node, const Simulation& simulation, const RunState& run,
                                  const std::string& frame_prefix)
-    : simulation_(simulation), frame_prefix_(frame_prefix), topics_(simulation.scene().sensors.size()) {
-  for (std::size_t i = 0; i < topics_.size(); ++i) {
-    const messages::SensorMessage type = messages::sensor_message(simulation, i, ros::Time(), frame_prefix_);
+    : simulation_(simulation), run_(run), node_(node), frame_prefix_(frame_prefix) {
+  adopt_scene();
+}
+
+void SensorPublisher::adopt_scene() {
+  std::map<std::string, Topic> before = std::exchange(topics_, {});
+  const auto& sensors = simulation_.scene().sensors;
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    const std::string& name = sensors[i].name;
+    const messages::SensorMessage type = messages::sensor_message(simulation_, i, ros::Time(), frame_prefix_);
+    Topic& topic = topics_[name];
+    topic.sensor = i;
+    topic.type = type.index();
+    // A publisher of another type has to go before the topic can be advertised again.
+    if (const auto old = before.find(name); old != before.end()) {
+      if (old->second.type == topic.type) topic.publisher = old->second.publisher;
+      before.erase(old);
+      if (topic.publisher) continue;
+    }
     std::visit(
         [&](const auto& message) {
           using Message = std::decay_t<decltype(message)>;
-          topics_[i].publisher =
-              advertise<Message>(node, messages::sensor_topic(simulation.scene().sensors[i].name), 100, run, [this, i] {
-                return std::get<Message>(messages::sensor_message(simulation_, i, topics_[i].stamp, frame_prefix_));
-              });
+          topic.publisher = advertise<Message>(node_, messages::sensor_topic(name), 100, run_, [this, name] {
+            const Topic& topic = topics_.at(name);
+            return std::get<Message>(messages::sensor_message(simulation_, topic.sensor, topic.stamp, frame_prefix_));
+          });
         },
         type);
   }
 }
 
 void SensorPublisher::publish(const ros::Time& stamp) {
-  for (std::size_t i = 0; i < topics_.size(); ++i) {
-    Topic& topic = topics_[i];
-    const double sampled = simulation_.sample(i).time;
+  for (auto& [name, topic] : topics_) {
+    const double sampled = simulation_.sample(topic.sensor).time;
     if (sampled == topic.sampled) continue;
     topic.sampled = sampled;
     topic.stamp = stamp;
-    std::visit([&](const auto& message) { topic.publisher.publish(message); },
-               messages::sensor_message(simulation_, i, stamp, frame_prefix_));
+    std::visit([&topic = topic](const auto& message) { topic.publisher.publish(message); },
+               messages::sensor_message(simulation_, topic.sensor, stamp, frame_prefix_));
   }
 }
 

@@ -4,8 +4,9 @@
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
 
+#include <cstddef>
+#include <map>
 #include <string>
-#include <vector>
 
 #include "flexarm/simulation/simulation.h"
 #include "run_state.h"
@@ -20,19 +21,24 @@ class SensorPublisher {
   SensorPublisher(const SensorPublisher&) = delete;
   SensorPublisher& operator=(const SensorPublisher&) = delete;
 
+  /// The simulation is of another scene now. Topics that both have stay.
+  void adopt_scene();
   /// Sends what was sampled since the last call.
   void publish(const ros::Time& stamp);
 
  private:
   struct Topic {
+    std::size_t sensor = 0, type = 0;  ///< by index; of its messages
     ros::Publisher publisher;
     double sampled = -1;  ///< simulated time of the last sample that was sent [s]
     ros::Time stamp;      ///< of that
   };
 
   const Simulation& simulation_;
+  const RunState& run_;
+  ros::NodeHandle node_;
   std::string frame_prefix_;
-  std::vector<Topic> topics_;  ///< per sensor
+  std::map<std::string, Topic> topics_;  ///< by the sensor's name
 };
 
 }  // namespace flexarm::node

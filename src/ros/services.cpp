@@ -1,10 +1,13 @@
 #include "services.h"
 
+#include <ros/console.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
 
+#include "flexarm/scene/scene_description.h"
 #include "flexarm/simulation/checkpoint.h"
 #include "messages/conversions.h"
 #include "node.h"
@@ -17,6 +20,8 @@ Services::Services(ros::NodeHandle& private_node, Node& simulator) : simulator_(
   servers_ = {private_node.advertiseService("pause", &Services::pause, this),
               private_node.advertiseService("resume", &Services::resume, this),
               private_node.advertiseService("reset", &Services::reset, this),
+              private_node.advertiseService("reset_with_clock", &Services::reset_with_clock, this),
+              private_node.advertiseService("reload", &Services::reload, this),
               private_node.advertiseService("step", &Services::step, this),
               private_node.advertiseService("save_state", &Services::save_state, this),
               private_node.advertiseService("load_state", &Services::load_state, this),
@@ -24,6 +29,12 @@ Services::Services(ros::NodeHandle& private_node, Node& simulator) : simulator_(
               private_node.advertiseService("switch_mode", &Services::switch_mode, this),
               private_node.advertiseService("apply_wrench", &Services::apply_wrench, this),
               private_node.advertiseService("clear_wrenches", &Services::clear_wrenches, this)};
+}
+
+std::vector<std::string> Services::names() const {
+  std::vector<std::string> names;
+  for (const ros::ServiceServer& server : servers_) names.push_back(server.getService());
+  return names;
 }
 
 bool Services::pause(std_srvs::Empty::Request&, std_srvs::Empty::Response&) {
@@ -39,6 +50,24 @@ bool Services::resume(std_srvs::Empty::Request&, std_srvs::Empty::Response&) {
 
 bool Services::reset(std_srvs::Empty::Request&, std_srvs::Empty::Response&) {
   simulator_.reset();
+  return true;
+}
+
+bool Services::reset_with_clock(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  response.message = simulator_.reset_with_clock();
+  response.success = response.message.empty();
+  return true;
+}
+
+bool Services::reload(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  try {
+    simulator_.reload();
+    response.success = true;
+    response.message = "scene '" + simulator_.simulation().scene().name + "'";
+  } catch (const std::exception& error) {
+    response.message = error.what();
+    ROS_WARN_STREAM("~reload: the scene stays as it was: " << error.what());
+  }
   return true;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-/// ~pause, ~resume, ~reset, ~step; ~save_state, ~load_state, ~set_joint_state; ~switch_mode; ~apply_wrench,
-/// ~clear_wrenches.
+/// ~pause, ~resume, ~reset, ~reset_with_clock, ~reload, ~step; ~save_state, ~load_state, ~set_joint_state;
+/// ~switch_mode; ~apply_wrench, ~clear_wrenches.
 
 #include <flexarm/ApplyWrench.h>
 #include <flexarm/LoadState.h>
@@ -11,7 +11,9 @@
 #include <ros/node_handle.h>
 #include <ros/service_server.h>
 #include <std_srvs/Empty.h>
+#include <std_srvs/Trigger.h>
 
+#include <string>
 #include <vector>
 
 namespace flexarm::node {
@@ -24,10 +26,14 @@ class Services {
   Services(const Services&) = delete;
   Services& operator=(const Services&) = delete;
 
+  std::vector<std::string> names() const;
+
  private:
   bool pause(std_srvs::Empty::Request& request, std_srvs::Empty::Response& response);
   bool resume(std_srvs::Empty::Request& request, std_srvs::Empty::Response& response);
   bool reset(std_srvs::Empty::Request& request, std_srvs::Empty::Response& response);
+  bool reset_with_clock(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  bool reload(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool step(Step::Request& request, Step::Response& response);
   bool save_state(SaveState::Request& request, SaveState::Response& response);
   bool load_state(LoadState::Request& request, LoadState::Response& response);

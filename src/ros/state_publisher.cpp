@@ -9,23 +9,28 @@ namespace flexarm::node {
 
 StatePublisher::StatePublisher(ros::NodeHandle& node, const Simulation& simulation, const RunState& run, double rate,
                                const std::string& frame_prefix)
-    : schedule_(rate), messages_(simulation, frame_prefix) {
+    : simulation_(simulation), frame_prefix_(frame_prefix), schedule_(rate) {
   // Who takes what he gets in bursts misses nothing of a second.
   const auto queue_size = static_cast<std::uint32_t>(std::clamp(rate, 100.0, 1e5));
   joint_state_publisher_ = advertise<sensor_msgs::JointState>(node, "joint_states", queue_size, run,
-                                                              [this] { return messages_.joint_states(); });
+                                                              [this] { return messages_->joint_states(); });
   transform_publisher_ =
-      advertise<tf2_msgs::TFMessage>(node, "/tf", queue_size, run, [this] { return messages_.transforms(); });
+      advertise<tf2_msgs::TFMessage>(node, "/tf", queue_size, run, [this] { return messages_->transforms(); });
   static_transform_publisher_ = node.advertise<tf2_msgs::TFMessage>("/tf_static", 100, true);
-  static_transform_publisher_.publish(messages_.static_transforms(ros::Time::now()));
+  adopt_scene();
+}
+
+void StatePublisher::adopt_scene() {
+  messages_.emplace(simulation_, frame_prefix_);
+  static_transform_publisher_.publish(messages_->static_transforms(ros::Time::now()));
 }
 
 void StatePublisher::publish(const ros::Time& stamp, bool force) {
   if (!schedule_.due(stamp, force)) return;
-  messages_.update_joint_states(stamp);
-  joint_state_publisher_.publish(messages_.joint_states());
-  messages_.update_transforms(stamp);
-  transform_publisher_.publish(messages_.transforms());
+  messages_->update_joint_states(stamp);
+  joint_state_publisher_.publish(messages_->joint_states());
+  messages_->update_transforms(stamp);
+  transform_publisher_.publish(messages_->transforms());
 }
 
 }  // namespace flexarm::node

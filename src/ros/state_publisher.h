@@ -4,6 +4,7 @@
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
 
+#include <optional>
 #include <string>
 #include <unordered_set>
 
@@ -24,14 +25,20 @@ class StatePublisher {
   StatePublisher(const StatePublisher&) = delete;
   StatePublisher& operator=(const StatePublisher&) = delete;
 
+  /// The simulation is of another scene now.
+  void adopt_scene();
+  /// Begins anew at a rate [Hz], with any stamp.
+  void set_rate(double rate) { schedule_ = PublicationSchedule(rate); }
   /// Sends the state if it is due (see PublicationSchedule).
   void publish(const ros::Time& stamp, bool force);
   /// The names of all frames that are published, static ones too.
-  const std::unordered_set<std::string>& frames() const { return messages_.frames(); }
+  const std::unordered_set<std::string>& frames() const { return messages_->frames(); }
 
  private:
+  const Simulation& simulation_;
+  std::string frame_prefix_;
   PublicationSchedule schedule_;
-  messages::StateMessages messages_;
+  std::optional<messages::StateMessages> messages_;
   ros::Publisher joint_state_publisher_, transform_publisher_, static_transform_publisher_;
 };
 

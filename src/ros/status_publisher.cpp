@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "advertise.h"
+#include "flexarm/scene/scene_description.h"
 #include "messages/conversions.h"
 
 namespace flexarm::node {
@@ -21,8 +22,8 @@ DurationStatistics statistics_of(const DurationHistogram& histogram) {
 }  // namespace
 
 StatusPublisher::StatusPublisher(ros::NodeHandle& private_node, const Simulation& simulation, const RunState& run,
-                                 double rate, const std::string& root_frame)
-    : simulation_(simulation), run_(run), schedule_(rate), root_frame_(root_frame) {
+                                 double rate, const std::string& frame_prefix)
+    : simulation_(simulation), run_(run), schedule_(rate), frame_prefix_(frame_prefix) {
   publisher_ = advertise<SimulatorStatus>(private_node, "status", 10, run, [this] { return last_message_; });
 }
 
@@ -37,7 +38,7 @@ SimulatorStatus StatusPublisher::make_message(const ros::Time& stamp) {
   const Energies energies = simulation_.energies();
   SimulatorStatus message;
   message.header.stamp = stamp;
-  message.header.frame_id = root_frame_;
+  message.header.frame_id = frame_prefix_ + simulation_.scene().root_link;
   message.time = simulation_.time();
   message.step = simulation_.step_size();
   message.steps = run_.steps;

@@ -17,10 +17,12 @@ namespace flexarm::node {
 class StatusPublisher {
  public:
   StatusPublisher(ros::NodeHandle& private_node, const Simulation& simulation, const RunState& run, double rate,
-                  const std::string& root_frame);
+                  const std::string& frame_prefix);
   StatusPublisher(const StatusPublisher&) = delete;
   StatusPublisher& operator=(const StatusPublisher&) = delete;
 
+  /// Begins anew at a rate [Hz], with any stamp.
+  void set_rate(double rate) { schedule_ = PublicationSchedule(rate); }
   /// Sends the status if it is due. `force` sends it in any case: where the stamp is not new, which happens when the
   /// simulation pauses right after a status, it is moved on by a nanosecond.
   void publish(ros::Time stamp, bool force);
@@ -31,7 +33,7 @@ class StatusPublisher {
   const Simulation& simulation_;
   const RunState& run_;
   PublicationSchedule schedule_;
-  std::string root_frame_;
+  std::string frame_prefix_;
   RealTimeFactor real_time_factor_{RealTimeFactor::Clock::now()};
   SimulatorStatus last_message_;
   ros::Publisher publisher_;

@@ -5,19 +5,13 @@
 
 #include <fmt/format.h>
 
+#include "command_reader.h"
+
 namespace flexarm::node {
 namespace {
 
 constexpr int kQueueSize = 10;
 constexpr double kFeedbackPeriod = 0.05;  ///< simulated [s]
-
-/// Its start is left open.
-JointTrajectory trajectory_of(const trajectory_msgs::JointTrajectory& message, std::vector<std::size_t> joints) {
-  JointTrajectory out{std::move(joints), 0, {}};
-  for (const trajectory_msgs::JointTrajectoryPoint& point : message.points)
-    out.points.push_back({point.time_from_start.toSec(), point.positions, point.velocities, point.accelerations});
-  return out;
-}
 
 /// Per name of the trajectory. @returns why they cannot be used, or nothing
 std::string read_tolerances(const std::vector<flexarm::JointTolerance>& given, const std::vector<std::string>& names,
@@ -110,6 +104,7 @@ void Trajectories::receive(const trajectory_msgs::JointTrajectory& message) {
   std::vector<std::size_t> joints;
   const Fault fault = follow(message, joints);
   if (!fault.is_none()) return context_.warn(fault.text);
+  if (!stepping_.command_step()) context_.warn("it is followed, but more steps wait already than can be taken");
   end_goal(Result::SUCCESSFUL, "another trajectory has replaced it", &GoalHandle::setCanceled);
 }
 

@@ -39,6 +39,8 @@ class Trajectories {
   void judge(double now);
   /// Somebody else commands the coordinate: its trajectory is over, and so is the goal, if that is one of its.
   void release(std::size_t coordinate, const std::string& reason);
+  /// What is stepped is of another scene now.
+  void adopt_scene() { followed_ = stepping_.trajectories(); }
   /// Nothing is followed any more.
   void release_all(const std::string& reason);
 

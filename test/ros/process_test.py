@@ -3,7 +3,6 @@
 
 import os
 import signal
-import subprocess
 import tempfile
 import unittest
 
@@ -12,12 +11,10 @@ import rospy
 import rostest
 from flexarm.msg import SimulatorStatus
 from geometry_msgs.msg import TransformStamped
+from running_node import RunningNode
 from sensor_msgs.msg import JointState
 from simulated_arm import PATIENCE, wait_until
 from tf2_msgs.msg import TFMessage
-
-SCENE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "two_arms.urdf")
-
 
 LEG = """<robot name="leg"> <link name="trunk"/> <link name="foot"/>
 <link name="shank"> <inertial> <origin xyz="0 0 -0.2"/> <mass value="1"/>
@@ -26,37 +23,6 @@ LEG = """<robot name="leg"> <link name="trunk"/> <link name="foot"/>
   <limit lower="-2.5" upper="-0.75" effort="0" velocity="0"/> </joint>
 <joint name="ankle" type="continuous"> <parent link="shank"/> <child link="foot"/> <axis xyz="0 1 0"/> </joint>
 </robot>"""
-
-
-class RunningNode:
-    """The node as a process of its own, its output in a file; ends with the `with` block."""
-
-    def __init__(self, *arguments, is_silent=False):
-        self.arguments = arguments
-        self.is_silent = is_silent
-
-    def __enter__(self):
-        if rospy.has_param("/flexarm"):  # private parameters outlive their node
-            rospy.delete_param("/flexarm")
-        self.log = tempfile.NamedTemporaryFile("r", suffix=".log")
-        self.process = subprocess.Popen(
-            ["rosrun", "flexarm", "flexarm_node", "_scene:=" + SCENE, *self.arguments],
-            stdout=open(self.log.name, "w", encoding="utf-8"),
-            stderr=subprocess.STDOUT,
-        )
-        if not self.is_silent:
-            self.status = rospy.wait_for_message("/flexarm/status", SimulatorStatus, PATIENCE)
-        return self
-
-    def __exit__(self, *_):
-        if self.process.poll() is None:
-            self.process.kill()
-        self.process.wait()
-        self.log.close()
-
-    def output(self):
-        self.log.seek(0)
-        return self.log.read()
 
 
 def registered_nodes():
@@ -103,6 +69,17 @@ class Process(unittest.TestCase):
             rospy.Subscriber("/flexarm/status", SimulatorStatus, statuses.append)
             wait_until(lambda: statuses and statuses[-1].overruns > 0, "an overrun")
             self.assertGreater(statuses[-1].real_time_factor, 0)
+
+    def test_warns_where_the_system_refuses_to_be_real_time(self):
+        wrapper = ["prlimit", "--rtprio=0:0", "--memlock=65536:65536"]
+        if os.geteuid() == 0:  # who may do all must not
+            wrapper += ["setpriv", "--bounding-set=-sys_nice,-ipc_lock"]
+        with RunningNode("_realtime:=true", wrapper=wrapper) as node:
+            wait_until(lambda: "~realtime: the system refuses SCHED_FIFO" in node.output(), "the warning")
+            self.assertIn("; mlockall: ", node.output())
+            statuses = []
+            rospy.Subscriber("/flexarm/status", SimulatorStatus, statuses.append)
+            wait_until(lambda: len(statuses) > 2 and statuses[-1].steps > statuses[0].steps, "steps all the same")
 
     def test_warns_of_a_clock_that_does_not_come(self):
         rospy.set_param("/use_sim_time", True)

@@ -8,7 +8,7 @@ from flexarm.srv import ApplyWrench, LoadState, SaveState, SetJointState, Step, 
 from geometry_msgs.msg import Point, Vector3, Wrench
 from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import JointState
-from std_srvs.srv import Empty
+from std_srvs.srv import Empty, Trigger
 
 PATIENCE = 10.0  # s, wall time
 
@@ -38,6 +38,8 @@ class SimulatedArm:
         self.pause = rospy.ServiceProxy(namespace + "/flexarm/pause", Empty)
         self.resume = rospy.ServiceProxy(namespace + "/flexarm/resume", Empty)
         self.reset = rospy.ServiceProxy(namespace + "/flexarm/reset", Empty)
+        self.reset_with_clock = rospy.ServiceProxy(namespace + "/flexarm/reset_with_clock", Trigger)
+        self.reload = rospy.ServiceProxy(namespace + "/flexarm/reload", Trigger)
         self.step = rospy.ServiceProxy(namespace + "/flexarm/step", Step)
         self.save_state = rospy.ServiceProxy(namespace + "/flexarm/save_state", SaveState)
         self.load_state = rospy.ServiceProxy(namespace + "/flexarm/load_state", LoadState)

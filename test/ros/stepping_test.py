@@ -10,6 +10,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from flexarm.msg import JointForceCommand
 from sensor_msgs.msg import JointState
 from simulated_arm import CommandTopic, SimulatedArm, force_command, wait_until
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 STEP = 1000000  # ns, of the demo
 
@@ -105,6 +106,34 @@ class LockStep(unittest.TestCase):
         time.sleep(0.2)
         arm.pause()
         self.assertEqual(arm.status().steps, before + 80, "a command that is refused makes no step")
+
+    def test_a_trajectory_makes_one_step_and_goes_on_in_those_that_follow(self):
+        SimulatedArm("/lock_step_servos")
+        trajectory = CommandTopic("/lock_step_servos/joint_trajectory", JointTrajectory)
+        force = CommandTopic("/lock_step_servos/joint_force_command", JointForceCommand)
+        log = Log("/lock_step_servos/joint_states", JointState)
+        wait_until(lambda: log.messages, "the state that waits for a command")
+
+        def lift():
+            states = log.messages[-1]
+            return states.position[states.name.index("lift")]
+
+        def steps_of(send, count):
+            before = len(log.messages)
+            send()
+            wait_until(lambda: len(log.messages) >= before + count, "the step")
+            time.sleep(0.2)
+            self.assertEqual(len(log.messages), before + count)
+
+        self.assertEqual(lift(), 0)
+        way = JointTrajectory(joint_names=["lift"], points=[
+            JointTrajectoryPoint(positions=[0.1], time_from_start=rospy.Duration.from_sec(0.02))])
+        steps_of(lambda: trajectory.send(way), 1)
+        self.assertGreater(lift(), 0)
+        so_far = lift()
+        steps_of(lambda: force.send(force_command(["loose"], [0.0])), 1)
+        self.assertGreater(lift(), so_far)
+        steps_of(lambda: trajectory.send(JointTrajectory(joint_names=["nose"], points=way.points)), 0)
 
 
 if __name__ == "__main__":

@@ -152,6 +152,22 @@ class Trajectories(unittest.TestCase):
         self.assertGreater((rospy.Time.now() - begin).to_sec(), 0)
         self.wait_for_end(GoalStatus.SUCCEEDED)
 
+    def test_a_pause_holds_it_without_ending_it(self):
+        self.send(["lift"], smooth(1.0, 0.4), path=[("lift", largest_acceleration(0.4, 1.0) / RATE**2 + SLACK)])
+        wait_until(lambda: self.position("lift") > 0.05, "the way")
+        self.addCleanup(self.arm.resume)
+        self.arm.pause()
+        time.sleep(0.3)  # what was sent before arrives
+        held, count = self.position("lift"), len(self.feedback)
+        time.sleep(1.5)  # longer than what is left of it
+        self.assertEqual(self.position("lift"), held)
+        self.assertEqual(len(self.feedback), count)
+        self.assertEqual(self.client.get_state(), GoalStatus.ACTIVE)
+        self.arm.resume()
+        self.wait_for_end(GoalStatus.SUCCEEDED, Result.SUCCESSFUL)
+        self.assertGreater(len(self.feedback), count)
+        self.assert_rests_at(lift=0.4)
+
     # ---- what stops it
 
     def test_cancel_holds(self):

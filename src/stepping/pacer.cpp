@@ -5,11 +5,16 @@
 
 namespace flexarm::node {
 
-Pacer::Pacer(double step, double real_time_factor, double max_catch_up)
-    : step_(step),
-      real_time_factor_(real_time_factor),
-      // Two steps: a backlog just below one step plus a tick's worth must not count as an overrun.
-      max_backlog_(std::max(real_time_factor * max_catch_up, 2 * step)) {}
+Pacer::Pacer(double step, double real_time_factor, double max_catch_up) {
+  set_pace(step, real_time_factor, max_catch_up);
+}
+
+void Pacer::set_pace(double step, double real_time_factor, double max_catch_up) {
+  step_ = step;
+  real_time_factor_ = real_time_factor;
+  // Two steps: a backlog just below one step plus a tick's worth must not count as an overrun.
+  max_backlog_ = std::max(real_time_factor * max_catch_up, 2 * step);
+}
 
 void Pacer::elapse(double wall_time) {
   backlog_ += real_time_factor_ * wall_time;

@@ -10,7 +10,7 @@
 
 namespace flexarm::node {
 
-enum class Commanded : std::size_t { Effort, SetPoint };
+enum class Commanded : std::size_t { Effort, SetPoint, Nothing };
 
 /// What the thread that spins hands to the one that steps.
 struct Command {
@@ -30,7 +30,7 @@ class TimedCommands {
   void apply(const Command& command);
   /// Before each step. `time`: simulated time that no reset sets back [s].
   void expire(double time);
-  /// Nothing expires any more.
+  /// Nothing expires any more; of another scene, too, that the simulation may be of by now.
   void forget();
   /// The set point of a coordinate does not.
   void forget_set_point(std::size_t coordinate);

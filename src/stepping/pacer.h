@@ -14,6 +14,8 @@ class Pacer {
   /// @param max_catch_up      largest backlog, wall time [s]; at least one step is always kept
   Pacer(double step, double real_time_factor, double max_catch_up);
 
+  /// Of the steps to come, as of the constructor; what was due or dropped stays.
+  void set_pace(double step, double real_time_factor, double max_catch_up);
   /// Wall time has passed [s].
   void elapse(double wall_time);
   bool step_due() const { return as_fast_as_possible() || backlog_ >= step_; }

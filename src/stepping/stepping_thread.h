@@ -13,6 +13,7 @@
 #include "flexarm/simulation/spsc_ring.h"
 #include "pacer.h"
 #include "semaphore.h"
+#include "stepped_time.h"
 #include "timed_commands.h"
 #include "trajectory_follower.h"
 #include "wrench_schedule.h"
@@ -32,6 +33,7 @@ struct StepReport {
   StepResult result;
   bool has_failed = false;
   std::uint64_t steps = 0;     ///< that were done since the beginning
+  double time = 0;             ///< simulated, since then; a reset does not set it back [s]
   std::uint64_t overruns = 0;  ///< dropped since then
   bool is_paced = false;       ///< it was due by the wall clock,
   double lateness = 0;         ///< and began so much later [s]
@@ -60,11 +62,20 @@ class SteppingThread {
   void between_steps(const Act& act);
   /// A message acts from the next step on; in lock step, each makes one. @returns false if too many wait already
   bool command(const std::vector<Command>& message);
+  /// In lock step, makes one step in which nothing new is commanded. @returns false as command()
+  bool command_step();
   /// What steps came to, in order. Where the caller does not keep up and the clock does not wait, it misses some.
   SpscRing<StepReport>& reports() { return reports_; }
   /// The thread has the processor before all that is not real-time, too, and its memory stays there.
   /// @returns what the system refuses; empty: nothing
   std::string make_real_time();
+
+  // ---- for who has halted it, and has taken all reports
+  /// Goes on with another simulation of the same mechanism; what was commanded holds.
+  void go_on_with(Simulation simulation);
+  /// Begins with the simulation of another scene: of what was commanded nothing holds.
+  void begin_with(Simulation simulation);
+  void set_pace(const Pace& pace);
 
   // ---- for who has halted it
   Simulation& simulation() { return simulation_; }
@@ -72,7 +83,7 @@ class SteppingThread {
   /// Its times are those of time(). Joints whose set points are commanded leave it.
   TrajectoryFollower& trajectories() { return trajectories_; }
   /// Simulated, since the beginning; a reset does not set it back [s].
-  double time() const { return static_cast<double>(steps_) * simulation_.step_size(); }
+  double time() const { return time_.seconds(); }
   /// One step and what belongs to it. @returns false if it failed
   bool advance();
   /// What was commanded acts now, but in lock step, where it is for the steps to come.
@@ -88,6 +99,8 @@ class SteppingThread {
   bool wait_for_step();
   bool make_step(double lateness, bool is_paced);
   void take_message();
+  /// Reports get room for states as they are after a step, so that the thread need not allocate it.
+  void make_room();
   /// Set points of the next step.
   void follow_trajectories();
 
@@ -99,6 +112,7 @@ class SteppingThread {
   Pacer pacer_;
   std::chrono::steady_clock::time_point last_look_;  ///< at the clock
   std::uint64_t steps_ = 0;
+  SteppedTime time_;
   bool has_failed_ = false;  ///< the last step
   SpscRing<StepReport> reports_;
   SpscRing<Command> commands_;

@@ -43,11 +43,13 @@ SteppingThread::SteppingThread(Simulation simulation, const Pace& pace, std::fun
       trajectories_(simulation_.coordinate_names().size()),
       pace_(pace),
       pacer_(simulation_.step_size(), pace.real_time_factor, pace.max_catch_up),
+      time_(simulation_.step_size()),
       reports_(report_count(simulation_)),
       commands_(kCommands),
       notify_(std::move(notify)),
       thread_([this] { loop(); }) {
   halted_.take();
+  make_room();
 }
 
 SteppingThread::~SteppingThread() {
@@ -95,6 +97,10 @@ bool SteppingThread::command(const std::vector<Command>& message) {
   return true;
 }
 
+bool SteppingThread::command_step() {
+  return !pace_.lock_step || command({{Commanded::Nothing}});
+}
+
 std::string SteppingThread::make_real_time() {
   std::string refused;
   sched_param parameters{};
@@ -108,6 +114,33 @@ std::string SteppingThread::make_real_time() {
 
 // ---------------------------------------------------------------- while it is halted, or by the thread itself
 
+void SteppingThread::make_room() {
+  Simulation ahead = simulation_.copy();
+  ahead.step();
+  for (std::size_t i = 0; reports_.has_room(i + 1); ++i) ahead.snapshot(reports_.free_entry(i).state);
+}
+
+void SteppingThread::go_on_with(Simulation simulation) {
+  simulation_ = std::move(simulation);
+  time_.set_step(simulation_.step_size());
+  set_pace(pace_);
+  make_room();
+}
+
+void SteppingThread::begin_with(Simulation simulation) {
+  go_on_with(std::move(simulation));
+  forget_commands();
+  wrenches_.clear();
+  trajectories_ = TrajectoryFollower(simulation_.coordinate_names().size());
+}
+
+void SteppingThread::set_pace(const Pace& pace) {
+  pace_ = pace;
+  pacer_.set_pace(simulation_.step_size(), pace.real_time_factor, pace.max_catch_up);
+  pacer_.clear_backlog();
+  last_look_ = SteadyClock::now();
+}
+
 bool SteppingThread::advance() {
   return make_step(0, false);
 }
@@ -119,7 +152,10 @@ bool SteppingThread::make_step(double lateness, bool is_paced) {
   wrenches_.update(time());
   const SteadyClock::time_point start = SteadyClock::now();
   const StepResult result = simulation_.step();
-  if (result.converged) ++steps_;
+  if (result.converged) {
+    ++steps_;
+    time_.advance();
+  }
   has_failed_ = !result.converged && !(pace_.cuts_late_steps && result.reason == StepResult::Reason::OutOfTime);
   // The last place is kept for a failure, of which nobody must miss to hear.
   if (!reports_.has_room(has_failed_ ? 1 : 2)) return !has_failed_;
@@ -128,6 +164,7 @@ bool SteppingThread::make_step(double lateness, bool is_paced) {
   report.result = result;
   report.has_failed = has_failed_;
   report.steps = steps_;
+  report.time = time();
   report.overruns = pacer_.overruns();
   report.is_paced = is_paced;
   report.lateness = lateness;

@@ -9,6 +9,7 @@ void WrenchSchedule::add(const AppliedWrench& wrench, double begin, double end) 
   // What cannot act is refused here, not where it would begin.
   simulation_.apply_wrenches({wrench});
   entries_.push_back({wrench, begin, end, false});
+  acting_.reserve(entries_.size());
   apply();
 }
 
@@ -31,10 +32,10 @@ void WrenchSchedule::clear() {
 }
 
 void WrenchSchedule::apply() {
-  std::vector<AppliedWrench> wrenches;
+  acting_.clear();
   for (const Entry& entry : entries_)
-    if (entry.acts) wrenches.push_back(entry.wrench);
-  simulation_.apply_wrenches(wrenches);
+    if (entry.acts) acting_.push_back(entry.wrench);
+  simulation_.apply_wrenches(acting_);
 }
 
 }  // namespace flexarm::node

@@ -5,7 +5,7 @@
 namespace flexarm::node {
 
 TimedCommands::TimedCommands(Simulation& simulation) : simulation_(simulation) {
-  expiry_.fill(std::vector<double>(simulation.coordinate_names().size(), Command::kForEver));
+  forget();
 }
 
 void TimedCommands::give(Commanded quantity, std::size_t coordinate, double value) {
@@ -16,6 +16,7 @@ void TimedCommands::give(Commanded quantity, std::size_t coordinate, double valu
 }
 
 void TimedCommands::apply(const Command& command) {
+  if (command.quantity == Commanded::Nothing) return;
   give(command.quantity, command.coordinate, command.value);
   const double expiry = time_ + command.lifetime;
   expiry_[static_cast<std::size_t>(command.quantity)][command.coordinate] = expiry;
@@ -39,7 +40,7 @@ void TimedCommands::expire(double time) {
 }
 
 void TimedCommands::forget() {
-  for (std::vector<double>& expiry : expiry_) std::fill(expiry.begin(), expiry.end(), Command::kForEver);
+  for (std::vector<double>& expiry : expiry_) expiry.assign(simulation_.coordinate_names().size(), Command::kForEver);
   next_expiry_ = Command::kForEver;
 }
 

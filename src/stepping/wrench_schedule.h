@@ -31,6 +31,7 @@ class WrenchSchedule {
 
   Simulation& simulation_;
   std::vector<Entry> entries_;
+  std::vector<AppliedWrench> acting_;  ///< scratch with room for all entries
 };
 
 }  // namespace flexarm::node

@@ -1,0 +1,46 @@
+"""A node that a test starts and ends by itself."""
+
+import os
+import subprocess
+import tempfile
+
+import rospy
+from flexarm.msg import SimulatorStatus
+from simulated_arm import PATIENCE
+
+SCENE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "two_arms.urdf")
+
+
+class RunningNode:
+    """The node as a process of its own, its output in a file; ends with the `with` block.
+
+    `wrapper`: a command that starts it.
+    """
+
+    def __init__(self, *arguments, is_silent=False, wrapper=()):
+        self.arguments = arguments
+        self.is_silent = is_silent
+        self.wrapper = wrapper
+
+    def __enter__(self):
+        if rospy.has_param("/flexarm"):  # private parameters outlive their node
+            rospy.delete_param("/flexarm")
+        self.log = tempfile.NamedTemporaryFile("r", suffix=".log")
+        self.process = subprocess.Popen(
+            [*self.wrapper, "rosrun", "flexarm", "flexarm_node", "_scene:=" + SCENE, *self.arguments],
+            stdout=open(self.log.name, "w", encoding="utf-8"),
+            stderr=subprocess.STDOUT,
+        )
+        if not self.is_silent:
+            self.status = rospy.wait_for_message("/flexarm/status", SimulatorStatus, PATIENCE)
+        return self
+
+    def __exit__(self, *_):
+        if self.process.poll() is None:
+            self.process.kill()
+        self.process.wait()
+        self.log.close()
+
+    def output(self):
+        self.log.seek(0)
+        return self.log.read()

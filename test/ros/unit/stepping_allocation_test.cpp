@@ -1,0 +1,46 @@
+// The thread that steps allocates nothing, whatever was commanded in between.
+#include <gtest/gtest.h>
+
+#include "ros/stepping_thread.h"
+#include "support/allocations.h"
+#include "support/scene_builder.h"
+
+namespace flexarm::node {
+namespace {
+
+/// A rotor with a servo.
+Simulation rotor() {
+  test::SceneBuilder b;
+  b.body("rotor", 1, {0.1, 0, 0}, Matrix3::Identity());
+  b.joint("shaft", scene::JointKind::Continuous, "world", "rotor", {0, 0, 0}, {0, 0, 1});
+  scene::ServoDescription servo;
+  servo.coordinate = "shaft";
+  servo.kp = 100;
+  servo.kd = 20;
+  b.scene.servos.push_back(servo);
+  return Simulation(b.scene);
+}
+
+TEST(SteppingThread, AllocatesNothingWhereWrenchesAndCommandsBeginAndEnd) {
+  if (!test::kCountsAllocations) GTEST_SKIP() << "this C library's allocator cannot be counted";
+  constexpr double kStep = 0.001;
+  SteppingThread thread(rotor(), {}, [] {});
+  ASSERT_TRUE(thread.advance());
+  const std::size_t link = 1;
+  for (int i = 0; i < 16; ++i)  // one after the other, all together, and away again
+    thread.wrenches().add({link, {0.1, 0, 0}, {{0, 0.1, 0}, {0, 0, 0}}, false}, 2 * i * kStep, (100 + 2 * i) * kStep);
+  thread.trajectories().follow({{0}, 0, {{0.1, {0.5}, {}, {}}}}, 0, {0.0});
+  int steps = 0;
+  EXPECT_EQ(test::allocations_in([&] {
+              for (int n = 0; n < 200; ++n) {
+                thread.take_commands();
+                steps += thread.advance();
+              }
+            }),
+            0);
+  EXPECT_EQ(steps, 200);
+  EXPECT_GT(thread.simulation().position(0), 0) << "what was asked for acts";
+}
+
+}  // namespace
+}  // namespace flexarm::node
