@@ -27,6 +27,7 @@ void add_check(CLI::App& app, int& status);
 void add_simulate(CLI::App& app, int& status);
 void add_static(CLI::App& app, int& status);
 void add_modes(CLI::App& app, int& status);
+void add_replay(CLI::App& app, int& status);
 void add_bench(CLI::App& app, int& status);
 
 }  // namespace flexarm::cli

@@ -1,11 +1,11 @@
 #pragma once
-/// Writers of results that are loaded when they are asked for.
+/// What writes and reads files of other programs; loaded when it is asked for.
 
-#include "recording/writers.h"
+#include "recording/library.h"
 
 namespace flexarm::cli {
 
 /// @throws std::runtime_error saying why, if their library cannot be loaded
-const recording::Writers& recording_writers();
+const recording::Library& recording_library();
 
 }  // namespace flexarm::cli

@@ -89,9 +89,9 @@ class CheckpointTimes {
 /// The kind of file is what its name ends with.
 std::unique_ptr<ResultWriter> make_writer(const Arguments& arguments, const Simulation& simulation) {
   const std::string& path = arguments.output;
-  if (ends_with(path, ".bag")) return recording_writers().bag(path, simulation);
+  if (ends_with(path, ".bag")) return recording_library().bag(path, simulation);
   ResultColumns columns(simulation, ResultColumns::Solver::With, arguments.columns);
-  if (ends_with(path, ".h5")) return recording_writers().hdf5(path, simulation, std::move(columns));
+  if (ends_with(path, ".h5")) return recording_library().hdf5(path, simulation, std::move(columns));
   return std::make_unique<CsvWriter>(path, std::move(columns));
 }
 

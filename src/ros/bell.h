@@ -7,7 +7,7 @@
 #include <functional>
 #include <thread>
 
-#include "semaphore.h"
+#include "stepping/semaphore.h"
 
 namespace flexarm::node {
 

@@ -11,7 +11,7 @@
 
 #include "publication_schedule.h"
 #include "run_state.h"
-#include "stepped_time.h"
+#include "stepping/stepped_time.h"
 
 namespace flexarm::node {
 

@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
-#include "command_reader.h"
 #include "flexarm/simulation/simulation.h"
-#include "stepping_thread.h"
+#include "stepping/command_reader.h"
+#include "stepping/stepping_thread.h"
 #include "trajectories.h"
 
 namespace flexarm::node {

@@ -27,7 +27,7 @@ class Diagnostics {
  private:
   DiagnosticReport report_;
   std::unique_ptr<diagnostic_updater::Updater> updater_;  // its header is a large one
-  ros::Time last_time_;  ///< when it was asked for last
+  ros::Time last_time_;                                   ///< when it was asked for last
 };
 
 }  // namespace flexarm::node

@@ -26,7 +26,7 @@
 #include "services.h"
 #include "state_publisher.h"
 #include "status_publisher.h"
-#include "stepping_thread.h"
+#include "stepping/stepping_thread.h"
 
 namespace flexarm::node {
 

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "command_reader.h"
+#include "stepping/command_reader.h"
 
 namespace flexarm::node {
 namespace {

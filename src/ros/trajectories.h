@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "flexarm/simulation/simulation.h"
-#include "stepping_thread.h"
-#include "trajectory_follower.h"
+#include "stepping/stepping_thread.h"
+#include "stepping/trajectory_follower.h"
 #include "trajectory_goal.h"
 
 namespace flexarm::node {

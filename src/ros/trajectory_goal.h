@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "trajectory_follower.h"
+#include "stepping/trajectory_follower.h"
 
 namespace flexarm::node {
 

@@ -1,4 +1,4 @@
-#include "ros/pacer.h"
+#include "stepping/pacer.h"
 
 #include <gtest/gtest.h>
 

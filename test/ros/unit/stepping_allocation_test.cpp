@@ -1,7 +1,7 @@
 // The thread that steps allocates nothing, whatever was commanded in between.
 #include <gtest/gtest.h>
 
-#include "ros/stepping_thread.h"
+#include "stepping/stepping_thread.h"
 #include "support/allocations.h"
 #include "support/scene_builder.h"
 

@@ -1,4 +1,4 @@
-#include "ros/stepping_thread.h"
+#include "stepping/stepping_thread.h"
 
 #include <set>
 

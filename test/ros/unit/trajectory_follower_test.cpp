@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ros/trajectory_follower.h"
+#include "stepping/trajectory_follower.h"
 
 namespace flexarm::node {
 namespace {

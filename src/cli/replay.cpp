@@ -1,0 +1,83 @@
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "cli/commands.h"
+#include "cli/recording_library.h"
+#include "cli/scene_input.h"
+#include "flexarm/simulation/checkpoint.h"
+
+namespace flexarm::cli {
+namespace {
+
+struct Arguments {
+  SceneInput scene;
+  SimulationOptions simulation;
+  recording::ReplayOptions replay;
+  std::string resume;
+  double largest = 1e-6;
+};
+
+/// @returns whether all positions agree.
+bool print_report(const recording::ReplayReport& report, double largest) {
+  fmt::print("{} commands given, {} states compared, {} steps\n", report.commands, report.states, report.steps);
+  if (report.refused > 0) fmt::print("{} commands refused; the first: {}\n", report.refused, report.first_refusal);
+  fmt::print("{:<24} {:>28} {:>28}\n", "largest difference", "position [rad, m] at [s]", "velocity [/s] at [s]");
+  bool agrees = true;
+  for (const recording::JointDeviation& joint : report.joints) {
+    fmt::print("{:<24} {:>18.3g} {:>9.4g} {:>18.3g} {:>9.4g}\n", joint.joint, joint.position, joint.position_time,
+               joint.velocity, joint.velocity_time);
+    agrees = agrees && joint.position <= largest;
+  }
+  fmt::print("{}: positions differ by {} {:g}\n", agrees ? "agrees" : "DIFFERS", agrees ? "at most" : "more than",
+             largest);
+  return agrees;
+}
+
+int replay(const Arguments& arguments) {
+  Simulation simulation = load_simulation(arguments.scene, arguments.simulation);
+  try {
+    if (!arguments.resume.empty()) read_checkpoint(simulation, arguments.resume);
+  } catch (const std::runtime_error& error) {
+    throw InputError(std::string("flexarm: ") + error.what());
+  }
+  try {
+    const recording::ReplayReport report = recording_library().replay(std::move(simulation), arguments.replay);
+    return print_report(report, arguments.largest) ? kDone : kFailed;
+  } catch (const std::invalid_argument& error) {
+    throw InputError(std::string("flexarm: ") + error.what());
+  }
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app, int& status) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand(
+      "replay", "Gives the commands of a recorded run to the scene again, and compares the joints' motion");
+  command->add_option("bag", arguments->replay.bag, "recorded by rosbag")->required()->check(CLI::ExistingFile);
+  add_scene(*command, arguments->scene);
+  command->add_option("--namespace", arguments->replay.ns, "of the arm's topics, /left say");
+  command->add_flag("--lock-step", arguments->replay.lock_step, "each command has made one step (~lock_step)");
+  command
+      ->add_option("--real-time-factor", arguments->replay.real_time_factor,
+                   "of the run; where it was the clock itself (/clock is in the bag) it does not matter")
+      ->capture_default_str()
+      ->check(check_positive);
+  command->add_option("--command-timeout", arguments->replay.command_timeout, "of the run [s]; 0: none")
+      ->capture_default_str()
+      ->check(check_non_negative);
+  command->add_option("--step", arguments->simulation.step, "of the run, if it was not the scene's [s]")
+      ->check(check_positive);
+  command->add_option("--scheme", arguments->simulation.scheme, "the same");
+  command->add_option("--resume", arguments->resume, "state file of the beginning; else it is the scene's");
+  command->add_option("--largest", arguments->largest, "difference of positions up to which the runs agree [rad, m]")
+      ->capture_default_str()
+      ->check(check_non_negative);
+  command->callback([arguments, &status] { status = replay(*arguments); });
+}
+
+}  // namespace flexarm::cli

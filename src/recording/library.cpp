@@ -1,0 +1,24 @@
+#include "recording/library.h"
+
+#include <utility>
+
+#include "recording/bag_writer.h"
+#include "recording/hdf5_writer.h"
+
+using namespace flexarm;
+using namespace flexarm::recording;
+
+namespace {
+
+std::unique_ptr<ResultWriter> make_hdf5(const std::string& path, const Simulation& simulation, ResultColumns columns) {
+  return std::make_unique<Hdf5Writer>(path, simulation, std::move(columns));
+}
+
+std::unique_ptr<ResultWriter> make_bag(const std::string& path, const Simulation& simulation) {
+  return std::make_unique<BagWriter>(path, simulation);
+}
+
+}  // namespace
+
+extern "C" const Library flexarm_recording_library;
+const Library flexarm_recording_library = {make_hdf5, make_bag, replay};

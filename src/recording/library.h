@@ -1,0 +1,28 @@
+#pragma once
+/// Files of other programs. What writes and reads them is a library that is loaded when the first such file is asked
+/// for: HDF5 and rosbag take longer to load than many a simulation takes.
+
+#include <memory>
+#include <string>
+
+#include "flexarm/simulation/result_writer.h"
+#include "recording/replay.h"
+
+namespace flexarm::recording {
+
+/// What the library does. Makers of writers, and these, throw std::runtime_error naming the file if it cannot be
+/// written.
+struct Library {
+  /// An HDF5 file, see Hdf5Writer.
+  std::unique_ptr<ResultWriter> (*hdf5)(const std::string& path, const Simulation& simulation, ResultColumns columns);
+  /// A ROS bag, see BagWriter.
+  std::unique_ptr<ResultWriter> (*bag)(const std::string& path, const Simulation& simulation);
+  /// See recording::replay().
+  ReplayReport (*replay)(Simulation simulation, const ReplayOptions& options);
+};
+
+constexpr const char* kLibrary = "libflexarm_recording.so";
+/// The one symbol that is looked for there: a `const Library`.
+constexpr const char* kSymbol = "flexarm_recording_library";
+
+}  // namespace flexarm::recording

@@ -1,0 +1,227 @@
+#include "recording/replay.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <stdexcept>
+
+#include <flexarm/JointForceCommand.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+#include <sensor_msgs/JointState.h>
+#include <std_msgs/Float64.h>
+#include <trajectory_msgs/JointTrajectory.h>
+
+#include <fmt/format.h>
+
+#include "stepping/command_reader.h"
+#include "stepping/stepping_thread.h"
+
+namespace flexarm::recording {
+namespace {
+
+using node::Command;
+using node::Commanded;
+using rosbag::MessageInstance;
+
+node::Pace lock_step() {
+  node::Pace pace;
+  pace.lock_step = true;
+  return pace;
+}
+
+/// The node's own way from messages to steps, but for the clock: each step is made where the bag has its state.
+class Replay {
+ public:
+  Replay(Simulation simulation, const ReplayOptions& options)
+      : options_(options),
+        thread_(std::move(simulation), options.lock_step ? lock_step() : node::Pace(), [] {}),
+        reader_(thread_.simulation(), options.command_timeout) {
+    for (const std::string& name : thread_.simulation().coordinate_names()) {
+      report_.joints.push_back({name});
+      topics_["/" + name + "/command"] = topics_["/" + name + "/set_point"] = name;
+    }
+  }
+
+  ReplayReport run(rosbag::Bag& bag) {
+    std::vector<MessageInstance> commands;
+    rosbag::View view(bag);
+    for (const MessageInstance& message : view) {
+      const std::string topic = own(message.getTopic());
+      if (message.getTopic() == "/clock") has_clock_ = true;
+      if (topic == "/joint_states")
+        states_.push_back(read<sensor_msgs::JointState>(message));
+      else if (is_command(topic))
+        commands.push_back(message);
+    }
+    if (states_.empty()) fail("has no message on '" + options_.ns + "/joint_states'");
+    begin_ = states_.front()->header.stamp;
+    if (options_.lock_step)
+      step_by(commands);
+    else
+      step_until(commands);
+    report_.steps = static_cast<long>(steps_);
+    return report_;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw std::invalid_argument("bag '" + options_.bag + "': " + what);
+  }
+  template <class Message>
+  boost::shared_ptr<Message> read(const MessageInstance& message) const {
+    const boost::shared_ptr<Message> out = message.instantiate<Message>();
+    if (!out)
+      fail(fmt::format("'{}' has type {}, expected {}", message.getTopic(), message.getDataType(),
+                       ros::message_traits::datatype<Message>()));
+    return out;
+  }
+  /// Without the namespace; empty if it is another one.
+  std::string own(const std::string& topic) const {
+    return topic.compare(0, options_.ns.size(), options_.ns) == 0 ? topic.substr(options_.ns.size()) : "";
+  }
+  bool is_command(const std::string& topic) const {
+    return topic == "/joint_force_command" || topic == "/joint_command" || topic == "/joint_set_points" ||
+           topic == "/joint_trajectory" || topics_.count(topic) > 0;
+  }
+
+  // ---- when
+  /// Each command makes a step, and each step has its state.
+  void step_by(const std::vector<MessageInstance>& commands) {
+    compare(*states_.front());
+    for (const MessageInstance& message : commands) {
+      if (!give(message)) continue;
+      step();
+      if (steps_ >= states_.size())
+        fail(fmt::format("in lock step each command makes a state, but it has {} states only", states_.size()));
+      compare(*states_[steps_]);
+    }
+    if (steps_ + 1 != states_.size())
+      fail(fmt::format("in lock step each command makes a state, but it has {} states after the first, and {} commands",
+                       states_.size() - 1, steps_));
+  }
+
+  /// States say by their stamps after how many steps they are. A command acts in the steps that begin later: a step of
+  /// the wall clock's pace begins when its state is due, one that is the clock when the clock shows the state before.
+  void step_until(const std::vector<MessageInstance>& commands) {
+    const double step_size = thread_.simulation().step_size();
+    period_ = has_clock_ ? step_size : step_size / options_.real_time_factor;
+    auto next = commands.begin();
+    for (const auto& state : states_) {
+      const double count = (state->header.stamp - begin_).toSec() / period_;
+      if (count < -0.5) fail("its states go back in time: such a run cannot be replayed");
+      while (static_cast<double>(steps_) < std::round(count)) {
+        const double begins = static_cast<double>(has_clock_ ? steps_ : steps_ + 1) * period_;
+        for (; next != commands.end() && (next->getTime() - begin_).toSec() <= begins + 1e-9; ++next) give(*next);
+        step();
+      }
+      compare(*state);
+    }
+  }
+
+  // ---- what
+  /// False if it is refused.
+  bool give(const MessageInstance& message) {
+    const std::string topic = own(message.getTopic());
+    std::vector<Command> commands;
+    std::string fault;
+    if (topic == "/joint_force_command")
+      fault = reader_.read_force_command(*read<JointForceCommand>(message), commands);
+    else if (topic == "/joint_command")
+      fault = reader_.read_joint_command(*read<sensor_msgs::JointState>(message), commands);
+    else if (topic == "/joint_set_points")
+      fault = reader_.read_set_points(*read<sensor_msgs::JointState>(message), commands);
+    else if (topic == "/joint_trajectory")
+      fault = follow(*read<trajectory_msgs::JointTrajectory>(message), commands);
+    else
+      fault = reader_.read_one(topic.substr(topic.rfind('/')) == "/command" ? Commanded::Effort : Commanded::SetPoint,
+                               topics_.at(topic), read<std_msgs::Float64>(message)->data, commands);
+    if (fault.empty() && !commands.empty() && !thread_.command(commands)) fault = "more wait than steps can take";
+    if (fault.empty()) {
+      ++report_.commands;
+      return true;
+    }
+    if (report_.refused++ == 0) report_.first_refusal = message.getTopic() + ": " + fault;
+    return false;
+  }
+
+  std::string follow(const trajectory_msgs::JointTrajectory& message, std::vector<Command>& commands) {
+    const Simulation& simulation = thread_.simulation();
+    node::TrajectoryFollower& follower = thread_.trajectories();
+    if (options_.lock_step) commands.push_back({Commanded::Nothing});
+    const double now = thread_.time();
+    if (message.points.empty()) {
+      for (std::size_t joint = 0; joint < follower.joint_count(); ++joint)
+        if (follower.follows(joint)) follower.stop(joint, now, 0);
+      return {};
+    }
+    std::vector<std::size_t> joints;
+    std::vector<double> set_points;
+    for (const std::string& name : message.joint_names) {
+      const std::optional<std::size_t> joint = simulation.find_coordinate(name);
+      if (!joint || !simulation.has_servo(*joint) || simulation.servo_mode(*joint) != ServoMode::Position)
+        return "'" + name + "' has no servo of mode 'position'";
+      joints.push_back(*joint);
+      set_points.push_back(simulation.set_point(*joint));
+    }
+    node::JointTrajectory trajectory = node::trajectory_of(message, joints);
+    if (const std::string fault = follower.find_fault(trajectory); !fault.empty()) return fault;
+    const double ahead = (message.header.stamp - begin_).toSec() - static_cast<double>(steps_) * period_;
+    trajectory.start = message.header.stamp.isZero() ? now : now + ahead;
+    if (node::TrajectoryFollower::is_over(trajectory, now)) return "its last point is past";
+    follower.follow(trajectory, now, set_points);
+    return {};
+  }
+
+  void step() {
+    const bool is_done = thread_.advance();
+    const StepResult result = thread_.reports().front().result;
+    thread_.reports().pop();
+    if (!is_done) throw std::runtime_error("the replay failed: " + thread_.simulation().explain(result));
+    ++steps_;
+  }
+
+  void compare(const sensor_msgs::JointState& state) {
+    const Simulation& simulation = thread_.simulation();
+    if (state.position.size() != state.name.size() || state.velocity.size() != state.name.size())
+      fail("a message of joint_states has not as many positions and velocities as names");
+    for (std::size_t i = 0; i < state.name.size(); ++i) {
+      const std::optional<std::size_t> joint = simulation.find_coordinate(state.name[i]);
+      if (!joint) fail("its joint_states have '" + state.name[i] + "', which the scene does not");
+      JointDeviation& deviation = report_.joints[*joint];
+      const auto note = [&](double difference, double& largest, double& time) {
+        if (!(std::abs(difference) > largest)) return;
+        largest = std::abs(difference);
+        time = simulation.time();
+      };
+      note(state.position[i] - simulation.position(*joint), deviation.position, deviation.position_time);
+      note(state.velocity[i] - simulation.velocity(*joint), deviation.velocity, deviation.velocity_time);
+    }
+    ++report_.states;
+  }
+
+  ReplayOptions options_;
+  node::SteppingThread thread_;
+  node::CommandReader reader_;
+  std::map<std::string, std::string> topics_;  // of single joints, and which it is
+  std::vector<boost::shared_ptr<sensor_msgs::JointState>> states_;
+  bool has_clock_ = false;
+  ros::Time begin_;
+  double period_ = 0;  // of steps, in the time of the stamps [s]
+  std::size_t steps_ = 0;
+  ReplayReport report_;
+};
+
+}  // namespace
+
+ReplayReport replay(Simulation simulation, const ReplayOptions& options) {
+  try {
+    rosbag::Bag bag(options.bag, rosbag::bagmode::Read);
+    return Replay(std::move(simulation), options).run(bag);
+  } catch (const rosbag::BagException& error) {
+    throw std::invalid_argument("bag '" + options.bag + "': " + error.what());
+  }
+}
+
+}  // namespace flexarm::recording
