@@ -300,11 +300,12 @@ def overload(_):
         node.wait()
         wait_until(lambda: node.status.overruns > 0, "an overrun")
         time.sleep(3)
+        factor = node.status.real_time_factor
         begin = time.monotonic()
         node.services["pause"]()
         took = time.monotonic() - begin
         require(took < 2, f"~pause took {took:.1f} s")
-        return (f"as fast as it can, {node.status.real_time_factor:.0f} times real time; steps dropped and counted; "
+        return (f"as fast as it can, {factor:.1f} times real time; steps dropped and counted; "
                 f"~pause answers in {1e3 * took:.0f} ms", "nothing", node.said("slower than asked for"))
 
 
