@@ -27,4 +27,25 @@ LoadAction load_action(const NodalLoad& load, double scale, const Matrix3& begin
   return action;
 }
 
+PullAction pull_action(const NodalLoad& load, const Vector3& target, const NodePose& begin, const NodePose& end,
+                       double step, LoadPoint point) {
+  const double weight = point == LoadPoint::Mean ? 0.5 : 1.0;
+  const double stiffness = load.pull.stiffness, damper = step > 0 ? load.pull.damping / step : 0.0;
+  const Vector3 end_arm = end.rotation * load.arm;
+  const Vector3 arm = weight * end_arm + (1 - weight) * (begin.rotation * load.arm);
+  const Vector3 increment = end.position + end_arm - begin.position - begin.rotation * load.arm;
+  const Vector3 place = end.position + end_arm - (1 - weight) * increment;
+  const Vector3 force = stiffness * (target - place) - damper * increment;
+  PullAction action;
+  action.wrench << force, arm.cross(force);
+  // d(point at the end) = displacement - (end arm)^ spin
+  const double slope = weight * stiffness + damper;
+  const Matrix3 turn = hat(end_arm), lever = hat(arm);
+  action.derivative << -slope * Matrix3::Identity(), slope * turn, -slope * lever,
+      slope * lever * turn + weight * hat(force) * turn;
+  const Vector3 mean_place = end.position + end_arm - 0.5 * increment;
+  action.work = (stiffness * (target - mean_place) - damper * increment).dot(increment);
+  return action;
+}
+
 }  // namespace flexarm

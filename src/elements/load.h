@@ -21,4 +21,19 @@ struct LoadAction {
 /// `scale`: value of the load's history. (beam.md 3.4)
 LoadAction load_action(const NodalLoad& load, double scale, const Matrix3& begin, const Matrix3& end, LoadPoint point);
 
+/// Spatial force and moment about the node, their derivative with respect to the node's {displacement, spin} at the
+/// end, and the work over the step [J].
+struct PullAction {
+  Vector6 wrench;
+  Matrix6 derivative;
+  double work = 0;
+};
+
+/// Of the pull on a load's point: stiffness times the way to the target (its mean over the step, or that at the end),
+/// damping times the mean velocity over the step.
+/// @param target  about the origin of the nodes' positions [m]
+/// @param step    [s]; 0: statics, in which nothing is damped
+PullAction pull_action(const NodalLoad& load, const Vector3& target, const NodePose& begin, const NodePose& end,
+                       double step, LoadPoint point);
+
 }  // namespace flexarm

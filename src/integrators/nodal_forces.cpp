@@ -1,8 +1,8 @@
 #include "integrators/nodal_forces.h"
 
-#include "elements/load.h"
 #include "elements/nodal_inertia.h"
 #include "math/cayley.h"
+#include "model/carried_origin.h"
 
 namespace flexarm {
 
@@ -47,6 +47,20 @@ void NodalForces::add_damping(int node, Balance& balance) const {
   balance.dissipated += damping.dissipated;
 }
 
+PullAction NodalForces::pull(const NodalLoad& load) const {
+  const StepConfiguration& step = configuration_;
+  return pull_action(load, load.pull.target - world_origin(step.model(), step.state()), step.begin()[load.node],
+                     step.end()[load.node], step.step(),
+                     step.scheme().is_incremental() ? LoadPoint::Mean : LoadPoint::End);
+}
+
+void NodalForces::add_pull(const NodalLoad& load, Balance& balance) const {
+  const PullAction action = pull(load);
+  balance.residual.node(load.node) -= histories_.factor * action.wrench;
+  if (balance.tangent)
+    Eigen::Map<Matrix6>(balance.tangent->diagonal_block(load.node)) -= histories_.factor * action.derivative;
+}
+
 template <class Visit>
 void NodalForces::for_each_load(const Visit& visit) const {
   for (const NodalLoad& load : configuration_.model().loads)
@@ -67,6 +81,8 @@ void NodalForces::evaluate(Balance& balance) const {
         load_action(load, histories_.factor * value, begin[load.node].rotation, loaded[load.node].rotation, point);
     add(load.node, -action.wrench, -action.derivative, true, balance.tangent != nullptr, balance);
   });
+  for (const NodalLoad& wrench : configuration_.state().wrenches)
+    if (wrench.pull.acts()) add_pull(wrench, balance);
 }
 
 void NodalForces::add_work(double& work) const {
@@ -83,6 +99,8 @@ void NodalForces::add_work(double& work) const {
     }
     work += wrench.dot(increment);
   });
+  for (const NodalLoad& wrench : configuration_.state().wrenches)
+    if (wrench.pull.acts()) work += pull(wrench).work;
 }
 
 }  // namespace flexarm

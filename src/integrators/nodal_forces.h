@@ -1,6 +1,7 @@
 #pragma once
 /// Weights, loads and dampers at the nodes of a model over a step, and wrenches from outside.
 
+#include "elements/load.h"
 #include "integrators/hht_interpolation.h"
 #include "integrators/step_histories.h"
 
@@ -21,6 +22,8 @@ class NodalForces {
   void for_each_load(const Visit& visit) const;
   void add_weight(int node, Balance& balance) const;
   void add_damping(int node, Balance& balance) const;
+  void add_pull(const NodalLoad& load, Balance& balance) const;
+  PullAction pull(const NodalLoad& load) const;
   void add(int node, const Vector6& force, Eigen::Matrix<double, 6, 3> rotational, bool of_configuration,
            bool with_tangent, Balance& balance) const;
 

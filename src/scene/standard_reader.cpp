@@ -47,9 +47,11 @@ void check_attributes(const XmlElement& element, const StandardAttribute (&table
 }
 
 /// Has urdfdom read a document with only these elements of <robot>. What only other programs stumble over is a warning.
-void judge_alone(const XmlElement& element, const std::string& elements) {
+/// @returns whether there is none
+bool judge_alone(const XmlElement& element, const std::string& elements) {
   const std::vector<std::string> errors = errors_of_urdfdom("<robot name=\"robot\">" + elements + "</robot>");
   if (!errors.empty()) element.warning("programs that use urdfdom cannot read it", quoted(errors.front()));
+  return errors.empty();
 }
 
 /// Reads <origin> or <child_origin>.
@@ -226,9 +228,15 @@ LinkDescription read_link(const XmlElement& unnamed) {
   if (const std::optional<XmlElement> inertial = link.child("inertial"))
     description.inertial = read_inertial(*inertial);
   // Each alone, since urdfdom leaves a link at its first error.
-  for (const XmlElement& child : link.children())
-    if (child.tag() == "visual" || child.tag() == "collision")
-      judge_alone(child, "<link name=\"link\">" + printed(child.xml()) + "</link>");
+  for (const XmlElement& child : link.children()) {
+    if (child.tag() != "visual" && child.tag() != "collision") continue;
+    const bool is_good = judge_alone(child, "<link name=\"link\">" + printed(child.xml()) + "</link>");
+    if (!is_good || child.tag() == "collision" || !link.child("beam")) continue;
+    if (const std::optional<VisualDescription> visual = visual_of_urdfdom(child.xml()))
+      description.visuals.push_back(*visual);
+    else
+      child.warning("is not shown: its shape must have an extent, of finite numbers");
+  }
   return description;
 }
 

@@ -1,6 +1,7 @@
 #include "scene/urdfdom.h"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <mutex>
 
@@ -35,22 +36,72 @@ class MessageCapture : public console_bridge::OutputHandler {
   console_bridge::LogLevel level_;
 };
 
-}  // namespace
+/// urdfdom logs some parts of the document as the format of printf. Nobody writes this control character.
+constexpr char kPercent = '\x1a';
 
-std::vector<std::string> errors_of_urdfdom(std::string document) {
+struct Parsed {
+  urdf::ModelInterfaceSharedPtr model;  ///< with kPercent for each percent sign; null: it cannot be read
+  std::vector<std::string> errors;
+};
+
+Parsed parsed(std::string document) {
   static std::mutex mutex;
   const std::lock_guard<std::mutex> lock(mutex);
   MessageCapture capture;
-  // urdfdom logs some parts of the document as the format of printf. Nobody writes this control character.
-  constexpr char kPercent = '\x1a';
   std::replace(document.begin(), document.end(), '%', kPercent);
+  Parsed out;
   try {
-    if (!urdf::parseURDF(document) && capture.errors.empty()) capture.errors.push_back("urdfdom cannot read it");
+    out.model = urdf::parseURDF(document);
+    if (!out.model && capture.errors.empty()) capture.errors.push_back("urdfdom cannot read it");
   } catch (const std::exception& error) {
     capture.errors.push_back(error.what());
   }
   for (std::string& error : capture.errors) std::replace(error.begin(), error.end(), kPercent, '%');
-  return std::move(capture.errors);
+  out.errors = std::move(capture.errors);
+  return out;
+}
+
+Vector3 vector(const urdf::Vector3& v) {
+  return {v.x, v.y, v.z};
+}
+
+bool is_extent(double length) {
+  return std::isfinite(length) && length > 0;
+}
+
+/// Nothing where it has no extent.
+std::optional<decltype(VisualDescription::shape)> shape_of(const urdf::Geometry& geometry) {
+  if (const auto* box = dynamic_cast<const urdf::Box*>(&geometry)) {
+    const Vector3 size = vector(box->dim);
+    if (size.allFinite() && size.minCoeff() > 0) return BoxShape{size};
+  } else if (const auto* cylinder = dynamic_cast<const urdf::Cylinder*>(&geometry)) {
+    if (is_extent(cylinder->radius) && is_extent(cylinder->length))
+      return CylinderShape{cylinder->radius, cylinder->length};
+  } else if (const auto* sphere = dynamic_cast<const urdf::Sphere*>(&geometry)) {
+    if (is_extent(sphere->radius)) return SphereShape{sphere->radius};
+  } else if (const auto* mesh = dynamic_cast<const urdf::Mesh*>(&geometry)) {
+    MeshShape shape{mesh->filename, vector(mesh->scale)};
+    std::replace(shape.url.begin(), shape.url.end(), kPercent, '%');
+    if (shape.scale.allFinite()) return shape;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<std::string> errors_of_urdfdom(std::string document) {
+  return parsed(std::move(document)).errors;
+}
+
+std::optional<VisualDescription> visual_of_urdfdom(const tinyxml2::XMLElement& visual) {
+  const Parsed robot = parsed("<robot name=\"robot\"><link name=\"link\">" + printed(visual) + "</link></robot>");
+  const urdf::LinkConstSharedPtr link = robot.model ? robot.model->getLink("link") : nullptr;
+  if (!link || !link->visual || !link->visual->geometry) return std::nullopt;
+  const auto shape = shape_of(*link->visual->geometry);
+  const auto& [position, rotation] = link->visual->origin;
+  const Pose origin{vector(position), Quaternion(rotation.w, rotation.x, rotation.y, rotation.z).normalized()};
+  if (!shape || !origin.position.allFinite() || !origin.orientation.coeffs().allFinite()) return std::nullopt;
+  return VisualDescription{origin, *shape};
 }
 
 std::string printed(const tinyxml2::XMLElement& element) {

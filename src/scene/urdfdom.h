@@ -1,10 +1,13 @@
 #pragma once
 /// Calls urdfdom without losing its complaints.
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <tinyxml2.h>
+
+#include "flexarm/scene/scene_description.h"
 
 namespace flexarm::scene {
 
@@ -13,6 +16,9 @@ namespace flexarm::scene {
 /// `&#37;`: what it logs as errors, the cause before its consequences. Serialised: urdfdom logs through a global
 /// handler.
 std::vector<std::string> errors_of_urdfdom(std::string document);
+
+/// What a <visual> of a link is, of which urdfdom has nothing to complain; nothing where its shape has no extent.
+std::optional<VisualDescription> visual_of_urdfdom(const tinyxml2::XMLElement& visual);
 
 /// The element as XML text, references only where a character could not stand for itself.
 std::string printed(const tinyxml2::XMLElement& element);

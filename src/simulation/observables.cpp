@@ -114,6 +114,16 @@ void beam_points(const Model& model, const State& state, const BeamLink& beam, i
   });
 }
 
+std::vector<Pose> undeformed_sections(const Model& model, const LinkFrame& link, int between) {
+  const State state = initial_state(model);
+  const Pose to_link = attached_pose(state, link.frame).inverse();
+  std::vector<Pose> sections;
+  visit_points(model, state, *link.beam, between, [&](const auto& element, double xi, double begin, double end) {
+    sections.push_back(to_link * element.point(xi, link.beam->centroid, begin, end).pose);
+  });
+  return sections;
+}
+
 EdgeStrain largest_edge_strain(const Model& model, const State& state, const BeamLink& beam) {
   EdgeStrain largest;
   visit_points(model, state, beam, 0, [&](const auto& element, double xi, double begin, double end) {

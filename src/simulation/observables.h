@@ -13,6 +13,9 @@ namespace flexarm {
 void beam_points(const Model& model, const State& state, const BeamLink& beam, int between,
                  std::vector<BeamPoint>& points);
 
+/// The sections of the same points in the model's initial configuration, in the link's frame; the link is flexible.
+std::vector<Pose> undeformed_sections(const Model& model, const LinkFrame& link, int between);
+
 /// The largest strain of a beam's edge at its nodes, see edge_strain(), and the arc length where it is [m].
 struct EdgeStrain {
   double amount = 0, arc_length = 0;

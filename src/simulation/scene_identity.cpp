@@ -90,7 +90,7 @@ class SceneFingerprint {
   // ---- links and joints
   void add(const scene::RigidInertia& inertia) { all(inertia.mass, inertia.center_of_mass, inertia.inertia); }
   void add(const scene::LinkDescription& link) {
-    const auto& [name, inertial, beam, location] = link;
+    const auto& [name, inertial, beam, visuals, location] = link;
     all(name, inertial, beam);
   }
   /// What was not there before counts where it is given: other scenes keep their fingerprints.

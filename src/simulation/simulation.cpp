@@ -17,6 +17,7 @@
 #include "simulation/joint_state.h"
 #include "simulation/observables.h"
 #include "simulation/servo_commands.h"
+#include "simulation/shown_wrenches.h"
 #include "simulation/wrenches.h"
 
 namespace flexarm {
@@ -187,7 +188,11 @@ void Simulation::set_joint_state(const std::vector<CoordinateState>& coordinates
 void Simulation::apply_wrenches(const std::vector<AppliedWrench>& wrenches) {
   std::vector<NodalLoad>& loads = implementation_->placed_wrenches;
   loads.clear();
-  for (const AppliedWrench& wrench : wrenches) loads.push_back(placed_wrench(implementation_->model, wrench));
+  for (const AppliedWrench& wrench : wrenches) {
+    if (wrench.pull.acts() && implementation_->scheme.hht != HhtForm::None)
+      throw std::invalid_argument("schemes that interpolate forces in time (hht1, hht2, hht3) have no pulls");
+    loads.push_back(placed_wrench(implementation_->model, wrench));
+  }
   implementation_->state.wrenches.assign(loads.begin(), loads.end());
 }
 
@@ -232,6 +237,16 @@ void Simulation::beam_points(std::size_t link, int between, std::vector<BeamPoin
   const std::size_t first = points.size();
   flexarm::beam_points(implementation_->model, implementation_->state, *frame.beam, between, points);
   for (std::size_t i = first; i < points.size(); ++i) points[i].pose = implementation_->in_world(points[i].pose);
+}
+
+std::vector<Pose> Simulation::undeformed_sections(std::size_t link, int between) const {
+  const Model& model = implementation_->built ? *implementation_->built : implementation_->model;
+  const LinkFrame& frame = model.links.at(link);
+  return frame.beam ? flexarm::undeformed_sections(model, frame, between) : std::vector<Pose>();
+}
+
+bool Simulation::is_fixed_to_world(std::size_t link) const {
+  return implementation_->model.links.at(link).frame.node < 0;
 }
 
 double Simulation::beam_radius(std::size_t link) const {
@@ -285,6 +300,34 @@ Wrench Simulation::reaction(std::size_t link) const {
   if (place == model.sensors.end())
     throw std::invalid_argument("no sensor of the scene asks what carries link '" + name + "'");
   return transmitted_wrench(implementation_->state, place->reaction);
+}
+ActingWrench Simulation::sensed_wrench(std::size_t sensor) const {
+  const Implementation& s = *implementation_;
+  const SensorPlace& place = s.model.sensors.at(sensor);
+  if (place.reaction < 0)
+    throw std::invalid_argument("sensor '" + s.scene.sensors[sensor].name + "' does not measure what a joint does");
+  const Pose link = s.in_world(s.model.links[place.point.link].frame);
+  const Wrench about_link = transmitted_wrench(s.state, place.reaction);
+  const Vector3 arm = link.orientation * s.scene.sensors[sensor].at;
+  return {link.position + arm, {about_link.force, about_link.moment - arm.cross(about_link.force)}};
+}
+void Simulation::effort_wrenches(std::vector<ActingWrench>& wrenches) const {
+  const Implementation& s = *implementation_;
+  flexarm::effort_wrenches(s.model, s.state, wrenches);
+  for (std::size_t i = 0; i < wrenches.size(); ++i) {
+    wrenches[i].position += world_origin(s.model, s.state);
+    wrenches[i].wrench.force *= effort(i);
+    wrenches[i].wrench.moment *= effort(i);
+  }
+}
+void Simulation::outside_wrenches(std::vector<ActingWrench>& wrenches) const {
+  const Implementation& s = *implementation_;
+  flexarm::outside_wrenches(s.view(), s.published, wrenches);
+}
+double Simulation::mass() const {
+  double mass = 0;
+  for (const NodalInertia& inertia : implementation_->model.inertias) mass += inertia.total_mass;
+  return mass;
 }
 const SensorSample& Simulation::sample(std::size_t sensor) const {
   return implementation_->state.samples.at(sensor);

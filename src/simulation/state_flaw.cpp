@@ -89,8 +89,11 @@ void check_servos(const Model& built, const State& state, Flaw& flaw) {
 }
 
 void check_wrenches(const State& state, Flaw& flaw) {
-  for (const NodalLoad& wrench : state.wrenches)
+  for (const NodalLoad& wrench : state.wrenches) {
     flaw.require_range("the node of a wrench", wrench.node, 0, static_cast<double>(state.nodes.size()) - 1);
+    for (const double number : {wrench.pull.stiffness, wrench.pull.damping})
+      flaw.require(number >= 0, "the spring of a wrench", number, ">= 0");
+  }
 }
 
 void check_history(const IncrementHistory& history, Flaw& flaw) {

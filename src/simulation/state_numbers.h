@@ -36,8 +36,11 @@ void for_each_number(AnyState& state, const Visit& visit) {
   }
   for (auto& rate : state.strain_rates) vector("a strain rate", rate);
   for (auto& command : state.commands) visit(kCommand, command);
-  for (auto& wrench : state.wrenches)
-    for (auto* part : {&wrench.arm, &wrench.force, &wrench.moment}) vector("an applied wrench", *part);
+  for (auto& wrench : state.wrenches) {
+    for (auto* part : {&wrench.arm, &wrench.force, &wrench.moment, &wrench.pull.target})
+      vector("an applied wrench", *part);
+    for (auto* number : {&wrench.pull.stiffness, &wrench.pull.damping}) visit("the spring of a wrench", *number);
+  }
   for (auto& effort : state.efforts) visit("an effort", effort);
   for (auto& rest : state.rests) visit("a mark of rest", rest);
   for (auto& actuator : state.actuators) {

@@ -1,5 +1,6 @@
 #include "simulation/wrenches.h"
 
+#include <cmath>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -26,9 +27,17 @@ NodalLoad placed_wrench(const Model& model, const AppliedWrench& wrench) {
   const auto& [force, moment] = wrench.wrench;
   if (!wrench.at.allFinite() || !force.allFinite() || !moment.allFinite())
     throw std::invalid_argument(fmt::format("the wrench on link '{}' is not finite", link.name));
+  const Pull& pull = wrench.pull;
+  if (!pull.target.allFinite() || !std::isfinite(pull.stiffness) || !std::isfinite(pull.damping))
+    throw std::invalid_argument(fmt::format("the pull on link '{}' is not finite", link.name));
+  if (pull.stiffness < 0 || pull.damping < 0)
+    throw std::invalid_argument(fmt::format("the pull on link '{}' has stiffness {} N/m and damping {} N s/m, not >= 0",
+                                            link.name, pull.stiffness, pull.damping));
   if (link.frame.node < 0) throw std::invalid_argument(fmt::format("link '{}' is fixed to the world", link.name));
   const Attachment carrier = carrier_of(model, link, wrench.at);
-  return load_on(carrier.node, carrier.offset, wrench.at, force, moment, wrench.follows);
+  NodalLoad load = load_on(carrier.node, carrier.offset, wrench.at, force, moment, wrench.follows);
+  load.pull = pull;
+  return load;
 }
 
 }  // namespace flexarm

@@ -142,12 +142,26 @@ struct Wrench {
   Vector3 moment = Vector3::Zero();  ///< [N m]
 };
 
+/// What acts where.
+struct ActingWrench {
+  Vector3 position = Vector3::Zero();  ///< in the world [m]
+  Wrench wrench;                       ///< about that, world axes
+};
+
+/// A spring between a material point and a place in the world, slack where they meet, and a damper beside it.
+struct Pull {
+  Vector3 target = Vector3::Zero();   ///< the place [m]
+  double stiffness = 0, damping = 0;  ///< [N/m], [N s/m]
+  bool acts() const { return stiffness > 0 || damping > 0; }
+};
+
 /// A wrench on a link from outside, beside the scene's loads.
 struct AppliedWrench {
   std::size_t link = 0;          ///< in the order of the scene
   Vector3 at = Vector3::Zero();  ///< where: in the undeformed link's frame [m]
   Wrench wrench;                 ///< moment about that point
   bool follows = false;          ///< axes are those of the link's material there, and turn with it; else the world's
+  Pull pull = {};                ///< acts on the point besides, as the motion in each step has it
 };
 
 /// What a servo controls, and its set points are.

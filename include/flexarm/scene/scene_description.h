@@ -118,10 +118,30 @@ struct RigidInertia {
   SourceLocation location = {};
 };
 
+/// A shape for displays. Cylinders stand along z; all have their middle at the origin.
+struct BoxShape {
+  Vector3 size = Vector3::Zero();  ///< [m]
+};
+struct CylinderShape {
+  double radius = 0, length = 0;  ///< [m]
+};
+struct SphereShape {
+  double radius = 0;  ///< [m]
+};
+struct MeshShape {
+  std::string url;                  ///< package://PACKAGE/PATH or file://PATH
+  Vector3 scale = Vector3::Ones();  ///< [m per unit of the file]
+};
+struct VisualDescription {
+  Pose origin;  ///< in the link frame
+  std::variant<BoxShape, CylinderShape, SphereShape, MeshShape> shape;
+};
+
 struct LinkDescription {
   std::string name;
   std::optional<RigidInertia> inertial;  ///< ignored where there is a beam
   std::optional<BeamDescription> beam;
+  std::vector<VisualDescription> visuals;  ///< read where there is a beam: those of rigid links are others' business
   SourceLocation location;
 };
 

@@ -137,7 +137,8 @@ class Simulation {
   /// Applies wrenches from the next step on, in place of all that were applied before; none: takes these away. They
   /// belong to the state: snapshots and checkpoints have them, reset() forgets them. A point of a flexible link is
   /// carried by the section of the nearest node.
-  /// @throws std::invalid_argument if one is not finite, or its link is fixed to the world; nothing has changed then.
+  /// @throws std::invalid_argument if one is not finite, its spring's constants are negative, its link is fixed to the
+  /// world, or it pulls and the scheme interpolates forces in time (hht1, hht2, hht3); nothing has changed then.
   void apply_wrenches(const std::vector<AppliedWrench>& wrenches);
 
   // ---- frames: every link, in the scene's order
@@ -148,8 +149,12 @@ class Simulation {
   Pose tip_pose(std::size_t link) const;
   /// Points at every node and `between` equally spaced points inside each pair of nodes; appended to `points`.
   void beam_points(std::size_t link, int between, std::vector<BeamPoint>& points) const;
+  /// The sections of the same points while the link is undeformed, in the link's frame; none: the link is rigid.
+  std::vector<Pose> undeformed_sections(std::size_t link, int between) const;
   /// Largest distance of the section's edge from the centreline, for display [m]; 0: the link is rigid.
   double beam_radius(std::size_t link) const;
+  /// No motion moves it: nothing can be applied to it.
+  bool is_fixed_to_world(std::size_t link) const;
 
   // ---- observables
   Energies energies() const;
@@ -166,6 +171,15 @@ class Simulation {
   /// the scene asks it (kind Reaction or Wrench), and zero before the first step. What loop joints do is in samples.
   /// @throws std::invalid_argument if none does.
   Wrench reaction(std::size_t link) const;
+  /// What such a sensor measures now, without errors: about its place, world axes.
+  /// @throws std::invalid_argument if it measures something else.
+  ActingWrench sensed_wrench(std::size_t sensor) const;
+  /// Per coordinate, effort() as a force or a moment upon what it moves, at the moved joint frame. Replaces `wrenches`.
+  void effort_wrenches(std::vector<ActingWrench>& wrenches) const;
+  /// What acts upon points of links from outside at time(): the scene's loads, lumped at nodes where they are
+  /// distributed, then what is applied, pulls included. Replaces `wrenches`.
+  void outside_wrenches(std::vector<ActingWrench>& wrenches) const;
+  double mass() const;  ///< of all that moves [kg]
   /// What a sensor has measured last, in the order of scene().sensors.
   const SensorSample& sample(std::size_t sensor) const;
 
