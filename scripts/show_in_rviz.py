@@ -23,7 +23,7 @@ import yaml
 TEMPLATE = "config/flexarm.rviz"
 PATIENCE = 30.0  # s, wall time
 # In radii of the scene:
-DISTANCE = 2.8  # of the camera, which sees 45 degrees
+DISTANCE = 3.1  # of the camera, which sees 45 degrees
 LEGEND = 0.25  # by which the camera looks past the centre, towards the legend
 
 
@@ -53,8 +53,8 @@ def has_shape(description):
     return any(robot.find("link/" + shape) is not None for shape in ("visual", "beam"))
 
 
-def fit(config, view, prefix, description):
-    """Fills the scene's frame, place and size into a configuration of rviz."""
+def fit(config, view, prefix, description, interactive=False):
+    """Fills the scene's frame, place and size, and whether links have handles, into a configuration of rviz."""
     radius = view["radius"]
     manager = config["Visualization Manager"]
     manager["Global Options"]["Fixed Frame"] = view["frame"]
@@ -68,6 +68,10 @@ def fit(config, view, prefix, description):
     displays["rviz/TF"]["Marker Scale"] = radius
     displays["rviz/TF"]["Enabled"] = not has_shape(description)
     displays["rviz/RobotModel"]["TF Prefix"] = prefix.rstrip("/")
+    handles = displays["rviz/InteractiveMarkers"]
+    handles["Enabled"] = handles["Value"] = interactive
+    # rviz resolves the topics of other displays by its namespace, but not this one.
+    handles["Update Topic"] = rospy.resolve_name(handles["Update Topic"])
     return config
 
 
@@ -79,7 +83,8 @@ def main():
     description = rigid_links(rospy.get_param(description))
     rospy.set_param("rigid_links_description", description)
     with open(os.path.join(rospkg.RosPack().get_path("flexarm"), TEMPLATE), encoding="utf-8") as file:
-        config = fit(yaml.safe_load(file), view, rospy.get_param("flexarm/frame_prefix", ""), description)
+        config = fit(yaml.safe_load(file), view, rospy.get_param("flexarm/frame_prefix", ""), description,
+                     rospy.get_param("flexarm/interactive", False))
     # Kept, because rviz takes this process's place, and under one name for each arm, so that they do not pile up.
     name = "flexarm" + rosgraph.names.get_ros_namespace().replace("/", "_").rstrip("_") + ".rviz"
     path = os.path.join(rospkg.get_ros_home(), name)

@@ -1,56 +1,194 @@
 #include "messages/marker_messages.h"
 
 #include <algorithm>
+#include <stdexcept>
+#include <type_traits>
+#include <variant>
 
-#include "messages/strain_legend.h"
-#include "messages/tube.h"
+#include <fmt/format.h>
+
+#include "flexarm/scene/scene_description.h"
+#include "messages/colors.h"
+#include "messages/conversions.h"
+#include "messages/legend.h"
+#include "messages/markers.h"
+#include "messages/mesh_file.h"
 
 namespace flexarm::messages {
 namespace {
 
 constexpr int kPointsBetweenNodes = 3;  ///< so that bending looks smooth
-/// Of a tube, as a part of the scene's radius: a rod of 3 mm by 2 m would be hard to see.
-constexpr double kSmallestRadius = 0.008;
+// As parts of the scene's radius:
+constexpr double kSmallestRadius = 0.008;  ///< of a tube: a rod of 3 mm by 2 m would be hard to see
+constexpr double kTrailWidth = 0.004, kTextHeight = 0.07, kTextPlace = -1.15;
 /// What is below is the round-off of a beam without load.
-constexpr double kSmallestScale = 1e-9;
+constexpr double kSmallestStrain = 1e-9;
+
+const ArrowKind kEfforts{"joint efforts", make_color(1, 0.65, 0.1)};
+const ArrowKind kWrenches{"applied wrenches", make_color(1, 0.35, 0.8)};
+const ArrowKind kReactions{"reactions", make_color(0.6, 0.9, 1)};
+
+bool measures_reaction(const scene::Sensor& sensor) {
+  return sensor.kind == scene::SensorKind::Wrench || sensor.kind == scene::SensorKind::Reaction;
+}
+
+TriangleMesh mesh_of(const scene::VisualDescription& visual) {
+  return std::visit(
+      [](const auto& shape) {
+        using Shape = std::decay_t<decltype(shape)>;
+        if constexpr (std::is_same_v<Shape, scene::BoxShape>) return box_mesh(shape);
+        if constexpr (std::is_same_v<Shape, scene::CylinderShape>) return cylinder_mesh(shape);
+        if constexpr (std::is_same_v<Shape, scene::SphereShape>) return sphere_mesh(shape);
+        if constexpr (std::is_same_v<Shape, scene::MeshShape>) return read_mesh(shape);
+      },
+      visual.shape);
+}
+
+/// The shapes of a link's <visual>, or a tube of that radius where there is none that can be drawn.
+std::vector<Skin> skins_of(const scene::LinkDescription& link, const std::vector<Pose>& sections, double radius,
+                           const MarkerMessages::Warn& warn) {
+  std::vector<Skin> skins;
+  for (const scene::VisualDescription& visual : link.visuals) try {
+      TriangleMesh mesh;
+      mesh.add(mesh_of(visual), visual.origin);
+      skins.emplace_back(mesh, sections);
+    } catch (const std::runtime_error& error) {
+      const auto* file = std::get_if<scene::MeshShape>(&visual.shape);
+      warn(
+          fmt::format("link '{}': its <visual> '{}' is not drawn: {}", link.name, file ? file->url : "", error.what()));
+    }
+  if (skins.empty()) skins.push_back(Skin::tube(sections, radius));
+  return skins;
+}
+
+/// Free of what the motion exchanges: only errors of the steps change it [J].
+double balance(const Energies& energies) {
+  return energies.total() - energies.work + energies.dissipated;
+}
 
 }  // namespace
 
-MarkerMessages::MarkerMessages(const Simulation& simulation, const std::string& root_frame)
+bool* MarkerChoice::find(const std::string& name) {
+  bool* const members[] = {&beams, &trails, &efforts, &wrenches, &reactions, &text, &legend};
+  const auto found = std::find(names().begin(), names().end(), name);
+  return found == names().end() ? nullptr : members[found - names().begin()];
+}
+
+const std::vector<std::string>& MarkerChoice::names() {
+  static const std::vector<std::string> names{"beams", "trails", "efforts", "wrenches", "reactions", "text", "legend"};
+  return names;
+}
+
+MarkerMessages::MarkerMessages(const Simulation& simulation, const std::string& root_frame, const MarkerChoice& choice,
+                               const Warn& warn)
     : simulation_(simulation),
       root_frame_(root_frame),
+      choice_(choice),
       extent_(scene_extent(simulation)),
-      points_(simulation.link_names().size()) {}
-
-visualization_msgs::MarkerArray MarkerMessages::make(const ros::Time& stamp) {
-  for (std::size_t link = 0; link < points_.size(); ++link) {
-    points_[link].clear();
-    simulation_.beam_points(link, kPointsBetweenNodes, points_[link]);
-    const double radius = simulation_.beam_radius(link);
-    for (const BeamPoint& point : points_[link])
-      largest_strain_ = std::max(largest_strain_, edge_strain(point, radius));
+      energy_(balance(simulation.energies())),
+      trails_(simulation, choice.trail_duration) {
+  for (std::size_t link = 0; link < simulation.link_names().size(); ++link) {
+    if (!simulation.is_flexible(link)) continue;
+    const double radius = std::max(simulation.beam_radius(link), kSmallestRadius * extent_.radius);
+    beams_.push_back({link,
+                      skins_of(simulation.scene().links[link],
+                               simulation.undeformed_sections(link, kPointsBetweenNodes), radius, warn),
+                      {},
+                      {}});
   }
+}
+
+void MarkerMessages::begin_anew() {
+  largest_strain_ = 0;
+  arrow_scale_ = {};
+  trails_.forget();
+}
+
+visualization_msgs::MarkerArray MarkerMessages::make(const ros::Time& stamp, std::optional<double> real_time_factor) {
   std_msgs::Header header;
   header.stamp = stamp;
   header.frame_id = root_frame_;
   visualization_msgs::MarkerArray message;
-  for (std::size_t link = 0; link < points_.size(); ++link) {
-    if (points_[link].empty()) continue;
-    message.markers.push_back(
-        make_marker(header, simulation_.link_names()[link], visualization_msgs::Marker::TRIANGLE_LIST));
-    draw_beam(link, message.markers.back());
+  if (choice_.beams) add_beams(header, message);
+  add_all_arrows(header, message);
+  if (choice_.trails) {
+    trails_.update();
+    trails_.add_to(header, kTrailWidth * extent_.radius, message);
   }
-  if (!message.markers.empty()) add_strain_legend(header, extent_, largest_strain_, message);
+  if (choice_.text) add_text(header, real_time_factor, message);
+  if (choice_.legend) {
+    LegendContent content{std::nullopt, arrow_scale_, {}};
+    if (choice_.beams && !beams_.empty()) content.largest_strain = largest_strain_;
+    if (choice_.efforts && !efforts_.empty()) content.kinds.push_back(kEfforts);
+    if (choice_.wrenches) content.kinds.push_back(kWrenches);
+    if (!reactions_.empty()) content.kinds.push_back(kReactions);
+    add_legend(header, extent_, content, message);
+  }
+  delete_others(header, message);
   return message;
 }
 
-void MarkerMessages::draw_beam(std::size_t link, visualization_msgs::Marker& marker) const {
-  const double radius = simulation_.beam_radius(link);
-  const double scale = std::max(largest_strain_, kSmallestScale);
-  Tube tube(marker, std::max(radius, kSmallestRadius * extent_.radius));
-  for (const BeamPoint& point : points_[link])
-    tube.add_section(point.pose, make_color(edge_strain(point, radius) / scale));
-  tube.close();
+void MarkerMessages::add_beams(const std_msgs::Header& header, visualization_msgs::MarkerArray& message) {
+  for (Beam& beam : beams_) {
+    const double radius = simulation_.beam_radius(beam.link);
+    beam.points.clear();
+    simulation_.beam_points(beam.link, kPointsBetweenNodes, beam.points);
+    beam.sections.clear();
+    for (const BeamPoint& point : beam.points) {
+      beam.sections.push_back({point.pose, edge_strain(point, radius)});
+      largest_strain_ = std::max(largest_strain_, beam.sections.back().strain);
+    }
+  }
+  const double scale = std::max(largest_strain_, kSmallestStrain);
+  for (Beam& beam : beams_) {
+    for (Skin::Section& section : beam.sections) section.strain /= scale;
+    message.markers.push_back(
+        make_marker(header, simulation_.link_names()[beam.link], visualization_msgs::Marker::TRIANGLE_LIST));
+    for (Skin& skin : beam.skins) skin.draw(beam.sections, message.markers.back());
+  }
+}
+
+void MarkerMessages::add_all_arrows(const std_msgs::Header& header, visualization_msgs::MarkerArray& message) {
+  if (choice_.efforts) simulation_.effort_wrenches(efforts_);
+  if (choice_.wrenches) simulation_.outside_wrenches(wrenches_);
+  reactions_.clear();
+  const std::vector<scene::Sensor>& sensors = simulation_.scene().sensors;
+  for (std::size_t i = 0; i < sensors.size() && choice_.reactions; ++i)
+    if (measures_reaction(sensors[i])) reactions_.push_back(simulation_.sensed_wrench(i));
+  for (const auto* shown : {&efforts_, &wrenches_, &reactions_}) arrow_scale_.note(*shown);
+  const auto add = [&](const ArrowKind& kind, const std::vector<ActingWrench>& wrenches) {
+    add_arrows(header, kind.name, wrenches, arrow_scale_, extent_.radius, kind.color, message);
+  };
+  add(kEfforts, efforts_);
+  add(kWrenches, wrenches_);
+  add(kReactions, reactions_);
+}
+
+void MarkerMessages::add_text(const std_msgs::Header& header, std::optional<double> real_time_factor,
+                              visualization_msgs::MarkerArray& message) const {
+  const Energies energies = simulation_.energies();
+  visualization_msgs::Marker text = make_marker(header, "text", visualization_msgs::Marker::TEXT_VIEW_FACING, 1);
+  text.pose.position = to_point(extent_.center + kTextPlace * extent_.radius * Vector3::UnitZ());
+  text.scale.z = kTextHeight * extent_.radius;
+  text.text = fmt::format("t = {:.2f} s", simulation_.time());
+  if (real_time_factor) text.text += fmt::format(", {:.2f} x real time", *real_time_factor);
+  text.text += fmt::format("\nkinetic {:.3g} J, strain {:.3g} J, potential {:.3g} J", energies.kinetic, energies.strain,
+                           energies.potential);
+  text.text += fmt::format("\nwork {:.3g} J, dissipated {:.3g} J, error of the steps {:.1g} J", energies.work,
+                           energies.dissipated, balance(energies) - energy_);
+  message.markers.push_back(text);
+}
+
+void MarkerMessages::delete_others(const std_msgs::Header& header, visualization_msgs::MarkerArray& message) {
+  std::set<std::pair<std::string, int>> present;
+  for (const visualization_msgs::Marker& marker : message.markers) present.emplace(marker.ns, marker.id);
+  for (const auto& [name, id] : shown_) {
+    if (present.count({name, id}) > 0) continue;
+    visualization_msgs::Marker gone = make_marker(header, name, visualization_msgs::Marker::TRIANGLE_LIST, id);
+    gone.action = visualization_msgs::Marker::DELETE;
+    message.markers.push_back(gone);
+  }
+  shown_.merge(present);
 }
 
 }  // namespace flexarm::messages

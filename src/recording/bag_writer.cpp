@@ -1,6 +1,8 @@
 #include "recording/bag_writer.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <optional>
 
 #include <ros/message_traits.h>
 
@@ -31,7 +33,8 @@ void BagWriter::checked(const Write& write) {
 BagWriter::BagWriter(const std::string& path, const Simulation& simulation)
     : place_(path),
       states_(simulation, ""),
-      markers_(simulation, simulation.scene().root_link),
+      markers_(simulation, simulation.scene().root_link, {},
+               [](const std::string& warning) { std::fprintf(stderr, "%s\n", warning.c_str()); }),
       next_markers_(simulation.time()),
       sampled_(simulation.scene().sensors.size(), -1) {
   checked([&] {
@@ -64,7 +67,7 @@ void BagWriter::write_row(const Simulation& simulation) {
     write_samples(simulation);
     if (simulation.time() < next_markers_) return;
     next_markers_ += kMarkerPeriod;
-    bag_.write("/beam_markers", stamp, markers_.make(stamp));
+    bag_.write("/beam_markers", stamp, markers_.make(stamp, std::nullopt));
   });
 }
 

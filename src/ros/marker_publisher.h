@@ -1,5 +1,5 @@
 #pragma once
-/// beam_markers: the deformed beams as tubes for rviz.
+/// beam_markers: deformed beams, arrows, trails and text for rviz.
 
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
@@ -10,6 +10,7 @@
 #include "flexarm/simulation/simulation.h"
 #include "messages/marker_messages.h"
 #include "publication_schedule.h"
+#include "real_time_factor.h"
 #include "run_state.h"
 
 namespace flexarm::node {
@@ -18,7 +19,7 @@ namespace flexarm::node {
 class MarkerPublisher {
  public:
   MarkerPublisher(ros::NodeHandle& node, const Simulation& simulation, const RunState& run, double rate,
-                  const std::string& frame_prefix);
+                  const std::string& frame_prefix, const messages::MarkerChoice& choice);
   MarkerPublisher(const MarkerPublisher&) = delete;
   MarkerPublisher& operator=(const MarkerPublisher&) = delete;
 
@@ -27,14 +28,19 @@ class MarkerPublisher {
   /// Begins anew at a rate [Hz], with any stamp.
   void set_rate(double rate) { schedule_ = PublicationSchedule(rate); }
   void publish(const ros::Time& stamp, bool force);
-  /// After a reset: the scale of the colours begins anew.
-  void forget_largest_strain() { messages_->forget_largest_strain(); }
+  /// After a reset: scales and trails begin anew.
+  void begin_anew() { messages_->begin_anew(); }
 
  private:
+  visualization_msgs::MarkerArray make_message();
+
   const Simulation& simulation_;
+  const RunState& run_;
   std::string frame_prefix_;
+  messages::MarkerChoice choice_;
   PublicationSchedule schedule_;
   std::optional<messages::MarkerMessages> messages_;
+  RealTimeFactor real_time_factor_{RealTimeFactor::Clock::now()};
   ros::Time stamp_;  ///< of the current state
   ros::Publisher publisher_;
 };

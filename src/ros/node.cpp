@@ -4,7 +4,9 @@
 #include <ros/init.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -45,7 +47,7 @@ Node::Node()
                        period(shown_.step_size(), parameters_)),
       state_publisher_(node_, shown_, run_, parameters_.publish_rate, parameters_.frame_prefix),
       beam_state_publisher_(node_, shown_, run_, parameters_.publish_rate, parameters_.frame_prefix),
-      marker_publisher_(node_, shown_, run_, parameters_.marker_rate, parameters_.frame_prefix),
+      marker_publisher_(node_, shown_, run_, parameters_.marker_rate, parameters_.frame_prefix, parameters_.markers),
       sensor_publisher_(node_, shown_, run_, parameters_.frame_prefix),
       status_publisher_(private_node_, shown_, run_, parameters_.status_rate, parameters_.frame_prefix),
       diagnostics_(node_, private_node_, shown_, run_),
@@ -55,6 +57,7 @@ Node::Node()
                          {[this](const ros::Time& stamp) { return simulated_time(stamp); }, parameters_.command_timeout,
                           parameters_.stop_duration}),
       frame_watch_(node_, state_publisher_.frames()),
+      handle_schedule_(parameters_.marker_rate),
       services_(private_node_, *this),
       reconfiguration_(private_node_, *this),
       master_watch_(service_names()) {
@@ -62,6 +65,7 @@ Node::Node()
   run_.lock_step = parameters_.lock_step;
   announce();
   if (parameters_.realtime) be_real_time();
+  if (parameters_.interactive) be_interactive();
   describe_view();
   publish_news();
   timer_ = node_.createSteadyTimer(kTickPeriod, [this](const ros::SteadyTimerEvent&) { tick(); });
@@ -93,8 +97,25 @@ std::vector<std::string> Node::service_names() const {
   return names;
 }
 
+void Node::be_interactive() {
+  const double mass = shown_.mass();
+  // Of the whole mass on this spring: half a hertz, and half of the critical damping.
+  const auto given_or = [](double given, double fallback) { return given > 0 ? given : fallback; };
+  const PullHandles::Spring spring{given_or(parameters_.pull_stiffness, M_PI * M_PI * mass),
+                                   given_or(parameters_.pull_damping, M_PI * mass)};
+  const std::string root_frame = parameters_.frame_prefix + shown_.scene().root_link;
+  pull_handles_.emplace(private_node_, shown_, root_frame, spring, [this](const std::vector<AppliedWrench>& pulls) {
+    try {
+      stepping_.between_steps([&](Simulation&) { stepping_.wrenches().set_pulls(pulls); });
+    } catch (const std::invalid_argument& error) {
+      ROS_WARN_STREAM_THROTTLE(kWarningPeriod, "cannot pull: " << error.what());
+    }
+  });
+}
+
 void Node::tick() {
   take_reports();
+  if (pull_handles_) pull_handles_->let_go_of_lost();
   if (!run_.paused) warn_if_slow();
   diagnostics_.publish(false);
   clock_publisher_.warn_if_missing();
@@ -194,6 +215,7 @@ void Node::publish(bool force) {
   state_publisher_.publish(*stamp, force || run_.lock_step);  // who commands the next step waits for it
   beam_state_publisher_.publish(*stamp, force);
   marker_publisher_.publish(*stamp, force);
+  if (pull_handles_ && handle_schedule_.due(*stamp, force)) pull_handles_->follow();
   sensor_publisher_.publish(*stamp);
   status_publisher_.publish(*stamp, force);
 }
@@ -213,6 +235,7 @@ void Node::set_rates() {
   state_publisher_.set_rate(parameters_.publish_rate);
   beam_state_publisher_.set_rate(parameters_.publish_rate);
   marker_publisher_.set_rate(parameters_.marker_rate);
+  handle_schedule_ = PublicationSchedule(parameters_.marker_rate);
   status_publisher_.set_rate(parameters_.status_rate);
 }
 
@@ -288,6 +311,7 @@ void Node::adopt_scene() {
   sensor_publisher_.adopt_scene();
   command_interface_.adopt_scene();
   frame_watch_.watch(state_publisher_.frames());
+  if (parameters_.interactive) be_interactive();
   describe_view();
 }
 
@@ -350,7 +374,8 @@ std::string Node::switch_mode(const std::vector<std::string>& names, const std::
 void Node::begin_anew() {
   command_interface_.forget_commands();
   stepping_.wrenches().clear();
-  marker_publisher_.forget_largest_strain();
+  if (pull_handles_) pull_handles_->forget();
+  marker_publisher_.begin_anew();
   show_new_state();
 }
 
@@ -378,6 +403,7 @@ void Node::apply_wrench(const AppliedWrench& wrench, const ros::Time& start, dou
 
 void Node::clear_wrenches() {
   stepping_.between_steps([this](Simulation&) { stepping_.wrenches().clear(); });
+  if (pull_handles_) pull_handles_->forget();
 }
 
 bool Node::step(std::uint32_t steps) {

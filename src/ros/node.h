@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "beam_state_publisher.h"
 #include "bell.h"
@@ -20,6 +21,8 @@
 #include "marker_publisher.h"
 #include "master_watch.h"
 #include "parameters.h"
+#include "publication_schedule.h"
+#include "pull_handles.h"
 #include "reconfiguration.h"
 #include "run_state.h"
 #include "sensor_publisher.h"
@@ -69,6 +72,7 @@ class Node {
   /// @param duration  [s]; < 0: for ever, 0: nothing, less than a step: one step
   /// @throws std::invalid_argument as Simulation::apply_wrenches().
   void apply_wrench(const AppliedWrench& wrench, const ros::Time& start, double duration);
+  /// Those of pulls, too.
   void clear_wrenches();
   /// Makes steps whatever the wall clock says. @returns false if one failed; run().failure says why
   bool step(std::uint32_t steps);
@@ -91,6 +95,8 @@ class Node {
   bool advance();
   void warn_of_recoveries(const StepReport& report);
   void be_real_time();
+  /// Lets rviz pull on links.
+  void be_interactive();
   /// Where steps have been dropped since the last warning, not too often: how many, and why.
   void warn_if_slow();
   void publish(bool force);
@@ -144,6 +150,8 @@ class Node {
   SteppingThread stepping_;
   CommandInterface command_interface_;
   FrameWatch frame_watch_;
+  std::optional<PullHandles> pull_handles_;
+  PublicationSchedule handle_schedule_;
   Services services_;
   Reconfiguration reconfiguration_;
   MasterWatch master_watch_;

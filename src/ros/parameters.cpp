@@ -111,6 +111,28 @@ bool read_choice(ParameterReader& reader, const std::string& name, const std::st
   return value == choice;
 }
 
+/// Words with commas between them; all, if there is none.
+void read_markers(ParameterReader& reader, messages::MarkerChoice& choice) {
+  reader.read("trail_duration", choice.trail_duration);
+  std::string choices;
+  reader.read("markers", choices);
+  if (choices.empty()) return;
+  std::string known;
+  for (const std::string& name : messages::MarkerChoice::names()) {
+    *choice.find(name) = false;
+    known += (known.empty() ? "'" : ", '") + name + "'";
+  }
+  std::stringstream words(choices);
+  for (std::string word; std::getline(words, word, ',');) {
+    bool* const member = choice.find(word);
+    if (member)
+      *member = true;
+    else if (word != "none")
+      reader.complain("markers", "must be 'none', or some of " + known + " with commas between them",
+                      "'" + choices + "'");
+  }
+}
+
 /// As `--start` on the command line: words with commas between them.
 void read_start(ParameterReader& reader, scene::ReadOptions& options) {
   std::string choices;
@@ -155,7 +177,11 @@ Parameters read_parameters(const ros::NodeHandle& private_node) {
   reader.read("paused", parameters.paused);
   reader.read("publish_rate", parameters.publish_rate);
   reader.read("marker_rate", parameters.marker_rate);
+  read_markers(reader, parameters.markers);
   reader.read("status_rate", parameters.status_rate);
+  reader.read("interactive", parameters.interactive);
+  reader.read("pull_stiffness", parameters.pull_stiffness, true);
+  reader.read("pull_damping", parameters.pull_damping, true);
   reader.read("publish_clock", parameters.publish_clock);
   reader.read("clock_rate", parameters.clock_rate);
   reader.read("realtime", parameters.realtime);

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "flexarm/scene/scene_description.h"
+#include "messages/marker_messages.h"
 
 namespace flexarm::node {
 
@@ -22,7 +23,12 @@ struct Parameters {
   bool paused = false;          ///< at the start
   double publish_rate = 100;    ///< joint_states, /tf, beam_states [Hz]
   double marker_rate = 25;      ///< beam_markers [Hz]
-  double status_rate = 10;      ///< ~status [Hz]
+  messages::MarkerChoice markers;
+  double status_rate = 10;   ///< ~status [Hz]
+  bool interactive = false;  ///< handles in rviz that pull on links
+  // Of these; 0: by the scene's mass.
+  double pull_stiffness = 0;  ///< [N/m]
+  double pull_damping = 0;    ///< [N s/m]
   bool publish_clock = false;
   double clock_rate = 100;        ///< [Hz]
   std::string frame_prefix;       ///< of all names of frames: empty, or with a slash at its end

@@ -9,7 +9,14 @@ void WrenchSchedule::add(const AppliedWrench& wrench, double begin, double end) 
   // What cannot act is refused here, not where it would begin.
   simulation_.apply_wrenches({wrench});
   entries_.push_back({wrench, begin, end, false});
-  acting_.reserve(entries_.size());
+  acting_.reserve(pulls_.size() + entries_.size());
+  apply();
+}
+
+void WrenchSchedule::set_pulls(const std::vector<AppliedWrench>& pulls) {
+  simulation_.apply_wrenches(pulls);
+  pulls_ = pulls;
+  acting_.reserve(pulls_.size() + entries_.size());
   apply();
 }
 
@@ -28,11 +35,12 @@ void WrenchSchedule::update(double time) {
 
 void WrenchSchedule::clear() {
   entries_.clear();
+  pulls_.clear();
   apply();
 }
 
 void WrenchSchedule::apply() {
-  acting_.clear();
+  acting_.assign(pulls_.begin(), pulls_.end());
   for (const Entry& entry : entries_)
     if (entry.acts) acting_.push_back(entry.wrench);
   simulation_.apply_wrenches(acting_);

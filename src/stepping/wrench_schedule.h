@@ -1,5 +1,5 @@
 #pragma once
-/// Wrenches that services apply, each for its time.
+/// Wrenches that services apply, each for its time, and what pulls.
 
 #include <vector>
 
@@ -15,6 +15,9 @@ class WrenchSchedule {
   /// It acts in the steps whose middle is from `begin` to `end`.
   /// @throws std::invalid_argument as Simulation::apply_wrenches().
   void add(const AppliedWrench& wrench, double begin, double end);
+  /// These act from the next step on, in place of the pulls of before.
+  /// @throws std::invalid_argument as Simulation::apply_wrenches(); all is as before then.
+  void set_pulls(const std::vector<AppliedWrench>& pulls);
   /// Before each step, from `time` on.
   void update(double time);
   /// Takes all away, those that are yet to come, too.
@@ -31,7 +34,8 @@ class WrenchSchedule {
 
   Simulation& simulation_;
   std::vector<Entry> entries_;
-  std::vector<AppliedWrench> acting_;  ///< scratch with room for all entries
+  std::vector<AppliedWrench> pulls_;
+  std::vector<AppliedWrench> acting_;  ///< scratch with room for all entries and pulls
 };
 
 }  // namespace flexarm::node

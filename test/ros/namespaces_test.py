@@ -7,6 +7,7 @@ import rospy
 import rostest
 from flexarm.msg import BeamStateArray, JointForceCommand, SimulatorStatus
 from rosgraph_msgs.msg import Log
+from sensor_msgs.msg import JointState
 from simulated_arm import PATIENCE, CommandTopic, SimulatedArm, force_command, wait_until
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import MarkerArray
@@ -91,6 +92,22 @@ class TwoArms(unittest.TestCase):
 
         wait_until(right_follows, "the right arm to take over the clock")
         self.assertEqual(rospy.get_rostime(), stamp)
+
+    def test_another_robot_has_its_robot_state_publisher(self):
+        states = CommandTopic("/other/joint_states", JointState)
+
+        def has_frames():
+            self.assertTrue(self.left.step(1).success)  # the clock of the other robot, too
+            message = JointState(name=["shoulder", "elbow"], position=[0.1, 0.2])
+            message.header.stamp = rospy.get_rostime()
+            states.send(message)
+            publisher = "/other/robot_state_publisher"
+            return {(publisher, "other/upper_arm"), (publisher, "other/forearm")} <= set(self.parents)
+
+        wait_until(has_frames, "its frames")
+        frames = [frame for _, frame in self.parents]
+        self.assertEqual(sorted(frames), sorted(set(frames)), "a frame has two publishers")
+        self.assertEqual(self.warnings, [])
 
 
 if __name__ == "__main__":

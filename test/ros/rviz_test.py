@@ -44,6 +44,8 @@ class Rviz(unittest.TestCase):
     def test_draws_rigid_links_and_beams(self):
         displays = {display["Class"]: display for display in self.manager["Displays"]}
         self.assertEqual(displays["rviz/MarkerArray"]["Marker Topic"], "beam_markers")
+        handles = displays["rviz/InteractiveMarkers"]
+        self.assertEqual((handles["Update Topic"], handles["Enabled"]), ("/left/flexarm/pull/update", False))
         model = displays["rviz/RobotModel"]
         self.assertEqual(model["TF Prefix"], "left")
         robot = xml.etree.ElementTree.fromstring(rospy.get_param(model["Robot Description"]))

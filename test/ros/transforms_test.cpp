@@ -190,13 +190,13 @@ TEST_F(BentArm, LegendNamesTheLargestStrain) {
   double largest = 0;
   std::set<int> ids;
   for (const visualization_msgs::Marker& marker : message->markers) {
-    if (marker.ns != "legend") continue;
+    if (marker.ns != "legend" || marker.action != visualization_msgs::Marker::ADD) continue;
     EXPECT_TRUE(ids.insert(marker.id).second);
     char* end = nullptr;
     const double number = std::strtod(marker.text.c_str(), &end);
     if (std::string(end) == " %") largest = std::max(largest, number / 100);
   }
-  EXPECT_EQ(ids.size(), 5u);  // the bar, three numbers, what they are
+  EXPECT_GE(ids.size(), 5u);  // the bar, three numbers, what they are; then arrows
   std::vector<BeamPoint> points;
   twin_->beam_points(boom_, 3, points);
   const double expected = bending_strain(points, twin_->beam_radius(boom_));

@@ -1,0 +1,106 @@
+#include "messages/legend.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "messages/colors.h"
+#include "messages/conversions.h"
+#include "messages/markers.h"
+#include "messages/triangle_mesh.h"
+
+namespace flexarm::messages {
+namespace {
+
+// Lengths as parts of the scene's radius.
+constexpr double kDistance = 1.25;  ///< from the scene's centre
+constexpr double kHalfHeight = 0.4;
+constexpr double kBarRadius = 0.025;
+constexpr double kTextHeight = 0.08;
+constexpr double kTextDistance = 0.2;  ///< from the bar
+constexpr double kLine = 0.13;         ///< from one line of text to the next
+
+constexpr const char* kName = "legend";
+
+class Legend {
+ public:
+  Legend(const std_msgs::Header& header, const SceneExtent& extent, visualization_msgs::MarkerArray& message)
+      : header_(header), extent_(extent), message_(message) {}
+
+  void add_bar(double largest) {
+    const auto height = [](double part) { return (2 * part - 1) * kHalfHeight; };
+    const Quaternion upright(Eigen::AngleAxisd(-M_PI / 2, Vector3::UnitY()));
+    constexpr int kParts = 4;
+    std::vector<Pose> sections;
+    for (int k = 0; k <= kParts; ++k) sections.push_back({place(0, height(k / double(kParts))), upright});
+    const TriangleMesh mesh = tube_mesh(sections, std::vector<double>(sections.size(), kBarRadius * extent_.radius));
+    visualization_msgs::Marker bar = next(visualization_msgs::Marker::TRIANGLE_LIST);
+    draw(mesh, bar);
+    const double foot = place(0, height(0)).z(), whole = place(0, height(1)).z() - foot;
+    for (const TriangleMesh::Triangle& triangle : mesh.triangles)
+      for (const int corner : triangle) {
+        const auto& [position, normal] = mesh.vertices[corner];
+        bar.colors.push_back(lit(strain_color((position.z() - foot) / whole), normal));
+      }
+    message_.markers.push_back(bar);
+    for (const double part : {0.0, 0.5, 1.0})
+      add_text(-kTextDistance, height(part), fmt::format("{:.2g} %", 100 * part * largest));
+    add_text(0, height(1) + 2 * kTextHeight, "edge strain");
+  }
+
+  /// Below the bar.
+  void add_arrows(const ArrowScale& scale, const std::vector<ArrowKind>& kinds) {
+    double height = -kHalfHeight - kLine;
+    if (scale.force > 0) {
+      // Seen from the -y side, where the camera stands, it points to the right.
+      add_sample({place(-0.5 * kLongestArrow, height), {Vector3(scale.force, 0, 0), Vector3::Zero()}}, scale);
+      height -= kLine;
+      add_text(0, height, fmt::format("{:.2g} N", scale.force));
+    }
+    if (scale.moment > 0) {
+      height -= kLargestCircle + 0.5 * kLine;
+      add_sample({place(0, height), {Vector3::Zero(), Vector3(0, -scale.moment, 0)}}, scale);
+      height -= kLargestCircle + 0.5 * kLine;
+      add_text(0, height, fmt::format("{:.2g} N m", scale.moment));
+    }
+    if (scale.force == 0 && scale.moment == 0) return;
+    for (const ArrowKind& kind : kinds) add_text(0, height -= kLine, kind.name, kind.color);
+  }
+
+ private:
+  visualization_msgs::Marker next(int type) { return make_marker(header_, kName, type, ++last_id_); }
+  /// In the legend's plane, as parts of the scene's radius.
+  Vector3 place(double right, double up) const {
+    return extent_.center + extent_.radius * Vector3(right - kDistance, 0, up);
+  }
+  void add_text(double right, double up, const std::string& text,
+                const std_msgs::ColorRGBA& color = make_color(1, 1, 1)) {
+    visualization_msgs::Marker marker = next(visualization_msgs::Marker::TEXT_VIEW_FACING);
+    marker.pose.position = to_point(place(right, up));
+    marker.scale.z = kTextHeight * extent_.radius;
+    marker.color = color;
+    marker.text = text;
+    message_.markers.push_back(marker);
+  }
+  void add_sample(const ActingWrench& wrench, const ArrowScale& scale) {
+    visualization_msgs::Marker marker = next(visualization_msgs::Marker::TRIANGLE_LIST);
+    draw(arrow_mesh(wrench, scale, extent_.radius), marker);
+    add_if_any(std::move(marker), message_);
+  }
+
+  const std_msgs::Header& header_;
+  const SceneExtent& extent_;
+  visualization_msgs::MarkerArray& message_;
+  int last_id_ = 0;
+};
+
+}  // namespace
+
+void add_legend(const std_msgs::Header& header, const SceneExtent& extent, const LegendContent& content,
+                visualization_msgs::MarkerArray& message) {
+  Legend legend(header, extent, message);
+  if (content.largest_strain) legend.add_bar(*content.largest_strain);
+  legend.add_arrows(content.arrows, content.kinds);
+}
+
+}  // namespace flexarm::messages

@@ -1,0 +1,220 @@
+// What a simulation looks like in rviz.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "messages/conversions.h"
+#include "messages/marker_messages.h"
+#include "scene/scene_builder.h"
+
+namespace flexarm::messages {
+namespace {
+
+using scene::JointKind;
+using visualization_msgs::Marker;
+using visualization_msgs::MarkerArray;
+
+/// An arm with a motor, a beam, a probe, and a cell between both.
+scene::SceneBuilder arm() {
+  scene::SceneBuilder b("arm");
+  b.scene.integrator.step = 0.01;
+  b.body("hub", 2, Vector3::Zero(), Matrix3::Identity());
+  b.beam("boom", {{2, 0, 0}}, scene::DirectSection{2e4, 1e4, 1e4, 200, 250, 300, 0.5, 0.02, 0.01, 0.01}, 2, 2);
+  b.joint("motor", JointKind::Revolute, "world", "hub");
+  b.joint("weld", JointKind::Fixed, "hub", "boom");
+  b.probe("tip", "boom", {2, 0, 0});
+  b.sensor("cell", scene::SensorKind::Reaction, "boom");
+  return b;
+}
+
+class Markers : public ::testing::Test {
+ protected:
+  explicit Markers(const scene::SceneBuilder& builder = arm()) : simulation_(builder.scene) {}
+  MarkerMessages messages(const MarkerChoice& choice = {}) {
+    return {simulation_, "frame", choice, [this](const std::string& text) { warnings_.push_back(text); }};
+  }
+  void step(int steps) {
+    for (int n = 0; n < steps; ++n) ASSERT_TRUE(simulation_.step().converged);
+  }
+  Simulation simulation_;
+  std::vector<std::string> warnings_;
+};
+
+MarkerArray shown(MarkerMessages& messages) {
+  return messages.make(ros::Time(1), 0.5);
+}
+
+const Marker* find(const MarkerArray& message, const std::string& name, int action = Marker::ADD) {
+  const auto found = std::find_if(message.markers.begin(), message.markers.end(),
+                                  [&](const Marker& marker) { return marker.ns == name && marker.action == action; });
+  return found == message.markers.end() ? nullptr : &*found;
+}
+
+std::set<std::string> names(const MarkerArray& message) {
+  std::set<std::string> names;
+  for (const Marker& marker : message.markers)
+    if (marker.action == Marker::ADD) names.insert(marker.ns);
+  return names;
+}
+
+/// The largest distance of a marker's points from a line, and the farthest way along it.
+double reach_along(const Marker& marker, const Vector3& from, const Vector3& along) {
+  double farthest = 0;
+  for (const geometry_msgs::Point& point : marker.points)
+    farthest = std::max(farthest, (to_vector(point) - from).dot(along.normalized()));
+  return farthest;
+}
+
+TEST_F(Markers, HaveAllThatThereIs) {
+  MarkerMessages messages = this->messages();
+  simulation_.command_effort(0, 5);
+  simulation_.apply_wrenches({{2, {2, 0, 0}, {{0, 0, 3}, Vector3::Zero()}, false, {}}});
+  shown(messages);
+  step(5);
+  const MarkerArray message = shown(messages);
+  EXPECT_EQ(names(message), (std::set<std::string>{"boom", "trails", "joint efforts", "applied wrenches", "reactions",
+                                                   "text", "legend"}));
+  std::set<std::pair<std::string, int>> ids;
+  for (const Marker& marker : message.markers) {
+    EXPECT_TRUE(ids.emplace(marker.ns, marker.id).second) << marker.ns << marker.id;
+    EXPECT_EQ(marker.header.frame_id, "frame");
+    EXPECT_EQ(marker.header.stamp, ros::Time(1));
+    for (const geometry_msgs::Point& point : marker.points) EXPECT_TRUE(to_vector(point).allFinite());
+    if (marker.type == Marker::TRIANGLE_LIST) EXPECT_EQ(marker.points.size() % 3, 0u);
+  }
+}
+
+TEST_F(Markers, HaveWhatIsChosen) {
+  simulation_.command_effort(0, 5);
+  step(5);
+  for (const std::string& name : MarkerChoice::names()) {
+    MarkerChoice choice{false, false, false, false, false, false, false};
+    *choice.find(name) = true;
+    MarkerMessages messages = this->messages(choice);
+    shown(messages);
+    EXPECT_LE(names(shown(messages)).size(), 1u) << name;
+  }
+  EXPECT_EQ(MarkerChoice().find("beam"), nullptr);
+}
+
+// The longest arrow is the largest force since the start, and the legend names it; a reset begins anew.
+TEST_F(Markers, ArrowsAreAsLongAsForcesAreLarge) {
+  MarkerMessages messages = this->messages();
+  const double radius = scene_extent(simulation_).radius;
+  const auto force = [&](double z) {
+    simulation_.apply_wrenches({{2, {2, 0, 0}, {{0, 0, z}, Vector3::Zero()}, false, {}}});
+    return shown(messages);
+  };
+  const auto length = [&](const MarkerArray& message) {
+    return reach_along(*find(message, "applied wrenches"), simulation_.tip_pose(2).position, Vector3::UnitZ());
+  };
+  EXPECT_EQ(find(force(0), "applied wrenches"), nullptr);
+  EXPECT_NEAR(length(force(8)), kLongestArrow * radius, 1e-9);
+  EXPECT_NEAR(length(force(2)), kLongestArrow * radius / 4, 1e-9);
+  const MarkerArray message = force(2);
+  EXPECT_TRUE(std::any_of(message.markers.begin(), message.markers.end(),
+                          [](const Marker& marker) { return marker.text == "8 N"; }));
+  messages.begin_anew();
+  EXPECT_NEAR(length(force(2)), kLongestArrow * radius, 1e-9);
+}
+
+TEST_F(Markers, MomentsGoAroundTheirAxes) {
+  MarkerMessages messages = this->messages();
+  simulation_.command_effort(0, 5);
+  step(1);
+  const Marker efforts = *find(shown(messages), "joint efforts");
+  const double circle = kLargestCircle * scene_extent(simulation_).radius;
+  double turn = 0;
+  for (const geometry_msgs::Point& point : efforts.points) {
+    EXPECT_NEAR(std::hypot(point.x, point.y), circle, 0.2 * circle);
+    turn = std::max(turn, std::atan2(point.y, point.x));
+  }
+  EXPECT_GT(turn, 3);  // it goes around
+}
+
+// What rviz has drawn has to be taken away by who drew it.
+TEST_F(Markers, WhatIsNotThereAnyMoreIsDeleted) {
+  MarkerMessages messages = this->messages();
+  simulation_.apply_wrenches({{2, {2, 0, 0}, {{0, 0, 3}, Vector3::Zero()}, false, {}}});
+  EXPECT_NE(find(shown(messages), "applied wrenches"), nullptr);
+  simulation_.apply_wrenches({});
+  for (int k = 0; k < 2; ++k) {  // and again, in case that the message got lost
+    const MarkerArray message = shown(messages);
+    EXPECT_EQ(find(message, "applied wrenches"), nullptr);
+    EXPECT_NE(find(message, "applied wrenches", Marker::DELETE), nullptr);
+  }
+}
+
+TEST_F(Markers, TrailsAreBounded) {
+  MarkerChoice choice;
+  choice.trail_duration = 0.5;
+  MarkerMessages messages = this->messages(choice);
+  simulation_.command_effort(0, 5);
+  for (int n = 0; n < 100; ++n) {
+    step(1);
+    shown(messages);
+  }
+  const Marker trail = *find(shown(messages), "trails");
+  EXPECT_NEAR(static_cast<double>(trail.points.size()), 51, 1);
+  EXPECT_LT((to_vector(trail.points.back()) - simulation_.tip_pose(2).position).norm(), 1e-12);
+  EXPECT_NEAR(trail.colors.front().a, 0, 0.05);
+  EXPECT_EQ(trail.colors.back().a, 1);
+  simulation_.reset();
+  EXPECT_EQ(find(shown(messages), "trails"), nullptr);
+  // However many messages are made:
+  choice.trail_duration = 50;
+  MarkerMessages others = this->messages(choice);
+  for (int n = 0; n < 1500; ++n) {
+    step(1);
+    others.make(ros::Time(1), 1.0);
+  }
+  EXPECT_LE(find(shown(others), "trails")->points.size(), 502u);
+  EXPECT_GE(find(shown(others), "trails")->points.size(), 100u);
+}
+
+TEST_F(Markers, TextHasTimeFactorAndEnergies) {
+  MarkerMessages messages = this->messages();
+  simulation_.command_effort(0, 5);
+  step(50);
+  const std::string text = find(shown(messages), "text")->text;
+  for (const char* part : {"t = 0.50 s", "0.50 x real time", "kinetic", "strain", "potential", "work", "dissipated"})
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  const std::string error = text.substr(text.find("error of the steps") + 19);
+  EXPECT_LT(std::abs(std::stod(error)), 1e-9 * simulation_.energies().kinetic) << text;
+  EXPECT_EQ(find(messages.make(ros::Time(1), std::nullopt), "text")->text.find("real time"), std::string::npos);
+}
+
+TEST_F(Markers, ShapesThatCannotBeReadAreToldOfOnceAndTheTubeStays) {
+  scene::SceneBuilder b = arm();
+  scene::LinkDescription& boom = b.scene.links.back();
+  boom.visuals.push_back({Pose(), scene::MeshShape{"package://no_such_package/boom.stl"}});
+  Simulation simulation(b.scene);
+  MarkerMessages broken(simulation, "frame", {}, [this](const std::string& text) { warnings_.push_back(text); });
+  MarkerMessages plain = messages();
+  ASSERT_EQ(warnings_.size(), 1u);
+  EXPECT_NE(warnings_[0].find("'boom'"), std::string::npos);
+  EXPECT_NE(warnings_[0].find("package://no_such_package/boom.stl"), std::string::npos);
+  EXPECT_EQ(find(shown(broken), "boom")->points, find(shown(plain), "boom")->points);
+  EXPECT_EQ(warnings_.size(), 1u);
+}
+
+TEST_F(Markers, ShapesTakeTheTubesPlace) {
+  scene::SceneBuilder b = arm();
+  b.scene.links.back().visuals.push_back({{Vector3(1, 0, 0), Quaternion::Identity()}, scene::BoxShape{{2, 0.3, 0.2}}});
+  Simulation simulation(b.scene);
+  MarkerMessages messages(simulation, "frame", {}, nullptr);
+  const Marker boom = *find(shown(messages), "boom");
+  double y = 0, z = 0;
+  for (const geometry_msgs::Point& point : boom.points) {
+    y = std::max(y, std::abs(point.y));
+    z = std::max(z, std::abs(point.z));
+  }
+  EXPECT_NEAR(y, 0.15, 1e-12);
+  EXPECT_NEAR(z, 0.1, 1e-12);
+}
+
+}  // namespace
+}  // namespace flexarm::messages
