@@ -34,7 +34,7 @@ void MarkerPublisher::publish(const ros::Time& stamp, bool force) {
 
 visualization_msgs::MarkerArray MarkerPublisher::make_message() {
   return messages_->make(stamp_,
-                        real_time_factor_.measure(run_.simulated_time, RealTimeFactor::Clock::now(), run_.paused));
+                         real_time_factor_.measure(run_.simulated_time, RealTimeFactor::Clock::now(), run_.paused));
 }
 
 }  // namespace flexarm::node
