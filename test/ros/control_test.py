@@ -1,7 +1,9 @@
 #!/usr/bin/python3
-"""A PD controller that closes its loop on joint_states holds the guide's second arm, the demo, and a six-axis robot."""
+"""PD controllers that close their loop on joint_states hold the guide's second arm, the demo, and a six-axis robot: one
+in roscpp at 1 kHz, one in rospy at 100 Hz."""
 
 import math
+import subprocess
 import time
 import unittest
 
@@ -10,20 +12,17 @@ import rospy
 import rostest
 from flexarm.msg import JointForceCommand
 from sensor_msgs.msg import JointState
-from simulated_arm import CommandTopic, SimulatedArm, force_command, wait_until
+from simulated_arm import PATIENCE, CommandTopic, SimulatedArm, force_command, wait_until
 
 DURATION = 10.0  # s, of each loop
 
 
-class Controller:
-    """Efforts stiffness (set point - position) - damping velocity on every joint, at every `every`-th message;
-    `stiffness`, `damping`: for all joints, or one for each."""
+class Listener:
+    """Of joint_states: errors of positions and velocities beside set points, which are `offset` from the first ones."""
 
-    def __init__(self, namespace, stiffness, damping, offset, every):
-        self.stiffness, self.damping, self.offset, self.every = stiffness, damping, offset, every
-        self.commands = CommandTopic(namespace + "/joint_force_command", JointForceCommand)
+    def __init__(self, namespace, offset):
+        self.offset = offset
         self.set_points = None
-        self.received = 0
         self.states = []  # stamp [s], errors of position [rad], velocities [rad/s]
         self.subscriber = rospy.Subscriber(
             namespace + "/joint_states", JointState, self.receive, queue_size=10, tcp_nodelay=True
@@ -34,48 +33,80 @@ class Controller:
             self.set_points = [position + self.offset for position in state.position]
         errors = [goal - position for goal, position in zip(self.set_points, state.position)]
         self.states.append((state.header.stamp.to_sec(), errors, state.velocity))
-        if self.received % self.every == 0:
-            gains = zip(numpy.broadcast_to(self.stiffness, len(errors)), numpy.broadcast_to(self.damping, len(errors)))
-            efforts = [k * e - d * v for (k, d), e, v in zip(gains, errors, state.velocity)]
+
+    def end(self):
+        self.subscriber.unregister()
+
+
+class PythonController(Listener):
+    """Efforts stiffness (set point - position) - damping velocity on every joint, at every tenth message."""
+
+    def __init__(self, namespace, stiffness, damping, offset):
+        self.stiffness, self.damping = stiffness, damping
+        self.commands = CommandTopic(namespace + "/joint_force_command", JointForceCommand)
+        super().__init__(namespace, offset)
+        wait_until(lambda: self.states, "joint states of " + namespace)
+
+    def receive(self, state):
+        super().receive(state)
+        if len(self.states) % 10 == 1:
+            _, errors, velocities = self.states[-1]
+            efforts = [k * e - d * v for k, d, e, v in zip(self.stiffness, self.damping, errors, velocities)]
             self.commands.send(force_command(list(state.name), efforts))
-        self.received += 1
+
+
+class RoscppController(Listener):
+    """The same at every message: pd_controller.cpp."""
+
+    def __init__(self, namespace, stiffness, damping, offset):
+        rospy.set_param(namespace + "/pd_controller", dict(stiffness=stiffness, damping=damping, offset=offset))
+        self.process = subprocess.Popen(
+            ["rosrun", "flexarm", "test_pd_controller", "__ns:=" + namespace, "__name:=pd_controller"]
+        )
+        rospy.wait_for_message(namespace + "/joint_force_command", JointForceCommand, PATIENCE)
+        super().__init__(namespace, offset)
+        wait_until(lambda: self.states, "joint states of " + namespace)
+
+    def end(self):
+        super().end()
+        self.process.terminate()
+        self.process.wait()
 
 
 class Control(unittest.TestCase):
-    def hold(self, namespace, stiffness, damping, offset, inertia, every):
-        """`inertia`: the least that a joint moves [kg m^2]."""
+    def hold(self, controller, namespace, stiffness, damping, offset, inertia):
+        """Every joint alike; `inertia`: the least that one moves [kg m^2]."""
         arm = SimulatedArm(namespace)
         arm.pause()
         arm.reset()
-        controller = Controller(namespace, stiffness, damping, offset, every)
-        wait_until(lambda: controller.states, "joint states of " + namespace)
+        joints = len(arm.joint_states().name)
+        controller = controller(namespace, [stiffness] * joints, [damping] * joints, offset)
         arm.resume()
         time.sleep(DURATION)
         arm.pause()
-        controller.subscriber.unregister()
+        controller.end()
         self.assertFalse(arm.status().failed)
         states = list(controller.states)
         # Most of the messages arrive, also on a busy machine.
         self.assertGreater(len(states), 0.5 * 1000 * DURATION)
         # Spring and damper to the set points only take energy out: no swing is wider than the first one, none is faster
         # than that of a mass on the springs.
-        joints = len(states[0][1])
         widest = max(math.sqrt(sum(e * e for e in errors)) for _, errors, _ in states)
         self.assertLess(widest, 1.05 * offset * math.sqrt(joints))
         fastest = max(abs(v) for stamp, _, velocities in states for v in velocities if stamp > states[-1][0] - 1)
         self.assertLess(fastest, offset * math.sqrt(joints * stiffness / inertia))
 
     def test_guide_at_1000_hz(self):
-        self.hold("/guide", 20, 2, 0.4, inertia=4, every=1)
+        self.hold(RoscppController, "/guide", 20.0, 2.0, 0.4, inertia=4)
 
     def test_guide_at_100_hz(self):
-        self.hold("/guide", 20, 2, 0.4, inertia=4, every=10)
+        self.hold(PythonController, "/guide", 20.0, 2.0, 0.4, inertia=4)
 
     def test_demo_at_1000_hz(self):
-        self.hold("/demo", 2000, 500, 0.03, inertia=100, every=1)
+        self.hold(RoscppController, "/demo", 2000.0, 500.0, 0.03, inertia=100)
 
     def test_demo_at_100_hz(self):
-        self.hold("/demo", 2000, 300, 0.03, inertia=100, every=10)
+        self.hold(PythonController, "/demo", 2000.0, 300.0, 0.03, inertia=100)
 
 
     # Its servos, switched to mode effort, give what holds the robot up; the controller is springs and dampers beside
@@ -83,21 +114,20 @@ class Control(unittest.TestCase):
     # is less than the gear's own damping as long as it damps less than that, times (J + j)^2 / (J j), with J, j of link
     # and rotor.
     def test_robot_at_1000_hz(self):
-        stiffness = numpy.array([2000, 2000, 800, 60, 60, 20])
-        damping = [60, 60, 24, 1.5, 1.5, 0.5]
+        stiffness = numpy.array([2000.0, 2000.0, 800.0, 60.0, 60.0, 20.0])
+        damping = [60.0, 60.0, 24.0, 1.5, 1.5, 0.5]
         force, levers = 20, numpy.array([1.3, 1.3, 1.3, 0.2, 0.2, 0.2])  # N, m
         arm = SimulatedArm("/robot")
         arm.reset()
         names = arm.joint_states().name
         self.assertTrue(arm.switch_mode(names=names, modes=["effort"] * 6).success)
-        controller = Controller("/robot", stiffness, damping, 0, 1)
-        wait_until(lambda: controller.states, "joint states of the robot")
+        controller = RoscppController("/robot", stiffness.tolist(), damping, 0.0)
         arm.resume()
         time.sleep(1)
         self.assertTrue(arm.apply_wrench("flange", force=(0, 0, force), duration=1.0).success)
         time.sleep(DURATION)
         arm.pause()
-        controller.subscriber.unregister()
+        controller.end()
         self.assertFalse(arm.status().failed)
         self.assertGreater(len(controller.states), 0.5 * 1000 * DURATION)
         errors = numpy.array([errors for _, errors, _ in controller.states])
