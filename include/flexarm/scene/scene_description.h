@@ -141,8 +141,8 @@ struct LinkDescription {
   std::string name;
   std::optional<RigidInertia> inertial;  ///< ignored where there is a beam
   std::optional<BeamDescription> beam;
-  std::vector<VisualDescription> visuals;  ///< read where there is a beam: those of rigid links are others' business
-  SourceLocation location;
+  std::vector<VisualDescription> visuals = {};  ///< read where there is a beam: of rigid links others draw them
+  SourceLocation location = {};
 };
 
 enum class JointKind {
