@@ -6,6 +6,7 @@ scripts/faults starts it when everything is built. The ROS master is one of its 
 
 import argparse
 import contextlib
+import functools
 import math
 import os
 import random
@@ -27,8 +28,12 @@ from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Empty
 
-ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "test", "ros"))
+import simulated_arm  # noqa: E402
+from running_node import RunningNode  # noqa: E402
+
 PATIENCE = 20.0  # s, wall time
+wait_until = functools.partial(simulated_arm.wait_until, patience=PATIENCE)
 JOINT = "left_shoulder"
 
 
@@ -41,32 +46,25 @@ def require(condition, what):
         raise Wrong(what)
 
 
-def wait_until(condition, what, patience=PATIENCE):
-    end = time.monotonic() + patience
-    while not condition():
-        require(time.monotonic() < end, "waited in vain for " + what)
-        time.sleep(0.01)
-
-
 def memory_of(pid):
     """Resident [MiB]."""
     with open(f"/proc/{pid}/status", encoding="utf-8") as file:
         return next(int(line.split()[1]) for line in file if line.startswith("VmRSS")) / 1024
 
 
-class Node:
+class Node(RunningNode):
     """A node of its own, and what it says. For a `with` block."""
 
+    # SIGXFSZ stays ignored, as on a disk without such limits.
+    process_options = {"start_new_session": True, "restore_signals": False}
+
     def __init__(self, *parameters):
-        self.parameters = parameters
+        super().__init__(*parameters, is_silent=True)
         self.status = self.states = None
         self.stamps = []
 
     def __enter__(self):
-        if rospy.has_param("/flexarm"):
-            rospy.delete_param("/flexarm")
-        self.log = tempfile.NamedTemporaryFile("r", suffix=".log")
-        self.start()
+        super().__enter__()
         self.subscribers = [rospy.Subscriber("/flexarm/status", SimulatorStatus, self.receive_status),
                             rospy.Subscriber("/joint_states", JointState, self.receive_states, queue_size=100)]
         self.force = rospy.Publisher("/joint_force_command", JointForceCommand, queue_size=10)
@@ -74,17 +72,8 @@ class Node:
             ("pause", Empty), ("resume", Empty), ("save_state", SaveState), ("load_state", LoadState))}
         return self
 
-    def start(self):
-        self.process = subprocess.Popen(
-            ["rosrun", "flexarm", "flexarm_node", "_scene:=" + os.path.join(ROOT, "test", "ros", "two_arms.urdf"),
-             *self.parameters], stdin=subprocess.DEVNULL, stdout=open(self.log.name, "a", encoding="utf-8"),
-            stderr=subprocess.STDOUT, start_new_session=True,
-            restore_signals=False)  # SIGXFSZ stays ignored, as on a disk without such limits
-
-    def __exit__(self, *_):
-        if self.process.poll() is None:
-            self.process.kill()
-        self.process.wait()
+    def __exit__(self, *error):
+        super().__exit__(*error)
         for one in (*self.subscribers, self.force):
             one.unregister()
 
@@ -115,8 +104,7 @@ class Node:
         found = []
 
         def look():
-            with open(self.log.name, encoding="utf-8") as file:
-                found[:] = [line for line in file if text in line]
+            found[:] = [line for line in self.output().splitlines() if text in line]
             return found
 
         wait_until(look, f"the message '{text}'")

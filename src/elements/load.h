@@ -30,7 +30,7 @@ struct PullAction {
 };
 
 /// Of the pull on a load's point: stiffness times the way to the target (its mean over the step, or that at the end),
-/// damping times the mean velocity over the step.
+/// damping times the mean velocity over the step. (beam.md 3.4)
 /// @param target  about the origin of the nodes' positions [m]
 /// @param step    [s]; 0: statics, in which nothing is damped
 PullAction pull_action(const NodalLoad& load, const Vector3& target, const NodePose& begin, const NodePose& end,

@@ -15,7 +15,7 @@ UnknownScales::UnknownScales(const Model& model, const DegreesOfFreedom& dof) : 
     const int equation = dof.equation[dof.first[dof.variable_of_joint(coordinate.joint)] + coordinate.component];
     if (equation >= 0) unknowns_.push_back({equation, is_rotation(model, coordinate)});
   }
-  for (const NodalInertia& inertia : model.inertias) mass_ += inertia.total_mass;
+  mass_ = mass_of(model);
   for (std::size_t k = 0; k < model.closures.size(); ++k) {
     const int first = dof.first[dof.variable_of_closure(static_cast<int>(k))];
     const std::vector<ClosureConstraint>& constraints = model.closures[k].constraints;

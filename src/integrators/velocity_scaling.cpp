@@ -35,7 +35,7 @@ VelocityScaling::VelocityScaling(const Model& model, const Scheme& scheme)
   if (!model.closures.empty())
     throw ModelError("<integrator>: scheme 'em_scaled' cannot scale the velocities of the rigid loop of '" +
                      model.closures.front().name + "'; scheme 'em' closes the energy without scaling");
-  for (const NodalInertia& inertia : model.inertias) mass_ += inertia.total_mass;
+  mass_ = mass_of(model);
   std::vector<std::vector<int>> neighbours(model.nodes.size());  // in elements
   for_each_element(model.beams, [&](const auto& element) {
     for (std::size_t i = 1; i < element.nodes.size(); ++i) {

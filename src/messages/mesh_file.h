@@ -1,7 +1,7 @@
 #pragma once
 /// Surfaces from files.
 
-#include "flexarm/scene/scene_description.h"
+#include "flexarm/scene/visual_description.h"
 #include "messages/triangle_mesh.h"
 
 namespace flexarm::messages {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "flexarm/math/pose.h"
-#include "flexarm/scene/scene_description.h"
+#include "flexarm/scene/visual_description.h"
 
 namespace flexarm::messages {
 

@@ -12,4 +12,10 @@ ElementPlace element_at(const BeamLink& beam, double arc_length) {
   return {static_cast<int>(found - ends.begin()), 2 * (arc_length - begin) / (*found - begin) - 1};
 }
 
+double mass_of(const Model& model) {
+  double mass = 0;
+  for (const NodalInertia& inertia : model.inertias) mass += inertia.total_mass;
+  return mass;
+}
+
 }  // namespace flexarm

@@ -172,6 +172,9 @@ struct Model {
   std::vector<SensorPlace> sensors;
 };
 
+/// Of all that moves [kg].
+double mass_of(const Model& model);
+
 /// Inertia of a rotor that turns with the coordinate [kg m^2 or kg].
 inline double armature(const Model& model, const Coordinate& coordinate) {
   if (coordinate.actuator < 0) return 0;

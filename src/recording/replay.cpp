@@ -157,14 +157,10 @@ class Replay {
       return {};
     }
     std::vector<std::size_t> joints;
+    if (const std::string fault = node::read_trajectory_joints(simulation, message.joint_names, joints); !fault.empty())
+      return fault;
     std::vector<double> set_points;
-    for (const std::string& name : message.joint_names) {
-      const std::optional<std::size_t> joint = simulation.find_coordinate(name);
-      if (!joint || !simulation.has_servo(*joint) || simulation.servo_mode(*joint) != ServoMode::Position)
-        return "'" + name + "' has no servo of mode 'position'";
-      joints.push_back(*joint);
-      set_points.push_back(simulation.set_point(*joint));
-    }
+    for (const std::size_t joint : joints) set_points.push_back(simulation.set_point(joint));
     node::JointTrajectory trajectory = node::trajectory_of(message, joints);
     if (const std::string fault = follower.find_fault(trajectory); !fault.empty()) return fault;
     const double ahead = (message.header.stamp - begin_).toSec() - static_cast<double>(steps_) * period_;

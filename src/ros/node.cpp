@@ -16,8 +16,6 @@
 namespace flexarm::node {
 namespace {
 
-using SteadyClock = std::chrono::steady_clock;
-
 const ros::WallDuration kTickPeriod(0.1);
 /// Who clears his frames as the clock jumps back must not get any of before after that.
 const ros::WallDuration kWayOfMessages(0.1);
@@ -116,7 +114,7 @@ void Node::be_interactive() {
 void Node::tick() {
   take_reports();
   if (pull_handles_) pull_handles_->let_go_of_lost();
-  if (!run_.paused) warn_if_slow();
+  if (!run_.paused) slowness_.warn_if_slow(shown_.step_size());
   diagnostics_.publish(false);
   clock_publisher_.warn_if_missing();
   if (master_watch_.has_come_back()) describe_view();
@@ -138,7 +136,7 @@ void Node::take(const StepReport& report) {
   run_.overruns = report.overruns;
   run_.step_times.add(report.duration);
   if (report.is_paced) run_.lateness.add(report.lateness);
-  slowest_step_.note(report.duration, shown_.time(), report.result);
+  slowness_.note(report.duration, shown_.time(), report.result);
   if (report.has_failed) return fail(report.result);
   warn_of_recoveries(report);
   run_.failure.clear();
@@ -166,29 +164,6 @@ bool Node::advance() {
   const bool is_done = stepping_.advance();
   take_reports();
   return is_done;
-}
-
-void Node::SlowestStep::note(double new_seconds, double new_time, const StepResult& result) {
-  if (new_seconds <= seconds) return;
-  seconds = new_seconds;
-  time = new_time;
-  counts = {};
-  counts.add(result);
-}
-
-void Node::warn_if_slow() {
-  if (run_.overruns == warned_overruns_) return;
-  const SteadyClock::time_point now = SteadyClock::now();
-  if (warned_overruns_ > 0 && std::chrono::duration<double>(now - last_warning_).count() < kWarningPeriod) return;
-  const std::string recoveries = recoveries_text(slowest_step_.counts);
-  ROS_WARN(
-      "slower than asked for, simulated time lags: %lu steps of %g s dropped; the slowest one took %.2g s, to "
-      "t = %g s: %s",
-      run_.overruns - warned_overruns_, shown_.step_size(), slowest_step_.seconds, slowest_step_.time,
-      recoveries.empty() ? "the scene is too large, or the processor busy" : recoveries.c_str());
-  warned_overruns_ = run_.overruns;
-  last_warning_ = now;
-  slowest_step_ = {};
 }
 
 void Node::fail(const StepResult& result) {
@@ -373,8 +348,7 @@ std::string Node::switch_mode(const std::vector<std::string>& names, const std::
 
 void Node::begin_anew() {
   command_interface_.forget_commands();
-  stepping_.wrenches().clear();
-  if (pull_handles_) pull_handles_->forget();
+  clear_wrenches();
   marker_publisher_.begin_anew();
   show_new_state();
 }

@@ -4,7 +4,6 @@
 #include <ros/node_handle.h>
 #include <ros/steady_timer.h>
 
-#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -27,6 +26,7 @@
 #include "run_state.h"
 #include "sensor_publisher.h"
 #include "services.h"
+#include "slowness_warning.h"
 #include "state_publisher.h"
 #include "status_publisher.h"
 #include "stepping/stepping_thread.h"
@@ -97,8 +97,6 @@ class Node {
   void be_real_time();
   /// Lets rviz pull on links.
   void be_interactive();
-  /// Where steps have been dropped since the last warning, not too often: how many, and why.
-  void warn_if_slow();
   void publish(bool force);
   /// Says what is simulated.
   void announce() const;
@@ -123,22 +121,12 @@ class Node {
   void describe_view() const;
   void fail(const StepResult& result);
 
-  /// By the clock on the wall, since the last warning.
-  struct SlowestStep {
-    double seconds = 0, time = 0;  // it took; simulated, at its end [s]
-    StepCounts counts;             // of this step alone
-
-    void note(double new_seconds, double new_time, const StepResult& result);
-  };
-
   ros::NodeHandle node_, private_node_{"~"};
   Parameters parameters_;
   Simulation shown_;
   Snapshot snapshot_;  ///< scratch
   RunState run_;
-  SlowestStep slowest_step_;
-  std::uint64_t warned_overruns_ = 0;
-  std::chrono::steady_clock::time_point last_warning_;
+  SlownessWarning slowness_{run_};
   ClockPublisher clock_publisher_;
   StatePublisher state_publisher_;
   BeamStatePublisher beam_state_publisher_;

@@ -145,7 +145,8 @@ Trajectories::Fault Trajectories::follow(const trajectory_msgs::JointTrajectory&
     stop(joints);
     return {};
   }
-  if (const Fault fault = read_joints(message.joint_names, joints); !fault.is_none()) return fault;
+  if (const std::string fault = read_trajectory_joints(shown_, message.joint_names, joints); !fault.empty())
+    return {Result::INVALID_JOINTS, fault};
   JointTrajectory trajectory = trajectory_of(message, joints);
   if (const std::string fault = followed_.find_fault(trajectory); !fault.empty()) return {Result::INVALID_GOAL, fault};
   Fault fault;
@@ -161,19 +162,6 @@ Trajectories::Fault Trajectories::follow(const trajectory_msgs::JointTrajectory&
     follower.follow(trajectory, now, set_points);
   });
   return fault;
-}
-
-Trajectories::Fault Trajectories::read_joints(const std::vector<std::string>& names,
-                                              std::vector<std::size_t>& joints) const {
-  for (const std::string& name : names) {
-    const std::optional<std::size_t> joint = shown_.find_coordinate(name);
-    if (!joint) return {Result::INVALID_JOINTS, "there is no joint coordinate '" + name + "'"};
-    if (!shown_.has_servo(*joint)) return {Result::INVALID_JOINTS, "'" + name + "' has no servo"};
-    if (shown_.servo_mode(*joint) != ServoMode::Position)
-      return {Result::INVALID_JOINTS, "the servo of '" + name + "' is not in mode 'position'"};
-    joints.push_back(*joint);
-  }
-  return {};
 }
 
 std::vector<std::size_t> Trajectories::moving_joints() const {

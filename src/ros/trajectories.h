@@ -60,7 +60,6 @@ class Trajectories {
   void cancel(GoalHandle handle);
   /// Follows it, or says why not. Its joints, or those that stop, are in `joints`.
   Fault follow(const trajectory_msgs::JointTrajectory& message, std::vector<std::size_t>& joints);
-  Fault read_joints(const std::vector<std::string>& names, std::vector<std::size_t>& joints) const;
   std::vector<std::size_t> moving_joints() const;
   void stop(const std::vector<std::size_t>& joints);
   /// Changes what is followed, between two steps.

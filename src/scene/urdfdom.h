@@ -7,7 +7,7 @@
 
 #include <tinyxml2.h>
 
-#include "flexarm/scene/scene_description.h"
+#include "flexarm/scene/visual_description.h"
 
 namespace flexarm::scene {
 

@@ -29,10 +29,8 @@ constexpr double kRest = 1e-8;
 /// Of a mechanism that moves as little as that [J].
 double energy_of_rest(const Simulation& simulation) {
   const Model& model = model_of(simulation);
-  double mass = 0;
-  for (const NodalInertia& inertia : model.inertias) mass += inertia.total_mass;
   const double speed = kRest * model.length_scale / simulation.step_size();
-  return 0.5 * mass * speed * speed;
+  return 0.5 * simulation.mass() * speed * speed;
 }
 
 }  // namespace

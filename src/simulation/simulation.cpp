@@ -188,11 +188,8 @@ void Simulation::set_joint_state(const std::vector<CoordinateState>& coordinates
 void Simulation::apply_wrenches(const std::vector<AppliedWrench>& wrenches) {
   std::vector<NodalLoad>& loads = implementation_->placed_wrenches;
   loads.clear();
-  for (const AppliedWrench& wrench : wrenches) {
-    if (wrench.pull.acts() && implementation_->scheme.hht != HhtForm::None)
-      throw std::invalid_argument("schemes that interpolate forces in time (hht1, hht2, hht3) have no pulls");
-    loads.push_back(placed_wrench(implementation_->model, wrench));
-  }
+  for (const AppliedWrench& wrench : wrenches) loads.push_back(placed_wrench(implementation_->model, wrench));
+  require_no_pulls(implementation_->scheme, loads);
   implementation_->state.wrenches.assign(loads.begin(), loads.end());
 }
 
@@ -201,6 +198,7 @@ void Simulation::take_over(const Simulation& other) {
   const Implementation& from = *other.implementation_;
   if (s.coordinate_names != from.coordinate_names || s.link_names != from.link_names)
     throw std::invalid_argument("other joints or links");
+  require_no_pulls(s.scheme, from.state.wrenches);
   const State before = s.state;
   try {
     s.restore(s.state_of_other(from));
@@ -325,9 +323,7 @@ void Simulation::outside_wrenches(std::vector<ActingWrench>& wrenches) const {
   flexarm::outside_wrenches(s.view(), s.published, wrenches);
 }
 double Simulation::mass() const {
-  double mass = 0;
-  for (const NodalInertia& inertia : implementation_->model.inertias) mass += inertia.total_mass;
-  return mass;
+  return mass_of(implementation_->model);
 }
 const SensorSample& Simulation::sample(std::size_t sensor) const {
   return implementation_->state.samples.at(sensor);

@@ -1,5 +1,6 @@
 #include "simulation/wrenches.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -38,6 +39,12 @@ NodalLoad placed_wrench(const Model& model, const AppliedWrench& wrench) {
   NodalLoad load = load_on(carrier.node, carrier.offset, wrench.at, force, moment, wrench.follows);
   load.pull = pull;
   return load;
+}
+
+void require_no_pulls(const Scheme& scheme, const std::vector<NodalLoad>& wrenches) {
+  const auto pulls = [](const NodalLoad& wrench) { return wrench.pull.acts(); };
+  if (scheme.hht != HhtForm::None && std::any_of(wrenches.begin(), wrenches.end(), pulls))
+    throw std::invalid_argument("schemes that interpolate forces in time (hht1, hht2, hht3) have no pulls");
 }
 
 }  // namespace flexarm

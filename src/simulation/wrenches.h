@@ -1,8 +1,11 @@
 #pragma once
 /// Wrenches that somebody applies to links.
 
+#include <vector>
+
 #include "flexarm/model/results.h"
 #include "model/model.h"
+#include "schemes/scheme.h"
 
 namespace flexarm {
 
@@ -11,5 +14,8 @@ namespace flexarm {
 /// @throws std::invalid_argument if it is not finite, or its link is fixed to the world; std::out_of_range if there is
 ///   no such link.
 NodalLoad placed_wrench(const Model& model, const AppliedWrench& wrench);
+
+/// @throws std::invalid_argument if one of them pulls and the scheme is one that interpolates forces in time.
+void require_no_pulls(const Scheme& scheme, const std::vector<NodalLoad>& wrenches);
 
 }  // namespace flexarm

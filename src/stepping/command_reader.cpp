@@ -85,6 +85,18 @@ std::string CommandReader::find_fault(Commanded quantity, std::size_t coordinate
   return shown_.is_commandable(coordinate) ? "" : "the motion of '" + name + "' is prescribed";
 }
 
+std::string read_trajectory_joints(const Simulation& shown, const std::vector<std::string>& names,
+                                   std::vector<std::size_t>& joints) {
+  for (const std::string& name : names) {
+    const std::optional<std::size_t> joint = shown.find_coordinate(name);
+    if (!joint) return "there is no joint coordinate '" + name + "'";
+    if (!shown.has_servo(*joint)) return "'" + name + "' has no servo";
+    if (shown.servo_mode(*joint) != ServoMode::Position) return "the servo of '" + name + "' is not in mode 'position'";
+    joints.push_back(*joint);
+  }
+  return {};
+}
+
 JointTrajectory trajectory_of(const trajectory_msgs::JointTrajectory& message, std::vector<std::size_t> joints) {
   JointTrajectory out{std::move(joints), 0, {}};
   for (const trajectory_msgs::JointTrajectoryPoint& point : message.points)

@@ -38,6 +38,10 @@ class CommandReader {
   double timeout_;
 };
 
+/// The coordinates that a trajectory names. @returns why they cannot follow one, or nothing
+std::string read_trajectory_joints(const Simulation& shown, const std::vector<std::string>& names,
+                                   std::vector<std::size_t>& joints);
+
 /// The points of a message; its start is left open.
 JointTrajectory trajectory_of(const trajectory_msgs::JointTrajectory& message, std::vector<std::size_t> joints);
 

@@ -20,6 +20,10 @@ NodalLoad random_load(RandomSource& random, bool follows) {
   return load;
 }
 
+NodePose node_pose_of(const Pose& pose) {
+  return {pose.position, pose.orientation, pose.orientation.toRotationMatrix()};
+}
+
 TEST(LoadAction, DerivativeForEveryFrameAndPoint) {
   RandomSource random(1);
   for (const bool follows : {false, true})
@@ -36,6 +40,45 @@ TEST(LoadAction, DerivativeForEveryFrameAndPoint) {
         EXPECT_LE(largest(action.derivative.col(k) - expected), difference_tolerance * largest(expected) + 1e-12);
       }
     }
+}
+
+// A pull's slope has the same three parts: the force, its lever, and the turn of the lever.
+TEST(PullAction, Tangent) {
+  RandomSource random(4);
+  for (const double step : {0.0, 0.01})
+    for (const LoadPoint point : {LoadPoint::Mean, LoadPoint::End}) {
+      NodalLoad load = random_load(random, false);
+      load.pull = {random.vector(), 40, 3};
+      const Pose begin = random.pose(1, 2), end{random.vector(), random.rotation(3)};
+      const auto action = [&](const Pose& at_end) {
+        return pull_action(load, load.pull.target, node_pose_of(begin), node_pose_of(at_end), step, point);
+      };
+      const PullAction here = action(end);
+      for (int k = 0; k < 6; ++k) {
+        const Vector6 expected = difference([&](double h) {
+          const Vector6 moved = h * Vector6::Unit(k);
+          return action({end.position + moved.head<3>(), so3::exp_quaternion(moved.tail<3>()) * end.orientation})
+              .wrench;
+        });
+        EXPECT_LE(largest(here.derivative.col(k) - expected), difference_tolerance * largest(expected) + 1e-12);
+      }
+    }
+}
+
+// Of the mean force over the step along the way of the point: what the spring loses, less what the damper takes.
+TEST(PullAction, Work) {
+  RandomSource random(5);
+  NodalLoad load = random_load(random, false);
+  load.pull = {random.vector(), 40, 3};
+  const Pose begin = random.pose(1, 2), end{random.vector(), random.rotation(1.4) * begin.orientation};
+  const double step = 0.01;
+  const Vector3 from = begin * load.arm, to = end * load.arm;
+  const double lost = 20 * ((load.pull.target - from).squaredNorm() - (load.pull.target - to).squaredNorm());
+  const double expected = lost - 3 / step * (to - from).squaredNorm();
+  for (const LoadPoint point : {LoadPoint::Mean, LoadPoint::End})
+    EXPECT_NEAR(
+        pull_action(load, load.pull.target, node_pose_of(begin), node_pose_of(end), step, point).work / expected, 1,
+        1e-13);
 }
 
 TEST(LoadAction, ForceAtAnArm) {

@@ -17,6 +17,8 @@ class RunningNode:
     `wrapper`: a command that starts it.
     """
 
+    process_options = {}  # of subprocess.Popen
+
     def __init__(self, *arguments, is_silent=False, wrapper=()):
         self.arguments = arguments
         self.is_silent = is_silent
@@ -26,14 +28,19 @@ class RunningNode:
         if rospy.has_param("/flexarm"):  # private parameters outlive their node
             rospy.delete_param("/flexarm")
         self.log = tempfile.NamedTemporaryFile("r", suffix=".log")
-        self.process = subprocess.Popen(
-            [*self.wrapper, "rosrun", "flexarm", "flexarm_node", "_scene:=" + SCENE, *self.arguments],
-            stdout=open(self.log.name, "w", encoding="utf-8"),
-            stderr=subprocess.STDOUT,
-        )
+        self.start()
         if not self.is_silent:
             self.status = rospy.wait_for_message("/flexarm/status", SimulatorStatus, PATIENCE)
         return self
+
+    def start(self):
+        self.process = subprocess.Popen(
+            [*self.wrapper, "rosrun", "flexarm", "flexarm_node", "_scene:=" + SCENE, *self.arguments],
+            stdin=subprocess.DEVNULL,
+            stdout=open(self.log.name, "a", encoding="utf-8"),
+            stderr=subprocess.STDOUT,
+            **self.process_options,
+        )
 
     def __exit__(self, *_):
         if self.process.poll() is None:

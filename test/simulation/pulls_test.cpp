@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "flexarm/simulation/checkpoint.h"
+#include "simulation/body_with_beam.h"
 #include "simulation/inside.h"
 #include "simulation/same_bits.h"
 #include "support/scene_builder.h"
@@ -19,17 +20,6 @@ using scene::JointKind;
 const Vector3 kPoint(0.5, 0.1, -0.2), kTarget(0.2, 0.6, 0.4);
 constexpr double kStiffness = 40, kDamping = 3, kMass = 2, kStep = 0.01;
 
-/// A body on a ball joint that carries a beam.
-SceneBuilder two_links() {
-  SceneBuilder b;
-  b.scene.integrator.step = 0.002;
-  b.body("body", 1, {0.3, 0, 0}, Vector3(0.1, 0.12, 0.15).asDiagonal());
-  b.beam("beam", {{1, 0, 0}}, scene::DirectSection{2e4, 1e4, 1e4, 200, 250, 300, 0.5, 0.02, 0.01, 0.01}, 4, 2);
-  b.joint("ball", JointKind::Spherical, "world", "body");
-  b.joint("weld", JointKind::Fixed, "body", "beam", {1, 0, 0});
-  return b;
-}
-
 /// A mass on a straight rail along y.
 SceneBuilder slider() {
   SceneBuilder b;
@@ -37,11 +27,6 @@ SceneBuilder slider() {
   b.body("mass", kMass, Vector3::Zero(), Matrix3::Identity());
   b.joint("rail", JointKind::Prismatic, "world", "mass", Vector3::Zero(), Vector3::UnitY());
   return b;
-}
-
-std::size_t index_of(const Simulation& simulation, const std::string& link) {
-  const std::vector<std::string>& names = simulation.link_names();
-  return std::find(names.begin(), names.end(), link) - names.begin();
 }
 
 AppliedWrench pull_on(const Simulation& simulation, const std::string& link, double damping) {
@@ -59,7 +44,7 @@ class Pulls : public ::testing::TestWithParam<std::string> {
 
 // Without a damper, what they have done is what the spring has lost.
 TEST_P(Pulls, DoTheWorkThatTheSpringLoses) {
-  Simulation simulation = simulated(two_links());
+  Simulation simulation = simulated(body_with_beam());
   simulation.apply_wrenches({pull_on(simulation, "body", 0)});
   const auto potential = [&] {
     const Pose body = simulation.link_pose(index_of(simulation, "body"));
@@ -104,7 +89,7 @@ TEST(Pull, OscillatesAsTheMidpointRuleSays) {
 TEST(Pull, CostsNoIterations) {
   SimulationOptions options;
   options.reuse_factorisation = false;
-  Simulation simulation(two_links().scene, options);
+  Simulation simulation(body_with_beam().scene, options);
   AppliedWrench pull = pull_on(simulation, "body", 50);
   pull.pull.stiffness = 5000;
   simulation.apply_wrenches({pull});
@@ -138,7 +123,7 @@ TEST(Pull, IsKeptInTheState) {
   const std::string path = ::testing::TempDir() + "flexarm_pulls_test.state";
   SimulationOptions options;
   options.reuse_factorisation = false;
-  Simulation simulation(two_links().scene, options), resumed(two_links().scene, options);
+  Simulation simulation(body_with_beam().scene, options), resumed(body_with_beam().scene, options);
   simulation.apply_wrenches({pull_on(simulation, "body", kDamping)});
   for (int n = 0; n < 10; ++n) ASSERT_TRUE(simulation.step().converged);
   write_checkpoint(simulation, path);
@@ -150,7 +135,7 @@ TEST(Pull, IsKeptInTheState) {
 }
 
 TEST(Pull, ThatCannotActIsRefused) {
-  Simulation simulation(two_links().scene);
+  Simulation simulation(body_with_beam().scene);
   for (const double bad : {-1.0, std::numeric_limits<double>::quiet_NaN()}) {
     AppliedWrench pull = pull_on(simulation, "body", 0);
     pull.pull.stiffness = bad;
@@ -163,7 +148,7 @@ TEST(Pull, ThatCannotActIsRefused) {
   EXPECT_THROW(simulation.apply_wrenches({pull}), std::invalid_argument);
   SimulationOptions options;
   options.scheme = "hht2";
-  Simulation interpolating(two_links().scene, options);
+  Simulation interpolating(body_with_beam().scene, options);
   EXPECT_THROW(interpolating.apply_wrenches({pull_on(interpolating, "body", 0)}), std::invalid_argument);
   EXPECT_TRUE(state_of(simulation).wrenches.empty());
 }
@@ -213,7 +198,7 @@ TEST(ShownWrenches, EffortsActAlongTheirAxes) {
 }
 
 TEST(ShownWrenches, OfSensorsAreFreeOfErrors) {
-  SceneBuilder b = two_links();
+  SceneBuilder b = body_with_beam();
   b.scene.gravity = {0, 0, -9.81};
   b.sensor("cell", scene::SensorKind::Wrench, "beam", {0, 0.2, 0});
   b.scene.sensors.back().bias = {1};
@@ -233,7 +218,7 @@ TEST(ShownWrenches, OfSensorsAreFreeOfErrors) {
 }
 
 TEST(Shown, MassAndFixedLinks) {
-  const SceneBuilder b = two_links();
+  const SceneBuilder b = body_with_beam();
   const Simulation simulation(b.scene);
   EXPECT_NEAR(simulation.mass(), 1 + 0.5, 1e-12);
   EXPECT_TRUE(simulation.is_fixed_to_world(index_of(simulation, "world")));
@@ -242,7 +227,7 @@ TEST(Shown, MassAndFixedLinks) {
 
 // As the beam lies in its link's frame before anything has bent it, wherever the link starts.
 TEST(Shown, UndeformedSections) {
-  SceneBuilder b = two_links();
+  SceneBuilder b = body_with_beam();
   b.scene.initial_joints.push_back({"ball/rz", 0.7, 0});
   Simulation simulation(b.scene);
   const std::size_t beam = index_of(simulation, "beam");

@@ -94,6 +94,18 @@ TEST(TakeOver, GravityAndGainsAreTheOtherOnes) {
   EXPECT_NEAR(to.position(0), -10.0 / 1000, 1e-6);
 }
 
+TEST(TakeOver, PullsThatTheSchemeDoesNotHaveAreRefused) {
+  scene::SceneDescription scene = driven_scene().scene;
+  Simulation from = after_steps(scene, 5);
+  from.apply_wrenches({{1, Vector3::Zero(), {}, false, {Vector3(1, 0, 0), 10, 1}}});
+  scene.integrator = with_scheme(scene.integrator, "hht1");
+  Simulation to(scene);
+  EXPECT_THROW(to.take_over(from), std::invalid_argument);
+  EXPECT_EQ(to.time(), 0);
+  scene.integrator = with_scheme(scene.integrator, "newmark");
+  EXPECT_NO_THROW(Simulation(scene).take_over(from));
+}
+
 TEST(TakeOver, AnotherMechanismIsRefused) {
   Simulation simulation(driven_scene().scene);
   const State before = state_of(simulation);

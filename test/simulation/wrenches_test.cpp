@@ -8,6 +8,7 @@
 
 #include "flexarm/simulation/checkpoint.h"
 #include "schemes/scheme.h"
+#include "simulation/body_with_beam.h"
 #include "simulation/everything_scene.h"
 #include "simulation/inside.h"
 #include "simulation/same_bits.h"
@@ -18,22 +19,6 @@ namespace {
 using scene::JointKind;
 
 const Vector3 kPoint(0.5, 0.1, -0.2), kForce(1, 2, -0.5), kMoment(0.1, -0.2, 0.05);
-
-/// A body on a ball joint that carries a beam, with a node at the beam's middle.
-SceneBuilder two_links() {
-  SceneBuilder b;
-  b.scene.integrator.step = 0.002;
-  b.body("body", 1, {0.3, 0, 0}, Vector3(0.1, 0.12, 0.15).asDiagonal());
-  b.beam("beam", {{1, 0, 0}}, scene::DirectSection{2e4, 1e4, 1e4, 200, 250, 300, 0.5, 0.02, 0.01, 0.01}, 4, 2);
-  b.joint("ball", JointKind::Spherical, "world", "body");
-  b.joint("weld", JointKind::Fixed, "body", "beam", {1, 0, 0});
-  return b;
-}
-
-std::size_t index_of(const Simulation& simulation, const std::string& link) {
-  const std::vector<std::string>& names = simulation.link_names();
-  return std::find(names.begin(), names.end(), link) - names.begin();
-}
 
 AppliedWrench wrench_on(const Simulation& simulation, const std::string& link, const Vector3& at, bool follows) {
   return {index_of(simulation, link), at, {kForce, kMoment}, follows};
@@ -48,9 +33,9 @@ TEST_P(Wrenches, ActAsLoadsOfTheScene) {
     for (const auto& [link, at] : {std::pair<std::string, Vector3>{"body", kPoint}, {"beam", {0.75, 0, 0}}}) {
       SimulationOptions options;
       options.scheme = GetParam();
-      SceneBuilder loaded = two_links();
+      SceneBuilder loaded = body_with_beam();
       loaded.load(link, at, kForce, kMoment, "1", follows ? scene::LoadFrame::Follower : scene::LoadFrame::World);
-      Simulation expected(loaded.scene, options), simulation(two_links().scene, options);
+      Simulation expected(loaded.scene, options), simulation(body_with_beam().scene, options);
       simulation.apply_wrenches({wrench_on(simulation, link, at, follows)});
       for (int n = 0; n < 50; ++n) {
         ASSERT_TRUE(expected.step().converged);
@@ -68,7 +53,8 @@ TEST_P(Wrenches, ActAsLoadsOfTheScene) {
 TEST_P(Wrenches, AddUpAndGo) {
   SimulationOptions options;
   options.scheme = GetParam();
-  Simulation once(two_links().scene, options), twice(two_links().scene, options), none(two_links().scene, options);
+  Simulation once(body_with_beam().scene, options), twice(body_with_beam().scene, options),
+      none(body_with_beam().scene, options);
   AppliedWrench wrench = wrench_on(once, "body", kPoint, false);
   once.apply_wrenches({wrench});
   wrench.wrench.force /= 2;
@@ -76,7 +62,7 @@ TEST_P(Wrenches, AddUpAndGo) {
   twice.apply_wrenches({wrench, wrench});
   none.apply_wrenches({wrench});
   none.apply_wrenches({});
-  Simulation untouched(two_links().scene, options);
+  Simulation untouched(body_with_beam().scene, options);
   for (int n = 0; n < 20; ++n) {
     for (Simulation* simulation : {&once, &twice, &none, &untouched}) ASSERT_TRUE(simulation->step().converged);
     EXPECT_LT((once.tip_pose(2).position - twice.tip_pose(2).position).norm(), 1e-9);
@@ -94,9 +80,9 @@ TEST(AppliedWrenches, JumpInNewmarksFamily) {
       SimulationOptions options;
       options.scheme = scheme;
       options.step = 0.1 / steps;
-      SceneBuilder loaded = two_links();
+      SceneBuilder loaded = body_with_beam();
       loaded.load("body", kPoint, kForce, kMoment);
-      Simulation expected(loaded.scene, options), simulation(two_links().scene, options);
+      Simulation expected(loaded.scene, options), simulation(body_with_beam().scene, options);
       simulation.apply_wrenches({wrench_on(simulation, "body", kPoint, false)});
       for (int n = 0; n < steps; ++n)
         if (!expected.step().converged || !simulation.step().converged) ADD_FAILURE();
@@ -131,7 +117,7 @@ TEST(AppliedWrenches, AreKeptInTheState) {
 }
 
 TEST(AppliedWrenches, CloseTheEnergyAccount) {
-  Simulation simulation(two_links().scene);
+  Simulation simulation(body_with_beam().scene);
   simulation.apply_wrenches(
       {wrench_on(simulation, "body", kPoint, true), wrench_on(simulation, "beam", {1, 0, 0}, false)});
   double scale = 0;
@@ -144,7 +130,7 @@ TEST(AppliedWrenches, CloseTheEnergyAccount) {
 }
 
 TEST(AppliedWrenches, ThatCannotActAreRefused) {
-  Simulation simulation(two_links().scene);
+  Simulation simulation(body_with_beam().scene);
   const AppliedWrench good = wrench_on(simulation, "body", kPoint, false);
   simulation.apply_wrenches({good});
   AppliedWrench bad = good;

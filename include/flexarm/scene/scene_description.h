@@ -12,6 +12,7 @@
 #include "flexarm/math/pose.h"
 #include "flexarm/math/time_function.h"
 #include "flexarm/model/results.h"
+#include "flexarm/scene/visual_description.h"
 #include "flexarm/schemes/integrator_description.h"
 
 namespace flexarm::scene {
@@ -116,25 +117,6 @@ struct RigidInertia {
   Vector3 center_of_mass = Vector3::Zero();
   Matrix3 inertia = Matrix3::Zero();
   SourceLocation location = {};
-};
-
-/// A shape for displays. Cylinders stand along z; all have their middle at the origin.
-struct BoxShape {
-  Vector3 size = Vector3::Zero();  ///< [m]
-};
-struct CylinderShape {
-  double radius = 0, length = 0;  ///< [m]
-};
-struct SphereShape {
-  double radius = 0;  ///< [m]
-};
-struct MeshShape {
-  std::string url;                  ///< package://PACKAGE/PATH or file://PATH
-  Vector3 scale = Vector3::Ones();  ///< [m per unit of the file]
-};
-struct VisualDescription {
-  Pose origin;  ///< in the link frame
-  std::variant<BoxShape, CylinderShape, SphereShape, MeshShape> shape;
 };
 
 struct LinkDescription {

@@ -81,7 +81,8 @@ class Simulation {
   /// Goes on from where another one is, commands and wrenches included, of the same scene but for its <integrator>, its
   /// gravity and the gains of its servos. Joints and links stand and move as they did; what the energy of this state
   /// changes by, gravity's above all, counts as work.
-  /// @throws std::invalid_argument if it is not the same mechanism; nothing has changed then.
+  /// @throws std::invalid_argument if it is not the same mechanism, or something pulls on it (apply_wrenches) and the
+  /// scheme has no pulls; nothing has changed then.
   void take_over(const Simulation& other);
 
   double time() const;         ///< [s]

@@ -1,0 +1,30 @@
+#pragma once
+/// What a link looks like: URDF's <visual>.
+
+#include <string>
+#include <variant>
+
+#include "flexarm/math/pose.h"
+
+namespace flexarm::scene {
+
+/// A shape for displays. Cylinders stand along z; all have their middle at the origin.
+struct BoxShape {
+  Vector3 size = Vector3::Zero();  ///< [m]
+};
+struct CylinderShape {
+  double radius = 0, length = 0;  ///< [m]
+};
+struct SphereShape {
+  double radius = 0;  ///< [m]
+};
+struct MeshShape {
+  std::string url;                  ///< package://PACKAGE/PATH or file://PATH
+  Vector3 scale = Vector3::Ones();  ///< [m per unit of the file]
+};
+struct VisualDescription {
+  Pose origin;  ///< in the link frame
+  std::variant<BoxShape, CylinderShape, SphereShape, MeshShape> shape;
+};
+
+}  // namespace flexarm::scene

@@ -1,0 +1,29 @@
+#pragma once
+/// A mechanism on whose links something acts from outside.
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "flexarm/simulation/simulation.h"
+#include "support/scene_builder.h"
+
+namespace flexarm::test {
+
+/// A body on a ball joint that carries a beam, with a node at the beam's middle; steps of 2 ms.
+inline SceneBuilder body_with_beam() {
+  SceneBuilder b;
+  b.scene.integrator.step = 0.002;
+  b.body("body", 1, {0.3, 0, 0}, Vector3(0.1, 0.12, 0.15).asDiagonal());
+  b.beam("beam", {{1, 0, 0}}, scene::DirectSection{2e4, 1e4, 1e4, 200, 250, 300, 0.5, 0.02, 0.01, 0.01}, 4, 2);
+  b.joint("ball", scene::JointKind::Spherical, "world", "body");
+  b.joint("weld", scene::JointKind::Fixed, "body", "beam", {1, 0, 0});
+  return b;
+}
+
+inline std::size_t index_of(const Simulation& simulation, const std::string& link) {
+  const std::vector<std::string>& names = simulation.link_names();
+  return std::find(names.begin(), names.end(), link) - names.begin();
+}
+
+}  // namespace flexarm::test
