@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "accuracy/trajectory.h"
 #include "bench/run.h"
 
 namespace flexarm::bench {
@@ -74,19 +75,8 @@ RealTimeScene shortened(RealTimeScene scene);
 
 // ---------------------------------------------------------------- runs
 
-/// Positions of a probe at equal intervals, the first at the start [m].
-using Trajectory = std::vector<Vector3>;
-
 /// A point of the world in a frame.
 Vector3 in_frame(const Pose& frame, const Vector3& point);
-
-/// Largest distance from the start [m].
-double largest_displacement(const Trajectory& trajectory);
-
-/// Root mean square (over time, trapezoidal rule) of the distance from a reference, relative to the reference's largest
-/// displacement.
-/// @throws std::invalid_argument unless both have the same number of points, two or more, and the reference moves.
-double trajectory_error(const Trajectory& trajectory, const Trajectory& reference);
 
 /// What one run of a discretisation gave.
 struct SpeedRun {

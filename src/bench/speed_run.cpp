@@ -82,27 +82,6 @@ std::string Discretisation::mesh() const {
   return elements > 0 ? fmt::format("{} x {}", elements, order) : "–";
 }
 
-double largest_displacement(const Trajectory& trajectory) {
-  double largest = 0;
-  for (const Vector3& point : trajectory) largest = std::max(largest, (point - trajectory.front()).norm());
-  return largest;
-}
-
-double trajectory_error(const Trajectory& trajectory, const Trajectory& reference) {
-  if (reference.size() < 2 || trajectory.size() != reference.size())
-    throw std::invalid_argument(fmt::format("a trajectory of {} points cannot be compared with a reference of {}",
-                                            trajectory.size(), reference.size()));
-  const double scale = largest_displacement(reference);
-  if (!(scale > 0)) throw std::invalid_argument("the reference does not move");
-  const std::size_t last = reference.size() - 1;
-  double sum = 0;
-  for (std::size_t i = 0; i <= last; ++i) {
-    const double weight = i == 0 || i == last ? 0.5 : 1.0;
-    sum += weight * (trajectory[i] - reference[i]).squaredNorm();
-  }
-  return std::sqrt(sum / static_cast<double>(last)) / scale;
-}
-
 SpeedRun run_speed(const std::string& folder, const SpeedProblem& problem, const Discretisation& discretisation,
                    bool reuse_factorisation) {
   scene::SceneDescription scene = scene_of(folder, problem, discretisation);

@@ -1,0 +1,61 @@
+#pragma once
+/// How far is one motion of a scene from another one? The measure of error of everything in this room and of
+/// benchmarks.
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "flexarm/simulation/simulation.h"
+
+namespace flexarm {
+
+/// Positions of a point at equal intervals, the first at the start [m].
+using Trajectory = std::vector<Vector3>;
+
+/// Largest distance from the start [m].
+double largest_displacement(const Trajectory& trajectory);
+
+/// Root mean square (over time, trapezoidal rule) of the distance from a reference [m].
+/// @throws std::invalid_argument unless both have the same number of points, two or more.
+double trajectory_distance(const Trajectory& trajectory, const Trajectory& reference);
+
+/// The same relative to the reference's largest displacement.
+/// @throws std::invalid_argument if that is zero, too.
+double trajectory_error(const Trajectory& trajectory, const Trajectory& reference);
+
+/// The points of a scene by whose motion a run is judged: its probes; the tips of all links that move where it has
+/// none.
+class JudgedPoints {
+ public:
+  /// `frame`: the link in whose frame the points are judged; empty: the world.
+  /// @throws std::invalid_argument if there is no such link.
+  explicit JudgedPoints(const Simulation& simulation, const std::string& frame = {});
+
+  std::size_t size() const { return has_probes_ ? count_ : links_.size(); }
+  /// Where they are now [m].
+  std::vector<Vector3> positions(const Simulation& simulation) const;
+
+ private:
+  bool has_probes_;
+  std::size_t count_;               // of probes
+  std::vector<std::size_t> links_;  // where there are none
+  std::optional<std::size_t> frame_;
+};
+
+/// Trajectories of all judged points, with the same times.
+struct JudgedMotion {
+  std::vector<Trajectory> points;
+
+  explicit JudgedMotion(std::size_t count = 0) : points(count) {}
+  void add(const std::vector<Vector3>& positions);
+  /// Of the points, how far the one that comes farthest does so from its start [m].
+  double largest_displacement() const;
+};
+
+/// The largest trajectory_distance() of all points, divided by `scale` [m].
+/// @throws std::invalid_argument unless both have the same points and times, and the scale is positive.
+double motion_error(const JudgedMotion& motion, const JudgedMotion& reference, double scale);
+
+}  // namespace flexarm
