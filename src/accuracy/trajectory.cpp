@@ -1,4 +1,4 @@
-#include "accuracy/trajectory.h"
+#include "flexarm/accuracy/trajectory.h"
 
 #include <algorithm>
 #include <cmath>
@@ -47,18 +47,25 @@ JudgedPoints::JudgedPoints(const Simulation& simulation, const std::string& fram
   frame_ = found - names.begin();
 }
 
+void JudgedPoints::positions(const Simulation& simulation, std::vector<Vector3>& positions) const {
+  positions.resize(size());
+  for (std::size_t i = 0; i < size(); ++i) positions[i] = state(simulation, i).pose.position;
+  if (!frame_) return;
+  const Pose frame = simulation.link_pose(*frame_);
+  for (Vector3& position : positions) position = frame.orientation.conjugate() * (position - frame.position);
+}
+
 std::vector<Vector3> JudgedPoints::positions(const Simulation& simulation) const {
-  std::vector<Vector3> positions;
-  positions.reserve(size());
-  if (has_probes_)
-    for (std::size_t probe = 0; probe < count_; ++probe) positions.push_back(simulation.probe(probe).pose.position);
-  else
-    for (const std::size_t link : links_) positions.push_back(simulation.tip_pose(link).position);
-  if (frame_) {
-    const Pose frame = simulation.link_pose(*frame_);
-    for (Vector3& position : positions) position = frame.orientation.conjugate() * (position - frame.position);
-  }
-  return positions;
+  std::vector<Vector3> found;
+  positions(simulation, found);
+  return found;
+}
+
+std::vector<ProbeState> JudgedPoints::states(const Simulation& simulation) const {
+  std::vector<ProbeState> states;
+  states.reserve(size());
+  for (std::size_t i = 0; i < size(); ++i) states.push_back(state(simulation, i));
+  return states;
 }
 
 void JudgedMotion::add(const std::vector<Vector3>& positions) {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "accuracy/trajectory.h"
 #include "bench/run.h"
+#include "flexarm/accuracy/trajectory.h"
 
 namespace flexarm::bench {
 

@@ -159,12 +159,6 @@ void add_drive(const ScenePlan& plan, const scene::DriveDescription& drive, cons
   if (drive.axis && drive.rotor_inertia > 0) add_gyroscope(plan, drive, actuator_of(index, model), model);
 }
 
-/// A sample time that steps hit.
-bool is_multiple(double sample_time, double step) {
-  const double steps = std::round(sample_time / step);
-  return steps >= 1 && std::abs(sample_time - steps * step) <= 1e-9 * sample_time;
-}
-
 /// Of a velocity's error the integral is what a position's error is.
 ServoLaw servo_law(const scene::ServoDescription::Gains& gains) {
   if (gains.mode == ServoMode::Velocity) return {gains.mode, gains.ki, gains.kp, 0, gains.anti_windup};
@@ -177,7 +171,7 @@ void add_servo(const ScenePlan& plan, const scene::ServoDescription& servo, cons
   const int index = scalar_coordinate(model, names, servo.coordinate, where);
   const Coordinate& coordinate = model.coordinates[index];
   if (coordinate.motion >= 0) throw ModelError(where + "the motion of '" + servo.coordinate + "' is prescribed");
-  if (servo.sample_time > 0 && !is_multiple(servo.sample_time, plan.scene.integrator.step))
+  if (!hits_samples(plan.scene.integrator.step, servo.sample_time))
     throw ModelError(fmt::format("{}sample_time must be a multiple of the step, {} s, got '{}'", where,
                                  plan.scene.integrator.step, servo.sample_time));
   Actuator& actuator = actuator_of(index, model);

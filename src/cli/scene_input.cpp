@@ -57,6 +57,11 @@ std::string check_non_negative(const std::string& text) {
   return number && *number >= 0 ? "" : "must be a number >= 0, got '" + text + "'";
 }
 
+std::string check_part(const std::string& text) {
+  const std::optional<double> number = parse_number(text);
+  return number && *number > 0 && *number < 1 ? "" : "must be a number between 0 and 1, got '" + text + "'";
+}
+
 std::string check_tolerance(const std::string& text) {
   const std::optional<double> number = parse_number(text);
   const bool is_good = number && *number > 0 && *number <= kLargestTolerance;

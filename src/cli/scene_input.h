@@ -28,6 +28,8 @@ Simulation load_simulation(const SceneInput& input, const SimulationOptions& opt
 /// For options: a finite number > 0, or >= 0.
 std::string check_positive(const std::string& text);
 std::string check_non_negative(const std::string& text);
+/// Between 0 and 1, both excluded.
+std::string check_part(const std::string& text);
 /// The same for a tolerance of Newton's method.
 std::string check_tolerance(const std::string& text);
 

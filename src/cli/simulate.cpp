@@ -3,65 +3,37 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
-#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "cli/accurate_simulation.h"
 #include "cli/commands.h"
 #include "cli/files.h"
 #include "cli/interruption.h"
 #include "cli/progress_bar.h"
-#include "cli/recording_library.h"
 #include "cli/scene_input.h"
+#include "cli/simulation_output.h"
+#include "flexarm/accuracy/companion.h"
 #include "flexarm/simulation/checkpoint.h"
-#include "flexarm/simulation/csv_writer.h"
 #include "flexarm/simulation/run_summary.h"
-#include "simulation/background_writer.h"
 
 namespace flexarm::cli {
 namespace {
 
-struct Arguments {
-  SceneInput scene;
-  std::string output, resume, checkpoint;
-  double until = 10;                 // s
-  double checkpoint_every = 0;       // s; 0: at the end only
-  std::vector<std::string> columns;  // patterns; empty: all
-  int every = 1;
-  bool quiet = false;
-  SimulationOptions options;
-};
-
-/// Where what happened is told: not among the results.
-std::FILE* report_stream(const Arguments& arguments) {
-  return is_standard_output(arguments.output) ? stderr : stdout;
-}
-
-/// How a run went.
-struct Run {
-  StepResult last;  // of the last step; converged unless the run failed
-  RunSummary summary;
-  double seconds = 0;  // of the wall clock
-};
-
-bool ends_with(const std::string& text, std::string_view end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
-void check_places(const Arguments& arguments) {
+void check_places(const SimulateArguments& arguments) {
   for (const auto& [option, path] : {std::pair("--checkpoint", &arguments.checkpoint), {"--resume", &arguments.resume}})
     if (is_standard_output(*path))
       throw InputError(fmt::format("flexarm: {}: states are files, no streams: './-' is one of that name", option));
   for (const std::string& other : {arguments.scene.path, arguments.resume, arguments.checkpoint})
     refuse_overwriting("--output", arguments.output, other);
   refuse_overwriting("--checkpoint", arguments.checkpoint, arguments.scene.path);
-  if (!arguments.columns.empty() && ends_with(arguments.output, ".bag"))
+  if (!arguments.columns.empty() && is_bag(arguments.output))
     throw InputError("flexarm: --columns: a bag has messages, not columns");
 }
 
 /// Times of more steps than this could not be told apart.
-void check_duration(const Arguments& arguments, const Simulation& simulation) {
+void check_duration(const SimulateArguments& arguments, const Simulation& simulation) {
   constexpr double kMostSteps = 1e15;
   const double steps = (arguments.until - simulation.time()) / simulation.step_size();
   if (steps > kMostSteps)
@@ -86,71 +58,38 @@ class CheckpointTimes {
   double every_, next_;
 };
 
-/// The kind of file is what its name ends with.
-std::unique_ptr<ResultWriter> make_writer(const Arguments& arguments, const Simulation& simulation) {
-  const std::string& path = arguments.output;
-  if (ends_with(path, ".bag")) return recording_library().bag(path, simulation);
-  ResultColumns columns(simulation, ResultColumns::Solver::With, arguments.columns);
-  if (ends_with(path, ".h5")) return recording_library().hdf5(path, simulation, std::move(columns));
-  return std::make_unique<CsvWriter>(path, std::move(columns));
-}
-
-/// Null: nothing is put out.
-std::unique_ptr<ResultWriter> open_output(const Arguments& arguments, const Simulation& simulation) {
-  if (arguments.output.empty()) return nullptr;
-  try {
-    return make_writer(arguments, simulation);
-  } catch (const std::invalid_argument& error) {
-    throw InputError("flexarm: --columns: " + std::string(error.what()));
-  } catch (const std::runtime_error& error) {
-    throw InputError("flexarm: " + std::string(error.what()));
-  }
-}
-
-/// Writes rows, at each of which the summary looks, too.
-class SummarisedWriter : public ResultWriter {
- public:
-  SummarisedWriter(std::unique_ptr<ResultWriter> writer, RunSummary& summary)
-      : writer_(std::move(writer)), summary_(summary) {}
-
-  void write_row(const Simulation& simulation) override {
-    writer_->write_row(simulation);
-    summary_.look(simulation);
-  }
-  void note_step(const Simulation& simulation, const StepResult& result) override {
-    writer_->note_step(simulation, result);
-  }
-  bool looks_at_steps() const override { return writer_->looks_at_steps(); }
-  void close() override { writer_->close(); }
-
- private:
-  std::unique_ptr<ResultWriter> writer_;
-  RunSummary& summary_;
-};
-
 /// A step that begins there, or later, would only make up for the round-off of all those before it.
 double last_beginning(double until, double step) {
   const double round_off = until / step * std::numeric_limits<double>::epsilon() * until;
   return until - std::clamp(round_off, 1e-6 * step, 0.5 * step);
 }
 
+/// Empty if no error is to be estimated.
+std::optional<Companion> companion_of(const SimulateArguments& arguments, const Simulation& simulation) {
+  if (!arguments.estimates_error) return std::nullopt;
+  try {
+    return std::optional<Companion>(std::in_place, simulation);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("flexarm: --error-estimate: {}", error.what()));
+  }
+}
+
 /// Steps to the end, to a failure or to an interruption; the output ends with the last good state.
 /// @throws std::runtime_error if results or a checkpoint on the way cannot be written.
-Run run(const Arguments& arguments, Simulation& simulation) {
-  std::unique_ptr<ResultWriter> output = open_output(arguments, simulation);
+Run run(const SimulateArguments& arguments, Simulation& simulation) {
   CheckpointTimes checkpoints(simulation.time(), arguments.checkpoint_every);
   ProgressBar progress(simulation.time(), arguments.until, !arguments.quiet);
   const auto start = std::chrono::steady_clock::now();
   Run run{{}, RunSummary(simulation)};
   run.last.converged = true;
-  if (output)
-    output = std::make_unique<BackgroundWriter>(std::make_unique<SummarisedWriter>(std::move(output), run.summary),
-                                                simulation);
+  const std::unique_ptr<ResultWriter> output = open_output(arguments, simulation, run.summary);
   if (output) output->write_row(simulation);
   double written = simulation.time();
+  std::optional<Companion> companion = companion_of(arguments, simulation);
   const double end = last_beginning(arguments.until, simulation.step_size());
   while (run.last.converged && simulation.time() < end && interruption() == 0) {
     run.last = simulation.step();
+    if (companion && run.last.converged) run.last.error_estimate = companion->follow(simulation);
     run.summary.count(simulation, run.last);
     progress.show(simulation.time());
     if (run.last.converged && checkpoints.is_due(simulation.time(), simulation.step_size()))
@@ -169,9 +108,11 @@ Run run(const Arguments& arguments, Simulation& simulation) {
 }
 
 /// The run; if it cannot be written, the state at which that was noticed is kept.
-Run run_and_keep(const Arguments& arguments, Simulation& simulation) {
+Run run_and_keep(const SimulateArguments& arguments, Simulation& simulation, bool& is_accurate) {
   try {
-    return run(arguments, simulation);
+    const std::optional<double> accuracy = wanted_accuracy(arguments, simulation);
+    if (!accuracy) return run(arguments, simulation);
+    return run_accurately(arguments, *accuracy, simulation, is_accurate);
   } catch (const InputError&) {
     throw;  // nothing has happened yet
   } catch (const std::runtime_error&) {
@@ -181,7 +122,7 @@ Run run_and_keep(const Arguments& arguments, Simulation& simulation) {
 }
 
 /// Says what went wrong and where the last good state is.
-void report_failure(const Arguments& arguments, const Simulation& simulation, const Run& run) {
+void report_failure(const SimulateArguments& arguments, const Simulation& simulation, const Run& run) {
   const std::string kept = !arguments.checkpoint.empty()
                                ? arguments.checkpoint
                                : std::filesystem::path(arguments.scene.path).stem().string() + ".last_good_state";
@@ -196,7 +137,7 @@ void print_warnings(const Simulation& simulation, const Run& run) {
     fmt::print(stderr, "flexarm: warning: {}\n", warning);
 }
 
-void print_summary(const Arguments& arguments, const Simulation& simulation, double begin, const Run& run) {
+void print_summary(const SimulateArguments& arguments, const Simulation& simulation, double begin, const Run& run) {
   const StepCounts& counts = run.summary.counts();
   const std::string recoveries = recoveries_text(counts);
   fmt::print(report_stream(arguments),
@@ -209,7 +150,7 @@ void print_summary(const Arguments& arguments, const Simulation& simulation, dou
 }
 
 /// Whatever of the files can be found wrong before the run is an error of input.
-void prepare_files(const Arguments& arguments, Simulation& simulation) {
+void prepare_files(const SimulateArguments& arguments, Simulation& simulation) {
   try {
     if (!arguments.resume.empty()) read_checkpoint(simulation, arguments.resume);
     if (!arguments.checkpoint.empty()) try_checkpoint(simulation, arguments.checkpoint);
@@ -218,7 +159,7 @@ void prepare_files(const Arguments& arguments, Simulation& simulation) {
   }
 }
 
-int simulate(const Arguments& arguments) {
+int simulate(const SimulateArguments& arguments) {
   check_places(arguments);
   SimulationOptions options = arguments.options;
   // A run that is stopped and resumed gives the same numbers as one that is not.
@@ -228,7 +169,8 @@ int simulate(const Arguments& arguments) {
   check_duration(arguments, simulation);
   const double begin = simulation.time();
   catch_interruptions();
-  const Run result = run_and_keep(arguments, simulation);
+  bool is_accurate = true;
+  const Run result = run_and_keep(arguments, simulation, is_accurate);
   print_warnings(simulation, result);
   if (!result.last.converged) {
     report_failure(arguments, simulation, result);
@@ -236,7 +178,7 @@ int simulate(const Arguments& arguments) {
   }
   if (!arguments.checkpoint.empty()) write_checkpoint(simulation, arguments.checkpoint);
   if (!arguments.quiet) print_summary(arguments, simulation, begin, result);
-  if (interruption() == 0) return kDone;
+  if (interruption() == 0) return is_accurate ? kDone : kFailed;
   fmt::print(stderr, "flexarm: interrupted at t = {:.17g} s\n", simulation.time());
   return kInterrupted + interruption();
 }
@@ -244,11 +186,17 @@ int simulate(const Arguments& arguments) {
 }  // namespace
 
 void add_simulate(CLI::App& app, int& status) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<SimulateArguments>();
   CLI::App* command = app.add_subcommand("simulate", "Simulates a scene in time");
   add_scene(*command, arguments->scene);
   command->add_option("--until", arguments->until, "end time [s]")->capture_default_str()->check(check_non_negative);
   command->add_option("--step", arguments->options.step, "time step [s]")->check(check_positive);
+  command
+      ->add_option("--accuracy", arguments->accuracy,
+                   "error of probes, of the way that they move: steps are chosen for it (the scene's)")
+      ->check(check_part);
+  command->add_option("--interval", arguments->interval, "time between rows of the output with an accuracy [s]")
+      ->check(check_positive);
   command->add_option("--scheme", arguments->options.scheme, "integration scheme");
   command->add_option("--tolerance", arguments->options.tolerance, "of Newton's method")->check(check_tolerance);
   command
@@ -275,6 +223,8 @@ void add_simulate(CLI::App& app, int& status) {
   command->add_option("--checkpoint-every", arguments->checkpoint_every, "simulated time between writings of it [s]")
       ->check(check_positive)
       ->needs(checkpoint);
+  command->add_flag("--error-estimate", arguments->estimates_error,
+                    "estimates the error in time by steps of twice the length, for half as much time again");
   command->add_flag("--quiet", arguments->quiet, "no progress bar and no summary");
   command->callback([arguments, &status] { status = simulate(*arguments); });
 }

@@ -14,6 +14,9 @@ class DissipativeSubstitute {
   /// The model must outlive the substitute.
   DissipativeSubstitute(const Model& model, const Scheme& scheme, const StepSettings& settings);
 
+  /// See Stepper.
+  void set_step(double step) { stepper_.set_step(step, 0); }
+  void set_tolerance(double tolerance) { stepper_.set_tolerance(tolerance); }
   /// A step may come that fails: the state at its beginning.
   void keep(const State& state) { begin_ = state; }
   /// Does the step from the state that was kept. On failure `state` is left alone. The effort is added to `result`.

@@ -230,6 +230,12 @@ void DryFrictionStep::place_held() {
   }
 }
 
+bool DryFrictionStep::switches() const {
+  return std::any_of(carriers_.begin(), carriers_.end(), [&](const FrictionCarrier& carrier) {
+    return carrier.law.is_stopped() != (configuration_.state().rests[carrier.coordinate] > 0);
+  });
+}
+
 void DryFrictionStep::accept(State& state) const {
   for (const FrictionCarrier& carrier : carriers_) state.rests[carrier.coordinate] = carrier.law.is_stopped() ? 1 : 0;
 }

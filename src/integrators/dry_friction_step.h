@@ -43,6 +43,8 @@ class DryFrictionStep {
   bool tangent_holds() const;
   /// After an update: coordinates that are held get the last digits of what it has brought about.
   void place_held();
+  /// True where a coordinate comes to rest in the step, or begins to move.
+  bool switches() const;
   void accept(State& state) const;
 
   /// By which efforts on coordinates are multiplied in their rows.

@@ -142,6 +142,7 @@ void find_place(const StepSystem& system, StepResult::Failure& failure) {
     case Reason::DeadPoint:
     case Reason::OutOfTime:
     case Reason::HitTooFast:
+    case Reason::EventWithin:
     case Reason::NeverRests:
       return;
   }

@@ -169,6 +169,14 @@ bool StepConfiguration::is_on_line(const JointMap& joint, int j) const {
   return line.overshoot(to) <= largest_overshoot(joint) && pieces <= SlideLine::kMostPieces;
 }
 
+bool StepConfiguration::leaves_line() const {
+  for (std::size_t j = 0; j < model_.joints.size(); ++j) {
+    const JointMap& joint = model_.joints[j];
+    if (joint.leaving >= 0 && model_.slide_lines[joint.line].overshoot(released_[j].displacement[0]) > 0) return true;
+  }
+  return false;
+}
+
 bool StepConfiguration::is_driven_off_line() const {
   if (off_line_joint_ < 0) return false;
   const JointMap& joint = model_.joints[off_line_joint_];

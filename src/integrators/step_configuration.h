@@ -71,6 +71,8 @@ class StepConfiguration {
   int off_line_joint() const { return off_line_joint_; }  ///< the first of those, -1: none
   /// True where a motion has driven it there, which no shorter step mends.
   bool is_driven_off_line() const;
+  /// True where a slider that may leave its line comes to its end in the step.
+  bool leaves_line() const;
 
   // ---- joints over the step
   bool has_incremental_joints() const { return scheme_.is_incremental(); }

@@ -11,6 +11,9 @@ struct StepSettings {
   double tolerance = 1e-8;  ///< on the largest update: displacements over the model's length scale, rotations in rad
   int max_iterations = 20;
   int max_halvings = 14;  ///< but where a stop is hit, see finest_halving()
+  /// Halvings of a step within which friction sticks or slips anew, a stop is touched or left, or a slider comes to its
+  /// end. 0: steps go over such events.
+  int event_halvings = 0;
   /// Keep the factors of the tangent while the iteration contracts well (modified Newton). The result agrees with that
   /// of full Newton to far below the tolerance; off: quadratic convergence, and a restored state continues bit for bit.
   bool reuse_factorisation = true;

@@ -79,6 +79,9 @@ class StepSystem {
   LoopMultipliers::Opening largest_opening() const { return loops_.largest_opening(); }
   /// See StopContacts.
   bool hits_too_fast() { return contacts_.hits_too_fast(); }
+  /// True where the equations change within the step: friction sticks or slips anew, a stop is touched or left, a
+  /// slider comes to the end of its line. The order of the scheme is lost in such a step.
+  bool has_event() const { return friction_.switches() || contacts_.switches() || configuration_.leaves_line(); }
   bool may_hit_a_stop() { return contacts_.may_hit(); }
   /// Internal less external forces on all nodes in the configuration of `state`, before joints fold them; of a scheme
   /// made by statics_of().

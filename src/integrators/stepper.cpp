@@ -60,6 +60,18 @@ void Stepper::invalidate() {
   newton_.forget_factors();
 }
 
+void Stepper::set_step(double step, int event_halvings) {
+  settings_.step = step;
+  settings_.event_halvings = std::clamp(event_halvings, 0, settings_.max_halvings);
+  newton_.forget_factors();
+  if (substitute_) substitute_->set_step(step);
+}
+
+void Stepper::set_tolerance(double tolerance) {
+  settings_.tolerance = tolerance;
+  if (substitute_) substitute_->set_tolerance(tolerance);
+}
+
 void Stepper::observe(StepObserver* observer) {
   observer_ = observer;
   newton_.observe(observer);
@@ -118,6 +130,9 @@ bool Stepper::simple_step(State& state, double step, StepResult& result) {
     const bool may_halve = state.halving_level < finest_halving(settings_) && result.halvings < kMostHalvings;
     if (result.reason == StepResult::Reason::None && may_halve && system_.hits_too_fast())
       result.reason = StepResult::Reason::HitTooFast;
+    const bool may_find = state.halving_level < settings_.event_halvings && result.halvings < kMostHalvings / 2;
+    if (result.reason == StepResult::Reason::None && may_find && system_.has_event())
+      result.reason = StepResult::Reason::EventWithin;
     if (result.reason != StepResult::Reason::None) return false;
     enter(StepPhase::Accept);
     system_.accept(state);

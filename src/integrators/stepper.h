@@ -27,6 +27,10 @@ class Stepper {
   /// Adds to an initial state what the scheme keeps there; accelerations (Newmark family) come from a short
   /// momentum-conserving step.
   void initialise(State& state);
+  /// The length of whole steps from now on [s]; what the scheme was made with for another one stays.
+  void set_step(double step, int event_halvings);
+  /// Of Newton's method, see StepSettings.
+  void set_tolerance(double tolerance);
   /// The state was changed by somebody else: forget what was kept from the last step.
   void invalidate();
 

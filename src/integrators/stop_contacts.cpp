@@ -60,6 +60,14 @@ bool StopContacts::hits_too_fast() {
   return false;
 }
 
+bool StopContacts::switches() const {
+  return std::any_of(stopped_.begin(), stopped_.end(), [&](const Stopped& stopped) {
+    const LimitStop& limit = *coordinate(stopped).limit;
+    const double end = position(coordinate(stopped)), begin = end - configuration_.increment_of(coordinate(stopped));
+    return (begin < limit.lower) != (end < limit.lower) || (begin > limit.upper) != (end > limit.upper);
+  });
+}
+
 bool StopContacts::may_hit() {
   configuration_.find_begin_rates();
   return std::any_of(stopped_.begin(), stopped_.end(), [&](const Stopped& stopped) {

@@ -17,6 +17,8 @@ class StopContacts {
   void after_update();
   /// True where the restitution of a hit would be lost in so long a step.
   bool hits_too_fast();
+  /// True where a coordinate comes to its stop in the step, or leaves it.
+  bool switches() const;
   /// True where the step is long for a hit that it is in or may come to, whatever its trial end.
   bool may_hit();
 

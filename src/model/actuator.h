@@ -2,6 +2,7 @@
 /// What drives or holds a scalar coordinate besides plain efforts: a spring, a motor with its gear, a controller.
 /// Efforts, angles and speeds of a motor are those seen at the joint: angles over the gear's ratio, efforts times it.
 
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -55,6 +56,12 @@ struct Servo {
   double sample_time = 0;  ///< [s]; 0: continuous
   double delay = 0;        ///< [s]
 };
+
+/// Steps of that length hit all samples; `sample_time` 0: there are none [s].
+inline bool hits_samples(double step, double sample_time) {
+  const double steps = std::round(sample_time / step);
+  return sample_time == 0 || (steps >= 1 && std::abs(sample_time - steps * step) <= 1e-9 * sample_time);
+}
 
 /// Of a rotor whose axis is carried round by the parent link.
 struct Gyroscope {

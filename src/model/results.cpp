@@ -31,6 +31,8 @@ const char* to_string(StepResult::Reason reason) {
       return "a motion drives a slider beyond the end of its line";
     case StepResult::Reason::HitTooFast:
       return "a stop is hit too fast for the step";
+    case StepResult::Reason::EventWithin:
+      return "something sticks, slips, hits or leaves within the step";
     case StepResult::Reason::OpenLoop:
       return "a loop joint opens: its loop was singular at the start, or more is prescribed than the loop allows";
     case StepResult::Reason::NeverRests:
@@ -54,6 +56,7 @@ void StepCounts::add(const StepResult& result) {
   other_guesses += result.other_guesses;
   dissipated_steps += result.is_dissipated;
   deepest_halving = std::max(deepest_halving, result.deepest_halving);
+  if (!std::isnan(result.error_estimate)) error_estimate = result.error_estimate;
 }
 
 std::string recoveries_text(const StepCounts& counts) {

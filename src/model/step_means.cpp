@@ -16,12 +16,15 @@ void StepMeans::begin() {
 
 void StepMeans::end(double duration) {
   std::rotate(means.begin(), means.end() - 1, means.end());
+  std::rotate(durations.begin(), durations.end() - 1, durations.end());
+  durations[0] = duration;
   for (std::size_t i = 0; i < impulse.size(); ++i) means[0][i] = impulse[i] / duration;
   count = std::min(count + 1, kLength);
 }
 
 void StepMeans::restart(const std::vector<double>& forces) {
   std::copy(forces.begin(), forces.end(), means[0].begin());
+  durations[0] = 0;  // of one instant
   count = 1;
 }
 
@@ -29,8 +32,11 @@ double StepMeans::at_end(std::size_t i) const {
   if (count < 2) return means[0][i];
   // The mean of two steps has lost what alternates, and belongs to the step before ...
   if (count < 3) return 0.5 * (means[0][i] + means[1][i]);
-  // ... from which the change of this mean leads on to the end of the last one.
-  return means[0][i] + 0.5 * (means[1][i] - means[2][i]);
+  // ... from which the change of this mean leads on to the end of the last one: equal steps change it by half of the
+  // difference of the newest and the oldest mean. Others have their middles elsewhere.
+  const auto [h0, h1, h2] = durations;
+  const double beyond = (h0 - 0.5 * h1 - 0.5 * h2) / (0.5 * h0 + h1 + 0.5 * h2);
+  return means[0][i] + 0.5 * (means[1][i] - means[2][i]) + 0.5 * beyond * (means[0][i] - means[2][i]);
 }
 
 }  // namespace flexarm

@@ -14,6 +14,7 @@ struct StepMeans {
   static constexpr int kLength = 3;
   std::vector<double> impulse;                     ///< of the step under way [N s or N m s]
   std::array<std::vector<double>, kLength> means;  ///< newest first [N or N m]
+  std::array<double, kLength> durations{};         ///< of the steps over which they were taken [s]
   int count = 0;                                   ///< of means that hold
 
   void resize(std::size_t forces);

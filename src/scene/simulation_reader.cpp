@@ -10,6 +10,7 @@
 namespace flexarm::scene {
 namespace {
 
+constexpr NumberRange kPart{"between 0 and 1", [](double x) { return x > 0 && x < 1; }};
 constexpr NumberRange kUnitInterval{"from 0 to 1", [](double x) { return x >= 0 && x <= 1; }};
 
 constexpr NumberRange kStep{"> 0 and at most 1e9", [](double x) { return x > 0 && x <= kLongestStep; }};
@@ -62,10 +63,11 @@ void read_integrator(const XmlElement& integrator, SceneDescription& scene) {
   IntegratorDescription& description = scene.integrator;
   scene.integrator_location = integrator.location();
   integrator.expect_only({"scheme", "step", "tolerance", "max_iterations", "max_halvings", "interpolation", "weak_form",
-                          "beta", "gamma", "alpha", "rho_infinity", "on_failure"});
+                          "beta", "gamma", "alpha", "rho_infinity", "on_failure", "accuracy"});
   read_scheme(integrator, description);
   description.step = integrator.number("step", kStep, description.step);
   description.tolerance = integrator.number("tolerance", kTolerance, description.tolerance);
+  if (integrator.has("accuracy")) description.accuracy = integrator.number("accuracy", kPart);
   if (integrator.has("max_iterations"))
     description.max_iterations = integrator.integer("max_iterations", 1, kMostNewtonIterations).value_or(1);
   if (integrator.has("max_halvings"))

@@ -71,6 +71,7 @@ std::string advice(const Model& model, const StepResult& result) {
     case Reason::NeverRests:
       return "a <motion>, a stop or a load that holds what moves";
     case Reason::HitTooFast:
+    case Reason::EventWithin:
       return "a smaller step, or more halvings (max_halvings)";
     case Reason::OutOfTime:
       return "going on from here, which costs as much again, a smaller step, or a longer recovery_wall_time";

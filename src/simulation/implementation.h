@@ -116,6 +116,13 @@ struct Simulation::Implementation {
     return frame.node < 0 ? Pose{model.origin + pose.position, pose.orientation} : in_world(pose);
   }
 
+  ProbeState probe_at(const ProbePoint& point) const {
+    const MotionView motion = view();
+    ProbeState probe = probe_state(model, state, published.velocities(motion).nodes(), point);
+    probe.pose.position += probe_origin(model, state, point);
+    return probe;
+  }
+
   void release_from_lines() {
     for (int slide; (slide = slide_beyond_end(model, state)) >= 0;) {
       State released = state_after_release(model, state, slide);
@@ -146,24 +153,15 @@ struct Simulation::Implementation {
     stepper->invalidate();
   }
 
-  /// Means of steps of another length do not count; what they are at the end of the last one does.
-  static StepMeans begun_anew(StepMeans means) {
-    std::vector<double> forces(means.count > 0 ? means.means[0].size() : 0);
-    for (std::size_t i = 0; i < forces.size(); ++i) forces[i] = means.at_end(i);
-    if (means.count > 0) means.restart(forces);
-    return means;
-  }
-
   /// As a state of this simulation, the one in which another one of the same mechanism is.
   State state_of_other(const Implementation& from) {
     fit_to_state(from.state);
     const bool is_same = from.scheme.name == scheme.name;
     State state = is_same ? from.state : with_joint_state(model, stepper->degrees_of_freedom(), from.state, {});
     if (is_same && from.settings.step == settings.step) return state;
-    // What steps have left behind begins anew: how often they are halved, forces averaged over them.
     state.halving_level = state.good_steps = 0;
-    state.drives = begun_anew(from.state.drives);
-    state.transmitted = begun_anew(from.state.transmitted);
+    state.drives = from.state.drives;
+    state.transmitted = from.state.transmitted;
     state.last_transmitted = from.state.last_transmitted;
     if (is_same) return state;
     // Not as joints' rates have it: schemes may let slaves move a little beside them.

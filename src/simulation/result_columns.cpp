@@ -58,10 +58,15 @@ void angular_momentum_values(const Simulation& simulation, const StepCounts&, st
   append(row, simulation.angular_momentum());
 }
 void solver_values(const Simulation& simulation, const StepCounts& counts, std::size_t, Row& row) {
-  row.push_back(simulation.step_size());
+  const double last = state_of(simulation).drives.durations[0];
+  row.push_back(last > 0 ? last : simulation.step_size());
   for (const long count : {counts.iterations, counts.halvings, static_cast<long>(counts.deepest_halving),
                            counts.other_guesses, counts.dissipated_steps})
     row.push_back(static_cast<double>(count));
+}
+
+void estimate_values(const Simulation&, const StepCounts& counts, std::size_t, Row& row) {
+  row.push_back(counts.error_estimate);
 }
 
 }  // namespace
@@ -139,7 +144,7 @@ ResultColumns::ResultColumns(const Simulation& simulation, Solver solver, const 
   selection.add("momentum/", {{"x", "kg m/s"}, {"y", "kg m/s"}, {"z", "kg m/s"}}, momentum_values);
   selection.add("angular_momentum/", {{"x", "kg m^2/s"}, {"y", "kg m^2/s"}, {"z", "kg m^2/s"}},
                 angular_momentum_values);
-  if (solver == Solver::With)
+  if (solver != Solver::Without) {
     selection.add("solver/",
                   {{"step", "s"},
                    {"iterations", "1"},
@@ -148,6 +153,8 @@ ResultColumns::ResultColumns(const Simulation& simulation, Solver solver, const 
                    {"other_guesses", "1"},
                    {"dissipated_steps", "1"}},
                   solver_values);
+    if (solver == Solver::WithEstimate) selection.add("solver/", {{"error_estimate", "m"}}, estimate_values);
+  }
   selection.require_all_fitted();
 }
 

@@ -27,6 +27,14 @@ double integral_for(const ServoLaw& law, double effort) {
 
 }  // namespace
 
+void require_hit_samples(const Model& model, double step) {
+  for (const Actuator& actuator : model.actuators)
+    if (actuator.servo && !hits_samples(step, actuator.servo->sample_time))
+      throw std::invalid_argument(
+          fmt::format("a step of {:g} s does not divide the sample time of the servo of '{}', {} s", step,
+                      model.coordinates[actuator.coordinate].name, actuator.servo->sample_time));
+}
+
 bool has_servo(const Model& model, std::size_t coordinate) {
   const int actuator = model.coordinates.at(coordinate).actuator;
   return actuator >= 0 && model.actuators[actuator].servo;

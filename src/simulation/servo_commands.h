@@ -13,6 +13,9 @@ bool has_servo(const Model& model, std::size_t coordinate);
 const Servo& servo_of(const Model& model, std::size_t coordinate);
 ServoState& servo_of(const Model& model, std::size_t coordinate, State& state);
 
+/// @throws std::invalid_argument if steps of that length [s] miss the samples of a servo.
+void require_hit_samples(const Model& model, double step);
+
 /// As Simulation::command_set_point(). `arrival`: end of the next step [s].
 void command_set_point(ServoState& servo, double set_point, double rate, double acceleration, double arrival);
 /// In force at a time, where the one that is commanded has arrived.

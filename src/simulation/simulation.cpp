@@ -89,6 +89,30 @@ double Simulation::time() const {
 double Simulation::step_size() const {
   return implementation_->settings.step;
 }
+void Simulation::set_step_size(double step, int event_halvings) {
+  Implementation& s = *implementation_;
+  if (!(step > 0 && step <= kLongestStep))
+    throw std::invalid_argument(fmt::format("a step of {:g} s: expected > 0 and at most {:g} s", step, kLongestStep));
+  require_hit_samples(s.model, step);
+  if (step == s.settings.step && event_halvings == s.settings.event_halvings) return;
+  s.settings.step = step;
+  s.settings.event_halvings = event_halvings;
+  s.stepper->set_step(step, event_halvings);
+  s.state.halving_level = s.state.good_steps = 0;
+}
+
+double Simulation::tolerance() const {
+  return implementation_->settings.tolerance;
+}
+
+void Simulation::set_tolerance(double tolerance) {
+  if (!(tolerance > 0 && tolerance <= kLargestTolerance))
+    throw std::invalid_argument(
+        fmt::format("a tolerance of {:g}: expected > 0 and at most {:g}", tolerance, kLargestTolerance));
+  implementation_->settings.tolerance = tolerance;
+  implementation_->stepper->set_tolerance(tolerance);
+}
+
 std::string Simulation::scheme() const {
   return std::string(implementation_->scheme.name);
 }
@@ -229,6 +253,14 @@ Pose Simulation::tip_pose(std::size_t link) const {
   return frame.beam ? implementation_->in_world(frame.beam->tip) : link_pose(link);
 }
 
+ProbeState Simulation::tip_state(std::size_t link) const {
+  const LinkFrame& frame = implementation_->model.links.at(link);
+  ProbePoint tip;
+  tip.link = static_cast<int>(link);
+  tip.attachment = frame.beam ? frame.beam->tip : frame.frame;
+  return implementation_->probe_at(tip);
+}
+
 void Simulation::beam_points(std::size_t link, int between, std::vector<BeamPoint>& points) const {
   const LinkFrame& frame = implementation_->model.links.at(link);
   if (!frame.beam) return;
@@ -265,12 +297,7 @@ Vector3 Simulation::angular_momentum() const {
   return world_origin(implementation_->model, implementation_->state).cross(momenta.linear) + momenta.angular;
 }
 ProbeState Simulation::probe(std::size_t index) const {
-  const Implementation& s = *implementation_;
-  const MotionView view = s.view();
-  const ProbePoint& point = view.model.probes.at(index);
-  ProbeState probe = probe_state(view.model, view.state, s.published.velocities(view).nodes(), point);
-  probe.pose.position += probe_origin(view.model, view.state, point);
-  return probe;
+  return implementation_->probe_at(implementation_->model.probes.at(index));
 }
 ProbeAcceleration Simulation::probe_acceleration(std::size_t index) const {
   const MotionView view = implementation_->view();
@@ -371,6 +398,30 @@ const std::vector<double>& update_norms_of(const Simulation& simulation) {
 }
 void restore(Simulation& simulation, const State& state) {
   Inside::of(simulation).restore(state);
+}
+
+void take_commands(const Simulation& simulation, Commands& commands) {
+  const State& state = Inside::of(simulation).state;
+  commands.efforts = state.commands;
+  commands.wrenches = state.wrenches;
+  commands.servos.resize(state.actuators.size());
+  for (std::size_t i = 0; i < state.actuators.size(); ++i) commands.servos[i] = state.actuators[i].servo;
+}
+
+void give_commands(const Commands& commands, Simulation& simulation) {
+  State& state = Inside::of(simulation).state;
+  state.commands = commands.efforts;
+  state.wrenches = commands.wrenches;
+  for (std::size_t i = 0; i < state.actuators.size(); ++i) {
+    ServoState& servo = state.actuators[i].servo;
+    const ServoState& given = commands.servos[i];
+    servo.set_point = given.set_point;
+    servo.set_rate = given.set_rate;
+    servo.set_acceleration = given.set_acceleration;
+    servo.set_time = given.set_time;
+    servo.law = given.law;
+    servo.off = given.off;
+  }
 }
 
 }  // namespace flexarm

@@ -122,6 +122,7 @@ std::string state_flaw(const Model& built, const State& initial, int finest_halv
   for_each_number(state, [&](const char* what, double number) {
     if (what == kCommand && std::isnan(number)) return;
     flaw.require(std::isfinite(number), what, number, "a finite number");
+    flaw.require(what != kDuration || number >= 0, what, number, ">= 0");
   });
   const auto require_unit = [&](const char* what, const Quaternion& q) {
     flaw.require(std::abs(q.squaredNorm() - 1) <= kUnitTolerance, what, q.norm(), "1");

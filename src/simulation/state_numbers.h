@@ -7,6 +7,8 @@ namespace flexarm {
 
 /// The quantity that may be nan: no command holds.
 constexpr const char* kCommand = "a command";
+/// The quantity that may not be negative.
+constexpr const char* kDuration = "the duration of a past step";
 
 /// Calls `visit(what, number)` for every number of a state in a fixed order; `what`: its quantity, for messages. The
 /// whole numbers, halving_level to steps, the counts and order of histories, and left_lines are not among them.
@@ -63,6 +65,7 @@ void for_each_number(AnyState& state, const Visit& visit) {
   for (auto& impulse : state.drives.impulse) visit("the impulse of a motion", impulse);
   for (auto& means : state.drives.means)
     for (auto& mean : means) visit("the effort of a motion", mean);
+  for (auto& duration : state.drives.durations) visit(kDuration, duration);
   visit("the work", state.work);
   visit("the dissipated energy", state.dissipated);
   visit("the energy defect", state.energy_defect);
@@ -83,6 +86,7 @@ void for_each_number(AnyState& state, const Visit& visit) {
   for (auto& impulse : state.transmitted.impulse) visit("the impulse of a joint", impulse);
   for (auto& means : state.transmitted.means)
     for (auto& mean : means) visit("what a joint transmits", mean);
+  for (auto& duration : state.transmitted.durations) visit(kDuration, duration);
   for (auto& force : state.last_transmitted) visit("what a joint transmits", force);
   for (auto& sample : state.samples) {
     visit("the time of a sample", sample.time);

@@ -1,4 +1,4 @@
-#include "accuracy/trajectory.h"
+#include "flexarm/accuracy/trajectory.h"
 
 #include <cmath>
 #include <stdexcept>

@@ -4,6 +4,7 @@
 #include <array>
 #include <complex>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,7 +29,8 @@ struct StepResult {
     BentTooFar,
     DeadPoint,
     OutOfTime,
-    HitTooFast
+    HitTooFast,
+    EventWithin  ///< never of a step that fails: shorter ones follow
   };
 
   /// A part of the mechanism; what is not known is -1.
@@ -71,6 +73,9 @@ struct StepResult {
   int other_guesses = 0;       ///< sub-steps that were solved from another guess than the first
   bool is_dissipated = false;  ///< the step was done by edmc2, OnFailure::Dissipate
 
+  /// Of the positions of points after the step, where the run estimates it [m]: the largest; else NaN.
+  double error_estimate = std::numeric_limits<double>::quiet_NaN();
+
   double largest_rotation = 0;   ///< of a node in a sub-step, as 2 tan(angle/2)
   int turning_node = -1;         ///< of Simulation::node_count(): which one
   Reason reason = Reason::None;  ///< why it failed
@@ -96,6 +101,7 @@ struct StepCounts {
   long steps = 0, iterations = 0, halvings = 0, other_guesses = 0;
   long dissipated_steps = 0;  ///< done by edmc2
   int deepest_halving = 0;
+  double error_estimate = std::numeric_limits<double>::quiet_NaN();  ///< of the last step that has one [m]
 
   void add(const StepResult& result);
 };

@@ -48,6 +48,9 @@ struct IntegratorDescription {
   int max_halvings = 14;
   std::optional<double> rho_infinity;  ///< of numerical dissipation: spectral radius at infinite frequency (0.8)
   OnFailure on_failure = OnFailure::Stop;
+  /// Of runs in which steps are chosen for it (accuracy/accurate_run.h): the error of points, in (0, 1), relative to
+  /// how far they move. Steps of a simulation by itself are not.
+  std::optional<double> accuracy;
 };
 
 /// Names of the schemes that a scene may ask for, "auto" first.

@@ -25,9 +25,10 @@ struct ResultColumn {
 ///   momentum/x|y|z, angular_momentum/x|y|z   (about the world origin)
 ///   solver/step|iterations|halvings|deepest_halving|other_guesses|dissipated_steps
 ///                                            of a simulation in time: step size, and StepCounts since the row before
+///   solver/error_estimate                    StepResult::error_estimate, where there is one
 class ResultColumns {
  public:
-  enum class Solver { Without, With };
+  enum class Solver { Without, With, WithEstimate };
 
   /// Those whose names fit one of the `patterns`, as a shell's wildcards do ("joint/*", "*/f[xyz]"), and the time; all
   /// where there are none. What no column needs is not computed.

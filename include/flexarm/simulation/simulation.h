@@ -85,8 +85,18 @@ class Simulation {
   /// scheme has no pulls; nothing has changed then.
   void take_over(const Simulation& other);
 
-  double time() const;         ///< [s]
-  double step_size() const;    ///< [s]
+  double time() const;       ///< [s]
+  double step_size() const;  ///< [s]
+  /// The length of steps from the next one on, [s]; the motion goes on from where it is, with all that the scheme
+  /// conserves. What a scheme was made with for the scene's step, as its numerical dissipation, stays. Snapshots do not
+  /// have it. `event_halvings`: how often a step is halved at most, within max_halvings, in which friction sticks or
+  /// slips anew, a stop is touched or left, or a slider comes to the end of its line.
+  /// @throws std::invalid_argument if it is not > 0 and at most 1e9, or does not divide the sample time of a servo.
+  void set_step_size(double step, int event_halvings = 0);
+  double tolerance() const;  ///< of Newton's method, see IntegratorDescription
+  /// From the next step on.
+  /// @throws std::invalid_argument if it is not > 0 and at most kLargestTolerance.
+  void set_tolerance(double tolerance);
   std::string scheme() const;  ///< name of the scheme in use
 
   /// Puts joint coordinates elsewhere at once, or gives them other velocities; what hangs on them is moved with them as
@@ -148,6 +158,8 @@ class Simulation {
   bool is_flexible(std::size_t link) const;
   /// End section of a flexible link in the world, axes as the link's in the undeformed state; else the link's pose.
   Pose tip_pose(std::size_t link) const;
+  /// The same as of a probe, with velocities.
+  ProbeState tip_state(std::size_t link) const;
   /// Points at every node and `between` equally spaced points inside each pair of nodes; appended to `points`.
   void beam_points(std::size_t link, int between, std::vector<BeamPoint>& points) const;
   /// The sections of the same points while the link is undeformed, in the link's frame; none: the link is rigid.

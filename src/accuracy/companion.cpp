@@ -1,0 +1,145 @@
+#include "flexarm/accuracy/companion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "flexarm/accuracy/trajectory.h"
+#include "flexarm/scene/scene_description.h"
+#include "schemes/scheme.h"
+#include "simulation/inside.h"
+
+namespace flexarm {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+/// Wrenches that differ by how strong they are, not by where they act.
+bool act_alike(const std::vector<NodalLoad>& a, const std::vector<NodalLoad>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const NodalLoad& x, const NodalLoad& y) {
+    return x.node == y.node && x.follows == y.follows && x.arm == y.arm && x.pull.stiffness == y.pull.stiffness &&
+           x.pull.damping == y.pull.damping;
+  });
+}
+
+/// Efforts and wrenches of both steps have the same impulse as their means over both; set points are those at the end.
+void take_means(const Commands& first, Commands& second) {
+  for (std::size_t i = 0; i < first.efforts.size(); ++i)
+    if (!std::isnan(first.efforts[i]) && !std::isnan(second.efforts[i]))
+      second.efforts[i] = 0.5 * (first.efforts[i] + second.efforts[i]);
+  for (std::size_t i = 0; i < second.wrenches.size(); ++i) {
+    NodalLoad& mean = second.wrenches[i];
+    mean.force = 0.5 * (first.wrenches[i].force + mean.force);
+    mean.moment = 0.5 * (first.wrenches[i].moment + mean.moment);
+    mean.pull.target = 0.5 * (first.wrenches[i].pull.target + mean.pull.target);
+  }
+}
+
+}  // namespace
+
+struct Companion::Implementation {
+  Implementation(const Simulation& simulation, double window)
+      : companion(simulation.copy()),
+        points(simulation),
+        window(window),
+        share(1 / (std::pow(2, make_scheme(simulation.scene().integrator).order) - 1)) {
+    companion.set_step_size(2 * simulation.step_size());
+    begin(simulation);
+  }
+
+  void begin(const Simulation& simulation);
+  double follow(const Simulation& simulation);
+
+  Simulation companion;
+  JudgedPoints points;
+  double window, share;   // share: of a difference, by which the simulation is in error
+  double begin_time = 0;  // of the window [s]
+  double last_time = 0;   // of the simulation, after the last step [s]
+  bool is_half = false;   // the companion is a step behind
+  double largest = 0, largest_before = kUnknown;
+  Commands first, second;  // of the steps that it does in one
+  Snapshot start;
+  std::vector<Vector3> positions, companion_positions;
+
+ private:
+  bool step(const Simulation& simulation);
+  double distance(const Simulation& simulation);
+};
+
+void Companion::Implementation::begin(const Simulation& simulation) {
+  simulation.snapshot(start);
+  companion.restore(start);
+  companion.set_step_size(2 * simulation.step_size());
+  begin_time = last_time = simulation.time();
+  is_half = false;
+  largest = 0;
+}
+
+bool Companion::Implementation::step(const Simulation& simulation) {
+  take_commands(simulation, second);
+  const double step = simulation.step_size();
+  if (act_alike(first.wrenches, second.wrenches)) {
+    take_means(first, second);
+    give_commands(second, companion);
+    return companion.step().converged;
+  }
+  // Other wrenches: these two steps are done as the simulation does them.
+  companion.set_step_size(step);
+  give_commands(first, companion);
+  bool is_done = companion.step().converged;
+  give_commands(second, companion);
+  is_done = is_done && companion.step().converged;
+  companion.set_step_size(2 * step);
+  return is_done;
+}
+
+double Companion::Implementation::distance(const Simulation& simulation) {
+  points.positions(simulation, positions);
+  points.positions(companion, companion_positions);
+  double distance = 0;
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    distance = std::max(distance, (positions[i] - companion_positions[i]).norm());
+  return distance;
+}
+
+double Companion::Implementation::follow(const Simulation& simulation) {
+  const double step = simulation.step_size();
+  const bool goes_on = std::abs(simulation.time() - last_time - step) < 0.5 * step && companion.step_size() == 2 * step;
+  if (!goes_on) {
+    begin(simulation);
+    return largest_before = kUnknown;
+  }
+  last_time = simulation.time();
+  is_half = !is_half;
+  if (is_half) {
+    take_commands(simulation, first);
+  } else if (!this->step(simulation)) {
+    begin(simulation);
+  } else {
+    largest = std::max(largest, share * distance(simulation));
+    if (simulation.time() - begin_time > window - step) {
+      largest_before = largest;
+      begin(simulation);
+    }
+  }
+  return simulation.time() - begin_time > 1.5 * step || !std::isnan(largest_before) ? std::fmax(largest, largest_before)
+                                                                                    : kUnknown;
+}
+
+Companion::Companion(const Simulation& simulation, double window)
+    : implementation_(std::make_unique<Implementation>(simulation, window)) {}
+Companion::~Companion() = default;
+Companion::Companion(Companion&&) noexcept = default;
+Companion& Companion::operator=(Companion&&) noexcept = default;
+
+double Companion::follow(const Simulation& simulation) {
+  return implementation_->follow(simulation);
+}
+
+void Companion::begin(const Simulation& simulation) {
+  implementation_->begin(simulation);
+  implementation_->largest_before = kUnknown;
+}
+
+}  // namespace flexarm

@@ -1,0 +1,125 @@
+#include "cli/accurate_simulation.h"
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "cli/commands.h"
+#include "cli/files.h"
+#include "cli/interruption.h"
+#include "cli/progress_bar.h"
+#include "flexarm/accuracy/accurate_run.h"
+#include "flexarm/scene/scene_description.h"
+
+namespace flexarm::cli {
+namespace {
+
+/// Writes the rows of each try over those of the one before, and shows how far it is.
+class TryOutput : public RunWatcher {
+ public:
+  TryOutput(const SimulateArguments& arguments, Run& run, double begin)
+      : arguments_(arguments), run_(run), progress_(begin, arguments.until, !arguments.quiet) {}
+
+  void begin(const Simulation& simulation, long steps, double estimate) override {
+    label_ = std::isnan(estimate) ? fmt::format("{} steps", steps)
+                                  : fmt::format("{} steps, error about {:.1e}", steps, estimate);
+    output_.reset();  // writes to the summary
+    run_.summary = RunSummary(simulation);
+    output_ = open_output(arguments_, simulation, run_.summary);
+  }
+
+  bool after_step(const Simulation& simulation, const StepResult& result) override {
+    note_last(simulation);
+    run_.summary.count(simulation, result);
+    last_ = result;
+    progress_.show(simulation.time(), label_);
+    return interruption() == 0;
+  }
+
+  void after_interval(const Simulation& simulation, double estimate) override {
+    if (last_) last_->error_estimate = estimate;
+    note_last(simulation);
+    if (output_) output_->write_row(simulation);
+  }
+
+  void close(const Simulation& simulation) {
+    note_last(simulation);
+    if (output_) output_->close();
+    run_.summary.look(simulation);
+  }
+
+ private:
+  void note_last(const Simulation& simulation) {
+    if (last_ && output_) output_->note_step(simulation, *last_);
+    last_.reset();
+  }
+
+  const SimulateArguments& arguments_;
+  Run& run_;
+  ProgressBar progress_;
+  std::string label_;
+  std::unique_ptr<ResultWriter> output_;
+  std::optional<StepResult> last_;  // waits for the estimate
+};
+
+AccuracyRequest request_of(const SimulateArguments& arguments, double accuracy, const Simulation& simulation) {
+  AccuracyRequest request{accuracy, arguments.until};
+  if (arguments.interval == 0) return request;
+  const double count = (arguments.until - simulation.time()) / arguments.interval;
+  request.intervals = static_cast<int>(std::lround(count));
+  constexpr double kMost = 1e6;
+  if (!(count < kMost) || request.intervals < 1 || std::abs(count - request.intervals) > 1e-9 * count)
+    throw InputError(
+        fmt::format("flexarm: --interval: expected a whole part of the {:g} s until --until, down to 1e-6 "
+                    "of them, got {:g} s",
+                    arguments.until - simulation.time(), arguments.interval));
+  return request;
+}
+
+void check(const SimulateArguments& arguments) {
+  if (is_standard_output(arguments.output))
+    throw InputError("flexarm: --output: with an accuracy, a file is expected: each try writes it anew");
+  if (arguments.every != 1) throw InputError("flexarm: --every: with an accuracy, rows are an --interval apart");
+  if (arguments.checkpoint_every > 0)
+    throw InputError("flexarm: --checkpoint-every: a run with an accuracy has states to keep at its end only");
+}
+
+}  // namespace
+
+std::optional<double> wanted_accuracy(const SimulateArguments& arguments, const Simulation& simulation) {
+  if (arguments.accuracy) return arguments.accuracy;
+  return arguments.options.step ? std::nullopt : simulation.scene().integrator.accuracy;
+}
+
+Run run_accurately(SimulateArguments arguments, double accuracy, Simulation& simulation, bool& is_met) {
+  check(arguments);
+  arguments.estimates_error = true;  // each try has an estimate anyway
+  const AccuracyRequest request = request_of(arguments, accuracy, simulation);
+  const auto start = std::chrono::steady_clock::now();
+  Run run{{}, RunSummary(simulation)};
+  TryOutput output(arguments, run, simulation.time());
+  AccurateRun result;
+  try {
+    result = run_to_accuracy(simulation, request, output);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("flexarm: --accuracy: {}", error.what()));
+  }
+  output.close(simulation);
+  run.last = result.last;
+  run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  is_met = result.end == AccurateRun::End::Met;
+  const std::string reached = std::isnan(result.estimate()) ? "unknown" : fmt::format("{:.2g}", result.estimate());
+  if (!is_met && result.end != AccurateRun::End::Failed)
+    fmt::print(stderr, "flexarm: the accuracy {:g} was not met: {}; estimated error {} after {} tries, {} steps\n",
+               accuracy, to_string(result.end), reached, result.tries.size(), result.steps);
+  else if (is_met && !arguments.quiet)
+    fmt::print(report_stream(arguments),
+               "accuracy {:g} asked for, error {} estimated, of {:.3g} m; {} tries, {} steps in all\n", accuracy,
+               reached, result.scale, result.tries.size(), result.steps);
+  return run;
+}
+
+}  // namespace flexarm::cli

@@ -1,0 +1,285 @@
+#include "flexarm/accuracy/accurate_run.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "flexarm/accuracy/companion.h"
+#include "flexarm/scene/urdf_reader.h"
+#include "simulation/inside.h"
+#include "support/scene_builder.h"
+#include "support/source_path.h"
+
+namespace flexarm::test {
+namespace {
+
+/// Two beams of two elements that hang on hinges and fall from the horizontal, not in one plane.
+SceneBuilder falling_arm() {
+  SceneBuilder b;
+  const scene::DirectSection soft = section(4e3, 2e3, 40, 60, 1, 0.01, 0.005);
+  b.beam("upper", {{1, 0, 0}}, soft, 2, 2);
+  b.beam("fore", {{0, 0.8, 0}}, soft, 2, 2);
+  b.joint("shoulder", scene::JointKind::Revolute, "world", "upper", Vector3::Zero(), Vector3::UnitY());
+  b.joint("elbow", scene::JointKind::Revolute, "upper", "fore", {1, 0, 0}, Vector3::UnitX());
+  b.probe("tip", "fore", {0, 0.8, 0});
+  b.scene.gravity = {0, 0, -9.81};
+  b.scene.integrator.tolerance = 1e-10;
+  return b;
+}
+
+/// Two rigid links: without fast modes, so that orders are seen at any step.
+SceneBuilder falling_links() {
+  SceneBuilder b;
+  Matrix3 inertia = Vector3(0.02, 0.03, 0.04).asDiagonal();
+  b.body("upper", 1, {0.5, 0, 0}, inertia);
+  b.body("fore", 0.7, {0, 0.4, 0}, inertia);
+  b.joint("shoulder", scene::JointKind::Revolute, "world", "upper", Vector3::Zero(), Vector3::UnitY());
+  b.joint("elbow", scene::JointKind::Revolute, "upper", "fore", {1, 0, 0}, Vector3::UnitX());
+  b.probe("tip", "fore", {0, 0.8, 0});
+  b.scene.gravity = {0, 0, -9.81};
+  b.scene.integrator.tolerance = 1e-12;
+  return b;
+}
+
+/// The motion in equal steps.
+JudgedMotion reference_motion(const SceneBuilder& b, double until, int intervals, int steps) {
+  Simulation simulation(b.scene);
+  simulation.set_step_size(until / intervals / steps);
+  const JudgedPoints points(simulation);
+  JudgedMotion motion(points.size());
+  motion.add(points.positions(simulation));
+  for (int i = 0; i < intervals; ++i) {
+    for (int n = 0; n < steps; ++n) EXPECT_TRUE(simulation.step().converged);
+    motion.add(points.positions(simulation));
+  }
+  return motion;
+}
+
+std::string tries_of(const AccurateRun& run) {
+  std::string text = to_string(run.end);
+  for (const AccurateRun::Try& one : run.tries)
+    text += "; " + std::to_string(one.steps) + " steps: " + std::to_string(1e9 * one.estimate) + "e-9";
+  return text;
+}
+
+TEST(AccurateRun, HasTheErrorThatWasAskedFor) {
+  const SceneBuilder b = falling_arm();
+  constexpr double kUntil = 1.5;
+  const JudgedMotion reference = reference_motion(b, kUntil, 100, 200);
+  for (const double accuracy : {1e-2, 1e-3, 1e-4}) {
+    Simulation simulation(b.scene);
+    RunWatcher nobody;
+    const AccurateRun run = run_to_accuracy(simulation, {accuracy, kUntil}, nobody);
+    ASSERT_EQ(run.end, AccurateRun::End::Met) << accuracy;
+    const double error = motion_error(run.motion, reference, run.scale);
+    EXPECT_LE(run.estimate(), accuracy);
+    EXPECT_LE(error, accuracy);
+    // The next power of the step is all that the estimate leaves out: it knows the error to a part of itself.
+    EXPECT_NEAR(run.estimate(), error, 0.5 * error) << accuracy;
+    EXPECT_NEAR(simulation.time(), kUntil, 1e-12);
+    EXPECT_EQ(simulation.step_size(), b.scene.integrator.step) << "as it was before";
+    std::printf("asked for %.0e: error %.2e, estimate %.2e, %ld steps of the last try, %ld in all\n", accuracy, error,
+                run.estimate(), run.tries.back().steps, run.steps);
+  }
+}
+
+TEST(AccurateRun, ErrorsInChangingStepsFallWithTheOrderOfTheScheme) {
+  const SceneBuilder b = falling_links();
+  for (const auto& [scheme, order] : {std::pair("em", 2), {"newmark", 2}, {"em4", 4}}) {
+    SceneBuilder with = b;
+    with.scene.integrator.scheme = scheme;
+    const auto motion = [&](int refinement) {
+      Simulation simulation(with.scene);
+      const JudgedPoints points(simulation);
+      JudgedMotion made(points.size());
+      made.add(points.positions(simulation));
+      for (int i = 0; i < 20; ++i) {
+        const int steps = refinement * (i % 4 == 1 ? 4 : i % 4 == 3 ? 1 : 2);  // changes all the time
+        simulation.set_step_size(0.05 / steps);
+        for (int n = 0; n < steps; ++n) EXPECT_TRUE(simulation.step().converged);
+        made.add(points.positions(simulation));
+      }
+      return made;
+    };
+    const JudgedMotion fine = motion(32);
+    const double coarse = motion_error(motion(4), fine, 1), finer = motion_error(motion(8), fine, 1);
+    EXPECT_NEAR(std::log2(coarse / finer), order, 0.25) << scheme;
+  }
+}
+
+TEST(AccurateRun, EndsWithWhatWasReached) {
+  const SceneBuilder b = falling_arm();
+  RunWatcher nobody;
+  {
+    Simulation simulation(falling_links().scene);
+    AccuracyRequest request{1e-16, 0.5};
+    request.intervals = 5;
+    const AccurateRun run = run_to_accuracy(simulation, request, nobody);
+    EXPECT_EQ(run.end, AccurateRun::End::NoConvergence) << tries_of(run);
+    EXPECT_LT(run.estimate(), 1e-6);
+    EXPECT_TRUE(run.last.converged);
+  }
+  AccuracyRequest request{1e-6, 0.2};
+  request.most_steps = 500;
+  Simulation simulation(b.scene);
+  const AccurateRun run = run_to_accuracy(simulation, request, nobody);
+  EXPECT_EQ(run.end, AccurateRun::End::OutOfSteps);
+  EXPECT_LE(run.steps, 500);
+  EXPECT_LT(run.estimate(), 1);
+}
+
+TEST(AccurateRun, RefusesWhatCannotBe) {
+  const SceneBuilder b = falling_arm();
+  RunWatcher nobody;
+  Simulation simulation(b.scene);
+  for (const AccuracyRequest& odd :
+       {AccuracyRequest{0, 1}, {1, 1}, {1e-3, 0}, {1e-3, 1, 0}, {1e-3, 1, 100, 0.0}, {1e-3, 1, 100, {}, "nobody"}})
+    EXPECT_THROW(run_to_accuracy(simulation, odd, nobody), std::invalid_argument);
+  EXPECT_THROW(simulation.set_step_size(0), std::invalid_argument);
+  EXPECT_THROW(simulation.set_step_size(std::nan("")), std::invalid_argument);
+}
+
+/// One iteration does not solve a step.
+TEST(AccurateRun, EndsWhereStepsFail) {
+  SceneBuilder b = falling_arm();
+  b.scene.integrator.max_iterations = 1;
+  b.scene.integrator.max_halvings = 0;
+  RunWatcher nobody;
+  Simulation simulation(b.scene);
+  const AccurateRun run = run_to_accuracy(simulation, {1e-3, 1}, nobody);
+  EXPECT_EQ(run.end, AccurateRun::End::Failed);
+  EXPECT_FALSE(run.last.converged);
+  EXPECT_TRUE(std::isnan(run.estimate()));
+}
+
+TEST(AccurateRun, IsInterrupted) {
+  struct Impatient : RunWatcher {
+    int left = 500;
+    bool after_step(const Simulation&, const StepResult&) override { return --left > 0; }
+  } impatient;
+  Simulation simulation(falling_arm().scene);
+  const AccurateRun run = run_to_accuracy(simulation, {1e-5, 1}, impatient);
+  EXPECT_EQ(run.end, AccurateRun::End::Interrupted);
+}
+
+/// A servo that measures every 10 ms is measured at ends of steps only.
+TEST(AccurateRun, HitsSamples) {
+  SceneBuilder b = falling_arm();
+  scene::ServoDescription& servo = b.servo("shoulder", 5, 0.2);
+  servo.sample_time = 0.01;
+  b.scene.integrator.step = 0.01;
+  RunWatcher nobody;
+  Simulation simulation(b.scene);
+  AccuracyRequest request{1e-3, 1.3};
+  request.most_steps = 1e5;
+  const AccurateRun run = run_to_accuracy(simulation, request, nobody);
+  EXPECT_EQ(run.end, AccurateRun::End::Met) << tries_of(run);
+  EXPECT_TRUE(hits_samples(run.interval / run.steps_per_interval, 0.01));
+  EXPECT_THROW(run_to_accuracy(simulation, {1e-3, simulation.time() + 0.0123}, nobody), std::invalid_argument);
+  EXPECT_THROW(simulation.set_step_size(0.007), std::invalid_argument);
+}
+
+// ---------------------------------------------------------------- events
+
+/// A block that slides to rest by friction: exact.
+TEST(Events, SlidingEndsWhereItDoes) {
+  SceneBuilder b;
+  b.body("block", 2, Vector3::Zero(), Matrix3::Identity());
+  scene::JointDescription& rail =
+      b.joint("rail", scene::JointKind::Prismatic, "world", "block", Vector3::Zero(), Vector3::UnitX());
+  rail.friction = 4;
+  b.scene.initial_joints.push_back({"rail", 0, 1.3, {}});
+  constexpr double kRest = 1.3 * 1.3 / 2 / 2;  // deceleration 2 m/s^2
+  const auto error = [&](int event_halvings) {
+    Simulation simulation(b.scene);
+    simulation.set_step_size(0.01, event_halvings);
+    for (int n = 0; n < 100; ++n) EXPECT_TRUE(simulation.step().converged);
+    EXPECT_NEAR(simulation.velocity(0), 0, 1e-12);
+    return std::abs(simulation.position(0) - kRest);
+  };
+  // What a step of length h in which it comes to rest may make of the way: the deceleration is not constant within it.
+  for (const int halvings : {0, 3, 6})
+    EXPECT_LE(error(halvings), 2.0 * std::pow(0.01 / (1 << halvings), 2)) << halvings;
+}
+
+/// A ball on a stop: when it is hit is found to the length of the shortest step.
+TEST(Events, HitsAreResolved) {
+  SceneBuilder b;
+  b.body("ball", 1, Vector3::Zero(), Matrix3::Identity());
+  scene::JointDescription& rail =
+      b.joint("rail", scene::JointKind::Prismatic, "world", "ball", Vector3::Zero(), Vector3::UnitZ());
+  rail.limits = scene::JointLimits{-1, 1};
+  b.scene.gravity = {0, 0, -9.81};
+  Simulation simulation(b.scene);
+  simulation.set_step_size(0.02, 6);
+  bool has_halved = false;
+  for (int n = 0; n < 30; ++n) {
+    const StepResult result = simulation.step();
+    ASSERT_TRUE(result.converged);
+    has_halved = has_halved || result.deepest_halving >= 6;
+  }
+  EXPECT_TRUE(has_halved);
+  simulation.set_step_size(0.02);
+}
+
+// ---------------------------------------------------------------- the companion
+
+TEST(Companion, KnowsTheErrorOfWhatRuns) {
+  const SceneBuilder b = falling_arm();
+  constexpr int kSteps = 300;
+  constexpr double kStep = 0.004;
+  Simulation simulation(b.scene), reference(b.scene);
+  simulation.set_step_size(kStep);
+  reference.set_step_size(kStep / 16);
+  Companion companion(simulation);
+  double estimate = std::nan(""), error = 0;
+  for (int n = 0; n < kSteps; ++n) {
+    ASSERT_TRUE(simulation.step().converged);
+    estimate = companion.follow(simulation);
+    EXPECT_EQ(std::isnan(estimate), n == 0);
+    for (int k = 0; k < 16; ++k) ASSERT_TRUE(reference.step().converged);
+    error = std::max(error, (simulation.probe(0).pose.position - reference.probe(0).pose.position).norm());
+  }
+  EXPECT_NEAR(estimate, error, 0.3 * error);
+}
+
+/// Efforts that change from step to step have the same impulse for it: what they do to a mass is known exactly.
+TEST(Companion, FollowsCommands) {
+  SceneBuilder b;
+  b.body("block", 2, Vector3::Zero(), Matrix3::Identity());
+  b.joint("rail", scene::JointKind::Prismatic, "world", "block", Vector3::Zero(), Vector3::UnitX());
+  Simulation simulation(b.scene);
+  Companion companion(simulation);
+  double estimate = 0;
+  for (int n = 0; n < 200; ++n) {
+    simulation.command_effort(0, std::sin(0.3 * n));
+    simulation.apply_wrenches({{1, Vector3::Zero(), {{0.1 * n, 0, 0}, Vector3::Zero()}, false}});
+    ASSERT_TRUE(simulation.step().converged);
+    estimate = companion.follow(simulation);
+  }
+  // The acceleration changes once in a step of the companion, which its mean moves by h^2 / 2 of the change.
+  const double change = 0.5 * (0.3 + 0.1) / 2 * 1e-6;
+  EXPECT_GT(estimate, 0);
+  EXPECT_LE(estimate, 100 * change / 3);
+}
+
+TEST(Companion, BeginsAgainWhereTheSimulationIsPut) {
+  Simulation simulation(falling_arm().scene);
+  Companion companion(simulation, 0.05);
+  for (int n = 0; n < 200; ++n) {
+    ASSERT_TRUE(simulation.step().converged);
+    companion.follow(simulation);
+  }
+  simulation.reset();
+  ASSERT_TRUE(simulation.step().converged);
+  EXPECT_TRUE(std::isnan(companion.follow(simulation)));
+  ASSERT_TRUE(simulation.step().converged);
+  companion.follow(simulation);
+  ASSERT_TRUE(simulation.step().converged);
+  EXPECT_LT(companion.follow(simulation), 1e-6) << "a step or two are nearly exact";
+}
+
+}  // namespace
+}  // namespace flexarm::test

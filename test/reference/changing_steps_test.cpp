@@ -1,0 +1,46 @@
+// What schemes conserve, they conserve whatever their steps.
+#include "reference/dynamics_joint_chain.h"
+#include "schemes/scheme.h"
+
+namespace flexarm::test {
+namespace {
+
+constexpr double kStep = 0.02;
+
+/// Lengths without a pattern, from a tenth of the step to the whole one; each holds for a few steps.
+double step_at(int n) {
+  const double wave = std::sin(1.7 * (n / 7)) + std::sin(0.61 * (n / 7));
+  return kStep * (0.55 + 0.225 * wave);
+}
+
+void expect_conserved(const SceneBuilder& builder, const Scheme& scheme, int steps) {
+  Simulation simulation(builder.scene, options(std::string(scheme.name), kStep, 1e-10));
+  InvariantDrift drift(simulation);
+  double end = 0;
+  for (int n = 0; n < steps; ++n) {
+    simulation.set_step_size(step_at(n));
+    end += step_at(n);
+    ASSERT_TRUE(simulation.step().converged) << scheme.name << " at " << simulation.time();
+    drift.observe();
+  }
+  EXPECT_NEAR(simulation.time(), end, 1e-12 * steps);
+  if (scheme.conserves_energy || scheme.dissipation.any()) {
+    EXPECT_LT(drift.energy(), 1e-10) << scheme.name;
+  }
+  EXPECT_LT(drift.momentum(), 1e-11) << scheme.name;
+  EXPECT_LT(drift.angular_momentum(), 1e-11) << scheme.name;
+}
+
+TEST(ChangingSteps, KeepEnergyAndMomentaOfEveryScheme) {
+  for (const Scheme& scheme : schemes())
+    if (scheme.conserves_momenta)
+      for (const scene::JointKind kind : {scene::JointKind::Spherical, scene::JointKind::Prismatic})
+        expect_conserved(free_tree(kind), scheme, 300);
+}
+
+TEST(ChangingSteps, KeepThemOverTenThousandSteps) {
+  expect_conserved(free_tree(scene::JointKind::Revolute), *find_scheme("em"), 10000);
+}
+
+}  // namespace
+}  // namespace flexarm::test
