@@ -28,7 +28,8 @@ SimulationOptions simulation_options(const Parameters& parameters) {
 }
 
 Pace pace(const Parameters& parameters) {
-  return {parameters.real_time_factor, parameters.max_catch_up, parameters.lock_step, parameters.realtime};
+  return {parameters.real_time_factor, parameters.max_catch_up, parameters.lock_step, parameters.realtime,
+          parameters.error_window};
 }
 
 /// Of steps by the wall clock [s]; 0: there is none.
@@ -62,6 +63,10 @@ Node::Node()
   run_.paused = parameters_.paused;
   run_.lock_step = parameters_.lock_step;
   announce();
+  if (parameters_.error_window > 0 && !stepping_.estimates_errors())
+    ROS_WARN(
+        "~error_window: servos are not sampled every second step, so that steps of twice the length could be taken: "
+        "no error is estimated");
   if (parameters_.realtime) be_real_time();
   if (parameters_.interactive) be_interactive();
   describe_view();

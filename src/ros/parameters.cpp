@@ -188,6 +188,7 @@ Parameters read_parameters(const ros::NodeHandle& private_node) {
   reader.read("lock_step", parameters.lock_step);
   reader.read("recovery_wall_time", parameters.recovery_wall_time, true);
   reader.read("command_timeout", parameters.command_timeout, true);
+  reader.read("error_window", parameters.error_window, true);
   reader.read("stop_duration", parameters.stop_duration, true);
   read_frame_prefix(reader, parameters.frame_prefix);
   reader.throw_if_any();

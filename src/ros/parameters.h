@@ -37,6 +37,7 @@ struct Parameters {
   double recovery_wall_time = 2;  ///< a step that has been halved is given up after so much wall time [s]; 0: never
   double command_timeout =
       0;  ///< efforts, and set points but positions, return to zero so long after a command [s]; 0: never
+  double error_window = 0;   ///< over which the error of steps is estimated [s]; 0: it is not
   double stop_duration = 0;  ///< in which joints decelerate whose trajectory is cancelled [s]; 0: at once
 };
 

@@ -1,6 +1,7 @@
 #include "status_publisher.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "advertise.h"
 #include "flexarm/scene/scene_description.h"
@@ -52,6 +53,8 @@ SimulatorStatus StatusPublisher::make_message(const ros::Time& stamp) {
   message.lateness = statistics_of(run_.lateness);
   message.scheme = simulation_.scheme();
   message.iterations = run_.last_step.iterations;
+  const double estimate = run_.last_step.error_estimate;
+  message.error_estimate = std::isnan(estimate) ? -1 : estimate;
   message.halvings = run_.counts.halvings;
   message.deepest_halving = run_.counts.deepest_halving;
   message.other_guesses = run_.counts.other_guesses;

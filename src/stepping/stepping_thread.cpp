@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <stdexcept>
 #include <utility>
 
 namespace flexarm::node {
@@ -50,6 +51,7 @@ SteppingThread::SteppingThread(Simulation simulation, const Pace& pace, std::fun
       thread_([this] { loop(); }) {
   halted_.take();
   make_room();
+  begin_companion();
 }
 
 SteppingThread::~SteppingThread() {
@@ -139,6 +141,16 @@ void SteppingThread::set_pace(const Pace& pace) {
   pacer_.set_pace(simulation_.step_size(), pace.real_time_factor, pace.max_catch_up);
   pacer_.clear_backlog();
   last_look_ = SteadyClock::now();
+  begin_companion();
+}
+
+void SteppingThread::begin_companion() {
+  companion_.reset();
+  if (pace_.error_window <= 0) return;
+  try {
+    companion_.emplace(simulation_, pace_.error_window);
+  } catch (const std::invalid_argument&) {  // see estimates_errors()
+  }
 }
 
 bool SteppingThread::advance() {
@@ -151,7 +163,8 @@ bool SteppingThread::make_step(double lateness, bool is_paced) {
   follow_trajectories();
   wrenches_.update(time());
   const SteadyClock::time_point start = SteadyClock::now();
-  const StepResult result = simulation_.step();
+  StepResult result = simulation_.step();
+  if (companion_ && result.converged) result.error_estimate = companion_->follow(simulation_);
   if (result.converged) {
     ++steps_;
     time_.advance();

@@ -5,10 +5,12 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "flexarm/accuracy/companion.h"
 #include "flexarm/simulation/simulation.h"
 #include "flexarm/simulation/spsc_ring.h"
 #include "pacer.h"
@@ -25,6 +27,7 @@ struct Pace {
   double max_catch_up = 0.1;     ///< backlog that is made up before steps are dropped, wall time [s]
   bool lock_step = false;        ///< each step waits for the message that commands it, whatever the wall clock says
   bool cuts_late_steps = false;  ///< one that runs out of time (SimulationOptions::recovery_wall_time) has not failed
+  double error_window = 0;       ///< over which a Companion estimates the error of steps [s]; 0: none does
 };
 
 /// What a step came to.
@@ -82,6 +85,8 @@ class SteppingThread {
   WrenchSchedule& wrenches() { return wrenches_; }
   /// Its times are those of time(). Joints whose set points are commanded leave it.
   TrajectoryFollower& trajectories() { return trajectories_; }
+  /// Whether a Companion does: it cannot where servos are sampled in every step, or in an odd number of them.
+  bool estimates_errors() const { return companion_.has_value(); }
   /// Simulated, since the beginning; a reset does not set it back [s].
   double time() const { return time_.seconds(); }
   /// One step and what belongs to it. @returns false if it failed
@@ -101,10 +106,12 @@ class SteppingThread {
   void take_message();
   /// Reports get room for states as they are after a step, so that the thread need not allocate it.
   void make_room();
+  void begin_companion();
   /// Set points of the next step.
   void follow_trajectories();
 
   Simulation simulation_;
+  std::optional<Companion> companion_;  ///< of the simulation
   TimedCommands timed_commands_;
   WrenchSchedule wrenches_;
   TrajectoryFollower trajectories_;
@@ -136,6 +143,7 @@ void SteppingThread::between_steps(const Act& act) {
   halt();
   take_commands();
   act(simulation_);
+  if (companion_) companion_->begin(simulation_);
 }
 
 }  // namespace flexarm::node

@@ -1,5 +1,6 @@
 #include "stepping/stepping_thread.h"
 
+#include <cmath>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -61,6 +62,26 @@ bool are_consecutive(const std::vector<std::uint64_t>& steps) {
   for (std::size_t i = 0; i < steps.size(); ++i)
     if (steps[i] != i + 1) return false;
   return true;
+}
+
+TEST(SteppingThread, EstimatesTheErrorOfItsSteps) {
+  Pace pace;
+  pace.real_time_factor = 0;
+  SteppingThread without(rotor(0.01), pace, [] {});
+  EXPECT_FALSE(without.estimates_errors());
+  pace.error_window = 0.5;
+  SteppingThread thread(rotor(0.01), pace, [] {});
+  ASSERT_TRUE(thread.estimates_errors());
+  thread.command(effort(0.5));
+  thread.take_commands();
+  Reports reports(thread);
+  for (int n = 0; n < 4; ++n) ASSERT_TRUE(thread.advance());
+  reports.take_all();
+  EXPECT_GT(reports.last.result.error_estimate, 0);
+  thread.between_steps([](Simulation& simulation) { simulation.reset(); });
+  ASSERT_TRUE(thread.advance());
+  reports.take_all();
+  EXPECT_TRUE(std::isnan(reports.last.result.error_estimate)) << "of a single step nothing is known";
 }
 
 TEST(SteppingThread, KeepsPaceWithTheClock) {
