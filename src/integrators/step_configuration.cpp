@@ -67,8 +67,13 @@ void StepConfiguration::extrapolate(int order) {
     if (dof_.slave_joint[i] >= 0) continue;
     Vector3 displacement = step_ * state.nodes[i].velocity;
     Vector3 rotation = step_ * (begin_[i].rotation * state.nodes[i].angular_velocity);
-    if (has_last)
-      for (int k = 0; k < 3; ++k) displacement[k] = entry(i, k), rotation[k] = entry(i, 3 + k);
+    if (has_last) {
+      Vector6 sum = Vector6::Zero();
+      for (int k = 0; k <= order && weights[k] != 0; ++k)
+        sum += weights[k] * Eigen::Map<const Vector6>(history.increments[k].data() + dof_.equation[dof_.first[i]]);
+      displacement = sum.head<3>();
+      rotation = sum.tail<3>();
+    }
     end_[i].position += displacement;
     end_[i].orientation = (cayley::quaternion(rotation) * begin_[i].orientation).normalized();
     end_[i].rotation = end_[i].orientation.toRotationMatrix();

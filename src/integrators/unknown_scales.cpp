@@ -27,14 +27,16 @@ UnknownScales::UnknownScales(const Model& model, const DegreesOfFreedom& dof) : 
 }
 
 double UnknownScales::norm(const Eigen::VectorXd& increment, double step) const {
-  double norm = 0;
-  const auto count = [&](double value) {
-    norm = std::max(norm, std::isfinite(value) ? std::abs(value) : std::numeric_limits<double>::infinity());
+  double displacement = 0, norm = 0;
+  const auto count = [](double value, double& largest) {
+    largest = std::max(largest, std::isfinite(value) ? std::abs(value) : std::numeric_limits<double>::infinity());
   };
-  for (const Unknown& unknown : unknowns_) count(increment[unknown.equation] / (unknown.is_rotation ? 1.0 : length_));
+  for (const Unknown& unknown : unknowns_)
+    count(increment[unknown.equation], unknown.is_rotation ? norm : displacement);
+  norm = std::max(norm, displacement / length_);
   if (step == 0 || mass_ == 0) return norm;
   const double way = step * step / (mass_ * length_);
-  for (const Multiplier& multiplier : multipliers_) count(way / multiplier.arm * increment[multiplier.equation]);
+  for (const Multiplier& multiplier : multipliers_) count(way / multiplier.arm * increment[multiplier.equation], norm);
   return norm;
 }
 
@@ -58,13 +60,14 @@ void UnknownScales::choose_order(IncrementHistory& history) const {
   for (int order = IncrementHistory::kNoMotion; order <= IncrementHistory::kHighestOrder; ++order) {
     const IncrementHistory::Weights weights = history.weights(order, 1, history.steps[0]);
     if (weights[1] == 0 && order > IncrementHistory::kNoMotion) continue;
-    double error = 0;
+    double displacement = 0, rotation = 0;
     for (const Unknown& unknown : unknowns_) {
       double foreseen = 0;
       for (int i = 1; i <= 1 + order; ++i) foreseen += weights[i] * history.increments[i][unknown.equation];
-      error = std::max(
-          error, std::abs(history.increments[0][unknown.equation] - foreseen) / (unknown.is_rotation ? 1.0 : length_));
+      double& largest = unknown.is_rotation ? rotation : displacement;
+      largest = std::max(largest, std::abs(history.increments[0][unknown.equation] - foreseen));
     }
+    const double error = std::max(rotation, displacement / length_);
     if (error < smallest) smallest = error, history.order = order;
   }
 }
