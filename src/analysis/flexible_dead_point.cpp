@@ -40,7 +40,7 @@ class Unloaded {
 
   const State& state() const { return state_; }
   double strain_energy() const { return energies(model_, scheme_, state_).strain; }
-  const StepSystem& system() const { return system_; }
+  StepSystem& system() { return system_; }
   /// Forces that balance its strains, with tangents for answers.
   Eigen::VectorXd forces(double drag) {
     system_.begin_equilibrium(state_, 0, drag);

@@ -39,7 +39,7 @@ class NodeWays {
 };
 
 /// Of all nodes in the solution that the tangent of a system has given last.
-inline std::vector<ComplexVector6> node_motion_of_solution(const StepSystem& system) {
+inline std::vector<ComplexVector6> node_motion_of_solution(StepSystem& system) {
   const DegreesOfFreedom& dof = system.degrees_of_freedom();
   const double* scalars = system.tangent().expanded_solution();
   std::vector<ComplexVector6> motion;

@@ -7,24 +7,36 @@
 
 namespace flexarm::conserving {
 
+/// Of strains of any number; dot6() is the product of all six.
+template <typename S, int Size>
+S strain_product(const Eigen::Matrix<S, Size, 1>& a, const Eigen::Matrix<S, Size, 1>& b) {
+  if constexpr (Size == 6)
+    return dot6(a, b);
+  else
+    return so3::dot(a, b);
+}
+
 /// The strain rate at the end: (w_0 + w_1)/2 = s/h.
-template <typename S>
-Vector6T<S> end_rate(const StrainMemoryT<S>& begin, const Vector6T<S>& s, double step) {
+template <class Memory, typename S, int Size>
+Eigen::Matrix<S, Size, 1> end_rate(const Memory& begin, const Eigen::Matrix<S, Size, 1>& s, double step) {
   return S(2 / step) * s - begin.rate;
 }
 
 /// See NumericalDissipation.
-template <typename S>
+template <typename S, int Size = 6>
 struct NumericalDamper {
+  using Strain = Eigen::Matrix<S, Size, 1>;
   S factor, dissipated;  // [-], [J/m]
-  Vector6T<S> remembered, average;
+  Strain remembered, average;
 
-  NumericalDamper(const NumericalDissipation& d, const StrainMemoryT<S>& begin, const Vector6T<S>& s,
-                  const SectionStiffness<S>& stiffness, double step)
+  template <class Memory, class Stiffness>
+  NumericalDamper(const NumericalDissipation& d, const Memory& begin, const Strain& s, const Stiffness& stiffness,
+                  double step)
       : factor(d.stiffness + 2 * d.inertance / (step * step)) {
-    const Vector6T<S> deviation = s - begin.average;
+    const Strain deviation = s - begin.average;
     remembered = stiffness.stress(S(d.stiffness) * begin.average + S(2 * d.inertance / step) * begin.rate);
-    dissipated = S(d.stiffness * (1 - 0.5 * d.forgetting)) * dot6(deviation, stiffness.stress(deviation));
+    dissipated =
+        S(d.stiffness * (1 - 0.5 * d.forgetting)) * strain_product<S, Size>(deviation, stiffness.stress(deviation));
     average = begin.average + S(d.forgetting) * deviation;
   }
 };
@@ -48,21 +60,23 @@ struct DamperParts {
 ///   C [dashpot s/h + inertance (w_1 - w_0)/h + delayed q_mean],   q_mean + (h_0/h) (q_1 - q_0) = s/h.
 /// A dashpot alone would leave the strain of a mode that it damps strongly nearly as it is and make its velocity change
 /// the sign in every step. These bring both to rest. inertance (w.Cw + q.Cq)/2 is stored.
-template <typename S>
+template <typename S, int Size = 6>
 struct StructuralDamper {
+  using Strain = Eigen::Matrix<S, Size, 1>;
   S factor, dissipated;  // [-], [J/m]
-  Vector6T<S> remembered, delayed_rate;
+  Strain remembered, delayed_rate;
 
   /// `stress` C s; `relaxation` h_0 [s].
-  StructuralDamper(const DamperParts<S>& parts, double relaxation, const StrainMemoryT<S>& begin, const Vector6T<S>& s,
-                   const Vector6T<S>& stress, const SectionStiffness<S>& stiffness, double step) {
+  template <class Memory, class Stiffness>
+  StructuralDamper(const DamperParts<S>& parts, double relaxation, const Memory& begin, const Strain& s,
+                   const Strain& stress, const Stiffness& stiffness, double step) {
     const double follows = 1 / (step + 2 * relaxation);
-    const Vector6T<S> delayed = S(follows) * (s + S(2 * relaxation) * begin.delayed_rate);
+    const Strain delayed = S(follows) * (s + S(2 * relaxation) * begin.delayed_rate);
     factor = parts.dashpot * S(1 / step) + parts.inertance * S(2 / (step * step)) + parts.delayed * S(follows);
     remembered = stiffness.stress((parts.inertance * S(2 / step)) * begin.rate -
                                   (parts.delayed * S(2 * relaxation * follows)) * begin.delayed_rate);
-    dissipated = parts.dashpot * S(1 / step) * dot6(s, stress) +
-                 parts.delayed * S(step) * dot6(delayed, stiffness.stress(delayed));
+    dissipated = parts.dashpot * S(1 / step) * strain_product<S, Size>(s, stress) +
+                 parts.delayed * S(step) * strain_product<S, Size>(delayed, stiffness.stress(delayed));
     delayed_rate = S(2) * delayed - begin.delayed_rate;
   }
 };

@@ -212,9 +212,11 @@ void Actuators::add_moment(const Gyroscope& gyroscope, const ActuatorState& stat
   if (!balance.tangent) return;
   const Vector3 by_increment = (inertia * part.rotor.rate_slope / h) * end;
   part.moment_by_link = action.follows * by_increment;
-  Eigen::Map<Matrix6>(balance.tangent->diagonal_block(gyroscope.node)).bottomRightCorner<3, 3>() +=
+  Matrix6 tangent = Matrix6::Zero();
+  tangent.bottomRightCorner<3, 3>() =
       (1 + action.increment_by_load * part.load_by_carried) * by_increment * part.carried_by_spin.transpose() -
       (momentum / h) * so3::hat(end);
+  balance.tangent->add_to_node(gyroscope.node, tangent);
 }
 
 void Actuators::add_gyroscope(int joint, FoldMaps& maps) const {

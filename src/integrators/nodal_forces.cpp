@@ -22,7 +22,10 @@ void NodalForces::add(int node, const Vector6& force, Eigen::Matrix<double, 6, 3
     interpolation_->take(node, force, rotational, of_configuration, with_tangent);
   else
     balance.residual.node(node) += force;
-  if (with_tangent) Eigen::Map<Matrix6>(balance.tangent->diagonal_block(node)).rightCols<3>() += rotational;
+  if (!with_tangent) return;
+  Matrix6 tangent = Matrix6::Zero();
+  tangent.rightCols<3>() = rotational;
+  balance.tangent->add_to_node(node, tangent);
 }
 
 void NodalForces::add_weight(int node, Balance& balance) const {
@@ -57,8 +60,7 @@ PullAction NodalForces::pull(const NodalLoad& load) const {
 void NodalForces::add_pull(const NodalLoad& load, Balance& balance) const {
   const PullAction action = pull(load);
   balance.residual.node(load.node) -= histories_.factor * action.wrench;
-  if (balance.tangent)
-    Eigen::Map<Matrix6>(balance.tangent->diagonal_block(load.node)) -= histories_.factor * action.derivative;
+  if (balance.tangent) balance.tangent->add_to_node(load.node, -histories_.factor * action.derivative);
 }
 
 template <class Visit>

@@ -23,50 +23,53 @@ constexpr LaneMask kBefore[] = {{0, 0, 0, 0}, {-1, 0, 0, 0}, {-1, -1, 0, 0}, {-1
 
 /// Sizes of a front. Factors: columns of L and U in one matrix (unit diagonal of L left out, reciprocal diagonal of U),
 /// padded to whole lanes, then the columns of A01, then the columns of X.
-template <int Nodes>
+template <int Nodes, int U>
 struct Sizes {
-  static constexpr int n = ElementFront<Nodes>::kEliminated;
-  static constexpr int pivot_lanes = lanes_for(n);   // of the columns of A11 in a row
-  static constexpr int row_lanes = pivot_lanes + 2;  // and six of A10
-  static constexpr int stride = 4 * pivot_lanes;     // of the columns of L and U
-  static constexpr int coupling = stride * n, elimination = coupling + 6 * n;
-  static_assert(elimination + 6 * n <= ElementFront<Nodes>::kSize);
+  static constexpr int n = ElementFront<Nodes, U>::kEliminated;
+  static constexpr int pivot_lanes = lanes_for(n);  // of the columns of A11 in a row
+  static constexpr int right_lanes = lanes_for(U);
+  static constexpr int row_lanes = pivot_lanes + right_lanes;  // and of A10
+  static constexpr int stride = 4 * pivot_lanes;               // of the columns of L and U
+  static constexpr int column = ElementFront<Nodes, U>::kColumn, block = ElementFront<Nodes, U>::kBlock;
+  static constexpr int coupling = stride * n, elimination = coupling + column * n;
+  static_assert(elimination + U * n <= ElementFront<Nodes, U>::kSize);
 };
 
 /// Rows of [A11 A10], and the multipliers of the elimination.
-template <int Nodes>
+template <int Nodes, int U>
 struct Rows {
-  static constexpr int n = Sizes<Nodes>::n;
-  Lanes value[n][Sizes<Nodes>::row_lanes];
+  static constexpr int n = Sizes<Nodes, U>::n;
+  Lanes value[n][Sizes<Nodes, U>::row_lanes];
   double lower[n][n];
 
   [[gnu::always_inline]] inline double* row(int i) { return reinterpret_cast<double*>(value[i]); }
   [[gnu::always_inline]] inline double* right(int i) {
-    return reinterpret_cast<double*>(value[i] + Sizes<Nodes>::pivot_lanes);
+    return reinterpret_cast<double*>(value[i] + Sizes<Nodes, U>::pivot_lanes);
   }
 };
 
-template <int Nodes>
-[[gnu::always_inline]] inline void gather(const double* blocks, double* const* diagonals, Rows<Nodes>& rows) {
+template <int Nodes, int U>
+[[gnu::always_inline]] inline void gather(const double* blocks, double* const* diagonals, Rows<Nodes, U>& rows) {
+  using S = Sizes<Nodes, U>;
   // What fills the lanes up.
-  for (auto& row : rows.value) row[Sizes<Nodes>::pivot_lanes - 1] = row[Sizes<Nodes>::row_lanes - 1] = Lanes{};
+  for (auto& row : rows.value) row[Sizes<Nodes, U>::pivot_lanes - 1] = row[Sizes<Nodes, U>::row_lanes - 1] = Lanes{};
   for (int i = 1; i < Nodes; ++i)
     for (int j = 0; j < Nodes; ++j) {
-      const double* block = blocks + 36 * (i * Nodes + j);
-      for (int r = 0; r < 6; ++r) {
-        double* to = j == 0 ? rows.right(6 * (i - 1) + r) : rows.row(6 * (i - 1) + r) + 6 * (j - 1);
+      const double* block = blocks + S::block * (i * Nodes + j);
+      for (int r = 0; r < U; ++r) {
+        double* to = j == 0 ? rows.right(U * (i - 1) + r) : rows.row(U * (i - 1) + r) + U * (j - 1);
         if (i == j)
-          for (int c = 0; c < 6; ++c) to[c] = block[6 * c + r] + diagonals[i][6 * c + r];
+          for (int c = 0; c < U; ++c) to[c] = block[S::column * c + r] + diagonals[i][S::column * c + r];
         else
-          for (int c = 0; c < 6; ++c) to[c] = block[6 * c + r];
+          for (int c = 0; c < U; ++c) to[c] = block[S::column * c + r];
       }
     }
 }
 
 /// LU with partial pivoting of A11, carried out on A10 as well.
-template <int Nodes>
-[[gnu::always_inline]] inline bool factorise(Rows<Nodes>& rows, double* reciprocal, unsigned char* pivots) {
-  constexpr int n = Sizes<Nodes>::n, lanes = Sizes<Nodes>::row_lanes;
+template <int Nodes, int U>
+[[gnu::always_inline]] inline bool factorise(Rows<Nodes, U>& rows, double* reciprocal, unsigned char* pivots) {
+  constexpr int n = Sizes<Nodes, U>::n, lanes = Sizes<Nodes, U>::row_lanes;
   for (int i = 0; i < n; ++i) pivots[i] = static_cast<unsigned char>(i);
 #pragma GCC unroll 24
   for (int k = 0; k < n; ++k) {
@@ -92,109 +95,112 @@ template <int Nodes>
   return true;
 }
 
-template <int Nodes>
+template <int Nodes, int U>
 [[gnu::always_inline]] inline bool eliminate_front(double* blocks, double* const* diagonals, unsigned char* pivots) {
-  using S = Sizes<Nodes>;
+  using S = Sizes<Nodes, U>;
   constexpr int n = S::n, right = S::pivot_lanes;
-  Rows<Nodes> rows;
+  Rows<Nodes, U> rows;
   double reciprocal[n];
-  gather<Nodes>(blocks, diagonals, rows);
-  if (!factorise<Nodes>(rows, reciprocal, pivots)) return false;
+  gather<Nodes, U>(blocks, diagonals, rows);
+  if (!factorise<Nodes, U>(rows, reciprocal, pivots)) return false;
   for (int k = n - 1; k >= 0; --k) {  // X; column by column, so that rows do not wait for each other
-    const Lanes first = reciprocal[k] * rows.value[k][right], second = reciprocal[k] * rows.value[k][right + 1];
-    rows.value[k][right] = first;
-    rows.value[k][right + 1] = second;
+    Lanes solved[S::right_lanes];
+    for (int v = 0; v < S::right_lanes; ++v)
+      rows.value[k][right + v] = solved[v] = reciprocal[k] * rows.value[k][right + v];
     for (int i = k - 1; i >= 0; --i) {
       const double upper = rows.row(i)[k];
-      rows.value[i][right] -= upper * first;
-      rows.value[i][right + 1] -= upper * second;
+      for (int v = 0; v < S::right_lanes; ++v) rows.value[i][right + v] -= upper * solved[v];
     }
   }
-  for (int r = 0; r < 6; ++r) {  // S
-    Lanes sums[2] = {Lanes{}, Lanes{}};
+  for (int r = 0; r < U; ++r) {  // S
+    Lanes sums[S::right_lanes] = {};
     for (int j = 0; j < n; ++j) {
-      const double coupling = blocks[36 * (1 + j / 6) + 6 * (j % 6) + r];
-      sums[0] += coupling * rows.value[j][right];
-      sums[1] += coupling * rows.value[j][right + 1];
+      const double coupling = blocks[S::block * (1 + j / U) + S::column * (j % U) + r];
+      for (int v = 0; v < S::right_lanes; ++v) sums[v] += coupling * rows.value[j][right + v];
     }
-    for (int c = 0; c < 6; ++c) diagonals[0][6 * c + r] += blocks[6 * c + r] - sums[c / 4][c % 4];
+    for (int c = 0; c < U; ++c) diagonals[0][S::column * c + r] += blocks[S::column * c + r] - sums[c / 4][c % 4];
   }
-  double coupling[6 * n];
-  std::memcpy(coupling, blocks + 36, sizeof(coupling));  // the blocks (0, j) stand in a row
+  double coupling[S::column * n];
+  std::memcpy(coupling, blocks + S::block, sizeof(coupling));  // the blocks (0, j) stand in a row
   for (int c = 0; c < n; ++c)
     for (int r = 0; r < S::stride; ++r)
       blocks[S::stride * c + r] = r >= n ? 0.0 : r > c ? rows.lower[r][c] : r == c ? reciprocal[c] : rows.row(r)[c];
   std::memcpy(blocks + S::coupling, coupling, sizeof(coupling));
-  for (int c = 0; c < 6; ++c)
+  for (int c = 0; c < U; ++c)
     for (int r = 0; r < n; ++r) blocks[S::elimination + n * c + r] = rows.right(r)[c];
   return true;
 }
 
-template <int Nodes>
+template <int Nodes, int U>
 [[gnu::always_inline]] inline void forward_front(const double* factors, const unsigned char* pivots, double* const* r) {
-  constexpr int n = Sizes<Nodes>::n;
-  constexpr int lanes = Sizes<Nodes>::pivot_lanes;
+  constexpr int n = Sizes<Nodes, U>::n;
+  constexpr int lanes = Sizes<Nodes, U>::pivot_lanes;
   Lanes values[lanes] = {};
   double* y = reinterpret_cast<double*>(values);
-  for (int i = 0; i < n; ++i) y[i] = r[1 + pivots[i] / 6][pivots[i] % 6];
+  for (int i = 0; i < n; ++i) y[i] = r[1 + pivots[i] / U][pivots[i] % U];
 #pragma GCC unroll 24
   for (int j = 0; j < n; ++j) {
     const Lanes pivot = broadcast(values[j / 4][j % 4]);
     for (int v = j / 4; v < lanes; ++v) {
-      Lanes column = load(factors + Sizes<Nodes>::stride * j + 4 * v);
+      Lanes column = load(factors + Sizes<Nodes, U>::stride * j + 4 * v);
       if (v == j / 4) column = kept(column, kBehind[j % 4]);
       values[v] -= column * pivot;
     }
   }
 #pragma GCC unroll 24
   for (int j = n - 1; j >= 0; --j) {
-    const double pivot = values[j / 4][j % 4] * factors[Sizes<Nodes>::stride * j + j];
+    const double pivot = values[j / 4][j % 4] * factors[Sizes<Nodes, U>::stride * j + j];
     for (int v = 0; v <= j / 4; ++v) {
-      Lanes column = load(factors + Sizes<Nodes>::stride * j + 4 * v);
+      Lanes column = load(factors + Sizes<Nodes, U>::stride * j + 4 * v);
       if (v == j / 4) column = kept(column, kBefore[j % 4]);
       values[v] -= column * broadcast(pivot);
     }
     values[j / 4][j % 4] = pivot;
   }
-  double inboard[6] = {};
+  double inboard[U] = {};
   for (int j = 0; j < n; ++j)
-    for (int i = 0; i < 6; ++i) inboard[i] += factors[Sizes<Nodes>::coupling + 6 * j + i] * y[j];
-  for (int i = 0; i < 6; ++i) r[0][i] -= inboard[i];
-  for (int i = 0; i < n; ++i) r[1 + i / 6][i % 6] = y[i];
+    for (int i = 0; i < U; ++i)
+      inboard[i] += factors[Sizes<Nodes, U>::coupling + Sizes<Nodes, U>::column * j + i] * y[j];
+  for (int i = 0; i < U; ++i) r[0][i] -= inboard[i];
+  for (int i = 0; i < n; ++i) r[1 + i / U][i % U] = y[i];
 }
 
-template <int Nodes>
+template <int Nodes, int U>
 [[gnu::always_inline]] inline void backward_front(const double* factors, double* const* r) {
-  constexpr int n = Sizes<Nodes>::n;
+  constexpr int n = Sizes<Nodes, U>::n;
   double x[n];
-  for (int i = 0; i < n; ++i) x[i] = r[1 + i / 6][i % 6];
-  for (int j = 0; j < 6; ++j)
-    for (int i = 0; i < n; ++i) x[i] -= factors[Sizes<Nodes>::elimination + n * j + i] * r[0][j];
-  for (int i = 0; i < n; ++i) r[1 + i / 6][i % 6] = x[i];
+  for (int i = 0; i < n; ++i) x[i] = r[1 + i / U][i % U];
+  for (int j = 0; j < U; ++j)
+    for (int i = 0; i < n; ++i) x[i] -= factors[Sizes<Nodes, U>::elimination + n * j + i] * r[0][j];
+  for (int i = 0; i < n; ++i) r[1 + i / U][i % U] = x[i];
 }
 
 }  // namespace
 
-template <int Nodes>
-bool ElementFront<Nodes>::eliminate(double* blocks, double* const* diagonals, unsigned char* rows) {
+template <int Nodes, int U>
+bool ElementFront<Nodes, U>::eliminate(double* blocks, double* const* diagonals, unsigned char* rows) {
   bool done = false;
-  simd::run([&] { done = eliminate_front<Nodes>(blocks, diagonals, rows); });
+  simd::run([&] { done = eliminate_front<Nodes, U>(blocks, diagonals, rows); });
   return done;
 }
 
-template <int Nodes>
-void ElementFront<Nodes>::forward(const double* factors, const unsigned char* rows, double* const* r) {
-  simd::run([&] { forward_front<Nodes>(factors, rows, r); });
+template <int Nodes, int U>
+void ElementFront<Nodes, U>::forward(const double* factors, const unsigned char* rows, double* const* r) {
+  simd::run([&] { forward_front<Nodes, U>(factors, rows, r); });
 }
 
-template <int Nodes>
-void ElementFront<Nodes>::backward(const double* factors, double* const* r) {
-  simd::run([&] { backward_front<Nodes>(factors, r); });
+template <int Nodes, int U>
+void ElementFront<Nodes, U>::backward(const double* factors, double* const* r) {
+  simd::run([&] { backward_front<Nodes, U>(factors, r); });
 }
 
-template struct ElementFront<2>;
-template struct ElementFront<3>;
-template struct ElementFront<4>;
-template struct ElementFront<5>;
+template struct ElementFront<2, 6>;
+template struct ElementFront<3, 6>;
+template struct ElementFront<4, 6>;
+template struct ElementFront<5, 6>;
+template struct ElementFront<2, 3>;
+template struct ElementFront<3, 3>;
+template struct ElementFront<4, 3>;
+template struct ElementFront<5, 3>;
 
 }  // namespace flexarm

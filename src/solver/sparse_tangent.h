@@ -37,7 +37,7 @@ class SparseTangent : public TangentBackend {
   void hold_row(int joint, int component, int first, const ReleasedVector& coefficients) override;
   bool factorise() override;
   bool solve(Eigen::VectorXd& b) override;
-  const double* expanded_solution() const override { return nullptr; }
+  const double* expanded_solution() override { return nullptr; }
   double cost_of_factors() const override;
 
   // ---- reduced matrix, compressed columns

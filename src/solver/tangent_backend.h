@@ -28,9 +28,12 @@ class TangentBackend {
 
   // ---- accumulation
   virtual void set_zero() = 0;
-  /// Column-major block on the diagonal of a variable, size x size.
+  /// Column-major block on the diagonal of a variable, size x size; of a node, in the plane, as element_block().
   double* diagonal_block(int variable) { return diagonal_blocks_[variable]; }
-  /// Block (node i, node j) of an element, 6 x 6, column-major; `index` = element.first_block + i * Nodes + j.
+  /// Adds to a node's block on the diagonal, in world axes.
+  virtual void add_to_node(int node, const Matrix6& block) { Eigen::Map<Matrix6>(diagonal_block(node)) += block; }
+  /// Block (node i, node j) of an element, column-major; `index` = element.first_block + i * Nodes + j. 6 x 6; in the
+  /// plane 3 x 3 in its axes, columns four numbers apart (planar::BlockSystem).
   double* element_block(int index) { return element_blocks_[index]; }
   /// True where no two elements share a block. Then set_zero() leaves these blocks alone, and who writes first into
   /// those of an element sets them; else all add.
@@ -63,7 +66,7 @@ class TangentBackend {
   virtual bool solve(Eigen::VectorXd& b) = 0;
   /// The last solution for all scalars (DegreesOfFreedom::first), slaves as the maps of the last factors move them.
   /// Null if the backend does not know these.
-  virtual const double* expanded_solution() const = 0;
+  virtual const double* expanded_solution() = 0;
 
   /// An iteration with new factors costs about so much more than one with kept ones, see FactorReuse.
   virtual double cost_of_factors() const = 0;

@@ -39,7 +39,7 @@ class TreeTangent : public TangentBackend {
   bool factorise() override;
   int singular_variable() const override { return singular_variable_; }
   bool solve(Eigen::VectorXd& b) override;
-  const double* expanded_solution() const override { return values_.data(); }
+  const double* expanded_solution() override { return values_.data(); }
   double cost_of_factors() const override;
 
  private:

@@ -13,74 +13,89 @@
 namespace flexarm {
 namespace {
 
-template <class Count>
+/// Numbers of nodes, and of unknowns of each, as a type.
+template <int N, int U>
+struct Size {
+  static constexpr int nodes = N, unknowns = U;
+};
+template <class Of>
 class ElementFrontOf : public ::testing::Test {};
-TYPED_TEST_SUITE(ElementFrontOf, test::NodeCounts);
+using Sizes =
+    ::testing::Types<Size<2, 6>, Size<3, 6>, Size<4, 6>, Size<5, 6>, Size<2, 3>, Size<3, 3>, Size<4, 3>, Size<5, 3>>;
+TYPED_TEST_SUITE(ElementFrontOf, Sizes);
 
 /// An element's tangent and the diagonal blocks of its nodes, as a front wants them, and their sum as one matrix.
-template <int Nodes>
+template <int Nodes, int U>
 struct Front {
-  std::vector<double> blocks = std::vector<double>(ElementFront<Nodes>::kSize);
-  std::array<Eigen::Matrix<double, 6, 6>, Nodes> diagonals;
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(6 * Nodes, 6 * Nodes);
-  std::array<unsigned char, ElementFront<Nodes>::kEliminated> rows;
+  using Element = ElementFront<Nodes, U>;
+  using Block = Eigen::Matrix<double, U, U>;
+  using BlockMap = Eigen::Map<Block, 0, Eigen::OuterStride<Element::kColumn>>;
+
+  std::vector<double> blocks = std::vector<double>(Element::kSize);
+  std::array<std::array<double, Element::kBlock>, Nodes> diagonals{};
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(U * Nodes, U* Nodes);
+  std::array<unsigned char, Element::kEliminated> rows;
+
+  BlockMap diagonal(int node) { return BlockMap(diagonals[node].data()); }
+  BlockMap block(int i, int j) { return BlockMap(blocks.data() + Element::kBlock * (i * Nodes + j)); }
 
   explicit Front(unsigned seed) {
     test::RandomSource random(seed);
     for (int i = 0; i < Nodes; ++i) {
-      for (int k = 0; k < 36; ++k) diagonals[i](k) = random.number();
-      matrix.block<6, 6>(6 * i, 6 * i) = diagonals[i];
+      for (int k = 0; k < U * U; ++k) diagonal(i)(k % U, k / U) = random.number();
+      matrix.block<U, U>(U * i, U * i) = diagonal(i);
     }
     for (int i = 0; i < Nodes; ++i)
       for (int j = 0; j < Nodes; ++j) {
-        Eigen::Map<Eigen::Matrix<double, 6, 6>> block(blocks.data() + 36 * (i * Nodes + j));
-        for (int k = 0; k < 36; ++k) block(k) = random.number();
-        matrix.block<6, 6>(6 * i, 6 * j) += block;
+        for (int k = 0; k < U * U; ++k) block(i, j)(k % U, k / U) = random.number();
+        matrix.block<U, U>(U * i, U * j) += block(i, j);
       }
   }
   bool eliminate() {
     std::array<double*, Nodes> pointers;
     for (int i = 0; i < Nodes; ++i) pointers[i] = diagonals[i].data();
-    diagonals[0].setZero();
-    return ElementFront<Nodes>::eliminate(blocks.data(), pointers.data(), rows.data());
+    diagonals[0].fill(0);
+    return Element::eliminate(blocks.data(), pointers.data(), rows.data());
   }
 };
 
 TYPED_TEST(ElementFrontOf, SolvesWithTheSchurComplement) {
-  constexpr int kNodes = TypeParam::value, kOuter = ElementFront<kNodes>::kEliminated;
+  constexpr int kNodes = TypeParam::nodes, U = TypeParam::unknowns;
+  using Element = ElementFront<kNodes, U>;
+  constexpr int kOuter = Element::kEliminated;
   for (unsigned seed = 1; seed <= 20; ++seed) {
-    Front<kNodes> front(seed);
-    const Eigen::Matrix<double, 6, 6> own = front.diagonals[0];
+    Front<kNodes, U> front(seed);
+    const Eigen::Matrix<double, U, U> own = front.diagonal(0);
     ASSERT_TRUE(front.eliminate());
     const Eigen::MatrixXd &a = front.matrix, outer = a.bottomRightCorner(kOuter, kOuter);
-    const Eigen::MatrixXd expected = a.topLeftCorner(6, 6) - own -
-                                     a.topRightCorner(6, kOuter) * test::solution(outer, a.bottomLeftCorner(kOuter, 6));
+    const Eigen::MatrixXd expected = a.topLeftCorner(U, U) - own -
+                                     a.topRightCorner(U, kOuter) * test::solution(outer, a.bottomLeftCorner(kOuter, U));
     // Random matrices are no better conditioned than this says.
     const double condition = outer.norm() * test::solution(outer, Eigen::MatrixXd::Identity(kOuter, kOuter)).norm();
     const double round_off = 1e2 * condition * std::numeric_limits<double>::epsilon();
-    EXPECT_LE((front.diagonals[0] - expected).norm(), round_off * expected.norm());
+    EXPECT_LE((front.diagonal(0) - expected).norm(), round_off * expected.norm());
 
-    const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(6 * kNodes, -1, 2);
+    const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(U * kNodes, -1, 2);
     Eigen::VectorXd x = b;
     std::array<double*, kNodes> r;
-    for (int i = 0; i < kNodes; ++i) r[i] = x.data() + 6 * i;
-    ElementFront<kNodes>::forward(front.blocks.data(), front.rows.data(), r.data());
-    x.head<6>() = test::solution(front.diagonals[0] + own, x.head<6>());
-    ElementFront<kNodes>::backward(front.blocks.data(), r.data());
+    for (int i = 0; i < kNodes; ++i) r[i] = x.data() + U * i;
+    Element::forward(front.blocks.data(), front.rows.data(), r.data());
+    x.head<U>() = test::solution(front.diagonal(0) + own, x.head<U>());
+    Element::backward(front.blocks.data(), r.data());
     EXPECT_LE((a * x - b).norm(), round_off * (a.norm() * x.norm() + b.norm()));
   }
 }
 
 TYPED_TEST(ElementFrontOf, RefusesWhatHasNoPivot) {
-  constexpr int kNodes = TypeParam::value;
-  Front<kNodes> singular(1);
+  constexpr int kNodes = TypeParam::nodes, U = TypeParam::unknowns;
+  Front<kNodes, U> singular(1);
   for (int j = 0; j < kNodes; ++j) {  // a row without entries
-    Eigen::Map<Eigen::Matrix<double, 6, 6>>(singular.blocks.data() + 36 * (kNodes + j)).row(2).setZero();
-    singular.diagonals[j].row(2).setZero();
+    singular.block(1, j).row(2).setZero();
+    singular.diagonal(j).row(2).setZero();
   }
   EXPECT_FALSE(singular.eliminate());
-  Front<kNodes> not_finite(1);
-  not_finite.blocks[36 * (kNodes + 1)] = std::numeric_limits<double>::quiet_NaN();
+  Front<kNodes, U> not_finite(1);
+  not_finite.block(1, 1)(0, 0) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(not_finite.eliminate());
 }
 
