@@ -1,0 +1,102 @@
+#pragma once
+/// What the planar kernel of the energy-momentum family reads and writes, for one element (S = double) or a pack of
+/// them: conserving_element.h with two translations and a turn for each node. (docs/notes/planar.md)
+
+#include <array>
+
+#include "math/lanes.h"
+#include "math/shape_functions.h"
+#include "model/beam_element.h"
+#include "model/state.h"
+
+namespace flexarm::planar {
+
+template <typename S>
+using Vector2T = Eigen::Matrix<S, 2, 1>;
+
+/// Symmetric stiffness of {N_1, N_2, M} = C {Gamma_1, Gamma_2, K}, axes of the plane as the section has them.
+template <typename S>
+struct SectionStiffness {
+  Matrix3T<S> matrix;
+
+  Vector3T<S> stress(const Vector3T<S>& strain) const { return matrix * strain; }
+};
+
+/// Constant data; units as in BeamElement.
+template <int Nodes, typename S = double>
+struct Element {
+  struct Point {
+    NodalValues<Nodes, S> shape, derivative;
+    S weight;
+    Vector3T<S> reference_strain;
+    SectionStiffness<S> section, damped;  ///< C, and D C D
+  };
+  std::array<Point, Nodes - 1> points;
+  Eigen::Matrix<S, Nodes, Nodes> mass;
+  S stiffness_damping, mass_damping;
+  bool has_stiffness_damping = false, has_mass_damping = false, is_damped_evenly = true;
+};
+
+/// Makes an element a lane. `basis`: PlaneOfMotion::strain_basis of its nodes.
+template <int Nodes, typename S>
+void set_lane(Element<Nodes, S>& pack, int lane, const BeamElement<Nodes>& element,
+              const Eigen::Matrix<double, 6, 3>& basis) {
+  using flexarm::set_lane;
+  for (int k = 0; k < Nodes - 1; ++k) {
+    const auto& point = element.stiffness_points[k];
+    auto& to = pack.points[k];
+    set_lane(to.shape, lane, point.shape);
+    set_lane(to.derivative, lane, point.derivative);
+    set_lane(to.weight, lane, point.weight);
+    set_lane(to.reference_strain, lane, Vector3(basis.transpose() * point.reference_strain));
+    set_lane(to.section.matrix, lane, Matrix3(basis.transpose() * point.stiffness * basis));
+    set_lane(to.damped.matrix, lane, Matrix3(basis.transpose() * damped_stiffness(element, k) * basis));
+  }
+  set_lane(pack.mass, lane, element.mass);
+  set_lane(pack.stiffness_damping, lane, element.stiffness_damping);
+  set_lane(pack.mass_damping, lane, element.mass_damping);
+  pack.is_damped_evenly = pack.is_damped_evenly && is_damped_evenly(element);
+  pack.has_stiffness_damping = pack.has_stiffness_damping || element.stiffness_damping != 0;
+  pack.has_mass_damping = pack.has_mass_damping || element.mass_damping != 0;
+}
+
+/// Nodal motion over a step.
+template <int Nodes, typename S = double>
+struct Nodal {
+  std::array<Vector2T<S>, Nodes> begin, end;  ///< positions [m]
+  std::array<S, Nodes> cosine, sine;          ///< of half the angle at the end, see PlanarPose
+  std::array<S, Nodes> increment;             ///< tangent-scaled, 2 tan(angle / 2)
+  std::array<Vector2T<S>, Nodes> velocity;    ///< at the beginning [m/s]
+};
+
+/// Kinematics of a stiffness point at one instant.
+template <typename S>
+struct PointKinematics {
+  S cosine, sine;       ///< of the whole angle
+  Vector2T<S> tangent;  ///< r'
+  Vector3T<S> strain;   ///< {Gamma_1, Gamma_2, K}
+};
+
+/// See flexarm::CarriedStrains.
+template <int Nodes, typename S = double>
+struct CarriedStrains {
+  std::array<Vector3T<S>, Nodes - 1> end, conjugate;
+  bool has_conjugate = false;
+};
+
+/// Residual {f_1, f_2, phi} of each node, and its tangent: block (i, j) is the derivative with respect to node j's
+/// {dx, dy, spin}. A fourth row of zeros fills the register.
+template <int Nodes, typename S = double>
+struct BlockSystem {
+  std::array<Eigen::Matrix<S, 4, 1>, Nodes> residual, carried;
+  std::array<std::array<Eigen::Matrix<S, 4, 3>, Nodes>, Nodes> tangent;
+  S dissipated;  ///< over the step [J]
+};
+
+/// See StrainMemoryT.
+template <typename S>
+struct StrainMemory {
+  Vector3T<S> average, rate, delayed_rate;
+};
+
+}  // namespace flexarm::planar
