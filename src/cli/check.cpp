@@ -9,6 +9,7 @@
 #include "cli/driven_ends.h"
 #include "cli/mode_table.h"
 #include "cli/scene_input.h"
+#include "integrators/step_plane.h"
 #include "schemes/scheme.h"
 #include "simulation/inside.h"
 
@@ -57,6 +58,13 @@ void print_size(const Simulation& simulation) {
              scene.joints.size() + scene.loop_joints.size(), simulation.node_count(), simulation.degrees_of_freedom());
   fmt::print("scheme {}, step {} s, gravity {} {} {} m/s^2\n", simulation.scheme(), simulation.step_size(),
              scene.gravity.x(), scene.gravity.y(), scene.gravity.z());
+}
+
+void print_plane(const Simulation& simulation) {
+  const PlaneSearch search = find_step_plane(model_of(simulation), make_scheme(simulation.scene().integrator));
+  if (!search.plane) return fmt::print("steps are three-dimensional: {}\n", search.reason);
+  const Vector3& normal = search.plane->normal;
+  fmt::print("steps are taken in the plane with the normal {:.6g} {:.6g} {:.6g}\n", normal.x(), normal.y(), normal.z());
 }
 
 void print_links(const Simulation& simulation) {
@@ -182,6 +190,7 @@ void add_check(CLI::App& app, int& status) {
   command->callback([scene, &status] {
     Simulation simulation = load_simulation(*scene);
     print_size(simulation);
+    print_plane(simulation);
     print_links(simulation);
     print_joints(simulation);
     print_beams(simulation);

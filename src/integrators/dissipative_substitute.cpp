@@ -15,6 +15,7 @@ Scheme dissipative_scheme(const Scheme& scheme, double step) {
   // The same dampers and stops as those of the scheme.
   out.damping_relaxation = scheme.damping_relaxation;
   out.contact_time = scheme.contact_time;
+  out.may_be_planar = scheme.may_be_planar;
   return out;
 }
 

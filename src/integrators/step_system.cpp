@@ -4,7 +4,7 @@
 
 namespace flexarm {
 
-StepSystem::StepSystem(const Model& model, const Scheme& scheme, BackendChoice backend)
+StepSystem::StepSystem(const Model& model, const Scheme& scheme, BackendChoice backend, Space space)
     : model_(model),
       dof_(model),
       configuration_(model, scheme, dof_),
@@ -28,6 +28,7 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme, BackendChoice b
       rows_(model, dof_),
       carried_rows_(model, dof_),
       tangent_(make_tangent_backend(model, dof_, backend)),
+      planar_(space == Space::PlaneWhereFound ? make_planar_step(configuration_) : nullptr),
       residual_(Eigen::VectorXd::Zero(dof_.unknowns)),
       nodal_update_(6 * static_cast<std::size_t>(dof_.node_count)),
       scales_(model, dof_) {
@@ -37,8 +38,9 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme, BackendChoice b
 void StepSystem::begin(const State& state, double step, Guess guess) {
   configuration_.begin(state, step);
   histories_.begin(configuration_);
+  if (planar_ && planar_->choose(model_, state)) beams().invalidate();
   if (prestrains_.begin(1)) beams_->invalidate();
-  beams_->begin();
+  beams().begin();
   loops_.begin();
   friction_.begin();
   actuators_.begin();
@@ -68,17 +70,22 @@ void StepSystem::begin_equilibrium(const State& state, double load_factor, doubl
 }
 
 void StepSystem::add_forces(Balance& balance) {
-  beams_->add_forces(balance);
+  beams().add_forces(balance);
   forces_.evaluate(balance);
   springs_.evaluate(balance);
 }
 
+void StepSystem::invalidate() {
+  beams_->invalidate();
+  if (planar_) planar_->invalidate();
+}
+
 bool StepSystem::evaluate(bool with_tangent) {
   if (configuration_.is_off_line()) return false;
-  Balance balance{rows_, with_tangent ? tangent_.get() : nullptr};
+  Balance balance{rows_, with_tangent ? &tangent() : nullptr};
   rows_.set_zero();
-  if (with_tangent) tangent_->set_zero();
-  if (with_tangent && beams_->carries_strains()) {
+  if (with_tangent) tangent().set_zero(), has_planar_tangent_ = is_planar();
+  if (with_tangent && beams().carries_strains()) {
     carried_rows_.set_zero();
     balance.carried = &carried_rows_;
   }
@@ -91,15 +98,15 @@ bool StepSystem::evaluate(bool with_tangent) {
   if (scheme().is_static) {
     drag_.evaluate(balance);
   } else {
-    bodies_.evaluate(balance);
-    beams_->add_inertia(balance);
+    if (!is_planar()) bodies_.evaluate(balance);
+    beams().add_inertia(balance);
   }
   if (interpolation_) interpolation_->shift_reactions(balance);
   loops_.evaluate(balance);
   actuators_.evaluate(balance);
   joints_.evaluate(balance);
 
-  if (with_tangent) tangent_->finish();
+  if (with_tangent) tangent().finish();
   friction_.hold(balance);
   rows_.gather(residual_);
   dissipated_ = balance.dissipated;
@@ -107,10 +114,10 @@ bool StepSystem::evaluate(bool with_tangent) {
 }
 
 void StepSystem::carry_strains(double fraction) {
-  const double* solution = tangent_->expanded_solution();
+  const double* solution = tangent().expanded_solution();
   if (!solution) return;
   for (std::size_t i = 0; i < nodal_update_.size(); ++i) nodal_update_[i] = fraction * solution[i];
-  beams_->carry_strains(nodal_update_.data());
+  beams().carry_strains(nodal_update_.data());
 }
 
 void StepSystem::update(const Eigen::VectorXd& increment) {
@@ -133,16 +140,17 @@ void StepSystem::accept(State& state) {
   forces_.add_work(work);
   joints_.add_work(work);
   actuators_.add_work(work);
-  if (prestrains_.do_work()) work += beams_->work_of_prestrains();
+  if (prestrains_.do_work()) work += beams().work_of_prestrains();
   state.work += work;
   state.dissipated += dissipated_;
   configuration_.remember_increments(state.history);
+  if (is_planar()) planar_->tidy(configuration_, state.history);
   scales_.choose_order(state.history);
   loops_.accept(state);
   bodies_.accept(state);
   joints_.accept(state);
   actuators_.accept(state);
-  beams_->accept(state);
+  beams().accept(state);
   if (interpolation_) interpolation_->accept(state);
   state.time += configuration_.step();
 }

@@ -23,6 +23,7 @@
 #include "integrators/joint_reactions.h"
 #include "integrators/loop_multipliers.h"
 #include "integrators/nodal_forces.h"
+#include "integrators/planar_step.h"
 #include "integrators/point_springs.h"
 #include "integrators/smooth_reversals.h"
 #include "integrators/step_configuration.h"
@@ -32,11 +33,15 @@
 
 namespace flexarm {
 
+/// Whether steps of a mechanism that moves in a plane are taken there. What they come to is the same.
+enum class Space { ThreeDimensional, PlaneWhereFound };
+
 /// Nothing allocates after construction, but KLU when a slider enters another element of its line.
 class StepSystem {
  public:
   /// The model must outlive the system.
-  StepSystem(const Model& model, const Scheme& scheme, BackendChoice backend = BackendChoice::Fastest);
+  StepSystem(const Model& model, const Scheme& scheme, BackendChoice backend = BackendChoice::Fastest,
+             Space space = Space::ThreeDimensional);
 
   /// Adds to an initial state what the scheme keeps there.
   void initialise(State& state);
@@ -58,14 +63,16 @@ class StepSystem {
   /// After an evaluation at an updated configuration: decides anew which coordinates stick. True if that changes the
   /// equations.
   bool revise_friction() { return friction_.revise(); }
-  /// False if the tangent evaluated last had other coordinates stick.
-  bool tangent_holds() const { return friction_.tangent_holds(); }
+  /// False if the tangent evaluated last had other coordinates stick, or other dimensions.
+  bool tangent_holds() const { return friction_.tangent_holds() && has_planar_tangent_ == is_planar(); }
   /// Writes the trial configuration, evaluated last without an update since, as the new state; an equilibrium at rest.
   void accept(State& state);
   /// The state was changed by somebody else: quantities kept from the last step do not hold.
-  void invalidate() { beams_->invalidate(); }
+  void invalidate();
   /// Of strains that depend on the way to a configuration: see RotationReference.
   void forget_path(State& state) { beams_->forget_path(state); }
+  /// Whether the step begun last is taken in a plane.
+  bool is_planar() const { return planar_ && planar_->is_on; }
 
   const DegreesOfFreedom& degrees_of_freedom() const { return dof_; }
   const StepConfiguration& configuration() const { return configuration_; }
@@ -73,8 +80,8 @@ class StepSystem {
   const Drag& drag() const { return drag_; }
   const Actuators& actuators() const { return actuators_; }
   const Eigen::VectorXd& residual() const { return residual_; }
-  TangentBackend& tangent() { return *tangent_; }
-  const TangentBackend& tangent() const { return *tangent_; }
+  TangentBackend& tangent() { return is_planar() ? planar_->tangent : *tangent_; }
+  const TangentBackend& tangent() const { return is_planar() ? planar_->tangent : *tangent_; }
   /// See LoopMultipliers.
   LoopMultipliers::Opening largest_opening() const { return loops_.largest_opening(); }
   /// See StopContacts.
@@ -89,6 +96,7 @@ class StepSystem {
 
  private:
   const Scheme& scheme() const { return configuration_.scheme(); }
+  BeamFamily& beams() { return is_planar() ? planar_->beams : *beams_; }
   void add_forces(Balance& balance);
   void accept_rest(State& state);
 
@@ -114,6 +122,8 @@ class StepSystem {
   // ---- the balance of what they add
   ReducedResidual rows_, carried_rows_;
   std::unique_ptr<TangentBackend> tangent_;
+  std::unique_ptr<PlanarStep> planar_;  // null unless there is a plane
+  bool has_planar_tangent_ = false;
   double dissipated_ = 0;  // over the step [J]
   Eigen::VectorXd residual_;
   std::vector<double> nodal_update_;

@@ -44,7 +44,11 @@ class Deadline {
 }  // namespace
 
 Stepper::Stepper(const Model& model, const Scheme& scheme, const StepSettings& settings)
-    : model_(model), scheme_(scheme), settings_(settings), system_(model, scheme), newton_(system_, settings_) {
+    : model_(model),
+      scheme_(scheme),
+      settings_(settings),
+      system_(model, scheme, BackendChoice::Fastest, Space::PlaneWhereFound),
+      newton_(system_, settings_) {
   for (std::vector<double>& increment : before_.history.increments)
     increment.reserve(system_.degrees_of_freedom().unknowns);
   before_.wrenches.reserve(kRoomForWrenches);

@@ -63,7 +63,7 @@ void read_integrator(const XmlElement& integrator, SceneDescription& scene) {
   IntegratorDescription& description = scene.integrator;
   scene.integrator_location = integrator.location();
   integrator.expect_only({"scheme", "step", "tolerance", "max_iterations", "max_halvings", "interpolation", "weak_form",
-                          "beta", "gamma", "alpha", "rho_infinity", "on_failure", "accuracy"});
+                          "beta", "gamma", "alpha", "rho_infinity", "on_failure", "accuracy", "dimension"});
   read_scheme(integrator, description);
   description.step = integrator.number("step", kStep, description.step);
   description.tolerance = integrator.number("tolerance", kTolerance, description.tolerance);
@@ -72,6 +72,8 @@ void read_integrator(const XmlElement& integrator, SceneDescription& scene) {
     description.max_iterations = integrator.integer("max_iterations", 1, kMostNewtonIterations).value_or(1);
   if (integrator.has("max_halvings"))
     description.max_halvings = integrator.integer("max_halvings", 0, kMostHalvings).value_or(0);
+  constexpr Choice<bool> kDimension[] = {{"auto", true}, {"3", false}};
+  description.may_be_planar = read_choice(integrator, "dimension", kDimension, description.may_be_planar);
 }
 
 void read_gravity(const XmlElement& gravity, SceneDescription& scene) {

@@ -60,6 +60,7 @@ Scheme make_scheme(const IntegratorDescription& integrator) {
     scheme.dissipation = numerical_dissipation(scheme.order, rho, integrator.step);
     scheme.conserves_energy = !scheme.dissipation.any();
   }
+  scheme.may_be_planar = integrator.may_be_planar;
   return scheme;
 }
 

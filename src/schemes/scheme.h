@@ -34,6 +34,7 @@ struct Scheme : TimeRule {
   bool heeds_slide_schemes = true;  ///< else the contact of all sliders is carried by SM-EM
   /// Of what touches a stop [s]: resolved by the scene's steps, and short to the eye.
   double contact_time = kContactSteps * IntegratorDescription().step;
+  bool may_be_planar = true;  ///< else all is three-dimensional, the scene of a plane, too
   SchemeOptions options;
 };
 

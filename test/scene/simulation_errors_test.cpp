@@ -53,6 +53,7 @@ TEST(SimulationErrors, Integrator) {
   expect_error(known, R"(scheme="em" gamma="0.5")", 60, "scheme 'em' does not have this option; it belongs to newmark");
   expect_error(known, R"(scheme="m1" rho_infinity="0.9")", 60, "it belongs to auto, edmc1, edmc2, got '0.9'");
   expect_error(known, R"(on_failure="hope")", 60, "on_failure must be one of stop, dissipate, got 'hope'");
+  expect_error(known, R"(dimension="2")", 60, "dimension must be one of auto, 3, got '2'");
   for (const char* options : {R"(scheme="m1" on_failure="dissipate")", R"(scheme="edmc2" on_failure="dissipate")",
                               R"(rho_infinity="0.9" on_failure="dissipate")"})
     expect_error(known, options, 60, "'dissipate' belongs to auto, em, em0, em_scaled, em_symmetric, em4, got");

@@ -84,6 +84,35 @@ INSTANTIATE_TEST_SUITE_P(
                        ::testing::Bool()),
     [](const auto& info) { return std::get<0>(info.param) + (std::get<1>(info.param) ? "_reuse" : "_full"); });
 
+// Steps in a plane, then three-dimensional ones, and back to the plane.
+TEST_F(Allocation, NoneWhereAPlaneIsLeft) {
+  for (const std::string scheme : {"em", "em0", "em_symmetric", "em4", "edmc2"}) {
+    SceneBuilder b;
+    b.beam("upper", {{1, 0, 0}}, section(2e4, 1e4, 20, 25, 0.5, 2e-3, 1e-3), 4, 2);
+    b.beam("lower", {{0, 1, 0}}, section(2e4, 1e4, 20, 25, 0.5, 2e-3, 1e-3), 2, 3);
+    b.joint("shoulder", scene::JointKind::Continuous, "world", "upper");
+    b.joint("ball", scene::JointKind::Spherical, "upper", "lower", {1, 0, 0});
+    b.scene.gravity = {0, -9.81, 0};
+    SimulationOptions options;
+    options.scheme = scheme;
+    Simulation simulation(b.scene, options);
+    const Snapshot start = simulation.snapshot();
+    const std::vector<AppliedWrench> none, out = {{2, Vector3::Zero(), {Vector3::UnitZ(), Vector3::Zero()}}};
+    ASSERT_EQ(simulation.link_names().at(2), "lower");
+    ASSERT_TRUE(simulation.step().converged);
+    EXPECT_EQ(allocations_in([&] {
+                for (int n = 0; n < 60; ++n) {
+                  if (n == 20) simulation.apply_wrenches(out);
+                  if (n == 40) simulation.apply_wrenches(none);
+                  if (n == 50) simulation.restore(start);
+                  simulation.step();
+                }
+              }),
+              0)
+        << scheme;
+  }
+}
+
 TEST_F(Allocation, NoneWhereFrictionSticks) {
   for (const std::string scheme : {"em", "edmc2", "m1", "std", "newmark"})
     for (const bool reuse : {true, false}) {

@@ -51,6 +51,7 @@ struct IntegratorDescription {
   /// Of runs in which steps are chosen for it (accuracy/accurate_run.h): the error of points, in (0, 1), relative to
   /// how far they move. Steps of a simulation by itself are not.
   std::optional<double> accuracy;
+  bool may_be_planar = true;  ///< where all moves in a plane, steps are taken there; else they are three-dimensional
 };
 
 /// Names of the schemes that a scene may ask for, "auto" first.

@@ -1,0 +1,296 @@
+#include "integrators/planar_beams.h"
+
+#include <algorithm>
+
+#include "integrators/gathered.h"
+#include "math/simd.h"
+
+namespace flexarm {
+namespace {
+
+/// Four numbers of each lane, lane by lane; get(lane) points to them.
+template <class Get>
+[[gnu::always_inline]] inline std::array<Pack, 4> gathered_four(const Get& get) {
+  std::array<Pack, 4> out;
+  for (int k = 0; k < 4; ++k) out[k] = gathered([&](int lane) { return get(lane)[k]; });
+  return out;
+}
+
+}  // namespace
+
+PlanarBeams::PlanarBeams(const StepConfiguration& configuration, const PlaneOfMotion& plane)
+    : configuration_(configuration),
+      plane_(plane),
+      rule_(configuration.scheme()),
+      begin_poses_(configuration.model().nodes.size()),
+      end_poses_(begin_poses_.size()),
+      rates_(begin_poses_.size()),
+      forces_(begin_poses_.size()),
+      carried_(begin_poses_.size()),
+      has_memory_(rule_.dissipation.any()) {
+  const Model& model = configuration.model();
+  for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+    const Quaternion& frame = plane.frames[i];
+    frames_.push_back(
+        {frame.coeffs(), (Quaternion(0, plane.normal.x(), plane.normal.y(), plane.normal.z()) * frame).coeffs()});
+    const Vector3 normal = plane.material_normal(static_cast<int>(i));
+    material_normals_.push_back(normal);
+    const NodalInertia& inertia = model.inertias[i];
+    Matrix3 rotary = inertia.rotary;
+    if (rule_.nodal_rotary_inertia) rotary += inertia.beam_rotary;
+    if (inertia.mass != 0 || !rotary.isZero(0))
+      inertias_.push_back({static_cast<int>(i), inertia.mass, normal.dot(rotary * normal)});
+  }
+  for_each_group(model.beams, [&](const auto& group) {
+    constexpr int N = std::decay_t<decltype(group)>::kNodes;
+    auto& packs = std::get<Group<N>>(groups_);
+    packs = packs_of<N>(group.elements);
+    if (!packs.empty() && packs.front().element.has_stiffness_damping) has_memory_ = true;
+  });
+  if (has_memory_) end_memory_.resize(model.stiffness_point_count);
+}
+
+template <int Nodes>
+PlanarBeams::Group<Nodes> PlanarBeams::packs_of(const std::vector<BeamElement<Nodes>>& elements) {
+  constexpr int lanes = Pack::kLanes;
+  const int count = static_cast<int>(elements.size());
+  Group<Nodes> packs((count + lanes - 1) / lanes);
+  // Which terms there are is the same for a whole group, so that an element does not feel its neighbours.
+  bool is_damped_evenly = true, has_stiffness_damping = false, has_mass_damping = false;
+  for (std::size_t p = 0; p < packs.size(); ++p) {
+    ElementPack<Nodes>& pack = packs[p];
+    const int first = static_cast<int>(p) * lanes;
+    pack.lanes = std::min(lanes, count - first);
+    for (int lane = 0; lane < lanes; ++lane) {
+      const BeamElement<Nodes>& element = elements[std::min(first + lane, count - 1)];
+      pack.nodes[lane] = element.nodes;
+      pack.first_block[lane] = element.first_block;
+      pack.first_stiffness_point[lane] = element.first_stiffness_point;
+      pack.basis[lane] = plane_.strain_basis(element.nodes[0]);
+      planar::set_lane(pack.element, lane, element, pack.basis[lane]);
+    }
+    is_damped_evenly = is_damped_evenly && pack.element.is_damped_evenly;
+    has_stiffness_damping = has_stiffness_damping || pack.element.has_stiffness_damping;
+    has_mass_damping = has_mass_damping || pack.element.has_mass_damping;
+  }
+  for (ElementPack<Nodes>& pack : packs) {
+    pack.element.is_damped_evenly = is_damped_evenly;
+    pack.element.has_stiffness_damping = has_stiffness_damping;
+    pack.element.has_mass_damping = has_mass_damping;
+  }
+  return packs;
+}
+
+PlanarPose PlanarBeams::pose(std::size_t node, const NodePose& at) const {
+  const Frame& frame = frames_[node];
+  const auto& q = at.orientation.coeffs();
+  return {plane_.first.dot(at.position), plane_.second.dot(at.position), q.dot(frame.cosine), q.dot(frame.sine)};
+}
+
+void PlanarBeams::begin() {
+  const StepMotion step = configuration_.motion();
+  for (std::size_t i = 0; i < begin_poses_.size(); ++i) {
+    const NodeState& node = step.state.nodes[i];
+    begin_poses_[i] = pose(i, step.begin[i]);
+    rates_[i] = {0, plane_.first.dot(node.velocity), plane_.second.dot(node.velocity),
+                 material_normals_[i].dot(node.angular_velocity)};
+  }
+  if (!holds_begin_points_) set_begin_points();
+  holds_begin_points_ = true;
+  set_slopes();
+  for_each_group(groups_, [&](auto& packs) {
+    for (auto& pack : packs) {
+      for (std::size_t k = 0; k < pack.carried.end.size(); ++k) pack.carried.end[k] = pack.points[begin_][k].strain;
+      pack.carried.has_conjugate = false;
+    }
+  });
+  carries_strains_ = configuration_.model().stiffness_point_count > 0;
+}
+
+void PlanarBeams::set_begin_points() {
+  for_each_group(groups_, [&](auto& packs) {
+    constexpr int N = std::decay_t<decltype(packs)>::value_type::kNodes;
+    for (auto& pack : packs) {
+      std::array<planar::Vector2T<Pack>, N> position;
+      std::array<Pack, N> cosine, sine;
+      for (int i = 0; i < N; ++i) {
+        const auto at = gathered_four([&](int lane) { return &begin_poses_[pack.nodes[lane][i]].x; });
+        position[i] = {at[0], at[1]};
+        cosine[i] = at[2], sine[i] = at[3];
+      }
+      planar::packs::element_points<N>(pack.element, position, cosine, sine, pack.points[begin_].data());
+    }
+  });
+}
+
+/// The middle functions are Lagrange's; their stretch, squared, makes their derivatives shorter. See
+/// stretch_mid_functions().
+void PlanarBeams::set_slopes() {
+  if (rule_.correction != EnergyCorrection::Multiplier || rule_.mid_functions != MidFunctions::Explicit) return;
+  const StepMotion step = configuration_.motion();
+  for_each_group(groups_, [&](auto& packs) {
+    constexpr int N = std::decay_t<decltype(packs)>::value_type::kNodes;
+    for (auto& pack : packs) {
+      for (int lane = 0; lane < Pack::kLanes; ++lane) {
+        double sum = 0;
+        for (int i = 0; i < N; ++i) sum += plane_.normal.dot(step.state.nodes[pack.nodes[lane][i]].mean_spin);
+        const double mean = step.step * sum / N;
+        pack.slope.set(lane, 1 / (1 + 0.25 * mean * mean));
+      }
+    }
+  });
+}
+
+/// Poses at the end, and the increments.
+void PlanarBeams::set_end() {
+  const std::vector<NodePose>& end = configuration_.end();
+  for (std::size_t i = 0; i < end.size(); ++i) {
+    const PlanarPose at = end_poses_[i] = pose(i, end[i]), from = begin_poses_[i];
+    rates_[i].increment =
+        2 * (at.sine * from.cosine - at.cosine * from.sine) / (at.cosine * from.cosine + at.sine * from.sine);
+  }
+}
+
+template <int Nodes>
+planar::Nodal<Nodes, Pack> PlanarBeams::gather(const ElementPack<Nodes>& pack) const {
+  planar::Nodal<Nodes, Pack> nodes;
+  for (int i = 0; i < Nodes; ++i) {
+    const auto begin = gathered_four([&](int lane) { return &begin_poses_[pack.nodes[lane][i]].x; });
+    const auto end = gathered_four([&](int lane) { return &end_poses_[pack.nodes[lane][i]].x; });
+    const auto rate = gathered_four([&](int lane) { return &rates_[pack.nodes[lane][i]].increment; });
+    nodes.begin[i] = {begin[0], begin[1]};
+    nodes.end[i] = {end[0], end[1]};
+    nodes.cosine[i] = end[2];
+    nodes.sine[i] = end[3];
+    nodes.increment[i] = rate[0];
+    nodes.velocity[i] = {rate[1], rate[2]};
+  }
+  return nodes;
+}
+
+template <int Nodes>
+void PlanarBeams::gather(const ElementPack<Nodes>& pack,
+                         std::array<planar::StrainMemory<Pack>, Nodes - 1>& memory) const {
+  for (int k = 0; k < Nodes - 1; ++k)
+    for (int lane = 0; lane < Pack::kLanes; ++lane) {
+      const StrainMemory& from = configuration_.state().strain_memory[pack.first_stiffness_point[lane] + k];
+      const auto to_plane = [&](const Vector6& strain) { return Vector3(pack.basis[lane].transpose() * strain); };
+      set_lane(memory[k].average, lane, to_plane(from.average));
+      set_lane(memory[k].rate, lane, to_plane(from.rate));
+      set_lane(memory[k].delayed_rate, lane, to_plane(from.delayed_rate));
+    }
+}
+
+template <int Nodes>
+void PlanarBeams::scatter(const ElementPack<Nodes>& pack,
+                          const std::array<planar::StrainMemory<Pack>, Nodes - 1>& memory) {
+  for (int k = 0; k < Nodes - 1; ++k)
+    for (int lane = 0; lane < pack.lanes; ++lane) {
+      const auto from_plane = [&](const auto& strain) { return Vector6(pack.basis[lane] * get_lane(strain, lane)); };
+      end_memory_[pack.first_stiffness_point[lane] + k] = {from_plane(memory[k].average), from_plane(memory[k].rate),
+                                                           from_plane(memory[k].delayed_rate)};
+    }
+}
+
+template <int Nodes>
+void PlanarBeams::scatter(const ElementPack<Nodes>& pack, const planar::BlockSystem<Nodes, Pack>& system,
+                          Balance& balance) {
+  std::array<double*, Pack::kLanes> targets;
+  for (int i = 0; i < Nodes; ++i) {
+    for (int lane = 0; lane < pack.lanes; ++lane) targets[lane] = forces_[pack.nodes[lane][i]].at;
+    add_lanes<4>(system.residual[i].data(), pack.lanes, targets.data());
+    if (balance.carried) {
+      for (int lane = 0; lane < pack.lanes; ++lane) targets[lane] = carried_[pack.nodes[lane][i]].at;
+      add_lanes<4>(system.carried[i].data(), pack.lanes, targets.data());
+    }
+    for (int j = 0; j < Nodes && balance.tangent; ++j) {
+      for (int lane = 0; lane < pack.lanes; ++lane)
+        targets[lane] = balance.tangent->element_block(pack.first_block[lane] + i * Nodes + j);
+      add_lanes<12, true>(system.tangent[i][j].data(), pack.lanes, targets.data());
+    }
+  }
+}
+
+void PlanarBeams::add_forces(Balance& balance) {
+  const double step = configuration_.step();
+  set_end();
+  std::fill(forces_.begin(), forces_.end(), NodeForce());
+  if (balance.carried) std::fill(carried_.begin(), carried_.end(), NodeForce());
+  double dissipated = 0;
+  for_each_group(groups_, [&](auto& packs) {
+    if (packs.empty()) return;
+    constexpr int N = std::decay_t<decltype(packs)>::value_type::kNodes;
+    simd::run([&] {
+      std::array<planar::StrainMemory<Pack>, N - 1> memory, new_memory;
+      planar::BlockSystem<N, Pack> system;
+      for (auto& pack : packs) {
+        if (has_memory_) gather<N>(pack, memory);
+        planar::packs::beam<N>(pack.element, pack.slope, gather<N>(pack), rule_, pack.points[begin_].data(),
+                               has_memory_ ? memory.data() : nullptr, step, balance.tangent != nullptr,
+                               balance.carried ? &pack.carried : nullptr, pack.points[1 - begin_].data(),
+                               has_memory_ ? new_memory.data() : nullptr, system);
+        if (has_memory_) scatter<N>(pack, new_memory);
+        scatter<N>(pack, system, balance);
+        for (int lane = 0; lane < pack.lanes; ++lane) dissipated += system.dissipated[lane];
+      }
+    });
+  });
+  balance.dissipated += dissipated;
+  if (balance.tangent) carries_strains_ = false;
+}
+
+/// See ConservingNode.
+void PlanarBeams::add_inertia(Balance& balance) {
+  const double rate_of_step = 1 / configuration_.step(), factor = rule_.velocity_factor() * rate_of_step;
+  for (const Inertia& inertia : inertias_) {
+    const PlanarPose &begin = begin_poses_[inertia.node], &end = end_poses_[inertia.node];
+    const NodeRate& rate = rates_[inertia.node];
+    double* force = forces_[inertia.node].at;
+    const double mass = inertia.mass * factor, rotary = inertia.rotary * 2 * rate_of_step;
+    force[0] += mass * (rate_of_step * (end.x - begin.x) - rate.vx);
+    force[1] += mass * (rate_of_step * (end.y - begin.y) - rate.vy);
+    force[2] += rotary * (rate_of_step * rate.increment - rate.turning);
+    if (!balance.tangent) continue;
+    double* tangent = balance.tangent->diagonal_block(inertia.node);
+    tangent[0] += mass * rate_of_step;
+    tangent[5] += mass * rate_of_step;
+    tangent[10] += rotary * rate_of_step * (1 + 0.25 * rate.increment * rate.increment);
+  }
+  for (std::size_t i = 0; i < forces_.size(); ++i) {
+    const int node = static_cast<int>(i);
+    balance.residual.node(node) += plane_.expanded(Eigen::Map<const Vector3>(forces_[i].at));
+    if (balance.carried) balance.carried->node(node) += plane_.expanded(Eigen::Map<const Vector3>(carried_[i].at));
+  }
+}
+
+void PlanarBeams::carry_strains(const double* update) {
+  std::array<Vector3, Pack::kLanes> moved;
+  for_each_group(groups_, [&](auto& packs) {
+    constexpr int N = std::decay_t<decltype(packs)>::value_type::kNodes;
+    for (auto& pack : packs) {
+      std::array<Vector3T<Pack>, N> updates;
+      for (int i = 0; i < N; ++i) {
+        for (int lane = 0; lane < Pack::kLanes; ++lane)
+          moved[lane] = plane_.projected(Eigen::Map<const Vector6>(update + 6 * pack.nodes[lane][i]));
+        updates[i] = gathered_vector([&](int lane) -> const Vector3& { return moved[lane]; });
+      }
+      planar::packs::carry_strains<N>(pack.element, pack.slope, gather<N>(pack), pack.points[begin_].data(), updates,
+                                      pack.points[1 - begin_].data(), pack.carried);
+    }
+  });
+  carries_strains_ = configuration_.model().stiffness_point_count > 0;
+}
+
+void PlanarBeams::accept(State& state) {
+  std::copy(end_memory_.begin(), end_memory_.end(), state.strain_memory.begin());
+  for (std::size_t i = 0; i < state.nodes.size(); ++i) {
+    NodeState& node = state.nodes[i];
+    node.mean_spin = (rates_[i].increment / configuration_.step()) * plane_.normal;
+    // Of these round-off would add up from step to step.
+    node.velocity -= plane_.normal.dot(node.velocity) * plane_.normal;
+    node.angular_velocity = material_normals_[i].dot(node.angular_velocity) * material_normals_[i];
+  }
+  begin_ = 1 - begin_;  // the points of the end are those at the beginning of the next step
+}
+
+}  // namespace flexarm

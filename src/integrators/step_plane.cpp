@@ -1,0 +1,19 @@
+#include "integrators/step_plane.h"
+
+#include <fmt/format.h>
+
+#include "solver/planar_tangent.h"
+
+namespace flexarm {
+
+PlaneSearch find_step_plane(const Model& model, const Scheme& scheme) {
+  if (!scheme.may_be_planar) return {std::nullopt, "three dimensions are asked for"};
+  if (scheme.is_static || scheme.stress != StressRule::Conjugate || scheme.interpolation != Interpolation::Local)
+    return {std::nullopt, fmt::format("scheme '{}' is three-dimensional", scheme.name)};
+  PlaneSearch search = find_plane(model);
+  if (search.plane && !PlanarTangent::suits(model, DegreesOfFreedom(model)))
+    return {std::nullopt, "beams whose far ends other joints hold are three-dimensional"};
+  return search;
+}
+
+}  // namespace flexarm

@@ -1,0 +1,169 @@
+#include "solver/planar_tangent.h"
+
+#include <algorithm>
+
+#include "solver/element_front.h"
+
+namespace flexarm {
+namespace {
+
+/// Calls visit(ElementFront<Nodes, 3>()) for the number of nodes at hand.
+template <class Visitor>
+auto with_front(int node_count, Visitor&& visit) {
+  switch (node_count) {
+    case 2:
+      return visit(ElementFront<2, 3>());
+    case 3:
+      return visit(ElementFront<3, 3>());
+    case 4:
+      return visit(ElementFront<4, 3>());
+    default:
+      return visit(ElementFront<5, 3>());
+  }
+}
+
+}  // namespace
+
+bool PlanarTangent::suits(const Model& model, const DegreesOfFreedom& dof) {
+  if (!model.closures.empty() || !model.slide_lines.empty() || !dof.mimics.empty()) return false;
+  const TreeOrder order(model, dof);
+  const std::vector<TreePart>& parts = order.parts();
+  return order.is_complete() &&
+         std::none_of(parts.begin(), parts.end(), [](const TreePart& part) { return part.has_border; });
+}
+
+PlanarTangent::PlanarTangent(const Model& model, const DegreesOfFreedom& dof, const PlaneOfMotion& plane)
+    : dof_(dof),
+      plane_(plane),
+      order_(model, dof),
+      maps_(model.joints.size()),
+      nodes_(kPlanarBlock * model.nodes.size()),
+      values_(4 * model.nodes.size()),
+      scalars_(dof.scalar_count),
+      expanded_(dof.scalar_count) {
+  std::size_t pivots = 0, blocks = 0, squares = 0;
+  for (const TreePart& part : order_.parts()) {
+    first_pivot_.push_back(pivots);
+    if (part.joint >= 0) continue;
+    pivots += 3 * (part.node_count - 1);
+    blocks = std::max(blocks, part.first_block + part.node_count * part.node_count);
+  }
+  pivots_.resize(pivots);
+  elements_.resize(kPlanarBlock * blocks);
+  for (std::size_t b = 0; b < blocks; ++b) element_blocks_.push_back(&elements_[kPlanarBlock * b]);
+  for (const JointMap& joint : model.joints) {
+    const int variable = dof.variable_of_joint(static_cast<int>(joints_.size()));
+    joints_.emplace_back(joint, variable, dof, plane);
+    squares += dof.size[variable] * dof.size[variable];
+  }
+  coordinates_.resize(squares);
+  for (int i = 0; i < dof.node_count; ++i) diagonal_blocks_.push_back(&nodes_[kPlanarBlock * i]);
+  squares = 0;
+  for (int j = 0; j < dof.joint_count; ++j) {
+    const int size = dof.size[dof.variable_of_joint(j)];
+    diagonal_blocks_.push_back(coordinates_.data() + squares);
+    squares += size * size;
+  }
+  keeps_elements_apart_ = true;
+}
+
+void PlanarTangent::set_zero() {
+  std::fill(nodes_.begin(), nodes_.end(), 0.0);
+  std::fill(coordinates_.begin(), coordinates_.end(), 0.0);
+}
+
+void PlanarTangent::add_to_node(int node, const Matrix6& block) {
+  PlanarBlock to(diagonal_blocks_[node]);
+  for (int c = 0; c < 3; ++c) to.col(c) += plane_.projected(block * plane_.expanded(Vector3(Vector3::Unit(c))));
+}
+
+void PlanarTangent::hold_row(int joint, int component, int first, const ReleasedVector& coefficients) {
+  FoldMaps& maps = maps_[joint];
+  const int size = static_cast<int>(maps.left.cols());
+  maps.left.col(component).setZero();
+  if (joints_[joint].has_master()) maps.released_spin.row(component).setZero();
+  Eigen::Map<ReleasedSquare>(diagonal_block(joints_[joint].variable()), size, size).row(component).setZero();
+  maps.released_released.row(component).setZero();
+  maps.released_released.row(component).segment(first, coefficients.size()) = coefficients.transpose();
+}
+
+// ---------------------------------------------------------------- factors
+
+std::array<double*, 5> PlanarTangent::node_values(const TreePart& part, std::vector<double>& values, int size) const {
+  std::array<double*, 5> blocks{};
+  for (int i = 0; i < part.node_count; ++i) blocks[i] = values.data() + static_cast<std::size_t>(size) * part.nodes[i];
+  return blocks;
+}
+
+bool PlanarTangent::eliminate_element(int p) {
+  const TreePart& part = order_.parts()[p];
+  const std::array<double*, 5> diagonals = node_values(part, nodes_, kPlanarBlock);
+  return with_front(part.node_count, [&](auto front) {
+    return front.eliminate(element_blocks_[part.first_block], diagonals.data(), pivots_.data() + first_pivot_[p]);
+  });
+}
+
+bool PlanarTangent::factorise() {
+  const std::vector<TreePart>& parts = order_.parts();
+  for (int p = 0; p < static_cast<int>(parts.size()); ++p) {
+    const int joint = parts[p].joint;
+    if (joint >= 0 ? joints_[joint].eliminate(maps_[joint], diagonal_blocks_.data()) : eliminate_element(p)) continue;
+    singular_variable_ = joint >= 0 ? dof_.variable_of_joint(joint) : parts[p].nodes[parts[p].node_count - 1];
+    return false;
+  }
+  return true;
+}
+
+// ---------------------------------------------------------------- solution
+
+void PlanarTangent::forward_element(int p) {
+  const TreePart& part = order_.parts()[p];
+  const std::array<double*, 5> r = node_values(part, values_, 4);
+  with_front(part.node_count, [&](auto front) {
+    front.forward(element_blocks_[part.first_block], pivots_.data() + first_pivot_[p], r.data());
+  });
+}
+
+void PlanarTangent::backward_element(int p) {
+  const TreePart& part = order_.parts()[p];
+  const std::array<double*, 5> r = node_values(part, values_, 4);
+  with_front(part.node_count, [&](auto front) { front.backward(element_blocks_[part.first_block], r.data()); });
+}
+
+bool PlanarTangent::solve(Eigen::VectorXd& b) {
+  const std::vector<TreePart>& parts = order_.parts();
+  const int part_count = static_cast<int>(parts.size());
+  const auto node = [&](int i) { return Eigen::Map<Vector3>(values_.data() + 4 * static_cast<std::size_t>(i)); };
+  for (int i = 0; i < dof_.node_count; ++i) {
+    const int equation = dof_.equation[dof_.first[i]];
+    if (equation >= 0)
+      node(i) = plane_.projected(b.segment<6>(equation));
+    else
+      node(i).setZero();
+  }
+  for (int scalar = 6 * dof_.node_count; scalar < dof_.scalar_count; ++scalar)
+    scalars_[scalar] = dof_.equation[scalar] >= 0 ? b[dof_.equation[scalar]] : 0.0;
+  for (int p = 0; p < part_count; ++p) {
+    const int joint = parts[p].joint;
+    joint >= 0 ? joints_[joint].forward(maps_[joint], values_.data(), scalars_.data()) : forward_element(p);
+  }
+  for (int p = part_count - 1; p >= 0; --p) {
+    const int joint = parts[p].joint;
+    joint >= 0 ? joints_[joint].backward(maps_[joint], values_.data(), scalars_.data()) : backward_element(p);
+  }
+  for (int i = 0; i < dof_.node_count; ++i)
+    if (const int equation = dof_.equation[dof_.first[i]]; equation >= 0)
+      b.segment<6>(equation) = plane_.expanded(node(i));
+  for (int scalar = 6 * dof_.node_count; scalar < dof_.scalar_count; ++scalar)
+    if (dof_.equation[scalar] >= 0) b[dof_.equation[scalar]] = scalars_[scalar];
+  return b.allFinite();
+}
+
+const double* PlanarTangent::expanded_solution() {
+  for (int i = 0; i < dof_.node_count; ++i)
+    Eigen::Map<Vector6>(expanded_.data() + 6 * i) = plane_.expanded(Eigen::Map<Vector3>(values_.data() + 4 * i));
+  std::copy(scalars_.begin() + 6 * dof_.node_count, scalars_.end(), expanded_.begin() + 6 * dof_.node_count);
+  return expanded_.data();
+}
+
+}  // namespace flexarm

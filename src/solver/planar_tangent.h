@@ -1,0 +1,62 @@
+#pragma once
+/// Block elimination along the tree of a mechanism that moves in a plane: TreeTangent with three unknowns a node.
+/// (docs/notes/planar.md)
+
+#include <vector>
+
+#include "model/plane.h"
+#include "solver/planar_joint_front.h"
+#include "solver/tangent_backend.h"
+#include "solver/tree_order.h"
+
+namespace flexarm {
+
+/// Takes equations and gives solutions in space, as all backends do: six for each node, of which those out of the plane
+/// are zero. Blocks of nodes and elements are PlanarBlock, in the plane's axes.
+class PlanarTangent : public TangentBackend {
+ public:
+  /// True if every node hangs on the root by one chain of joints and elements, and nothing couples more than that.
+  static bool suits(const Model& model, const DegreesOfFreedom& dof);
+
+  /// Of a model that suits; all must outlive the solver.
+  PlanarTangent(const Model& model, const DegreesOfFreedom& dof, const PlaneOfMotion& plane);
+
+  void set_zero() override;
+  void add_to_node(int node, const Matrix6& block) override;
+  FoldMaps& fold_maps(int joint) override { return maps_[joint]; }
+  void fold(int) override {}  // is left to the elimination
+  void finish() override {}
+  void hold_row(int joint, int component, int first, const ReleasedVector& coefficients) override;
+  bool factorise() override;
+  int singular_variable() const override { return singular_variable_; }
+  bool solve(Eigen::VectorXd& b) override;
+  const double* expanded_solution() override;
+  double cost_of_factors() const override { return 2.2; }
+
+  // ---- of what does not suit
+  void add_closure(int, int, double, const ClosureMaps&) override {}
+  void add_coupling(int, const Eigen::Matrix<double, 12, 12>&) override {}
+  SlideMaps& slide_maps(int) override { return no_slide_; }
+  void fold_mimics(const std::vector<MimicMap>&) override {}
+
+ private:
+  bool eliminate_element(int part);
+  void forward_element(int part);
+  void backward_element(int part);
+  std::array<double*, 5> node_values(const TreePart& part, std::vector<double>& values, int size) const;
+
+  const DegreesOfFreedom& dof_;
+  const PlaneOfMotion& plane_;
+  TreeOrder order_;
+  std::vector<FoldMaps> maps_;                          // per joint
+  std::vector<PlanarJointFront> joints_;                // in the model's order
+  std::vector<double> nodes_, elements_, coordinates_;  // blocks
+  std::vector<double> values_, scalars_;                // four per node; per scalar: right-hand side, solution
+  std::vector<double> expanded_;
+  std::vector<std::size_t> first_pivot_;  // per part
+  std::vector<unsigned char> pivots_;
+  int singular_variable_ = -1;
+  SlideMaps no_slide_;
+};
+
+}  // namespace flexarm

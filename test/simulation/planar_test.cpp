@@ -1,0 +1,251 @@
+// Scenes that move in a plane are found, solved there, and come to the same as in three dimensions.
+#include <cmath>
+#include <functional>
+
+#include <gtest/gtest.h>
+
+#include "flexarm/scene/urdf_reader.h"
+#include "integrators/step_plane.h"
+#include "math/so3.h"
+#include "schemes/scheme.h"
+#include "simulation/inside.h"
+#include "simulation/same_bits.h"
+#include "support/scene_builder.h"
+#include "support/source_path.h"
+
+namespace flexarm::test {
+namespace {
+
+using scene::JointKind;
+
+/// Round-off of some hundred steps of a mechanism that magnifies it, relative to its size.
+constexpr double kSame = 1e-11;
+
+const std::vector<std::string> kPlanarSchemes = {"em", "em0", "em_symmetric", "em_scaled", "em4", "edmc1", "edmc2"};
+
+PlaneSearch plane_of(const scene::SceneDescription& scene) {
+  const Simulation simulation(scene);
+  return find_step_plane(model_of(simulation), make_scheme(simulation.scene().integrator));
+}
+
+/// A cart on a rail that carries a flexible arm with a rigid body at its end, and another arm, in a plane that is
+/// tilted: with damping, dry and smooth friction, a spring, loads of both kinds. Its normal is turn * z.
+SceneBuilder tilted_arm(const Quaternion& turn) {
+  SceneBuilder b;
+  b.scene.integrator.step = 0.005;
+  const Vector3 x = turn * Vector3::UnitX(), y = turn * Vector3::UnitY(), z = turn * Vector3::UnitZ();
+  const Matrix3 axes = turn.toRotationMatrix();
+  b.scene.gravity = -9.81 * y;
+  const scene::DirectSection section{2e4, 1e4, 1e4, 20, 25, 25, 0.5, 2e-3, 1e-3, 1e-3};
+  b.body("cart", 2, Vector3(0.1 * x), axes * Vector3(0.02, 0.03, 0.04).asDiagonal() * axes.transpose());
+  b.beam("upper", {Vector3(0.6 * x), Vector3(0.6 * x + 0.4 * y)}, section, 4, 2);
+  b.body("weight", 0.3, Vector3(0.05 * y), axes * Vector3(2e-3, 3e-3, 4e-3).asDiagonal() * axes.transpose());
+  b.beam("lower", {Vector3(0.7 * x)}, section, 2, 3).stiffness_proportional_damping = 1e-3;
+  b.joint("rail", JointKind::Prismatic, "world", "cart", Vector3::Zero(), x).damping = 0.5;
+  b.joint("shoulder", JointKind::Continuous, "cart", "upper", Vector3(0.2 * x), z).friction = 0.05;
+  b.joint("weld", JointKind::Fixed, "upper", "weight", Vector3(0.6 * x + 0.4 * y));
+  b.joint("elbow", JointKind::Continuous, "weight", "lower", Vector3(0.05 * y), z);
+  b.load("lower", Vector3(0.7 * x), Vector3(0.4 * x + 0.2 * y), Vector3(0.05 * z), "1 + sin(3*t)");
+  b.load("upper", Vector3(0.6 * x), Vector3(0.3 * y), Vector3::Zero(), "1", scene::LoadFrame::Follower);
+  b.probe("tip", "lower", Vector3(0.7 * x));
+  return b;
+}
+
+const Quaternion kTilt = so3::exp_quaternion(Vector3(0.4, -0.7, 0.3));
+
+/// The same for three dimensions.
+scene::SceneDescription in_space(scene::SceneDescription scene) {
+  scene.integrator.may_be_planar = false;
+  return scene;
+}
+
+/// Largest distance of nodes and difference of their velocities' ways in a step, relative to the mechanism's size.
+double distance(const Simulation& a, const Simulation& b) {
+  double largest = 0;
+  const double length = model_of(a).length_scale, h = a.step_size();
+  for (std::size_t i = 0; i < state_of(a).nodes.size(); ++i) {
+    const NodeState &x = state_of(a).nodes[i], &y = state_of(b).nodes[i];
+    largest = std::max(
+        {largest, (x.position - y.position).norm() / length, h * (x.velocity - y.velocity).norm() / length,
+         h * (x.angular_velocity - y.angular_velocity).norm(), 1 - std::abs(x.orientation.dot(y.orientation))});
+  }
+  return largest;
+}
+
+/// Both, side by side; `act(simulation, step)` before each step.
+void expect_same_motion(const scene::SceneDescription& scene, const std::string& scheme, int steps,
+                        const std::function<void(Simulation&, int)>& act = {}) {
+  SimulationOptions options;
+  options.scheme = scheme;
+  Simulation plane(scene, options), space(in_space(scene), options);
+  for (int n = 0; n < steps; ++n) {
+    if (act) act(plane, n), act(space, n);
+    const StepResult result = plane.step(), expected = space.step();
+    ASSERT_EQ(result.converged, expected.converged) << scheme << " step " << n;
+    if (!expected.converged) return;
+  }
+  EXPECT_LE(distance(plane, space), kSame) << scheme;
+  const Energies e = plane.energies(), f = space.energies();
+  const double size = std::abs(f.kinetic) + std::abs(f.strain) + std::abs(f.potential) + std::abs(f.work) + 1e-6;
+  EXPECT_NEAR(e.kinetic + e.strain + e.potential, f.kinetic + f.strain + f.potential, 1e-9 * size) << scheme;
+  EXPECT_NEAR(e.dissipated, f.dissipated, 1e-9 * size) << scheme;
+  EXPECT_NEAR(e.work, f.work, 1e-9 * size) << scheme;
+}
+
+TEST(Planar, IsFoundInAnyPlane) {
+  for (const Quaternion& turn : {Quaternion::Identity(), kTilt}) {
+    const PlaneSearch search = plane_of(tilted_arm(turn).scene);
+    ASSERT_TRUE(search.plane) << search.reason;
+    EXPECT_NEAR(std::abs(search.plane->normal.dot(turn * Vector3::UnitZ())), 1, 1e-12);
+  }
+  scene::SceneDescription scene = in_space(tilted_arm(kTilt).scene);
+  EXPECT_EQ(plane_of(scene).reason, "three dimensions are asked for");
+}
+
+TEST(Planar, IsTheSameMotionAsInThreeDimensions) {
+  for (const std::string& scheme : kPlanarSchemes)
+    for (const Quaternion& turn : {Quaternion::Identity(), kTilt})
+      expect_same_motion(tilted_arm(turn).scene, scheme, 50);
+}
+
+TEST(Planar, IsTheSameMotionInScenesOfTheExamples) {
+  for (const char* file : {"config/speed/double_pendulum.urdf", "config/speed/spin_up.urdf",
+                           "config/examples/rigid_double_pendulum.urdf"}) {
+    const scene::ReadResult read = scene::read_scene_file(source_path(file));
+    ASSERT_TRUE(read.scene) << file;
+    const PlaneSearch search = plane_of(*read.scene);
+    EXPECT_TRUE(search.plane) << file << ": " << search.reason;
+    for (const std::string& scheme : kPlanarSchemes)
+      if (scheme != "em_scaled" || read.scene->motions.empty()) expect_same_motion(*read.scene, scheme, 60);
+  }
+}
+
+// A body that flies freely has coordinates out of the plane, which stay as they are.
+TEST(Planar, TakesFreeAndBallJoints) {
+  SceneBuilder b;
+  b.scene.integrator.step = 0.01;
+  b.beam("spaghetti", {{2, 0, 0}}, section(1e4, 5e3, 50, 40, 1, 1e-2, 5e-3), 4, 2);
+  b.joint("free", JointKind::Floating, "world", "spaghetti");
+  b.body("ball", 0.2, {0.1, 0, 0}, 1e-3 * Matrix3::Identity());
+  b.joint("socket", JointKind::Spherical, "spaghetti", "ball", {2, 0, 0});
+  b.load("spaghetti", {0, 0, 0}, {3, 1, 0}, {0, 0, 2}, "t < 0.3 ? 1 : 0");
+  ASSERT_TRUE(plane_of(b.scene).plane) << plane_of(b.scene).reason;
+  for (const std::string& scheme : kPlanarSchemes) expect_same_motion(b.scene, scheme, 80);
+}
+
+TEST(Planar, IsNotFoundWhereSomethingIsNearlyInThePlane) {
+  const SceneBuilder planar = tilted_arm(Quaternion::Identity());
+  ASSERT_TRUE(plane_of(planar.scene).plane);
+  const auto reason = [&](const std::function<void(SceneBuilder&)>& change) {
+    SceneBuilder b = planar;
+    change(b);
+    const PlaneSearch search = plane_of(b.scene);
+    EXPECT_FALSE(search.plane);
+    return search.reason;
+  };
+  EXPECT_NE(reason([](SceneBuilder& b) { b.scene.joints.back().origin.position.z() += 1e-6; }), "");
+  EXPECT_EQ(reason([](SceneBuilder& b) { b.scene.gravity.z() = 1e-6; }), "gravity is not in the plane");
+  EXPECT_EQ(reason([](SceneBuilder& b) {
+              b.load("lower", {0.7, 0, 0}, {0, 0, 1e-6}, Vector3::Zero(), "sin(t)");
+            }),
+            "a load acts out of the plane");
+  EXPECT_EQ(reason([](SceneBuilder& b) {
+              b.load("lower", {0.7, 0, 1e-6}, {1, 0, 0});
+            }),
+            "a load acts out of the plane");
+  EXPECT_NE(reason([](SceneBuilder& b) { b.scene.joints.back().axis = Vector3(1e-6, 0, 1).normalized(); }), "");
+  EXPECT_EQ(reason([](SceneBuilder& b) {
+              Matrix3 inertia = Vector3(2e-3, 3e-3, 4e-3).asDiagonal();
+              inertia(0, 2) = inertia(2, 0) = 1e-9;
+              b.body("tilted", 0.1, {0, 0, 0}, inertia);
+              b.joint("fixed", JointKind::Fixed, "weight", "tilted");
+            }),
+            "no principal axis of a link's inertia is normal to the plane");
+}
+
+// What acts out of the plane lifts the motion to three dimensions, where it is what it would have been there.
+TEST(Planar, IsLiftedByWrenches) {
+  const scene::SceneDescription scene = tilted_arm(kTilt).scene;
+  for (const char* scheme : {"em", "edmc2"})
+    expect_same_motion(scene, scheme, 60, [](Simulation& simulation, int n) {
+      const std::size_t tip = simulation.link_names().size() - 1;
+      if (n == 20) simulation.apply_wrenches({{tip, Vector3::Zero(), {kTilt * Vector3(0, 0, 1), Vector3::Zero()}}});
+      if (n == 40) simulation.apply_wrenches({});
+    });
+}
+
+TEST(Planar, StaysInThePlaneUnderWrenchesThere) {
+  const scene::SceneDescription scene = tilted_arm(kTilt).scene;
+  Simulation simulation(scene);
+  const Vector3 normal = kTilt * Vector3::UnitZ();
+  const std::size_t tip = simulation.link_names().size() - 1;
+  simulation.apply_wrenches({{tip, Vector3::Zero(), {kTilt * Vector3(1, 2, 0), 0.1 * normal}}});
+  for (int n = 0; n < 2000; ++n) ASSERT_TRUE(simulation.step().converged);
+  const PlaneSearch search = plane_of(scene);
+  EXPECT_TRUE(lies_in_plane(model_of(simulation), *search.plane, state_of(simulation)));
+}
+
+// Which space a step is taken in follows from the state alone.
+TEST(Planar, GoesOnFromAnySnapshot) {
+  SimulationOptions options;
+  options.reuse_factorisation = false;
+  Simulation simulation(tilted_arm(kTilt).scene, options);
+  const std::size_t tip = simulation.link_names().size() - 1;
+  const auto run = [](Simulation& s, int steps) {
+    for (int n = 0; n < steps; ++n) ASSERT_TRUE(s.step().converged);
+  };
+  run(simulation, 10);
+  const Snapshot in_plane = simulation.snapshot();
+  simulation.apply_wrenches({{tip, Vector3::Zero(), {kTilt * Vector3(0, 0, 1), Vector3::Zero()}}});
+  run(simulation, 10);
+  simulation.apply_wrenches({});
+  const Snapshot lifted = simulation.snapshot();
+  run(simulation, 10);
+  Simulation copy = simulation.copy();
+  const State end = state_of(simulation);
+  simulation.restore(lifted);
+  run(simulation, 10);
+  EXPECT_TRUE(same_bits(state_of(simulation), end));
+  run(simulation, 5), run(copy, 5);
+  EXPECT_TRUE(same_bits(state_of(simulation), state_of(copy)));
+  simulation.restore(in_plane);
+  run(simulation, 10);
+  copy.restore(in_plane);
+  run(copy, 10);
+  EXPECT_TRUE(same_bits(state_of(simulation), state_of(copy)));
+  const PlaneSearch search = plane_of(tilted_arm(kTilt).scene);
+  EXPECT_TRUE(lies_in_plane(model_of(simulation), *search.plane, state_of(simulation)));
+  simulation.reset();
+  run(simulation, 10);
+  Simulation fresh(tilted_arm(kTilt).scene, options);
+  run(fresh, 10);
+  EXPECT_TRUE(same_bits(state_of(simulation), state_of(fresh)));
+}
+
+TEST(Planar, GoesOnFromOtherJointStates) {
+  for (const char* scheme : {"em", "edmc2"})
+    expect_same_motion(tilted_arm(kTilt).scene, scheme, 40, [](Simulation& simulation, int n) {
+      if (n == 20)
+        simulation.set_joint_state(
+            {{*simulation.find_coordinate("elbow"), 0.5, 1.0}, {*simulation.find_coordinate("rail"), 0.1, 0.0}});
+    });
+}
+
+// A ball joint may be turned out of the plane.
+TEST(Planar, IsLiftedByJointStates) {
+  SceneBuilder b = tilted_arm(Quaternion::Identity());
+  b.body("ball", 0.2, {0.1, 0, 0}, 1e-3 * Matrix3::Identity());
+  b.joint("socket", JointKind::Spherical, "lower", "ball", {0.7, 0, 0});
+  ASSERT_TRUE(plane_of(b.scene).plane);
+  const auto act = [](Simulation& simulation, int n) {
+    if (n == 20) simulation.set_joint_state({{*simulation.find_coordinate("socket/ry"), 0.2, 0.5}});
+  };
+  expect_same_motion(b.scene, "em", 40, act);
+  const auto command = [](Simulation& simulation, int n) {
+    if (n == 20) simulation.command_effort(*simulation.find_coordinate("socket/rx"), 0.01);
+  };
+  expect_same_motion(b.scene, "em", 40, command);
+}
+
+}  // namespace
+}  // namespace flexarm::test
