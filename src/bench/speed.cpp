@@ -265,6 +265,7 @@ SpeedReport measure_speed(const std::string& folder, const std::vector<SpeedProb
     report.measurements.push_back(std::move(measurement));
   }
   report.real_time = measure_real_time(folder, quick);
+  report.planar = compare_planar(folder, report);
   return report;
 }
 

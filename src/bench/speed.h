@@ -20,6 +20,7 @@ struct Discretisation {
   int elements;  ///< in all beams together, in proportion to those of the scene file; 0: those
   double step;   ///< [s]
   double tolerance = IntegratorDescription().tolerance;  ///< of Newton's method
+  bool may_be_planar = true;                             ///< see IntegratorDescription
 
   std::string mesh() const;  ///< "8 x 2": elements and their order; "–": the scene file's
 };
@@ -145,6 +146,16 @@ struct IterationCost {
   double seconds;  ///< of the processor
 };
 
+/// The same run in a plane and in three dimensions.
+struct PlanarComparison {
+  std::string problem;
+  double error;  ///< that both have, at most
+  Discretisation discretisation;
+  double plane_seconds, space_seconds;  ///< of the processor
+  long steps;
+  double difference;  ///< trajectory_error of one beside the other
+};
+
 /// The run of median time.
 struct RealTimeOutcome {
   RealTimeScene scene;
@@ -158,6 +169,7 @@ struct SpeedReport {
   std::vector<SpeedMeasurement> measurements;
   std::vector<IterationCost> iteration_costs;
   std::vector<RealTimeOutcome> real_time;
+  std::vector<PlanarComparison> planar;
   bool quick = false;
 };
 
@@ -165,6 +177,10 @@ struct SpeedReport {
 /// turns, so that a change of the machine's speed meets all. `progress(part, label)`: part done, in [0, 1].
 SpeedReport measure_speed(const std::string& folder, const std::vector<SpeedProblem>& problems, bool quick,
                           const std::function<void(double, const std::string&)>& progress);
+
+/// The fastest runs for some errors, in turns with the same in three dimensions; of problems in a plane.
+std::vector<PlanarComparison> compare_planar(const std::string& folder, const SpeedReport& report);
+std::string planar_table(const std::vector<PlanarComparison>& comparisons);
 
 /// The tables. `picture`: file name of the picture next to them; empty if there is none.
 std::string to_markdown(const SpeedReport& report, const std::string& picture);

@@ -278,6 +278,12 @@ std::string to_markdown(const SpeedReport& report, const std::string& picture) {
         "which none of the same scheme is both faster and more accurate, be it by chance.\n",
         picture);
   for (const SpeedMeasurement& m : report.measurements) text += section(m);
+  if (!report.planar.empty())
+    text +=
+        "\n## In the plane and in three dimensions\n\nThe fastest runs of scenes that move in a plane, in turns with "
+        "the "
+        "same with `dimension=\"3\"`.\n\n" +
+        planar_table(report.planar);
   if (!report.iteration_costs.empty())
     text +=
         "\n## Cost of an iteration\n\nRight-angle cantilever, 32 elements, steps of 0.05 s, a factorisation in every "

@@ -54,6 +54,7 @@ scene::SceneDescription scene_of(const std::string& folder, const SpeedProblem& 
   scene.integrator = with_scheme(scene.integrator, discretisation.scheme);
   scene.integrator.step = discretisation.step;
   scene.integrator.tolerance = discretisation.tolerance;
+  scene.integrator.may_be_planar = discretisation.may_be_planar;
   return scene;
 }
 
