@@ -23,6 +23,9 @@ class InitialVelocity {
  private:
   void set_joint(const JointChain& chain);
   void set_beam(int link);
+  /// The node of its own that a link may have though nothing is released: the first one of a beam, and that of a rigid
+  /// link of which a sensor asks what holds it.
+  void follow_fixed(int link);
   /// Rates of a joint that closes a loop: as given, else what leaves its slave's velocity least changed.
   void set_loop(const JointChain& chain);
   /// Lets every slave follow once more, those of closing joints included.
@@ -66,10 +69,12 @@ InitialVelocity::InitialVelocity(const ScenePlan& plan, const Mechanism& mechani
 }
 
 std::vector<Vector6> InitialVelocity::field() {
+  follow_fixed(plan_.tree.root);
   if (plan_.meshes[plan_.tree.root]) set_beam(plan_.tree.root);
   for (const JointChain& chain : mechanism_.tree_joints) {
     const int child = plan_.links[chain.joint->child];
     set_joint(chain);
+    follow_fixed(child);
     if (plan_.meshes[child])
       set_beam(child);
     else if (fields_.count(child) && model_.links[child].frame.node >= 0)
@@ -153,6 +158,11 @@ void InitialVelocity::follow(int j, const ReleasedVector& rates) {
   velocity_[model_.joints[j].slave] = slave.carried + slave.columns * rates;
 }
 
+void InitialVelocity::follow_fixed(int link) {
+  const int node = model_.links[link].frame.node, joint = node < 0 ? -1 : joint_of_[node];
+  if (joint >= 0 && model_.joints[joint].kind == JointMapKind::Rigid) follow(joint, ReleasedVector(0));
+}
+
 void InitialVelocity::set_joint(const JointChain& chain) {
   if (chain.map_count == 0) return;
   const int child = plan_.links[chain.joint->child];
@@ -172,8 +182,6 @@ void InitialVelocity::set_joint(const JointChain& chain) {
 void InitialVelocity::set_beam(int link) {
   const BeamMesh& mesh = plan_.meshes[link]->mesh;
   const int base = model_.links[link].frame.node;
-  if (joint_of_[base] >= 0 && model_.joints[joint_of_[base]].kind == JointMapKind::Rigid)
-    follow(joint_of_[base], ReleasedVector(0));
   for (std::size_t i = 1; i < mesh.nodes.size(); ++i) {
     const int node = base + static_cast<int>(i);
     const Vector3& position = model_.nodes[node].position;
