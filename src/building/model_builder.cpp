@@ -17,6 +17,7 @@
 #include "building/load_builder.h"
 #include "building/loop_builder.h"
 #include "building/mass_properties.h"
+#include "building/rigid_lines.h"
 #include "building/sensor_builder.h"
 #include "building/spring_builder.h"
 #include "building/stop_depths.h"
@@ -113,7 +114,8 @@ scene::SceneDescription with_locked(scene::SceneDescription scene, const BuiltMo
 
 }  // namespace
 
-Model build_model(const scene::SceneDescription& scene) {
+Model build_model(const scene::SceneDescription& original) {
+  const scene::SceneDescription scene = RigidLines(original).scene;
   BuiltModel built = build(scene);
   if (scene.lock_massless && !is_determined(built)) built = build(with_locked(scene, built));
   if (!is_determined(built)) refuse_massless(scene, built);

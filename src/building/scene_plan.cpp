@@ -1,7 +1,6 @@
 #include "building/scene_plan.h"
 
 #include <algorithm>
-#include <stdexcept>
 
 #include "building/elementary_joints.h"
 #include "building/model_builder.h"
@@ -16,13 +15,7 @@ LinkMeshes mesh_links(const scene::SceneDescription& scene, const LinkNames& lin
   LinkMeshes meshes(scene.links.size());
   for (std::size_t i = 0; i < scene.links.size(); ++i) {
     if (!scene.links[i].beam) continue;
-    const scene::BeamDescription& beam = *scene.links[i].beam;
-    if (beam.order < 1 || beam.order > 4) throw ModelError(at(beam.location, "<beam>") + "order must be 1 to 4");
-    try {
-      meshes[i] = LinkMesh{Centreline(beam.centreline, beam.section_y), {}};
-    } catch (const std::invalid_argument& error) {
-      throw ModelError(at(beam.location, "<centerline> of link '" + scene.links[i].name + "'") + error.what());
-    }
+    meshes[i] = LinkMesh{centreline_of(scene.links[i]), {}};
   }
   std::vector<std::vector<double>> borders(scene.links.size());  // arc lengths
   const auto attach = [&](const std::string& link, const Vector3& point) {
@@ -42,25 +35,14 @@ LinkMeshes mesh_links(const scene::SceneDescription& scene, const LinkNames& lin
   for (const scene::DistributedLoad& load : scene.distributed_loads) {
     const int link = links[load.link];
     if (!meshes[link]) continue;  // said where loads are placed
-    const double length = meshes[link]->centreline.length();
-    for (const std::optional<double>& end : {load.from, load.to}) {
-      if (!end) continue;
-      if (*end > length)
-        throw ModelError(at(load.location, "<distributed_load>") + "the line of link '" + load.link + "' is " +
-                         std::to_string(length) + " m long, got " + std::to_string(*end));
-      borders[link].push_back(*end);
-    }
+    for (const double end : ends_of(load, meshes[link]->centreline)) borders[link].push_back(end);
   }
   int room = scene::kMostBeamNodes;  // of nodes
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     if (!meshes[i]) continue;
     const scene::BeamDescription& beam = *scene.links[i].beam;
     const int most = std::min(scene::kMostBeamElements, room / beam.order);
-    try {
-      meshes[i]->mesh = mesh_beam(beam, meshes[i]->centreline, borders[i], most);
-    } catch (const std::invalid_argument& error) {
-      throw ModelError(at(beam.location, "<beam> of link '" + scene.links[i].name + "'") + error.what());
-    }
+    meshes[i]->mesh = mesh_of(scene.links[i], meshes[i]->centreline, borders[i], most);
     room = std::max(0, room - static_cast<int>(meshes[i]->mesh.nodes.size()));
   }
   return meshes;
@@ -108,10 +90,6 @@ bool floats(const scene::SceneDescription& scene, const JointTree& tree, const L
 }
 
 }  // namespace
-
-std::string at(const scene::SourceLocation& location, const std::string& element) {
-  return location.file + ":" + std::to_string(location.line) + ": " + element + ": ";
-}
 
 std::string at_loop_joint(const scene::SceneDescription& scene, const std::string& name) {
   const auto joint = std::find_if(scene.loop_joints.begin(), scene.loop_joints.end(),

@@ -6,14 +6,11 @@
 #include <unordered_map>
 #include <vector>
 
-#include "building/beam_mesh.h"
-#include "building/centreline.h"
+#include "building/link_mesh.h"
 #include "flexarm/scene/scene_description.h"
 
 namespace flexarm {
 
-/// "file:line: element: ", with which messages about an element begin.
-std::string at(const scene::SourceLocation& location, const std::string& element);
 /// The same of the loop joint of this name, which the scene has.
 std::string at_loop_joint(const scene::SceneDescription& scene, const std::string& name);
 
@@ -42,11 +39,6 @@ struct JointTree {
   std::vector<std::vector<const scene::JointDescription*>> below;  ///< per link; what slides on it comes last
 };
 
-/// A flexible link, undeformed.
-struct LinkMesh {
-  Centreline centreline;
-  BeamMesh mesh;
-};
 /// Per link; empty for rigid ones.
 using LinkMeshes = std::vector<std::optional<LinkMesh>>;
 

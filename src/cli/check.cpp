@@ -10,6 +10,7 @@
 #include "cli/mode_table.h"
 #include "cli/scene_input.h"
 #include "integrators/step_plane.h"
+#include "scene/flexible_link.h"
 #include "schemes/scheme.h"
 #include "simulation/inside.h"
 
@@ -67,17 +68,34 @@ void print_plane(const Simulation& simulation) {
   fmt::print("steps are taken in the plane with the normal {:.6g} {:.6g} {:.6g}\n", normal.x(), normal.y(), normal.z());
 }
 
+/// Of a link with a beam.
+struct Line {
+  double length, mass;
+  std::string elements;
+};
+
+Line line_of(const Simulation& simulation, std::size_t link) {
+  if (const auto& rigid = rigid_lines_of(simulation)[link]) return {rigid->arc_lengths.back(), rigid->mass, "rigid"};
+  const BeamLink& beam = *model_of(simulation).links[link].beam;
+  return {beam.length, beam.mass, fmt::format("{} x {}", beam.elements.size(), beam.order)};
+}
+
 void print_links(const Simulation& simulation) {
   fmt::print("\n{:<24} {:<10} {:>12}\n", "link", "kind", "mass [kg]");
   const scene::SceneDescription& scene = simulation.scene();
   for (std::size_t i = 0; i < scene.links.size(); ++i) {
     const scene::LinkDescription& link = scene.links[i];
-    const std::optional<BeamLink>& beam = model_of(simulation).links[i].beam;
     const bool is_root = link.name == scene.root_link;
-    double mass = beam ? beam->mass : link.inertial ? link.inertial->mass : 0.0;
-    if (beam)
+    double mass = link.inertial ? link.inertial->mass : 0.0;
+    if (link.beam) {
+      mass = line_of(simulation, i).mass;
       for (const scene::HubDescription& hub : link.beam->hubs) mass += hub.mass;
-    fmt::print("{:<24} {:<10} {:>12.6g}\n", link.name, beam ? "flexible" : is_root ? "clamped" : "rigid", mass);
+    }
+    fmt::print("{:<24} {:<10} {:>12.6g}\n", link.name,
+               is_flexible(link) ? "flexible"
+               : is_root         ? "clamped"
+                                 : "rigid",
+               mass);
   }
 }
 
@@ -102,18 +120,18 @@ void print_beams(const Simulation& simulation) {
       fmt::print("\n{:<24} {:>9} {:>11} {:>11} {:>11} {:>11} {:>11} {:>11} {:>10} {:>9}\n", "beam", "length", "EA",
                  "GA y", "GA z", "GJ", "EI y", "EI z", "mass", "elements");
     is_first = false;
-    const BeamLink& beam = *model_of(simulation).links[i].beam;
+    const Line line = line_of(simulation, i);
     const SectionLine section(links[i].beam->section);
-    fmt::print("{:<24} {:>9.5g}", links[i].name, beam.length);
+    fmt::print("{:<24} {:>9.5g}", links[i].name, line.length);
     const auto print_stiffness = [&](double arc_length) {
       const Vector6 stiffness = section.at(arc_length).stiffness.diagonal();
       for (int k = 0; k < 6; ++k) fmt::print(" {:>11.5g}", stiffness[k]);
     };
     print_stiffness(0);
-    fmt::print(" {:>10.5g} {:>9}\n", beam.mass, fmt::format("{} x {}", beam.elements.size(), beam.order));
+    fmt::print(" {:>10.5g} {:>9}\n", line.mass, line.elements);
     if (section.is_uniform()) continue;
     fmt::print("{:<24} {:>9}", "  at its end", "");
-    print_stiffness(beam.length);
+    print_stiffness(line.length);
     fmt::print("\n");
   }
   if (!is_first) fmt::print("(m, N, N m^2, kg; number of elements x order)\n");

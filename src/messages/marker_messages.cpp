@@ -88,13 +88,10 @@ MarkerMessages::MarkerMessages(const Simulation& simulation, const std::string& 
       energy_(balance(simulation.energies())),
       trails_(simulation, choice.trail_duration) {
   for (std::size_t link = 0; link < simulation.link_names().size(); ++link) {
-    if (!simulation.is_flexible(link)) continue;
+    const std::vector<Pose> sections = simulation.undeformed_sections(link, kPointsBetweenNodes);
+    if (sections.empty()) continue;
     const double radius = std::max(simulation.beam_radius(link), kSmallestRadius * extent_.radius);
-    beams_.push_back({link,
-                      skins_of(simulation.scene().links[link],
-                               simulation.undeformed_sections(link, kPointsBetweenNodes), radius, warn),
-                      {},
-                      {}});
+    beams_.push_back({link, skins_of(simulation.scene().links[link], sections, radius, warn), {}, {}});
   }
 }
 

@@ -13,11 +13,11 @@ SceneExtent scene_extent(const Simulation& simulation) {
   for (std::size_t link = 0; link < simulation.link_names().size(); ++link) {
     const Pose frame = simulation.link_pose(link);
     box.extend(frame.position);
-    if (simulation.is_flexible(link)) {
+    const scene::LinkDescription& description = simulation.scene().links[link];
+    if (description.beam)
       simulation.beam_points(link, 0, points);
-    } else if (const auto& inertial = simulation.scene().links[link].inertial) {
-      box.extend(frame * inertial->center_of_mass);
-    }
+    else if (description.inertial)
+      box.extend(frame * description.inertial->center_of_mass);
   }
   for (const BeamPoint& point : points) box.extend(point.pose.position);
   const double radius = 0.5 * box.diagonal().norm();

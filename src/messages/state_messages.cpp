@@ -40,9 +40,15 @@ StateMessages::StateMessages(const Simulation& simulation, const std::string& pr
     }
   }
   for (std::size_t link = 0; link < links.size(); ++link) {
-    if (!simulation_.is_flexible(link)) continue;
-    flexible_links_.push_back(link);
-    transforms_.transforms.push_back(make_transform(prefix + links[link], prefix + links[link] + "/tip"));
+    if (!simulation.scene().links[link].beam) continue;
+    geometry_msgs::TransformStamped transform = make_transform(prefix + links[link], prefix + links[link] + "/tip");
+    if (simulation_.is_flexible(link)) {
+      flexible_links_.push_back(link);
+      transforms_.transforms.push_back(transform);
+    } else {
+      transform.transform = to_transform(simulation_.link_pose(link).inverse() * simulation_.tip_pose(link));
+      static_transforms_.transforms.push_back(transform);
+    }
   }
   for (const auto* message : {&transforms_, &static_transforms_})
     for (const auto& transform : message->transforms) frame_names_.insert(transform.child_frame_id);

@@ -126,7 +126,7 @@ void read_orientation(const XmlElement& beam, const std::optional<Vector3>& tang
 void read_mesh(const XmlElement& beam, BeamDescription& description) {
   const char* elements = beam.xml().Attribute("elements");
   if (elements && std::string_view(elements) != "auto")
-    description.elements = beam.integer("elements", 1, kMostBeamElements, " or 'auto'");
+    description.elements = beam.integer("elements", 0, kMostBeamElements, " or 'auto'");
   if (beam.has("order")) description.order = beam.integer("order", 1, 4).value_or(description.order);
 }
 

@@ -4,6 +4,8 @@
 #include <map>
 #include <optional>
 
+#include "scene/flexible_link.h"
+
 namespace flexarm::scene {
 namespace {
 
@@ -170,9 +172,9 @@ class ReferenceCheck {
       const char* element = "<distributed_load> of simulation";
       check_link(load.link, load.location, element);
       const auto link = links_.find(load.link);
-      // A beam with an error is recorded already, and so is its link; only a rigid link is wrong here.
+      // A beam with an error is recorded already, and so is its link; only a link without a line is wrong here.
       if (link != links_.end() && !link->second->beam && unreadable_.count(load.link) == 0)
-        findings_.error(load.location.line, element, "link must be flexible, that is have a <beam>", quoted(load.link));
+        findings_.error(load.location.line, element, "link must have a <beam>", quoted(load.link));
     }
     for (const Probe& probe : scene_.probes) check_link(probe.link, probe.location, "<probe> of simulation");
     check_unique(scene_.probes, "probe", findings_);
@@ -199,8 +201,8 @@ class ReferenceCheck {
     if (link == links_.end() || unreadable_.count(sensor.link) > 0) return;
     const bool needs_beam = sensor.kind == SensorKind::SectionForce || sensor.kind == SensorKind::Strain;
     const bool needs_joint = sensor.kind == SensorKind::Wrench || sensor.kind == SensorKind::Reaction;
-    if (needs_beam && !link->second->beam)
-      findings_.error(sensor.location.line, element, "link must be flexible, that is have a <beam>",
+    if (needs_beam && !is_flexible(*link->second))
+      findings_.error(sensor.location.line, element, "link must be flexible, that is have a <beam> with elements",
                       quoted(sensor.link));
     if (!sensor.joint.empty() && !(needs_joint && closes_loop_at(sensor.joint, sensor.link)))
       findings_.error(sensor.location.line, element,

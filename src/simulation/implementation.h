@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "building/model_builder.h"
+#include "building/rigid_lines.h"
 #include "flexarm/scene/scene_description.h"
 #include "flexarm/simulation/simulation.h"
 #include "integrators/balance.h"
@@ -31,6 +32,7 @@ struct Simulation::Implementation {
   Scheme scheme;
   StepSettings settings;
   Model model;
+  std::vector<std::optional<RigidLine>> rigid_lines;  ///< per link
   std::unique_ptr<const Model> built;  ///< once something has left its line: the model as the scene says it
   std::unique_ptr<Stepper> stepper;
   std::shared_ptr<const State> initial;  ///< of this simulation and its copies
@@ -50,6 +52,7 @@ struct Simulation::Implementation {
         scheme(made_for_integrator(scene, [&] { return make_scheme(scene.integrator); })),
         settings(settings_of(scene, options)),
         model(build_model(scene)),
+        rigid_lines(RigidLines(scene).lines),
         stepper(made_for_integrator(scene, [&] { return std::make_unique<Stepper>(model, scheme, settings); })),
         state(initial_state(model)),
         start_warnings(held_joints(scene, model)) {
@@ -72,6 +75,7 @@ struct Simulation::Implementation {
         scheme(other.scheme),
         settings(other.settings),
         model(other.model),
+        rigid_lines(other.rigid_lines),
         built(other.built ? std::make_unique<const Model>(*other.built) : nullptr),
         stepper(std::make_unique<Stepper>(model, scheme, settings)),
         initial(other.initial),
@@ -88,6 +92,15 @@ struct Simulation::Implementation {
   void make_room() {
     placed_wrenches.reserve(kRoomForWrenches);
     state.wrenches.reserve(kRoomForWrenches);
+  }
+
+  /// Of a link: the end of its beam, if it has one.
+  Attachment tip(std::size_t link) const {
+    const LinkFrame& frame = model.links.at(link);
+    if (frame.beam) return frame.beam->tip;
+    if (!rigid_lines[link]) return frame.frame;
+    const Vector3& end = rigid_lines[link]->sections.back().position;
+    return {frame.frame.node, frame.frame.offset * Pose{end, Quaternion::Identity()}};
   }
 
   void forget_published() {

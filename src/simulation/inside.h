@@ -1,8 +1,10 @@
 #pragma once
 /// The inside of a simulation, for the core's own rooms, tests and benchmarks; users of the library see nothing of it.
 
+#include <optional>
 #include <vector>
 
+#include "building/rigid_lines.h"
 #include "flexarm/scene/scene_description.h"
 #include "flexarm/simulation/simulation.h"
 #include "model/model.h"
@@ -12,6 +14,8 @@ namespace flexarm {
 
 const Model& model_of(const Simulation& simulation);
 const State& state_of(const Simulation& simulation);
+/// Per link; empty for those that have no beam, or one with elements.
+const std::vector<std::optional<RigidLine>>& rigid_lines_of(const Simulation& simulation);
 /// Update norms of the last Newton solve, for tests of the rate of convergence.
 const std::vector<double>& update_norms_of(const Simulation& simulation);
 

@@ -114,6 +114,15 @@ void beam_points(const Model& model, const State& state, const BeamLink& beam, i
   });
 }
 
+void rigid_points(const RigidLine& line, const Pose& link, std::vector<BeamPoint>& points) {
+  for (std::size_t i = 0; i < line.sections.size(); ++i) {
+    BeamPoint& point = points.emplace_back();
+    point.arc_length = line.arc_lengths[i];
+    point.pose = link * line.sections[i];
+    point.resultant.setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+}
+
 std::vector<Pose> undeformed_sections(const Model& model, const LinkFrame& link, int between) {
   const State state = initial_state(model);
   const Pose to_link = attached_pose(state, link.frame).inverse();

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "building/rigid_lines.h"
 #include "flexarm/model/results.h"
 #include "model/model.h"
 #include "model/state.h"
@@ -13,7 +14,11 @@ namespace flexarm {
 void beam_points(const Model& model, const State& state, const BeamLink& beam, int between,
                  std::vector<BeamPoint>& points);
 
-/// The sections of the same points in the model's initial configuration, in the link's frame; the link is flexible.
+/// The sections of a rigid line whose link is there, without resultants; appended to `points`.
+void rigid_points(const RigidLine& line, const Pose& link, std::vector<BeamPoint>& points);
+
+/// The sections of the points of beam_points() in the model's initial configuration, in the link's frame; the link is
+/// flexible.
 std::vector<Pose> undeformed_sections(const Model& model, const LinkFrame& link, int between);
 
 /// The largest strain of a beam's edge at its nodes, see edge_strain(), and the arc length where it is [m].

@@ -249,20 +249,19 @@ bool Simulation::is_flexible(std::size_t link) const {
 }
 
 Pose Simulation::tip_pose(std::size_t link) const {
-  const LinkFrame& frame = implementation_->model.links.at(link);
-  return frame.beam ? implementation_->in_world(frame.beam->tip) : link_pose(link);
+  return implementation_->in_world(implementation_->tip(link));
 }
 
 ProbeState Simulation::tip_state(std::size_t link) const {
-  const LinkFrame& frame = implementation_->model.links.at(link);
   ProbePoint tip;
   tip.link = static_cast<int>(link);
-  tip.attachment = frame.beam ? frame.beam->tip : frame.frame;
+  tip.attachment = implementation_->tip(link);
   return implementation_->probe_at(tip);
 }
 
 void Simulation::beam_points(std::size_t link, int between, std::vector<BeamPoint>& points) const {
   const LinkFrame& frame = implementation_->model.links.at(link);
+  if (const auto& line = implementation_->rigid_lines[link]) rigid_points(*line, link_pose(link), points);
   if (!frame.beam) return;
   const std::size_t first = points.size();
   flexarm::beam_points(implementation_->model, implementation_->state, *frame.beam, between, points);
@@ -272,6 +271,7 @@ void Simulation::beam_points(std::size_t link, int between, std::vector<BeamPoin
 std::vector<Pose> Simulation::undeformed_sections(std::size_t link, int between) const {
   const Model& model = implementation_->built ? *implementation_->built : implementation_->model;
   const LinkFrame& frame = model.links.at(link);
+  if (const auto& line = implementation_->rigid_lines[link]) return line->sections;
   return frame.beam ? flexarm::undeformed_sections(model, frame, between) : std::vector<Pose>();
 }
 
@@ -281,6 +281,7 @@ bool Simulation::is_fixed_to_world(std::size_t link) const {
 
 double Simulation::beam_radius(std::size_t link) const {
   const LinkFrame& frame = implementation_->model.links.at(link);
+  if (const auto& line = implementation_->rigid_lines[link]) return line->radius;
   return frame.beam ? frame.beam->radius : 0.0;
 }
 
@@ -391,6 +392,9 @@ const Model& model_of(const Simulation& simulation) {
 }
 const State& state_of(const Simulation& simulation) {
   return Inside::of(simulation).state;
+}
+const std::vector<std::optional<RigidLine>>& rigid_lines_of(const Simulation& simulation) {
+  return Inside::of(simulation).rigid_lines;
 }
 const std::vector<double>& update_norms_of(const Simulation& simulation) {
   const auto& inside = Inside::of(simulation);

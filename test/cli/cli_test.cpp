@@ -1,5 +1,6 @@
 #include <cmath>
 #include <filesystem>
+#include <regex>
 
 #include <fmt/format.h>
 
@@ -47,6 +48,17 @@ TEST(Check, DescribesTheModel) {
   for (const char* word : {"nodes", "degrees of freedom", "EA", "GJ", "EI y", "2.1991e+07", "549.78", "flexible",
                            "fixed", "first natural frequencies [Hz]: 14.2"})
     expect_contains(outcome.output, word);
+}
+
+TEST(Check, SaysWhichBeamsAreRigid) {
+  const Outcome outcome = shell("flexarm check " + scene_file(R"(<robot name="r"> <link name="world"/>
+      <joint name="hinge" type="continuous"> <parent link="world"/> <child link="arm"/> <axis xyz="0 1 0"/> </joint>
+      <link name="arm"> <beam elements="0"> <centerline> <line to="1 0 0"/> </centerline>
+        <circle radius="0.01"/> <material young="70e9" poisson="0.33" density="2700"/> </beam> </link> </robot>)"));
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  expect_contains(outcome.output, "1 nodes, 1 degrees of freedom");
+  EXPECT_TRUE(std::regex_search(outcome.output, std::regex("arm +rigid +0.84823\n"))) << outcome.output;
+  EXPECT_TRUE(std::regex_search(outcome.output, std::regex("arm .* 0.84823 +rigid\n"))) << outcome.output;
 }
 
 // A flexible link in place of a rigid one has no inertia where the drive acts; a hub or a rotor gives it one.

@@ -8,6 +8,7 @@
 
 #include "messages/conversions.h"
 #include "messages/marker_messages.h"
+#include "messages/state_messages.h"
 #include "scene/scene_builder.h"
 
 namespace flexarm::messages {
@@ -85,6 +86,43 @@ TEST_F(Markers, HaveAllThatThereIs) {
     for (const geometry_msgs::Point& point : marker.points) EXPECT_TRUE(to_vector(point).allFinite());
     if (marker.type == Marker::TRIANGLE_LIST) EXPECT_EQ(marker.points.size() % 3, 0u);
   }
+}
+
+/// Its boom is rigid.
+scene::SceneBuilder rigid_arm() {
+  scene::SceneBuilder b = arm();
+  b.scene.links.back().beam->elements = 0;
+  return b;
+}
+
+class RigidMarkers : public Markers {
+ protected:
+  RigidMarkers() : Markers(rigid_arm()) {}
+};
+
+TEST_F(RigidMarkers, HaveTheShapeOfTheBeam) {
+  MarkerMessages rigid = messages();
+  const MarkerArray message = shown(rigid);
+  ASSERT_TRUE(find(message, "boom"));
+  double reach = 0;
+  for (const auto& point : find(message, "boom")->points) {
+    ASSERT_TRUE(std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z));
+    reach = std::max(reach, point.x);
+  }
+  EXPECT_NEAR(reach, 2, 1e-6);  // a float's digits
+}
+
+TEST_F(RigidMarkers, ComeWithAFrameAtTheTipThatStandsStill) {
+  const auto has = [](const tf2_msgs::TFMessage& message) {
+    return std::any_of(message.transforms.begin(), message.transforms.end(), [](const auto& transform) {
+      return transform.header.frame_id == "boom" && transform.child_frame_id == "boom/tip" &&
+             std::abs(transform.transform.translation.x - 2) < 1e-12;
+    });
+  };
+  const StateMessages rigid(simulation_, "");
+  EXPECT_TRUE(has(rigid.static_transforms(ros::Time(1))));
+  EXPECT_FALSE(has(rigid.transforms()));
+  EXPECT_EQ(rigid.frames().count("boom/tip"), 1u);
 }
 
 TEST_F(Markers, HaveWhatIsChosen) {

@@ -70,6 +70,56 @@ TEST_P(RigidLimit, DifferenceFallsWithTheCompliance) {
   EXPECT_LT(medium, std::max(0.03 * soft, 2 * step_error)) << "a hundredth, but for the phase of vibrations";
   EXPECT_LT(stiff, std::max(3e-4 * soft, 2 * step_error));
 }
+
+/// Of the pendulum, hanging and pulled aside; its upper link without elements where the stiffness is infinite.
+Vector3 place_at_rest(double stiffness) {
+  SceneBuilder b = pendulum(std::isinf(stiffness) ? 1 : stiffness);
+  if (std::isinf(stiffness)) b.scene.links[1].beam->elements = 0;
+  b.load("lower", {0.1, 0.05, -0.3}, {0.5, 0.2, 0});
+  Simulation simulation(b.scene, options("em", kStep, 1e-12));
+  EXPECT_TRUE(simulation.solve_static(5).converged);
+  return simulation.probe(0).pose.position;
+}
+
+// A link without elements is what flexible ones tend to, like 1/stiffness; terms of the next order are 1/stiffness of
+// that.
+TEST(RigidLimit, IsTheLinkWithoutElements) {
+  const Vector3 rigid = place_at_rest(INFINITY);
+  double before = (place_at_rest(1e3) - rigid).norm();
+  EXPECT_GT(before, 1e-6) << "the test must see the compliance";
+  for (const double stiffness : {1e4, 1e5}) {
+    const double difference = (place_at_rest(stiffness) - rigid).norm();
+    std::printf("stiffness %.0e: difference %.3e, slope %.5f\n", stiffness, difference,
+                std::log10(difference / before));
+    EXPECT_NEAR(std::log10(difference / before), -1, 0.01);
+    before = difference;
+  }
+}
+
+// The same in motion that begins smoothly, so that it excites no vibrations: what differs is how far the link gives
+// way.
+TEST(RigidLimit, IsTheMotionOfTheLinkWithoutElements) {
+  const auto path = [](double stiffness) {
+    SceneBuilder b = pendulum(std::isinf(stiffness) ? 1 : stiffness);
+    if (std::isinf(stiffness)) b.scene.links[1].beam->elements = 0;
+    b.scene.gravity.setZero();
+    b.load("lower", {0.1, 0, -0.3}, {1, 0.5, 0}, Vector3::Zero(), "t^4*(1 - t)");
+    Simulation simulation(b.scene, options("edmc2", kStep, 1e-12));
+    std::vector<Vector3> places;
+    run(simulation, 200, [&] { places.push_back(simulation.probe(0).pose.position); });
+    return places;
+  };
+  const std::vector<Vector3> rigid = path(INFINITY);
+  double before = largest_distance(path(1e2), rigid);
+  for (const double stiffness : {1e3, 1e4}) {
+    const double difference = largest_distance(path(stiffness), rigid);
+    std::printf("stiffness %.0e: difference %.3e, slope %.5f\n", stiffness, difference,
+                std::log10(difference / before));
+    EXPECT_NEAR(std::log10(difference / before), -1, 0.02);
+    before = difference;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Schemes, RigidLimit, ::testing::Values("em", "m1"),
                          [](const auto& info) { return info.param; });
 

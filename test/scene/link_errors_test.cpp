@@ -130,9 +130,9 @@ TEST(BeamErrors, Structure) {
 }
 
 TEST(BeamErrors, ElementsAndOrder) {
-  for (const char* bad : {"0", "-1", "2.5", "many", "", "100001", "99999999999999999999"})
+  for (const char* bad : {"-1", "2.5", "many", "", "100001", "99999999999999999999"})
     expect_error(R"(elements="4")", "elements=\"" + std::string(bad) + "\"", 28,
-                 "elements must be a whole number from 1 to 100000 or 'auto', got '" + std::string(bad) + "'");
+                 "elements must be a whole number from 0 to 100000 or 'auto', got '" + std::string(bad) + "'");
   for (const char* bad : {"0", "5", "2nd"})
     expect_error(R"(order="3")", "order=\"" + std::string(bad) + "\"", 28, "order must be a whole number from 1 to 4");
 }

@@ -101,7 +101,7 @@ TEST(SimulationErrors, Loads) {
   expect_entry_error(R"(<load link="tip" force="1 0 0" history="1/t"/>)", "history must be finite at t = 0, got '1/t'");
   expect_entry_error(R"(<distributed_load link="tip"/>)", "attribute 'force' is missing");
   expect_entry_error(R"(<distributed_load link="hand" force="1 0 0"/>)",
-                     "<distributed_load> of simulation: link must be flexible, that is have a <beam>, got 'hand'");
+                     "<distributed_load> of simulation: link must have a <beam>, got 'hand'");
 }
 
 TEST(SimulationErrors, MotionsAndEfforts) {

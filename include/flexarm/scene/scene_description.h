@@ -94,7 +94,7 @@ struct HubDescription {
 };
 
 struct BeamDescription {
-  std::optional<int> elements;  ///< number of elements; empty: "auto"
+  std::optional<int> elements;  ///< number of elements; empty: "auto"; 0: it is rigid
   int order = 2;                ///< 1..4, nodes per element minus one
   std::vector<CentrelinePiece> centreline;
   std::optional<Vector3> section_y;  ///< the section's y axis at s = 0, in the link frame; empty: chosen reproducibly
@@ -123,7 +123,7 @@ struct LinkDescription {
   std::string name;
   std::optional<RigidInertia> inertial;  ///< ignored where there is a beam
   std::optional<BeamDescription> beam;
-  std::vector<VisualDescription> visuals = {};  ///< read where there is a beam: of rigid links others draw them
+  std::vector<VisualDescription> visuals = {};  ///< read where there is a beam: of other links others draw them
   SourceLocation location = {};
 };
 

@@ -154,17 +154,19 @@ class Simulation {
 
   // ---- frames: every link, in the scene's order
   const std::vector<std::string>& link_names() const;
-  Pose link_pose(std::size_t link) const;  ///< in the world (= root link) frame
-  bool is_flexible(std::size_t link) const;
-  /// End section of a flexible link in the world, axes as the link's in the undeformed state; else the link's pose.
+  Pose link_pose(std::size_t link) const;    ///< in the world (= root link) frame
+  bool is_flexible(std::size_t link) const;  ///< it has a beam with elements
+  /// End section of a beam in the world, axes as the link's in the undeformed state; else the link's pose.
   Pose tip_pose(std::size_t link) const;
   /// The same as of a probe, with velocities.
   ProbeState tip_state(std::size_t link) const;
-  /// Points at every node and `between` equally spaced points inside each pair of nodes; appended to `points`.
+  /// Points at every node and `between` equally spaced points inside each pair of nodes; appended to `points`. Of a
+  /// beam without elements those where the nodes of elements="auto" would be: nothing is known of their resultants,
+  /// which are NaN.
   void beam_points(std::size_t link, int between, std::vector<BeamPoint>& points) const;
-  /// The sections of the same points while the link is undeformed, in the link's frame; none: the link is rigid.
+  /// The sections of the same points while the link is undeformed, in the link's frame; none: the link has no beam.
   std::vector<Pose> undeformed_sections(std::size_t link, int between) const;
-  /// Largest distance of the section's edge from the centreline, for display [m]; 0: the link is rigid.
+  /// Largest distance of the section's edge from the centreline, for display [m]; 0: the link has no beam.
   double beam_radius(std::size_t link) const;
   /// No motion moves it: nothing can be applied to it.
   bool is_fixed_to_world(std::size_t link) const;
