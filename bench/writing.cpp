@@ -1,14 +1,18 @@
-/// What results cost the thread that steps: a scene with a row of all columns after each step, written by that thread
-/// itself and by one of its own, beside no rows at all.
+/// What results cost the thread that steps: a scene with a row of columns after each step, written by that thread
+/// itself or by one of its own, with its state handed to a mirror, as the node does whether somebody listens or not, or
+/// looked at for the warnings at the end of a run; beside nothing read at all.
 ///   bench_writing SCENE [STEPS]
 
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/csv_writer.h"
+#include "flexarm/simulation/run_summary.h"
 #include "simulation/background_writer.h"
 
 namespace {
@@ -21,22 +25,40 @@ double seconds(clockid_t clock) {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-enum class Rows { None, InPlace, Background };
+/// What is read after each step.
+struct Reading {
+  const char* name;
+  enum class Way { Nothing, Mirror, Summary, InPlace, Background } way;
+  std::vector<std::string> columns = {};  ///< patterns; empty: all
+};
 
 struct Cost {
   double wall, stepping, all;  // of the clock on the wall, of the thread that steps, of all threads [s]
 };
 
-Cost cost_of(const scene::SceneDescription& scene, int steps, Rows rows) {
+std::unique_ptr<ResultWriter> make_writer(const Simulation& simulation, const Reading& reading) {
+  if (reading.way != Reading::Way::InPlace && reading.way != Reading::Way::Background) return nullptr;
+  auto writer =
+      std::make_unique<CsvWriter>("/dev/null", ResultColumns(simulation, ResultColumns::Solver::With, reading.columns));
+  if (reading.way == Reading::Way::InPlace) return writer;
+  return std::make_unique<BackgroundWriter>(std::move(writer), simulation);
+}
+
+Cost cost_of(const scene::SceneDescription& scene, int steps, const Reading& reading) {
   Simulation simulation(scene);
   simulation.step();
-  std::unique_ptr<ResultWriter> writer;
-  if (rows != Rows::None)
-    writer = std::make_unique<CsvWriter>("/dev/null", ResultColumns(simulation, ResultColumns::Solver::With));
-  if (rows == Rows::Background) writer = std::make_unique<BackgroundWriter>(std::move(writer), simulation);
+  const std::unique_ptr<ResultWriter> writer = make_writer(simulation, reading);
+  Simulation mirror = simulation.copy();
+  Snapshot snapshot;
+  RunSummary summary(simulation);
   const Cost begin{seconds(CLOCK_MONOTONIC), seconds(CLOCK_THREAD_CPUTIME_ID), seconds(CLOCK_PROCESS_CPUTIME_ID)};
   for (int n = 0; n < steps; ++n) {
     const StepResult result = simulation.step();
+    if (reading.way == Reading::Way::Mirror) {
+      simulation.snapshot(snapshot);
+      mirror.restore(snapshot);
+    }
+    if (reading.way == Reading::Way::Summary) summary.look(simulation);
     if (!writer) continue;
     writer->note_step(simulation, result);
     writer->write_row(simulation);
@@ -57,11 +79,19 @@ int main(int argc, char** argv) {
   }
   const double each = 1e6 / steps;
   std::printf("us per step: wall, stepping thread, all threads\n");
+  using Way = Reading::Way;
+  const Reading readings[] = {{"nothing", Way::Nothing},
+                              {"mirror", Way::Mirror},
+                              {"summary of the run", Way::Summary},
+                              {"time", Way::InPlace, {"time"}},
+                              {"positions", Way::InPlace, {"joint/*/position"}},
+                              {"joints", Way::InPlace, {"joint/*"}},
+                              {"all", Way::InPlace},
+                              {"all, by a thread", Way::Background}};
   for (int repetition = 0; repetition < 3; ++repetition)
-    for (const auto& [name, rows] :
-         {std::pair("no rows", Rows::None), {"in place", Rows::InPlace}, {"background", Rows::Background}}) {
-      const Cost cost = cost_of(*read.scene, steps, rows);
-      std::printf("%-12s %8.2f %8.2f %8.2f\n", name, each * cost.wall, each * cost.stepping, each * cost.all);
+    for (const Reading& reading : readings) {
+      const Cost cost = cost_of(*read.scene, steps, reading);
+      std::printf("%-18s %8.2f %8.2f %8.2f\n", reading.name, each * cost.wall, each * cost.stepping, each * cost.all);
     }
   return 0;
 }

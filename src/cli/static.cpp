@@ -31,7 +31,7 @@ void print_equilibrium(const Simulation& simulation) {
     if (simulation.is_flexible(i)) print_point(simulation.link_names()[i] + "/tip", simulation.tip_pose(i).position);
   }
   const std::vector<scene::Probe>& probes = simulation.scene().probes;
-  for (std::size_t i = 0; i < probes.size(); ++i) print_point(probes[i].name, simulation.probe(i).pose.position);
+  for (std::size_t i = 0; i < probes.size(); ++i) print_point(probes[i].name, simulation.probe_pose(i).position);
   fmt::print("strain energy {:.7g} J\n", simulation.energies().strain);
 }
 

@@ -25,7 +25,7 @@ void Trails::update() {
   if (!instants_.empty() && instants_.back().time == now) return;
   Instant instant{now, {}};
   for (std::size_t i = 0; i < simulation_.scene().probes.size(); ++i)
-    instant.places.push_back(simulation_.probe(i).pose.position);
+    instant.places.push_back(simulation_.probe_pose(i).position);
   instants_.push_back(std::move(instant));
 }
 

@@ -24,4 +24,10 @@ ros::Publisher advertise(ros::NodeHandle& node, const std::string& topic, std::u
                                  });
 }
 
+/// Publishes what `make_message()` gives, which is made only where somebody listens.
+template <typename MakeMessage>
+void publish_to_listeners(const ros::Publisher& publisher, const MakeMessage& make_message) {
+  if (publisher.getNumSubscribers() > 0) publisher.publish(make_message());
+}
+
 }  // namespace flexarm::node

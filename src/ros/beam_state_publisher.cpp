@@ -15,7 +15,7 @@ BeamStatePublisher::BeamStatePublisher(ros::NodeHandle& node, const Simulation& 
 void BeamStatePublisher::publish(const ros::Time& stamp, bool force) {
   if (!schedule_.due(stamp, force)) return;
   stamp_ = stamp;
-  if (publisher_.getNumSubscribers() > 0) publisher_.publish(make_message(stamp));
+  publish_to_listeners(publisher_, [this] { return make_message(stamp_); });
 }
 
 BeamStateArray BeamStatePublisher::make_message(const ros::Time& stamp) {

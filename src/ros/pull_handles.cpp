@@ -64,7 +64,7 @@ void PullHandles::add_handles() {
     const auto& inertial = shown_.scene().links[link].inertial;
     if (probe != probes.end()) {
       handle.at = probe->at;
-      handle.place = [this, index = probe - probes.begin()] { return shown_.probe(index).pose.position; };
+      handle.place = [this, index = probe - probes.begin()] { return shown_.probe_pose(index).position; };
     } else if (shown_.scene().links[link].beam) {
       handle.at = shown_.undeformed_sections(link, 0).back().position;
       handle.place = [this, link] { return shown_.tip_pose(link).position; };

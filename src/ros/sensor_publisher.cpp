@@ -48,6 +48,7 @@ void SensorPublisher::publish(const ros::Time& stamp) {
     if (sampled == topic.sampled) continue;
     topic.sampled = sampled;
     topic.stamp = stamp;
+    if (topic.publisher.getNumSubscribers() == 0) continue;
     std::visit([&topic = topic](const auto& message) { topic.publisher.publish(message); },
                messages::sensor_message(simulation_, topic.sensor, stamp, frame_prefix_));
   }

@@ -35,10 +35,15 @@ class StatePublisher {
   const std::unordered_set<std::string>& frames() const { return messages_->frames(); }
 
  private:
+  /// As they are now, with the last stamp.
+  const sensor_msgs::JointState& joint_states();
+  const tf2_msgs::TFMessage& transforms();
+
   const Simulation& simulation_;
   std::string frame_prefix_;
   PublicationSchedule schedule_;
   std::optional<messages::StateMessages> messages_;
+  ros::Time stamp_;
   ros::Publisher joint_state_publisher_, transform_publisher_, static_transform_publisher_;
 };
 

@@ -25,20 +25,21 @@ DurationStatistics statistics_of(const DurationHistogram& histogram) {
 StatusPublisher::StatusPublisher(ros::NodeHandle& private_node, const Simulation& simulation, const RunState& run,
                                  double rate, const std::string& frame_prefix)
     : simulation_(simulation), run_(run), schedule_(rate), frame_prefix_(frame_prefix) {
-  publisher_ = advertise<SimulatorStatus>(private_node, "status", 10, run, [this] { return last_message_; });
+  publisher_ = advertise<SimulatorStatus>(private_node, "status", 10, run, [this] { return make_message(); });
 }
 
 void StatusPublisher::publish(ros::Time stamp, bool force) {
   if (force) stamp = std::max(stamp, schedule_.last() + ros::Duration(0, 1));
   if (!schedule_.due(stamp, force)) return;
-  last_message_ = make_message(stamp);
-  publisher_.publish(last_message_);
+  stamp_ = stamp;
+  factor_ = real_time_factor_.measure(run_.simulated_time, RealTimeFactor::Clock::now(), run_.paused);
+  publish_to_listeners(publisher_, [this] { return make_message(); });
 }
 
-SimulatorStatus StatusPublisher::make_message(const ros::Time& stamp) {
+SimulatorStatus StatusPublisher::make_message() const {
   const Energies energies = simulation_.energies();
   SimulatorStatus message;
-  message.header.stamp = stamp;
+  message.header.stamp = stamp_;
   message.header.frame_id = frame_prefix_ + simulation_.scene().root_link;
   message.time = simulation_.time();
   message.step = simulation_.step_size();
@@ -46,7 +47,7 @@ SimulatorStatus StatusPublisher::make_message(const ros::Time& stamp) {
   message.paused = run_.paused;
   message.failed = run_.failed();
   message.message = run_.failure;
-  message.real_time_factor = real_time_factor_.measure(run_.simulated_time, RealTimeFactor::Clock::now(), run_.paused);
+  message.real_time_factor = factor_;
   message.overruns = run_.overruns;
   message.missed = run_.missed;
   message.step_time = statistics_of(run_.step_times);

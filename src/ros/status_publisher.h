@@ -28,14 +28,15 @@ class StatusPublisher {
   void publish(ros::Time stamp, bool force);
 
  private:
-  SimulatorStatus make_message(const ros::Time& stamp);
+  SimulatorStatus make_message() const;
 
   const Simulation& simulation_;
   const RunState& run_;
   PublicationSchedule schedule_;
   std::string frame_prefix_;
   RealTimeFactor real_time_factor_{RealTimeFactor::Clock::now()};
-  SimulatorStatus last_message_;
+  ros::Time stamp_;    ///< of what was published last
+  double factor_ = 0;  ///< simulated per wall time, as it was then
   ros::Publisher publisher_;
 };
 

@@ -16,6 +16,13 @@ const Model& model_of(const Simulation& simulation);
 const State& state_of(const Simulation& simulation);
 /// Per link; empty for those that have no beam, or one with elements.
 const std::vector<std::optional<RigidLine>>& rigid_lines_of(const Simulation& simulation);
+/// What of the present state somebody has asked for: it is made then, and kept until the state changes.
+struct MadeForOutput {
+  bool rates, velocities, accelerations;  ///< of joint coordinates, of nodes, of probes
+  bool energies, momenta;
+  bool is_nothing() const { return !(rates || velocities || accelerations || energies || momenta); }
+};
+MadeForOutput made_for_output(const Simulation& simulation);
 /// Update norms of the last Newton solve, for tests of the rate of convergence.
 const std::vector<double>& update_norms_of(const Simulation& simulation);
 

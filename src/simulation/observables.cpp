@@ -183,6 +183,12 @@ Vector3 probe_origin(const Model& model, const State& state, const ProbePoint& p
   return is_on_world ? model.origin : world_origin(model, state);
 }
 
+Pose pose_in_world(const Model& model, const State& state, const ProbePoint& probe) {
+  Pose pose = probe_pose(model, state, probe);
+  pose.position += probe_origin(model, state, probe);
+  return pose;
+}
+
 ProbeState probe_state(const Model& model, const State& state, const std::vector<Vector6>& velocities,
                        const ProbePoint& probe) {
   ProbeState out;

@@ -38,6 +38,7 @@ double fibre_strain(const Model& model, const State& state, const ProbePoint& po
 Pose probe_pose(const Model& model, const State& state, const ProbePoint& probe);
 /// Where in the world that is what probe_pose() is about.
 Vector3 probe_origin(const Model& model, const State& state, const ProbePoint& probe);
+Pose pose_in_world(const Model& model, const State& state, const ProbePoint& probe);
 /// `velocities`: {v, w} per node, world axes.
 ProbeState probe_state(const Model& model, const State& state, const std::vector<Vector6>& velocities,
                        const ProbePoint& probe);

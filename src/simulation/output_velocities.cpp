@@ -44,25 +44,38 @@ Eigen::Matrix<double, Size, 1> LastSteps::rate_at_end(const MeanRates<Size>& mea
 template Eigen::Matrix<double, 1, 1> LastSteps::rate_at_end<1>(const MeanRates<1>&) const;
 template Eigen::Matrix<double, 3, 1> LastSteps::rate_at_end<3>(const MeanRates<3>&) const;
 
-void OutputVelocities::update(const Model& model, const DegreesOfFreedom& dof, const TimeRule& rule,
-                              const State& state) {
+void OutputVelocities::update_rates(const Model& model, const DegreesOfFreedom& dof, const TimeRule& rule,
+                                    const State& state) {
   poses_.resize(state.nodes.size());
   nodes_.resize(state.nodes.size());
   rates_.resize(model.joints.size());
-  for (std::size_t i = 0; i < state.nodes.size(); ++i) poses_[i] = node_pose(state.nodes[i]);
   const IncrementHistory& history = state.history;
-  if (!history.holds_for(dof.unknowns) || history.count < 2) return take_scheme_velocities(model, state);
-  steps_.count = std::min(history.count, LastSteps::kMost);
-  std::copy_n(history.steps.begin(), LastSteps::kMost, steps_.length.begin());
+  has_steps_ = history.holds_for(dof.unknowns) && history.count >= 2;
+  if (has_steps_) {
+    steps_.count = std::min(history.count, LastSteps::kMost);
+    std::copy_n(history.steps.begin(), LastSteps::kMost, steps_.length.begin());
+    return set_rates(model, dof, rule, state);
+  }
+  set_poses(state);
+  set_scheme_velocities(state);
+  for (std::size_t j = 0; j < model.joints.size(); ++j)
+    rates_[j] = released_rates(model, static_cast<int>(j), poses_, state.released[j], nodes_);
+}
+
+void OutputVelocities::update_nodes(const Model& model, const DegreesOfFreedom& dof, const TimeRule& rule,
+                                    const State& state) {
+  if (!has_steps_) return;  // they are those from which the rates were taken
+  set_poses(state);
   set_free_nodes(dof, rule, state);
-  set_rates(model, dof, rule, state);
   set_slaves(model, state);
 }
 
-void OutputVelocities::take_scheme_velocities(const Model& model, const State& state) {
+void OutputVelocities::set_poses(const State& state) {
+  for (std::size_t i = 0; i < state.nodes.size(); ++i) poses_[i] = node_pose(state.nodes[i]);
+}
+
+void OutputVelocities::set_scheme_velocities(const State& state) {
   for (std::size_t i = 0; i < state.nodes.size(); ++i) nodes_[i] = spatial_velocity(state.nodes[i]);
-  for (std::size_t j = 0; j < model.joints.size(); ++j)
-    rates_[j] = released_rates(model, static_cast<int>(j), poses_, state.released[j], nodes_);
 }
 
 void OutputVelocities::set_free_nodes(const DegreesOfFreedom& dof, const TimeRule& rule, const State& state) {

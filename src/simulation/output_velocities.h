@@ -33,7 +33,9 @@ struct LastSteps {
 /// model than before.
 class OutputVelocities {
  public:
-  void update(const Model& model, const DegreesOfFreedom& dof, const TimeRule& rule, const State& state);
+  void update_rates(const Model& model, const DegreesOfFreedom& dof, const TimeRule& rule, const State& state);
+  /// After update_rates() of the same state.
+  void update_nodes(const Model& model, const DegreesOfFreedom& dof, const TimeRule& rule, const State& state);
 
   /// Per node: {v, w}, world axes [m/s, rad/s].
   const std::vector<Vector6>& nodes() const { return nodes_; }
@@ -41,11 +43,13 @@ class OutputVelocities {
   double rate(const Coordinate& coordinate) const { return rates_[coordinate.joint][coordinate.component]; }
 
  private:
-  void take_scheme_velocities(const Model& model, const State& state);
+  void set_poses(const State& state);
+  void set_scheme_velocities(const State& state);
   void set_free_nodes(const DegreesOfFreedom& dof, const TimeRule& rule, const State& state);
   void set_rates(const Model& model, const DegreesOfFreedom& dof, const TimeRule& rule, const State& state);
   void set_slaves(const Model& model, const State& state);
 
+  bool has_steps_ = false;  ///< that tell more than the scheme's own velocities
   LastSteps steps_;
   std::vector<NodePose> poses_;
   std::vector<Vector6> nodes_;

@@ -9,10 +9,20 @@ namespace flexarm {
 /// Keeps what was asked for until the state changes.
 class PublishedMotion {
  public:
-  void forget() { holds_velocities_ = holds_past_ = false; }
+  void forget() { holds_rates_ = holds_velocities_ = holds_past_ = false; }
+  bool holds_rates() const { return holds_rates_; }
+  bool holds_velocities() const { return holds_velocities_; }
+  bool holds_past() const { return holds_past_; }
 
+  /// Those of coordinates alone.
+  const OutputVelocities& rates(const MotionView& view) {
+    if (!holds_rates_) velocities_.update_rates(view.model, view.dof, view.rule, view.state);
+    holds_rates_ = true;
+    return velocities_;
+  }
   const OutputVelocities& velocities(const MotionView& view) {
-    if (!holds_velocities_) velocities_.update(view.model, view.dof, view.rule, view.state);
+    rates(view);
+    if (!holds_velocities_) velocities_.update_nodes(view.model, view.dof, view.rule, view.state);
     holds_velocities_ = true;
     return velocities_;
   }
@@ -25,7 +35,7 @@ class PublishedMotion {
  private:
   OutputVelocities velocities_;
   PastMotion past_;
-  bool holds_velocities_ = false, holds_past_ = false;
+  bool holds_rates_ = false, holds_velocities_ = false, holds_past_ = false;
 };
 
 }  // namespace flexarm

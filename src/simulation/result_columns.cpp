@@ -28,16 +28,23 @@ void append(Row& row, const Pose& pose) {
 void time_values(const Simulation& simulation, const StepCounts&, std::size_t, Row& row) {
   row.push_back(simulation.time());
 }
-void joint_values(const Simulation& simulation, const StepCounts&, std::size_t i, Row& row) {
-  row.insert(row.end(), {simulation.position(i), simulation.velocity(i), simulation.effort(i)});
+void position_values(const Simulation& simulation, const StepCounts&, std::size_t i, Row& row) {
+  row.push_back(simulation.position(i));
+}
+void velocity_values(const Simulation& simulation, const StepCounts&, std::size_t i, Row& row) {
+  row.push_back(simulation.velocity(i));
+}
+void effort_values(const Simulation& simulation, const StepCounts&, std::size_t i, Row& row) {
+  row.push_back(simulation.effort(i));
 }
 void frame_values(const Simulation& simulation, const StepCounts&, std::size_t i, Row& row) {
   append(row, simulation.link_pose(i));
 }
 void probe_values(const Simulation& simulation, const StepCounts&, std::size_t i, Row& row) {
-  const ProbeState probe = simulation.probe(i);
-  append(row, probe.pose);
-  append(row, probe.velocity);
+  append(row, simulation.probe_pose(i));
+}
+void probe_velocity_values(const Simulation& simulation, const StepCounts&, std::size_t i, Row& row) {
+  append(row, simulation.probe(i).velocity);
 }
 void acceleration_values(const Simulation& simulation, const StepCounts&, std::size_t i, Row& row) {
   append(row, simulation.probe_acceleration(i).linear);
@@ -116,22 +123,22 @@ class ResultColumns::Selection {
 ResultColumns::ResultColumns(const Simulation& simulation, Solver solver, const std::vector<std::string>& patterns) {
   using Names = Selection::Names;
   const Names pose = {{"x", "m"}, {"y", "m"}, {"z", "m"}, {"qx", "1"}, {"qy", "1"}, {"qz", "1"}, {"qw", "1"}};
-  Names probe = pose;
-  probe.insert(probe.end(), {{"vx", "m/s"}, {"vy", "m/s"}, {"vz", "m/s"}});
   const scene::SceneDescription& scene = simulation.scene();
   Selection selection(*this, patterns);
   selection.add("", {{"time", "s"}}, time_values);
   for (std::size_t i = 0; i < simulation.coordinate_names().size(); ++i) {
     const bool turns = is_rotation(model_of(simulation), model_of(simulation).coordinates[i]);
-    const Names angle = {{"position", "rad"}, {"velocity", "rad/s"}, {"effort", "N m"}};
-    const Names travel = {{"position", "m"}, {"velocity", "m/s"}, {"effort", "N"}};
-    selection.add("joint/" + simulation.coordinate_names()[i] + "/", turns ? angle : travel, joint_values, i);
+    const std::string prefix = "joint/" + simulation.coordinate_names()[i] + "/";
+    selection.add(prefix, {{"position", turns ? "rad" : "m"}}, position_values, i);
+    selection.add(prefix, {{"velocity", turns ? "rad/s" : "m/s"}}, velocity_values, i);
+    selection.add(prefix, {{"effort", turns ? "N m" : "N"}}, effort_values, i);
   }
   for (std::size_t i = 0; i < simulation.link_names().size(); ++i)
     selection.add("frame/" + simulation.link_names()[i] + "/", pose, frame_values, i);
   for (std::size_t i = 0; i < scene.probes.size(); ++i) {
     const std::string prefix = "probe/" + scene.probes[i].name + "/";
-    selection.add(prefix, probe, probe_values, i);
+    selection.add(prefix, pose, probe_values, i);
+    selection.add(prefix, {{"vx", "m/s"}, {"vy", "m/s"}, {"vz", "m/s"}}, probe_velocity_values, i);
     selection.add(prefix, {{"ax", "m/s^2"}, {"ay", "m/s^2"}, {"az", "m/s^2"}}, acceleration_values, i, true);
   }
   for (std::size_t i = 0; i < scene.sensors.size(); ++i)

@@ -65,12 +65,6 @@ Vector6 measured_motion(const SensorPlace& place, const MotionView& view, Publis
   return out;
 }
 
-Pose pose_in_world(const MotionView& view, const ProbePoint& point) {
-  Pose pose = probe_pose(view.model, view.state, point);
-  pose.position += probe_origin(view.model, view.state, point);
-  return pose;
-}
-
 /// A pose whose errors are in its own axes; in the world.
 void set_pose(const Pose& pose, const Errors& errors, SensorSample& sample) {
   const Vector3 position = pose.position + pose.orientation * errors.head<3>();
@@ -98,7 +92,7 @@ void measure(const Sensor& sensor, const SensorPlace& place, const MotionView& v
     case SensorKind::Imu:
       return set(measured_motion(place, view, motion));
     case SensorKind::Pose:
-      return set_pose(pose_in_world(view, place.point), errors, sample);
+      return set_pose(pose_in_world(view.model, view.state, place.point), errors, sample);
   }
 }
 

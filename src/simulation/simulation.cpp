@@ -140,8 +140,7 @@ double Simulation::position(std::size_t index) const {
 }
 
 double Simulation::velocity(std::size_t index) const {
-  return implementation_->published.velocities(implementation_->view())
-      .rate(implementation_->model.coordinates.at(index));
+  return implementation_->published.rates(implementation_->view()).rate(implementation_->model.coordinates.at(index));
 }
 
 double Simulation::effort(std::size_t index) const {
@@ -300,6 +299,9 @@ Vector3 Simulation::angular_momentum() const {
 ProbeState Simulation::probe(std::size_t index) const {
   return implementation_->probe_at(implementation_->model.probes.at(index));
 }
+Pose Simulation::probe_pose(std::size_t index) const {
+  return pose_in_world(implementation_->model, implementation_->state, implementation_->model.probes.at(index));
+}
 ProbeAcceleration Simulation::probe_acceleration(std::size_t index) const {
   const MotionView view = implementation_->view();
   return implementation_->published.past(view).acceleration(view, view.model.probes.at(index));
@@ -395,6 +397,11 @@ const State& state_of(const Simulation& simulation) {
 }
 const std::vector<std::optional<RigidLine>>& rigid_lines_of(const Simulation& simulation) {
   return Inside::of(simulation).rigid_lines;
+}
+MadeForOutput made_for_output(const Simulation& simulation) {
+  const auto& s = Inside::of(simulation);
+  return {s.published.holds_rates(), s.published.holds_velocities(), s.published.holds_past(), s.energies.has_value(),
+          s.momenta.has_value()};
 }
 const std::vector<double>& update_norms_of(const Simulation& simulation) {
   const auto& inside = Inside::of(simulation);

@@ -3,6 +3,7 @@
 #include "cli/program.h"
 #include "flexarm/scene/urdf_reader.h"
 #include "simulation/everything_scene.h"
+#include "simulation/inside.h"
 
 namespace flexarm::cli {
 namespace {
@@ -42,6 +43,36 @@ TEST(ResultColumns, HaveTheValuesOfAllColumns) {
     std::string pattern = all.columns()[i].name;
     ResultColumns one(simulation, Solver::With, {pattern});
     EXPECT_EQ(one.row(simulation, {}).back(), row[i]) << pattern;
+  }
+}
+
+TEST(ResultColumns, MakeNothingThatNoColumnNeeds) {
+  Simulation simulation = everything();
+  const auto made_by = [&](const std::vector<std::string>& patterns) {
+    ResultColumns columns(simulation, Solver::With, patterns);
+    EXPECT_TRUE(simulation.step().converged);
+    EXPECT_TRUE(made_for_output(simulation).is_nothing()) << "a step makes nothing for output";
+    columns.row(simulation, {});
+    return made_for_output(simulation);
+  };
+  for (int n = 0; n < 5; ++n) {  // velocities of the first steps are the scheme's own
+    EXPECT_TRUE(made_by({"time"}).is_nothing());
+    EXPECT_TRUE(made_by({"joint/*/position", "joint/*/effort", "frame/*", "probe/*/[xyz]", "probe/*/q?", "solver/*",
+                         "sensor/*"})
+                    .is_nothing());
+    const MadeForOutput rates = made_by({"joint/*/velocity"}), velocities = made_by({"probe/*/v?"});
+    EXPECT_TRUE(rates.rates);
+    EXPECT_FALSE(rates.velocities || rates.accelerations || rates.energies || rates.momenta);
+    EXPECT_TRUE(velocities.velocities);
+    EXPECT_FALSE(velocities.accelerations || velocities.energies || velocities.momenta);
+    const MadeForOutput accelerations = made_by({"probe/*/ax"}), energies = made_by({"energy/work"});
+    EXPECT_TRUE(accelerations.accelerations);
+    EXPECT_FALSE(accelerations.rates || accelerations.velocities || accelerations.energies || accelerations.momenta);
+    EXPECT_TRUE(energies.energies);
+    EXPECT_FALSE(energies.rates || energies.velocities || energies.accelerations || energies.momenta);
+    const MadeForOutput momenta = made_by({"momentum/x"});
+    EXPECT_TRUE(momenta.momenta);
+    EXPECT_FALSE(momenta.rates || momenta.velocities || momenta.accelerations || momenta.energies);
   }
 }
 

@@ -176,6 +176,7 @@ class Simulation {
   Vector3 momentum() const;                   ///< world axes [kg m/s]
   Vector3 angular_momentum() const;           ///< about the world origin [kg m^2/s]
   ProbeState probe(std::size_t index) const;  ///< in the order of scene().probes
+  Pose probe_pose(std::size_t index) const;   ///< the same without what velocities cost
   /// Of second order in the step from the fourth step on; zero before the second one.
   ProbeAcceleration probe_acceleration(std::size_t index) const;
   /// The section of a flexible link at an arc length of its undeformed line [m]: pose, strain, section force.
