@@ -1,6 +1,5 @@
 // Drives: rotors, elastic gears with backlash, losses and limits of motors, against closed formulas.
-#include <Eigen/Eigenvalues>
-
+#include "math/dense_eigenpairs.h"
 #include "math/pi.h"
 #include "reference/one_coordinate_scenes.h"
 
@@ -298,7 +297,7 @@ TEST(Drive, ModesOfTwoMasses) {
   const double gear = system.gear, rotor = system.rotor;
   matrix << 0, 0, 1, 0, 0, 0, 0, 1, -gear / kBlockMass, gear / kBlockMass, 0, 0, gear / rotor, -(gear + 500) / rotor, 0,
       -20 / rotor;
-  const Eigen::Vector4cd exact = matrix.eigenvalues();
+  const Eigen::Vector4cd exact = dense_eigenpairs(matrix).values;
   ASSERT_EQ(modes.size(), 2u);
   for (const Mode& mode : modes) {
     const std::complex<double> found(mode.rate, angular_frequency(mode));

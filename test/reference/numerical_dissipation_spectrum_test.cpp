@@ -5,8 +5,7 @@
 #include <cstdio>
 #include <limits>
 
-#include <Eigen/Eigenvalues>
-
+#include "math/dense_eigenpairs.h"
 #include "reference/dynamics_runs.h"
 #include "schemes/scheme.h"
 #include "simulation/inside.h"
@@ -72,7 +71,7 @@ struct Oscillator {
       companion(i, n - 1) = -c[i] / c[n];
       if (i > 0) companion(i, i - 1) = 1;
     }
-    Eigen::VectorXcd values = companion.eigenvalues();
+    Eigen::VectorXcd values = dense_eigenpairs(companion).values;
     for (Complex& p : values)
       for (int iteration = 0; iteration < 3; ++iteration) {  // polished by Newton's method
         Complex f = c[n], slope = 0;

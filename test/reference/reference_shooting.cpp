@@ -3,6 +3,10 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <Eigen/LU>
+
+#include "support/dense_solution.h"
+
 namespace flexarm::test {
 namespace {
 
@@ -54,7 +58,7 @@ struct SectionState {
 class Shooting {
  public:
   Shooting(const ReferenceLine& line, const Matrix6& stiffness, const Vector3& force, int steps)
-      : line_(line), compliance_(stiffness.inverse()), force_(force), steps_(steps) {}
+      : line_(line), compliance_(solution(stiffness, Matrix6::Identity())), force_(force), steps_(steps) {}
 
   SectionState integrate(const Vector3& root_moment) const {
     const Quaternion q(line_.root);
@@ -109,7 +113,7 @@ Pose shooting_tip(const Cantilever& cantilever, const Matrix6& stiffness, int st
       const double step = 1e-6 * scale;
       for (int k = 0; k < 3; ++k)
         jacobian.col(k) = (shooting.integrate(root_moment + step * Vector3::Unit(k)).moment - tip.moment) / step;
-      root_moment -= jacobian.lu().solve(residual);
+      root_moment -= jacobian.inverse() * residual;
     }
     if (!converged) throw std::runtime_error("shooting did not converge");
   }

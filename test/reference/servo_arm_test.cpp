@@ -4,9 +4,10 @@
 #include <complex>
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
 
+#include "math/dense_eigenpairs.h"
 #include "reference/dynamics_runs.h"
+#include "support/dense_solution.h"
 
 namespace flexarm::test {
 namespace {
@@ -63,16 +64,18 @@ class LinearArm {
       dynamic(0, 0) += rate * kDerivative;
       Eigen::VectorXcd answer = Eigen::VectorXcd::Zero(n);
       answer[0] = kAmplitude * harmonic.part * (kProportional + rate * kDerivative);
-      answer = dynamic.partialPivLu().solve(answer).eval();
+      answer = complex_solution(dynamic, answer);
       stays += (answer * std::exp(rate * time)).real();
       begin += answer.real();
       begin_rate += (rate * answer).real();
     }
 
     // What dies away, by modes without the damper: states {omega q, q'}.
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(stiffness_, mass_);
-    const Eigen::MatrixXd& shapes = modes.eigenvectors();
-    const Eigen::VectorXd omega = modes.eigenvalues().cwiseSqrt();
+    const SymmetricEigenpairs masses = symmetric_eigenpairs(mass_);
+    const Eigen::MatrixXd of_unit_mass = masses.vectors * masses.values.cwiseSqrt().cwiseInverse().asDiagonal();
+    const SymmetricEigenpairs modes = symmetric_eigenpairs(of_unit_mass.transpose() * stiffness_ * of_unit_mass);
+    const Eigen::MatrixXd shapes = of_unit_mass * modes.vectors;
+    const Eigen::VectorXd omega = modes.values.cwiseSqrt();
     Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(2 * n, 2 * n);
     matrix.topRightCorner(n, n).diagonal() = omega;
     matrix.bottomLeftCorner(n, n).diagonal() = -omega;
@@ -80,10 +83,10 @@ class LinearArm {
     Eigen::VectorXd start(2 * n);
     const Eigen::MatrixXd to_modes = shapes.transpose() * mass_;
     start << -omega.cwiseProduct(to_modes * begin), -to_modes * begin_rate;
-    const Eigen::EigenSolver<Eigen::MatrixXd> roots(matrix);
-    const Eigen::VectorXcd parts = roots.eigenvectors().partialPivLu().solve(start.cast<Complex>());
+    const Eigenpairs roots = dense_eigenpairs(matrix);
+    const Eigen::VectorXcd parts = complex_solution(roots.vectors, start.cast<Complex>());
     const Eigen::VectorXd states =
-        (roots.eigenvectors() * (roots.eigenvalues() * time).array().exp().matrix().cwiseProduct(parts)).real();
+        (roots.vectors * (roots.values * time).array().exp().matrix().cwiseProduct(parts)).real();
     const Eigen::VectorXd x = stays + shapes * states.head(n).cwiseQuotient(omega);
     return {x[0], x[n - 2]};
   }

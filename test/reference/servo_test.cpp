@@ -2,9 +2,9 @@
 // limits of their difference equations.
 #include <array>
 
-#include <Eigen/Eigenvalues>
-
+#include "math/dense_eigenpairs.h"
 #include "reference/one_coordinate_scenes.h"
+#include "support/dense_solution.h"
 
 namespace flexarm::test {
 namespace {
@@ -76,10 +76,9 @@ TEST(Servo, VelocityRespondsAsTheFirstOrderSystem) {
 
 /// exp(matrix t) start.
 Eigen::Vector4d evolved(const Eigen::Matrix4d& matrix, const Eigen::Vector4d& start, double t) {
-  const Eigen::EigenSolver<Eigen::Matrix4d> solver(matrix);
-  const Eigen::Matrix4cd vectors = solver.eigenvectors();
-  const Eigen::Vector4cd parts = vectors.partialPivLu().solve(start.cast<std::complex<double>>());
-  return (vectors * (solver.eigenvalues().array() * t).exp().matrix().asDiagonal() * parts).real();
+  const auto [rates, vectors] = dense_eigenpairs(matrix);
+  const Eigen::VectorXcd parts = complex_solution(vectors, start.cast<std::complex<double>>());
+  return (vectors * (rates * t).array().exp().matrix().cwiseProduct(parts)).real();
 }
 
 // On the motor's side of an elastic gear, and on the link's, where the rotor is between it and what it controls.

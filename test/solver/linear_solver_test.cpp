@@ -5,7 +5,7 @@
 #include <random>
 
 #include <gtest/gtest.h>
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 namespace flexarm {
 namespace {

@@ -8,4 +8,12 @@ Eigen::MatrixXd solution(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& r
   return matrix.fullPivLu().solve(right);
 }
 
+Eigen::VectorXcd complex_solution(const Eigen::MatrixXcd& matrix, const Eigen::VectorXcd& right) {
+  return matrix.partialPivLu().solve(right);
+}
+
+bool is_invertible(const Eigen::MatrixXd& matrix) {
+  return matrix.fullPivLu().isInvertible();
+}
+
 }  // namespace flexarm::test
