@@ -1,6 +1,7 @@
 /// The ROS node: a simulated arm that looks like a real one on the graph.
 
-#include <ros/ros.h>
+#include <ros/console.h>
+#include <ros/init.h>
 
 #include <csignal>
 #include <exception>

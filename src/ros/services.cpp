@@ -1,6 +1,14 @@
 #include "services.h"
 
+#include <flexarm/ApplyWrench.h>
+#include <flexarm/LoadState.h>
+#include <flexarm/SaveState.h>
+#include <flexarm/SetJointState.h>
+#include <flexarm/Step.h>
+#include <flexarm/SwitchMode.h>
 #include <ros/console.h>
+#include <std_srvs/Empty.h>
+#include <std_srvs/Trigger.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -13,57 +21,37 @@
 #include "node.h"
 
 namespace flexarm::node {
+namespace {
 
 constexpr std::uint32_t kMostSteps = 1000000;  ///< of one call: nothing else is served meanwhile
 
-Services::Services(ros::NodeHandle& private_node, Node& simulator) : simulator_(simulator) {
-  servers_ = {private_node.advertiseService("pause", &Services::pause, this),
-              private_node.advertiseService("resume", &Services::resume, this),
-              private_node.advertiseService("reset", &Services::reset, this),
-              private_node.advertiseService("reset_with_clock", &Services::reset_with_clock, this),
-              private_node.advertiseService("reload", &Services::reload, this),
-              private_node.advertiseService("step", &Services::step, this),
-              private_node.advertiseService("save_state", &Services::save_state, this),
-              private_node.advertiseService("load_state", &Services::load_state, this),
-              private_node.advertiseService("set_joint_state", &Services::set_joint_state, this),
-              private_node.advertiseService("switch_mode", &Services::switch_mode, this),
-              private_node.advertiseService("apply_wrench", &Services::apply_wrench, this),
-              private_node.advertiseService("clear_wrenches", &Services::clear_wrenches, this)};
-}
-
-std::vector<std::string> Services::names() const {
-  std::vector<std::string> names;
-  for (const ros::ServiceServer& server : servers_) names.push_back(server.getService());
-  return names;
-}
-
-bool Services::pause(std_srvs::Empty::Request&, std_srvs::Empty::Response&) {
-  simulator_.pause();
+bool pause(Node& simulator, std_srvs::Empty::Request&, std_srvs::Empty::Response&) {
+  simulator.pause();
   return true;
 }
 
-bool Services::resume(std_srvs::Empty::Request&, std_srvs::Empty::Response&) {
+bool resume(Node& simulator, std_srvs::Empty::Request&, std_srvs::Empty::Response&) {
   // An exception's text reaches the caller, an answer without fields has no place for it.
-  if (!simulator_.resume()) throw std::runtime_error("not resumed: " + simulator_.run().failure);
+  if (!simulator.resume()) throw std::runtime_error("not resumed: " + simulator.run().failure);
   return true;
 }
 
-bool Services::reset(std_srvs::Empty::Request&, std_srvs::Empty::Response&) {
-  simulator_.reset();
+bool reset(Node& simulator, std_srvs::Empty::Request&, std_srvs::Empty::Response&) {
+  simulator.reset();
   return true;
 }
 
-bool Services::reset_with_clock(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
-  response.message = simulator_.reset_with_clock();
+bool reset_with_clock(Node& simulator, std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  response.message = simulator.reset_with_clock();
   response.success = response.message.empty();
   return true;
 }
 
-bool Services::reload(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+bool reload(Node& simulator, std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
   try {
-    simulator_.reload();
+    simulator.reload();
     response.success = true;
-    response.message = "scene '" + simulator_.simulation().scene().name + "'";
+    response.message = "scene '" + simulator.simulation().scene().name + "'";
   } catch (const std::exception& error) {
     response.message = error.what();
     ROS_WARN_STREAM("~reload: the scene stays as it was: " << error.what());
@@ -71,44 +59,44 @@ bool Services::reload(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& 
   return true;
 }
 
-bool Services::step(Step::Request& request, Step::Response& response) {
-  if (!simulator_.run().paused) {
+bool step(Node& simulator, Step::Request& request, Step::Response& response) {
+  if (!simulator.run().paused) {
     response.message = "the simulation runs; pause it first";
   } else if (request.steps > kMostSteps) {
     response.message = "more than " + std::to_string(kMostSteps) + " steps at once";
   } else {
-    response.success = simulator_.step(request.steps);
-    if (!response.success) response.message = simulator_.run().failure;
+    response.success = simulator.step(request.steps);
+    if (!response.success) response.message = simulator.run().failure;
   }
-  response.time = simulator_.simulation().time();
+  response.time = simulator.simulation().time();
   return true;
 }
 
-bool Services::save_state(SaveState::Request& request, SaveState::Response& response) {
-  simulator_.catch_up();
+bool save_state(Node& simulator, SaveState::Request& request, SaveState::Response& response) {
+  simulator.catch_up();
   try {
-    write_checkpoint(simulator_.simulation(), request.file);
+    write_checkpoint(simulator.simulation(), request.file);
     response.success = true;
     response.message = std::filesystem::absolute(request.file);
   } catch (const std::runtime_error& error) {
     response.message = error.what();
   }
-  response.time = simulator_.simulation().time();
+  response.time = simulator.simulation().time();
   return true;
 }
 
-bool Services::load_state(LoadState::Request& request, LoadState::Response& response) {
+bool load_state(Node& simulator, LoadState::Request& request, LoadState::Response& response) {
   try {
-    simulator_.load_state(request.file);
+    simulator.load_state(request.file);
     response.success = true;
   } catch (const std::runtime_error& error) {
     response.message = error.what();
   }
-  response.time = simulator_.simulation().time();
+  response.time = simulator.simulation().time();
   return true;
 }
 
-bool Services::set_joint_state(SetJointState::Request& request, SetJointState::Response& response) {
+bool set_joint_state(Node& simulator, SetJointState::Request& request, SetJointState::Response& response) {
   const std::size_t count = request.names.size();
   for (const std::vector<double>* values : {&request.positions, &request.velocities}) {
     if (values->empty() || values->size() == count) continue;
@@ -118,7 +106,7 @@ bool Services::set_joint_state(SetJointState::Request& request, SetJointState::R
   }
   std::vector<CoordinateState> coordinates;
   for (std::size_t i = 0; i < count; ++i) {
-    const std::optional<std::size_t> coordinate = simulator_.simulation().find_coordinate(request.names[i]);
+    const std::optional<std::size_t> coordinate = simulator.simulation().find_coordinate(request.names[i]);
     if (!coordinate) {
       response.message = "there is no joint coordinate '" + request.names[i] + "'";
       return true;
@@ -129,7 +117,7 @@ bool Services::set_joint_state(SetJointState::Request& request, SetJointState::R
     if (!request.velocities.empty()) wanted.velocity = request.velocities[i];
   }
   try {
-    simulator_.set_joint_state(coordinates);
+    simulator.set_joint_state(coordinates);
     response.success = true;
   } catch (const std::invalid_argument& error) {
     response.message = error.what();
@@ -137,14 +125,14 @@ bool Services::set_joint_state(SetJointState::Request& request, SetJointState::R
   return true;
 }
 
-bool Services::switch_mode(SwitchMode::Request& request, SwitchMode::Response& response) {
-  response.message = simulator_.switch_mode(request.names, request.modes);
+bool switch_mode(Node& simulator, SwitchMode::Request& request, SwitchMode::Response& response) {
+  response.message = simulator.switch_mode(request.names, request.modes);
   response.success = response.message.empty();
   return true;
 }
 
-bool Services::apply_wrench(ApplyWrench::Request& request, ApplyWrench::Response& response) {
-  const std::vector<std::string>& links = simulator_.simulation().link_names();
+bool apply_wrench(Node& simulator, ApplyWrench::Request& request, ApplyWrench::Response& response) {
+  const std::vector<std::string>& links = simulator.simulation().link_names();
   const auto link = std::find(links.begin(), links.end(), request.link);
   if (link == links.end()) {
     response.message = "there is no link '" + request.link + "'";
@@ -156,7 +144,7 @@ bool Services::apply_wrench(ApplyWrench::Request& request, ApplyWrench::Response
                                {messages::to_vector(request.wrench.force), messages::to_vector(request.wrench.torque)},
                                request.frame == "follower"};
     try {
-      simulator_.apply_wrench(wrench, request.start, request.duration.toSec());
+      simulator.apply_wrench(wrench, request.start, request.duration.toSec());
       response.success = true;
     } catch (const std::invalid_argument& error) {
       response.message = error.what();
@@ -165,9 +153,43 @@ bool Services::apply_wrench(ApplyWrench::Request& request, ApplyWrench::Response
   return true;
 }
 
-bool Services::clear_wrenches(std_srvs::Empty::Request&, std_srvs::Empty::Response&) {
-  simulator_.clear_wrenches();
+bool clear_wrenches(Node& simulator, std_srvs::Empty::Request&, std_srvs::Empty::Response&) {
+  simulator.clear_wrenches();
   return true;
+}
+
+template <class Request, class Response>
+ros::ServiceServer serve(ros::NodeHandle& private_node, const std::string& name, Node& simulator,
+                         bool (*answer)(Node&, Request&, Response&)) {
+  const boost::function<bool(Request&, Response&)> callback =
+      [&simulator, answer](Request& request, Response& response) { return answer(simulator, request, response); };
+  return private_node.advertiseService(name, callback);
+}
+
+}  // namespace
+
+Services::Services(ros::NodeHandle& private_node, Node& simulator) {
+  const auto add = [&](const std::string& name, auto answer) {
+    servers_.push_back(serve(private_node, name, simulator, answer));
+  };
+  add("pause", pause);
+  add("resume", resume);
+  add("reset", reset);
+  add("reset_with_clock", reset_with_clock);
+  add("reload", reload);
+  add("step", step);
+  add("save_state", save_state);
+  add("load_state", load_state);
+  add("set_joint_state", set_joint_state);
+  add("switch_mode", switch_mode);
+  add("apply_wrench", apply_wrench);
+  add("clear_wrenches", clear_wrenches);
+}
+
+std::vector<std::string> Services::names() const {
+  std::vector<std::string> names;
+  for (const ros::ServiceServer& server : servers_) names.push_back(server.getService());
+  return names;
 }
 
 }  // namespace flexarm::node

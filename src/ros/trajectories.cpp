@@ -10,6 +10,8 @@
 namespace flexarm::node {
 namespace {
 
+using End = TrajectoryAction::End;
+
 constexpr int kQueueSize = 10;
 constexpr double kFeedbackPeriod = 0.05;  ///< simulated [s]
 
@@ -47,11 +49,8 @@ Trajectories::Trajectories(ros::NodeHandle& node, const Simulation& shown, Stepp
       followed_(shown.coordinate_names().size()),
       subscriber_(node.subscribe("joint_trajectory", kQueueSize, &Trajectories::receive, this,
                                  ros::TransportHints().tcpNoDelay())),
-      server_(
-          node, "follow_joint_trajectory", [this](GoalHandle handle) { receive_goal(handle); },
-          [this](GoalHandle handle) { cancel(handle); }, false) {
-  server_.start();
-}
+      action_(node, {[this](const FollowJointTrajectoryGoal& message) { return follow_goal(message); },
+                     [this] { stop(goal_.joints); }}) {}
 
 template <class Change>
 void Trajectories::change(const Change& change) {
@@ -63,7 +62,7 @@ void Trajectories::change(const Change& change) {
 
 void Trajectories::judge(double now) {
   followed_.release_arrived(now);
-  if (!handle_) return;
+  if (!action_.is_underway()) return;
   using Verdict = TrajectoryGoal::Verdict;
   desired_.clear();
   actual_.clear();
@@ -72,7 +71,7 @@ void Trajectories::judge(double now) {
     actual_.push_back({shown_.position(joint), shown_.velocity(joint)});
   }
   const TrajectoryGoal::Judgement judgement = goal_.judge(now, desired_, actual_);
-  if (judgement.verdict == Verdict::Reached) return end_goal(Result::SUCCESSFUL, "", &GoalHandle::setSucceeded);
+  if (judgement.verdict == Verdict::Reached) return action_.end(End::Succeeded, Result::SUCCESSFUL, "");
   if (judgement.verdict == Verdict::Underway) return publish_feedback(now, desired_, actual_);
   const bool is_path = judgement.verdict == Verdict::OffPath;
   const std::string& name = shown_.coordinate_names()[goal_.joints[judgement.joint]];
@@ -80,7 +79,7 @@ void Trajectories::judge(double now) {
                                        is_path ? "off its path" : "not at its goal", judgement.error,
                                        judgement.quantity, judgement.allowed, shown_.time());
   const std::vector<std::size_t> joints = goal_.joints;
-  end_goal(is_path ? Result::PATH_TOLERANCE_VIOLATED : Result::GOAL_TOLERANCE_VIOLATED, text, &GoalHandle::setAborted);
+  action_.end(End::Aborted, is_path ? Result::PATH_TOLERANCE_VIOLATED : Result::GOAL_TOLERANCE_VIOLATED, text);
   stop(joints);
 }
 
@@ -90,14 +89,14 @@ void Trajectories::publish_feedback(double now, const std::vector<JointPoint>& d
   next_feedback_ = now + kFeedbackPeriod;
   FollowJointTrajectoryFeedback feedback;
   feedback.header.stamp = ros::Time::now();
-  feedback.joint_names = handle_->getGoal()->trajectory.joint_names;
+  feedback.joint_names = action_.goal().trajectory.joint_names;
   std::vector<JointPoint> error;
   for (std::size_t k = 0; k < desired.size(); ++k)
     error.push_back({desired[k].position - actual[k].position, desired[k].velocity - actual[k].velocity});
   feedback.desired = message_of(desired);
   feedback.actual = message_of(actual);
   feedback.error = message_of(error);
-  handle_->publishFeedback(feedback);
+  action_.publish_feedback(feedback);
 }
 
 void Trajectories::receive(const trajectory_msgs::JointTrajectory& message) {
@@ -105,36 +104,24 @@ void Trajectories::receive(const trajectory_msgs::JointTrajectory& message) {
   const Fault fault = follow(message, joints);
   if (!fault.is_none()) return context_.warn(fault.text);
   if (!stepping_.command_step()) context_.warn("it is followed, but more steps wait already than can be taken");
-  end_goal(Result::SUCCESSFUL, "another trajectory has replaced it", &GoalHandle::setCanceled);
+  action_.end(End::Canceled, Result::SUCCESSFUL, "another trajectory has replaced it");
 }
 
-void Trajectories::receive_goal(GoalHandle handle) {
-  const FollowJointTrajectoryGoal& message = *handle.getGoal();
+Trajectories::Result Trajectories::follow_goal(const FollowJointTrajectoryGoal& message) {
   TrajectoryGoal goal;
   const std::vector<std::string>& names = message.trajectory.joint_names;
   Fault fault{Result::INVALID_GOAL, read_tolerances(message.path_tolerance, names, goal.path)};
   if (fault.is_none()) fault.text = read_tolerances(message.goal_tolerance, names, goal.at_end);
   if (fault.is_none()) fault = follow(message.trajectory, goal.joints);
-  if (!fault.is_none()) {
-    Result result;
-    result.error_code = fault.code;
-    result.error_string = fault.text;
-    handle.setRejected(result, fault.text);
-    return;
-  }
-  end_goal(Result::SUCCESSFUL, "another goal has replaced it", &GoalHandle::setCanceled);
+  Result result;
+  result.error_code = fault.code;
+  result.error_string = fault.text;
+  if (!fault.is_none()) return result;
   for (const std::size_t joint : goal.joints) goal.end = std::max(goal.end, followed_.end(joint));
   goal.patience = std::max(message.goal_time_tolerance.toSec(), 0.0);
   goal_ = std::move(goal);
-  handle_ = handle;
-  handle_->setAccepted();
   next_feedback_ = 0;
-}
-
-void Trajectories::cancel(GoalHandle handle) {
-  if (!handle_ || handle != *handle_) return;
-  stop(goal_.joints);
-  end_goal(Result::SUCCESSFUL, "cancelled", &GoalHandle::setCanceled);
+  return result;
 }
 
 Trajectories::Fault Trajectories::follow(const trajectory_msgs::JointTrajectory& message,
@@ -182,27 +169,16 @@ void Trajectories::release(std::size_t coordinate, const std::string& reason) {
   if (!followed_.follows(coordinate)) return;
   change([&](TrajectoryFollower& follower, double, const Simulation&) { follower.release(coordinate); });
   const std::vector<std::size_t>& joints = goal_.joints;
-  if (!handle_ || std::find(joints.begin(), joints.end(), coordinate) == joints.end()) return;
+  if (!action_.is_underway() || std::find(joints.begin(), joints.end(), coordinate) == joints.end()) return;
   stop(joints);
-  end_goal(Result::INVALID_GOAL, reason, &GoalHandle::setAborted);
+  action_.end(End::Aborted, Result::INVALID_GOAL, reason);
 }
 
 void Trajectories::release_all(const std::string& reason) {
   change([&](TrajectoryFollower& follower, double, const Simulation&) {
     for (std::size_t joint = 0; joint < follower.joint_count(); ++joint) follower.release(joint);
   });
-  end_goal(Result::INVALID_GOAL, reason, &GoalHandle::setAborted);
-}
-
-void Trajectories::end_goal(int code, const std::string& text,
-                            void (GoalHandle::*end)(const Result&, const std::string&)) {
-  if (!handle_) return;
-  GoalHandle handle = *handle_;
-  handle_.reset();
-  Result result;
-  result.error_code = code;
-  result.error_string = text;
-  (handle.*end)(result, text);
+  action_.end(End::Aborted, Result::INVALID_GOAL, reason);
 }
 
 }  // namespace flexarm::node

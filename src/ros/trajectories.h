@@ -1,20 +1,18 @@
 #pragma once
 /// Trajectories of joints from a topic and an action.
 
-#include <actionlib/server/action_server.h>
-#include <flexarm/FollowJointTrajectoryAction.h>
 #include <ros/node_handle.h>
 #include <ros/subscriber.h>
 #include <trajectory_msgs/JointTrajectory.h>
 
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "flexarm/simulation/simulation.h"
 #include "stepping/stepping_thread.h"
 #include "stepping/trajectory_follower.h"
+#include "trajectory_action.h"
 #include "trajectory_goal.h"
 
 namespace flexarm::node {
@@ -45,9 +43,7 @@ class Trajectories {
   void release_all(const std::string& reason);
 
  private:
-  using Action = FollowJointTrajectoryAction;
   using Result = FollowJointTrajectoryResult;
-  using GoalHandle = actionlib::ActionServer<Action>::GoalHandle;
   /// Why a message is refused.
   struct Fault {
     int code = Result::SUCCESSFUL;
@@ -56,8 +52,8 @@ class Trajectories {
   };
 
   void receive(const trajectory_msgs::JointTrajectory& message);
-  void receive_goal(GoalHandle handle);
-  void cancel(GoalHandle handle);
+  /// @returns without a text: it is followed
+  Result follow_goal(const FollowJointTrajectoryGoal& message);
   /// Follows it, or says why not. Its joints, or those that stop, are in `joints`.
   Fault follow(const trajectory_msgs::JointTrajectory& message, std::vector<std::size_t>& joints);
   std::vector<std::size_t> moving_joints() const;
@@ -65,8 +61,6 @@ class Trajectories {
   /// Changes what is followed, between two steps.
   template <class Change>
   void change(const Change& change);
-  /// Ends the goal that is under way, if there is one. `end`: tells the client how.
-  void end_goal(int code, const std::string& text, void (GoalHandle::*end)(const Result&, const std::string&));
   void publish_feedback(double now, const std::vector<JointPoint>& desired, const std::vector<JointPoint>& actual);
 
   const Simulation& shown_;
@@ -75,9 +69,8 @@ class Trajectories {
   double stop_duration_;
   TrajectoryFollower followed_;  ///< a copy of what is followed, to be looked at while steps go on
   ros::Subscriber subscriber_;
-  actionlib::ActionServer<Action> server_;
-  std::optional<GoalHandle> handle_;  ///< of the goal under way
-  TrajectoryGoal goal_;
+  TrajectoryAction action_;
+  TrajectoryGoal goal_;                       ///< under way
   double next_feedback_ = 0;                  ///< [s]
   std::vector<JointPoint> desired_, actual_;  ///< scratch: of the goal's joints
 };
