@@ -1,6 +1,6 @@
 #include "bench/cost.h"
 
-#include "bench/processor_time.h"
+#include "accuracy/processor_time.h"
 #include "bench/scenes.h"
 
 namespace flexarm::bench {

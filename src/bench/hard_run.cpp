@@ -2,8 +2,8 @@
 #include <cstring>
 #include <new>
 
+#include "accuracy/processor_time.h"
 #include "bench/hard.h"
-#include "bench/processor_time.h"
 #include "flexarm/scene/scene_description.h"
 #include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/run_summary.h"

@@ -10,8 +10,8 @@
 
 #include <mujoco/mujoco.h>
 
+#include "accuracy/processor_time.h"
 #include "bench/mujoco.h"
-#include "bench/processor_time.h"
 
 namespace flexarm::bench {
 

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "bench/processor_time.h"
+#include "accuracy/processor_time.h"
 #include "bench/urdf.h"
 #include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/simulation.h"

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "accuracy/processor_time.h"
 #include "bench/effort_schedule.h"
-#include "bench/processor_time.h"
 #include "bench/speed.h"
 #include "flexarm/scene/urdf_reader.h"
 #include "flexarm/schemes/integrator_description.h"

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <map>
@@ -13,10 +12,10 @@
 #include "bench/thesis.h"
 #include "cli/commands.h"
 #include "cli/files.h"
+#include "cli/installation.h"
 #include "cli/interruption.h"
 #include "cli/progress_bar.h"
 #include "flexarm/schemes/integrator_description.h"
-#include "simulation/unfinished_file.h"
 
 namespace flexarm::cli {
 namespace {
@@ -31,54 +30,6 @@ struct Arguments {
   bool print_only = false;
   bool quick = false;
 };
-
-/// Whole, or what was there before stays.
-void write_file(const fs::path& path, const std::string& text) {
-  try {
-    UnfinishedFile(path.string(), text).put_in_place();
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error("'" + path.string() + "' " + error.what());
-  }
-}
-
-fs::path program_folder() {
-  std::error_code error;
-  return fs::read_symlink("/proc/self/exe", error).parent_path();
-}
-
-/// The first of these that is there.
-std::optional<fs::path> first_of(const std::vector<fs::path>& places) {
-  std::error_code error;
-  for (const fs::path& place : places)
-    if (fs::exists(place, error)) return place;
-  return std::nullopt;
-}
-
-/// A script that draws; installed next to the program, or in the source tree that it was built from.
-std::optional<fs::path> plot_script(const std::string& name) {
-  return first_of({program_folder() / name, fs::path(FLEXARM_SOURCE_DIR) / "scripts" / name});
-}
-
-/// The scenes that come with flexarm, or a folder of them: installed in <prefix>/share/flexarm, the program being in
-/// <prefix>/lib/flexarm.
-std::optional<fs::path> own_scenes(const std::string& folder = {}) {
-  const fs::path prefix = program_folder().parent_path().parent_path();
-  return first_of({prefix / "share/flexarm/config" / folder, fs::path(FLEXARM_SOURCE_DIR) / "config" / folder});
-}
-
-std::string quoted(const fs::path& path) {
-  std::string out = "'";
-  for (const char c : path.string()) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
-}
-
-/// False if this machine cannot draw.
-bool draw(const std::string& name, const fs::path& data, const fs::path& picture) {
-  const std::optional<fs::path> script = plot_script(name);
-  if (!script) return false;
-  const std::string command = "/usr/bin/python3 " + quoted(*script) + " " + quoted(data) + " " + quoted(picture);
-  return std::system(command.c_str()) == 0;
-}
 
 /// The file of a report, in a folder that is made. Minutes later would be a bad time to find out that it cannot be
 /// written; what is there stays until then.
@@ -108,8 +59,8 @@ class Progress {
 
 /// The folder of scenes that was named, or flexarm's own.
 fs::path scene_folder(const Arguments& arguments, const std::string& own) {
-  const std::optional<fs::path> scenes =
-      arguments.scenes.empty() ? own_scenes(own) : std::optional<fs::path>(arguments.scenes);
+  const std::optional<std::string> scenes =
+      arguments.scenes.empty() ? own_scenes(own) : std::optional<std::string>(arguments.scenes);
   if (!scenes) throw std::runtime_error("flexarm's scenes are not installed; name their folder by --scenes");
   return *scenes;
 }
@@ -125,10 +76,10 @@ int write_report(const Arguments& arguments, const std::string& name, const std:
     Progress progress;
     return measure([&](double part, const std::string& what) { progress(part, what); });
   }();
-  write_file(data, to_data(report));
-  const bool is_drawn = draw("plot_" + name + ".py", data, picture);
+  write_file(data.string(), to_data(report));
+  const bool is_drawn = draw("plot_" + name + ".py", data.string(), picture.string());
   if (!is_drawn) fmt::print(stderr, "flexarm: no picture: it needs python3-matplotlib\n");
-  write_file(file, bench::to_markdown(report, is_drawn ? picture.filename().string() : ""));
+  write_file(file.string(), bench::to_markdown(report, is_drawn ? picture.filename().string() : ""));
   fmt::print("{}\n", file.string());
   return kDone;
 }
@@ -154,11 +105,12 @@ int measure_thesis(const Arguments& arguments) {
   for (std::size_t e = 0; e < report.examples.size(); ++e) {
     const std::string stem = "thesis_" + report.examples[e].runs.front().scene.substr(0, 4);
     const fs::path data = folder / (stem + ".csv"), picture = folder / (stem + ".png");
-    write_file(data, bench::histories_to_csv(report.examples[e], report.outcomes[e]));
-    if (draw("plot_thesis.py", data, picture)) pictures[report.examples[e].number] = picture.filename().string();
+    write_file(data.string(), bench::histories_to_csv(report.examples[e], report.outcomes[e]));
+    if (draw("plot_thesis.py", data.string(), picture.string()))
+      pictures[report.examples[e].number] = picture.filename().string();
   }
   if (pictures.empty()) fmt::print(stderr, "flexarm: no pictures: they need python3-matplotlib\n");
-  write_file(file, bench::to_markdown(report, [&](const std::string& number) { return pictures[number]; }));
+  write_file(file.string(), bench::to_markdown(report, [&](const std::string& number) { return pictures[number]; }));
   fmt::print("{}\n", file.string());
   return kDone;
 }

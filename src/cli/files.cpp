@@ -4,10 +4,12 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
 #include "cli/commands.h"
+#include "simulation/unfinished_file.h"
 
 namespace flexarm::cli {
 namespace {
@@ -37,6 +39,14 @@ void require_writable(const std::string& option, const std::string& output) {
   if (!is_good)
     throw InputError(fmt::format("flexarm: {}: cannot write '{}': {}", option, output, std::strerror(reason)));
   if (is_new) fs::remove(output);
+}
+
+void write_file(const std::string& path, const std::string& text) {
+  try {
+    UnfinishedFile(path, text).put_in_place();
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error("'" + path + "' " + error.what());
+  }
 }
 
 }  // namespace flexarm::cli

@@ -3,7 +3,7 @@
 
 #include <ctime>
 
-namespace flexarm::bench {
+namespace flexarm {
 
 /// Of the calling thread, from some beginning [s].
 inline double processor_seconds() {
@@ -12,4 +12,4 @@ inline double processor_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-}  // namespace flexarm::bench
+}  // namespace flexarm

@@ -1,0 +1,65 @@
+#!/usr/bin/python3
+"""Draws speed over error of all runs that `flexarm tune` made of a scene: a colour per scheme, the best marked.
+
+plot_tuning.py DATA.csv PICTURE
+"""
+
+import csv
+import sys
+
+from headless_pyplot import pyplot
+
+# Errors of motions that have nothing to do with each other any more; their runs say nothing.
+LARGEST_ERROR = 1.0
+
+
+def read(path):
+    """Rows that came to their end and have an error."""
+    with open(path, newline="", encoding="utf-8") as file:
+        rows = [row for row in csv.DictReader(file) if not row["failure"] and row["role"] != "reference"]
+    for row in rows:
+        row["error"], row["times_real_time"] = float(row["error"]), float(row["times_real_time"])
+    return [row for row in rows if 0 < row["error"] <= LARGEST_ERROR and row["times_real_time"] > 0]
+
+
+def front(rows):
+    """Runs than which none is both faster and more accurate."""
+    points, fastest = [], 0
+    for row in sorted(rows, key=lambda row: row["error"]):
+        if row["times_real_time"] > fastest:
+            fastest = row["times_real_time"]
+            points.append((row["error"], fastest))
+    return points
+
+
+def main(data, picture):
+    rows = read(data)
+    figure, axes = pyplot.subplots(figsize=(7, 5))
+    schemes = []
+    for row in rows:
+        if row["scheme"] not in schemes:
+            schemes.append(row["scheme"])
+    for scheme in schemes:
+        points = [(row["error"], row["times_real_time"]) for row in rows if row["scheme"] == scheme]
+        axes.plot(*zip(*points), "o", markersize=3, alpha=0.6, label=scheme)
+    if rows:
+        axes.plot(*zip(*front(rows)), "-", color="grey", linewidth=1, label="best of all")
+    for role, marker, label in (("scene", "s", "the scene as it stands"), ("best", "*", "the tuned scene")):
+        points = [(row["error"], row["times_real_time"]) for row in rows if row["role"] == role]
+        if points:
+            axes.plot(*zip(*points), marker, color="black", markersize=10, linestyle="none", label=label)
+    axes.axhline(1, color="grey", linestyle=":", linewidth=1)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xlabel("error, relative to the largest displacement")
+    axes.set_ylabel("speed, times real time")
+    axes.grid(True, which="major", alpha=0.3)
+    axes.legend(fontsize="small")
+    figure.tight_layout()
+    figure.savefig(picture, dpi=90, metadata={"Software": None})
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    main(sys.argv[1], sys.argv[2])

@@ -1,0 +1,28 @@
+#pragma once
+/// elements="auto" where an accuracy is asked for: as few elements as keep it, beam by beam.
+
+#include <functional>
+#include <string>
+
+#include "accuracy/trial_runs.h"
+
+namespace flexarm {
+
+/// Of an accuracy, what meshes may be off where some are chosen for it; the rest is that of the steps.
+constexpr double kMeshShare = 0.5;
+
+struct AutomaticMeshes {
+  RunSettings settings;     ///< the scene's, with a number of elements for each beam that asks for "auto"
+  double error = 0;         ///< what the meshes of these do together, as estimated, relative
+  bool is_met = false;      ///< that is as small as was asked for
+  std::string shortcoming;  ///< why not
+  int runs = 0;
+  double seconds = 0;  ///< of the processor, of all of them
+};
+
+/// Beams keep their order, and those with a number of elements keep that: what these err is not looked at. Runs to the
+/// end of `trials`' time measure the errors in the judged points (mesh_errors.h). Nothing runs where no beam asks for
+/// "auto". `accuracy`: of space alone, relative to the largest displacement.
+AutomaticMeshes automatic_meshes(TrialRuns& trials, double accuracy);
+
+}  // namespace flexarm

@@ -1,0 +1,38 @@
+#pragma once
+/// What of a scene is chosen for an accuracy: the meshes of its beams, the scheme, its step, Newton's tolerance.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "flexarm/scene/scene_description.h"
+
+namespace flexarm {
+
+/// How finely a beam is divided.
+struct BeamResolution {
+  std::optional<int> elements;  ///< empty: "auto"; 0: the link is rigid
+  int order = 2;
+
+  /// "3 x 2", "auto x 2", "rigid".
+  std::string text() const;
+  bool operator<(const BeamResolution& other) const;
+  bool operator==(const BeamResolution& other) const;
+};
+
+struct RunSettings {
+  std::vector<BeamResolution> beams;  ///< of the links with beams, in the scene's order
+  std::string scheme;
+  double step = 0;       ///< [s]
+  double tolerance = 0;  ///< of Newton's method
+
+  std::string mesh() const;  ///< "3 x 2, rigid"; "–" without beams
+  bool operator<(const RunSettings& other) const;
+};
+
+RunSettings settings_of(const scene::SceneDescription& scene);
+/// The scene with these in place of its own; options of <integrator> that another scheme does not take are forgotten.
+/// @throws std::invalid_argument unless there is one resolution for each beam.
+scene::SceneDescription with_settings(scene::SceneDescription scene, const RunSettings& settings);
+
+}  // namespace flexarm

@@ -1,0 +1,363 @@
+#include "accuracy/tuning.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "accuracy/candidates.h"
+#include "schemes/scheme.h"
+
+namespace flexarm {
+namespace {
+
+/// Of the accuracy, what is aimed at: estimates are a few per cent off.
+constexpr double kShare = 0.9;
+/// Relative errors of pilots: their steps need not be finer to measure meshes.
+constexpr double kPilotError = 0.02;
+const BeamResolution kPilotMesh{2, 3};
+/// Of the accuracy, what the reference may be off.
+constexpr double kReferenceShare = 0.1;
+constexpr double kReferenceTolerance = 1e-9;
+/// Accuracies by which runs become finer where a speed is asked for.
+constexpr double kAccuracies[] = {0.1, 0.03, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
+/// Newton's tolerances; what an iteration leaves is at most their square (docs/schemes.md).
+constexpr double kTolerances[] = {1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2};
+
+constexpr std::size_t kFinalists = 6;
+constexpr int kTries = 5;    // of steps, for each of them
+constexpr int kTimings = 3;  // repetitions, and how many of the best
+/// Runs that take so much longer than the best are given up.
+constexpr double kHopeless = 1.3;
+/// A step that is so near the one wanted is good enough.
+constexpr double kCloseEnough = 0.95;
+/// By which the number of steps changes at most, squared.
+constexpr double kSteepest = 16;
+
+/// One that is far from being felt: a thousand steps leave a hundredth of the accuracy.
+double tolerance_for(double accuracy) {
+  double tolerance = kTolerances[0];
+  for (const double next : kTolerances)
+    if (1000 * next * next <= 0.0101 * accuracy) tolerance = next;
+  return tolerance;
+}
+
+/// The search, stage by stage; what it has come to can be taken at any time.
+class Search {
+ public:
+  Search(TrialRuns& trials, const TuningGoal& goal, const TuningFreedom& freedom, const TuningProgress& progress)
+      : trials_(trials), goal_(goal), freedom_(freedom), progress_(progress) {}
+
+  /// @throws SearchEnded
+  void run();
+  /// `ended`: why before its end; empty: it was not.
+  TuningResult result(const std::string& ended);
+
+ private:
+  // stages
+  void look_at_scene();
+  void measure(double accuracy);
+  double measure_for_load();
+  void make_reference(double accuracy);
+  void try_finalists(double accuracy);
+  void loosen_tolerance();
+  void time_finalists();
+
+  void fit_error(RunSettings settings);
+  void fit_load(RunSettings settings);
+  RunSettings own() const { return settings_of(trials_.scene()); }
+  RunSettings settings_for(const Candidate& candidate) const;
+
+  double most_seconds() const {
+    return goal_.load ? *goal_.load * trials_.times().until() : std::numeric_limits<double>::infinity();
+  }
+  /// What is asked for, less what the reference may be off.
+  double most_error() const { return std::max(*goal_.accuracy - reference_error_, 0.5 * *goal_.accuracy); }
+  double error(const TrialRun& run) const;
+  double seconds_of(const TrialRun& run) const;
+  bool is_good(const TrialRun& run) const;
+  bool is_better(const TrialRun& a, const TrialRun& b) const;
+  const TrialRun* best() const;
+  const TrialRun* most_accurate() const;
+  const TrialRun* finest() const;
+
+  TrialRuns& trials_;
+  const TuningGoal& goal_;
+  const TuningFreedom& freedom_;
+  const TuningProgress& progress_;
+  const TrialRun* as_it_stands_ = nullptr;
+  const TrialRun* reference_ = nullptr;
+  CandidatePool pool_;
+  double reference_error_ = 0, tolerance_ = 0;
+  std::map<const TrialRun*, std::vector<double>> times_;
+  std::vector<std::string> shortcomings_;
+};
+
+double Search::error(const TrialRun& run) const {
+  return motion_error(run.motion, reference_->motion, reference_->motion.largest_displacement());
+}
+
+bool Search::is_good(const TrialRun& run) const {
+  if (!run.is_complete() || !reference_ || &run == reference_) return false;
+  if (goal_.load) return seconds_of(run) <= most_seconds();
+  return error(run) <= most_error();
+}
+
+bool Search::is_better(const TrialRun& a, const TrialRun& b) const {
+  return goal_.load ? error(a) < error(b) : seconds_of(a) < seconds_of(b);
+}
+
+const TrialRun* Search::best() const {
+  const TrialRun* found = nullptr;
+  for (const TrialRun& run : trials_.all())
+    if (is_good(run) && (!found || is_better(run, *found))) found = &run;
+  return found;
+}
+
+void Search::look_at_scene() {
+  progress_(0, "the scene as it stands");
+  as_it_stands_ = &trials_.run(own());
+  if (!as_it_stands_->is_complete()) shortcomings_.push_back("the scene as it stands: " + as_it_stands_->failure);
+}
+
+/// Errors of meshes and steps, as fine as the accuracy needs.
+void Search::measure(double accuracy) {
+  RunSettings settings = own();
+  const std::vector<std::string> schemes = schemes_alike(trials_.scene().integrator, freedom_.any_scheme);
+  settings.tolerance = tolerance_ = tolerance_for(accuracy);
+  // Steps on a mesh of which none can be far off, for the pilots' step; then meshes with that; then steps on the mesh.
+  progress_(0.1, "steps");
+  MeshFreedom meshes{{}, freedom_.rigid_beams, false};
+  for (BeamResolution& beam : settings.beams) {
+    meshes.is_free.push_back(freedom_.all_meshes || !beam.elements);
+    if (meshes.is_free.back()) beam = kPilotMesh;
+  }
+  const StepErrors pilot = measure_steps(trials_, settings, std::max(kPilotError, accuracy), most_seconds());
+  if (!pilot.has_errors()) throw SearchEnded("no run comes to its end: " + pilot.shortcoming);
+  const double scale = pilot.runs.back()->motion.largest_displacement();
+  if (!moves(pilot.runs.back()->motion)) throw SearchEnded("nothing moves that could be judged");
+  settings.step = pilot.settings.step;
+  progress_(0.2, "meshes");
+  const MeshErrors mesh_errors = measure_meshes(trials_, settings, meshes, kReferenceShare * accuracy * scale);
+  if (!mesh_errors.is_rich_enough) shortcomings_.push_back("meshes: " + mesh_errors.shortcoming);
+  settings.beams = cheapest_mesh(mesh_choices(mesh_errors), 0.5 * accuracy * scale).beams;
+  std::vector<StepErrors> steps;
+  for (const std::string& scheme : schemes) {
+    progress_(0.4 + 0.3 * static_cast<double>(steps.size()) / static_cast<double>(schemes.size()),
+              "steps of " + scheme);
+    settings.scheme = scheme;
+    StepErrors errors = measure_steps(trials_, settings, 0.3 * accuracy, most_seconds());
+    if (!errors.is_met && scheme == schemes.front()) shortcomings_.push_back("steps: " + errors.shortcoming);
+    if (errors.has_errors()) steps.push_back(std::move(errors));
+  }
+  pool_ = CandidatePool(mesh_errors, std::move(steps), trials_.all(), scale, trials_.times().intervals);
+}
+
+/// Measures as finely as the speed lets a run be; how fine that is.
+double Search::measure_for_load() {
+  double found = kAccuracies[0];
+  for (const double accuracy : kAccuracies) {
+    shortcomings_.clear();
+    measure(accuracy);
+    const std::vector<Candidate> best = pool_.most_accurate(most_seconds());
+    if (best.empty() || best.front().error > accuracy) break;
+    found = best.front().error;
+  }
+  return found;
+}
+
+/// As much finer than what is asked for as needed to judge it.
+void Search::make_reference(double accuracy) {
+  progress_(0.7, "reference");
+  const Candidate finer = pool_.reference(kReferenceShare * accuracy);
+  RunSettings settings = settings_for(finer);
+  settings.tolerance = std::min(settings.tolerance, kReferenceTolerance);
+  const TrialRun& run = trials_.run(settings);
+  if (!run.is_complete()) throw SearchEnded("the reference fails: " + run.failure);
+  reference_ = &run;
+  reference_error_ = finer.error;
+}
+
+RunSettings Search::settings_for(const Candidate& candidate) const {
+  RunSettings settings = own();
+  settings.beams = candidate.beams;
+  settings.scheme = candidate.scheme;
+  settings.step = trials_.times().interval / candidate.parts;
+  settings.tolerance = tolerance_;
+  return settings;
+}
+
+/// Lengthens or shortens the step until the run just keeps the accuracy.
+void Search::fit_error(RunSettings settings) {
+  const double interval = trials_.times().interval;
+  int good = std::numeric_limits<int>::max(), bad = 0, parts = static_cast<int>(std::lround(interval / settings.step));
+  for (int i = 0; i < kTries && parts > bad && parts < good; ++i) {
+    settings.step = interval / parts;
+    const TrialRun* known = best();
+    const TrialRun& run = trials_.run(settings, known ? kHopeless * known->seconds + 0.01 : most_seconds());
+    if (run.is_given_up) return;
+    const double off = run.is_complete() ? error(run) / most_error() : kSteepest;
+    (off <= 1 ? good : bad) = parts;
+    const double factor = std::sqrt(std::clamp(off, 1 / kSteepest, kSteepest));
+    const int next = static_cast<int>(std::ceil(parts * factor));
+    if (off <= 1 && next >= kCloseEnough * parts) return;
+    parts = std::clamp(next, bad + 1, good - 1);
+  }
+}
+
+/// The same until the run just keeps the speed.
+void Search::fit_load(RunSettings settings) {
+  const double interval = trials_.times().interval;
+  int parts = static_cast<int>(std::lround(interval / settings.step));
+  for (int i = 0; i < kTries; ++i) {
+    settings.step = interval / parts;
+    const TrialRun& run = trials_.run(settings, 2 * most_seconds());
+    const int next = std::max(1, static_cast<int>(parts * most_seconds() / std::max(run.seconds, 1e-6)));
+    if (!run.is_complete() || next == parts || (next > parts && kCloseEnough * next < parts)) return;
+    parts = next;
+  }
+}
+
+void Search::try_finalists(double accuracy) {
+  const std::vector<Candidate> candidates =
+      goal_.load ? pool_.most_accurate(most_seconds()) : pool_.cheapest(kShare * accuracy);
+  for (std::size_t i = 0; i < std::min(candidates.size(), kFinalists); ++i) {
+    progress_(0.75 + 0.1 * static_cast<double>(i) / kFinalists, "finalists");
+    goal_.load ? fit_load(settings_for(candidates[i])) : fit_error(settings_for(candidates[i]));
+  }
+}
+
+/// As long as that makes the best run better. In the time that it saves there is room for smaller steps.
+void Search::loosen_tolerance() {
+  for (const double tolerance : kTolerances) {
+    const TrialRun* before = best();
+    if (!before) return;
+    if (before->settings.tolerance >= tolerance) continue;
+    progress_(0.87, "tolerances");
+    RunSettings settings = before->settings;
+    settings.tolerance = tolerance;
+    goal_.load ? fit_load(settings) : fit_error(settings);
+    if (best()->settings.tolerance < tolerance) return;
+  }
+}
+
+/// Times of the best and of the scene as it stands, in turns: medians.
+void Search::time_finalists() {
+  std::vector<const TrialRun*> good;
+  for (const TrialRun& run : trials_.all())
+    if (is_good(run)) good.push_back(&run);
+  std::sort(good.begin(), good.end(), [&](const TrialRun* a, const TrialRun* b) { return is_better(*a, *b); });
+  good.resize(std::min<std::size_t>(good.size(), kTimings));
+  if (as_it_stands_ && as_it_stands_->is_complete() && std::count(good.begin(), good.end(), as_it_stands_) == 0)
+    good.push_back(as_it_stands_);
+  for (int i = 0; i < kTimings; ++i)
+    for (const TrialRun* run : good) {
+      progress_(0.9 + 0.1 * i / kTimings, "times");
+      std::vector<double>& times = times_[run];
+      times.push_back(i == 0 ? run->seconds : trials_.time_again(run->settings));
+    }
+}
+
+void Search::run() {
+  look_at_scene();
+  double accuracy = goal_.accuracy.value_or(0);
+  if (goal_.load)
+    accuracy = measure_for_load();
+  else
+    measure(kShare * accuracy);
+  make_reference(accuracy);
+  try_finalists(accuracy);
+  loosen_tolerance();
+  time_finalists();
+}
+
+double Search::seconds_of(const TrialRun& run) const {
+  const auto found = times_.find(&run);
+  if (found == times_.end()) return run.seconds;
+  std::vector<double> times = found->second;
+  std::nth_element(times.begin(), times.begin() + static_cast<long>(times.size()) / 2, times.end());
+  return times[times.size() / 2];
+}
+
+/// What was reached where nothing keeps what was asked for.
+const TrialRun* Search::most_accurate() const {
+  const TrialRun* found = nullptr;
+  for (const TrialRun& run : trials_.all())
+    if (run.is_complete() && &run != reference_ && (!found || error(run) < error(*found))) found = &run;
+  return found;
+}
+
+/// What comes nearest to a reference where none was made.
+const TrialRun* Search::finest() const {
+  const auto effort = [](const TrialRun& run) {
+    return static_cast<double>(run.iterations) * mesh_cost(run.settings.beams);
+  };
+  const TrialRun* found = nullptr;
+  for (const TrialRun& run : trials_.all())
+    if (run.is_complete() && (!found || effort(run) > effort(*found))) found = &run;
+  return found;
+}
+
+TuningResult Search::result(const std::string& ended) {
+  TuningResult out;
+  out.seconds = trials_.seconds();
+  if (reference_) {
+    out.reference = reference_->settings;
+    out.reference_error = reference_error_;
+  } else {
+    reference_ = finest();
+  }
+  const TrialRun* chosen = reference_ ? best() : nullptr;
+  out.is_met = chosen != nullptr;
+  if (reference_ && !chosen) chosen = most_accurate();
+  if (out.is_met) shortcomings_.clear();  // of the way to it
+  if (!ended.empty()) shortcomings_.push_back(ended);
+  if (reference_ && !out.reference)
+    shortcomings_.emplace_back("no reference was made: errors are against the finest run");
+  for (const TrialRun& run : trials_.all()) {
+    const double off = run.is_complete() ? error(run) : 0;
+    TunedRun row{run.settings, seconds_of(run), times_.count(&run) > 0, run.steps, run.iterations, run.unknowns,
+                 off,          run.failure};
+    if (&run == chosen) out.best = out.runs.size();
+    out.runs.push_back(std::move(row));
+  }
+  if (reference_) out.scale = reference_->motion.largest_displacement();
+  if (chosen) out.estimate = pool_.predicted_error(chosen->settings, trials_.times());
+  out.shortcoming = fmt::format("{}", fmt::join(shortcomings_, "; "));
+  return out;
+}
+
+}  // namespace
+
+TuningResult tune(TrialRuns& trials, const TuningGoal& goal, const TuningFreedom& freedom,
+                  const TuningProgress& progress) {
+  Search search(trials, goal, freedom, progress);
+  try {
+    search.run();
+  } catch (const SearchEnded& ended) {
+    return search.result(ended.what());
+  }
+  return search.result("");
+}
+
+std::vector<std::string> schemes_alike(const IntegratorDescription& integrator, bool any) {
+  const Scheme own = make_scheme(integrator);
+  std::vector<std::string> names = {integrator.scheme};
+  const auto is_alike = [&](const Scheme& other) {
+    const bool is_plain = !own.conserves_energy && !(own.name == "em0");
+    if (is_plain) return false;  // its dissipation, or what is to be studied, is what the scene wants
+    return other.conserves_momenta && (other.conserves_energy || !own.conserves_energy);
+  };
+  for (const char* name : {"em", "em0", "em_scaled", "em4"}) {
+    if (own.name == name || integrator.scheme == name) continue;
+    if (any || is_alike(*find_scheme(name))) names.emplace_back(name);
+  }
+  if (any)
+    for (const char* name : {"edmc2", "newmark", "m1"})
+      if (own.name != name) names.emplace_back(name);
+  return names;
+}
+
+}  // namespace flexarm

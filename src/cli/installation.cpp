@@ -1,0 +1,47 @@
+#include "cli/installation.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <vector>
+
+namespace flexarm::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path program_folder() {
+  std::error_code error;
+  return fs::read_symlink("/proc/self/exe", error).parent_path();
+}
+
+/// The first of these that is there.
+std::optional<std::string> first_of(const std::vector<fs::path>& places) {
+  std::error_code error;
+  for (const fs::path& place : places)
+    if (fs::exists(place, error)) return place.string();
+  return std::nullopt;
+}
+
+std::string quoted(const std::string& path) {
+  std::string out = "'";
+  for (const char c : path) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+}  // namespace
+
+std::optional<std::string> own_scenes(const std::string& folder) {
+  // The program is in <prefix>/lib/flexarm.
+  const fs::path prefix = program_folder().parent_path().parent_path();
+  return first_of({prefix / "share/flexarm/config" / folder, fs::path(FLEXARM_SOURCE_DIR) / "config" / folder});
+}
+
+bool draw(const std::string& script, const std::string& data, const std::string& picture) {
+  const std::optional<std::string> path =
+      first_of({program_folder() / script, fs::path(FLEXARM_SOURCE_DIR) / "scripts" / script});
+  if (!path) return false;
+  const std::string command = "/usr/bin/python3 " + quoted(*path) + " " + quoted(data) + " " + quoted(picture);
+  return std::system(command.c_str()) == 0;
+}
+
+}  // namespace flexarm::cli

@@ -1,0 +1,15 @@
+#pragma once
+/// What lies beside the program, where it is installed and in the source tree that it was built from.
+
+#include <optional>
+#include <string>
+
+namespace flexarm::cli {
+
+/// The scenes that come with flexarm, or a folder of them; empty: they are not installed.
+std::optional<std::string> own_scenes(const std::string& folder = {});
+
+/// Runs a script that draws `picture` of the file `data`; false if this machine cannot.
+bool draw(const std::string& script, const std::string& data, const std::string& picture);
+
+}  // namespace flexarm::cli

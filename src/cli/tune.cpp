@@ -1,0 +1,154 @@
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "accuracy/tuning.h"
+#include "bench/effort_schedule.h"
+#include "cli/commands.h"
+#include "cli/files.h"
+#include "cli/installation.h"
+#include "cli/interruption.h"
+#include "cli/progress_bar.h"
+#include "cli/scene_input.h"
+#include "cli/tuned_scene.h"
+#include "cli/tuning_table.h"
+
+namespace flexarm::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  SceneInput scene;
+  std::string output, commands;
+  std::optional<double> accuracy, real_time;
+  double margin = 1.5;
+  double until = 10;  // s
+  TuningFreedom freedom;
+  TrialLimits limits;
+};
+
+/// Times at which motions are compared, at most.
+constexpr int kJudgedTimes = 150;
+
+/// STEM_tuned.urdf, in the folder of now.
+std::string output_of(const Arguments& arguments) {
+  const fs::path scene = arguments.scene.path;
+  return !arguments.output.empty() ? arguments.output : scene.stem().string() + "_tuned" + scene.extension().string();
+}
+
+std::string text_of(const std::string& path) {
+  std::stringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+/// The scene, when a simulation of it can be built.
+scene::SceneDescription read(const SceneInput& input) {
+  return load_simulation(input).scene();
+}
+
+std::function<StepCommand(const Simulation&)> commands_of(const std::string& path) {
+  if (path.empty()) return {};
+  return [pulses = bench::read_effort_schedule(path).pulses](const Simulation& simulation) {
+    return [player = bench::EffortPlayer(pulses, simulation)](Simulation& commanded) { player.command(commanded); };
+  };
+}
+
+void check(const Arguments& arguments) {
+  if (arguments.accuracy.has_value() == arguments.real_time.has_value())
+    throw InputError("flexarm: tune: either --accuracy or --real-time is expected");
+  const std::string output = output_of(arguments);
+  if (is_standard_output(output))
+    throw InputError("flexarm: --output: the tuned scene is a file: './-' is one of that name");
+  refuse_overwriting("--output", output, arguments.scene.path);
+  require_writable("--output", output);
+}
+
+TuningResult search(const Arguments& arguments, TrialRuns& trials) {
+  ProgressBar bar(0, 1, true);
+  TuningGoal goal;
+  goal.accuracy = arguments.accuracy;
+  if (arguments.real_time) goal.load = 1 / (*arguments.real_time * arguments.margin);
+  return tune(trials, goal, arguments.freedom, [&](double part, const std::string& what) { bar.show(part, what); });
+}
+
+/// What was asked for and what was found, in sentences.
+void print_result(const Arguments& arguments, const TuningResult& result, const JudgedTimes& times) {
+  fmt::print("{}", tuning_table(result, times));
+  if (!result.shortcoming.empty()) fmt::print("{}\n", result.shortcoming);
+  fmt::print("{} runs, {:.3g} s of computing\n", result.runs.size(), result.seconds);
+  if (!result.best) return;
+  const TunedRun& best = result.runs[*result.best];
+  fmt::print("error: {:.3g} as estimated, {:.3g} against the reference", result.estimate, best.error);
+  if (result.reference) fmt::print(", which is {:.2g} off itself", result.reference_error);
+  fmt::print("; 1 is {:.4g} m\n", result.scale);
+  fmt::print("{:.3g} times real time\n", times.until() / best.seconds);
+  if (!result.is_met)
+    fmt::print("{} cannot be met; this is the most accurate that was found\n",
+               arguments.accuracy ? fmt::format("an error of {:g}", *arguments.accuracy)
+                                  : fmt::format("{:g} times real time", *arguments.real_time));
+}
+
+int tune_scene(const Arguments& arguments) {
+  check(arguments);
+  const scene::SceneDescription scene = read(arguments.scene);
+  catch_interruptions();
+  const JudgedTimes times = judged_times(arguments.until, scene.integrator.step, kJudgedTimes);
+  TrialRuns trials(scene, times, arguments.limits, commands_of(arguments.commands), [] { return interruption() == 0; });
+  const TuningResult result = search(arguments, trials);
+  print_result(arguments, result, times);
+
+  const fs::path output = output_of(arguments);
+  const std::string data = fs::path(output).replace_extension(".csv").string(),
+                    picture = fs::path(output).replace_extension(".png").string();
+  write_file(data, tuning_csv(result, times));
+  if (result.is_met) {
+    write_file(output.string(), tuned_text(text_of(arguments.scene.path), scene, result.runs[*result.best].settings));
+    fmt::print("{}\n", output.string());
+  }
+  fmt::print("{}\n", data);
+  if (draw("plot_tuning.py", data, picture))
+    fmt::print("{}\n", picture);
+  else
+    fmt::print(stderr, "flexarm: no picture: it needs python3-matplotlib\n");
+  if (interruption() != 0)
+    throw Interrupted(result.is_met ? "interrupted; the best so far is kept" : "interrupted; no scene is written");
+  return result.is_met ? kDone : kFailed;
+}
+
+}  // namespace
+
+void add_tune(CLI::App& app, int& status) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand(
+      "tune",
+      "Finds the cheapest meshes, scheme, step and tolerance for an accuracy, or the most accurate for a speed");
+  add_scene(*command, arguments->scene);
+  command->add_option("--accuracy", arguments->accuracy, "error of the probes, relative to their largest displacement")
+      ->check(check_positive);
+  command->add_option("--real-time", arguments->real_time, "as accurate as this many times real time leave room for")
+      ->check(check_positive);
+  command->add_option("--margin", arguments->margin, "of --real-time: how many times faster it shall be")
+      ->capture_default_str()
+      ->check(check_positive);
+  command->add_option("--until", arguments->until, "end of the motion that is looked at [s]")
+      ->capture_default_str()
+      ->check(check_positive);
+  command->add_option("--commands", arguments->commands, "file of efforts, as config/demo_commands.yaml is one")
+      ->check(CLI::ExistingFile);
+  command->add_flag("--any-scheme", arguments->freedom.any_scheme,
+                    "also such that do not conserve what the scene's scheme does");
+  command->add_option("--budget", arguments->limits.seconds, "time of the processor that the search may take [s]")
+      ->capture_default_str()
+      ->check(check_positive);
+  command->add_option("--output", arguments->output,
+                      "file for the tuned scene (SCENE_tuned.urdf); a table and a picture go beside it");
+  command->callback([arguments, &status] { status = tune_scene(*arguments); });
+}
+
+}  // namespace flexarm::cli

@@ -1,0 +1,119 @@
+#include "accuracy/mesh_errors.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "accuracy/automatic_meshes.h"
+#include "accuracy/ramped_cantilever.h"
+
+namespace flexarm {
+namespace {
+
+using test::kRampRms;
+using test::linear_element_error;
+using test::ramped_cantilever;
+
+constexpr JudgedTimes kTimes{0.02, 50};
+constexpr double kWay = 0.01;  // of the tip [m]
+
+MeshErrors measured(TrialRuns& trials, double wanted) {
+  RunSettings settings = settings_of(trials.scene());
+  MeshFreedom freedom;
+  freedom.is_free = {true};
+  freedom.keeps_orders = true;
+  return measure_meshes(trials, settings, freedom, wanted * kWay);
+}
+
+// What is left out there: large rotations, (0.01)^2, inertia, 1e-4, shear, 3e-5, the step, (pi h / T)^2 / 12 = 1e-4.
+constexpr double kLeftOut = 1e-3;
+
+TEST(MeshErrors, AreThoseOfTheDeflection) {
+  TrialRuns trials(ramped_cantilever("order=\"1\""), kTimes, {}, {}, {});
+  const MeshErrors errors = measured(trials, 1e-3);
+  EXPECT_TRUE(errors.is_rich_enough) << errors.shortcoming;
+  ASSERT_EQ(errors.beams.size(), 1u);
+  ASSERT_GT(errors.beams[0].size(), 4u);
+  for (const MeshError& mesh : errors.beams[0]) {
+    const double expected = linear_element_error(*mesh.mesh.elements) * kRampRms;
+    EXPECT_NEAR(size(mesh.error) / kWay, expected, kLeftOut * (expected + kRampRms)) << mesh.mesh.text();
+  }
+  // Two of the meshes, the finest, are good enough: errors below 1e-3 of 8 elements and more.
+  EXPECT_LE(size(errors.beams[0].back().error), 1e-3 * kWay);
+}
+
+/// Elements of order 2 and more have a static tip exactly: of the cubic deflection a mesh sees every node.
+TEST(MeshErrors, VanishWhereElementsAreExact) {
+  for (const char* mesh : {"order=\"2\"", "order=\"3\""}) {
+    TrialRuns trials(ramped_cantilever(mesh), kTimes, {}, {}, {});
+    const MeshErrors errors = measured(trials, 1e-2);
+    for (const MeshError& error : errors.beams.at(0))
+      EXPECT_LE(size(error.error), kLeftOut * kWay) << error.mesh.text();
+  }
+}
+
+TEST(MeshErrors, OfARigidBeamAreAllThatItBends) {
+  TrialRuns trials(ramped_cantilever(""), kTimes, {}, {}, {});
+  RunSettings settings = settings_of(trials.scene());
+  const MeshErrors errors = measure_meshes(trials, settings, {{true}, true, false}, 1e-3 * kWay);
+  const auto& beam = errors.beams.at(0);
+  const auto rigid =
+      std::find_if(beam.begin(), beam.end(), [](const MeshError& mesh) { return mesh.mesh.elements == 0; });
+  ASSERT_NE(rigid, beam.end());
+  EXPECT_NEAR(size(rigid->error) / kWay, kRampRms, 2 * kLeftOut * kRampRms);
+}
+
+TEST(MeshErrors, ChoicesGetBetterAndDearer) {
+  TrialRuns trials(ramped_cantilever("order=\"1\""), kTimes, {}, {}, {});
+  const std::vector<MeshChoice> choices = mesh_choices(measured(trials, 1e-3));
+  for (std::size_t i = 1; i < choices.size(); ++i) {
+    EXPECT_LT(size(choices[i].error), size(choices[i - 1].error));
+    EXPECT_GT(choices[i].cost, choices[i - 1].cost);
+  }
+  EXPECT_EQ(cheapest_mesh(choices, 1).beams, choices.front().beams);
+  EXPECT_EQ(cheapest_mesh(choices, 0).beams, choices.back().beams);
+}
+
+TEST(MeshErrors, OfASceneWithoutBeamsAreNone) {
+  const MeshErrors none;
+  const std::vector<MeshChoice> choices = mesh_choices(none);
+  ASSERT_EQ(choices.size(), 1u);
+  EXPECT_TRUE(choices[0].beams.empty());
+  EXPECT_EQ(size(choices[0].error), 0);
+}
+
+// ---------------------------------------------------------------- elements="auto"
+
+TEST(AutomaticMeshes, AreTheFewestElements) {
+  TrialRuns trials(ramped_cantilever("elements=\"auto\" order=\"1\""), kTimes, {}, {}, {});
+  for (const double accuracy : {5e-2, 1e-2, 1e-3}) {
+    const AutomaticMeshes meshes = automatic_meshes(trials, accuracy);
+    EXPECT_TRUE(meshes.is_met) << meshes.shortcoming;
+    const int n = meshes.settings.beams.at(0).elements.value();
+    EXPECT_EQ(meshes.settings.beams[0].order, 1);
+    EXPECT_LE(linear_element_error(n) * kRampRms, accuracy);
+    // The next coarser mesh that is tried has at least two thirds of the elements.
+    ASSERT_GT(n, 1);
+    EXPECT_GT(linear_element_error(2 * n / 3) * kRampRms, 0.8 * accuracy) << n;
+  }
+}
+
+TEST(AutomaticMeshes, LeaveNumbersOfElementsAlone) {
+  TrialRuns trials(ramped_cantilever("elements=\"2\" order=\"1\""), kTimes, {}, {}, {});
+  const AutomaticMeshes meshes = automatic_meshes(trials, 1e-3);
+  EXPECT_TRUE(meshes.is_met);
+  EXPECT_EQ(meshes.runs, 0);
+  EXPECT_EQ(meshes.settings.beams.at(0).elements, 2);
+}
+
+TEST(AutomaticMeshes, EndWhereTheirRunsAreUsedUp) {
+  TrialLimits limits;
+  limits.runs = 4;
+  TrialRuns trials(ramped_cantilever("elements=\"auto\" order=\"1\""), kTimes, limits, {}, {});
+  const AutomaticMeshes meshes = automatic_meshes(trials, 1e-9);
+  EXPECT_FALSE(meshes.is_met);
+  EXPECT_NE(meshes.shortcoming.find("4 runs"), std::string::npos) << meshes.shortcoming;
+}
+
+}  // namespace
+}  // namespace flexarm
