@@ -10,6 +10,7 @@
 #include "cli/commands.h"
 #include "cli/files.h"
 #include "cli/interruption.h"
+#include "cli/mesh_choice.h"
 #include "cli/progress_bar.h"
 #include "flexarm/accuracy/accurate_run.h"
 #include "flexarm/scene/scene_description.h"
@@ -96,8 +97,10 @@ std::optional<double> wanted_accuracy(const SimulateArguments& arguments, const 
 
 Run run_accurately(SimulateArguments arguments, double accuracy, Simulation& simulation, bool& is_met) {
   check(arguments);
+  bool are_meshes_good = true;
+  const double of_steps = choose_meshes(arguments, accuracy, simulation, are_meshes_good);
   arguments.estimates_error = true;  // each try has an estimate anyway
-  const AccuracyRequest request = request_of(arguments, accuracy, simulation);
+  const AccuracyRequest request = request_of(arguments, of_steps, simulation);
   const auto start = std::chrono::steady_clock::now();
   Run run{{}, RunSummary(simulation)};
   TryOutput output(arguments, run, simulation.time());
@@ -110,9 +113,10 @@ Run run_accurately(SimulateArguments arguments, double accuracy, Simulation& sim
   output.close(simulation);
   run.last = result.last;
   run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  is_met = result.end == AccurateRun::End::Met;
+  const bool are_steps_good = result.end == AccurateRun::End::Met;
+  is_met = are_steps_good && are_meshes_good;
   const std::string reached = std::isnan(result.estimate()) ? "unknown" : fmt::format("{:.2g}", result.estimate());
-  if (!is_met && result.end != AccurateRun::End::Failed)
+  if (!are_steps_good && result.end != AccurateRun::End::Failed)
     fmt::print(stderr, "flexarm: the accuracy {:g} was not met: {}; estimated error {} after {} tries, {} steps\n",
                accuracy, to_string(result.end), reached, result.tries.size(), result.steps);
   else if (is_met && !arguments.quiet)

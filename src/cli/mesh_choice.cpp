@@ -1,0 +1,60 @@
+#include "cli/mesh_choice.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "accuracy/automatic_meshes.h"
+#include "cli/interruption.h"
+#include "cli/progress_bar.h"
+#include "flexarm/scene/scene_description.h"
+
+namespace flexarm::cli {
+namespace {
+
+constexpr int kJudgedTimes = 100;
+
+bool asks_for_meshes(const scene::SceneDescription& scene) {
+  return std::any_of(scene.links.begin(), scene.links.end(),
+                     [](const scene::LinkDescription& link) { return link.beam && !link.beam->elements; });
+}
+
+/// "elements: arm 5, forearm 3"; those that were chosen.
+std::string names_of(const scene::SceneDescription& scene, const RunSettings& settings) {
+  std::string text = "elements:";
+  auto beam = settings.beams.begin();
+  for (const scene::LinkDescription& link : scene.links) {
+    if (!link.beam) continue;
+    if (!link.beam->elements)
+      text += fmt::format("{} {} {}", text.back() == ':' ? "" : ",", link.name, beam->elements.value_or(0));
+    ++beam;
+  }
+  return text;
+}
+
+}  // namespace
+
+double choose_meshes(const SimulateArguments& arguments, double accuracy, Simulation& simulation, bool& is_met) {
+  const scene::SceneDescription scene = simulation.scene();
+  if (!asks_for_meshes(scene) || !arguments.resume.empty() || !arguments.checkpoint.empty()) return accuracy;
+  ProgressBar bar(0, 1, !arguments.quiet);
+  TrialRuns trials(scene, {(arguments.until - simulation.time()) / kJudgedTimes, kJudgedTimes}, {}, {}, [&] {
+    bar.show(0, "meshes");
+    return interruption() == 0;
+  });
+  const AutomaticMeshes meshes = automatic_meshes(trials, kMeshShare * accuracy);
+  bar.clear();
+  if (!meshes.is_met) {
+    is_met = false;
+    fmt::print(stderr, "flexarm: elements=\"auto\": the accuracy {:g} was not met: {}\n", accuracy, meshes.shortcoming);
+  }
+  // With none that was chosen those of the present rule stay.
+  if (meshes.error == 0) return accuracy;
+  if (!arguments.quiet)
+    fmt::print(report_stream(arguments), "{}; error {:.2g} estimated, after {} runs\n",
+               names_of(scene, meshes.settings), meshes.error, meshes.runs);
+  simulation = Simulation(with_settings(scene, meshes.settings), arguments.options);
+  return (1 - kMeshShare) * accuracy;
+}
+
+}  // namespace flexarm::cli
