@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/accuracy.h"
 #include "bench/hard.h"
 #include "bench/report.h"
 #include "bench/scaling.h"
@@ -143,6 +144,14 @@ int measure_speed(const Arguments& arguments) {
       bench::runs_to_csv);
 }
 
+int measure_accuracy(const Arguments& arguments) {
+  const std::string scenes = scene_folder(arguments, "").string();
+  return write_report(
+      arguments, "accuracy", "accuracy",
+      [&](const auto& progress) { return bench::measure_accuracy(scenes, arguments.quick, progress); },
+      bench::accuracy_to_csv);
+}
+
 bool is_in(const std::vector<std::string>& names, const std::string& name) {
   return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
 }
@@ -224,6 +233,12 @@ void add_bench(CLI::App& app, int& status) {
   speed->add_option("--scenes", arguments->scenes, "folder of the scenes (default: config, which comes with flexarm)");
   speed->add_flag("--quick", arguments->quick, "short runs, few of them, to see that all of it works");
   speed->callback([arguments, &status] { status = measure_speed(*arguments); });
+  CLI::App* accuracy = command->add_subcommand("accuracy", "True errors over those asked for, and costs, as a report");
+  accuracy->add_option("--output", arguments->output, "folder for the report")->capture_default_str();
+  accuracy->add_option("--scenes", arguments->scenes,
+                       "folder of the scenes (default: config, which comes with flexarm)");
+  accuracy->add_flag("--quick", arguments->quick, "three short scenes, to see that all of it works");
+  accuracy->callback([arguments, &status] { status = measure_accuracy(*arguments); });
   CLI::App* hard = command->add_subcommand("hard", "Scenes at which a simulator may break, as a report");
   hard->add_option("--case", arguments->cases, "only those with this in their names; may be given more than once");
   hard->add_option("--group", arguments->groups, "only this one; may be given more than once (default: all)")

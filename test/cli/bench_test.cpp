@@ -6,9 +6,9 @@ namespace flexarm::cli {
 namespace {
 
 TEST(Bench, UsageErrors) {
-  for (const char* arguments :
-       {"bench", "bench fly", "bench properties --fast", "bench thesis --fast", "bench speed --fast",
-        "bench scaling --fast", "bench hard --fast", "bench hard --scheme guess", "bench hard --group soft"})
+  for (const char* arguments : {"bench", "bench fly", "bench properties --fast", "bench thesis --fast",
+                                "bench speed --fast", "bench scaling --fast", "bench accuracy --fast",
+                                "bench hard --fast", "bench hard --scheme guess", "bench hard --group soft"})
     EXPECT_EQ(shell(std::string("flexarm ") + arguments).status, 2) << arguments;
 }
 
@@ -104,6 +104,19 @@ TEST(Bench, HardScenesCanBePrintedAndRun) {
   ASSERT_EQ(shell("flexarm bench hard --print --case 'door on two hinges' > '" + file + "'").status, 0);
   EXPECT_EQ(shell("flexarm simulate --quiet --until 0.5 '" + file + "'").status, 0);
   EXPECT_EQ(shell("flexarm bench hard --print --case 'no such case'").status, 1);
+}
+
+TEST(Bench, AccuracyReport) {
+  const std::string folder = temporary("accuracy");
+  const Outcome outcome = shell("flexarm bench accuracy --quick --output '" + folder + "'");
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  const std::string report = read_file(folder + "/accuracy.md");
+  for (const char* line :
+       {"\n| all | 3 | 3 | 3 | 0 |", "\n| speed: six_joint_arm | 0.01 |", "\n| random: arm 1, 2 joints |"})
+    EXPECT_NE(report.find(line), std::string::npos) << line;
+  const std::string data = read_file(folder + "/accuracy.csv");
+  EXPECT_EQ(data.substr(0, data.find("until")), "group,scene,");
+  EXPECT_EQ(report.find("accuracy.png") != std::string::npos, std::filesystem::exists(folder + "/accuracy.png"));
 }
 
 TEST(Bench, FolderThatCannotBeWritten) {

@@ -1,0 +1,203 @@
+#include "bench/accuracy.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "accuracy/automatic_meshes.h"
+#include "accuracy/processor_time.h"
+#include "accuracy/tuning.h"
+#include "bench/effort_schedule.h"
+#include "bench/random_arms.h"
+#include "bench/speed.h"
+#include "flexarm/accuracy/accurate_run.h"
+#include "flexarm/scene/urdf_reader.h"
+
+namespace flexarm::bench {
+namespace {
+
+constexpr double kAccuracies[] = {1e-2, 1e-3, 1e-4, 1e-5};
+constexpr int kIntervals = 100;
+/// Of the processor, for each scene: what its search and its runs may take [s].
+constexpr double kSearchSeconds = 4, kRunSeconds = 1.5;
+/// A reference that is farther off than this part of what is asked for judges nothing.
+constexpr double kGoodReference = 0.2;
+/// Nobody looks for errors below it.
+constexpr double kFinest = 1e-8;
+
+/// Times that show a scene's motion, by file: the others have this one [s].
+constexpr double kUntil = 1;
+double until_of(const std::string& file) {
+  const std::pair<const char*, double> known[] = {
+      {"cantilever", 0.2}, {"thesis", 0.2}, {"curved", 0.2}, {"joints", 0.3}};
+  for (const auto& [part, until] : known)
+    if (file.find(part) != std::string::npos) return until;
+  return kUntil;
+}
+
+scene::SceneDescription scene_of(scene::ReadResult read) {
+  if (!read.scene) throw std::runtime_error(scene::to_text(read.diagnostics));
+  return std::move(*read.scene);
+}
+
+std::function<StepCommand(const Simulation&)> commands_of(const std::string& path) {
+  if (path.empty()) return {};
+  return [pulses = read_effort_schedule(path).pulses](const Simulation& simulation) {
+    return [player = EffortPlayer(pulses, simulation)](Simulation& commanded) { player.command(commanded); };
+  };
+}
+
+/// Commands the tries of a run, and times the last of them.
+class TimedTries : public RunWatcher {
+ public:
+  explicit TimedTries(StepCommand command) : command_(std::move(command)), begin_(processor_seconds()) {}
+
+  void begin(const Simulation&, long, double) override { try_begin_ = processor_seconds(); }
+  void before_step(Simulation& simulation) override {
+    if (command_) command_(simulation);
+  }
+  bool after_step(const Simulation&, const StepResult&) override { return processor_seconds() - begin_ < kRunSeconds; }
+  double last() const { return processor_seconds() - try_begin_; }
+  double all() const { return processor_seconds() - begin_; }
+
+ private:
+  StepCommand command_;
+  double begin_, try_begin_ = 0;
+};
+
+/// The run as somebody gets it who asks for the accuracy; its motion.
+JudgedMotion run_accurately(const AccuracyCase& one, TrialRuns& trials, AccuracyOutcome& out) {
+  const bool has_automatic = std::any_of(one.scene.links.begin(), one.scene.links.end(),
+                                         [](const auto& link) { return link.beam && !link.beam->elements; });
+  const AutomaticMeshes meshes = automatic_meshes(trials, kMeshShare * out.asked);
+  Simulation simulation(with_settings(one.scene, meshes.settings));
+  const auto commands = commands_of(one.commands);
+  TimedTries tries(commands ? commands(simulation) : StepCommand());
+  AccuracyRequest request;
+  request.accuracy = has_automatic ? (1 - kMeshShare) * out.asked : out.asked;
+  request.until = one.until;
+  request.intervals = kIntervals;
+  AccurateRun run = run_to_accuracy(simulation, request, tries);
+  out.seconds = tries.last();
+  out.all_seconds = meshes.seconds + tries.all();
+  out.estimate = run.estimate() + meshes.error;
+  out.is_met = run.end == AccurateRun::End::Met && meshes.is_met;
+  out.shortcoming = run.end != AccurateRun::End::Met ? to_string(run.end) : meshes.shortcoming;
+  return std::move(run.motion);
+}
+
+/// The error of what ran, and the best that a search finds for as small a one.
+void judge(TrialRuns& trials, const JudgedMotion& motion, AccuracyOutcome& out) {
+  TuningFreedom freedom;
+  freedom.all_meshes = false;
+  const auto search = [&](double accuracy) {
+    TuningGoal goal;
+    goal.accuracy = accuracy;
+    return tune(trials, goal, freedom, [](double, const std::string&) {});
+  };
+  // Finer where the run is much better than was asked for.
+  for (double wanted = out.asked; wanted > kFinest; wanted *= 0.1) {
+    const TuningResult found = search(wanted);
+    if (!found.reference || found.reference_error > kGoodReference * out.asked) return;
+    const JudgedMotion& reference = trials.run(*found.reference).motion;
+    out.reference_error = found.reference_error;
+    out.error = motion_error(motion, reference, reference.largest_displacement());
+    if (found.reference_error <= kGoodReference * *out.error) break;
+  }
+  if (!out.error || out.reference_error > kGoodReference * *out.error) return;
+  const TuningResult best = search(*out.error);
+  if (!best.is_met || !best.reference) return;
+  const TunedRun& run = best.runs[*best.best];
+  out.fixed_seconds = run.seconds;
+  out.fixed = fmt::format("{}, {}, {:.3g} s, {:.0e}", run.settings.mesh(), run.settings.scheme, run.settings.step,
+                          run.settings.tolerance);
+}
+
+AccuracyOutcome measure(const AccuracyCase& one, TrialRuns& trials, double asked) {
+  AccuracyOutcome out;
+  out.asked = asked;
+  try {
+    const JudgedMotion motion = run_accurately(one, trials, out);
+    if (out.is_met) judge(trials, motion, out);
+  } catch (const std::invalid_argument& error) {
+    out.shortcoming = error.what();
+  } catch (const ModelError& error) {
+    out.shortcoming = error.what();
+  } catch (const SearchEnded& ended) {
+    out.shortcoming = ended.what();
+  }
+  return out;
+}
+
+void add_files(std::vector<AccuracyCase>& cases, const std::string& folder, const std::string& group) {
+  std::vector<std::string> paths;
+  for (const auto& entry : std::filesystem::directory_iterator(folder + "/" + group))
+    if (entry.path().extension() == ".urdf") paths.push_back(entry.path().string());
+  std::sort(paths.begin(), paths.end());
+  for (const std::string& path : paths)
+    cases.push_back({group, std::filesystem::path(path).stem().string(), scene_of(scene::read_scene_file(path)), "",
+                     until_of(path)});
+}
+
+}  // namespace
+
+std::optional<double> AccuracyOutcome::cost() const {
+  if (!fixed_seconds || !(*fixed_seconds > 0)) return std::nullopt;
+  return seconds / *fixed_seconds;
+}
+
+std::vector<const AccuracyOutcome*> AccuracyReport::judged() const {
+  std::vector<const AccuracyOutcome*> found;
+  for (const AccuracyMeasurement& measurement : measurements)
+    for (const AccuracyOutcome& outcome : measurement.outcomes)
+      if (outcome.is_judged()) found.push_back(&outcome);
+  return found;
+}
+
+std::vector<AccuracyCase> accuracy_cases(const std::string& folder, bool quick) {
+  std::vector<AccuracyCase> cases;
+  for (const SpeedProblem& problem : speed_problems()) {
+    if (quick && problem.name != "six_joint_arm") continue;
+    cases.push_back({"speed", problem.name, scene_of(scene::read_scene_file(folder + "/" + problem.scene)),
+                     problem.commands.empty() ? "" : folder + "/" + problem.commands,
+                     quick ? 0.1 : std::min(problem.until, 10.0)});
+  }
+  if (!quick)
+    for (const char* group : {"examples", "thesis"}) add_files(cases, folder, group);
+  for (int i = 0; i < (quick ? 2 : kRandomArms); ++i)
+    cases.push_back({"random", fmt::format("arm {}, {} joints", i, random_arm_joints(i)),
+                     scene_of(scene::read_scene_text(random_arm(i), fmt::format("random arm {}", i))), "",
+                     quick ? 0.1 : 2.0});
+  return cases;
+}
+
+AccuracyReport measure_accuracy(const std::string& folder, bool quick,
+                                const std::function<void(double, const std::string&)>& progress) {
+  AccuracyReport report;
+  report.quick = quick;
+  const double begin = processor_seconds();
+  const std::vector<AccuracyCase> cases = accuracy_cases(folder, quick);
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const AccuracyCase& one = cases[i];
+    AccuracyMeasurement measurement{one.group, one.name, one.until, {}};
+    const auto show = [&] { progress(static_cast<double>(i) / static_cast<double>(cases.size()), one.name); };
+    TrialLimits limits;
+    limits.seconds = kSearchSeconds;
+    TrialRuns trials(one.scene, {one.until / kIntervals, kIntervals}, limits, commands_of(one.commands), [&] {
+      show();
+      return true;
+    });
+    for (const double asked : kAccuracies) {
+      show();
+      measurement.outcomes.push_back(measure(one, trials, asked));
+      if (quick) break;
+    }
+    report.measurements.push_back(std::move(measurement));
+  }
+  report.seconds = processor_seconds() - begin;
+  return report;
+}
+
+}  // namespace flexarm::bench
