@@ -70,9 +70,10 @@ TEST(Tune, ForASpeed) {
 
 TEST(Tune, TakesAnAccuracyOfTheSceneAway) {
   std::string text = read_file(example("rigid_double_pendulum"));
-  const std::size_t place = text.find("<integrator");
+  const std::string opening = "<simulation>";
+  const std::size_t place = text.find(opening);
   ASSERT_NE(place, std::string::npos);
-  text.insert(place + 11, " accuracy=\"1e-4\"");
+  text.insert(place + opening.size(), " <integrator accuracy=\"1e-4\"/>");
   const std::string output = temporary("tuned.urdf");
   EXPECT_EQ(shell("flexarm tune " + scene_file(text) + " --accuracy 1e-2 --until 0.5 --output " + output).status, 0);
   EXPECT_EQ(read_file(output).find("accuracy="), std::string::npos);
