@@ -55,9 +55,9 @@ int multiple_for_samples(const Model& model, double interval) {
   return multiple;
 }
 
-class Search {
+class TriesOfARun {
  public:
-  Search(Simulation& simulation, const AccuracyRequest& request, RunWatcher& watcher)
+  TriesOfARun(Simulation& simulation, const AccuracyRequest& request, RunWatcher& watcher)
       : simulation_(simulation),
         request_(request),
         watcher_(watcher),
@@ -220,7 +220,7 @@ class Search {
 
 AccurateRun run_to_accuracy(Simulation& simulation, const AccuracyRequest& request, RunWatcher& watcher) {
   const double step = simulation.step_size(), tolerance = simulation.tolerance();
-  AccurateRun run = Search(simulation, request, watcher).run();
+  AccurateRun run = TriesOfARun(simulation, request, watcher).run();
   simulation.set_step_size(step);
   simulation.set_tolerance(tolerance);
   return run;

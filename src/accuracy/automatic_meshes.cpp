@@ -37,6 +37,7 @@ void choose(TrialRuns& trials, double accuracy, const MeshFreedom& freedom, Auto
   out.settings.beams = chosen.beams;
   for (std::size_t b = 0; b < freedom.is_free.size(); ++b)
     if (!freedom.is_free[b]) out.settings.beams[b] = settings.beams[b];
+  out.is_chosen = true;
   out.error = (size(chosen.error) + errors.rest) / scale;
   out.is_met = out.error <= accuracy;
 }
@@ -47,7 +48,7 @@ AutomaticMeshes automatic_meshes(TrialRuns& trials, double accuracy) {
   AutomaticMeshes out;
   out.settings = settings_of(trials.scene());
   MeshFreedom freedom;
-  freedom.keeps_orders = true;
+  freedom.may_be_rigid = freedom.keeps_orders = true;
   for (const BeamResolution& beam : out.settings.beams) freedom.is_free.push_back(!beam.elements);
   if (std::count(freedom.is_free.begin(), freedom.is_free.end(), true) == 0) {
     out.is_met = true;

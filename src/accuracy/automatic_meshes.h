@@ -12,7 +12,8 @@ namespace flexarm {
 constexpr double kMeshShare = 0.5;
 
 struct AutomaticMeshes {
-  RunSettings settings;     ///< the scene's, with a number of elements for each beam that asks for "auto"
+  RunSettings settings;     ///< the scene's, with a number of elements for each beam that asks for "auto"; 0: rigid
+  bool is_chosen = false;   ///< else they still ask for it: nothing was found
   double error = 0;         ///< what the meshes of these do together, as estimated, relative
   bool is_met = false;      ///< that is as small as was asked for
   std::string shortcoming;  ///< why not
@@ -20,9 +21,10 @@ struct AutomaticMeshes {
   double seconds = 0;  ///< of the processor, of all of them
 };
 
-/// Beams keep their order, and those with a number of elements keep that: what these err is not looked at. Runs to the
-/// end of `trials`' time measure the errors in the judged points (mesh_errors.h). Nothing runs where no beam asks for
-/// "auto". `accuracy`: of space alone, relative to the largest displacement.
+/// Beams keep their order, and those with a number of elements keep that: what these err is not looked at. One whose
+/// bending the points do not feel becomes rigid, unless it has what only an elastic one can have. Runs to the end of
+/// `trials`' time measure the errors in the judged points (mesh_errors.h). Nothing runs where no beam asks for "auto".
+/// `accuracy`: of space alone, relative to the largest displacement.
 AutomaticMeshes automatic_meshes(TrialRuns& trials, double accuracy);
 
 }  // namespace flexarm

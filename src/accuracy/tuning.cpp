@@ -122,7 +122,7 @@ void Search::look_at_scene() {
   if (!as_it_stands_->is_complete()) shortcomings_.push_back("the scene as it stands: " + as_it_stands_->failure);
 }
 
-/// Errors of meshes and steps, as fine as the accuracy needs.
+// Errors of meshes and steps, as fine as the accuracy needs.
 void Search::measure(double accuracy) {
   RunSettings settings = own();
   const std::vector<std::string> schemes = schemes_alike(trials_.scene().integrator, freedom_.any_scheme);
@@ -155,7 +155,7 @@ void Search::measure(double accuracy) {
   pool_ = CandidatePool(mesh_errors, std::move(steps), trials_.all(), scale, trials_.times().intervals);
 }
 
-/// Measures as finely as the speed lets a run be; how fine that is.
+// Measures as finely as the speed lets a run be; how fine that is.
 double Search::measure_for_load() {
   double found = kAccuracies[0];
   for (const double accuracy : kAccuracies) {
@@ -168,7 +168,7 @@ double Search::measure_for_load() {
   return found;
 }
 
-/// As much finer than what is asked for as needed to judge it.
+// As much finer than what is asked for as needed to judge it.
 void Search::make_reference(double accuracy) {
   progress_(0.7, "reference");
   const Candidate finer = pool_.reference(kReferenceShare * accuracy);
@@ -189,7 +189,7 @@ RunSettings Search::settings_for(const Candidate& candidate) const {
   return settings;
 }
 
-/// Lengthens or shortens the step until the run just keeps the accuracy.
+// Lengthens or shortens the step until the run just keeps the accuracy.
 void Search::fit_error(RunSettings settings) {
   const double interval = trials_.times().interval;
   int good = std::numeric_limits<int>::max(), bad = 0, parts = static_cast<int>(std::lround(interval / settings.step));
@@ -207,7 +207,7 @@ void Search::fit_error(RunSettings settings) {
   }
 }
 
-/// The same until the run just keeps the speed.
+// The same until the run just keeps the speed.
 void Search::fit_load(RunSettings settings) {
   const double interval = trials_.times().interval;
   int parts = static_cast<int>(std::lround(interval / settings.step));
@@ -229,7 +229,7 @@ void Search::try_finalists(double accuracy) {
   }
 }
 
-/// As long as that makes the best run better. In the time that it saves there is room for smaller steps.
+// As long as that makes the best run better. In the time that it saves there is room for smaller steps.
 void Search::loosen_tolerance() {
   for (const double tolerance : kTolerances) {
     const TrialRun* before = best();
@@ -243,7 +243,7 @@ void Search::loosen_tolerance() {
   }
 }
 
-/// Times of the best and of the scene as it stands, in turns: medians.
+// Times of the best and of the scene as it stands, in turns: medians.
 void Search::time_finalists() {
   std::vector<const TrialRun*> good;
   for (const TrialRun& run : trials_.all())
@@ -281,7 +281,7 @@ double Search::seconds_of(const TrialRun& run) const {
   return times[times.size() / 2];
 }
 
-/// What was reached where nothing keeps what was asked for.
+// What was reached where nothing keeps what was asked for.
 const TrialRun* Search::most_accurate() const {
   const TrialRun* found = nullptr;
   for (const TrialRun& run : trials_.all())
@@ -289,7 +289,7 @@ const TrialRun* Search::most_accurate() const {
   return found;
 }
 
-/// What comes nearest to a reference where none was made.
+// What comes nearest to a reference where none was made.
 const TrialRun* Search::finest() const {
   const auto effort = [](const TrialRun& run) {
     return static_cast<double>(run.iterations) * mesh_cost(run.settings.beams);

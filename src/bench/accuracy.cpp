@@ -111,6 +111,7 @@ void judge(TrialRuns& trials, const JudgedMotion& motion, AccuracyOutcome& out) 
   if (!best.is_met || !best.reference) return;
   const TunedRun& run = best.runs[*best.best];
   out.fixed_seconds = run.seconds;
+  out.is_of_own_scheme = run.settings.scheme == trials.scene().integrator.scheme;
   out.fixed = fmt::format("{}, {}, {:.3g} s, {:.0e}", run.settings.mesh(), run.settings.scheme, run.settings.step,
                           run.settings.tolerance);
 }

@@ -65,6 +65,9 @@ std::string summary_table(const AccuracyReport& report) {
     for (const AccuracyOutcome& outcome : measurement.outcomes) {
       by_accuracy[outcome.asked].add(outcome);
       by_group[measurement.group].add(outcome);
+      if (outcome.cost())
+        by_group[outcome.is_of_own_scheme ? "best fixed choice: scene's scheme" : "best fixed choice: another scheme"]
+            .add(outcome);
       all.add(outcome);
     }
   std::string text = head({"", "runs", "met, as they say", "judged", "error above", "worst error over asked",

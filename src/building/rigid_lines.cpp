@@ -177,7 +177,7 @@ RigidLine stiffen(scene::LinkDescription& link, scene::SceneDescription& scene) 
   }
   loads.erase(first, loads.end());
   MassSum mass = sums.line_mass();
-  const RigidLine line = rigid_line(mesh, mass.mass);
+  RigidLine line = rigid_line(mesh, mass.mass);
   sums.add_hubs(mass);
   link.inertial = mass.about_center(beam.location);
   link.beam.reset();

@@ -49,7 +49,7 @@ double choose_meshes(const SimulateArguments& arguments, double accuracy, Simula
     fmt::print(stderr, "flexarm: elements=\"auto\": the accuracy {:g} was not met: {}\n", accuracy, meshes.shortcoming);
   }
   // With none that was chosen those of the present rule stay.
-  if (meshes.error == 0) return accuracy;
+  if (!meshes.is_chosen) return accuracy;
   if (!arguments.quiet)
     fmt::print(report_stream(arguments), "{}; error {:.2g} estimated, after {} runs\n",
                names_of(scene, meshes.settings), meshes.error, meshes.runs);

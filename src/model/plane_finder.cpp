@@ -74,7 +74,7 @@ Hints hints_of(const Model& model) {
 
 /// A unit vector, of axes in which numbers are exact where it is nearly one of them.
 Vector3 tidied(const Vector3& vector) {
-  const Vector3 unit = vector.normalized();
+  Vector3 unit = vector.normalized();
   for (int k = 0; k < 3; ++k)
     for (const double sign : {1.0, -1.0})
       if ((unit - sign * Vector3::Unit(k)).norm() < kRoundOff) return sign * Vector3::Unit(k);

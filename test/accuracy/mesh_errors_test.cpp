@@ -103,6 +103,39 @@ TEST(AutomaticMeshes, AreTheFewestElements) {
   }
 }
 
+/// A stiff rod that falls about a hinge, with one more thing in its scene.
+scene::SceneDescription stiff_pendulum(const std::string& more) {
+  const scene::ReadResult read = scene::read_scene_text(
+      R"(<robot name="pendulum">
+    <link name="world"/>
+    <joint name="hinge" type="continuous"> <parent link="world"/> <child link="rod"/> <axis xyz="0 1 0"/> </joint>
+    <link name="rod"> <beam>
+      <centerline> <line to="1 0 0"/> </centerline>
+      <circle radius="0.05"/> <material young="200e9" poisson="0.3" density="7800"/>
+    </beam> </link>
+    )" + more +
+          R"(
+    <simulation> <probe name="tip" link="rod" at="1 0 0"/> </simulation>
+  </robot>)",
+      "pendulum");
+  if (!read.scene) throw std::runtime_error(scene::to_text(read.diagnostics));
+  return *read.scene;
+}
+
+TEST(AutomaticMeshes, AreNoneWhereABeamMayBeRigid) {
+  // It bends by some rho g A L^4 / (8 E I) = 1e-5 m of the metre that it falls.
+  TrialRuns trials(stiff_pendulum(""), {0.01, 50}, {}, {}, {});
+  const AutomaticMeshes meshes = automatic_meshes(trials, 1e-3);
+  EXPECT_TRUE(meshes.is_met) << meshes.shortcoming;
+  EXPECT_EQ(meshes.settings.beams.at(0).elements, 0);
+  // Strains are those of an elastic beam alone.
+  const std::string sensor = R"(<sensor name="gauge" kind="strain" link="rod" at="0.5 0 0.05"/>)";
+  TrialRuns with_sensor(stiff_pendulum(sensor), {0.01, 50}, {}, {}, {});
+  const AutomaticMeshes elastic = automatic_meshes(with_sensor, 1e-3);
+  EXPECT_TRUE(elastic.is_met) << elastic.shortcoming;
+  EXPECT_GT(elastic.settings.beams.at(0).elements, 0);
+}
+
 TEST(AutomaticMeshes, LeaveNumbersOfElementsAlone) {
   TrialRuns trials(ramped_cantilever("elements=\"2\" order=\"1\""), kTimes, {}, {}, {});
   const AutomaticMeshes meshes = automatic_meshes(trials, 1e-3);

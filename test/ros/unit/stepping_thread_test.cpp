@@ -12,11 +12,12 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// A rotor on a hinge, which fails where it is driven too fast; step [s].
+/// A rotor on a hinge, which fails where it is driven too fast, with a probe at its rim; step [s].
 Simulation rotor(double step, int max_halvings = 2, const SimulationOptions& options = {}) {
   test::SceneBuilder b;
   b.body("rotor", 1, {0.1, 0, 0}, Matrix3::Identity());
   b.joint("shaft", scene::JointKind::Continuous, "world", "rotor", {0, 0, 0}, {0, 0, 1});
+  b.probe("rim", "rotor", {1, 0, 0});
   b.scene.integrator.step = step;
   b.scene.integrator.max_halvings = max_halvings;
   return Simulation(b.scene, options);
