@@ -11,4 +11,11 @@ except ImportError:
 matplotlib.use("Agg")
 from matplotlib import pyplot  # noqa: E402
 
-__all__ = ["pyplot"]
+__all__ = ["pyplot", "run"]
+
+
+def run(main, usage):
+    """Calls main(data, picture) with the arguments of the command line, or says how the script is used."""
+    if len(sys.argv) != 3:
+        sys.exit(usage)
+    main(*sys.argv[1:])

@@ -5,9 +5,8 @@ plot_accuracy.py DATA.csv PICTURE
 """
 
 import csv
-import sys
 
-from headless_pyplot import pyplot
+from headless_pyplot import pyplot, run
 
 
 def read(path):
@@ -47,6 +46,9 @@ def main(data, picture):
             axes.set_xscale("log")
             axes.set_yscale("log")
         errors.set_title(f"above what was asked for: {above} of {len(rows)}, {100 * above / len(rows):.1f} %")
+    costs.set_yticks([0.5, 1, 1.5, 2, 3, 5])
+    costs.yaxis.set_major_formatter("{x:g}")
+    costs.minorticks_off()
     costs.axhline(1.5, color="black", linestyle=":", linewidth=1)
     errors.set_ylabel("true error")
     costs.set_ylabel("time over that of the best fixed choice")
@@ -59,6 +61,4 @@ def main(data, picture):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 3:
-        sys.exit(__doc__)
-    main(sys.argv[1], sys.argv[2])
+    run(main, __doc__)

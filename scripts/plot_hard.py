@@ -6,9 +6,8 @@ plot_hard.py DATA.csv PICTURE
 
 import csv
 import math
-import sys
 
-from headless_pyplot import pyplot
+from headless_pyplot import pyplot, run
 
 # Cases side by side in so many columns of panels, to fill one page.
 COLUMNS = 3
@@ -89,6 +88,4 @@ def main(data, picture):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 3:
-        sys.exit(__doc__)
-    main(sys.argv[1], sys.argv[2])
+    run(main, __doc__)

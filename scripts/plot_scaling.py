@@ -5,9 +5,8 @@ plot_scaling.py DATA.csv PICTURE
 """
 
 import csv
-import sys
 
-from headless_pyplot import pyplot
+from headless_pyplot import pyplot, run
 
 PANELS = (
     ("step", "time per step [s]"),
@@ -56,6 +55,4 @@ def main(data, picture):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 3:
-        sys.exit(__doc__)
-    main(sys.argv[1], sys.argv[2])
+    run(main, __doc__)

@@ -5,9 +5,8 @@ plot_soak.py DATA.csv PICTURE
 """
 
 import csv
-import sys
 
-from headless_pyplot import pyplot
+from headless_pyplot import pyplot, run
 
 LEAST_ENERGY = 1e-12  # J: what is less is a reset, a moment ago
 
@@ -47,6 +46,4 @@ def main(data, picture):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 3:
-        sys.exit(__doc__)
-    main(sys.argv[1], sys.argv[2])
+    run(main, __doc__)

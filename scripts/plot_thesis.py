@@ -5,9 +5,8 @@ plot_thesis.py DATA.csv PICTURE
 """
 
 import csv
-import sys
 
-from headless_pyplot import pyplot
+from headless_pyplot import pyplot, run
 
 # A run that has blown up must not spoil the scale of the others.
 FAR = 3.0
@@ -73,6 +72,4 @@ def main(data, picture):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 3:
-        sys.exit(__doc__)
-    main(sys.argv[1], sys.argv[2])
+    run(main, __doc__)

@@ -5,9 +5,8 @@ plot_tuning.py DATA.csv PICTURE
 """
 
 import csv
-import sys
 
-from headless_pyplot import pyplot
+from headless_pyplot import pyplot, run
 
 # Errors of motions that have nothing to do with each other any more; their runs say nothing.
 LARGEST_ERROR = 1.0
@@ -60,6 +59,4 @@ def main(data, picture):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 3:
-        sys.exit(__doc__)
-    main(sys.argv[1], sys.argv[2])
+    run(main, __doc__)
