@@ -12,40 +12,26 @@
 
 #include "elements/energy_multiplier.h"
 #include "elements/strain_dampers.h"
+#include "elements/translational_inertia.h"
 #include "math/cayley.h"
 
 namespace flexarm {
 namespace conserving {
 
-/// Translational inertia (1/h) int I^i I^j mass (v_{n+1} - v_n), v_{n+1} = factor Delta r / h - (factor - 1) v_n, and
-/// mass-proportional damping by the mean velocity Delta r / h. Sets the system.
+/// See translational_forces(). Sets the system.
 template <int Nodes, typename S>
 void set_translation(const ConservingElement<Nodes, S>& element, const BeamNodes<Nodes, S>& nodes, double factor,
                      double step, bool with_tangent, BlockSystem<Nodes, S>& system) {
-  std::array<Vector3T<S>, Nodes> mean, force;
-  S slope = S(factor / (step * step));
+  const auto translation = translational_forces<Vector3T<S>, Nodes>(element, nodes, factor, step);
+  system.dissipated = translation.dissipated;
   for (int i = 0; i < Nodes; ++i) {
-    mean[i] = S(1 / step) * (nodes.end[i] - nodes.begin[i]);
-    force[i] = S(factor / step) * (mean[i] - nodes.velocity[i]);
-  }
-  system.dissipated = S(0);
-  if (element.has_mass_damping) {
-    slope += element.mass_damping * S(1 / step);
-    for (int i = 0; i < Nodes; ++i) {
-      force[i] += element.mass_damping * mean[i];
-      for (int j = 0; j < Nodes; ++j)
-        system.dissipated += element.mass_damping * S(step) * element.mass(i, j) * so3::dot(mean[i], mean[j]);
-    }
-  }
-  for (int i = 0; i < Nodes; ++i) {
-    Vector3T<S> sum = element.mass(i, 0) * force[0];
-    for (int j = 1; j < Nodes; ++j) sum += element.mass(i, j) * force[j];
-    system.residual[i].template head<3>() = sum;
+    const Vector3T<S>& force = translation.forces[i];
+    system.residual[i].template head<3>() = force;
     system.residual[i].template tail<3>().setConstant(S(0));
     for (int j = 0; j < Nodes && with_tangent; ++j) {
       Matrix6T<S>& block = system.tangent[i][j];
       block.setConstant(S(0));
-      block.diagonal().template head<3>().setConstant(slope * element.mass(i, j));
+      block.diagonal().template head<3>().setConstant(translation.slope * element.mass(i, j));
     }
   }
 }

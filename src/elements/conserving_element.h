@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "elements/element_lanes.h"
 #include "math/lanes.h"
 #include "math/local_rotation.h"
 #include "model/beam_element.h"
@@ -77,9 +78,7 @@ void set_lane(ConservingElement<Nodes, S>& pack, int lane, const BeamElement<Nod
   for (int k = 0; k < Nodes - 1; ++k) {
     const auto& point = element.stiffness_points[k];
     auto& to = pack.points[k];
-    set_lane(to.shape, lane, point.shape);
-    set_lane(to.derivative, lane, point.derivative);
-    set_lane(to.weight, lane, point.weight);
+    set_interpolation_lane(to, lane, point);
     set_lane(to.reference_strain, lane, point.reference_strain);
     SectionStiffness<S>& section = pack.sections[k];
     const auto coupling = point.stiffness.template topRightCorner<3, 3>();
@@ -89,13 +88,8 @@ void set_lane(ConservingElement<Nodes, S>& pack, int lane, const BeamElement<Nod
     section.is_coupled = section.is_coupled || !coupling.isZero(0);
     pack.is_uniform = pack.is_uniform && point.stiffness == element.stiffness_points[0].stiffness;
   }
-  set_lane(pack.mass, lane, element.mass);
-  set_lane(pack.stiffness_damping, lane, element.stiffness_damping);
-  set_lane(pack.mass_damping, lane, element.mass_damping);
   set_lane(pack.damping_scale, lane, element.damping_scale);
-  pack.is_damped_evenly = pack.is_damped_evenly && is_damped_evenly(element);
-  pack.has_stiffness_damping = pack.has_stiffness_damping || element.stiffness_damping != 0;
-  pack.has_mass_damping = pack.has_mass_damping || element.mass_damping != 0;
+  set_mass_and_damping_lane(pack, lane, element);
 }
 
 /// Nodal motion over a step.

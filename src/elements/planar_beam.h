@@ -4,36 +4,23 @@
 
 #include "elements/planar_point.h"
 #include "elements/strain_dampers.h"
+#include "elements/translational_inertia.h"
 #include "schemes/time_rule.h"
 
 namespace flexarm::planar {
 
-/// See conserving::set_translation. Sets the system.
+/// See translational_forces(). Sets the system.
 template <int Nodes, typename S>
 void set_translation(const Element<Nodes, S>& element, const Nodal<Nodes, S>& nodes, double factor, double step,
                      bool with_tangent, BlockSystem<Nodes, S>& system) {
-  std::array<Vector2T<S>, Nodes> mean, force;
-  S slope = S(factor / (step * step));
+  const auto translation = translational_forces<Vector2T<S>, Nodes>(element, nodes, factor, step);
+  system.dissipated = translation.dissipated;
   for (int i = 0; i < Nodes; ++i) {
-    mean[i] = S(1 / step) * (nodes.end[i] - nodes.begin[i]);
-    force[i] = S(factor / step) * (mean[i] - nodes.velocity[i]);
-  }
-  system.dissipated = S(0);
-  if (element.has_mass_damping) {
-    slope += element.mass_damping * S(1 / step);
-    for (int i = 0; i < Nodes; ++i) {
-      force[i] += element.mass_damping * mean[i];
-      for (int j = 0; j < Nodes; ++j)
-        system.dissipated += element.mass_damping * S(step) * element.mass(i, j) * dot<S>(mean[i], mean[j]);
-    }
-  }
-  for (int i = 0; i < Nodes; ++i) {
-    Vector2T<S> sum = element.mass(i, 0) * force[0];
-    for (int j = 1; j < Nodes; ++j) sum += element.mass(i, j) * force[j];
-    system.residual[i] << sum[0], sum[1], S(0), S(0);
+    const Vector2T<S>& force = translation.forces[i];
+    system.residual[i] << force[0], force[1], S(0), S(0);
     for (int j = 0; j < Nodes && with_tangent; ++j) {
       system.tangent[i][j].setConstant(S(0));
-      system.tangent[i][j](0, 0) = system.tangent[i][j](1, 1) = slope * element.mass(i, j);
+      system.tangent[i][j](0, 0) = system.tangent[i][j](1, 1) = translation.slope * element.mass(i, j);
     }
   }
 }

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "elements/element_lanes.h"
 #include "math/lanes.h"
 #include "math/shape_functions.h"
 #include "model/beam_element.h"
@@ -45,19 +46,12 @@ void set_lane(Element<Nodes, S>& pack, int lane, const BeamElement<Nodes>& eleme
   for (int k = 0; k < Nodes - 1; ++k) {
     const auto& point = element.stiffness_points[k];
     auto& to = pack.points[k];
-    set_lane(to.shape, lane, point.shape);
-    set_lane(to.derivative, lane, point.derivative);
-    set_lane(to.weight, lane, point.weight);
+    set_interpolation_lane(to, lane, point);
     set_lane(to.reference_strain, lane, Vector3(basis.transpose() * point.reference_strain));
     set_lane(to.section.matrix, lane, Matrix3(basis.transpose() * point.stiffness * basis));
     set_lane(to.damped.matrix, lane, Matrix3(basis.transpose() * damped_stiffness(element, k) * basis));
   }
-  set_lane(pack.mass, lane, element.mass);
-  set_lane(pack.stiffness_damping, lane, element.stiffness_damping);
-  set_lane(pack.mass_damping, lane, element.mass_damping);
-  pack.is_damped_evenly = pack.is_damped_evenly && is_damped_evenly(element);
-  pack.has_stiffness_damping = pack.has_stiffness_damping || element.stiffness_damping != 0;
-  pack.has_mass_damping = pack.has_mass_damping || element.mass_damping != 0;
+  set_mass_and_damping_lane(pack, lane, element);
 }
 
 /// Nodal motion over a step.

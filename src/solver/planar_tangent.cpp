@@ -2,28 +2,9 @@
 
 #include <algorithm>
 
-#include "solver/element_front.h"
+#include "solver/tree_blocks.h"
 
 namespace flexarm {
-namespace {
-
-/// Calls visit(ElementFront<Nodes, 3>()) for the number of nodes at hand.
-template <class Visitor>
-auto with_front(int node_count, Visitor&& visit) {
-  switch (node_count) {
-    case 2:
-      return visit(ElementFront<2, 3>());
-    case 3:
-      return visit(ElementFront<3, 3>());
-    case 4:
-      return visit(ElementFront<4, 3>());
-    default:
-      return visit(ElementFront<5, 3>());
-  }
-}
-
-}  // namespace
-
 bool PlanarTangent::suits(const Model& model, const DegreesOfFreedom& dof) {
   if (!model.closures.empty() || !model.slide_lines.empty() || !dof.mimics.empty()) return false;
   const TreeOrder order(model, dof);
@@ -36,19 +17,15 @@ PlanarTangent::PlanarTangent(const Model& model, const DegreesOfFreedom& dof, co
     : dof_(dof),
       plane_(plane),
       order_(model, dof),
+      fronts_(order_),
       maps_(model.joints.size()),
       nodes_(kPlanarBlock * model.nodes.size()),
       values_(4 * model.nodes.size()),
       scalars_(dof.scalar_count),
       expanded_(dof.scalar_count) {
-  std::size_t pivots = 0, blocks = 0, squares = 0;
-  for (const TreePart& part : order_.parts()) {
-    first_pivot_.push_back(pivots);
-    if (part.joint >= 0) continue;
-    pivots += 3 * (part.node_count - 1);
-    blocks = std::max(blocks, part.first_block + part.node_count * part.node_count);
-  }
-  pivots_.resize(pivots);
+  std::size_t blocks = 0, squares = 0;
+  for (const TreePart& part : order_.parts())
+    if (part.joint < 0) blocks = std::max(blocks, part.first_block + part.node_count * part.node_count);
   elements_.resize(kPlanarBlock * blocks);
   for (std::size_t b = 0; b < blocks; ++b) element_blocks_.push_back(&elements_[kPlanarBlock * b]);
   for (const JointMap& joint : model.joints) {
@@ -78,36 +55,19 @@ void PlanarTangent::add_to_node(int node, const Matrix6& block) {
 }
 
 void PlanarTangent::hold_row(int joint, int component, int first, const ReleasedVector& coefficients) {
-  FoldMaps& maps = maps_[joint];
-  const int size = static_cast<int>(maps.left.cols());
-  maps.left.col(component).setZero();
-  if (joints_[joint].has_master()) maps.released_spin.row(component).setZero();
-  Eigen::Map<ReleasedSquare>(diagonal_block(joints_[joint].variable()), size, size).row(component).setZero();
-  maps.released_released.row(component).setZero();
-  maps.released_released.row(component).segment(first, coefficients.size()) = coefficients.transpose();
+  const PlanarJointFront& front = joints_[joint];
+  flexarm::hold_row(maps_[joint], diagonal_block(front.variable()), front.has_master(), component, first, coefficients);
 }
 
 // ---------------------------------------------------------------- factors
-
-std::array<double*, 5> PlanarTangent::node_values(const TreePart& part, std::vector<double>& values, int size) const {
-  std::array<double*, 5> blocks{};
-  for (int i = 0; i < part.node_count; ++i) blocks[i] = values.data() + static_cast<std::size_t>(size) * part.nodes[i];
-  return blocks;
-}
-
-bool PlanarTangent::eliminate_element(int p) {
-  const TreePart& part = order_.parts()[p];
-  const std::array<double*, 5> diagonals = node_values(part, nodes_, kPlanarBlock);
-  return with_front(part.node_count, [&](auto front) {
-    return front.eliminate(element_blocks_[part.first_block], diagonals.data(), pivots_.data() + first_pivot_[p]);
-  });
-}
 
 bool PlanarTangent::factorise() {
   const std::vector<TreePart>& parts = order_.parts();
   for (int p = 0; p < static_cast<int>(parts.size()); ++p) {
     const int joint = parts[p].joint;
-    if (joint >= 0 ? joints_[joint].eliminate(maps_[joint], diagonal_blocks_.data()) : eliminate_element(p)) continue;
+    if (joint >= 0 ? joints_[joint].eliminate(maps_[joint], diagonal_blocks_.data())
+                   : fronts_.eliminate(p, elements_.data(), nodes_.data()))
+      continue;
     singular_variable_ = joint >= 0 ? dof_.variable_of_joint(joint) : parts[p].nodes[parts[p].node_count - 1];
     return false;
   }
@@ -115,20 +75,6 @@ bool PlanarTangent::factorise() {
 }
 
 // ---------------------------------------------------------------- solution
-
-void PlanarTangent::forward_element(int p) {
-  const TreePart& part = order_.parts()[p];
-  const std::array<double*, 5> r = node_values(part, values_, 4);
-  with_front(part.node_count, [&](auto front) {
-    front.forward(element_blocks_[part.first_block], pivots_.data() + first_pivot_[p], r.data());
-  });
-}
-
-void PlanarTangent::backward_element(int p) {
-  const TreePart& part = order_.parts()[p];
-  const std::array<double*, 5> r = node_values(part, values_, 4);
-  with_front(part.node_count, [&](auto front) { front.backward(element_blocks_[part.first_block], r.data()); });
-}
 
 bool PlanarTangent::solve(Eigen::VectorXd& b) {
   const std::vector<TreePart>& parts = order_.parts();
@@ -145,11 +91,13 @@ bool PlanarTangent::solve(Eigen::VectorXd& b) {
     scalars_[scalar] = dof_.equation[scalar] >= 0 ? b[dof_.equation[scalar]] : 0.0;
   for (int p = 0; p < part_count; ++p) {
     const int joint = parts[p].joint;
-    joint >= 0 ? joints_[joint].forward(maps_[joint], values_.data(), scalars_.data()) : forward_element(p);
+    joint >= 0 ? joints_[joint].forward(maps_[joint], values_.data(), scalars_.data())
+               : fronts_.forward(p, elements_.data(), values_.data());
   }
   for (int p = part_count - 1; p >= 0; --p) {
     const int joint = parts[p].joint;
-    joint >= 0 ? joints_[joint].backward(maps_[joint], values_.data(), scalars_.data()) : backward_element(p);
+    joint >= 0 ? joints_[joint].backward(maps_[joint], values_.data(), scalars_.data())
+               : fronts_.backward(p, elements_.data(), values_.data());
   }
   for (int i = 0; i < dof_.node_count; ++i)
     if (const int equation = dof_.equation[dof_.first[i]]; equation >= 0)

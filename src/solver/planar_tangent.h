@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "model/plane.h"
+#include "solver/element_elimination.h"
 #include "solver/planar_joint_front.h"
 #include "solver/tangent_backend.h"
-#include "solver/tree_order.h"
 
 namespace flexarm {
 
@@ -40,21 +40,15 @@ class PlanarTangent : public TangentBackend {
   void fold_mimics(const std::vector<MimicMap>&) override {}
 
  private:
-  bool eliminate_element(int part);
-  void forward_element(int part);
-  void backward_element(int part);
-  std::array<double*, 5> node_values(const TreePart& part, std::vector<double>& values, int size) const;
-
   const DegreesOfFreedom& dof_;
   const PlaneOfMotion& plane_;
   TreeOrder order_;
+  ElementElimination<3> fronts_;
   std::vector<FoldMaps> maps_;                          // per joint
   std::vector<PlanarJointFront> joints_;                // in the model's order
   std::vector<double> nodes_, elements_, coordinates_;  // blocks
   std::vector<double> values_, scalars_;                // four per node; per scalar: right-hand side, solution
   std::vector<double> expanded_;
-  std::vector<std::size_t> first_pivot_;  // per part
-  std::vector<unsigned char> pivots_;
   int singular_variable_ = -1;
   SlideMaps no_slide_;
 };

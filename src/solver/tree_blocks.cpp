@@ -25,4 +25,14 @@ TreeBlocks::TreeBlocks(const Model& model, const DegreesOfFreedom& dof)
   }
 }
 
+void hold_row(FoldMaps& maps, double* own, bool has_master, int component, int first,
+              const ReleasedVector& coefficients) {
+  const int size = static_cast<int>(maps.left.cols());
+  maps.left.col(component).setZero();
+  if (has_master) maps.released_spin.row(component).setZero();
+  Eigen::Map<ReleasedSquare>(own, size, size).row(component).setZero();
+  maps.released_released.row(component).setZero();
+  maps.released_released.row(component).segment(first, coefficients.size()) = coefficients.transpose();
+}
+
 }  // namespace flexarm

@@ -30,4 +30,9 @@ struct TreeBlocks {
   const double* element(std::size_t block) const { return elements.data() + 36 * block; }
 };
 
+/// Replaces the row of a released component in a joint's maps and in its `own` block, by columns, before the joint is
+/// folded; see TangentBackend::hold_row.
+void hold_row(FoldMaps& maps, double* own, bool has_master, int component, int first,
+              const ReleasedVector& coefficients);
+
 }  // namespace flexarm

@@ -2,28 +2,7 @@
 
 #include <algorithm>
 
-#include "solver/element_front.h"
-
 namespace flexarm {
-namespace {
-
-/// Calls visit(ElementFront<Nodes>()) for the number of nodes at hand.
-template <class Visitor>
-auto with_front(int node_count, Visitor&& visit) {
-  switch (node_count) {
-    case 2:
-      return visit(ElementFront<2>());
-    case 3:
-      return visit(ElementFront<3>());
-    case 4:
-      return visit(ElementFront<4>());
-    default:
-      return visit(ElementFront<5>());
-  }
-}
-
-}  // namespace
-
 bool TreeTangent::suits(const Model& model, const DegreesOfFreedom& dof) {
   return TreeOrder(model, dof).is_complete();
 }
@@ -33,17 +12,12 @@ TreeTangent::TreeTangent(const Model& model, const DegreesOfFreedom& dof)
       dof_(dof),
       blocks_(model, dof),
       order_(model, dof),
+      elements_(order_),
       bordered_(model, dof, order_, blocks_),
       values_(dof.scalar_count) {
   joints_.reserve(model.joints.size());
   for (const JointMap& joint : model.joints)
     joints_.emplace_back(joint, dof.variable_of_joint(static_cast<int>(joints_.size())), dof);
-  std::size_t pivots = 0;
-  for (const TreePart& part : order_.parts()) {
-    first_pivot_.push_back(pivots);
-    if (part.node_count > 0) pivots += 6 * (part.node_count - 1);
-  }
-  pivots_.resize(pivots);
   keeps_elements_apart_ = true;
   for (std::size_t v = 0; v < dof.size.size(); ++v) diagonal_blocks_.push_back(blocks_.diagonal(static_cast<int>(v)));
   for (std::size_t at = 0; at < blocks_.elements.size(); at += 36) element_blocks_.push_back(&blocks_.elements[at]);
@@ -94,32 +68,12 @@ void TreeTangent::hold_rows() {
   for (const auto& [joint, component, first, coefficients] : blocks_.held) {
     const JointFront& front = joints_[joint];
     if (order_.parts()[order_.completion(front.variable())].has_border) continue;
-    FoldMaps& maps = blocks_.maps[joint];
-    const int size = static_cast<int>(maps.left.cols());
-    maps.left.col(component).setZero();
-    if (front.has_master()) maps.released_spin.row(component).setZero();
-    Eigen::Map<ReleasedSquare>(diagonal_block(front.variable()), size, size).row(component).setZero();
-    maps.released_released.row(component).setZero();
-    maps.released_released.row(component).segment(first, coefficients.size()) = coefficients.transpose();
+    flexarm::hold_row(blocks_.maps[joint], diagonal_block(front.variable()), front.has_master(), component, first,
+                      coefficients);
   }
 }
 
 // ---------------------------------------------------------------- factors
-
-std::array<double*, 5> TreeTangent::node_values(const TreePart& part, std::vector<double>& values, int size) const {
-  std::array<double*, 5> blocks{};
-  for (int i = 0; i < part.node_count; ++i) blocks[i] = values.data() + static_cast<std::size_t>(size) * part.nodes[i];
-  return blocks;
-}
-
-bool TreeTangent::eliminate_element(int p) {
-  const TreePart& part = order_.parts()[p];
-  const std::array<double*, 5> diagonals = node_values(part, blocks_.diagonals, 36);
-  return with_front(part.node_count, [&](auto front) {
-    return front.eliminate(blocks_.elements.data() + 36 * part.first_block, diagonals.data(),
-                           pivots_.data() + first_pivot_[p]);
-  });
-}
 
 bool TreeTangent::factorise() {
   order_.update();
@@ -130,7 +84,7 @@ bool TreeTangent::factorise() {
     if (!(parts[p].has_border ? bordered_.eliminate(p)
           : parts[p].joint >= 0
               ? joints_[parts[p].joint].eliminate(blocks_.maps[parts[p].joint], diagonal_blocks_.data())
-              : eliminate_element(p))) {
+              : elements_.eliminate(p, blocks_.elements.data(), blocks_.diagonals.data()))) {
       singular_variable_ =
           parts[p].joint >= 0 ? dof_.variable_of_joint(parts[p].joint) : parts[p].nodes[parts[p].node_count - 1];
       return false;
@@ -139,21 +93,6 @@ bool TreeTangent::factorise() {
 }
 
 // ---------------------------------------------------------------- solution
-
-void TreeTangent::forward_element(int p) {
-  const TreePart& part = order_.parts()[p];
-  const std::array<double*, 5> r = node_values(part, values_, 6);
-  with_front(part.node_count, [&](auto front) {
-    front.forward(blocks_.elements.data() + 36 * part.first_block, pivots_.data() + first_pivot_[p], r.data());
-  });
-}
-
-void TreeTangent::backward_element(int p) {
-  const TreePart& part = order_.parts()[p];
-  const std::array<double*, 5> r = node_values(part, values_, 6);
-  with_front(part.node_count,
-             [&](auto front) { front.backward(blocks_.elements.data() + 36 * part.first_block, r.data()); });
-}
 
 bool TreeTangent::solve(Eigen::VectorXd& b) {
   const std::vector<TreePart>& parts = order_.parts();
@@ -165,11 +104,11 @@ bool TreeTangent::solve(Eigen::VectorXd& b) {
   for (int p = 0; p < part_count; ++p)
     parts[p].has_border   ? bordered_.forward(p, b, values_)
     : parts[p].joint >= 0 ? joints_[parts[p].joint].forward(blocks_.maps[parts[p].joint], values_.data())
-                          : forward_element(p);
+                          : elements_.forward(p, blocks_.elements.data(), values_.data());
   for (int p = part_count - 1; p >= 0; --p)
     parts[p].has_border   ? bordered_.backward(p, values_)
     : parts[p].joint >= 0 ? joints_[parts[p].joint].backward(blocks_.maps[parts[p].joint], values_.data())
-                          : backward_element(p);
+                          : elements_.backward(p, blocks_.elements.data(), values_.data());
   for (int scalar = 0; scalar < dof_.scalar_count; ++scalar)
     if (dof_.equation[scalar] >= 0) b[dof_.equation[scalar]] = values_[scalar];
   return b.allFinite();

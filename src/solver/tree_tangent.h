@@ -1,10 +1,10 @@
 #pragma once
 /// Block elimination of a mechanism's tangent along its tree, from the leaves to the root, in O(n). (tree.md)
 
-#include <array>
 #include <vector>
 
 #include "solver/bordered_elimination.h"
+#include "solver/element_elimination.h"
 #include "solver/joint_front.h"
 #include "solver/tangent_backend.h"
 #include "solver/tree_blocks.h"
@@ -44,21 +44,16 @@ class TreeTangent : public TangentBackend {
 
  private:
   void hold_rows();
-  bool eliminate_element(int part);
-  void forward_element(int part);
-  void backward_element(int part);
-  std::array<double*, 5> node_values(const TreePart& part, std::vector<double>& values, int size) const;
 
   const Model& model_;
   const DegreesOfFreedom& dof_;
   TreeBlocks blocks_;
   TreeOrder order_;
+  ElementElimination<6> elements_;
   BorderedElimination bordered_;
   std::vector<JointFront> joints_;  // in the model's order
   int singular_variable_ = -1;
-  std::vector<double> values_;            // per scalar: right-hand side, solution
-  std::vector<std::size_t> first_pivot_;  // per part
-  std::vector<unsigned char> pivots_;
+  std::vector<double> values_;  // per scalar: right-hand side, solution
 };
 
 }  // namespace flexarm

@@ -5,8 +5,20 @@
 #include "elements/conserving_points.h"
 #include "elements/conserving_tangent.h"
 #include "elements/random_element.h"
+#include "schemes/scheme.h"
 
 namespace flexarm::test {
+
+/// Of a scheme with these options; damping relaxes over half a step, numerical dissipation (order 0: none) has the
+/// spectral radius 0.5. `step` [s].
+inline TimeRule time_rule(bool is_corrected, MidFunctions mid, int dissipation_order, double step) {
+  TimeRule rule;
+  rule.mid_functions = mid;
+  rule.correction = is_corrected ? EnergyCorrection::Multiplier : EnergyCorrection::None;
+  rule.damping_relaxation = 0.5 * step;
+  if (dissipation_order > 0) rule.dissipation = numerical_dissipation(dissipation_order, 0.5, step);
+  return rule;
+}
 
 /// What the kernel reads of one element.
 template <int Nodes>

@@ -6,7 +6,6 @@
 #include "elements/conserving_node.h"
 #include "elements/kernel_checks.h"
 #include "math/simd.h"
-#include "schemes/scheme.h"
 
 namespace flexarm {
 namespace {
@@ -24,14 +23,7 @@ struct Options {
   MidFunctions mid = MidFunctions::Explicit;
   int dissipation_order = 0;
 
-  TimeRule rule() const {
-    TimeRule rule;
-    rule.mid_functions = mid;
-    rule.correction = is_corrected ? EnergyCorrection::Multiplier : EnergyCorrection::None;
-    rule.damping_relaxation = 0.5 * kStep;
-    if (dissipation_order > 0) rule.dissipation = numerical_dissipation(dissipation_order, 0.5, kStep);
-    return rule;
-  }
+  TimeRule rule() const { return time_rule(is_corrected, mid, dissipation_order, kStep); }
 };
 
 const Options kOptions[] = {

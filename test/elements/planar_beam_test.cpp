@@ -3,7 +3,6 @@
 #include "elements/conserving_kernel.h"
 #include "elements/kernel_checks.h"
 #include "model/plane.h"
-#include "schemes/scheme.h"
 
 namespace flexarm {
 namespace {
@@ -20,14 +19,7 @@ struct Options {
   int dissipation_order = 0;
   double size = 0.5;  // of the step
 
-  TimeRule rule() const {
-    TimeRule rule;
-    rule.mid_functions = mid;
-    rule.correction = is_corrected ? EnergyCorrection::Multiplier : EnergyCorrection::None;
-    rule.damping_relaxation = 0.5 * kStep;
-    if (dissipation_order > 0) rule.dissipation = numerical_dissipation(dissipation_order, 0.5, kStep);
-    return rule;
-  }
+  TimeRule rule() const { return time_rule(is_corrected, mid, dissipation_order, kStep); }
 };
 
 const Options kOptions[] = {{true, false},

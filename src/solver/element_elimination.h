@@ -1,0 +1,77 @@
+#pragma once
+/// The fronts of all elements of a tree, without borders. (tree.md)
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "solver/element_front.h"
+#include "solver/tree_order.h"
+
+namespace flexarm {
+
+/// Eliminates elements with `Unknowns` unknowns per node, see ElementFront. Blocks of elements and of nodes stand
+/// ElementFront::kBlock apart, values of nodes kColumn.
+template <int Unknowns>
+class ElementElimination {
+ public:
+  /// The order must outlive it.
+  explicit ElementElimination(const TreeOrder& order) : order_(order) {
+    std::size_t pivots = 0;
+    for (const TreePart& part : order.parts()) {
+      first_pivot_.push_back(pivots);
+      if (part.node_count > 0) pivots += Unknowns * (part.node_count - 1);
+    }
+    pivots_.resize(pivots);
+  }
+
+  /// Of a part that is an element. False if a pivot is zero or not finite.
+  bool eliminate(int part, double* elements, double* diagonals) {
+    const std::array<double*, 5> at_nodes = of_nodes(part, diagonals, Front<2>::kBlock);
+    return with_front(part, [&](auto front) {
+      return front.eliminate(block(part, elements), at_nodes.data(), pivots_.data() + first_pivot_[part]);
+    });
+  }
+  void forward(int part, double* elements, double* values) const {
+    const std::array<double*, 5> r = of_nodes(part, values, Front<2>::kColumn);
+    with_front(
+        part, [&](auto front) { front.forward(block(part, elements), pivots_.data() + first_pivot_[part], r.data()); });
+  }
+  void backward(int part, double* elements, double* values) const {
+    const std::array<double*, 5> r = of_nodes(part, values, Front<2>::kColumn);
+    with_front(part, [&](auto front) { front.backward(block(part, elements), r.data()); });
+  }
+
+ private:
+  template <int Nodes>
+  using Front = ElementFront<Nodes, Unknowns>;
+
+  double* block(int part, double* elements) const {
+    return elements + Front<2>::kBlock * order_.parts()[part].first_block;
+  }
+  std::array<double*, 5> of_nodes(int p, double* first, std::size_t size) const {
+    const TreePart& part = order_.parts()[p];
+    std::array<double*, 5> places{};
+    for (int i = 0; i < part.node_count; ++i) places[i] = first + size * part.nodes[i];
+    return places;
+  }
+  template <class Visitor>
+  auto with_front(int part, Visitor&& visit) const {
+    switch (order_.parts()[part].node_count) {
+      case 2:
+        return visit(Front<2>());
+      case 3:
+        return visit(Front<3>());
+      case 4:
+        return visit(Front<4>());
+      default:
+        return visit(Front<5>());
+    }
+  }
+
+  const TreeOrder& order_;
+  std::vector<std::size_t> first_pivot_;  // per part
+  std::vector<unsigned char> pivots_;
+};
+
+}  // namespace flexarm
