@@ -85,7 +85,7 @@ class TriesOfARun {
     double expected = kUnknown;
     while (may_try(steps)) {
       const bool is_done = attempt(steps, expected);
-      if (run_.end == AccurateRun::End::Interrupted || run_.end == AccurateRun::End::Met) break;
+      if (run_.end == AccurateRun::End::Interrupted) break;
       failures_ = is_done ? 0 : failures_ + 1;
       if (failures_ > kMostFailures) break;
       if (is_done && judge(steps)) break;
@@ -150,10 +150,7 @@ class TriesOfARun {
   }
 
   /// The error of a run over its difference to the one before, by the order of the scheme.
-  double share(int steps) const {
-    if (steps_before_ == 0) return kUnknown;
-    return 1 / (std::pow(static_cast<double>(steps) / steps_before_, order_) - 1);
-  }
+  double share(int steps) const { return 1 / (std::pow(static_cast<double>(steps) / steps_before_, order_) - 1); }
 
   /// False if a step has failed, or the run was interrupted.
   bool attempt(int steps, double expected) {

@@ -19,6 +19,9 @@ struct AutomaticMeshes {
   std::string shortcoming;  ///< why not
   int runs = 0;
   double seconds = 0;  ///< of the processor, of all of them
+
+  /// What of an accuracy, of which meshes have had kMeshShare, is there for the steps.
+  double left(double accuracy) const { return is_chosen ? (1 - kMeshShare) * accuracy : accuracy; }
 };
 
 /// Beams keep their order, and those with a number of elements keep that: what these err is not looked at. One whose

@@ -49,7 +49,8 @@ JudgedPoints::JudgedPoints(const Simulation& simulation, const std::string& fram
 
 void JudgedPoints::positions(const Simulation& simulation, std::vector<Vector3>& positions) const {
   positions.resize(size());
-  for (std::size_t i = 0; i < size(); ++i) positions[i] = state(simulation, i).pose.position;
+  for (std::size_t i = 0; i < size(); ++i)
+    positions[i] = has_probes_ ? simulation.probe_pose(i).position : simulation.tip_pose(links_[i]).position;
   if (!frame_) return;
   const Pose frame = simulation.link_pose(*frame_);
   for (Vector3& position : positions) position = frame.orientation.conjugate() * (position - frame.position);
@@ -59,13 +60,6 @@ std::vector<Vector3> JudgedPoints::positions(const Simulation& simulation) const
   std::vector<Vector3> found;
   positions(simulation, found);
   return found;
-}
-
-std::vector<ProbeState> JudgedPoints::states(const Simulation& simulation) const {
-  std::vector<ProbeState> states;
-  states.reserve(size());
-  for (std::size_t i = 0; i < size(); ++i) states.push_back(state(simulation, i));
-  return states;
 }
 
 void JudgedMotion::add(const std::vector<Vector3>& positions) {

@@ -42,13 +42,6 @@ scene::SceneDescription scene_of(scene::ReadResult read) {
   return std::move(*read.scene);
 }
 
-std::function<StepCommand(const Simulation&)> commands_of(const std::string& path) {
-  if (path.empty()) return {};
-  return [pulses = read_effort_schedule(path).pulses](const Simulation& simulation) {
-    return [player = EffortPlayer(pulses, simulation)](Simulation& commanded) { player.command(commanded); };
-  };
-}
-
 /// Commands the tries of a run, and times the last of them.
 class TimedTries : public RunWatcher {
  public:
@@ -69,14 +62,12 @@ class TimedTries : public RunWatcher {
 
 /// The run as somebody gets it who asks for the accuracy; its motion.
 JudgedMotion run_accurately(const AccuracyCase& one, TrialRuns& trials, AccuracyOutcome& out) {
-  const bool has_automatic = std::any_of(one.scene.links.begin(), one.scene.links.end(),
-                                         [](const auto& link) { return link.beam && !link.beam->elements; });
   const AutomaticMeshes meshes = automatic_meshes(trials, kMeshShare * out.asked);
   Simulation simulation(with_settings(one.scene, meshes.settings));
-  const auto commands = commands_of(one.commands);
+  const auto commands = effort_commands(one.commands);
   TimedTries tries(commands ? commands(simulation) : StepCommand());
   AccuracyRequest request;
-  request.accuracy = has_automatic ? (1 - kMeshShare) * out.asked : out.asked;
+  request.accuracy = meshes.left(out.asked);
   request.until = one.until;
   request.intervals = kIntervals;
   AccurateRun run = run_to_accuracy(simulation, request, tries);
@@ -186,7 +177,7 @@ AccuracyReport measure_accuracy(const std::string& folder, bool quick,
     const auto show = [&] { progress(static_cast<double>(i) / static_cast<double>(cases.size()), one.name); };
     TrialLimits limits;
     limits.seconds = kSearchSeconds;
-    TrialRuns trials(one.scene, {one.until / kIntervals, kIntervals}, limits, commands_of(one.commands), [&] {
+    TrialRuns trials(one.scene, {one.until / kIntervals, kIntervals}, limits, effort_commands(one.commands), [&] {
       show();
       return true;
     });

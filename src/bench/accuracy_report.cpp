@@ -7,18 +7,13 @@
 
 #include "bench/accuracy.h"
 #include "bench/markdown_table.h"
+#include "bench/median.h"
 
 namespace flexarm::bench {
 namespace {
 
 /// What is aimed at.
 constexpr double kShareAbove = 0.05, kLargestRatio = 3, kLargestCost = 1.5;
-
-double median(std::vector<double> values) {
-  if (values.empty()) return std::nan("");
-  std::nth_element(values.begin(), values.begin() + static_cast<long>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
 
 std::string number(double value, const char* format) {
   return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "–";

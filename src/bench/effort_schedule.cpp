@@ -85,4 +85,11 @@ void EffortPlayer::command(Simulation& simulation) const {
   }
 }
 
+std::function<std::function<void(Simulation&)>(const Simulation&)> effort_commands(const std::string& path) {
+  if (path.empty()) return {};
+  return [pulses = read_effort_schedule(path).pulses](const Simulation& simulation) {
+    return [player = EffortPlayer(pulses, simulation)](Simulation& commanded) { player.command(commanded); };
+  };
+}
+
 }  // namespace flexarm::bench

@@ -1,6 +1,7 @@
 #pragma once
 /// Joint efforts played against a simulation, as scripts/demo_commands.py does for the demo.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -42,5 +43,9 @@ class EffortPlayer {
   };
   std::vector<Track> tracks_;
 };
+
+/// What commands the efforts of a file before each step, for any simulation of the scene; of no file: nothing.
+/// @throws std::runtime_error as read_effort_schedule(); what is returned, as EffortPlayer.
+std::function<std::function<void(Simulation&)>(const Simulation&)> effort_commands(const std::string& path);
 
 }  // namespace flexarm::bench

@@ -6,6 +6,7 @@
 
 #include "bench/hard.h"
 #include "bench/markdown_table.h"
+#include "bench/median.h"
 
 namespace flexarm::bench {
 namespace {
@@ -61,13 +62,6 @@ bool is_complete(const HardRow& row, std::size_t scheme) {
 template <class Predicate>
 long count_rows(const HardReport& report, const Predicate& predicate) {
   return std::count_if(report.rows.begin(), report.rows.end(), predicate);
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// A number, a dash where there is none.

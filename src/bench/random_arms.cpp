@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "math/pi.h"
+
 namespace flexarm::bench {
 namespace {
 
@@ -22,7 +24,7 @@ class Numbers {
 
 /// An aluminium rod along x, as a beam or rigid.
 std::string link(Numbers& numbers, int i, double length, bool is_flexible, bool is_automatic) {
-  const double radius = length * numbers.between(0.015, 0.04), mass = 2700 * 3.14159265 * radius * radius * length;
+  const double radius = length * numbers.between(0.015, 0.04), mass = 2700 * kPi * radius * radius * length;
   if (is_flexible)
     return fmt::format(
         R"(  <link name="link{0}">

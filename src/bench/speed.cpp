@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "bench/median.h"
 #include "bench/mujoco.h"
 #include "flexarm/scene/urdf_reader.h"
 
@@ -27,12 +28,6 @@ Discretisation with_half_the_elements(Discretisation d) {
 Discretisation with_twice_the_step(Discretisation d) {
   d.step *= 2;
   return d;
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
 
 /// Times of the repetitions of one discretisation.

@@ -4,17 +4,13 @@
 #include <fmt/format.h>
 
 #include "bench/markdown_table.h"
+#include "bench/median.h"
 #include "bench/speed.h"
 
 namespace flexarm::bench {
 namespace {
 
 constexpr int kTurns = 15;
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
 
 }  // namespace
 

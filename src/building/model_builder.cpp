@@ -114,8 +114,10 @@ scene::SceneDescription with_locked(scene::SceneDescription scene, const BuiltMo
 
 }  // namespace
 
-Model build_model(const scene::SceneDescription& original) {
-  const scene::SceneDescription scene = RigidLines(original).scene;
+Model build_model(const scene::SceneDescription& original, std::vector<std::optional<RigidLine>>* rigid_lines) {
+  RigidLines elastic(original);
+  if (rigid_lines) *rigid_lines = std::move(elastic.lines);
+  const scene::SceneDescription& scene = elastic.scene;
   BuiltModel built = build(scene);
   if (scene.lock_massless && !is_determined(built)) built = build(with_locked(scene, built));
   if (!is_determined(built)) refuse_massless(scene, built);

@@ -95,12 +95,11 @@ std::optional<double> wanted_accuracy(const SimulateArguments& arguments, const 
   return arguments.options.step ? std::nullopt : simulation.scene().integrator.accuracy;
 }
 
-Run run_accurately(SimulateArguments arguments, double accuracy, Simulation& simulation, bool& is_met) {
+Run run_accurately(SimulateArguments arguments, double accuracy, Simulation& simulation) {
   check(arguments);
-  bool are_meshes_good = true;
-  const double of_steps = choose_meshes(arguments, accuracy, simulation, are_meshes_good);
+  const ChosenMeshes meshes = choose_meshes(arguments, accuracy, simulation);
   arguments.estimates_error = true;  // each try has an estimate anyway
-  const AccuracyRequest request = request_of(arguments, of_steps, simulation);
+  const AccuracyRequest request = request_of(arguments, meshes.left, simulation);
   const auto start = std::chrono::steady_clock::now();
   Run run{{}, RunSummary(simulation)};
   TryOutput output(arguments, run, simulation.time());
@@ -114,12 +113,13 @@ Run run_accurately(SimulateArguments arguments, double accuracy, Simulation& sim
   run.last = result.last;
   run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const bool are_steps_good = result.end == AccurateRun::End::Met;
-  is_met = are_steps_good && are_meshes_good;
-  const std::string reached = std::isnan(result.estimate()) ? "unknown" : fmt::format("{:.2g}", result.estimate());
+  run.is_accurate = are_steps_good && meshes.is_met;
+  const double estimate = result.estimate() + meshes.error;
+  const std::string reached = std::isnan(estimate) ? "unknown" : fmt::format("{:.2g}", estimate);
   if (!are_steps_good && result.end != AccurateRun::End::Failed)
     fmt::print(stderr, "flexarm: the accuracy {:g} was not met: {}; estimated error {} after {} tries, {} steps\n",
                accuracy, to_string(result.end), reached, result.tries.size(), result.steps);
-  else if (is_met && !arguments.quiet)
+  else if (run.is_accurate && !arguments.quiet)
     fmt::print(report_stream(arguments),
                "accuracy {:g} asked for, error {} estimated, of {:.3g} m; {} tries, {} steps in all\n", accuracy,
                reached, result.scale, result.tries.size(), result.steps);

@@ -9,8 +9,8 @@ namespace flexarm::cli {
 std::optional<double> wanted_accuracy(const SimulateArguments& arguments, const Simulation& simulation);
 
 /// Runs in steps that are chosen for an accuracy; the output has the rows of the last try. Says on the standard error
-/// output where the accuracy was not met; `is_met`: whether it was.
+/// output where the accuracy was not met.
 /// @throws InputError if arguments contradict each other, std::runtime_error if results cannot be written.
-Run run_accurately(SimulateArguments arguments, double accuracy, Simulation& simulation, bool& is_met);
+Run run_accurately(SimulateArguments arguments, double accuracy, Simulation& simulation);
 
 }  // namespace flexarm::cli

@@ -1,7 +1,5 @@
 #include "cli/mesh_choice.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 #include "accuracy/automatic_meshes.h"
@@ -13,11 +11,6 @@ namespace flexarm::cli {
 namespace {
 
 constexpr int kJudgedTimes = 100;
-
-bool asks_for_meshes(const scene::SceneDescription& scene) {
-  return std::any_of(scene.links.begin(), scene.links.end(),
-                     [](const scene::LinkDescription& link) { return link.beam && !link.beam->elements; });
-}
 
 /// "elements: arm 5, forearm 3"; those that were chosen.
 std::string names_of(const scene::SceneDescription& scene, const RunSettings& settings) {
@@ -34,9 +27,9 @@ std::string names_of(const scene::SceneDescription& scene, const RunSettings& se
 
 }  // namespace
 
-double choose_meshes(const SimulateArguments& arguments, double accuracy, Simulation& simulation, bool& is_met) {
+ChosenMeshes choose_meshes(const SimulateArguments& arguments, double accuracy, Simulation& simulation) {
+  if (!arguments.resume.empty() || !arguments.checkpoint.empty()) return {accuracy};
   const scene::SceneDescription scene = simulation.scene();
-  if (!asks_for_meshes(scene) || !arguments.resume.empty() || !arguments.checkpoint.empty()) return accuracy;
   ProgressBar bar(0, 1, !arguments.quiet);
   TrialRuns trials(scene, {(arguments.until - simulation.time()) / kJudgedTimes, kJudgedTimes}, {}, {}, [&] {
     bar.show(0, "meshes");
@@ -44,17 +37,15 @@ double choose_meshes(const SimulateArguments& arguments, double accuracy, Simula
   });
   const AutomaticMeshes meshes = automatic_meshes(trials, kMeshShare * accuracy);
   bar.clear();
-  if (!meshes.is_met) {
-    is_met = false;
+  if (!meshes.is_met)
     fmt::print(stderr, "flexarm: elements=\"auto\": the accuracy {:g} was not met: {}\n", accuracy, meshes.shortcoming);
+  if (meshes.is_chosen) {  // else those of the present rule stay
+    if (!arguments.quiet)
+      fmt::print(report_stream(arguments), "{}; error {:.2g} estimated, after {} runs\n",
+                 names_of(scene, meshes.settings), meshes.error, meshes.runs);
+    simulation = Simulation(with_settings(scene, meshes.settings), arguments.options);
   }
-  // With none that was chosen those of the present rule stay.
-  if (!meshes.is_chosen) return accuracy;
-  if (!arguments.quiet)
-    fmt::print(report_stream(arguments), "{}; error {:.2g} estimated, after {} runs\n",
-               names_of(scene, meshes.settings), meshes.error, meshes.runs);
-  simulation = Simulation(with_settings(scene, meshes.settings), arguments.options);
-  return (1 - kMeshShare) * accuracy;
+  return {meshes.left(accuracy), meshes.error, meshes.is_met};
 }
 
 }  // namespace flexarm::cli

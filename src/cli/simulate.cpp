@@ -108,11 +108,10 @@ Run run(const SimulateArguments& arguments, Simulation& simulation) {
 }
 
 /// The run; if it cannot be written, the state at which that was noticed is kept.
-Run run_and_keep(const SimulateArguments& arguments, Simulation& simulation, bool& is_accurate) {
+Run run_and_keep(const SimulateArguments& arguments, Simulation& simulation) {
   try {
     const std::optional<double> accuracy = wanted_accuracy(arguments, simulation);
-    if (!accuracy) return run(arguments, simulation);
-    return run_accurately(arguments, *accuracy, simulation, is_accurate);
+    return accuracy ? run_accurately(arguments, *accuracy, simulation) : run(arguments, simulation);
   } catch (const InputError&) {
     throw;  // nothing has happened yet
   } catch (const std::runtime_error&) {
@@ -169,8 +168,7 @@ int simulate(const SimulateArguments& arguments) {
   check_duration(arguments, simulation);
   const double begin = simulation.time();
   catch_interruptions();
-  bool is_accurate = true;
-  const Run result = run_and_keep(arguments, simulation, is_accurate);
+  const Run result = run_and_keep(arguments, simulation);
   print_warnings(simulation, result);
   if (!result.last.converged) {
     report_failure(arguments, simulation, result);
@@ -178,7 +176,7 @@ int simulate(const SimulateArguments& arguments) {
   }
   if (!arguments.checkpoint.empty()) write_checkpoint(simulation, arguments.checkpoint);
   if (!arguments.quiet) print_summary(arguments, simulation, begin, result);
-  if (interruption() == 0) return is_accurate ? kDone : kFailed;
+  if (interruption() == 0) return result.is_accurate ? kDone : kFailed;
   fmt::print(stderr, "flexarm: interrupted at t = {:.17g} s\n", simulation.time());
   return kInterrupted + interruption();
 }

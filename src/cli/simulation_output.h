@@ -33,7 +33,8 @@ struct SimulateArguments {
 struct Run {
   StepResult last;  ///< of the last step; converged unless the run failed
   RunSummary summary;
-  double seconds = 0;  ///< of the wall clock
+  double seconds = 0;       ///< of the wall clock
+  bool is_accurate = true;  ///< false where an accuracy was asked for and not met
 };
 
 /// Where what happened is told: not among the results.

@@ -52,13 +52,6 @@ scene::SceneDescription read(const SceneInput& input) {
   return load_simulation(input).scene();
 }
 
-std::function<StepCommand(const Simulation&)> commands_of(const std::string& path) {
-  if (path.empty()) return {};
-  return [pulses = bench::read_effort_schedule(path).pulses](const Simulation& simulation) {
-    return [player = bench::EffortPlayer(pulses, simulation)](Simulation& commanded) { player.command(commanded); };
-  };
-}
-
 void check(const Arguments& arguments) {
   if (arguments.accuracy.has_value() == arguments.real_time.has_value())
     throw InputError("flexarm: tune: either --accuracy or --real-time is expected");
@@ -99,7 +92,8 @@ int tune_scene(const Arguments& arguments) {
   const scene::SceneDescription scene = read(arguments.scene);
   catch_interruptions();
   const JudgedTimes times = judged_times(arguments.until, scene.integrator.step, kJudgedTimes);
-  TrialRuns trials(scene, times, arguments.limits, commands_of(arguments.commands), [] { return interruption() == 0; });
+  TrialRuns trials(scene, times, arguments.limits, bench::effort_commands(arguments.commands),
+                   [] { return interruption() == 0; });
   const TuningResult result = search(arguments, trials);
   print_result(arguments, result, times);
 

@@ -12,7 +12,7 @@ struct StepSettings {
   int max_iterations = 20;
   int max_halvings = 14;  ///< but where a stop is hit, see finest_halving()
   /// Halvings of a step within which friction sticks or slips anew, a stop is touched or left, or a slider comes to its
-  /// end. 0: steps go over such events.
+  /// end, within max_halvings. 0: steps go over such events.
   int event_halvings = 0;
   /// Keep the factors of the tangent while the iteration contracts well (modified Newton). The result agrees with that
   /// of full Newton to far below the tolerance; off: quadratic convergence, and a restored state continues bit for bit.

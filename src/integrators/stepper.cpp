@@ -66,7 +66,7 @@ void Stepper::invalidate() {
 
 void Stepper::set_step(double step, int event_halvings) {
   settings_.step = step;
-  settings_.event_halvings = std::clamp(event_halvings, 0, settings_.max_halvings);
+  settings_.event_halvings = event_halvings;
   newton_.forget_factors();
   if (substitute_) substitute_->set_step(step);
 }
@@ -134,7 +134,8 @@ bool Stepper::simple_step(State& state, double step, StepResult& result) {
     const bool may_halve = state.halving_level < finest_halving(settings_) && result.halvings < kMostHalvings;
     if (result.reason == StepResult::Reason::None && may_halve && system_.hits_too_fast())
       result.reason = StepResult::Reason::HitTooFast;
-    const bool may_find = state.halving_level < settings_.event_halvings && result.halvings < kMostHalvings / 2;
+    const int event_level = std::min(settings_.event_halvings, settings_.max_halvings);
+    const bool may_find = state.halving_level < event_level && result.halvings < kMostHalvings / 2;
     if (result.reason == StepResult::Reason::None && may_find && system_.has_event())
       result.reason = StepResult::Reason::EventWithin;
     if (result.reason != StepResult::Reason::None) return false;

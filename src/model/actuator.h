@@ -79,13 +79,17 @@ struct Actuator {
   std::optional<Gyroscope> gyroscope;
 };
 
-/// What time changes of a controller.
-struct ServoState {
+/// What programs tell a controller.
+struct ServoCommand {
   double set_point = std::numeric_limits<double>::quiet_NaN();  ///< commanded; NaN where no command holds
   // Until `set_time` [s] it moves, arriving with this rate and acceleration; then it stays.
   double set_rate = 0, set_acceleration = 0, set_time = 0;
-  double law = 0;           ///< in force, of Servo::laws; another one than the first only under a command
-  double off = 0;           ///< 1 where it is switched off: the motor gives nothing; else 0
+  double law = 0;  ///< in force, of Servo::laws; another one than the first only under a command
+  double off = 0;  ///< 1 where it is switched off: the motor gives nothing; else 0
+};
+
+/// What time changes of a controller.
+struct ServoState : ServoCommand {
   double integral = 0;      ///< of the error, or with ServoMode::Velocity the error itself [s times the error]
   double average = 0;       ///< of past increments of the error, which damps stiff gains
   double delayed_rate = 0;  ///< what follows the rate of what is measured, backwards, the same

@@ -31,8 +31,8 @@ struct Simulation::Implementation {
   scene::SceneDescription scene;
   Scheme scheme;
   StepSettings settings;
-  Model model;
   std::vector<std::optional<RigidLine>> rigid_lines;  ///< per link
+  Model model;
   std::unique_ptr<const Model> built;  ///< once something has left its line: the model as the scene says it
   std::unique_ptr<Stepper> stepper;
   std::shared_ptr<const State> initial;  ///< of this simulation and its copies
@@ -51,8 +51,7 @@ struct Simulation::Implementation {
       : scene(with_options(std::move(description), options)),
         scheme(made_for_integrator(scene, [&] { return make_scheme(scene.integrator); })),
         settings(settings_of(scene, options)),
-        model(build_model(scene)),
-        rigid_lines(RigidLines(scene).lines),
+        model(build_model(scene, &rigid_lines)),
         stepper(made_for_integrator(scene, [&] { return std::make_unique<Stepper>(model, scheme, settings); })),
         state(initial_state(model)),
         start_warnings(held_joints(scene, model)) {
@@ -74,8 +73,8 @@ struct Simulation::Implementation {
       : scene(other.scene),
         scheme(other.scheme),
         settings(other.settings),
-        model(other.model),
         rigid_lines(other.rigid_lines),
+        model(other.model),
         built(other.built ? std::make_unique<const Model>(*other.built) : nullptr),
         stepper(std::make_unique<Stepper>(model, scheme, settings)),
         initial(other.initial),
@@ -127,13 +126,6 @@ struct Simulation::Implementation {
   Pose in_world(const Attachment& frame) const {
     const Pose pose = attached_pose(state, frame);
     return frame.node < 0 ? Pose{model.origin + pose.position, pose.orientation} : in_world(pose);
-  }
-
-  ProbeState probe_at(const ProbePoint& point) const {
-    const MotionView motion = view();
-    ProbeState probe = probe_state(model, state, published.velocities(motion).nodes(), point);
-    probe.pose.position += probe_origin(model, state, point);
-    return probe;
   }
 
   void release_from_lines() {

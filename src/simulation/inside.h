@@ -30,16 +30,16 @@ const std::vector<double>& update_norms_of(const Simulation& simulation);
 /// @throws std::invalid_argument if it is not one of this simulation's; which is as before then
 void restore(Simulation& simulation, const State& state);
 
-/// What a simulation is told from outside; the servos' are of those that have one, by actuators.
+/// What a simulation is told from outside; to servos by actuators.
 struct Commands {
   std::vector<double> efforts;
   std::vector<NodalLoad> wrenches;
-  std::vector<ServoState> servos;
+  std::vector<ServoCommand> servos;
 };
 
 /// What holds in a simulation, in the memory of `commands`.
 void take_commands(const Simulation& simulation, Commands& commands);
-/// Tells another one of the same model the same; memories of its servos stay.
+/// Tells another one of the same model the same.
 void give_commands(const Commands& commands, Simulation& simulation);
 
 }  // namespace flexarm

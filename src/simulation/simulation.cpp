@@ -13,7 +13,6 @@
 #include "model/carried_origin.h"
 #include "simulation/failure_text.h"
 #include "simulation/implementation.h"
-#include "simulation/inside.h"
 #include "simulation/joint_state.h"
 #include "simulation/observables.h"
 #include "simulation/servo_commands.h"
@@ -251,13 +250,6 @@ Pose Simulation::tip_pose(std::size_t link) const {
   return implementation_->in_world(implementation_->tip(link));
 }
 
-ProbeState Simulation::tip_state(std::size_t link) const {
-  ProbePoint tip;
-  tip.link = static_cast<int>(link);
-  tip.attachment = implementation_->tip(link);
-  return implementation_->probe_at(tip);
-}
-
 void Simulation::beam_points(std::size_t link, int between, std::vector<BeamPoint>& points) const {
   const LinkFrame& frame = implementation_->model.links.at(link);
   if (const auto& line = implementation_->rigid_lines[link]) rigid_points(*line, link_pose(link), points);
@@ -297,7 +289,12 @@ Vector3 Simulation::angular_momentum() const {
   return world_origin(implementation_->model, implementation_->state).cross(momenta.linear) + momenta.angular;
 }
 ProbeState Simulation::probe(std::size_t index) const {
-  return implementation_->probe_at(implementation_->model.probes.at(index));
+  const Implementation& s = *implementation_;
+  const MotionView view = s.view();
+  const ProbePoint& point = view.model.probes.at(index);
+  ProbeState probe = probe_state(view.model, view.state, s.published.velocities(view).nodes(), point);
+  probe.pose.position += probe_origin(view.model, view.state, point);
+  return probe;
 }
 Pose Simulation::probe_pose(std::size_t index) const {
   return pose_in_world(implementation_->model, implementation_->state, implementation_->model.probes.at(index));
@@ -381,58 +378,6 @@ std::size_t Simulation::node_count() const {
 }
 std::size_t Simulation::degrees_of_freedom() const {
   return implementation_->stepper->degrees_of_freedom().unknowns;
-}
-
-// ---------------------------------------------------------------- the inside
-
-struct Inside {
-  static Simulation::Implementation& of(const Simulation& simulation) { return *simulation.implementation_; }
-};
-
-const Model& model_of(const Simulation& simulation) {
-  return Inside::of(simulation).model;
-}
-const State& state_of(const Simulation& simulation) {
-  return Inside::of(simulation).state;
-}
-const std::vector<std::optional<RigidLine>>& rigid_lines_of(const Simulation& simulation) {
-  return Inside::of(simulation).rigid_lines;
-}
-MadeForOutput made_for_output(const Simulation& simulation) {
-  const auto& s = Inside::of(simulation);
-  return {s.published.holds_rates(), s.published.holds_velocities(), s.published.holds_past(), s.energies.has_value(),
-          s.momenta.has_value()};
-}
-const std::vector<double>& update_norms_of(const Simulation& simulation) {
-  const auto& inside = Inside::of(simulation);
-  return inside.static_norms.empty() ? inside.stepper->update_norms() : inside.static_norms;
-}
-void restore(Simulation& simulation, const State& state) {
-  Inside::of(simulation).restore(state);
-}
-
-void take_commands(const Simulation& simulation, Commands& commands) {
-  const State& state = Inside::of(simulation).state;
-  commands.efforts = state.commands;
-  commands.wrenches = state.wrenches;
-  commands.servos.resize(state.actuators.size());
-  for (std::size_t i = 0; i < state.actuators.size(); ++i) commands.servos[i] = state.actuators[i].servo;
-}
-
-void give_commands(const Commands& commands, Simulation& simulation) {
-  State& state = Inside::of(simulation).state;
-  state.commands = commands.efforts;
-  state.wrenches = commands.wrenches;
-  for (std::size_t i = 0; i < state.actuators.size(); ++i) {
-    ServoState& servo = state.actuators[i].servo;
-    const ServoState& given = commands.servos[i];
-    servo.set_point = given.set_point;
-    servo.set_rate = given.set_rate;
-    servo.set_acceleration = given.set_acceleration;
-    servo.set_time = given.set_time;
-    servo.law = given.law;
-    servo.off = given.off;
-  }
 }
 
 }  // namespace flexarm

@@ -1,10 +1,12 @@
 // Scenes that move in a plane are found, solved there, and come to the same as in three dimensions.
 #include <cmath>
+#include <cstdio>
 #include <functional>
 
 #include <gtest/gtest.h>
 
 #include "flexarm/scene/urdf_reader.h"
+#include "flexarm/simulation/checkpoint.h"
 #include "integrators/step_plane.h"
 #include "math/so3.h"
 #include "schemes/scheme.h"
@@ -23,8 +25,10 @@ constexpr double kSame = 1e-11;
 
 const std::vector<std::string> kPlanarSchemes = {"em", "em0", "em_symmetric", "em_scaled", "em4", "edmc1", "edmc2"};
 
-PlaneSearch plane_of(const scene::SceneDescription& scene) {
-  const Simulation simulation(scene);
+PlaneSearch plane_of(const scene::SceneDescription& scene, const std::string& scheme = "em") {
+  SimulationOptions options;
+  options.scheme = scheme;
+  const Simulation simulation(scene, options);
   return find_step_plane(model_of(simulation), make_scheme(simulation.scene().integrator));
 }
 
@@ -77,6 +81,7 @@ void expect_same_motion(const scene::SceneDescription& scene, const std::string&
                         const std::function<void(Simulation&, int)>& act = {}) {
   SimulationOptions options;
   options.scheme = scheme;
+  ASSERT_TRUE(plane_of(scene, scheme).plane) << scheme << ": " << plane_of(scene, scheme).reason;
   Simulation plane(scene, options), space(in_space(scene), options);
   for (int n = 0; n < steps; ++n) {
     if (act) act(plane, n), act(space, n);
@@ -163,6 +168,41 @@ TEST(Planar, IsNotFoundWhereSomethingIsNearlyInThePlane) {
             "no principal axis of a link's inertia is normal to the plane");
 }
 
+// A section that couples bending in the plane with what is out of it has no plane; one that couples within has.
+TEST(Planar, IsNotFoundWhereSectionsCoupleOutOfIt) {
+  const auto search = [](int row, int column) {
+    SceneBuilder b;
+    scene::MatrixSection section;
+    section.stiffness = Vector6(2e4, 1e4, 1e4, 20, 25, 25).asDiagonal();
+    section.stiffness(row, column) = section.stiffness(column, row) = 1e-6;
+    section.inertia = Vector6(0.5, 0.5, 0.5, 2e-3, 1e-3, 1e-3).asDiagonal();
+    b.beam("arm", {{1, 0, 0}}, section, 2, 2);
+    b.joint("hinge", JointKind::Continuous, "world", "arm", Vector3::Zero(), Vector3::UnitZ());
+    b.scene.gravity = {0, -9.81, 0};
+    return plane_of(b.scene);
+  };
+  EXPECT_TRUE(search(0, 5).plane) << "stretch with bending in the plane: " << search(0, 5).reason;
+  EXPECT_FALSE(search(0, 4).plane) << "stretch with bending out of the plane";
+  EXPECT_FALSE(search(3, 5).plane) << "torsion with bending";
+  EXPECT_FALSE(search(1, 2).plane) << "both shears";
+}
+
+// The motion begins in three dimensions, and stays there.
+TEST(Planar, IsNotTakenWhereTheStartMovesOutOfIt) {
+  SceneBuilder b;
+  b.scene.integrator.step = 0.01;
+  b.beam("spaghetti", {{2, 0, 0}}, section(1e4, 5e3, 50, 40, 1, 1e-2, 5e-3), 4, 2);
+  b.joint("free", JointKind::Floating, "world", "spaghetti");
+  b.scene.initial_links.push_back({"spaghetti", {1, 0.5, 1e-6}, {0, 0, 2}, {}});
+  Simulation plane(b.scene), space(in_space(b.scene));
+  for (int n = 0; n < 100; ++n) {
+    ASSERT_TRUE(plane.step().converged);
+    ASSERT_TRUE(space.step().converged);
+  }
+  EXPECT_LE(distance(plane, space), kSame);
+  EXPECT_NEAR(plane.tip_pose(1).position.z(), 1e-6, 1e-11) << "a second at 1e-6 m/s";
+}
+
 // What acts out of the plane lifts the motion to three dimensions, where it is what it would have been there.
 TEST(Planar, IsLiftedByWrenches) {
   const scene::SceneDescription scene = tilted_arm(kTilt).scene;
@@ -220,6 +260,29 @@ TEST(Planar, GoesOnFromAnySnapshot) {
   Simulation fresh(tilted_arm(kTilt).scene, options);
   run(fresh, 10);
   EXPECT_TRUE(same_bits(state_of(simulation), state_of(fresh)));
+}
+
+TEST(Planar, GoesOnFromFilesAndOtherSimulations) {
+  const scene::SceneDescription scene = tilted_arm(kTilt).scene;
+  SimulationOptions options;
+  options.reuse_factorisation = false;
+  const std::string path = testing::TempDir() + "flexarm_planar.state";
+  for (const bool is_lifted : {false, true}) {
+    Simulation simulation(scene, options), other(scene, options), taken(scene, options);
+    const std::size_t tip = simulation.link_names().size() - 1;
+    if (is_lifted) simulation.apply_wrenches({{tip, Vector3::Zero(), {kTilt * Vector3(0, 0, 1), Vector3::Zero()}}});
+    for (int n = 0; n < 10; ++n) ASSERT_TRUE(simulation.step().converged);
+    simulation.apply_wrenches({});
+    write_checkpoint(simulation, path);
+    read_checkpoint(other, path);
+    taken.take_over(simulation);
+    for (int n = 0; n < 10; ++n)
+      for (Simulation* one : {&simulation, &other, &taken}) ASSERT_TRUE(one->step().converged);
+    EXPECT_TRUE(same_bits(state_of(simulation), state_of(other))) << is_lifted;
+    EXPECT_LE(distance(simulation, taken), kSame) << is_lifted;
+    EXPECT_EQ(lies_in_plane(model_of(other), *plane_of(scene).plane, state_of(other)), !is_lifted);
+  }
+  std::remove(path.c_str());
 }
 
 TEST(Planar, GoesOnFromOtherJointStates) {

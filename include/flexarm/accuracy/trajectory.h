@@ -37,14 +37,8 @@ class JudgedPoints {
   /// Where they are now [m]. The second one replaces `positions`.
   std::vector<Vector3> positions(const Simulation& simulation) const;
   void positions(const Simulation& simulation, std::vector<Vector3>& positions) const;
-  /// Where they are now, and how fast, in the world.
-  std::vector<ProbeState> states(const Simulation& simulation) const;
 
  private:
-  ProbeState state(const Simulation& simulation, std::size_t point) const {
-    return has_probes_ ? simulation.probe(point) : simulation.tip_state(links_[point]);
-  }
-
   bool has_probes_;
   std::size_t count_;               // of probes
   std::vector<std::size_t> links_;  // where there are none

@@ -158,8 +158,6 @@ class Simulation {
   bool is_flexible(std::size_t link) const;  ///< it has a beam with elements
   /// End section of a beam in the world, axes as the link's in the undeformed state; else the link's pose.
   Pose tip_pose(std::size_t link) const;
-  /// The same as of a probe, with velocities.
-  ProbeState tip_state(std::size_t link) const;
   /// Points at every node and `between` equally spaced points inside each pair of nodes; appended to `points`. Of a
   /// beam without elements those where the nodes of elements="auto" would be: nothing is known of their resultants,
   /// which are NaN.

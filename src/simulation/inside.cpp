@@ -1,0 +1,49 @@
+#include "simulation/inside.h"
+
+#include "simulation/implementation.h"
+
+namespace flexarm {
+
+struct Inside {
+  static Simulation::Implementation& of(const Simulation& simulation) { return *simulation.implementation_; }
+};
+
+const Model& model_of(const Simulation& simulation) {
+  return Inside::of(simulation).model;
+}
+const State& state_of(const Simulation& simulation) {
+  return Inside::of(simulation).state;
+}
+const std::vector<std::optional<RigidLine>>& rigid_lines_of(const Simulation& simulation) {
+  return Inside::of(simulation).rigid_lines;
+}
+MadeForOutput made_for_output(const Simulation& simulation) {
+  const auto& s = Inside::of(simulation);
+  return {s.published.holds_rates(), s.published.holds_velocities(), s.published.holds_past(), s.energies.has_value(),
+          s.momenta.has_value()};
+}
+const std::vector<double>& update_norms_of(const Simulation& simulation) {
+  const auto& inside = Inside::of(simulation);
+  return inside.static_norms.empty() ? inside.stepper->update_norms() : inside.static_norms;
+}
+void restore(Simulation& simulation, const State& state) {
+  Inside::of(simulation).restore(state);
+}
+
+void take_commands(const Simulation& simulation, Commands& commands) {
+  const State& state = Inside::of(simulation).state;
+  commands.efforts = state.commands;
+  commands.wrenches = state.wrenches;
+  commands.servos.resize(state.actuators.size());
+  for (std::size_t i = 0; i < state.actuators.size(); ++i) commands.servos[i] = state.actuators[i].servo;
+}
+
+void give_commands(const Commands& commands, Simulation& simulation) {
+  State& state = Inside::of(simulation).state;
+  state.commands = commands.efforts;
+  state.wrenches = commands.wrenches;
+  for (std::size_t i = 0; i < state.actuators.size(); ++i)
+    static_cast<ServoCommand&>(state.actuators[i].servo) = commands.servos[i];
+}
+
+}  // namespace flexarm
