@@ -35,8 +35,9 @@ constexpr double kRoundOffBelow = 1e-6;
 constexpr int kMostStagnations = 4;
 /// Tries in turn, each with twice the steps, in which a step fails: it has another reason than its length.
 constexpr int kMostFailures = 8;
-/// Newton's method leaves an error of its tolerance in every step, of which all add up at worst.
-constexpr double kToleranceShare = 0.1, kLeastTolerance = 1e-13;
+/// Newton's method leaves the square of its tolerance in every step, of which all add up to this share of what is asked
+/// for; and a tolerance between which bounds it may be.
+constexpr double kRemainderShare = 0.01, kLeastTolerance = 1e-13, kMostTolerance = 1e-3;
 /// Points that move less, of the model's length, are at rest: what they do is round-off, or what a start leaves.
 constexpr double kRest = 1e-6;
 /// Events are found to a part of what is asked for of the whole time, which bounds what they do to the error.
@@ -65,8 +66,7 @@ class TriesOfARun {
         start_(simulation.snapshot()),
         begin_(simulation.time()),
         order_(make_scheme(simulation.scene().integrator).order),
-        intervals_(request.intervals),
-        tolerance_(simulation.tolerance()) {
+        intervals_(request.intervals) {
     const auto require = [](bool ok, const char* what) {
       if (!ok) throw std::invalid_argument(what);
     };
@@ -123,8 +123,8 @@ class TriesOfARun {
     const double finest = kEventShare * request_.accuracy * (request_.until - begin_);
     const int halvings = step > finest ? static_cast<int>(std::ceil(std::log2(step / finest))) : 0;
     simulation_.set_step_size(step, std::min(halvings, kMostEventHalvings));
-    simulation_.set_tolerance(
-        std::clamp(kToleranceShare * request_.accuracy / total(steps), kLeastTolerance, tolerance_));
+    const double remainder = kRemainderShare * request_.accuracy / total(steps);
+    simulation_.set_tolerance(std::clamp(std::sqrt(remainder), kLeastTolerance, kMostTolerance));
   }
 
   /// False if a step has failed, or the run was interrupted.
@@ -206,7 +206,6 @@ class TriesOfARun {
   Snapshot start_;
   double begin_;  // [s]
   int order_, intervals_, multiple_ = 1, stagnations_ = 0, failures_ = 0;
-  double tolerance_;      // of the scene
   JudgedMotion before_;   // of the try before
   int steps_before_ = 0;  // of that, in an interval; 0: there was none
   double estimate_before_ = kUnknown;
