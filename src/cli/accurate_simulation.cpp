@@ -121,8 +121,9 @@ Run run_accurately(SimulateArguments arguments, double accuracy, Simulation& sim
                accuracy, to_string(result.end), reached, result.tries.size(), result.steps);
   else if (run.is_accurate && !arguments.quiet)
     fmt::print(report_stream(arguments),
-               "accuracy {:g} asked for, error {} estimated, of {:.3g} m; {} tries, {} steps in all\n", accuracy,
-               reached, result.scale, result.tries.size(), result.steps);
+               "accuracy {:g} asked for, error {} estimated, of {:.3g} m; {} steps of {}; {} tries, {} steps in all\n",
+               accuracy, reached, result.scale, result.tries.back().steps, result.scheme, result.tries.size(),
+               result.steps);
   return run;
 }
 

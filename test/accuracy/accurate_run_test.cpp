@@ -113,6 +113,45 @@ TEST(AccurateRun, ErrorsInChangingStepsFallWithTheOrderOfTheScheme) {
   }
 }
 
+/// Where the scene leaves the scheme open, one of fourth order needs fewer steps for a small error; the simulation
+/// keeps its own, and goes on from the end of the run.
+TEST(AccurateRun, TakesASchemeOfHigherOrderWhereItMay) {
+  constexpr double kAccuracy = 1e-7, kUntil = 1;
+  long steps = 0;
+  for (const char* scheme : {"auto", "em"}) {
+    SceneBuilder b = falling_links();
+    b.scene.integrator.scheme = scheme;
+    Simulation simulation(b.scene);
+    const std::size_t shoulder = *simulation.find_coordinate("shoulder");
+    simulation.command_effort(shoulder, 3);
+    RunWatcher nobody;
+    const AccurateRun run = run_to_accuracy(simulation, {kAccuracy, kUntil}, nobody);
+    ASSERT_EQ(run.end, AccurateRun::End::Met) << tries_of(run);
+    const bool is_auto = std::string(scheme) == "auto";
+    EXPECT_EQ(run.scheme, is_auto ? "em4" : "em");
+    EXPECT_EQ(simulation.scheme(), "em");
+    if (!is_auto) EXPECT_LT(steps, 0.5 * static_cast<double>(run.steps)) << "nothing is gained";
+    steps = run.steps;
+
+    b.scene.integrator.scheme = "em4";
+    Simulation fine(b.scene);
+    fine.command_effort(shoulder, 3);
+    const AccurateRun reference = run_to_accuracy(fine, {0.1 * kAccuracy, kUntil}, nobody);
+    ASSERT_EQ(reference.end, AccurateRun::End::Met) << tries_of(reference);
+    EXPECT_LE(motion_error(run.motion, reference.motion, run.scale), kAccuracy);
+
+    EXPECT_NEAR(simulation.time(), kUntil, 1e-12);
+    EXPECT_LT((simulation.probe_pose(0).position - run.motion.points[0].back()).norm(), 1e-12);
+    const Energies energies = simulation.energies();
+    EXPECT_NEAR(energies.total() - energies.work, 0, kAccuracy * energies.kinetic) << "the account goes on";
+    // Commands are still there: the step after the run agrees with that of the other run to its error.
+    ASSERT_TRUE(simulation.step().converged);
+    ASSERT_TRUE(fine.step().converged);
+    EXPECT_EQ(simulation.effort(shoulder), 3);
+    EXPECT_LT((simulation.probe_pose(0).position - fine.probe_pose(0).position).norm(), 2 * kAccuracy * run.scale);
+  }
+}
+
 TEST(AccurateRun, EndsWithWhatWasReached) {
   const SceneBuilder b = falling_arm();
   RunWatcher nobody;

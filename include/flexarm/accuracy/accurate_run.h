@@ -45,12 +45,14 @@ struct AccurateRun {
     OutOfSteps
   };
   struct Try {
+    std::string scheme;
     long steps;
     double estimate;  ///< of motion_error(); NaN: the first one, or it failed
   };
 
   End end = End::OutOfTries;
   double scale = 0;            ///< of errors [m]
+  std::string scheme;          ///< of the last try
   int steps_per_interval = 0;  ///< of the last try
   double interval = 0;         ///< [s]
   std::vector<Try> tries;
@@ -64,7 +66,9 @@ struct AccurateRun {
 
 /// Runs a simulation from where it is, again and again from there with more steps, until the estimate of the error is
 /// at most what is asked for; then the simulation is at the end of that run. All steps are equal, but around events
-/// (Simulation::set_step_size).
+/// (Simulation::set_step_size). Where the scene leaves the scheme to flexarm ("auto"), tries may be made with another
+/// one of higher order, if that promises less work; the simulation itself keeps its own. What a watcher is shown is the
+/// one that runs.
 /// @throws std::invalid_argument if the request is out of range, a frame is unknown, or the intervals cannot be divided
 /// so that servos are sampled at ends of steps.
 AccurateRun run_to_accuracy(Simulation& simulation, const AccuracyRequest& request, RunWatcher& watcher);

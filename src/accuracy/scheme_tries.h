@@ -1,0 +1,72 @@
+#pragma once
+/// Runs of one scheme with more and more steps, and what their differences say about their errors.
+
+#include <limits>
+
+#include "flexarm/accuracy/accurate_run.h"
+
+namespace flexarm {
+
+/// What the tries of a run have in common, whatever their scheme.
+struct TryPlan {
+  const AccuracyRequest& request;
+  RunWatcher& watcher;
+  JudgedPoints points;
+  double begin;      ///< [s]
+  int intervals;     ///< in which all have the same number of steps, ...
+  int multiple = 1;  ///< ... which is one of this
+
+  double interval() const { return (request.until - begin) / intervals; }  ///< [s]
+  double total(double steps) const { return steps * intervals; }
+};
+
+class SchemeTries {
+ public:
+  /// From where the simulation is.
+  SchemeTries(Simulation& simulation, const TryPlan& plan);
+
+  Simulation& simulation() const { return simulation_; }
+  /// The same, back where the tries begin.
+  Simulation& at_start() {
+    simulation_.restore(start_);
+    return simulation_;
+  }
+  /// In an interval: what the next try has.
+  double next_steps() const { return next_; }
+  double estimate() const { return estimate_; }  ///< of the last try that was judged, relative; NaN: there is none
+  /// Of the last try.
+  double iterations_per_step() const { return iterations_per_step_; }
+  /// Iterations of a try that has the error which is asked for; NaN: unknown.
+  double predicted_iterations() const;
+  int judged() const { return judged_; }
+
+  /// Makes the next try. False if a step has failed, or the run was interrupted, which `run.end` tells.
+  bool attempt(AccurateRun& run);
+  /// Estimates the error of that try from its difference to the one before. True if nothing more is to be tried:
+  /// `run.end` tells why.
+  bool judge(AccurateRun& run);
+  /// The next try has more steps. `failed`: the last one was not judged. False if too many have failed in turn.
+  bool go_on(bool failed);
+
+ private:
+  static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+  void set_steps();
+  bool run_interval(AccurateRun& run);
+  double distance(const std::vector<Vector3>& positions, int interval) const;
+  double supposed_order(double difference) const;
+  double share(double order) const;
+
+  Simulation& simulation_;
+  const TryPlan& plan_;
+  Snapshot start_;
+  int order_, steps_ = 0;  // of the last try, in an interval
+  double next_, expected_ = kUnknown, iterations_per_step_ = kUnknown;
+  int failures_ = 0, stagnations_ = 0, judged_ = 0;
+  // Of the last try that was judged, and of the one before that.
+  JudgedMotion before_;
+  int steps_before_ = 0, steps_earlier_ = 0;
+  double estimate_ = kUnknown, difference_ = kUnknown;
+};
+
+}  // namespace flexarm
