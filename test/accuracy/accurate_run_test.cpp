@@ -116,7 +116,7 @@ TEST(AccurateRun, ErrorsInChangingStepsFallWithTheOrderOfTheScheme) {
 /// Where the scene leaves the scheme open, one of fourth order needs fewer steps for a small error; the simulation
 /// keeps its own, and goes on from the end of the run.
 TEST(AccurateRun, TakesASchemeOfHigherOrderWhereItMay) {
-  constexpr double kAccuracy = 1e-7, kUntil = 1;
+  constexpr double kAccuracy = 1e-6, kUntil = 1;
   long steps = 0;
   for (const char* scheme : {"auto", "em"}) {
     SceneBuilder b = falling_links();
@@ -127,6 +127,7 @@ TEST(AccurateRun, TakesASchemeOfHigherOrderWhereItMay) {
     RunWatcher nobody;
     const AccurateRun run = run_to_accuracy(simulation, {kAccuracy, kUntil}, nobody);
     ASSERT_EQ(run.end, AccurateRun::End::Met) << tries_of(run);
+    SCOPED_TRACE(std::string(scheme) + ": " + tries_of(run));
     const bool is_auto = std::string(scheme) == "auto";
     EXPECT_EQ(run.scheme, is_auto ? "em4" : "em");
     EXPECT_EQ(simulation.scheme(), "em");
