@@ -9,14 +9,14 @@ namespace {
 
 /// Way of a step that is aimed at, and the longest one that is taken [rad, or in units of the length scale]: directions
 /// of forces hold so far.
-constexpr double kWay = 0.3, kLongestWay = 1;
+constexpr double kAimedWay = 0.3, kLongestWay = 1;
 /// Steps on the way, and attempts at one, until it is given up.
 constexpr int kMostSteps = 300, kMostAttempts = 30;
 /// By which the drag grows where a step fails, and shrinks at most from one to the next.
 constexpr double kMoreDrag = 4, kLessDrag = 1. / 16;
 /// Steps that become longer leave an unstable equilibrium, to which Newton's would lead back: drag shrinks once so many
 /// in a row have become shorter.
-constexpr int kShorter = 3;
+constexpr int kShorterInARow = 3;
 
 }  // namespace
 
@@ -28,7 +28,7 @@ bool Settling::settle(State& state, double load_factor, StepResult& result) {
   }
   const double moment = system_.scales().largest_moment(system_.residual());
   if (moment == 0 && neutral_ == 0) return false;
-  return settle(state, load_factor, moment / kWay, result);
+  return settle(state, load_factor, moment / kAimedWay, result);
 }
 
 bool Settling::settle(State& state, double load_factor, double drag, StepResult& result) {
@@ -47,7 +47,7 @@ bool Settling::settle(State& state, double load_factor, double drag, StepResult&
     system_.accept(state);
     if (way <= tolerance_) return true;
     shorter = way < last_way ? shorter + 1 : 0;
-    if (way > kWay || shorter >= kShorter) drag *= std::max(way / kWay, kLessDrag);
+    if (way > kAimedWay || shorter >= kShorterInARow) drag *= std::max(way / kAimedWay, kLessDrag);
     last_way = way;
   }
   result.reason = StepResult::Reason::NeverRests;
