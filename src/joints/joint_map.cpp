@@ -65,7 +65,7 @@ ScaledRate scaled_rate(double x) {
 }
 
 /// A force and a moment about the origin of the moved joint frame.
-struct Wrench {
+struct WrenchAtFrame {
   Vector3 force, moment;
 };
 
@@ -117,8 +117,8 @@ void add_travel(const JointMap& joint, const JointPose& begin, const JointPose& 
 
 /// Joints with one coordinate, without lever arms: the formulas of incremental_maps() for all joints, in which matrices
 /// act on the axis of rotation and the direction of travel alone.
-void incremental_scalar_maps(const JointMap& joint, const JointPose& begin, const JointPose& end, const Wrench& g,
-                             FoldMaps& maps, bool with_tangent, double arm_weight) {
+void incremental_scalar_maps(const JointMap& joint, const JointPose& begin, const JointPose& end,
+                             const WrenchAtFrame& g, FoldMaps& maps, bool with_tangent, double arm_weight) {
   const Vector3 axis = begin.master.rotation * joint.rotation;
   const Vector3 w = cayley::increment(begin.master.orientation, end.master.orientation);
   const double step = end.released.displacement[0] - begin.released.displacement[0], angle = joint.rotation.norm();
@@ -145,8 +145,8 @@ void incremental_scalar_maps(const JointMap& joint, const JointPose& begin, cons
 }
 
 /// Joints without coordinates, or with free rotations; without lever arms.
-void incremental_matrix_maps(const JointMap& joint, const JointPose& begin, const JointPose& end, const Wrench& g,
-                             FoldMaps& maps, bool with_tangent, double arm_weight) {
+void incremental_matrix_maps(const JointMap& joint, const JointPose& begin, const JointPose& end,
+                             const WrenchAtFrame& g, FoldMaps& maps, bool with_tangent, double arm_weight) {
   const int count = released_count(joint.kind);
   if (with_tangent)
     set_sizes(count, maps);
@@ -203,7 +203,7 @@ void incremental_maps_with_arms(const JointMap& joint, const JointPose& begin, c
   maps.lever_left = mean(lever_to_moved_frame(joint, begin.master, begin.released), maps.lever_right);
   const Vector3 arm_right = end.slave.rotation * joint.arm;
   const Vector3 arm_left = mean(begin.slave.rotation * joint.arm, arm_right);
-  const Wrench at_frame{g.head<3>(), g.tail<3>() + arm_left.cross(g.head<3>())};
+  const WrenchAtFrame at_frame{g.head<3>(), g.tail<3>() + arm_left.cross(g.head<3>())};
   if (joint.kind == JointMapKind::Scalar)
     incremental_scalar_maps(joint, begin, end, at_frame, maps, with_tangent, arm_weight);
   else
