@@ -55,14 +55,14 @@ std::string hexadecimal(double value) {
   return {buffer, result.ptr};
 }
 
+[[noreturn]] void fail_reading(const std::string& name, const std::string& what) {
+  throw std::runtime_error("checkpoint '" + name + "': " + what);
+}
+
 /// A checkpoint's lines, one after the other; errors name the file and the line.
 class Reader {
  public:
-  explicit Reader(const std::string& path) : path_(path) {
-    std::ifstream in(path, std::ios::binary);
-    if (!in || std::filesystem::is_directory(path)) fail("cannot be opened");
-    const std::string text{std::istreambuf_iterator<char>(in), {}};
-    lines_.str(text);
+  Reader(const std::string& text, const std::string& name) : name_(name), lines_(text) {
     if (const std::string header = next(); header != kHeader)
       fail_line(header, "'" + std::string(kHeader) + "': another format, or no checkpoint");
     // An unfinished or damaged file would give a wrong state, or one that is another scene's.
@@ -79,9 +79,7 @@ class Reader {
     ++number_;
     return line;
   }
-  [[noreturn]] void fail(const std::string& what) const {
-    throw std::runtime_error("checkpoint '" + path_ + "': " + what);
-  }
+  [[noreturn]] void fail(const std::string& what) const { fail_reading(name_, what); }
   [[noreturn]] void fail_line(const std::string& got, const std::string& expected) const {
     fail(fmt::format("line {} is '{}', expected {}", number_, shown(got), expected));
   }
@@ -109,7 +107,7 @@ class Reader {
   /// Without the line's end, shortened.
   static std::string shown(const std::string& line) { return line.substr(0, std::min(line.find('\n'), kShown)); }
 
-  std::string path_;
+  std::string name_;
   std::istringstream lines_;
   int number_ = 0;
 };
@@ -162,12 +160,6 @@ void read_counts(Reader& reader, State& state) {
   if (!(numbers >> word >> state.transmitted.count)) reader.fail_line(transmitted, "the number of forces of joints");
 }
 
-std::string text_of(const Simulation& simulation) {
-  std::string text = fmt::format("{}\n{}{}", kHeader, identity(simulation), counts_line(state_of(simulation)));
-  for_each_number(state_of(simulation), [&](const char*, double value) { text += hexadecimal(value) + "\n"; });
-  return text + checksum_line(text);
-}
-
 /// Errors of `write` name the file.
 template <class Write>
 void naming(const std::string& path, const Write& write) {
@@ -180,16 +172,28 @@ void naming(const std::string& path, const Write& write) {
 
 }  // namespace
 
+std::string checkpoint_text(const Simulation& simulation) {
+  std::string text = fmt::format("{}\n{}{}", kHeader, identity(simulation), counts_line(state_of(simulation)));
+  for_each_number(state_of(simulation), [&](const char*, double value) { text += hexadecimal(value) + "\n"; });
+  return text + checksum_line(text);
+}
+
 void write_checkpoint(const Simulation& simulation, const std::string& path) {
-  naming(path, [&] { UnfinishedFile(path, text_of(simulation)).put_in_place(); });
+  naming(path, [&] { UnfinishedFile(path, checkpoint_text(simulation)).put_in_place(); });
 }
 
 void try_checkpoint(const Simulation& simulation, const std::string& path) {
-  naming(path, [&] { UnfinishedFile(path, text_of(simulation)); });
+  naming(path, [&] { UnfinishedFile(path, checkpoint_text(simulation)); });
 }
 
 void read_checkpoint(Simulation& simulation, const std::string& path) {
-  Reader reader(path);
+  std::ifstream in(path, std::ios::binary);
+  if (!in || std::filesystem::is_directory(path)) fail_reading(path, "cannot be opened");
+  read_checkpoint_text(simulation, {std::istreambuf_iterator<char>(in), {}}, path);
+}
+
+void read_checkpoint_text(Simulation& simulation, const std::string& text, const std::string& name) {
+  Reader reader(text, name);
   reader.require_identity(identity(simulation));
   State state = state_of(simulation);
   read_counts(reader, state);

@@ -24,4 +24,9 @@ void try_checkpoint(const Simulation& simulation, const std::string& path);
 ///   flipped bit), belongs to another scene, scheme or step, or has values that no state has.
 void read_checkpoint(Simulation& simulation, const std::string& path);
 
+/// What write_checkpoint() writes, for who keeps states elsewhere than in files.
+std::string checkpoint_text(const Simulation& simulation);
+/// As read_checkpoint(), from text; `name` stands for the file in errors.
+void read_checkpoint_text(Simulation& simulation, const std::string& text, const std::string& name);
+
 }  // namespace flexarm
