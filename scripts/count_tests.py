@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 """Adds up the results of all test runners: `count_tests.py CTEST-REPORT DIRECTORY`.
 
-ctest knows every program that ran; a gtest or rostest left its single tests in DIRECTORY as JUnit XML (the test-name of
-test/ros/NAME.test is NAME, so that its file can be found). A program without such a file, or that failed although each
-of its tests passed, counts as one test. Skipped are the tests that say so themselves, and disabled ones; a program that
-could not be started has failed. What a program that failed printed last stands below its name. The last line is
-`N passed, N failed, N skipped`; the exit status is 1 if a test failed, or if none passed.
+ctest knows every program that ran; a gtest, rostest or pytest left its single tests in DIRECTORY as JUnit XML (the
+test-name of test/ros/NAME.test is NAME, so that its file can be found). A program without such a file, or that failed
+although each of its tests passed, counts as one test. Skipped are the tests that say so themselves, and disabled ones;
+a program that could not be started has failed. What a program that failed printed last stands below its name. The last
+line is `N passed, N failed, N skipped`; the exit status is 1 if a test failed, or if none passed.
 """
 
 import os
@@ -40,10 +40,11 @@ def outcome_of_program(case):
 
 
 def result_file(directory, program):
-    """Where catkin's runner put the results of a ctest test, or None if it is not one of catkin's."""
+    """Where its runner put the single results of a ctest test, or None if it has none."""
     for pattern, file_name in (
         (r"_ctest_flexarm_gtest_(.*)", "gtest-%s.xml"),
         (r"_ctest_flexarm_rostest_test_ros_(.*)\.test", "rosunit-%s.xml"),
+        (r"pytest_(.*)", "pytest-%s.xml"),
     ):
         match = re.fullmatch(pattern, program)
         if match:

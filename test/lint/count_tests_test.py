@@ -19,19 +19,19 @@ def single(name, inner="", status="run"):
 
 
 class CountTests(unittest.TestCase):
-    def count(self, programs, gtest=None):
-        """(exit status, last line) for what ctest and the gtest `math` reported."""
-        status, lines = self.lines(programs, gtest)
+    def count(self, programs, results=None, file_name="gtest-math.xml"):
+        """(exit status, last line) for what ctest and the gtest `math`, or another runner, reported."""
+        status, lines = self.lines(programs, results, file_name)
         return status, lines[-1]
 
-    def lines(self, programs, gtest=None):
+    def lines(self, programs, results=None, file_name="gtest-math.xml"):
         with tempfile.TemporaryDirectory() as folder:
             report = os.path.join(folder, "ctest.xml")
             with open(report, "w", encoding="utf-8") as file:
                 file.write("<testsuite>%s</testsuite>" % "".join(programs))
-            if gtest is not None:
-                with open(os.path.join(folder, "gtest-math.xml"), "w", encoding="utf-8") as file:
-                    file.write(gtest)
+            if results is not None:
+                with open(os.path.join(folder, file_name), "w", encoding="utf-8") as file:
+                    file.write(results)
             run = subprocess.run([sys.executable, PROGRAM, report, folder], stdout=subprocess.PIPE, check=False)
             return run.returncode, run.stdout.decode().splitlines()
 
@@ -53,6 +53,14 @@ class CountTests(unittest.TestCase):
         self.assertEqual(self.count([ran], "<testsuites>"), (1, "0 passed, 1 failed, 0 skipped"))
         tests.append(single("bad", "<failure/>"))
         self.assertEqual(self.count([broke], gtest % "".join(tests)), (1, "1 passed, 1 failed, 2 skipped"))
+
+    def test_runners(self):
+        results = "<testsuites><testsuite>%s</testsuite></testsuites>" % "".join([single("one"), single("other")])
+        for name, file_name in (("_ctest_flexarm_gtest_math", "gtest-math.xml"),
+                                ("_ctest_flexarm_rostest_test_ros_bags.test", "rosunit-bags.xml"),
+                                ("pytest_python", "pytest-python.xml")):
+            counted = self.count([program(name, "run")], results, file_name)
+            self.assertEqual(counted, (0, "2 passed, 0 failed, 0 skipped"))
 
     def test_last_lines_of_what_failed(self):
         said = "<system-out>%s</system-out>" % "\n".join("line %d &lt;" % n for n in range(100))

@@ -1,0 +1,74 @@
+#include <pybind11/stl.h>
+
+#include "flexarm/scene/scene_description.h"
+#include "python/arrays.h"
+#include "python/bindings.h"
+#include "python/errors.h"
+#include "simulation/equilibrium_text.h"
+#include "simulation/inside.h"
+
+namespace py = pybind11;
+
+namespace flexarm::python {
+namespace {
+
+using Complex = std::complex<double>;
+
+py::object value_of(const Mode& mode) {
+  py::array_t<Complex> nodes({mode.node_motion.size(), std::size_t{6}});
+  Complex* place = nodes.mutable_data();
+  for (const ComplexVector6& motion : mode.node_motion) place = std::copy(motion.begin(), motion.end(), place);
+  py::array_t<Complex> joints(static_cast<py::ssize_t>(mode.coordinate_motion.size()));
+  std::copy(mode.coordinate_motion.begin(), mode.coordinate_motion.end(), joints.mutable_data());
+  return make("flexarm.values", "Mode", mode.frequency, mode.rate, mode.damping_ratio(), nodes, joints);
+}
+
+std::vector<py::object> natural_modes(GuardedSimulation& guarded, int count) {
+  const std::vector<Mode> modes =
+      guarded.work([&](const Simulation& simulation) { return simulation.natural_modes(count); });
+  std::vector<py::object> values;
+  for (const Mode& mode : modes) values.push_back(value_of(mode));
+  return values;
+}
+
+/// As the command line looks for what nothing holds.
+std::string lack_of_equilibrium(GuardedSimulation& guarded, const StaticResult& result) {
+  return guarded.work([&](const Simulation& simulation) {
+    const std::size_t joints = simulation.coordinate_names().size();
+    const std::vector<Mode> modes = are_modes_quick(simulation.degrees_of_freedom(), joints)
+                                        ? simulation.natural_modes(1 + static_cast<int>(joints))
+                                        : std::vector<Mode>();
+    return flexarm::lack_of_equilibrium(simulation.scene(), model_of(simulation), result, modes);
+  });
+}
+
+void solve_static(GuardedSimulation& guarded, int load_steps, bool stable) {
+  const Equilibrium wanted = stable ? Equilibrium::Stable : Equilibrium::UnderTheLoads;
+  const StaticResult result =
+      guarded.work([&](Simulation& simulation) { return simulation.solve_static(load_steps, wanted); });
+  if (!result.converged) raise_step_error(guarded.use(), lack_of_equilibrium(guarded, result), result.reason);
+  const char* consequence =
+      stable ? "falls from it; this is where it comes to rest (stable=False: the one that it falls from)"
+             : "would fall from it";
+  for (const std::string& doubt : doubts_about_equilibrium(result, consequence)) warn(doubt);
+}
+
+}  // namespace
+
+void bind_analysis(SimulationClass& type) {
+  type.def("solve_static", &solve_static,
+           R"(Goes to the equilibrium under gravity and the loads at t = 0, at rest there.
+
+load_steps: in which loads and gravity grow from zero; prescribed motions are held at t = 0.
+stable: where that equilibrium is not stable, one to which the mechanism falls from it, and a SceneWarning says so.
+
+Raises StepError if there is none; the state is as before then.)",
+           py::arg("load_steps") = kLoadSteps, py::arg("stable") = true)
+      .def("natural_modes", &natural_modes, R"(Modes about the configuration of now, taken to be at rest.
+
+A list of Mode: growing ones first, then by the magnitude of their eigenvalues.
+Raises ValueError if `count` < 1, RuntimeError if the eigenvalue problem cannot be solved.)",
+           py::arg("count"));
+}
+
+}  // namespace flexarm::python

@@ -1,0 +1,24 @@
+#pragma once
+/// The parts of the extension module flexarm._flexarm, one file each.
+
+#include <memory>
+
+#include <pybind11/pybind11.h>
+
+#include "python/guarded_simulation.h"
+
+namespace flexarm::python {
+
+using SimulationClass = pybind11::class_<GuardedSimulation, std::shared_ptr<GuardedSimulation>>;
+
+void bind_scene(pybind11::module_& module);
+void bind_step_result(pybind11::module_& module);
+void bind_state(pybind11::module_& module, SimulationClass& simulation);
+void bind_looks(SimulationClass& simulation);
+void bind_frames(pybind11::module_& module, SimulationClass& simulation);
+void bind_commands(SimulationClass& simulation);
+void bind_runs(SimulationClass& simulation);
+void bind_analysis(SimulationClass& simulation);
+void bind_accurate_run(SimulationClass& simulation);
+
+}  // namespace flexarm::python

@@ -1,0 +1,51 @@
+#include "python/effort_rows.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace flexarm::python {
+namespace {
+
+std::vector<std::size_t> commanded_joints(const Simulation& simulation, const std::optional<std::vector<Key>>& joints) {
+  std::vector<std::size_t> indices;
+  if (joints) {
+    for (const Key& joint : *joints) indices.push_back(joint_index(simulation, joint));
+  } else {
+    for (const std::string& joint : effort_joints(simulation)) indices.push_back(joint_index(simulation, joint));
+  }
+  for (const std::size_t joint : indices)
+    if (!simulation.is_commandable(joint))
+      throw std::invalid_argument(
+          fmt::format("joints: expected some that take efforts, of [{}], got '{}', which is prescribed or a follower",
+                      fmt::join(effort_joints(simulation), ", "), simulation.coordinate_names()[joint]));
+  return indices;
+}
+
+}  // namespace
+
+EffortRows::EffortRows(const Simulation& simulation, const std::optional<Array>& efforts,
+                       const std::optional<std::vector<Key>>& joints, long steps) {
+  if (!efforts) return;
+  joints_ = commanded_joints(simulation, joints);
+  const auto columns = static_cast<pybind11::ssize_t>(joints_.size());
+  const bool is_row = efforts->ndim() == 1 && efforts->shape(0) == columns;
+  const bool are_rows = efforts->ndim() == 2 && efforts->shape(0) == steps && efforts->shape(1) == columns;
+  if (!is_row && !are_rows) {
+    std::vector<std::string> names;
+    for (const std::size_t joint : joints_) names.push_back(simulation.coordinate_names()[joint]);
+    throw std::invalid_argument(fmt::format("efforts: expected the shape ({}, {}) or ({},), of the joints [{}], got {}",
+                                            steps, columns, columns, fmt::join(names, ", "), shape_text(*efforts)));
+  }
+  efforts_ = efforts->data();
+  stride_ = are_rows ? columns : 0;
+  for (pybind11::ssize_t i = 0; i < efforts->size(); ++i)
+    if (!std::isfinite(efforts_[i]))
+      throw std::invalid_argument(
+          fmt::format("efforts: expected finite numbers, got {} in row {} for joint '{}'", efforts_[i], i / columns,
+                      simulation.coordinate_names()[joints_[static_cast<std::size_t>(i % columns)]]));
+}
+
+}  // namespace flexarm::python

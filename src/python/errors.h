@@ -1,0 +1,29 @@
+#pragma once
+/// Exceptions and warnings of the package, which src/python/flexarm/errors.py defines.
+
+#include <string>
+
+#include <pybind11/pybind11.h>
+
+#include "flexarm/simulation/simulation.h"
+
+namespace flexarm::python {
+
+/// The package's exception or value of that name, with these arguments.
+template <class... Arguments>
+pybind11::object make(const char* module, const char* name, Arguments&&... arguments) {
+  return pybind11::module_::import(module).attr(name)(std::forward<Arguments>(arguments)...);
+}
+
+[[noreturn]] void raise(const pybind11::object& error);
+[[noreturn]] void raise_scene_error(const std::string& text);
+/// `rows`: what had been recorded until then, or None.
+[[noreturn]] void raise_step_error(const Simulation& simulation, const std::string& text, StepResult::Reason reason,
+                                   const pybind11::object& rows = pybind11::none());
+/// As SceneWarning, at the line of Python that has called.
+void warn(const std::string& text);
+
+/// Lets Python see to signals now and then, from where its lock is not held.
+bool is_interrupted();
+
+}  // namespace flexarm::python

@@ -1,0 +1,46 @@
+"""Simulations of flexible manipulators.
+
+    import flexarm
+
+    scene = flexarm.read_scene("arm.urdf")
+    simulation = flexarm.Simulation(scene)
+    rows = simulation.run(1000, record=["joint/*/position"])
+
+docs/python.md has an example for each job; help(flexarm.Simulation) says units and shapes of everything. flexarm.msg
+and flexarm.srv are the messages and services of the ROS node.
+"""
+
+import importlib
+
+# Where each name is. They are fetched when somebody asks for them: who imports messages alone needs no simulator.
+_HOMES = {
+    "read_scene": "_flexarm",
+    "read_scene_text": "_flexarm",
+    "Scene": "_flexarm",
+    "Simulation": "_flexarm",
+    "State": "_flexarm",
+    "StepResult": "_flexarm",
+    "AccuracyError": "errors",
+    "SceneError": "errors",
+    "SceneWarning": "errors",
+    "StepError": "errors",
+    "AccurateRun": "values",
+    "Energies": "values",
+    "Mode": "values",
+    "Wrench": "values",
+    "Environment": "environment",
+}
+
+__all__ = list(_HOMES)
+
+
+def __getattr__(name):
+    if name not in _HOMES:
+        raise AttributeError("module %r has no attribute %r" % (__name__, name))
+    value = getattr(importlib.import_module("%s.%s" % (__name__, _HOMES[name])), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__():
+    return sorted(set(globals()) | set(_HOMES))

@@ -1,0 +1,36 @@
+/// The extension module flexarm._flexarm: the façade for Python. docs/python.md
+
+#include "python/bindings.h"
+
+namespace py = pybind11;
+
+namespace {
+
+constexpr const char* kSimulationText = R"(A scene in motion.
+
+    Simulation(scene, scheme=None, step=None, tolerance=None, reuse_factorisation=True, on_failure=None,
+               recovery_wall_time=0)
+
+SI units and radians throughout; world axes but where another frame is named; arrays are of float64, and copies. Joints
+are coordinates: a joint with several of them has one name for each ("wrist/rx"). Where a joint, link or sensor is asked
+for, its name will do, or its index in the list of names. copy.copy() makes another one in the same state.
+
+One thread at a time may use a simulation; while it steps, others run, with simulations of their own.)";
+
+}  // namespace
+
+PYBIND11_MODULE(_flexarm, module) {
+  using namespace flexarm::python;
+  module.doc() = "Simulations of flexible manipulators, compiled; used by the package flexarm.";
+  bind_scene(module);
+  bind_step_result(module);
+  SimulationClass simulation(module, "Simulation", kSimulationText);
+  simulation.attr("__module__") = "flexarm";
+  bind_state(module, simulation);
+  bind_looks(simulation);
+  bind_frames(module, simulation);
+  bind_commands(simulation);
+  bind_runs(simulation);
+  bind_analysis(simulation);
+  bind_accurate_run(simulation);
+}

@@ -1,0 +1,153 @@
+#include <chrono>
+#include <stdexcept>
+
+#include <pybind11/stl.h>
+
+#include <fmt/format.h>
+
+#include "python/arrays.h"
+#include "python/bindings.h"
+#include "python/effort_rows.h"
+#include "python/errors.h"
+
+namespace py = pybind11;
+
+namespace flexarm::python {
+namespace {
+
+using Patterns = std::vector<std::string>;
+/// Converted from nothing: results go where they are wanted, or nowhere.
+using Results = py::array_t<double, py::array::c_style>;
+
+StepResult step(GuardedSimulation& guarded) {
+  const StepResult result = guarded.work([](Simulation& simulation) { return simulation.step(); });
+  const Simulation& simulation = guarded.use();
+  if (!result.converged) raise_step_error(simulation, simulation.explain(result), result.reason);
+  return result;
+}
+
+/// Rows of results, one every so many steps.
+class Recorder {
+ public:
+  Recorder(ResultColumns* columns, double* place, long every) : columns_(columns), place_(place), every_(every) {}
+
+  void note(const Simulation& simulation, const StepResult& result) {
+    counts_.add(result);
+    if (!columns_ || !result.converged || ++steps_ % every_ != 0) return;
+    const std::vector<double>& row = columns_->row(simulation, counts_);
+    place_ = std::copy(row.begin(), row.end(), place_);
+    counts_ = {};
+    ++rows_;
+  }
+  py::ssize_t rows() const { return rows_; }
+
+ private:
+  ResultColumns* columns_;  // null: nothing is recorded
+  double* place_;
+  long every_, steps_ = 0;
+  py::ssize_t rows_ = 0;
+  StepCounts counts_;
+};
+
+/// Python looks for signals, as Ctrl-C is one, so often.
+class SignalClock {
+ public:
+  /// Needs no lock of Python's.
+  bool is_interrupted() {
+    const Clock::time_point now = Clock::now();
+    if (now < next_) return false;
+    next_ = now + kPeriod;
+    return python::is_interrupted();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::milliseconds kPeriod{100};
+  Clock::time_point next_ = Clock::now() + kPeriod;
+};
+
+Results room_for(const std::optional<Results>& out, py::ssize_t rows, const ResultColumns& columns) {
+  const auto width = static_cast<py::ssize_t>(columns.columns().size());
+  if (!out) return Results(std::vector<py::ssize_t>{rows, width});
+  if (out->ndim() != 2 || out->shape(0) != rows || out->shape(1) != width || !out->writeable())
+    throw std::invalid_argument(fmt::format("out: expected a writeable array of the shape ({}, {}), got {}{}", rows,
+                                            width, shape_text(*out), out->writeable() ? "" : ", not writeable"));
+  return *out;
+}
+
+void require(bool ok, const char* name, const char* expected, long got) {
+  if (!ok) throw std::invalid_argument(fmt::format("{}: expected {}, got {}", name, expected, got));
+}
+
+py::object run(GuardedSimulation& guarded, long steps, const std::optional<Array>& efforts,
+               const std::optional<std::vector<Key>>& joints, const std::optional<Patterns>& record, long every,
+               const std::optional<Results>& out) {
+  require(steps >= 0, "steps", "a number >= 0", steps);
+  require(every >= 1, "every", "a number >= 1", every);
+  if (out && !record) throw std::invalid_argument("out: expected with the columns that it shall have, 'record'");
+  const EffortRows commands(guarded.use(), efforts, joints, steps);
+  ResultColumns* const columns = record ? &guarded.columns(*record) : nullptr;
+  Results results = columns ? room_for(out, steps / every, *columns) : Results(std::vector<py::ssize_t>{0, 0});
+  Recorder recorder(columns, results.mutable_data(), every);
+  const StepResult last = guarded.work([&](Simulation& simulation) {
+    StepResult result;
+    result.converged = true;
+    SignalClock signals;
+    for (long n = 0; n < steps && result.converged && !signals.is_interrupted(); ++n) {
+      commands.command(simulation, n);
+      result = simulation.step();
+      recorder.note(simulation, result);
+    }
+    return result;
+  });
+  if (PyErr_Occurred()) throw py::error_already_set();
+  const py::object recorded = columns ? py::object(results) : py::none();
+  if (last.converged) return recorded;
+  const py::object whole = columns ? py::object(results[py::slice(0, recorder.rows(), 1)]) : py::none();
+  raise_step_error(guarded.use(), guarded.use().explain(last), last.reason, whole);
+}
+
+std::vector<std::pair<std::string, std::string>> columns(GuardedSimulation& guarded, const Patterns& patterns) {
+  std::vector<std::pair<std::string, std::string>> columns;
+  for (const ResultColumn& column : guarded.columns(patterns).columns()) columns.emplace_back(column.name, column.unit);
+  return columns;
+}
+
+py::array_t<double> row(GuardedSimulation& guarded, const Patterns& patterns) {
+  const std::vector<double>& row = guarded.columns(patterns).row(guarded.use(), {});
+  return numbers(row.size(), [&](std::size_t i) { return row[i]; });
+}
+
+}  // namespace
+
+void bind_runs(SimulationClass& type) {
+  type.def("step", &step, R"(Advances by one step, in smaller sub-steps where Newton's method asks for it.
+
+Returns a StepResult. Raises StepError if it fails, with the state that of the last good sub-step.)")
+      .def("run", &run, R"(Advances by so many steps while other threads run.
+
+steps: how many.
+efforts: commanded before each of them, shape (steps, joints), or (joints,): the same for all [N m or N]. Where it is a
+  C-contiguous array of float64 it is read where it is. The last ones stay commanded.
+joints: of the columns of `efforts`, by names or indices; None: all of effort_joints.
+record: patterns of the columns to be recorded, as `flexarm simulate --columns` takes them (["joint/elbow/[pv]*", "energy/total"]);
+  the time is always the first one. []: all. None: nothing is recorded.
+every: a row is recorded after every so many steps.
+out: for the results, in place of a new array: C-contiguous, of float64.
+
+Returns an array of the shape (steps // every, columns), see columns(); None if nothing is recorded. Raises StepError if
+a step fails, with the rows until then; ValueError, before the first step, if an effort is not finite or a shape wrong.)",
+           py::arg("steps"), py::arg("efforts") = py::none(), py::arg("joints") = py::none(),
+           py::arg("record") = py::none(), py::arg("every") = 1, py::arg("out").noconvert() = py::none())
+      .def(
+          "columns", &columns,
+          R"(Names and units of the columns that fit one of the patterns; of all that run() records where there are none.
+
+record: patterns as a shell's, ["energy/total", "probe/hand/[xyz]"]. Returns a list of pairs.
+Raises ValueError naming a pattern that no column fits. docs/results.md says what there is.)",
+          py::arg("record") = Patterns())
+      .def("row", &row, "Their values now, shape (columns,), as run() records them, solver's counts being zero.",
+           py::arg("record") = Patterns());
+}
+
+}  // namespace flexarm::python

@@ -1,0 +1,103 @@
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <fmt/format.h>
+
+#include "flexarm/scene/urdf_reader.h"
+#include "python/bindings.h"
+#include "python/errors.h"
+#include "python/names.h"
+
+namespace py = pybind11;
+
+namespace flexarm::python {
+namespace {
+
+using scene::SceneDescription;
+using ScenePointer = std::shared_ptr<SceneDescription>;
+
+constexpr const char* kReadScene = R"(Reads a URDF file with flexarm's extension elements (docs/scene_format.md).
+
+path: of the file.
+clamp_start: joints that would start outside their limits start at the nearest one (start="clamp").
+equilibrium_start: everything starts at rest where loads, gravity and servos hold it (start="equilibrium").
+lock_massless: joints that move nothing with inertia are held where they start (massless="lock").
+
+Raises SceneError with every error of the file, one for each line of its text; what is doubtful is a SceneWarning.)";
+
+constexpr const char* kReadSceneText = R"(Reads the text of a scene. `name` stands for the file in what is said of it.
+
+Options and errors as read_scene() has them.)";
+
+/// Findings become warnings, errors an exception with the text that the command line prints.
+ScenePointer scene_of(scene::ReadResult result) {
+  if (result.scene) {
+    for (const scene::Diagnostic& warning : result.diagnostics) warn(warning.text());
+    return std::make_shared<SceneDescription>(std::move(*result.scene));
+  }
+  std::string findings = scene::to_text(result.diagnostics);
+  if (!findings.empty()) findings.pop_back();  // the end of the last line
+  raise_scene_error(findings);
+}
+
+ScenePointer read_scene(const std::filesystem::path& path, bool clamp_start, bool equilibrium_start,
+                        bool lock_massless) {
+  return scene_of(scene::read_scene_file(path.string(), {clamp_start, lock_massless, equilibrium_start}));
+}
+
+ScenePointer read_scene_text(const std::string& text, const std::string& name, bool clamp_start, bool equilibrium_start,
+                             bool lock_massless) {
+  return scene_of(scene::read_scene_text(text, name, {clamp_start, lock_massless, equilibrium_start}));
+}
+
+std::vector<std::string> beams_of(const SceneDescription& scene) {
+  std::vector<std::string> names;
+  for (const scene::LinkDescription& link : scene.links)
+    if (link.beam) names.push_back(link.name);
+  return names;
+}
+
+std::string text_of(const SceneDescription& scene) {
+  return fmt::format(
+      "<flexarm.Scene '{}' from '{}': {} links ({} with beams), {} joints, {} loop joints, {} probes, {} sensors, "
+      "scheme {}, step {:g} s>",
+      scene.name, scene.file, scene.links.size(), beams_of(scene).size(), scene.joints.size(), scene.loop_joints.size(),
+      scene.probes.size(), scene.sensors.size(), scene.integrator.scheme, scene.integrator.step);
+}
+
+}  // namespace
+
+void bind_scene(py::module_& module) {
+  py::class_<SceneDescription, ScenePointer> scene(module, "Scene", R"(What a scene file says; it does not change.
+
+read_scene() and read_scene_text() make it.)");
+  scene.attr("__module__") = "flexarm";
+  scene.def_readonly("name", &SceneDescription::name, "of the robot")
+      .def_readonly("file", &SceneDescription::file, "from which it was read")
+      .def_property_readonly(
+          "links", [](const SceneDescription& s) { return names_of(s.links); }, "names")
+      .def_property_readonly("beams", &beams_of, "names of the links with beams")
+      .def_property_readonly(
+          "joints", [](const SceneDescription& s) { return names_of(s.joints); },
+          "names of the joints of the tree, not yet of their coordinates")
+      .def_property_readonly(
+          "probes", [](const SceneDescription& s) { return names_of(s.probes); }, "names")
+      .def_property_readonly(
+          "sensors", [](const SceneDescription& s) { return names_of(s.sensors); }, "names")
+      .def_property_readonly(
+          "gravity", [](const SceneDescription& s) { return std::vector<double>(s.gravity.begin(), s.gravity.end()); },
+          "x y z [m/s^2]")
+      .def_property_readonly(
+          "scheme", [](const SceneDescription& s) { return s.integrator.scheme; }, "of time integration, as it says")
+      .def_property_readonly(
+          "step", [](const SceneDescription& s) { return s.integrator.step; }, "[s]")
+      .def("__repr__", &text_of);
+
+  module.def("read_scene", &read_scene, kReadScene, py::arg("path"), py::kw_only(), py::arg("clamp_start") = false,
+             py::arg("equilibrium_start") = false, py::arg("lock_massless") = false);
+  module.def("read_scene_text", &read_scene_text, kReadSceneText, py::arg("text"), py::arg("name") = "scene",
+             py::kw_only(), py::arg("clamp_start") = false, py::arg("equilibrium_start") = false,
+             py::arg("lock_massless") = false);
+}
+
+}  // namespace flexarm::python

@@ -1,0 +1,126 @@
+"""Statics, modes, runs to an accuracy."""
+
+import math
+
+import numpy
+import pytest
+
+import flexarm
+from conftest import bits, command_line, example, read_csv
+
+
+def test_statics_are_those_of_the_command_line(tmp_path):
+    path = tmp_path / "static.csv"
+    status, said = command_line("static", example("cantilever"), "--output", path)
+    assert status == 0, said
+    names, rows = read_csv(path)
+    simulation = flexarm.Simulation(flexarm.read_scene(example("cantilever")))
+    simulation.solve_static()
+    columns = [name for name in names if not name.startswith("solver/")]
+    assert columns == names
+    assert bits(simulation.row(names)) == bits(rows[0])
+    assert simulation.energies.strain > 0 and simulation.energies.kinetic == 0
+
+
+def test_no_equilibrium(tmp_path):
+    """A rotor that a constant moment drives has none."""
+    scene = """
+<robot name="rotor">
+  <link name="world"/>
+  <joint name="hinge" type="continuous"> <parent link="world"/> <child link="rod"/> <axis xyz="0 0 1"/> </joint>
+  <link name="rod">
+    <inertial> <mass value="1"/> <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/> </inertial>
+  </link>
+  <simulation> <effort joint="hinge" history="1"/> </simulation>
+</robot>"""
+    path = tmp_path / "rotor.urdf"
+    path.write_text(scene)
+    simulation = flexarm.Simulation(flexarm.read_scene(path))
+    before = bits(simulation.row())
+    with pytest.raises(flexarm.StepError) as caught:
+        simulation.solve_static()
+    status, said = command_line("static", path)
+    assert status == 1
+    assert said == "flexarm: %s\n" % caught.value
+    assert bits(simulation.row()) == before
+    with pytest.raises(ValueError):
+        simulation.solve_static(load_steps=0)
+
+
+def test_a_warning_says_what_falls(tmp_path):
+    """A rod that stands upright on a hinge, pulled down by gravity."""
+    scene = """
+<robot name="upright">
+  <link name="world"/>
+  <joint name="hinge" type="continuous"> <parent link="world"/> <child link="rod"/> <axis xyz="0 1 0"/> </joint>
+  <link name="rod">
+    <inertial>
+      <origin xyz="0 0 1"/> <mass value="1"/>
+      <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/>
+    </inertial>
+  </link>
+</robot>"""
+    path = tmp_path / "upright.urdf"
+    path.write_text(scene)
+    simulation = flexarm.Simulation(flexarm.read_scene(path))
+    with pytest.warns(flexarm.SceneWarning, match="would fall from it"):
+        simulation.solve_static(stable=False)
+    assert bits(simulation.positions) == bits(numpy.zeros(1))
+    with pytest.warns(flexarm.SceneWarning, match="stable=False"):
+        simulation.solve_static()
+    assert abs(simulation.positions[0]) == pytest.approx(math.pi)
+
+
+def test_modes():
+    with open(example("rigid_double_pendulum"), encoding="utf-8") as file:
+        text = file.read().replace('<dynamics damping="0.01" friction="0.002"/>', "")
+    simulation = flexarm.Simulation(flexarm.read_scene_text(text))
+    simulation.set_joint_state({"shoulder": math.pi / 2})  # hangs
+    modes = simulation.natural_modes(2)
+    # Of two rods, M q'' + K q = 0 in the rods' own angles, by Lagrange's equations.
+    length, mass, gravity = 1.0, 1.0, 9.81
+    inertia = 0.0833333333333 + mass * length**2 / 4
+    m = numpy.array([[inertia + mass * length**2, mass * length**2 / 2], [mass * length**2 / 2, inertia]])
+    k = numpy.diag([1.5 * mass * gravity * length, 0.5 * mass * gravity * length])
+    expected = numpy.sort(numpy.sqrt(numpy.linalg.eigvals(numpy.linalg.solve(m, k)))) / (2 * math.pi)
+    for mode, frequency in zip(modes, expected):
+        assert mode.frequency == pytest.approx(frequency, rel=1e-9)
+        assert mode.rate == pytest.approx(0, abs=1e-9)
+        assert mode.node_motion.shape == (simulation.node_count, 6) and mode.joint_motion.shape == (2,)
+        assert mode.node_motion.dtype == mode.joint_motion.dtype == complex
+        assert abs(mode.node_motion).max() == pytest.approx(1)
+    with pytest.raises(ValueError):
+        simulation.natural_modes(0)
+
+
+def test_runs_to_an_accuracy_are_those_of_the_command_line(tmp_path, pendulum):
+    path = tmp_path / "accurate.csv"
+    status, said = command_line("simulate", example("rigid_double_pendulum"), "--until", "1", "--accuracy", "1e-4",
+                                "--interval", "0.1", "--output", path, "--quiet")
+    assert status == 0, said
+    names, rows = read_csv(path)
+    run = pendulum.run_to_accuracy(1, 1e-4, intervals=10, record=[])
+    assert [name for name, _ in pendulum.columns()] == [name for name in names if name != "solver/error_estimate"]
+    kept = [names.index(name) for name, _ in pendulum.columns()]
+    assert bits(run.rows) == bits(rows[:, kept])
+    assert run.estimate <= 1e-4 and run.tries > 1 and run.scale > 0
+    assert run.interval * 10 == pytest.approx(1)
+    assert pendulum.time == pytest.approx(1) and pendulum.step_size == 1e-3
+
+
+def test_an_accuracy_that_is_out_of_reach(pendulum):
+    status, said = command_line("simulate", example("rigid_double_pendulum"), "--until", "0.02", "--accuracy", "1e-16",
+                                "--interval", "0.01", "--quiet")
+    assert status == 1
+    with pytest.raises(flexarm.AccuracyError) as caught:
+        pendulum.run_to_accuracy(0.02, 1e-16, intervals=2, record=["time"])
+    assert "flexarm: %s\n" % caught.value == said
+    assert caught.value.estimate > 1e-16 and caught.value.rows.shape == (3, 1)
+    with pytest.raises(ValueError):
+        pendulum.run_to_accuracy(1, 2)
+
+
+def test_an_accurate_run_that_fails(failing_scene):
+    simulation = flexarm.Simulation(flexarm.read_scene(failing_scene))
+    with pytest.raises(flexarm.AccuracyError):
+        simulation.run_to_accuracy(1, 1e-3, intervals=1, most_tries=2)

@@ -1,0 +1,69 @@
+"""What the tests of the Python package share. FLEXARM_PROGRAM is the command line's."""
+
+import os
+import subprocess
+
+import numpy
+import pytest
+
+import flexarm
+
+ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
+
+# From 1 s on its steps cannot be done: they may not be halved, and Newton's method is not given enough iterations.
+FAILING = """
+<robot name="failing">
+  <link name="world"/>
+  <joint name="hinge" type="continuous"> <parent link="world"/> <child link="rod"/> <axis xyz="0 1 0"/> </joint>
+  <link name="rod">
+    <inertial>
+      <origin xyz="0.5 0 0"/> <mass value="1"/>
+      <inertia ixx="1e-4" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/>
+    </inertial>
+  </link>
+  <simulation>
+    <integrator step="0.1" max_iterations="4" max_halvings="0"/>
+    <effort joint="hinge" history="t &lt; 0.95 ? 0 : 1e4"/>
+  </simulation>
+</robot>
+"""
+
+
+def example(name):
+    return os.path.join(ROOT, "config", "examples", name + ".urdf")
+
+
+@pytest.fixture
+def pendulum():
+    return flexarm.Simulation(flexarm.read_scene(example("rigid_double_pendulum")))
+
+
+@pytest.fixture
+def arm():
+    return flexarm.Simulation(flexarm.read_scene(example("flexible_two_link_arm")))
+
+
+@pytest.fixture
+def failing_scene(tmp_path):
+    path = tmp_path / "failing.urdf"
+    path.write_text(FAILING)
+    return path
+
+
+def command_line(*arguments, folder=None):
+    """Runs `flexarm ...`: status and what it says of errors."""
+    result = subprocess.run([os.environ["FLEXARM_PROGRAM"], *map(str, arguments)], cwd=folder, check=False,
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
+    return result.returncode, result.stderr
+
+
+def read_csv(path):
+    """Names of columns, and rows, bit for bit."""
+    with open(path, encoding="utf-8") as file:
+        names = file.readline().rstrip("\n").split(",")
+        return names, numpy.array([[float(field) for field in line.split(",")] for line in file])
+
+
+def bits(array):
+    """To be compared: zeros of either sign differ, NaN are equal to themselves."""
+    return numpy.ascontiguousarray(array).tobytes()
