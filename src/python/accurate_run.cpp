@@ -9,6 +9,7 @@
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/errors.h"
+#include "python/signal_clock.h"
 
 namespace py = pybind11;
 
@@ -26,7 +27,7 @@ class IntervalRecorder : public RunWatcher {
   }
   bool after_step(const Simulation&, const StepResult& result) override {
     counts_.add(result);
-    return ++steps_ % kSignalPeriod != 0 || !is_interrupted();
+    return !signals_.is_interrupted();
   }
   void after_interval(const Simulation& simulation, double) override {
     if (!columns_) return;
@@ -44,11 +45,10 @@ class IntervalRecorder : public RunWatcher {
   }
 
  private:
-  static constexpr long kSignalPeriod = 100;  // steps
   ResultColumns* columns_;
   std::vector<double> numbers_;
   StepCounts counts_;
-  long steps_ = 0;
+  SignalClock signals_;
 };
 
 /// What the command line says.
@@ -72,7 +72,7 @@ py::object run_accurately(GuardedSimulation& guarded, double until, double accur
     raise_step_error(simulation, simulation.explain(run.last), run.last.reason, recorder.rows());
   if (run.end != AccurateRun::End::Met)
     raise(make("flexarm.errors", "AccuracyError", shortcoming(run, accuracy), run.estimate(), recorder.rows()));
-  return make("flexarm.values", "AccurateRun", run.estimate(), run.scale, run.tries.size(), run.steps,
+  return make("flexarm.values", "AccurateRun", run.estimate(), run.scale, run.scheme, run.tries.size(), run.steps,
               run.steps_per_interval, run.interval, recorder.rows());
 }
 
@@ -91,8 +91,9 @@ scale: of errors [m]; None: how far the points move.
 frame: the link in whose frame points are judged; '': the world.
 most_tries, most_steps: after which it gives up.
 
-Commands stay as they are. Returns an AccurateRun, with an array of the shape (intervals + 1, columns), the first row
-being the start. Raises AccuracyError if it gives up, StepError if steps fail, ValueError if something is out of range.)",
+Where the scene leaves the scheme to flexarm, tries may be made with another one; the simulation keeps its own. Commands
+stay as they are. Returns an AccurateRun, with an array of the shape (intervals + 1, columns), the first row being the
+start. Raises AccuracyError if it gives up, StepError if steps fail, ValueError if something is out of range.)",
            py::arg("until"), py::arg("accuracy"), py::arg("intervals") = 100, py::arg("record") = py::none(),
            py::arg("scale") = py::none(), py::arg("frame") = "", py::arg("most_tries") = AccuracyRequest{}.most_tries,
            py::arg("most_steps") = AccuracyRequest{}.most_steps);

@@ -20,5 +20,6 @@ void bind_commands(SimulationClass& simulation);
 void bind_runs(SimulationClass& simulation);
 void bind_analysis(SimulationClass& simulation);
 void bind_accurate_run(SimulationClass& simulation);
+void bind_tuning(pybind11::module_& module);
 
 }  // namespace flexarm::python

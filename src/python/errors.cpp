@@ -28,9 +28,4 @@ void warn(const std::string& text) {
   if (PyErr_WarnEx(category.ptr(), text.c_str(), 1) != 0) throw py::error_already_set();
 }
 
-bool is_interrupted() {
-  const py::gil_scoped_acquire locked;
-  return PyErr_CheckSignals() != 0;
-}
-
 }  // namespace flexarm::python

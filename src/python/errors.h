@@ -23,7 +23,4 @@ pybind11::object make(const char* module, const char* name, Arguments&&... argum
 /// As SceneWarning, at the line of Python that has called.
 void warn(const std::string& text);
 
-/// Lets Python see to signals now and then, from where its lock is not held.
-bool is_interrupted();
-
 }  // namespace flexarm::python

@@ -33,4 +33,5 @@ PYBIND11_MODULE(_flexarm, module) {
   bind_runs(simulation);
   bind_analysis(simulation);
   bind_accurate_run(simulation);
+  bind_tuning(module);
 }

@@ -1,4 +1,3 @@
-#include <chrono>
 #include <stdexcept>
 
 #include <pybind11/stl.h>
@@ -9,6 +8,7 @@
 #include "python/bindings.h"
 #include "python/effort_rows.h"
 #include "python/errors.h"
+#include "python/signal_clock.h"
 
 namespace py = pybind11;
 
@@ -47,23 +47,6 @@ class Recorder {
   long every_, steps_ = 0;
   py::ssize_t rows_ = 0;
   StepCounts counts_;
-};
-
-/// Python looks for signals, as Ctrl-C is one, so often.
-class SignalClock {
- public:
-  /// Needs no lock of Python's.
-  bool is_interrupted() {
-    const Clock::time_point now = Clock::now();
-    if (now < next_) return false;
-    next_ = now + kPeriod;
-    return python::is_interrupted();
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  static constexpr std::chrono::milliseconds kPeriod{100};
-  Clock::time_point next_ = Clock::now() + kPeriod;
 };
 
 Results room_for(const std::optional<Results>& out, py::ssize_t rows, const ResultColumns& columns) {

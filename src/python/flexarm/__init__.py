@@ -16,6 +16,7 @@ import importlib
 _HOMES = {
     "read_scene": "_flexarm",
     "read_scene_text": "_flexarm",
+    "tune": "_flexarm",
     "Scene": "_flexarm",
     "Simulation": "_flexarm",
     "State": "_flexarm",
@@ -27,6 +28,7 @@ _HOMES = {
     "AccurateRun": "values",
     "Energies": "values",
     "Mode": "values",
+    "Tuning": "values",
     "Wrench": "values",
     "Environment": "environment",
 }

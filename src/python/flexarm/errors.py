@@ -27,10 +27,10 @@ class StepError(RuntimeError):
 
 
 class AccuracyError(RuntimeError):
-    """run_to_accuracy() has given up; the simulation is at the end of its last try.
+    """run_to_accuracy() has given up, the simulation being at the end of its last try; or tune() has.
 
     estimate: of the error of that, relative; NaN: unknown.
-    rows: that it has recorded, shape (intervals + 1, columns); None if it records nothing.
+    rows: that run_to_accuracy() has recorded, shape (intervals + 1, columns); None if it records nothing.
     """
 
     def __init__(self, text, estimate, rows=None):

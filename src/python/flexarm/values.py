@@ -32,11 +32,26 @@ class AccurateRun(typing.NamedTuple):
 
     estimate: float  # of the error, relative to `scale`
     scale: float  # of errors [m]
+    scheme: str  # of the last try
     tries: int
     steps: int  # of all tries
     steps_per_interval: int  # of the last one
     interval: float  # [s]
     rows: typing.Optional[numpy.ndarray]  # shape (intervals + 1, columns); None: nothing was recorded
+
+
+class Tuning(typing.NamedTuple):
+    """What tune() has found."""
+
+    scene: typing.Any  # a Scene with these settings
+    mesh: str  # of its beams, in the scene's order: elements x order
+    scheme: str
+    step: float  # [s]
+    tolerance: float  # of Newton's method
+    error: float  # against a finer run, relative to `scale`
+    scale: float  # how far points move [m]
+    load: float  # time of the processor for a simulated second [-]
+    runs: int  # that the search has made
 
 
 @dataclasses.dataclass
