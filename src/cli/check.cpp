@@ -61,6 +61,21 @@ void print_size(const Simulation& simulation) {
              scene.gravity.x(), scene.gravity.y(), scene.gravity.z());
 }
 
+/// "at least 0 and at most 300"; empty: it may be anything.
+std::string limits_text(const scene::ParameterDescription& parameter) {
+  const std::string least = parameter.min ? fmt::format("at least {:.6g}", *parameter.min) : "",
+                    most = parameter.max ? fmt::format("at most {:.6g}", *parameter.max) : "";
+  return least + (parameter.min && parameter.max ? " and " : "") + most;
+}
+
+void print_parameters(const Simulation& simulation) {
+  const std::vector<scene::ParameterDescription>& parameters = simulation.scene().parameters;
+  if (parameters.empty()) return;
+  fmt::print("\n{:<24} {:>12}  limits\n", "parameter", "value");
+  for (const scene::ParameterDescription& parameter : parameters)
+    fmt::print("{:<24} {:>12.6g}  {}\n", parameter.name, parameter.value, limits_text(parameter));
+}
+
 void print_plane(const Simulation& simulation) {
   const PlaneSearch search = find_step_plane(model_of(simulation), make_scheme(simulation.scene().integrator));
   if (!search.plane) return fmt::print("steps are three-dimensional: {}\n", search.reason);
@@ -209,6 +224,7 @@ void add_check(CLI::App& app, int& status) {
     Simulation simulation = load_simulation(*scene);
     print_size(simulation);
     print_plane(simulation);
+    print_parameters(simulation);
     print_links(simulation);
     print_joints(simulation);
     print_beams(simulation);

@@ -9,8 +9,37 @@
 
 namespace flexarm::cli {
 
+namespace {
+
+std::string check_setting(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0)
+    return "must be NAME=VALUE, got '" + text + "'" + (equals == 0 ? "" : " (a scene stands before --set)");
+  if (parse_number(text.substr(equals + 1))) return "";
+  return "the value of a parameter must be a finite number, got '" + text + "'";
+}
+
+void add_parameters(CLI::App& command, scene::ParameterValues& values) {
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--set",
+          [&values](const std::vector<std::string>& settings) {
+            for (const std::string& setting : settings) {
+              const std::string name = setting.substr(0, setting.find('='));
+              if (!values.emplace(name, *parse_number(std::string_view(setting).substr(name.size() + 1))).second)
+                throw CLI::ValidationError("--set", "'" + name + "' must be set once");
+            }
+          },
+          "values for the scene's parameters in the place of the file's")
+      ->type_name("NAME=VALUE ...")
+      ->check(check_setting);
+}
+
+}  // namespace
+
 void add_scene(CLI::App& command, SceneInput& input) {
   command.add_option("scene", input.path, "scene file")->required();
+  add_parameters(command, input.options.parameters);
   command
       .add_option_function<std::vector<std::string>>(
           "--start",

@@ -83,7 +83,10 @@ std::string tuned_text(const std::string& text, const scene::SceneDescription& s
   std::string out = text;
   set_beams(out, scene, settings);
   set_integrator(out, scene, settings);
-  const scene::ReadResult read = scene::read_scene_text(out, scene.file);
+  scene::ReadOptions as_set;
+  for (const scene::ParameterDescription& parameter : scene.parameters)
+    as_set.parameters[parameter.name] = parameter.value;
+  const scene::ReadResult read = scene::read_scene_text(out, scene.file, as_set);
   RunSettings got = read.scene ? settings_of(*read.scene) : RunSettings(), wanted = settings;
   for (RunSettings* some : {&got, &wanted})
     for (BeamResolution& beam : some->beams)

@@ -9,24 +9,16 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <muParser.h>
 
 #include "math/cubic_spline.h"
+#include "math/expression.h"
 #include "math/parse_number.h"
 
 namespace flexarm {
 namespace {
 
-constexpr std::size_t kLongestExpression = 2000;  // characters; far above what anyone writes by hand
 constexpr std::size_t kLongestTable = 1 << 20;
-constexpr std::size_t kLongestReason = 200;
-
-/// "'text'", shortened for messages.
-std::string quoted(std::string_view text) {
-  constexpr std::size_t kShown = 60;
-  if (text.size() <= kShown) return "'" + std::string(text) + "'";
-  return "'" + std::string(text.substr(0, kShown)) + "...'";
-}
+constexpr const char* kExpected = "an expression of t, or a table TIME:VALUE TIME:VALUE ...";
 
 /// Piecewise linear, constant outside.
 struct Table {
@@ -45,11 +37,10 @@ struct Table {
 /// A compiled expression of t. The parser points to `t`, and its evaluation writes to it: a copy compiles its own.
 class Expression {
  public:
-  /// @throws mu::Parser::exception_type
+  /// @throws std::invalid_argument
   explicit Expression(std::string text) : text_(std::move(text)) {
     parser_.DefineVar("t", &t_);
-    parser_.SetExpr(text_);
-    (*this)(0);  // compiles, so that unknown names are found here and nothing allocates later
+    compile_expression(parser_, text_, kExpected);
   }
   Expression(const Expression& other) : Expression(other.text_) {}
   Expression& operator=(const Expression&) = delete;
@@ -58,7 +49,6 @@ class Expression {
     t_ = time;
     return parser_.Eval();
   }
-  int value_count() const { return parser_.GetNumResults(); }
 
  private:
   std::string text_;
@@ -90,7 +80,7 @@ void read_table(std::string_view text, Function& function) {
   for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
     const std::vector<double> entry = parse_entry(word);
     const auto fail = [&](const char* expected) {
-      throw std::invalid_argument("entry " + quoted(word) + " of a table, expected " + expected);
+      throw std::invalid_argument("entry " + quoted_expression(word) + " of a table, expected " + expected);
     };
     if (entry.size() != 2 && entry.size() != 3) fail("TIME:VALUE or TIME:VALUE:RATE with numbers");
     if (!table.times.empty() && entry[0] <= table.times.back()) fail("strictly increasing times");
@@ -105,39 +95,6 @@ void read_table(std::string_view text, Function& function) {
   }
   if (table.times.size() < 2) throw std::invalid_argument("a single point with a rate, expected at least two");
   function.emplace<CubicSpline>(std::move(table));
-}
-
-/// Position of an '=' that assigns: muParser would let an expression change t.
-std::size_t find_assignment(std::string_view text) {
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] != '=') continue;
-    if (i + 1 < text.size() && text[i + 1] == '=') {
-      ++i;
-    } else if (i == 0 || std::string_view("<>!").find(text[i - 1]) == std::string_view::npos) {
-      return i;
-    }
-  }
-  return std::string_view::npos;
-}
-
-std::invalid_argument expression_error(std::string_view text, std::size_t position, const std::string& reason) {
-  return std::invalid_argument("expression " + quoted(text) + ", at character " + std::to_string(position + 1) + ": " +
-                               reason + "; expected an expression of t, or a table TIME:VALUE TIME:VALUE ...");
-}
-
-void compile(std::string_view text, Function& function) {
-  if (text.size() > kLongestExpression)
-    throw std::invalid_argument("expression of " + std::to_string(text.size()) + " characters, expected at most " +
-                                std::to_string(kLongestExpression));
-  const std::size_t assignment = find_assignment(text);
-  if (assignment != std::string_view::npos) throw expression_error(text, assignment, "assignment (== compares)");
-  try {
-    if (function.emplace<Expression>(std::string(text)).value_count() == 1) return;
-  } catch (const mu::Parser::exception_type& error) {
-    const std::size_t position = error.GetPos() < 0 ? 0 : static_cast<std::size_t>(error.GetPos());
-    throw expression_error(text, std::min(position, text.size()), error.GetMsg().substr(0, kLongestReason));
-  }
-  throw expression_error(text, text.find(','), "several values separated by commas");
 }
 
 }  // namespace
@@ -184,7 +141,7 @@ TimeFunction TimeFunction::parse(std::string_view text) {
   } else if (text.find(':') != std::string_view::npos && text.find('?') == std::string_view::npos) {
     read_table(text, implementation->function);
   } else {
-    compile(text, implementation->function);
+    implementation->function.emplace<Expression>(std::string(text));
   }
   implementation->text = text;
   return TimeFunction(std::move(implementation));

@@ -40,6 +40,22 @@ class ParameterReader {
     }
   }
 
+  /// Of the numbers of a dictionary.
+  void read(const std::string& name, scene::ParameterValues& values) {
+    XmlRpc::XmlRpcValue dictionary;
+    if (!read_as(name, dictionary, "")) return;
+    if (dictionary.getType() != XmlRpc::XmlRpcValue::TypeStruct)
+      return complain(name, "must be a dictionary of numbers", dictionary.toXml());
+    for (auto& [key, value] : dictionary) {
+      if (value.getType() == XmlRpc::XmlRpcValue::TypeInt)
+        values[key] = static_cast<int>(value);
+      else if (value.getType() == XmlRpc::XmlRpcValue::TypeDouble)
+        values[key] = static_cast<double>(value);
+      else
+        complain(name + "/" + key, "must be a number", value.toXml());
+    }
+  }
+
   void complain(const std::string& name, const std::string& expected, const std::string& got) {
     errors_ += (errors_.empty() ? "" : "\n") + node_.resolveName(name) + ": " + expected + ", got " + got;
   }
@@ -156,6 +172,7 @@ scene::ReadResult read_file_or_text(const ros::NodeHandle& node, const ros::Node
   reader.read("scene", path);
   read_start(reader, options);
   options.lock_massless = read_choice(reader, "massless", "lock");
+  reader.read("parameters", options.parameters);
   reader.throw_if_any();
   if (!path.empty()) return scene::read_scene_file(path, options);
 

@@ -34,6 +34,19 @@ void Findings::warning(int line, std::string element, std::string expected, std:
        without_control_characters(std::move(got)), without_control_characters(std::move(expected))});
 }
 
+void Findings::note_origin(const tinyxml2::XMLAttribute& attribute, std::string origin) {
+  origins_[&attribute] = std::move(origin);
+}
+
+std::string Findings::got(const tinyxml2::XMLAttribute& attribute) const {
+  return quoted(attribute.Value()) + origin(attribute);
+}
+
+std::string Findings::origin(const tinyxml2::XMLAttribute& attribute) const {
+  const auto found = origins_.find(&attribute);
+  return found == origins_.end() ? "" : found->second;
+}
+
 void Findings::add(Diagnostic finding) {
   // The first error is always listed, however many warnings came before.
   const bool first_error = finding.severity == Diagnostic::Severity::Error && error_count_ == 1;

@@ -1,8 +1,11 @@
 #pragma once
 /// Collects what is wrong with one input.
 
+#include <map>
 #include <string>
 #include <string_view>
+
+#include <tinyxml2.h>
 
 #include "flexarm/scene/diagnostic.h"
 
@@ -19,6 +22,13 @@ class Findings {
   void error(int line, std::string element, std::string expected, std::string got = "");
   void warning(int line, std::string element, std::string expected, std::string got = "");
 
+  /// Where an attribute's value has come from, if it is not what the file says (" of '${a + 1}' with a = 2").
+  void note_origin(const tinyxml2::XMLAttribute& attribute, std::string origin);
+  /// The attribute's value in quotes, with its origin.
+  std::string got(const tinyxml2::XMLAttribute& attribute) const;
+  /// Empty: the file itself.
+  std::string origin(const tinyxml2::XMLAttribute& attribute) const;
+
   const std::string& file() const { return file_; }
   std::size_t error_count() const { return error_count_; }
   /// All findings in the order of their lines.
@@ -30,6 +40,7 @@ class Findings {
   std::string file_;
   Diagnostics findings_;
   std::size_t error_count_ = 0, omitted_ = 0;
+  std::map<const tinyxml2::XMLAttribute*, std::string> origins_;
 };
 
 }  // namespace flexarm::scene

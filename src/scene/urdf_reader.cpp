@@ -8,6 +8,7 @@
 #include "scene/extension_reader.h"
 #include "scene/inertia_checks.h"
 #include "scene/limits.h"
+#include "scene/parameters.h"
 #include "scene/scene_checks.h"
 #include "scene/sensor_reader.h"
 #include "scene/spring_reader.h"
@@ -28,7 +29,8 @@ constexpr Place kPlaces[] = {{"beam", "link"},       {"release", "joint"},    {"
                              {"slide", "joint"},     {"couple", "joint"},     {"child_origin", "loop_joint"},
                              {"friction", "joint"},  {"simulation", "robot"}, {"loop_joint", "robot"},
                              {"root", "simulation"}, {"spring", "robot"},     {"drive", "robot"},
-                             {"servo", "robot"},     {"hub", "beam"},         {"sensor", "robot"}};
+                             {"servo", "robot"},     {"hub", "beam"},         {"sensor", "robot"},
+                             {"parameter", "robot"}};
 
 /// Records our elements where they would be ignored like a stranger's.
 void check_places(const XmlElement& element) {
@@ -50,7 +52,8 @@ class SceneReader {
     scene_.starts_in_equilibrium = options.equilibrium_start;
   }
 
-  SceneDescription read(const XmlElement& unnamed) {
+  SceneDescription read(const XmlElement& unnamed, std::vector<ParameterDescription> parameters) {
+    scene_.parameters = std::move(parameters);
     scene_.file = findings_.file();
     scene_.name = unnamed.text("name").value_or("");
     const XmlElement robot = unnamed.with_name(scene_.name);
@@ -140,7 +143,7 @@ std::optional<SceneDescription> read_scene(const std::string& text, const ReadOp
   }
   tinyxml2::XMLDocument document;
   if (!parse_xml(text, document, findings)) return std::nullopt;
-  const tinyxml2::XMLElement* root = document.RootElement();
+  tinyxml2::XMLElement* root = document.RootElement();
   if (!root || std::string_view(root->Name()) != "robot") {
     findings.error(root ? root->GetLineNum() : 0, "file", "the outermost element must be <robot>",
                    root ? quoted(root->Name()) : "");
@@ -148,7 +151,9 @@ std::optional<SceneDescription> read_scene(const std::string& text, const ReadOp
   }
   const XmlElement robot(*root, "<robot>", "robot", findings);
   if (refuse_xacro(robot)) return std::nullopt;
-  SceneDescription scene = SceneReader(options, findings).read(robot);
+  std::vector<ParameterDescription> parameters = expand_parameters(*root, options.parameters, findings);
+  if (findings.error_count() > 0) return std::nullopt;
+  SceneDescription scene = SceneReader(options, findings).read(robot, std::move(parameters));
   if (findings.error_count() > 0) return std::nullopt;
 
   // Each part has been judged alone; now the whole, as other programs read it.

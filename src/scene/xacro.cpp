@@ -6,23 +6,22 @@
 namespace flexarm::scene {
 namespace {
 
+constexpr const char* kHint =
+    "this is xacro and must be expanded to URDF first, where the robot's package and xacro are installed: "
+    "xacro FILE.xacro > FILE.urdf";
 constexpr const char* kUnread[] = {"visual", "collision", "material", "gazebo", "transmission"};
 
 bool is_macro(std::string_view tag) {
   return tag.substr(0, 6) == "xacro:";
 }
 
-/// "${...}" or "$(arg ...)" and the like, which xacro replaces.
+/// "$(arg ...)" and the like, which xacro replaces. Expressions "${...}" scenes have, too (parameters.h).
 bool has_substitution(std::string_view value) {
-  return value.find("${") != std::string_view::npos || value.find("$(") != std::string_view::npos;
+  return value.find("$(") != std::string_view::npos;
 }
 
 bool refuse(const XmlElement& element, int line, std::string_view got) {
-  element.findings().error(
-      line, element.description(),
-      "this is xacro and must be expanded to URDF first, where the robot's package and xacro are installed: "
-      "xacro FILE.xacro > FILE.urdf",
-      quoted(got));
+  element.findings().error(line, element.description(), kHint, quoted(got));
   return true;
 }
 
@@ -40,6 +39,12 @@ bool refuse_element(const XmlElement& element) {
 
 bool refuse_xacro(const XmlElement& robot) {
   return refuse_element(robot);
+}
+
+void refuse_property(const XmlElement& element, int line, const std::string& parameter, std::string_view got) {
+  element.findings().error(line, element.description(),
+                           std::string(kHint) + "; or a scene's <parameter name=\"" + parameter + "\"> is missing",
+                           quoted(got));
 }
 
 }  // namespace flexarm::scene

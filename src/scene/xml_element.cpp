@@ -58,7 +58,7 @@ void XmlElement::warning(std::string expected, std::string got) const {
 void XmlElement::attribute_error(const char* attribute, std::string expected) const {
   const tinyxml2::XMLAttribute* found = xml_->FindAttribute(attribute);
   if (found) {
-    findings_->error(found->GetLineNum(), description_, std::move(expected), quoted(found->Value()));
+    findings_->error(found->GetLineNum(), description_, std::move(expected), findings_->got(*found));
   } else {
     error(std::move(expected));
   }
@@ -216,8 +216,9 @@ std::optional<TimeFunction> XmlElement::function(const char* attribute) const {
     attribute_error(attribute, std::string(attribute) + " must be finite at t = 0");
   } catch (const std::invalid_argument& problem) {
     // The message repeats the value and may itself be long.
-    findings_->error(xml_->FindAttribute(attribute)->GetLineNum(), description_,
-                     std::string(attribute) + " is no function of time", problem.what());
+    const tinyxml2::XMLAttribute& found = *xml_->FindAttribute(attribute);
+    findings_->error(found.GetLineNum(), description_, std::string(attribute) + " is no function of time",
+                     problem.what() + findings_->origin(found));
   }
   return std::nullopt;
 }

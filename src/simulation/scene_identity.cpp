@@ -184,7 +184,8 @@ std::string named_lines(const char* kind, const Parts& parts) {
 std::string scene_identity(const scene::SceneDescription& scene) {
   const auto& [name, file, root, links, joints, loop_joints, springs, drives, servos, gravity, integrator,
                integrator_location, initial_joints, initial_links, loads, distributed_loads, motions, efforts, probes,
-               sensors, point_springs, lock_massless, starts_in_equilibrium, equilibrium_location] = scene;
+               sensors, point_springs, lock_massless, starts_in_equilibrium, equilibrium_location,
+               parameters] = scene;  // which count by the numbers that are made of them
   return integrator_line(integrator) + "\n" + named_lines("link", links) + named_lines("joint", joints) +
          named_lines("loop_joint", loop_joints) +
          fmt::format("spring {}\ndrive {}\nservo {}\n", SceneFingerprint::of(springs), SceneFingerprint::of(drives),

@@ -74,6 +74,14 @@ class BadScenes(unittest.TestCase):
     def test_choices(self):
         self.assert_refused(["_scene:=" + GOOD_SCENE, "_start:=lock", "_massless:=clamp"], "'clamp'", "'lock'")
 
+    def test_parameters_of_the_scene(self):
+        self.assert_refused(["_scene:=" + GOOD_SCENE, "_parameters/mass:=2"], "it has no <parameter>, got 'mass'")
+        self.setUp()
+        self.assert_refused(["_scene:=" + GOOD_SCENE, "_parameters/mass:=heavy", "_start:=lock"],
+                            "/flexarm/parameters/mass: must be a number", "'clamp'")
+        self.setUp()
+        self.assert_refused(["_scene:=" + GOOD_SCENE, "_parameters:=5"], "must be a dictionary of numbers")
+
     def test_a_frame_prefix_with_a_leading_slash(self):
         self.assert_refused(["_scene:=" + GOOD_SCENE, "_frame_prefix:=/left"], "frame_prefix", "/left")
 

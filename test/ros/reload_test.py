@@ -150,6 +150,28 @@ class Reload(unittest.TestCase):
         self.assertTrue(answer.success, answer.message)
         wait_until(lambda: self.states.names() == ["first", "second", "third"], "the third joint")
 
+    def test_parameters_of_the_scene_are_read_again(self):
+        self.scene.write(scene("first", "second", more='<parameter name="angle" value="0.25" max="1"/>',
+                               simulation='<initial joint="first" position="${angle}"/>'))
+        self.start("_parameters/angle:=0.5")
+        self.assertEqual(self.states.messages[-1].position[0], 0.5)
+        for angle in (0.75, 1):  # whole numbers, too
+            rospy.set_param("/flexarm/parameters/angle", angle)
+            self.assertTrue(self.arm.reload().success)
+            wait_until(lambda: self.states.messages[-1].position[0] == angle, "the angle that is set")
+        for name, value, told in (("/angle", 2, "must be at most 1, got '2'"),
+                                  ("/angle", "wide", "/flexarm/parameters/angle: must be a number"),
+                                  ("/angle", True, "/flexarm/parameters/angle: must be a number"),
+                                  ("", {"length": 1}, "a parameter must be one of angle, got 'length'"),
+                                  ("", [1], "/flexarm/parameters: must be a dictionary of numbers")):
+            rospy.set_param("/flexarm/parameters" + name, value)
+            answer = self.arm.reload()
+            self.assertFalse(answer.success)
+            self.assertIn(told, answer.message)
+            rospy.delete_param("/flexarm/parameters")
+        self.assertTrue(self.arm.reload().success)
+        wait_until(lambda: self.states.messages[-1].position[0] == 0.25, "the scene's own angle")
+
     def test_after_a_failure_it_begins_anew(self):
         self.start("_max_halvings:=0")
         CommandTopic("/first/command", Float64).send(1e250)

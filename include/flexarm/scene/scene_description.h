@@ -367,6 +367,13 @@ struct Sensor {
   SourceLocation location = {};
 };
 
+/// A number that the scene's expressions name; all that is described here has been made with it.
+struct ParameterDescription {
+  std::string name;
+  double value = 0;
+  std::optional<double> min = {}, max = {};  ///< what it may be set to; empty: anything
+};
+
 struct SceneDescription {
   std::string name;  ///< of the robot
   std::string file;
@@ -391,7 +398,8 @@ struct SceneDescription {
   std::vector<PointSpring> point_springs;
   bool lock_massless = false;          ///< joints that move nothing with inertia are held where they start, not refused
   bool starts_in_equilibrium = false;  ///< at rest, where loads, gravity and servos at t = 0 hold it
-  SourceLocation equilibrium_location = {};  ///< of the <initial> that says so
+  SourceLocation equilibrium_location = {};      ///< of the <initial> that says so
+  std::vector<ParameterDescription> parameters;  ///< in the order of the file
 };
 
 /// Suffixes of the released coordinates of a joint in their order: {""} for one coordinate, {} for none,

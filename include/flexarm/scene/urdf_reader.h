@@ -1,6 +1,7 @@
 #pragma once
 /// Reads a URDF file with flexarm's extension elements. The only door to urdfdom and tinyxml2.
 
+#include <map>
 #include <optional>
 #include <string>
 
@@ -15,11 +16,17 @@ struct ReadResult {
   Diagnostics diagnostics;
 };
 
-/// What <simulation> can say as well; either place is enough.
+/// Values for parameters of a scene, by their names.
+using ParameterValues = std::map<std::string, double>;
+
+/// What <simulation> can say as well, where either place is enough; and values for parameters in the place of the
+/// file's.
 struct ReadOptions {
   bool clamp_start = false;    ///< start="clamp": joints that would start outside their limits start at the nearest one
   bool lock_massless = false;  ///< massless="lock": see SceneDescription::lock_massless
   bool equilibrium_start = false;  ///< <initial equilibrium="true"/>: see SceneDescription::starts_in_equilibrium
+  /// A name that the scene has no <parameter> for, and a value outside its limits, are errors of the scene.
+  ParameterValues parameters = {};
 };
 
 /// Reads a file. Never throws for bad input: every error of the file is in the diagnostics.

@@ -1,0 +1,58 @@
+#include "math/expression.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace flexarm {
+namespace {
+
+constexpr std::size_t kLongestExpression = 2000;  // characters; far above what anyone writes by hand
+constexpr std::size_t kLongestReason = 200;
+
+/// Position of an '=' that assigns: muParser would let an expression change what it names.
+std::size_t find_assignment(std::string_view text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '=') continue;
+    if (i + 1 < text.size() && text[i + 1] == '=') {
+      ++i;
+    } else if (i == 0 || std::string_view("<>!").find(text[i - 1]) == std::string_view::npos) {
+      return i;
+    }
+  }
+  return std::string_view::npos;
+}
+
+std::invalid_argument expression_error(std::string_view text, std::size_t position, const std::string& reason,
+                                       std::string_view expected) {
+  return std::invalid_argument(fmt::format("expression {}, at character {}: {}; expected {}", quoted_expression(text),
+                                           position + 1, reason, expected));
+}
+
+}  // namespace
+
+std::string quoted_expression(std::string_view text) {
+  constexpr std::size_t kShown = 60;
+  if (text.size() <= kShown) return "'" + std::string(text) + "'";
+  return "'" + std::string(text.substr(0, kShown)) + "...'";
+}
+
+double compile_expression(mu::Parser& parser, const std::string& text, std::string_view expected) {
+  if (text.size() > kLongestExpression)
+    throw std::invalid_argument(
+        fmt::format("expression of {} characters, expected at most {}", text.size(), kLongestExpression));
+  const std::size_t assignment = find_assignment(text);
+  if (assignment != std::string::npos) throw expression_error(text, assignment, "assignment (== compares)", expected);
+  try {
+    parser.SetExpr(text);
+    const double value = parser.Eval();
+    if (parser.GetNumResults() == 1) return value;
+  } catch (const mu::Parser::exception_type& error) {
+    const std::size_t position = error.GetPos() < 0 ? 0 : static_cast<std::size_t>(error.GetPos());
+    throw expression_error(text, std::min(position, text.size()), error.GetMsg().substr(0, kLongestReason), expected);
+  }
+  throw expression_error(text, text.find(','), "several values separated by commas", expected);
+}
+
+}  // namespace flexarm
