@@ -25,6 +25,7 @@ class Interrupted : public std::runtime_error {
 /// Each adds its subcommand to `app`; when that is run, it leaves its exit status in `status`.
 void add_check(CLI::App& app, int& status);
 void add_simulate(CLI::App& app, int& status);
+void add_expand(CLI::App& app, int& status);
 void add_static(CLI::App& app, int& status);
 void add_modes(CLI::App& app, int& status);
 void add_replay(CLI::App& app, int& status);

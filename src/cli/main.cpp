@@ -17,6 +17,7 @@ int run(int argc, char** argv) {
   int status = kDone;
   add_check(app, status);
   add_simulate(app, status);
+  add_expand(app, status);
   add_static(app, status);
   add_modes(app, status);
   add_replay(app, status);

@@ -65,13 +65,17 @@ void add_equilibrium(CLI::App& command, Equilibrium& wanted) {
       "takes the equilibrium that the loads lead to, stable or not");
 }
 
-Simulation load_simulation(const SceneInput& input, const SimulationOptions& options) {
+scene::ReadResult read_scene(const SceneInput& input) {
   scene::ReadResult result = scene::read_scene_file(input.path, input.options);
   std::string findings = scene::to_text(result.diagnostics);
   if (!findings.empty()) findings.pop_back();  // the last line's end, which print and what() supply
   if (!result.scene) throw InputError(findings);
   if (!findings.empty()) fmt::print(stderr, "{}\n", findings);
-  Simulation simulation(std::move(*result.scene), options);
+  return result;
+}
+
+Simulation load_simulation(const SceneInput& input, const SimulationOptions& options) {
+  Simulation simulation(std::move(*read_scene(input).scene), options);
   for (const scene::Diagnostic& warning : simulation.start_warnings()) fmt::print(stderr, "{}\n", warning.text());
   return simulation;
 }

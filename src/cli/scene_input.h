@@ -21,6 +21,11 @@ struct SceneInput {
 /// The argument `scene` and its options; `input` must outlive the command.
 void add_scene(CLI::App& command, SceneInput& input);
 
+/// Reads a scene; findings go to the standard error output.
+/// @returns with a scene
+/// @throws InputError if the scene has errors
+scene::ReadResult read_scene(const SceneInput& input);
+
 /// Reads a scene and builds its simulation; findings go to the standard error output.
 /// @throws InputError if the scene has errors, ModelError if it cannot be built.
 Simulation load_simulation(const SceneInput& input, const SimulationOptions& options = {});

@@ -136,7 +136,18 @@ class SceneReader {
   std::set<std::string> unreadable_;  // links and joints with errors, of which only the name is to be trusted
 };
 
-std::optional<SceneDescription> read_scene(const std::string& text, const ReadOptions& options, Findings& findings) {
+/// The document as it is now, without parameters.
+std::string text_without_parameters(tinyxml2::XMLDocument& document) {
+  tinyxml2::XMLElement& root = *document.RootElement();
+  while (tinyxml2::XMLElement* parameter = root.FirstChildElement("parameter")) root.DeleteChild(parameter);
+  tinyxml2::XMLPrinter printer;
+  document.Print(&printer);
+  return printer.CStr();
+}
+
+/// @param urdf  becomes ReadResult::urdf
+std::optional<SceneDescription> read_scene(const std::string& text, const ReadOptions& options, Findings& findings,
+                                           std::string& urdf) {
   if (text.size() > kLargestFile) {
     findings.error(0, "file", fmt::format("may have {} bytes", kLargestFile), fmt::format("'{}'", text.size()));
     return std::nullopt;
@@ -159,6 +170,7 @@ std::optional<SceneDescription> read_scene(const std::string& text, const ReadOp
   // Each part has been judged alone; now the whole, as other programs read it.
   const std::vector<std::string> errors = errors_of_urdfdom(printed(*root));
   if (!errors.empty()) robot.warning("programs that use urdfdom refuse this file", quoted(errors.front()));
+  urdf = text.find("${") == std::string::npos ? text : text_without_parameters(document);
   return scene;
 }
 
@@ -179,7 +191,7 @@ std::optional<std::string> read_bytes(const std::string& path) {
 ReadResult read_scene_text(const std::string& text, const std::string& name, const ReadOptions& options) {
   Findings findings(name);
   ReadResult result;
-  result.scene = read_scene(text, options, findings);
+  result.scene = read_scene(text, options, findings, result.urdf);
   result.diagnostics = findings.take();
   return result;
 }

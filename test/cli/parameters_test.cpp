@@ -100,6 +100,24 @@ TEST(Parameters, MakeOtherScenesOfWhichStatesAreRefused) {
   EXPECT_EQ(same.status, 0) << same.errors;
 }
 
+TEST(Parameters, ExpandGivesTheSameSceneToProgramsThatKnowNone) {
+  const std::string scene = scene_file(kWithParameters), plain = temporary("plain.urdf");
+  const Outcome outcome = shell("flexarm expand " + scene + " --set mass=5 length=1.25 --output " + plain);
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  const std::string text = read_file(plain);
+  for (const char* left : {"${", "<parameter"}) EXPECT_EQ(text.find(left), std::string::npos) << text;
+  expect_contains(text, R"(<mass value="5"/>)");
+  EXPECT_EQ(results_of(plain), results_of(scene, "--set mass=5 length=1.25"));
+  EXPECT_EQ(shell("flexarm expand " + scene + " --set mass=5 length=1.25").output, text);
+  // What has no expressions stays as it is, to the byte; what is wrong is said.
+  EXPECT_EQ(shell("flexarm expand " + example("cantilever")).output, read_file(example("cantilever")));
+  EXPECT_EQ(shell("flexarm expand " + scene + " --output " + scene).status, 2);
+  const Outcome bad = shell("flexarm expand " + scene + " --set mass=-1");
+  EXPECT_EQ(bad.status, 2);
+  EXPECT_EQ(bad.output, "");
+  expect_contains(bad.errors, "the value that it is given must be at least 0, got '-1'");
+}
+
 TEST(Parameters, StayInATunedScene) {
   const std::string scene = scene_file(R"(<robot name="rod"> <parameter name="length" value="1"/>
   <parameter name="n" value="8"/> <link name="world"/>

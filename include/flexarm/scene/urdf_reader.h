@@ -14,6 +14,9 @@ namespace flexarm::scene {
 struct ReadResult {
   std::optional<SceneDescription> scene;
   Diagnostics diagnostics;
+  /// Of a scene: the file, or where it has expressions, the same with numbers in their place and without its
+  /// parameters, which programs can read that know none.
+  std::string urdf = {};
 };
 
 /// Values for parameters of a scene, by their names.

@@ -1,0 +1,39 @@
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "cli/commands.h"
+#include "cli/files.h"
+#include "cli/scene_input.h"
+
+namespace flexarm::cli {
+namespace {
+
+struct Arguments {
+  SceneInput scene;
+  std::string output = "-";
+};
+
+int expand(const Arguments& arguments) {
+  refuse_overwriting("--output", arguments.output, arguments.scene.path);
+  require_writable("--output", arguments.output);
+  const std::string text = read_scene(arguments.scene).urdf;
+  if (is_standard_output(arguments.output))
+    fmt::print("{}", text);
+  else
+    write_file(arguments.output, text);
+  return kDone;
+}
+
+}  // namespace
+
+void add_expand(CLI::App& app, int& status) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand(
+      "expand", "Writes a scene with numbers in the place of its expressions, for programs that know none");
+  add_scene(*command, arguments->scene);
+  command->add_option("--output", arguments->output, "file for it; -: standard output")->capture_default_str();
+  command->callback([arguments, &status] { status = expand(*arguments); });
+}
+
+}  // namespace flexarm::cli
