@@ -90,7 +90,7 @@ struct BlockSystem {
 /// See StrainMemoryT.
 template <typename S>
 struct StrainMemory {
-  Vector3T<S> average, rate, delayed_rate;
+  Vector3T<S> average = Vector3T<S>::Zero(), rate = Vector3T<S>::Zero(), delayed_rate = Vector3T<S>::Zero();
 };
 
 }  // namespace flexarm::planar

@@ -138,6 +138,27 @@ TEST(Planar, TakesFreeAndBallJoints) {
   for (const std::string& scheme : kPlanarSchemes) expect_same_motion(b.scene, scheme, 80);
 }
 
+// It is part of the state, and of checkpoints.
+TEST(Planar, WhatNoDamperKeepsStaysZero) {
+  for (const bool is_damped : {false, true}) {
+    SceneBuilder b;
+    scene::BeamDescription& beam = b.beam("rod", {{1, 0, 0}}, section(1e4, 5e3, 50, 40, 1, 1e-2, 5e-3), 5, 2);
+    if (is_damped) beam.stiffness_proportional_damping = 1e-3;
+    b.joint("clamp", JointKind::Fixed, "world", "rod");
+    b.load("rod", {1, 0, 0}, {0, 1, 0});
+    SimulationOptions options;
+    options.scheme = is_damped ? "em" : "edmc1";
+    ASSERT_TRUE(plane_of(b.scene, *options.scheme).plane);
+    Simulation simulation(b.scene, options);
+    for (int n = 0; n < 10; ++n) ASSERT_TRUE(simulation.step().converged);
+    ASSERT_FALSE(state_of(simulation).strain_memory.empty());
+    for (const StrainMemory& memory : state_of(simulation).strain_memory) {
+      EXPECT_TRUE((is_damped ? memory.average : memory.delayed_rate).isZero(0));
+      EXPECT_FALSE(memory.rate.isZero(0));
+    }
+  }
+}
+
 TEST(Planar, IsNotFoundWhereSomethingIsNearlyInThePlane) {
   const SceneBuilder planar = tilted_arm(Quaternion::Identity());
   ASSERT_TRUE(plane_of(planar.scene).plane);
