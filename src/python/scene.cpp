@@ -13,12 +13,14 @@ namespace py = pybind11;
 namespace flexarm::python {
 namespace {
 
+using scene::ParameterValues;
 using scene::SceneDescription;
 using ScenePointer = std::shared_ptr<SceneDescription>;
 
 constexpr const char* kReadScene = R"(Reads a URDF file with flexarm's extension elements (docs/scene_format.md).
 
 path: of the file.
+parameters: values for parameters of the scene by their names, in place of the file's, {"payload": 200}.
 clamp_start: joints that would start outside their limits start at the nearest one (start="clamp").
 equilibrium_start: everything starts at rest where loads, gravity and servos hold it (start="equilibrium").
 lock_massless: joints that move nothing with inertia are held where they start (massless="lock").
@@ -40,14 +42,14 @@ ScenePointer scene_of(scene::ReadResult result) {
   raise_scene_error(findings);
 }
 
-ScenePointer read_scene(const std::filesystem::path& path, bool clamp_start, bool equilibrium_start,
-                        bool lock_massless) {
-  return scene_of(scene::read_scene_file(path.string(), {clamp_start, lock_massless, equilibrium_start}));
+ScenePointer read_scene(const std::filesystem::path& path, const ParameterValues& parameters, bool clamp_start,
+                        bool equilibrium_start, bool lock_massless) {
+  return scene_of(scene::read_scene_file(path.string(), {clamp_start, lock_massless, equilibrium_start, parameters}));
 }
 
-ScenePointer read_scene_text(const std::string& text, const std::string& name, bool clamp_start, bool equilibrium_start,
-                             bool lock_massless) {
-  return scene_of(scene::read_scene_text(text, name, {clamp_start, lock_massless, equilibrium_start}));
+ScenePointer read_scene_text(const std::string& text, const std::string& name, const ParameterValues& parameters,
+                             bool clamp_start, bool equilibrium_start, bool lock_massless) {
+  return scene_of(scene::read_scene_text(text, name, {clamp_start, lock_massless, equilibrium_start, parameters}));
 }
 
 std::vector<std::string> beams_of(const SceneDescription& scene) {
@@ -93,11 +95,12 @@ read_scene() and read_scene_text() make it.)");
           "step", [](const SceneDescription& s) { return s.integrator.step; }, "[s]")
       .def("__repr__", &text_of);
 
-  module.def("read_scene", &read_scene, kReadScene, py::arg("path"), py::kw_only(), py::arg("clamp_start") = false,
-             py::arg("equilibrium_start") = false, py::arg("lock_massless") = false);
-  module.def("read_scene_text", &read_scene_text, kReadSceneText, py::arg("text"), py::arg("name") = "scene",
+  module.def("read_scene", &read_scene, kReadScene, py::arg("path"), py::arg("parameters") = ParameterValues(),
              py::kw_only(), py::arg("clamp_start") = false, py::arg("equilibrium_start") = false,
              py::arg("lock_massless") = false);
+  module.def("read_scene_text", &read_scene_text, kReadSceneText, py::arg("text"), py::arg("name") = "scene",
+             py::arg("parameters") = ParameterValues(), py::kw_only(), py::arg("clamp_start") = false,
+             py::arg("equilibrium_start") = false, py::arg("lock_massless") = false);
 }
 
 }  // namespace flexarm::python

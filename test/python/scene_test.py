@@ -53,6 +53,34 @@ def test_errors_are_those_of_the_command_line(tmp_path, old, new):
     assert isinstance(error.value, ValueError)
 
 
+PARAMETERS = """
+<robot name="rod">
+  <parameter name="mass" value="3" min="0"/>
+  <link name="world"/>
+  <joint name="hinge" type="continuous"> <parent link="world"/> <child link="rod"/> <axis xyz="0 1 0"/> </joint>
+  <link name="rod">
+    <inertial>
+      <mass value="${mass}"/> <inertia ixx="${mass/8}" ixy="0" ixz="0" iyy="${mass/8}" iyz="0" izz="${mass/8}"/>
+    </inertial>
+  </link>
+</robot>
+"""
+
+
+def test_parameters_have_other_values(tmp_path):
+    path = tmp_path / "rod.urdf"
+    path.write_text(PARAMETERS)
+    assert flexarm.Simulation(flexarm.read_scene(path)).mass == 3
+    assert flexarm.Simulation(flexarm.read_scene(path, {"mass": 2.5})).mass == 2.5
+    assert flexarm.Simulation(flexarm.read_scene_text(PARAMETERS, parameters={"mass": 2})).mass == 2
+    for values in ({"mass": -1}, {"length": 1}):
+        (name, value), = values.items()
+        with pytest.raises(flexarm.SceneError) as error:
+            flexarm.read_scene(path, values)
+        said = command_line("check", path, "--set", "%s=%s" % (name, value))[1]
+        assert str(error.value) + "\n" == said
+
+
 def test_a_missing_file_is_an_error(tmp_path):
     path = tmp_path / "none.urdf"
     with pytest.raises(flexarm.SceneError) as error:
