@@ -34,7 +34,7 @@ constexpr int kMostFailures = 8;
 /// between which bounds a tolerance may be.
 constexpr double kRemainderShare = 0.1, kLeastTolerance = 1e-13, kMostTolerance = 1e-3;
 /// Points that move less, of the model's length, are at rest: what they do is round-off, or what a start leaves.
-constexpr double kRest = 1e-6;
+constexpr double kAtRest = 1e-6;
 /// Events are found to a part of what is asked for of the whole time, which bounds what they do to the error.
 constexpr double kEventShare = 1.0 / 8;
 constexpr int kMostEventHalvings = 10;
@@ -126,7 +126,7 @@ bool SchemeTries::attempt(AccurateRun& run) {
 
 bool SchemeTries::judge(AccurateRun& run) {
   run.scale = plan_.request.scale.value_or(
-      std::max(run.motion.largest_displacement(), kRest * model_of(simulation_).length_scale));
+      std::max(run.motion.largest_displacement(), kAtRest * model_of(simulation_).length_scale));
   const double last = estimate_;
   const bool is_compared = judged_++ > 0;
   if (is_compared) {
