@@ -2,6 +2,8 @@
 /// Matrices of small motions of a beam's element about a configuration at rest, by {displacement, spin} of its nodes.
 /// Of sizes that are not known when they are compiled: who uses them is compiled once for all orders.
 
+#include <vector>
+
 #include <Eigen/Core>
 
 #include "model/model.h"
@@ -18,6 +20,10 @@ Eigen::MatrixXd material_stiffness(const BeamElement<Nodes>& element, const Stat
 /// Second derivative of the energy by strains alone: the material's stiffness with variations of strains as tests.
 template <int Nodes>
 Eigen::MatrixXd material_curvature(const BeamElement<Nodes>& element, const State& state);
+
+/// d{Gamma, K} of every stiffness point, 6 x 6 Nodes.
+template <int Nodes>
+std::vector<Eigen::MatrixXd> strain_variations(const BeamElement<Nodes>& element, const State& state);
 
 template <int Nodes>
 Eigen::MatrixXd mass_matrix(const BeamElement<Nodes>& element, const State& state);

@@ -61,9 +61,19 @@ Eigen::MatrixXd material_curvature(const BeamElement<Nodes>& element, const Stat
   return curvature;
 }
 
+template <int Nodes>
+std::vector<Eigen::MatrixXd> strain_variations(const BeamElement<Nodes>& element, const State& state) {
+  std::vector<Eigen::MatrixXd> variations;
+  for_each_point(element, state, [&](const auto& constants, const PointKinematics& point, const auto& spins) {
+    variations.push_back(strain_variation<Nodes>(point, constants.derivative, spins));
+  });
+  return variations;
+}
+
 // Compiled here once for each order of elements.
 #define COMPILE_FOR(Nodes)                                                \
   template decltype(material_stiffness<Nodes>) material_stiffness<Nodes>; \
+  template decltype(strain_variations<Nodes>) strain_variations<Nodes>;   \
   template decltype(material_curvature<Nodes>) material_curvature<Nodes>;
 FLEXARM_FOR_EACH_ORDER(COMPILE_FOR)
 #undef COMPILE_FOR

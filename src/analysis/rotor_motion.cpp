@@ -61,42 +61,52 @@ std::vector<ActuatorTerms> actuator_terms(const Model& model, const State& state
   return terms;
 }
 
-MotionMatrices with_rotors(const Model& model, const DegreesOfFreedom& dof, const State& state,
-                           const Actuators& resting, const SparseTangent& stiffness, const SparseTangent& damping,
-                           const SparseTangent& mass) {
-  Triplets stiff, damped, heavy, places;
-  int rotor = stiffness.unknowns();
+RotorEntries rotor_entries(const Model& model, const DegreesOfFreedom& dof, const State& state,
+                           const Actuators& resting, int first) {
+  RotorEntries entries;
   for (std::size_t i = 0; i < model.actuators.size(); ++i) {
     const Actuator& actuator = model.actuators[i];
     const Coordinate& coordinate = model.coordinates[actuator.coordinate];
     const int q = dof.equation[dof.scalar_of(coordinate)];
     if (!actuator.drive.gear || q < 0) continue;
+    const int rotor = first + static_cast<int>(entries.actuators.size());
     const double position = state.released[coordinate.joint].displacement[coordinate.component % 3];
     CoordinateStep twist;
     twist.begin = twist.end = state.actuators[i].angle - position;
     const Elasticity& gear = *actuator.drive.gear;
     const ServoLaw* law = law_in_force(actuator, state.actuators[i]);
     const bool holds = law && law->mode == ServoMode::Position;
-    add(coupling(-elastic_effort(gear, twist).slope, actuator.servo, holds ? law->proportional : 0), q, rotor, stiff);
-    stiff.emplace_back(q, q, -resting.stiffness(i));
-    add(coupling(elastic_damping(gear, twist.end), actuator.servo, law ? law->derivative : 0), q, rotor, damped);
-    heavy.emplace_back(rotor, rotor, actuator.drive.inertia);
-    for (const int row : {q, rotor})
-      for (const int column : {q, rotor}) places.emplace_back(row, column, 0.0);
-    ++rotor;
+    add(coupling(-elastic_effort(gear, twist).slope, actuator.servo, holds ? law->proportional : 0), q, rotor,
+        entries.stiffness);
+    entries.stiffness.emplace_back(q, q, -resting.stiffness(i));
+    add(coupling(elastic_damping(gear, twist.end), actuator.servo, law ? law->derivative : 0), q, rotor,
+        entries.damping);
+    entries.mass.emplace_back(rotor, rotor, actuator.drive.inertia);
+    entries.actuators.push_back(static_cast<int>(i));
   }
-  if (rotor == stiffness.unknowns()) return {};
+  return entries;
+}
+
+MotionMatrices with_rotors(const Model& model, const DegreesOfFreedom& dof, const State& state,
+                           const Actuators& resting, const SparseTangent& stiffness, const SparseTangent& damping,
+                           const SparseTangent& mass) {
+  const RotorEntries rotors = rotor_entries(model, dof, state, resting, stiffness.unknowns());
+  if (rotors.actuators.empty()) return {};
+  const int size = stiffness.unknowns() + static_cast<int>(rotors.actuators.size());
+  Triplets places;
+  // Springs couple all four places of a coordinate and its rotor.
+  for (const Eigen::Triplet<double>& entry : rotors.stiffness) places.emplace_back(entry.row(), entry.col(), 0.0);
   for (int column = 0; column < stiffness.unknowns(); ++column)
     for (int p = stiffness.column_starts()[column]; p < stiffness.column_starts()[column + 1]; ++p)
       places.emplace_back(stiffness.row_indices()[p], column, 0.0);
-  Sparse pattern(rotor, rotor);
+  Sparse pattern(size, size);
   pattern.setFromTriplets(places.begin(), places.end());
   MotionMatrices out;
-  out.column_starts.assign(pattern.outerIndexPtr(), pattern.outerIndexPtr() + rotor + 1);
+  out.column_starts.assign(pattern.outerIndexPtr(), pattern.outerIndexPtr() + size + 1);
   out.row_indices.assign(pattern.innerIndexPtr(), pattern.innerIndexPtr() + pattern.nonZeros());
-  out.stiffness = values(pattern, stiffness, stiff);
-  out.damping = values(pattern, damping, damped);
-  out.mass = values(pattern, mass, heavy);
+  out.stiffness = values(pattern, stiffness, rotors.stiffness);
+  out.damping = values(pattern, damping, rotors.damping);
+  out.mass = values(pattern, mass, rotors.mass);
   return out;
 }
 

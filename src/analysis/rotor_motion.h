@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include <Eigen/SparseCore>
+
 #include "integrators/actuators.h"
 #include "model/degrees_of_freedom.h"
 #include "model/state.h"
@@ -24,9 +26,17 @@ struct ActuatorTerms {
 };
 std::vector<ActuatorTerms> actuator_terms(const Model& model, const State& state);
 
+/// What rotors behind elastic gears, each with a row and a column of its own from `first` on, add to K, D and M,
+/// where the stiffness has them follow their coordinates at rest, as `resting` says.
+struct RotorEntries {
+  std::vector<Eigen::Triplet<double>> stiffness, damping, mass;
+  std::vector<int> actuators;  ///< of the rotors
+};
+RotorEntries rotor_entries(const Model& model, const DegreesOfFreedom& dof, const State& state,
+                           const Actuators& resting, int first);
+
 /// The matrices with one row and column more for each rotor behind an elastic gear, whose angles a step solves for
-/// inside the joint: in a free motion they have inertia. `stiffness` has them follow their coordinates at rest, as
-/// `resting` says. Empty where there are none.
+/// inside the joint: in a free motion they have inertia; see rotor_entries(). Empty where there are none.
 MotionMatrices with_rotors(const Model& model, const DegreesOfFreedom& dof, const State& state,
                            const Actuators& resting, const SparseTangent& stiffness, const SparseTangent& damping,
                            const SparseTangent& mass);

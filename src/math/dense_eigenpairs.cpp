@@ -1,5 +1,6 @@
 #include "math/dense_eigenpairs.h"
 
+#include <cmath>
 #include <utility>
 
 #include <Spectra/LinAlg/UpperHessenbergEigen.h>
@@ -37,6 +38,28 @@ Eigenpairs dense_eigenpairs(const Eigen::MatrixXd& matrix) {
   const Hessenberg hessenberg = flexarm::hessenberg(matrix);
   Spectra::UpperHessenbergEigen<double> solver(hessenberg.reduced);
   return {solver.eigenvalues(), hessenberg.basis * solver.eigenvectors()};
+}
+
+Eigenpairs balanced_eigenpairs(Eigen::MatrixXd matrix) {
+  Eigen::VectorXd scales = Eigen::VectorXd::Ones(matrix.rows());
+  for (bool changes = true; changes;) {
+    changes = false;
+    for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+      const double own = std::abs(matrix(i, i));
+      const double row = matrix.row(i).cwiseAbs().sum() - own, column = matrix.col(i).cwiseAbs().sum() - own;
+      if (!(row > 0 && column > 0)) continue;
+      const double scale = std::exp2(std::round(0.5 * std::log2(row / column)));
+      if (!(column * scale + row / scale < 0.95 * (row + column))) continue;
+      matrix.col(i) *= scale;
+      matrix.row(i) /= scale;
+      scales[i] *= scale;
+      changes = true;
+    }
+  }
+  Eigenpairs pairs = dense_eigenpairs(matrix);
+  pairs.vectors = scales.asDiagonal() * pairs.vectors;
+  pairs.vectors.colwise().normalize();
+  return pairs;
 }
 
 }  // namespace flexarm

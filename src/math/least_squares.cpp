@@ -1,5 +1,6 @@
 #include "math/least_squares.h"
 
+#include <Eigen/LU>
 #include <Eigen/QR>
 
 namespace flexarm {
@@ -14,6 +15,11 @@ Eigen::VectorXd smallest_least_squares(const Eigen::MatrixXd& matrix, const Eige
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
   if (threshold) decomposition.setThreshold(*threshold);
   return decomposition.compute(matrix).solve(right);
+}
+
+Eigen::MatrixXd square_solution(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& rights) {
+  if (matrix.cols() == 0) return rights;
+  return matrix.partialPivLu().solve(rights);
 }
 
 std::vector<Eigen::Index> independent_rows(const Eigen::MatrixXd& matrix, double threshold) {

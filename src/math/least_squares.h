@@ -1,5 +1,5 @@
 #pragma once
-/// Dense systems of equations that need not be square. Kept in a file of its own: Eigen's pivoting factorisations take
+/// Dense systems of equations, square or not. Kept in a file of its own: Eigen's pivoting factorisations take
 /// long to compile.
 
 #include <optional>
@@ -16,6 +16,9 @@ Eigen::VectorXd least_squares(const Eigen::MatrixXd& matrix, const Eigen::Vector
 /// larger than this part of the largest one (round-off of a matrix of this size, where none is given).
 Eigen::VectorXd smallest_least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right,
                                        std::optional<double> threshold = {});
+
+/// x of matrix x = rights, for a square matrix; not finite where that is singular.
+Eigen::MatrixXd square_solution(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& rights);
 
 /// Rows of a matrix that are linearly independent, the one with the largest pivot first: those whose pivots are larger
 /// than `threshold`, and than this part of the largest.

@@ -1,0 +1,74 @@
+#pragma once
+/// A mechanism's equations of motion, linearised: for the design of controllers. (docs/notes/linearisation.md)
+
+#include <complex>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "flexarm/simulation/simulation.h"
+
+namespace flexarm {
+
+/// About what a simulation is linearised.
+enum class LinearisedAbout {
+  Rest,    ///< the configuration as it is, without velocities, under the loads at time 0: after solve_static()
+  Steady,  ///< a steady motion: driven joints go as fast as at time 0, all else stands still as seen from them
+  Instant  ///< the motion as it is
+};
+
+/// What goes into a linear model, and what comes out. Points are links ("elbow": the link's origin), ends of beams
+/// ("upper_arm/tip") and probes.
+///
+/// | input               | is                                                                                       |
+/// |---------------------|------------------------------------------------------------------------------------------|
+/// | `effort:JOINT`      | effort on a coordinate, of its motor where it has one [N or N m]                          |
+/// | `motion:JOINT`      | acceleration of a coordinate that a <motion> drives [m/s^2 or rad/s^2]; others are held   |
+/// | `wrench:POINT:fx`   | force (fx fy fz) [N] or moment (mx my mz) [N m] at a point, world axes                     |
+///
+/// | output              | is                                                                                       |
+/// |---------------------|------------------------------------------------------------------------------------------|
+/// | `position:JOINT`    | of a coordinate [m or rad]; `velocity:` and `acceleration:` are its derivatives            |
+/// | `position:POINT:x`  | displacement (x y z) [m] or small rotation (rx ry rz) [rad] of a point, world axes; the same
+/// | | `effort:JOINT`      | what drives a coordinate that a <motion> drives [N or N m] |
+///
+/// Without a component a point means all six.
+struct LinearRequest {
+  LinearisedAbout about = LinearisedAbout::Rest;
+  std::vector<std::string> inputs;   ///< none: the efforts on all coordinates that may be commanded
+  std::vector<std::string> outputs;  ///< none: the positions of these and of all probes
+};
+
+/// Small deviations from a reference motion: with the coordinates y, states x = {y, y'}, inputs u and outputs v
+///   mass y'' + damping y' + stiffness y = forces,   x' = a x + b u,   v = c x + d u.
+/// y are what loops leave free of: joint coordinates, displacements [m] and rotations [rad] of beams' nodes as seen
+/// from the node at which their link is held, along its axes, and rotors' angles behind elastic gears. Driven
+/// coordinates without an input are held, and no states.
+struct LinearModel {
+  std::vector<std::string> coordinates;      ///< of y, driven ones included
+  Eigen::MatrixXd mass, damping, stiffness;  ///< by y; damping: with gyroscopic, stiffness: with centrifugal terms
+  Eigen::VectorXd residual;                  ///< efforts that drive the driven ones in the reference, zeros else
+  std::vector<std::string> states, inputs, outputs;
+  Eigen::MatrixXd a, b, c, d;
+  Eigen::VectorXd drift;              ///< x' of the reference itself; zeros at rest
+  std::vector<std::string> left_out;  ///< effects of the scene that a linear model does not have, in words
+};
+
+/// @throws std::invalid_argument naming what there is, if an input or output does not exist; std::runtime_error if the
+/// reference is not found, or masses leave an acceleration undecided.
+LinearModel linearise(const Simulation& simulation, const LinearRequest& request = {});
+
+/// An eigenvalue of `a`, of a conjugate pair the one whose imaginary part is >= 0.
+struct Pole {
+  std::complex<double> value;    ///< [1/s]
+  int state = 0;                 ///< that moves most in its mode, of displacements and rotations
+  Eigen::VectorXcd mode;         ///< of the states, the largest of their positions is 1
+  double frequency() const;      ///< imaginary part over 2 pi [Hz]
+  double damping_ratio() const;  ///< -Re / |value|; 0 for a pole at 0
+};
+/// By |value|, the smallest first.
+/// @throws std::runtime_error if they are not found.
+std::vector<Pole> poles(const LinearModel& model);
+
+}  // namespace flexarm

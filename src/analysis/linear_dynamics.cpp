@@ -1,0 +1,341 @@
+#include "analysis/linear_dynamics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "analysis/rotor_motion.h"
+#include "math/least_squares.h"
+#include "math/so3.h"
+
+namespace flexarm {
+namespace {
+
+/// Columns of constraints that are smaller than this part of the largest do not move what a loop holds.
+constexpr double kIndependent = 1e-9;
+/// Between the poses of differences along a motion [rad]: their truncation, of eighth order, and their round-off are
+/// alike there, some 1e-12 of the derivative.
+constexpr double kTurn = 0.05;
+/// Newton's updates on the way to a steady motion, and below which length they are round-off if they do not shrink.
+constexpr int kMostUpdates = 50;
+constexpr double kShort = 1e-8, kShorter = 0.5;
+
+/// In which time stands still, and what drives coordinates is taken away.
+Model frozen(Model model, double time) {
+  for (TimeFunction& history : model.histories) history = TimeFunction(history(time));
+  for (Coordinate& coordinate : model.coordinates) coordinate.motion = -1;
+  return model;
+}
+
+/// Forces of the scheme's steps at rest, with local interpolation.
+Scheme resting(const Scheme& scheme) {
+  Scheme statics = statics_of(scheme);
+  statics.tests_vary_strains = scheme.stress == StressRule::Conjugate;
+  statics.interpolation = Interpolation::Local;
+  statics.cayley_interpolation = false;
+  return statics;
+}
+
+std::vector<bool> driven(const Model& model) {
+  std::vector<bool> is_driven;
+  for (const Coordinate& coordinate : model.coordinates) is_driven.push_back(coordinate.motion >= 0);
+  return is_driven;
+}
+
+CoordinateRates standstill(int columns) {
+  return {Eigen::VectorXd::Zero(columns), Eigen::VectorXd::Zero(columns)};
+}
+
+double second_derivative(const TimeFunction& motion, double time) {
+  const double way = 1e-4 * std::max(1.0, time), from = std::max(0.0, time - way), to = time + way;
+  return (motion.derivative(to) - motion.derivative(from)) / (to - from);
+}
+
+}  // namespace
+
+LinearDynamics::LinearDynamics(const Model& model, const State& state, const Scheme& scheme, Reference reference,
+                               const KnownRates& known)
+    : model_(frozen(model, reference == Reference::Instant ? state.time : 0)),
+      undamped_(model_.beams),
+      state_(state),
+      wrenches_(state.wrenches),
+      contact_time_(scheme.contact_time),
+      is_driven_(driven(model)),
+      system_(model_, resting(scheme), BackendChoice::Matrix),
+      dof_(system_.degrees_of_freedom()),
+      maps_(model_, dof_),
+      pose_(maps_.moved(pose_of(state), standstill(maps_.columns()), 0)) {
+  choose_independent();
+  const Eigen::Index count = static_cast<Eigen::Index>(independent_.size());
+  Eigen::VectorXd rates = Eigen::VectorXd::Zero(count), accelerations = rates;
+  if (reference == Reference::Instant) rates = coordinates_of(known)(independent_);
+  for (std::size_t c = 0; c < model.coordinates.size() && reference != Reference::Rest; ++c) {
+    const auto place = std::find(scalars_.begin(), scalars_.end(), dof_.scalar_of(model.coordinates[c]));
+    if (place == scalars_.end() || !is_driven_[c]) continue;
+    const Eigen::Index i = place - scalars_.begin();
+    const TimeFunction& motion = model.histories[model.coordinates[c].motion];
+    const double time = reference == Reference::Instant ? state.time : 0;
+    rates[i] = motion.derivative(time);
+    if (reference == Reference::Instant) accelerations[i] = second_derivative(motion, time);
+  }
+  if (reference == Reference::Steady) move_to_steady(rates);
+  set_motion(rates, accelerations);
+  assemble();
+  if (reference == Reference::Instant) {
+    accelerations += free_accelerations();
+    set_motion(rates, accelerations);
+    assemble();
+  }
+  add_rotors();
+  if (reference == Reference::Instant && !rotors_.empty())
+    throw std::runtime_error("a mechanism with elastic gears is linearised about an equilibrium alone");
+}
+
+Eigen::VectorXd LinearDynamics::coordinates_of(const KnownRates& known) const {
+  Eigen::VectorXd unknowns = Eigen::VectorXd::Zero(maps_.columns());
+  for (int i = 0; i < dof_.node_count; ++i)
+    for (int k = 0; k < 6; ++k)
+      if (const int column = dof_.equation[dof_.first[i] + k]; column >= 0) unknowns[column] = known.nodes[i][k];
+  for (std::size_t c = 0; c < model_.coordinates.size(); ++c)
+    if (const int column = dof_.equation[dof_.scalar_of(model_.coordinates[c])]; column >= 0)
+      unknowns[column] = known.coordinates[c];
+  return square_solution(maps_.unknowns(pose_, maps_.at(pose_)), unknowns);
+}
+
+void LinearDynamics::choose_independent() {
+  std::vector<int> scalar_of(maps_.columns());
+  for (int scalar = 0; scalar < maps_.rows(); ++scalar)
+    if (dof_.equation[scalar] >= 0) scalar_of[dof_.equation[scalar]] = scalar;
+  std::vector<bool> is_driven(maps_.columns(), false);
+  for (std::size_t c = 0; c < model_.coordinates.size(); ++c)
+    if (const int column = dof_.equation[dof_.scalar_of(model_.coordinates[c])]; column >= 0 && is_driven_[c])
+      is_driven[column] = true;
+  const Eigen::MatrixXd rows = maps_.constraints(pose_, maps_.at(pose_));
+  std::vector<int> candidates;
+  for (int column = 0; column < maps_.columns(); ++column)
+    if (!is_driven[column]) candidates.push_back(column);
+  if (rows.rows() > 0)
+    for (const Eigen::Index i : independent_rows(rows(Eigen::all, candidates).transpose(), kIndependent))
+      dependent_.push_back(candidates[i]);
+  if (static_cast<Eigen::Index>(dependent_.size()) != rows.rows())
+    throw std::runtime_error("at a dead point, a loop cannot be linearised");
+  std::sort(dependent_.begin(), dependent_.end());
+  for (int column = 0; column < maps_.columns(); ++column) {
+    if (std::binary_search(dependent_.begin(), dependent_.end(), column)) continue;
+    independent_.push_back(column);
+    scalars_.push_back(scalar_of[column]);
+    is_driven_place_.push_back(is_driven[column]);
+  }
+}
+
+std::vector<int> LinearDynamics::free_places() const {
+  std::vector<int> places;
+  for (std::size_t i = 0; i < is_driven_place_.size(); ++i)
+    if (!is_driven_place_[i]) places.push_back(static_cast<int>(i));
+  return places;
+}
+
+MovingMatrix LinearDynamics::along_reference(const Rows& rows) const {
+  return along(
+      [&](double time) {
+        const MechanismPose pose = time == 0 ? pose_ : maps_.moved(pose_, columns_, time);
+        const Eigen::MatrixXd maps = maps_.at(pose);
+        return rows(pose, maps * maps_.allowed(pose, maps, independent_));
+      },
+      spacing_);
+}
+
+void LinearDynamics::set_motion(const Eigen::VectorXd& rates, const Eigen::VectorXd& accelerations) {
+  rates_ = {rates, accelerations};
+  row_maps_ = maps_.at(pose_);
+  unknowns_ = maps_.unknowns(pose_, row_maps_);
+  const Eigen::MatrixXd allowed = maps_.allowed(pose_, row_maps_, independent_);
+  columns_ = {allowed * rates, allowed * accelerations};
+  const auto spacing = [&] {
+    const Eigen::VectorXd first = row_maps_ * columns_.first, second = row_maps_ * columns_.second;
+    double speed = 0;
+    for (int i = 0; i < dof_.node_count; ++i) {
+      const int at = dof_.first[i];
+      speed = std::max({speed, first.segment<3>(at).norm() / model_.length_scale, first.segment<3>(at + 3).norm(),
+                        std::sqrt(second.segment<3>(at).norm() / model_.length_scale),
+                        std::sqrt(second.segment<3>(at + 3).norm())});
+    }
+    return speed > 0 ? kTurn / speed : 0;
+  };
+  const auto both = [&] {
+    spacing_ = spacing();
+    const Eigen::Index count = allowed.rows();
+    const MovingMatrix all = along(
+        [&](double time) {
+          const MechanismPose pose = time == 0 ? pose_ : maps_.moved(pose_, columns_, time);
+          const Eigen::MatrixXd maps = maps_.at(pose), part = maps_.allowed(pose, maps, independent_);
+          Eigen::MatrixXd stacked(count + maps.rows(), part.cols());
+          stacked << part, maps * part;
+          return stacked;
+        },
+        spacing_);
+    const Eigen::Index rows = row_maps_.rows();
+    allowed_ = {all.value.topRows(count), all.first.topRows(count), all.second.topRows(count)};
+    motion_ = {all.value.bottomRows(rows), all.first.bottomRows(rows), all.second.bottomRows(rows)};
+  };
+  both();
+  // Loops turn rates into accelerations, on which second derivatives depend.
+  if (dependent_.empty() || spacing_ == 0) return;
+  columns_.second += allowed_.first * rates;
+  both();
+}
+
+/// Stresses of dampers are those of other reference strains: so they stiffen the beam as any stress does.
+void LinearDynamics::put_dampers_stress(const std::vector<Stretch>& stretches, const Eigen::VectorXd& speeds) {
+  model_.beams = undamped_;
+  auto stretch = stretches.begin();
+  for_each_element(model_.beams, [&](auto& element) {
+    if (element.stiffness_damping == 0) return;
+    for (auto& point : element.stiffness_points) {
+      const Vector6 stress = (stretch->damping / point.weight) * (stretch->rows * speeds(stretch->scalars));
+      point.reference_strain -= point.stiffness.ldlt().solve(stress);
+      ++stretch;
+    }
+  });
+}
+
+/// Inertia's forces as loads that do not turn.
+void LinearDynamics::put_loads(const Eigen::VectorXd& force) {
+  state_.wrenches = wrenches_;
+  for (int i = 0; i < dof_.node_count; ++i) {
+    NodalLoad load;
+    load.node = i;
+    load.force = -force.segment<3>(dof_.first[i]);
+    load.moment = -(pose_.nodes[i].rotation * force.segment<3>(dof_.first[i] + 3));
+    if (!load.force.isZero(0) || !load.moment.isZero(0)) state_.wrenches.push_back(load);
+  }
+}
+
+void LinearDynamics::balance() {
+  const auto evaluate = [&] {
+    if (!system_.evaluate(true)) throw std::runtime_error("the stiffness is not finite");
+    const auto& tangent = static_cast<const SparseTangent&>(system_.tangent());
+    tangent_ = Eigen::Map<const Eigen::SparseMatrix<double>>(
+        tangent.unknowns(), tangent.unknowns(), static_cast<Eigen::Index>(tangent.values().size()),
+        tangent.column_starts().data(), tangent.row_indices().data(), tangent.values().data());
+  };
+  system_.begin_equilibrium(state_, 1);
+  evaluate();
+  if (dependent_.empty()) return;
+  std::vector<int> rows;  // of all that nothing drives
+  for (int column = 0; column < maps_.columns(); ++column) {
+    const auto place = std::lower_bound(independent_.begin(), independent_.end(), column);
+    const bool is_independent = place != independent_.end() && *place == column;
+    if (!is_independent || !is_driven_place_[place - independent_.begin()]) rows.push_back(column);
+  }
+  const Eigen::MatrixXd forces = tangent_(rows, Eigen::seq(maps_.columns(), Eigen::last));
+  Eigen::VectorXd update = Eigen::VectorXd::Zero(dof_.unknowns);
+  update.tail(forces.cols()) = -least_squares(forces, system_.residual()(rows));
+  system_.update(update);
+  evaluate();
+}
+
+void LinearDynamics::assemble() {
+  const CoordinateRates rows = {row_maps_ * columns_.first,
+                                motion_.value * rates_.second + motion_.first * rates_.first};
+  const NodalDynamics own = nodal_dynamics(model_, dof_, state_, contact_time_, rows);
+  put_dampers_stress(damped_stretches(model_, dof_, pose_), rows.first);
+  const StretchDamping stretched = stretch_damping(model_, dof_, maps_, pose_, columns_, spacing_);
+  const Eigen::VectorXd force = own.force + stretched.of_springs;
+  put_loads(force);
+  balance();
+
+  // Rates of a node's material spin: the variation of W is spin' + W x spin.
+  Eigen::MatrixXd carried = motion_.first, carried_twice = motion_.second;
+  Eigen::MatrixXd doubled = 2 * motion_.first;
+  for (int i = 0; i < dof_.node_count; ++i) {
+    const int at = dof_.first[i] + 3;
+    const Matrix3 velocity = so3::hat(Vector3(rows.first.segment<3>(at)));
+    const Matrix3 acceleration = so3::hat(Vector3(rows.second.segment<3>(at)));
+    const auto spins = motion_.value.middleRows<3>(at);
+    carried.middleRows<3>(at) += velocity * spins;
+    doubled.middleRows<3>(at) += velocity * spins;
+    carried_twice.middleRows<3>(at) += acceleration * spins + velocity * motion_.first.middleRows<3>(at);
+  }
+  const Eigen::MatrixXd tests = motion_.value.transpose(), unknowns = unknowns_ * allowed_.value;
+  const Eigen::Index count = maps_.columns();
+  mass_ = tests * (own.mass * motion_.value);
+  damping_ = tests * (own.mass * doubled + own.damping * motion_.value + stretched.by_rates * motion_.value);
+  stiffness_ = unknowns.transpose() * (tangent_.topLeftCorner(count, count) * unknowns) +
+               tests * (own.mass * carried_twice + own.damping * carried + own.turning * motion_.value +
+                        stretched.by_rates * motion_.first + stretched.by_places * motion_.value);
+  const Eigen::Index coordinates = maps_.rows() - 6 * static_cast<Eigen::Index>(dof_.node_count);
+  residual_ = unknowns.transpose() * system_.residual().head(count) +
+              motion_.value.bottomRows(coordinates).transpose() * force.tail(coordinates);
+}
+
+void LinearDynamics::move(const Eigen::VectorXd& increment) {
+  Eigen::VectorXd update = Eigen::VectorXd::Zero(dof_.unknowns);
+  const Eigen::Index count = maps_.columns(), constraints = dof_.unknowns - count;
+  Eigen::VectorXd columns = allowed_.value * increment;
+  if (constraints > 0) {
+    const Eigen::MatrixXd rows = tangent_.bottomLeftCorner(constraints, count) * unknowns_;
+    columns(dependent_) -= square_solution(rows(Eigen::all, dependent_), system_.residual().tail(constraints));
+  }
+  update.head(count) = unknowns_ * columns;
+  system_.update(update);
+  const StepConfiguration& configuration = system_.configuration();
+  for (std::size_t i = 0; i < state_.nodes.size(); ++i) {
+    state_.nodes[i].position = configuration.end()[i].position;
+    state_.nodes[i].orientation = configuration.end()[i].orientation;
+  }
+  state_.released = configuration.released();
+  pose_ = pose_of(state_);
+}
+
+void LinearDynamics::move_to_steady(const Eigen::VectorXd& rates) {
+  const std::vector<int> places = free_places();
+  double last = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < kMostUpdates; ++k) {
+    set_motion(rates, Eigen::VectorXd::Zero(rates.size()));
+    assemble();
+    Eigen::VectorXd increment = Eigen::VectorXd::Zero(rates.size());
+    increment(places) = -square_solution(stiffness_(places, places), residual_(places));
+    if (!increment.allFinite()) break;
+    move(increment);
+    const double way = increment.size() > 0 ? increment.cwiseAbs().maxCoeff() : 0;
+    if (way == 0 || (way < kShort && way > kShorter * last)) return;
+    last = way;
+  }
+  throw std::runtime_error("no steady motion was found: joints that nothing holds, or motions that are too fast");
+}
+
+Eigen::VectorXd LinearDynamics::free_accelerations() const {
+  const std::vector<int> places = free_places();
+  Eigen::VectorXd accelerations = Eigen::VectorXd::Zero(residual_.size());
+  accelerations(places) = -square_solution(mass_(places, places), residual_(places));
+  if (!accelerations.allFinite()) throw std::runtime_error("some coordinate moves nothing that has mass");
+  return accelerations;
+}
+
+void LinearDynamics::add_rotors() {
+  const int count = maps_.columns();
+  const RotorEntries entries = rotor_entries(model_, dof_, state_, system_.actuators(), count);
+  rotors_ = entries.actuators;
+  if (rotors_.empty()) return;
+  const Eigen::Index own = mass_.rows(), more = static_cast<Eigen::Index>(rotors_.size());
+  Eigen::MatrixXd allowed = Eigen::MatrixXd::Zero(count + more, own + more);
+  allowed.topLeftCorner(count, own) = allowed_.value;
+  allowed.bottomRightCorner(more, more).setIdentity();
+  const auto extend = [&](Eigen::MatrixXd& matrix, const std::vector<Eigen::Triplet<double>>& added) {
+    Eigen::SparseMatrix<double> sum(count + more, count + more);
+    sum.setFromTriplets(added.begin(), added.end());
+    Eigen::MatrixXd extended = allowed.transpose() * (sum * allowed);
+    extended.topLeftCorner(own, own) += matrix;
+    matrix = std::move(extended);
+  };
+  extend(mass_, entries.mass);
+  extend(damping_, entries.damping);
+  extend(stiffness_, entries.stiffness);
+  for (Eigen::VectorXd* vector : {&residual_, &rates_.first, &rates_.second}) {
+    vector->conservativeResize(own + more);
+    vector->tail(more).setZero();
+  }
+}
+
+}  // namespace flexarm

@@ -1,0 +1,98 @@
+#pragma once
+/// Small motions of a mechanism about any motion: M y'' + C y' + K y = forces. (docs/notes/linearisation.md)
+
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "analysis/nodal_dynamics.h"
+#include "integrators/step_system.h"
+
+namespace flexarm {
+
+/// About what a mechanism is linearised.
+enum class Reference {
+  Rest,    ///< the configuration as it is, without velocities, under the loads at time 0
+  Steady,  ///< motions as fast as at time 0, all other coordinates where they stand still under the loads then
+  Instant  ///< the motion as it is
+};
+
+/// How fast it moves.
+struct KnownRates {
+  std::vector<Vector6> nodes;       ///< {v, w}, world axes
+  std::vector<double> coordinates;  ///< per coordinate
+};
+
+/// The continuous equations of motion of the nodes, linearised. The coordinates y are those of MotionMaps
+/// that loops leave free, driven joints' among them, then the rotors behind elastic gears.
+class LinearDynamics {
+ public:
+  /// `rates`: used where the reference is an instant.
+  /// @throws std::runtime_error if a steady motion is not found, or masses leave an acceleration undecided.
+  LinearDynamics(const Model& model, const State& state, const Scheme& scheme, Reference reference,
+                 const KnownRates& rates);
+
+  const DegreesOfFreedom& degrees_of_freedom() const { return dof_; }
+  /// Of which y are: in steady motion another one than that of the state given.
+  const State& state() const { return state_; }
+  int size() const { return static_cast<int>(independent_.size() + rotors_.size()); }
+  /// Scalars of DegreesOfFreedom that the first of y are, and actuators whose rotors the others are.
+  const std::vector<int>& scalars() const { return scalars_; }
+  const std::vector<int>& rotors() const { return rotors_; }
+  bool is_driven(int coordinate) const { return is_driven_[coordinate]; }
+
+  const Eigen::MatrixXd& mass() const { return mass_; }
+  const Eigen::MatrixXd& damping() const { return damping_; }  ///< gyroscopic terms included
+  const Eigen::MatrixXd& stiffness() const { return stiffness_; }
+  /// What the reference lacks of balance: zero but for driven coordinates, where it is the effort that drives them.
+  const Eigen::VectorXd& residual() const { return residual_; }
+  /// y' and y'' of the reference.
+  const Eigen::VectorXd& rates() const { return rates_.first; }
+  const Eigen::VectorXd& accelerations() const { return rates_.second; }
+
+  /// A linear map of motions along the reference, by the first of y: `rows` gives it at a pose, from the motion of the
+  /// rows of MotionMaps there.
+  using Rows = std::function<Eigen::MatrixXd(const MechanismPose& pose, const Eigen::MatrixXd& motion)>;
+  MovingMatrix along_reference(const Rows& rows) const;
+
+ private:
+  Eigen::VectorXd coordinates_of(const KnownRates& known) const;
+  void choose_independent();
+  /// Sets the maps along a motion with these y' and y''.
+  void set_motion(const Eigen::VectorXd& rates, const Eigen::VectorXd& accelerations);
+  void put_dampers_stress(const std::vector<Stretch>& stretches, const Eigen::VectorXd& speeds);
+  void put_loads(const Eigen::VectorXd& force);
+  /// The balance of what is at rest under inertia's forces, with the multipliers that close loops best.
+  void balance();
+  void assemble();
+  void move_to_steady(const Eigen::VectorXd& rates);
+  void move(const Eigen::VectorXd& increment);
+  Eigen::VectorXd free_accelerations() const;
+  void add_rotors();
+  std::vector<int> free_places() const;
+
+  Model model_;  // in which time stands still, and driven coordinates are free
+  BeamGroups undamped_;
+  State state_;
+  std::vector<NodalLoad> wrenches_;
+  double contact_time_;
+  std::vector<bool> is_driven_;  // per coordinate
+  StepSystem system_;
+  const DegreesOfFreedom& dof_;
+  MotionMaps maps_;
+  std::vector<int> independent_, dependent_, scalars_, rotors_;
+  std::vector<bool> is_driven_place_;  // per independent column
+
+  // ---- of the reference
+  MechanismPose pose_;
+  CoordinateRates columns_;        // of all columns
+  CoordinateRates rates_;          // of y
+  double spacing_ = 0;             // [s] of differences along it
+  MovingMatrix allowed_, motion_;  // columns and rows of MotionMaps, by y
+  Eigen::MatrixXd tangent_, row_maps_, unknowns_;
+  Eigen::MatrixXd mass_, damping_, stiffness_;
+  Eigen::VectorXd residual_;
+};
+
+}  // namespace flexarm

@@ -1,0 +1,209 @@
+#include "analysis/motion_maps.h"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include "joints/closure_maps.h"
+#include "joints/joint_kinematics.h"
+#include "math/least_squares.h"
+#include "math/so3.h"
+
+namespace flexarm {
+
+MechanismPose pose_of(const State& state) {
+  MechanismPose pose;
+  for (const NodeState& node : state.nodes) pose.nodes.push_back(node_pose(node));
+  pose.released = state.released;
+  return pose;
+}
+
+State state_at(const MechanismPose& pose) {
+  State state;
+  for (const NodePose& node : pose.nodes) {
+    state.nodes.emplace_back();
+    state.nodes.back().position = node.position;
+    state.nodes.back().orientation = node.orientation;
+  }
+  state.released = pose.released;
+  return state;
+}
+
+MotionMaps::MotionMaps(const Model& model, const DegreesOfFreedom& dof)
+    : model_(model), dof_(dof), rows_(dof.scalar_count), columns_(dof.unknowns) {
+  for (const LoopClosure& closure : model.closures) constraint_count_ += static_cast<int>(closure.constraints.size());
+  rows_ -= constraint_count_;  // multipliers stand behind all else
+  columns_ -= constraint_count_;
+  sort_nodes();
+}
+
+void MotionMaps::sort_nodes() {
+  enum class Mark { New, Open, Done };
+  std::vector<Mark> marks(model_.nodes.size(), Mark::New);
+  carriers_.assign(model_.nodes.size(), -1);
+  const std::function<void(int)> visit = [&](int node) {
+    if (node < 0 || marks[node] != Mark::New) return;
+    marks[node] = Mark::Open;
+    if (const int j = dof_.slave_joint[node]; j >= 0) {
+      const JointMap& joint = model_.joints[j];
+      if (joint.kind == JointMapKind::Slide)
+        for (const int master : model_.slide_lines[joint.line].nodes) visit(master);
+      else
+        visit(joint.master);
+    } else {
+      int carrier = model_.node_parents[node];
+      while (carrier >= 0 && dof_.slave_joint[carrier] < 0) carrier = model_.node_parents[carrier];
+      visit(carrier);
+      if (carrier >= 0 && marks[carrier] == Mark::Done) carriers_[node] = carrier;  // else it follows this one itself
+    }
+    marks[node] = Mark::Done;
+    order_.push_back(node);
+  };
+  for (int node = 0; node < dof_.node_count; ++node) visit(node);
+}
+
+Eigen::MatrixXd MotionMaps::at(const MechanismPose& pose) const {
+  Eigen::MatrixXd maps = Eigen::MatrixXd::Zero(rows_, columns_);
+  for (int scalar = 0; scalar < rows_; ++scalar)
+    if (dof_.equation[scalar] >= 0) maps(scalar, dof_.equation[scalar]) = 1;
+  for (const DegreesOfFreedom::Mimic& mimic : dof_.mimics) {
+    const Coordinate& following = model_.coordinates[mimic.coordinate];
+    const int master = model_.coordinates[following.mimicked].joint;
+    maps.row(dof_.first[mimic.slave_variable]) =
+        following.mimic.derivative(pose.released[master].displacement[0]) * maps.row(dof_.first[mimic.master_variable]);
+  }
+  FoldMaps fold;
+  SlideMaps slide;
+  const auto carry = [&](int node, int carrier, const Vector3& arm) {  // as a rigid body
+    auto own = maps.middleRows<6>(dof_.first[node]);
+    const auto carried = maps.middleRows<6>(dof_.first[carrier]);
+    own += carried;
+    own.topRows<3>() -= so3::hat(arm) * carried.bottomRows<3>();
+  };
+  for (const int node : order_) {
+    auto own = maps.middleRows<6>(dof_.first[node]);
+    const int j = dof_.slave_joint[node];
+    if (j < 0) {
+      const int carrier = carriers_[node];
+      if (carrier < 0) continue;
+      const NodePose& frame = pose.nodes[carrier];
+      for (const int k : {0, 3})
+        for (int c = 0; c < 3; ++c) own.block<3, 1>(k, dof_.equation[dof_.first[node] + k + c]) = frame.rotation.col(c);
+      carry(node, carrier, pose.nodes[node].position - frame.position);
+      continue;
+    }
+    const JointMap& joint = model_.joints[j];
+    const int released = dof_.first[dof_.variable_of_joint(j)];
+    if (joint.kind == JointMapKind::Slide) {
+      const SlideLine& line = model_.slide_lines[joint.line];
+      slide_variational_maps(line, pose.nodes, pose.released[j].displacement[0], Vector6::Zero(), slide, false);
+      own = slide.released_right * maps.row(released);
+      for (int k = 0; k < slide.count; ++k)
+        own += slide.right[k] * maps.middleRows<6>(dof_.first[line.nodes[slide.first + k]]);
+      continue;
+    }
+    variational_maps(joint, joint_pose(joint, pose.nodes, pose.released[j]), Vector6::Zero(), fold);
+    own = fold.right * maps.middleRows(released, fold.right.cols());
+    if (joint.master >= 0) carry(node, joint.master, fold.lever_right);
+  }
+  for (int i = 0; i < dof_.node_count; ++i) {
+    auto spins = maps.middleRows<3>(dof_.first[i] + 3);
+    spins = (pose.nodes[i].rotation.transpose() * spins).eval();
+  }
+  return maps;
+}
+
+Eigen::MatrixXd MotionMaps::constraints(const MechanismPose& pose, const Eigen::MatrixXd& maps) const {
+  Eigen::MatrixXd rows(constraint_count_, columns_);
+  int row = 0;
+  const auto of_node = [&](int node, Vector6 own) {
+    own.tail<3>() = (pose.nodes[node].rotation.transpose() * own.tail<3>()).eval();
+    return Eigen::RowVectorXd(own.transpose() * maps.middleRows<6>(dof_.first[node]));
+  };
+  for (const LoopClosure& closure : model_.closures)
+    for (const ClosureConstraint& constraint : closure.constraints) {
+      const NodePose parent = closure.parent < 0 ? NodePose() : pose.nodes[closure.parent];
+      const ClosureRows own = closure_rows(closure, constraint, {parent, pose.nodes[closure.child]});
+      rows.row(row) = of_node(closure.child, own.child);
+      if (closure.parent >= 0) rows.row(row) += of_node(closure.parent, own.parent);
+      ++row;
+    }
+  return rows;
+}
+
+Eigen::MatrixXd MotionMaps::allowed(const MechanismPose& pose, const Eigen::MatrixXd& maps,
+                                    const std::vector<int>& independent) const {
+  Eigen::MatrixXd allowed = Eigen::MatrixXd::Zero(columns_, static_cast<Eigen::Index>(independent.size()));
+  for (std::size_t i = 0; i < independent.size(); ++i) allowed(independent[i], static_cast<Eigen::Index>(i)) = 1;
+  if (constraint_count_ == 0) return allowed;
+  std::vector<int> dependent;
+  for (int column = 0; column < columns_; ++column)
+    if (!std::binary_search(independent.begin(), independent.end(), column)) dependent.push_back(column);
+  const Eigen::MatrixXd rows = constraints(pose, maps);
+  allowed(dependent, Eigen::all) = -square_solution(rows(Eigen::all, dependent), rows(Eigen::all, independent));
+  if (!allowed.allFinite()) throw std::runtime_error("loops leave undecided how their joints move");
+  return allowed;
+}
+
+Eigen::MatrixXd MotionMaps::unknowns(const MechanismPose& pose, const Eigen::MatrixXd& maps) const {
+  Eigen::MatrixXd unknowns(columns_, columns_);
+  for (int scalar = 0; scalar < rows_; ++scalar)
+    if (dof_.equation[scalar] >= 0) unknowns.row(dof_.equation[scalar]) = maps.row(scalar);
+  for (int i = 0; i < dof_.node_count; ++i) {
+    const int spin = dof_.first[i] + 3;
+    if (dof_.equation[spin] < 0) continue;
+    unknowns.middleRows<3>(dof_.equation[spin]) = pose.nodes[i].rotation * maps.middleRows<3>(spin);
+  }
+  return unknowns;
+}
+
+MechanismPose MotionMaps::moved(const MechanismPose& pose, const CoordinateRates& rates, double time) const {
+  const Eigen::VectorXd way = time * rates.first + 0.5 * time * time * rates.second;
+  const auto way_of = [&](int scalar) { return dof_.equation[scalar] < 0 ? 0.0 : way[dof_.equation[scalar]]; };
+  MechanismPose out = pose;
+  for (int j = 0; j < dof_.joint_count; ++j) {
+    ReleasedVector own(released_count(model_.joints[j].kind));
+    for (int k = 0; k < own.size(); ++k) own[k] = way_of(dof_.first[dof_.variable_of_joint(j)] + k);
+    out.released[j] = updated(model_.joints[j], pose.released[j], own);
+  }
+  for (const DegreesOfFreedom::Mimic& mimic : dof_.mimics) {
+    const Coordinate& following = model_.coordinates[mimic.coordinate];
+    const double master = out.released[model_.coordinates[following.mimicked].joint].displacement[0];
+    out.released[following.joint].displacement[0] = following.mimic.value(master);
+  }
+  for (const int i : order_) {
+    NodePose& node = out.nodes[i];
+    if (const int j = dof_.slave_joint[i]; j >= 0) {
+      node = slave_pose(model_, j, out.nodes, out.released[j]);
+      node.orientation = so3::nearer_of_two(node.orientation, pose.nodes[i].orientation);
+      continue;
+    }
+    Vector6 own;
+    for (int k = 0; k < 6; ++k) own[k] = way_of(dof_.first[i] + k);
+    const NodePose world, &before = carriers_[i] < 0 ? world : pose.nodes[carriers_[i]],
+                          &after = carriers_[i] < 0 ? world : out.nodes[carriers_[i]];
+    const Quaternion back = before.orientation.conjugate();
+    node.position = after.position + after.orientation * (back * (node.position - before.position) + own.head<3>());
+    node.orientation =
+        (after.orientation * so3::exp_quaternion(own.tail<3>()) * (back * node.orientation)).normalized();
+    node.rotation = node.orientation.toRotationMatrix();
+  }
+  return out;
+}
+
+MovingMatrix along(const std::function<Eigen::MatrixXd(double)>& at_time, double spacing) {
+  constexpr std::array<double, 4> kFirst = {4. / 5, -1. / 5, 4. / 105, -1. / 280};
+  constexpr std::array<double, 4> kSecond = {8. / 5, -1. / 5, 8. / 315, -1. / 560};
+  MovingMatrix out;
+  out.value = at_time(0);
+  out.first = out.second = Eigen::MatrixXd::Zero(out.value.rows(), out.value.cols());
+  if (spacing == 0) return out;
+  for (int k = 1; k <= 4; ++k) {
+    const Eigen::MatrixXd after = at_time(k * spacing), before = at_time(-k * spacing);
+    out.first += kFirst[k - 1] / spacing * (after - before);
+    out.second += kSecond[k - 1] / (spacing * spacing) * ((after - out.value) + (before - out.value));
+  }
+  return out;
+}
+
+}  // namespace flexarm

@@ -1,0 +1,163 @@
+#include "analysis/nodal_dynamics.h"
+
+#include "analysis/element_matrices.h"
+#include "analysis/rotor_motion.h"
+#include "elements/spring_action.h"
+#include "joints/joint_stop.h"
+#include "math/so3.h"
+
+namespace flexarm {
+namespace {
+
+using Triplets = std::vector<Eigen::Triplet<double>>;
+
+void add(Triplets& entries, int first, const Matrix3& block) {
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c)
+      if (block(r, c) != 0) entries.emplace_back(first + r, first + c, block(r, c));
+}
+
+void add(Triplets& entries, const std::vector<int>& scalars, const Eigen::MatrixXd& block) {
+  for (Eigen::Index r = 0; r < block.rows(); ++r)
+    for (Eigen::Index c = 0; c < block.cols(); ++c) entries.emplace_back(scalars[r], scalars[c], block(r, c));
+}
+
+Eigen::SparseMatrix<double> summed(const Triplets& entries, Eigen::Index size) {
+  Eigen::SparseMatrix<double> sum(size, size);
+  sum.setFromTriplets(entries.begin(), entries.end());
+  return sum;
+}
+
+/// Mass of beams and what is proportional to it.
+void add_beams(const Model& model, const DegreesOfFreedom& dof, Triplets& mass, Triplets& damping) {
+  for_each_element(model.beams, [&](const auto& element) {
+    constexpr int N = std::decay_t<decltype(element)>::kNodes;
+    for (int i = 0; i < N; ++i)
+      for (int j = 0; j < N; ++j)
+        for (int k = 0; k < 3; ++k) {
+          const int row = dof.first[element.nodes[i]] + k, column = dof.first[element.nodes[j]] + k;
+          mass.emplace_back(row, column, element.mass(i, j));
+          if (element.mass_damping != 0) damping.emplace_back(row, column, element.mass_damping * element.mass(i, j));
+        }
+  });
+}
+
+void add_coordinates(const Model& model, const DegreesOfFreedom& dof, const State& state, double contact_time,
+                     Triplets& mass, Triplets& damping) {
+  for (const Coordinate& coordinate : model.coordinates) {
+    const int scalar = dof.scalar_of(coordinate);
+    double slope = coordinate.damping;
+    if (coordinate.limit)
+      slope += stop_damping(*coordinate.limit, stop_penalty(coordinate, contact_time),
+                            state.released[coordinate.joint].displacement[coordinate.component]);
+    damping.emplace_back(scalar, scalar, slope);
+  }
+  for (const ActuatorTerms& terms : actuator_terms(model, state)) {
+    const int scalar = dof.first[dof.variable_of_joint(terms.joint)] + terms.component;
+    mass.emplace_back(scalar, scalar, terms.mass);
+    damping.emplace_back(scalar, scalar, terms.damping);
+  }
+}
+
+}  // namespace
+
+NodalDynamics nodal_dynamics(const Model& model, const DegreesOfFreedom& dof, const State& state, double contact_time,
+                             const CoordinateRates& rates) {
+  const Eigen::Index size = rates.first.size();
+  Triplets mass, damping, turning;
+  NodalDynamics out;
+  out.force = Eigen::VectorXd::Zero(size);
+  add_beams(model, dof, mass, damping);
+  add_coordinates(model, dof, state, contact_time, mass, damping);
+  for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+    const NodalInertia& inertia = model.inertias[i];
+    const int first = dof.first[i], spin = first + 3;
+    add(mass, first, inertia.mass * Matrix3::Identity());
+    const Matrix3 rotary = inertia.rotary + inertia.beam_rotary;
+    const Vector3 velocity = rates.first.segment<3>(spin), acceleration = rates.second.segment<3>(spin);
+    const Matrix3 carried = so3::hat(velocity) * rotary, momentum = so3::hat(rotary * velocity);
+    const Vector3 moment = rotary * acceleration + carried * velocity + inertia.rotary_damping * velocity;
+    add(mass, spin, rotary);
+    add(damping, spin, carried - momentum + inertia.rotary_damping);
+    add(turning, spin, -so3::hat(moment));
+    out.force.segment<3>(spin) = momentum * velocity;  // the sum below has (carried - momentum) velocity
+  }
+  out.mass = summed(mass, size);
+  out.damping = summed(damping, size);
+  out.turning = summed(turning, size);
+  out.force += out.mass * rates.second + out.damping * rates.first;
+  return out;
+}
+
+std::vector<Stretch> damped_stretches(const Model& model, const DegreesOfFreedom& dof, const MechanismPose& pose) {
+  std::vector<Stretch> stretches;
+  const State state = state_at(pose);
+  const auto add_stretch = [&](const std::vector<int>& nodes, Eigen::MatrixXd rows, const Eigen::MatrixXd& damping,
+                               bool is_spring) {
+    Stretch stretch{{}, std::move(rows), damping, is_spring};
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      for (int k = 0; k < 6; ++k) stretch.scalars.push_back(dof.first[nodes[i]] + k);
+      auto spins = stretch.rows.middleCols<3>(6 * static_cast<Eigen::Index>(i) + 3);
+      spins = (spins * pose.nodes[nodes[i]].rotation).eval();
+    }
+    stretches.push_back(std::move(stretch));
+  };
+  for_each_element(model.beams, [&](const auto& element) {
+    if (element.stiffness_damping == 0) return;
+    const std::vector<Eigen::MatrixXd> strains = strain_variations(element, state);
+    for (std::size_t k = 0; k < strains.size(); ++k)
+      add_stretch({element.nodes.begin(), element.nodes.end()}, strains[k],
+                  element.stiffness_damping * element.stiffness_points[k].weight *
+                      damped_stiffness(element, static_cast<int>(k)),
+                  false);
+  });
+  for (const PointSpring& spring : model.springs) {
+    if (spring.damping == 0) continue;
+    const LoopClosure& ends = model.closures[spring.closure];
+    const Vector12 gradient = spring_gradient(ends, closure_poses(ends, state));
+    std::vector<int> nodes = {ends.child};
+    if (ends.parent >= 0) nodes.push_back(ends.parent);
+    add_stretch(nodes, gradient.head(6 * static_cast<Eigen::Index>(nodes.size())).transpose(),
+                Eigen::MatrixXd::Constant(1, 1, spring.damping), true);
+  }
+  return stretches;
+}
+
+StretchDamping stretch_damping(const Model& model, const DegreesOfFreedom& dof, const MotionMaps& maps,
+                               const MechanismPose& pose, const CoordinateRates& rates, double spacing) {
+  const std::vector<Stretch> stretches = damped_stretches(model, dof, pose);
+  // All rows below each other, so that one function of time has them; narrower ones end with zeros.
+  const auto stacked = [&](const std::vector<Stretch>& parts) {
+    Eigen::Index rows = 0, columns = 0;
+    for (const Stretch& part : parts) rows += part.rows.rows(), columns = std::max(columns, part.rows.cols());
+    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(rows, columns);
+    Eigen::Index row = 0;
+    for (const Stretch& part : parts) {
+      all.block(row, 0, part.rows.rows(), part.rows.cols()) = part.rows;
+      row += part.rows.rows();
+    }
+    return all;
+  };
+  const MovingMatrix moving =
+      along([&](double time) { return stacked(damped_stretches(model, dof, maps.moved(pose, rates, time))); },
+            stretches.empty() ? 0 : spacing);
+  Triplets by_rates, by_places;
+  const Eigen::VectorXd speeds = maps.at(pose) * rates.first;
+  StretchDamping out;
+  out.of_springs = Eigen::VectorXd::Zero(maps.rows());
+  Eigen::Index row = 0;
+  for (const Stretch& part : stretches) {
+    const Eigen::MatrixXd forces = part.rows.transpose() * part.damping;
+    const Eigen::MatrixXd damping = forces * part.rows;
+    add(by_rates, part.scalars, damping);
+    if (spacing > 0)
+      add(by_places, part.scalars, forces * moving.first.block(row, 0, part.rows.rows(), part.rows.cols()));
+    if (part.is_spring) out.of_springs(part.scalars) += damping * speeds(part.scalars);
+    row += part.rows.rows();
+  }
+  out.by_rates = summed(by_rates, maps.rows());
+  out.by_places = summed(by_places, maps.rows());
+  return out;
+}
+
+}  // namespace flexarm

@@ -1,0 +1,267 @@
+#include "flexarm/simulation/linear_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "flexarm/scene/scene_description.h"
+#include "math/dense_eigenpairs.h"
+#include "math/least_squares.h"
+#include "math/pi.h"
+#include "simulation/inside.h"
+#include "simulation/linear_ports.h"
+#include "simulation/output_velocities.h"
+
+namespace flexarm {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using Kind = LinearPort::Kind;
+
+/// Imaginary parts below this part of the largest pole are round-off.
+constexpr double kReal = 1e-12;
+
+KnownRates rates_of(const Simulation& simulation) {
+  const Model& model = model_of(simulation);
+  OutputVelocities velocities;
+  const DegreesOfFreedom dof(model);
+  const Scheme scheme = make_scheme(simulation.scene().integrator);
+  velocities.update_rates(model, dof, scheme, state_of(simulation));
+  velocities.update_nodes(model, dof, scheme, state_of(simulation));
+  KnownRates rates{velocities.nodes(), {}};
+  for (const Coordinate& coordinate : model.coordinates) rates.coordinates.push_back(velocities.rate(coordinate));
+  return rates;
+}
+
+Reference reference_of(LinearisedAbout about) {
+  if (about == LinearisedAbout::Steady) return Reference::Steady;
+  return about == LinearisedAbout::Instant ? Reference::Instant : Reference::Rest;
+}
+
+/// By the link that has the node, counted from the link's first.
+std::string name_of_node(const Model& model, int node) {
+  for (const LinkFrame& link : model.links) {
+    const int last = link.beam ? link.beam->tip.node : link.frame.node;
+    if (link.frame.node >= 0 && link.frame.node <= node && node <= last)
+      return fmt::format("{}/{}", link.name, node - link.frame.node);
+  }
+  return fmt::format("node {}", node);
+}
+
+std::vector<std::string> coordinate_names(const Model& model, const LinearDynamics& dynamics) {
+  const DegreesOfFreedom& dof = dynamics.degrees_of_freedom();
+  std::vector<std::string> names;
+  for (const int scalar : dynamics.scalars()) {
+    const char* const axes[] = {"x", "y", "z", "rx", "ry", "rz"};
+    if (scalar < 6 * dof.node_count) {
+      names.push_back(fmt::format("{}:{}", name_of_node(model, scalar / 6), axes[scalar % 6]));
+      continue;
+    }
+    const auto named = std::find_if(model.coordinates.begin(), model.coordinates.end(),
+                                    [&](const Coordinate& own) { return dof.scalar_of(own) == scalar; });
+    names.push_back(named == model.coordinates.end() ? fmt::format("scalar {}", scalar) : named->name);
+  }
+  for (const int actuator : dynamics.rotors())
+    names.push_back("rotor:" + model.coordinates[model.actuators[actuator].coordinate].name);
+  return names;
+}
+
+std::vector<std::string> left_out(const Model& model, const State& state) {
+  std::vector<std::string> effects;
+  if (std::any_of(state.wrenches.begin(), state.wrenches.end(),
+                  [](const NodalLoad& wrench) { return wrench.pull.damping > 0; }))
+    effects.push_back("dampers of what pulls on links");
+  for (const Coordinate& coordinate : model.coordinates) {
+    if (coordinate.friction != 0 || coordinate.friction_coefficient != 0)
+      effects.push_back(fmt::format("friction of joint coordinate '{}'", coordinate.name));
+    if (coordinate.actuator < 0) continue;
+    const Actuator& actuator = model.actuators[coordinate.actuator];
+    if (actuator.drive.friction != 0 || actuator.drive.loss != 0)
+      effects.push_back(fmt::format("friction and losses of the drive of '{}'", coordinate.name));
+    if (actuator.gyroscope)
+      effects.push_back(fmt::format("the momentum of the rotor of '{}' as its axis turns", coordinate.name));
+    if (!actuator.servo) continue;
+    const Servo& servo = *actuator.servo;
+    if (std::any_of(servo.laws.begin(), servo.laws.end(), [](const ServoLaw& law) { return law.integral != 0; }))
+      effects.push_back(fmt::format("the integral of the servo of '{}'", coordinate.name));
+    if (servo.sample_time > 0 || servo.delay > 0)
+      effects.push_back(fmt::format("samples and delay of the servo of '{}'", coordinate.name));
+  }
+  return effects;
+}
+
+/// Of y: those that states have, the driven ones among them behind the others.
+struct Partition {
+  std::vector<int> free, moved;
+  std::vector<int> states() const {
+    std::vector<int> all = free;
+    all.insert(all.end(), moved.begin(), moved.end());
+    return all;
+  }
+};
+
+/// `place_of`: of a coordinate in y, or -1.
+template <class PlaceOf>
+Partition partition(const Model& model, int size, const std::vector<LinearPort>& inputs, const PlaceOf& place_of) {
+  Partition out;
+  std::vector<bool> is_driven(size, false);
+  for (std::size_t c = 0; c < model.coordinates.size(); ++c)
+    if (const int place = place_of(static_cast<int>(c)); place >= 0 && model.coordinates[c].motion >= 0)
+      is_driven[place] = true;
+  for (int i = 0; i < size; ++i)
+    if (!is_driven[i]) out.free.push_back(i);
+  for (const LinearPort& input : inputs) {
+    if (input.kind != Kind::Motion) continue;
+    const int place = place_of(input.coordinate);
+    if (std::find(out.moved.begin(), out.moved.end(), place) != out.moved.end())
+      throw std::invalid_argument(fmt::format("input '{}' is there twice", input.name));
+    out.moved.push_back(place);
+  }
+  return out;
+}
+
+/// y'' = by_state x + by_input u.
+struct Accelerations {
+  MatrixXd by_state, by_input;
+};
+
+class StateSpace {
+ public:
+  StateSpace(const LinearModel& model, Partition parts) : model_(model), parts_(std::move(parts)) {}
+
+  Accelerations accelerations(const MatrixXd& forces, const std::vector<LinearPort>& inputs) const {
+    const std::vector<int> states = parts_.states();
+    const Eigen::Index free = size(parts_.free), moved = size(parts_.moved), count = free + moved;
+    // Columns: x, then u; of driven coordinates the rows are their accelerations themselves.
+    MatrixXd by_motion = MatrixXd::Zero(moved, static_cast<Eigen::Index>(inputs.size()));
+    Eigen::Index next = 0;
+    for (std::size_t i = 0; i < inputs.size(); ++i)
+      if (inputs[i].kind == Kind::Motion) by_motion(next++, static_cast<Eigen::Index>(i)) = 1;
+    MatrixXd right(free, 2 * count + by_motion.cols());
+    right << -model_.stiffness(parts_.free, states), -model_.damping(parts_.free, states),
+        forces(parts_.free, Eigen::all) - model_.mass(parts_.free, parts_.moved) * by_motion;
+    const MatrixXd solved = square_solution(model_.mass(parts_.free, parts_.free), right);
+    if (!solved.allFinite()) throw std::runtime_error("some coordinate moves nothing that has mass");
+    Accelerations out{MatrixXd::Zero(count, 2 * count), MatrixXd::Zero(count, by_motion.cols())};
+    out.by_state.topRows(free) = solved.leftCols(2 * count);
+    out.by_input.topRows(free) = solved.rightCols(by_motion.cols());
+    out.by_input.bottomRows(moved) = by_motion;
+    return out;
+  }
+
+  static Eigen::Index size(const std::vector<int>& places) { return static_cast<Eigen::Index>(places.size()); }
+
+ private:
+  const LinearModel& model_;
+  Partition parts_;
+};
+
+/// Which multiples of y, y' and y'' an output is: 0 to 2 of them are zero.
+struct OutputRows {
+  Eigen::RowVectorXd place, rate, acceleration;
+};
+
+OutputRows output_rows(const LinearPort& port, const MovingMatrix& motion, Eigen::Index row, const LinearModel& model,
+                       int place) {
+  const Eigen::RowVectorXd zero = Eigen::RowVectorXd::Zero(motion.value.cols());
+  switch (port.kind) {
+    case Kind::Position:
+      return {motion.value.row(row), zero, zero};
+    case Kind::Velocity:
+      return {motion.first.row(row), motion.value.row(row), zero};
+    case Kind::Acceleration:
+      return {motion.second.row(row), 2 * motion.first.row(row), motion.value.row(row)};
+    default:
+      return {model.stiffness.row(place), model.damping.row(place), model.mass.row(place)};
+  }
+}
+
+}  // namespace
+
+LinearModel linearise(const Simulation& simulation, const LinearRequest& request) {
+  const Model& model = model_of(simulation);
+  const std::vector<LinearPort> inputs = input_ports(simulation, request.inputs);
+  const std::vector<LinearPort> outputs = output_ports(simulation, request.outputs);
+  const LinearDynamics dynamics(model, state_of(simulation), make_scheme(simulation.scene().integrator),
+                                reference_of(request.about), rates_of(simulation));
+  LinearModel out;
+  out.coordinates = coordinate_names(model, dynamics);
+  out.mass = dynamics.mass();
+  out.damping = dynamics.damping();
+  out.stiffness = dynamics.stiffness();
+  out.residual = dynamics.residual();
+  out.left_out = left_out(model, state_of(simulation));
+
+  const auto place_of = [&](int coordinate) {
+    const auto& scalars = dynamics.scalars();
+    const auto place = std::find(scalars.begin(), scalars.end(),
+                                 dynamics.degrees_of_freedom().scalar_of(model.coordinates[coordinate]));
+    return place == scalars.end() ? -1 : static_cast<int>(place - scalars.begin());
+  };
+  const Partition parts = partition(model, dynamics.size(), inputs, place_of);
+  const std::vector<int> states = parts.states();
+  const Eigen::Index count = static_cast<Eigen::Index>(states.size());
+  MatrixXd forces = port_motion(simulation, dynamics, inputs).value.transpose();
+  for (std::size_t i = 0; i < inputs.size(); ++i)
+    if (inputs[i].kind == Kind::Motion) forces.col(static_cast<Eigen::Index>(i)).setZero();
+  const Accelerations accelerations = StateSpace(out, parts).accelerations(forces, inputs);
+
+  out.a = MatrixXd::Zero(2 * count, 2 * count);
+  out.a.topRightCorner(count, count).setIdentity();
+  out.a.bottomRows(count) = accelerations.by_state;
+  out.b = MatrixXd::Zero(2 * count, forces.cols());
+  out.b.bottomRows(count) = accelerations.by_input;
+  out.drift.resize(2 * count);
+  out.drift << dynamics.rates()(states), dynamics.accelerations()(states);
+  const MovingMatrix motion = port_motion(simulation, dynamics, outputs);
+  out.c.resize(static_cast<Eigen::Index>(outputs.size()), 2 * count);
+  out.d.resize(out.c.rows(), forces.cols());
+  for (Eigen::Index i = 0; i < out.c.rows(); ++i) {
+    const LinearPort& port = outputs[static_cast<std::size_t>(i)];
+    const int driven = port.kind == Kind::Effort ? place_of(port.coordinate) : -1;
+    const OutputRows rows = output_rows(port, motion, i, out, driven);
+    const Eigen::RowVectorXd acceleration = rows.acceleration(states);
+    out.c.row(i) << rows.place(states), rows.rate(states);
+    out.c.row(i) += acceleration * accelerations.by_state;
+    out.d.row(i) = acceleration * accelerations.by_input;
+    if (driven >= 0) out.d.row(i) -= forces.row(driven);
+  }
+  for (const int place : states) out.states.push_back(out.coordinates[place]);
+  for (const int place : states) out.states.push_back("d/dt " + out.coordinates[place]);
+  for (const LinearPort& port : inputs) out.inputs.push_back(port.name);
+  for (const LinearPort& port : outputs) out.outputs.push_back(port.name);
+  return out;
+}
+
+double Pole::frequency() const {
+  return std::abs(value.imag()) / (2 * kPi);
+}
+double Pole::damping_ratio() const {
+  return value == 0.0 ? 0 : -value.real() / std::abs(value);
+}
+
+std::vector<Pole> poles(const LinearModel& model) {
+  std::vector<Pole> out;
+  if (model.a.rows() == 0) return out;
+  const Eigenpairs pairs = balanced_eigenpairs(model.a);
+  const double largest = pairs.values.cwiseAbs().maxCoeff();
+  for (Eigen::Index i = 0; i < pairs.values.size(); ++i) {
+    Pole pole{pairs.values[i], 0, pairs.vectors.col(i)};
+    if (pole.value.imag() < -kReal * largest) continue;
+    Eigen::Index state = 0;
+    pole.mode.head(model.a.rows() / 2).cwiseAbs().maxCoeff(&state);
+    pole.state = static_cast<int>(state);
+    pole.mode /= pole.mode[state];
+    out.push_back(std::move(pole));
+  }
+  std::sort(out.begin(), out.end(), [](const Pole& a, const Pole& b) {
+    const double size_a = std::abs(a.value), size_b = std::abs(b.value);
+    return size_a != size_b ? size_a < size_b : a.value.imag() < b.value.imag();
+  });
+  return out;
+}
+
+}  // namespace flexarm

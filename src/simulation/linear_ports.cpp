@@ -1,0 +1,214 @@
+#include "simulation/linear_ports.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "flexarm/scene/scene_description.h"
+#include "simulation/inside.h"
+#include "simulation/observables.h"
+
+namespace flexarm {
+namespace {
+
+using Kind = LinearPort::Kind;
+using Components = std::array<const char*, 6>;
+
+constexpr Components kPlaces = {"x", "y", "z", "rx", "ry", "rz"}, kWrench = {"fx", "fy", "fz", "mx", "my", "mz"};
+
+struct NamedPoint {
+  std::string name;
+  ProbePoint point;
+};
+
+/// Links that can move, ends of beams and probes.
+std::vector<NamedPoint> points_of(const Simulation& simulation) {
+  const Model& model = model_of(simulation);
+  std::vector<NamedPoint> points;
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    const LinkFrame& link = model.links[i];
+    ProbePoint point;
+    point.link = static_cast<int>(i);
+    point.attachment = link.frame;
+    if (link.frame.node >= 0) points.push_back({link.name, point});
+    if (!link.beam) continue;
+    point.attachment = link.beam->tip;
+    points.push_back({link.name + "/tip", point});
+  }
+  const auto& probes = simulation.scene().probes;
+  for (std::size_t i = 0; i < probes.size(); ++i) points.push_back({probes[i].name, model.probes[i]});
+  return points;
+}
+
+bool is_driven(const Simulation& simulation, std::size_t coordinate) {
+  return model_of(simulation).coordinates[coordinate].motion >= 0;
+}
+
+/// What may stand behind a kind's colon, for errors.
+std::string existing(const Simulation& simulation, Kind kind) {
+  std::vector<std::string> names;
+  const auto& coordinates = simulation.coordinate_names();
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    const bool fits = kind == Kind::Effort   ? simulation.is_commandable(i)
+                      : kind == Kind::Motion ? is_driven(simulation, i)
+                      : kind == Kind::Wrench ? false
+                                             : true;
+    if (fits) names.push_back(coordinates[i]);
+  }
+  if (kind != Kind::Effort && kind != Kind::Motion)
+    for (const NamedPoint& point : points_of(simulation)) names.push_back(point.name);
+  return names.empty() ? "there is none" : fmt::format("there are {}", fmt::join(names, ", "));
+}
+
+class PortReader {
+ public:
+  PortReader(const Simulation& simulation, bool is_input)
+      : simulation_(simulation), is_input_(is_input), points_(points_of(simulation)) {}
+
+  void read(const std::string& text, std::vector<LinearPort>& ports) const {
+    const std::size_t colon = text.find(':');
+    const std::optional<Kind> kind = kind_of(text.substr(0, colon));
+    if (!kind || colon == std::string::npos)
+      throw std::invalid_argument(
+          fmt::format("'{}' is no {}: expected {}", text, is_input_ ? "input" : "output",
+                      is_input_ ? "effort:JOINT, motion:JOINT or wrench:POINT:fx"
+                                : "position:, velocity: or acceleration: and a joint or a point, or effort:JOINT"));
+    const std::string name = text.substr(colon + 1);
+    if (add_coordinate(*kind, name, text, ports) || add_point(*kind, name, text, ports)) return;
+    throw std::invalid_argument(fmt::format("'{}' does not exist: of '{}:' {}", text, text.substr(0, colon),
+                                            existing(simulation_, driven_effort(*kind) ? Kind::Motion : *kind)));
+  }
+
+ private:
+  bool driven_effort(Kind kind) const { return kind == Kind::Effort && !is_input_; }
+
+  std::optional<Kind> kind_of(const std::string& word) const {
+    if (word == "effort") return Kind::Effort;
+    if (is_input_ && word == "motion") return Kind::Motion;
+    if (is_input_ && word == "wrench") return Kind::Wrench;
+    if (!is_input_ && word == "position") return Kind::Position;
+    if (!is_input_ && word == "velocity") return Kind::Velocity;
+    if (!is_input_ && word == "acceleration") return Kind::Acceleration;
+    return std::nullopt;
+  }
+
+  bool add_coordinate(Kind kind, const std::string& name, const std::string& text,
+                      std::vector<LinearPort>& ports) const {
+    const std::optional<std::size_t> index = simulation_.find_coordinate(name);
+    if (!index || kind == Kind::Wrench) return false;
+    if (kind == Kind::Effort && is_input_ && !simulation_.is_commandable(*index)) return false;
+    if ((kind == Kind::Motion || driven_effort(kind)) && !is_driven(simulation_, *index)) return false;
+    LinearPort port;
+    port.kind = kind;
+    port.coordinate = static_cast<int>(*index);
+    port.name = text;
+    ports.push_back(port);
+    return true;
+  }
+
+  bool add_point(Kind kind, const std::string& name, const std::string& text, std::vector<LinearPort>& ports) const {
+    if (kind == Kind::Effort || kind == Kind::Motion) return false;
+    const Components& components = kind == Kind::Wrench ? kWrench : kPlaces;
+    for (const NamedPoint& candidate : points_)
+      for (int k = 0; k < 6; ++k) {
+        const bool is_whole = name == candidate.name;
+        if (!is_whole && name != candidate.name + ":" + components[k]) continue;
+        LinearPort port;
+        port.kind = kind;
+        port.point = candidate.point;
+        port.component = k;
+        port.name = is_whole ? text + ":" + components[k] : text;
+        ports.push_back(port);
+        if (!is_whole || k == 5) return true;
+      }
+    return false;
+  }
+
+  const Simulation& simulation_;
+  bool is_input_;
+  std::vector<NamedPoint> points_;
+};
+
+std::vector<LinearPort> read(const Simulation& simulation, bool is_input, const std::vector<std::string>& names) {
+  const PortReader reader(simulation, is_input);
+  std::vector<LinearPort> ports;
+  for (const std::string& name : names) reader.read(name, ports);
+  return ports;
+}
+
+}  // namespace
+
+std::vector<LinearPort> input_ports(const Simulation& simulation, const std::vector<std::string>& names) {
+  if (!names.empty()) return read(simulation, true, names);
+  std::vector<std::string> efforts;
+  for (std::size_t i = 0; i < simulation.coordinate_names().size(); ++i)
+    if (simulation.is_commandable(i)) efforts.push_back("effort:" + simulation.coordinate_names()[i]);
+  return read(simulation, true, efforts);
+}
+
+std::vector<LinearPort> output_ports(const Simulation& simulation, const std::vector<std::string>& names) {
+  if (!names.empty()) return read(simulation, false, names);
+  std::vector<std::string> positions;
+  for (std::size_t i = 0; i < simulation.coordinate_names().size(); ++i)
+    if (!is_driven(simulation, i)) positions.push_back("position:" + simulation.coordinate_names()[i]);
+  std::vector<LinearPort> ports = read(simulation, false, positions);
+  // Not by name, which a joint or a link might have as well.
+  const auto& probes = simulation.scene().probes;
+  for (std::size_t i = 0; i < probes.size(); ++i)
+    for (int k = 0; k < 6; ++k) {
+      LinearPort port;
+      port.kind = Kind::Position;
+      port.point = model_of(simulation).probes[i];
+      port.component = k;
+      port.name = fmt::format("position:{}:{}", probes[i].name, kPlaces[k]);
+      ports.push_back(port);
+    }
+  return ports;
+}
+
+MovingMatrix port_motion(const Simulation& simulation, const LinearDynamics& dynamics,
+                         const std::vector<LinearPort>& ports) {
+  const Model& model = model_of(simulation);
+  const DegreesOfFreedom& dof = dynamics.degrees_of_freedom();
+  MovingMatrix motion =
+      dynamics.along_reference([&](const MechanismPose& pose, const Eigen::MatrixXd& rows) -> Eigen::MatrixXd {
+        const State state = state_at(pose);
+        Eigen::MatrixXd out = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(ports.size()), rows.cols());
+        std::vector<Vector6> velocities(pose.nodes.size());
+        for (Eigen::Index column = 0; column < rows.cols(); ++column) {
+          for (std::size_t n = 0; n < velocities.size(); ++n) {
+            velocities[n] = rows.col(column).segment<6>(dof.first[n]);
+            velocities[n].tail<3>() = (pose.nodes[n].rotation * velocities[n].tail<3>()).eval();
+          }
+          for (std::size_t i = 0; i < ports.size(); ++i) {
+            const LinearPort& port = ports[i];
+            double& entry = out(static_cast<Eigen::Index>(i), column);
+            if (port.coordinate >= 0) {
+              entry = rows(dof.scalar_of(model.coordinates[port.coordinate]), column);
+              continue;
+            }
+            const ProbeState probe = probe_state(model, state, velocities, port.point);
+            entry = port.component < 3 ? probe.velocity[port.component] : probe.angular_velocity[port.component - 3];
+          }
+        }
+        return out;
+      });
+  for (Eigen::MatrixXd* matrix : {&motion.value, &motion.first, &motion.second}) {
+    const Eigen::Index own = matrix->cols();
+    matrix->conservativeResize(Eigen::NoChange, dynamics.size());
+    matrix->rightCols(dynamics.size() - own).setZero();
+  }
+  // A motor behind an elastic gear gives its effort to its rotor.
+  for (std::size_t i = 0; i < ports.size(); ++i)
+    for (std::size_t r = 0; r < dynamics.rotors().size() && ports[i].kind == Kind::Effort; ++r) {
+      if (model.actuators[dynamics.rotors()[r]].coordinate != ports[i].coordinate) continue;
+      motion.value.row(static_cast<Eigen::Index>(i)).setZero();
+      motion.value(static_cast<Eigen::Index>(i), dynamics.size() - static_cast<int>(dynamics.rotors().size() - r)) = 1;
+    }
+  return motion;
+}
+
+}  // namespace flexarm
