@@ -28,6 +28,7 @@ void add_simulate(CLI::App& app, int& status);
 void add_expand(CLI::App& app, int& status);
 void add_static(CLI::App& app, int& status);
 void add_modes(CLI::App& app, int& status);
+void add_linearise(CLI::App& app, int& status);
 void add_replay(CLI::App& app, int& status);
 void add_tune(CLI::App& app, int& status);
 void add_bench(CLI::App& app, int& status);

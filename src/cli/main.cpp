@@ -20,6 +20,7 @@ int run(int argc, char** argv) {
   add_expand(app, status);
   add_static(app, status);
   add_modes(app, status);
+  add_linearise(app, status);
   add_replay(app, status);
   add_tune(app, status);
   add_bench(app, status);

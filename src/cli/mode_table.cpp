@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/json_text.h"
 #include "simulation/csv_fields.h"
 #include "simulation/inside.h"
 #include "simulation/observables.h"
@@ -20,36 +21,8 @@ ComplexVector6 frame_motion(const Simulation& simulation, const Mode& mode, cons
   return motion;
 }
 
-std::string json_number(double value) {
-  return fmt::format("{:.17g}", value);
-}
-
-std::string json_string(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\')
-      out += '\\', out += c;
-    else if (static_cast<unsigned char>(c) < 0x20)
-      out += fmt::format("\\u{:04x}", static_cast<int>(c));
-    else
-      out += c;
-  }
-  return out + '"';
-}
-
-template <class Vector>
-std::string json_array(const Vector& values) {
-  std::string out;
-  for (int i = 0; i < values.size(); ++i) out += (i > 0 ? ", " : "") + json_number(values[i]);
-  return "[" + out + "]";
-}
-
 std::string json_complex(const std::string& real, const std::string& imaginary) {
   return "{\"real\": " + real + ", \"imaginary\": " + imaginary + "}";
-}
-
-void append_member(std::string& object, const std::string& name, const std::string& value) {
-  object += (object.empty() ? "" : ", ") + json_string(name) + ": " + value;
 }
 
 std::string json_motions(const std::vector<NamedMotion>& motions) {

@@ -4,6 +4,7 @@
 
 #include "recording/bag_writer.h"
 #include "recording/hdf5_writer.h"
+#include "recording/mat_writer.h"
 
 using namespace flexarm;
 using namespace flexarm::recording;
@@ -21,4 +22,4 @@ std::unique_ptr<ResultWriter> make_bag(const std::string& path, const Simulation
 }  // namespace
 
 extern "C" const Library flexarm_recording_library;
-const Library flexarm_recording_library = {make_hdf5, make_bag, replay};
+const Library flexarm_recording_library = {make_hdf5, make_bag, write_mat, replay};

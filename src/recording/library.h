@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "flexarm/simulation/linear_model.h"
 #include "flexarm/simulation/result_writer.h"
 #include "recording/replay.h"
 
@@ -17,6 +18,8 @@ struct Library {
   std::unique_ptr<ResultWriter> (*hdf5)(const std::string& path, const Simulation& simulation, ResultColumns columns);
   /// A ROS bag, see BagWriter.
   std::unique_ptr<ResultWriter> (*bag)(const std::string& path, const Simulation& simulation);
+  /// A file of MATLAB, see write_mat().
+  void (*mat)(const std::string& path, const std::string& scene, const LinearModel& model);
   /// See recording::replay().
   ReplayReport (*replay)(Simulation simulation, const ReplayOptions& options);
 };

@@ -1,0 +1,133 @@
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "cli/commands.h"
+#include "cli/files.h"
+#include "cli/linear_table.h"
+#include "cli/recording_library.h"
+#include "cli/scene_input.h"
+#include "flexarm/scene/scene_description.h"
+#include "flexarm/simulation/linear_model.h"
+
+namespace flexarm::cli {
+namespace {
+
+/// Of the state that moves most; smaller parts are left out of what is printed.
+constexpr double kVisible = 0.05;
+
+struct Arguments {
+  SceneInput scene;
+  LinearRequest request;
+  std::optional<double> time;
+  bool is_steady = false, prints_shapes = false;
+  Equilibrium wanted = Equilibrium::Stable;
+  int count = 20;
+  std::string output;
+};
+
+std::string kind_of_file(const std::string& path) {
+  return std::filesystem::path(path).extension().string();
+}
+
+/// Brings the simulation to what it is linearised about.
+void go_to_reference(const Arguments& arguments, Simulation& simulation) {
+  if (arguments.time) {
+    while (simulation.time() < *arguments.time - 0.5 * simulation.step_size())
+      if (const StepResult result = simulation.step(); !result.converged)
+        throw std::runtime_error(
+            fmt::format("simulation failed after t = {:.17g} s: {}", simulation.time(), simulation.explain(result)));
+    return;
+  }
+  const StaticResult result = simulation.solve_static(kLoadSteps, arguments.wanted);
+  if (result.converged)
+    warn_of_instability(result, arguments.wanted);
+  else
+    fmt::print(stderr, "flexarm: {}; the model is that of the initial configuration\n",
+               lack_of_equilibrium(simulation, result, initial_modes(simulation, 1)));
+}
+
+void print_poles(const LinearModel& model, const Arguments& arguments) {
+  fmt::print("{} states, {} inputs, {} outputs\n", model.states.size(), model.inputs.size(), model.outputs.size());
+  fmt::print("{:>14} {:>14} {:>14} {:>14}  {}\n", "frequency [Hz]", "damping ratio", "real [1/s]", "imaginary", "most");
+  int count = 0;
+  for (const Pole& pole : poles(model)) {
+    if (count++ == arguments.count) break;
+    fmt::print("{:>14.7g} {:>14.4g} {:>14.7g} {:>14.7g}  {}\n", pole.frequency(), pole.damping_ratio(),
+               pole.value.real(), pole.value.imag(), model.states[pole.state]);
+    for (Eigen::Index i = 0; arguments.prints_shapes && i < model.a.rows() / 2; ++i)
+      if (std::abs(pole.mode[i]) > kVisible)
+        fmt::print("    {:<32} {:>10.4f} {:>+10.4f}i\n", model.states[i], pole.mode[i].real(), pole.mode[i].imag());
+  }
+}
+
+void write_model(const std::string& path, const std::string& scene, const LinearModel& model) {
+  if (path.empty()) return;
+  const std::string kind = kind_of_file(path);
+  if (kind == ".mat") return recording_library().mat(path, scene, model);
+  const std::string text = kind == ".csv" ? linear_model_as_csv(model) : linear_model_as_json(scene, model);
+  if (is_standard_output(path))
+    fmt::print("{}", text);
+  else
+    write_file(path, text);
+}
+
+int linearise_scene(Arguments arguments) {
+  refuse_overwriting("--output", arguments.output, arguments.scene.path);
+  require_writable("--output", arguments.output);
+  Simulation simulation = load_simulation(arguments.scene);
+  go_to_reference(arguments, simulation);
+  if (arguments.time) arguments.request.about = LinearisedAbout::Instant;
+  if (arguments.is_steady) arguments.request.about = LinearisedAbout::Steady;
+  LinearModel model;
+  try {
+    model = linearise(simulation, arguments.request);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("flexarm: {}", error.what()));
+  }
+  for (const std::string& effect : model.left_out) fmt::print(stderr, "flexarm: warning: left out: {}\n", effect);
+  write_model(arguments.output, simulation.scene().name, model);
+  if (!is_standard_output(arguments.output)) print_poles(model, arguments);
+  return kDone;
+}
+
+std::string check_file(const std::string& path) {
+  const std::string kind = kind_of_file(path);
+  if (is_standard_output(path) || kind == ".mat" || kind == ".json" || kind == ".csv") return "";
+  return "must end with .mat, .json or .csv, or be - (JSON), got '" + path + "'";
+}
+
+}  // namespace
+
+void add_linearise(CLI::App& app, int& status) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command =
+      app.add_subcommand("linearise", "Linear model (A, B, C, D) about the equilibrium, with its poles");
+  add_scene(*command, arguments->scene);
+  add_equilibrium(*command, arguments->wanted);
+  CLI::Option* time = command->add_option_function<double>(
+      "--time", [arguments](double time) { arguments->time = time; },
+      "about the motion at this time of a simulation, in place of the equilibrium [s]");
+  time->check(check_non_negative);
+  command->add_flag("--steady", arguments->is_steady, "about a steady motion, with <motion>s as fast as at t = 0")
+      ->excludes(time);
+  command
+      ->add_option("--inputs", arguments->request.inputs,
+                   "effort:JOINT, motion:JOINT (acceleration), wrench:POINT:fx; all efforts by default")
+      ->delimiter(',');
+  command
+      ->add_option("--outputs", arguments->request.outputs,
+                   "position:, velocity: or acceleration: with JOINT, POINT or POINT:x; effort:JOINT of a <motion>; "
+                   "positions of all joints and probes by default")
+      ->delimiter(',');
+  command->add_option("--count", arguments->count, "number of poles to print")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 100000));
+  command->add_flag("--shapes", arguments->prints_shapes, "prints what moves in each pole's mode");
+  command
+      ->add_option("-o,--output", arguments->output, "file: .mat (MATLAB), .json or .csv; -: JSON to standard output")
+      ->check(check_file);
+  command->callback([arguments, &status] { status = linearise_scene(*arguments); });
+}
+
+}  // namespace flexarm::cli

@@ -1,0 +1,70 @@
+#include "recording/mat_writer.h"
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include <matio.h>
+
+#include "recording/replaced_file.h"
+
+namespace flexarm::recording {
+namespace {
+
+using Variable = std::unique_ptr<matvar_t, decltype(&Mat_VarFree)>;
+
+/// What Mat_VarCreate() takes as something that it may change, but copies.
+template <class T>
+T* copied(const T* data) {
+  return const_cast<T*>(data);
+}
+
+Variable numbers(const char* name, const Eigen::MatrixXd& matrix) {
+  std::array<size_t, 2> size = {static_cast<size_t>(matrix.rows()), static_cast<size_t>(matrix.cols())};
+  return {Mat_VarCreate(name, MAT_C_DOUBLE, MAT_T_DOUBLE, 2, size.data(), copied(matrix.data()), 0), &Mat_VarFree};
+}
+
+Variable text(const char* name, const std::string& value) {
+  std::array<size_t, 2> size = {1, value.size()};
+  return {Mat_VarCreate(name, MAT_C_CHAR, MAT_T_UTF8, 2, size.data(), copied(value.data()), 0), &Mat_VarFree};
+}
+
+/// A column of a cell for each.
+Variable cells(const char* name, const std::vector<std::string>& values) {
+  std::array<size_t, 2> size = {values.size(), 1};
+  std::vector<matvar_t*> entries;  // they belong to the array then
+  for (const std::string& value : values) entries.push_back(text(nullptr, value).release());
+  return {Mat_VarCreate(name, MAT_C_CELL, MAT_T_CELL, 2, size.data(), entries.data(), 0), &Mat_VarFree};
+}
+
+}  // namespace
+
+void write_mat(const std::string& path, const std::string& scene, const LinearModel& model) {
+  ReplacedFile place(path);
+  std::unique_ptr<mat_t, decltype(&Mat_Close)> file(
+      Mat_CreateVer(place.unfinished().c_str(), "MATLAB 5.0 MAT-file, written by flexarm", MAT_FT_MAT5), &Mat_Close);
+  if (!file) place.fail("cannot be created");
+  const auto write = [&](const Variable& variable) {
+    if (!variable || Mat_VarWrite(file.get(), variable.get(), MAT_COMPRESSION_NONE) != 0)
+      place.fail("cannot be written");
+  };
+  write(text("scene", scene));
+  write(numbers("A", model.a));
+  write(numbers("B", model.b));
+  write(numbers("C", model.c));
+  write(numbers("D", model.d));
+  write(numbers("drift", model.drift));
+  write(numbers("mass", model.mass));
+  write(numbers("damping", model.damping));
+  write(numbers("stiffness", model.stiffness));
+  write(numbers("residual", model.residual));
+  write(cells("states", model.states));
+  write(cells("inputs", model.inputs));
+  write(cells("outputs", model.outputs));
+  write(cells("coordinates", model.coordinates));
+  write(cells("left_out", model.left_out));
+  if (Mat_Close(file.release()) != 0) place.fail("cannot be written");
+  place.put_in_place();
+}
+
+}  // namespace flexarm::recording

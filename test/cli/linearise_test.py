@@ -1,0 +1,128 @@
+#!/usr/bin/python3
+"""Files of `flexarm linearise`, read by scipy: `linearise_test.py PROGRAM`."""
+
+import csv
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy
+import scipy.io
+
+PENDULUM = """<robot name="pendulum"> <link name="world"/>
+  <joint name="hinge" type="continuous"> <parent link="world"/> <child link="bob"/> <axis xyz="0 1 0"/>
+    <dynamics damping="0.3" friction="{friction}"/> </joint>
+  <link name="bob"> <inertial> <origin xyz="0 0 -0.5"/> <mass value="2"/>
+    <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/> </inertial> </link>
+  <simulation> <probe name="tip" link="bob" at="0 0 -1"/> {simulation} </simulation>
+</robot>"""
+INERTIA, WEIGHT = 0.1 + 2 * 0.5**2, 2 * 9.81 * 0.5  # about the hinge [kg m^2], times the arm [N m]
+NAMES = ("states", "inputs", "outputs")
+MATRICES = ("A", "B", "C", "D")
+
+
+class Linearise(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def path(self, name):
+        return os.path.join(self.folder.name, name)
+
+    def run_program(self, *options, simulation="", friction=0):
+        with open(self.path("scene.urdf"), "w", encoding="utf-8") as file:
+            file.write(PENDULUM.format(simulation=simulation, friction=friction))
+        command = [PROGRAM, "linearise", self.path("scene.urdf")] + list(options)
+        return subprocess.run(
+            command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, check=False
+        )
+
+    def model(self, *options, **scene):
+        result = self.run_program("--output", "-", *options, **scene)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return json.loads(result.stdout)
+
+    def test_pendulum_by_formula(self):
+        model = self.model("--outputs", "position:hinge,velocity:tip:x,acceleration:tip:x")
+        self.assertEqual(model["states"], ["hinge", "d/dt hinge"])
+        self.assertEqual(model["inputs"], ["effort:hinge"])
+        row = [-WEIGHT / INERTIA, -0.3 / INERTIA]
+        numpy.testing.assert_allclose(model["A"], [[0, 1], row], rtol=1e-12)
+        numpy.testing.assert_allclose(model["B"], [[0], [1 / INERTIA]], rtol=1e-12)
+        # The tip is 1 m below the hinge, about y.
+        expected = [[1, 0], [0, -1], [-row[0], -row[1]]]
+        numpy.testing.assert_allclose(model["C"], expected, rtol=1e-12, atol=1e-12)
+        numpy.testing.assert_allclose(model["D"], [[0], [0], [-1 / INERTIA]], rtol=1e-12)
+
+    def test_driven_joint(self):
+        motion = '<motion joint="hinge" position="0"/>'
+        model = self.model("--inputs", "motion:hinge", "--outputs", "effort:hinge", simulation=motion)
+        numpy.testing.assert_allclose(model["A"], [[0, 1], [0, 0]])
+        numpy.testing.assert_allclose(model["B"], [[0], [1]])
+        numpy.testing.assert_allclose(model["C"], [[WEIGHT, 0.3]], rtol=1e-12)
+        numpy.testing.assert_allclose(model["D"], [[INERTIA]], rtol=1e-12)
+
+    def test_wrench_at_a_point(self):
+        model = self.model("--inputs", "wrench:tip:fx,wrench:bob:my")
+        numpy.testing.assert_allclose(model["B"], [[0, 0], [-1 / INERTIA, 1 / INERTIA]], rtol=1e-12, atol=1e-15)
+
+    def test_about_an_instant(self):
+        initial = '<initial joint="hinge" position="0.4" velocity="2"/>'
+        model = self.model("--time", "0", simulation=initial)
+        row = [-WEIGHT * numpy.cos(0.4) / INERTIA, -0.3 / INERTIA]
+        numpy.testing.assert_allclose(model["A"], [[0, 1], row], rtol=1e-10, atol=1e-10)
+        acceleration = (-WEIGHT * numpy.sin(0.4) - 0.3 * 2) / INERTIA
+        numpy.testing.assert_allclose(model["drift"], [2, acceleration], rtol=1e-12)
+
+    def test_files_have_the_same_numbers(self):
+        model = self.model()
+        for name in ("model.mat", "model.csv", "model.json"):
+            self.assertEqual(self.run_program("--output", self.path(name)).returncode, 0)
+        with open(self.path("model.json"), encoding="utf-8") as file:
+            self.assertEqual(json.load(file), model)
+        matlab = scipy.io.loadmat(self.path("model.mat"))
+        for name in MATRICES + ("mass", "damping", "stiffness"):
+            numpy.testing.assert_array_equal(matlab[name], model[name])
+        for name in NAMES:
+            self.assertEqual([str(cell[0]) for cell in matlab[name][:, 0]], model[name])
+        with open(self.path("model.csv"), encoding="utf-8") as file:
+            header, *rows = csv.reader(file)
+        self.assertEqual(header[1:], model["states"] + model["inputs"])
+        self.assertEqual([row[0] for row in rows], model["states"] + model["outputs"])
+        a, b, c, d = (numpy.array(model[name]) for name in MATRICES)
+        whole = numpy.block([[a, b], [c, d]])
+        numpy.testing.assert_array_equal([[float(number) for number in row[1:]] for row in rows], whole)
+
+    def test_poles_are_printed(self):
+        text = self.run_program().stdout.splitlines()
+        frequency, ratio = text[2].split()[:2]
+        size = numpy.sqrt(WEIGHT / INERTIA)
+        expected = 0.3 / INERTIA / 2 / size
+        # Seven and four digits are printed.
+        self.assertAlmostEqual(float(frequency) / (size * numpy.sqrt(1 - expected**2) / (2 * numpy.pi)), 1, delta=1e-6)
+        self.assertAlmostEqual(float(ratio) / expected, 1, delta=1e-3)
+
+    def test_errors_name_what_there_is(self):
+        for options, words in (
+            (("--inputs", "effort:knee"), ("effort:knee", "hinge")),
+            (("--inputs", "motion:hinge"), ("motion:hinge", "there is none")),
+            (("--inputs", "hinge"), ("hinge", "effort:JOINT")),
+            (("--outputs", "position:bob:q"), ("position:bob:q", "hinge, bob, tip")),
+            (("--outputs", "effort:hinge"), ("effort:hinge", "there is none")),
+            (("--output", "model.txt"), ("model.txt", ".mat")),
+        ):
+            result = self.run_program(*options)
+            self.assertEqual(result.returncode, 2, options)
+            for word in words:
+                self.assertIn(word, result.stderr, options)
+
+    def test_what_is_left_out_is_said(self):
+        self.assertIn("friction of joint coordinate 'hinge'", self.run_program(friction=1).stderr)
+
+
+if __name__ == "__main__":
+    PROGRAM = sys.argv[1]
+    unittest.main(argv=sys.argv[:1])
