@@ -51,6 +51,9 @@ class LinearDynamics {
   const Eigen::VectorXd& rates() const { return rates_.first; }
   const Eigen::VectorXd& accelerations() const { return rates_.second; }
 
+  /// The same of all coordinates of MotionMaps, those that loops hold included.
+  const CoordinateRates& rates_of_columns() const { return columns_; }
+
   /// A linear map of motions along the reference, by the first of y: `rows` gives it at a pose, from the motion of the
   /// rows of MotionMaps there.
   using Rows = std::function<Eigen::MatrixXd(const MechanismPose& pose, const Eigen::MatrixXd& motion)>;

@@ -1,0 +1,120 @@
+// The linearised equations against differences of the nonlinear ones along the motion itself.
+#include "analysis/linear_dynamics.h"
+
+#include <array>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "building/model_builder.h"
+#include "simulation/observables.h"
+#include "support/dense_solution.h"
+#include "support/loops.h"
+#include "support/scene_builder.h"
+
+namespace flexarm {
+namespace {
+
+using namespace test;
+using Eigen::VectorXd;
+
+/// Velocities of all nodes and coordinates, by rates of the mechanism's coordinates.
+KnownRates rates_by(const Model& model, const DegreesOfFreedom& dof, const MotionMaps& maps, const MechanismPose& pose,
+                    const VectorXd& rates) {
+  const VectorXd rows = maps.at(pose) * rates;
+  KnownRates out;
+  for (int i = 0; i < dof.node_count; ++i) {
+    out.nodes.emplace_back(rows.segment<6>(dof.first[i]));
+    out.nodes.back().tail<3>() = (pose.nodes[i].rotation * out.nodes.back().tail<3>()).eval();
+  }
+  for (const Coordinate& coordinate : model.coordinates) out.coordinates.push_back(rows[dof.scalar_of(coordinate)]);
+  return out;
+}
+
+State placed(State state, const MechanismPose& pose) {
+  const State at = state_at(pose);
+  for (std::size_t i = 0; i < state.nodes.size(); ++i) {
+    state.nodes[i].position = at.nodes[i].position;
+    state.nodes[i].orientation = at.nodes[i].orientation;
+  }
+  state.released = pose.released;
+  return state;
+}
+
+/// A motion whose beginning is another motion's state a little later is that one, so that y''' is both the difference
+/// quotient of y'' along the motion and what M y''' + C y'' + K y' = 0 says. Tests that are Lagrange functions: of
+/// those the static tangent is the exact derivative. Relative error for differences over `time`, about a state that is
+/// bent and moves in all its coordinates.
+double error_of_third_derivative(const Model& model, double time) {
+  const Scheme scheme = *find_scheme("newmark");
+  const DegreesOfFreedom dof(model);
+  const MotionMaps maps(model, dof);
+  const State start = initial_state(model);
+  VectorXd rates(maps.columns());
+  for (Eigen::Index i = 0; i < rates.size(); ++i) rates[i] = 0.3 * std::sin(1.7 * static_cast<double>(i) + 1);
+  const VectorXd none = VectorXd::Zero(rates.size());
+  const auto at = [&](const MechanismPose& pose, const VectorXd& own) {
+    return LinearDynamics(model, placed(start, pose), scheme, Reference::Instant,
+                          rates_by(model, dof, maps, pose, own));
+  };
+  const MechanismPose straight = maps.moved(pose_of(start), {none, none}, 0);
+  // Without loops the pose may be any; with them, what moves alone is the independent coordinates.
+  const MechanismPose pose = model.closures.empty() ? maps.moved(straight, {rates, none}, 0.2) : straight;
+  const LinearDynamics dynamics = at(pose, rates);
+  const auto columns = [&](const VectorXd& own) {
+    VectorXd all = VectorXd::Zero(rates.size());
+    for (std::size_t i = 0; i < dynamics.scalars().size(); ++i)
+      all[dof.equation[dynamics.scalars()[i]]] = own[static_cast<Eigen::Index>(i)];
+    return all;
+  };
+  const CoordinateRates way = dynamics.rates_of_columns();
+  std::array<VectorXd, 2> accelerations;
+  for (const int side : {0, 1}) {
+    const double ahead = side ? time : -time;
+    accelerations[side] =
+        at(maps.moved(pose, way, ahead), columns(dynamics.rates() + ahead * dynamics.accelerations())).accelerations();
+  }
+  const VectorXd difference = (accelerations[1] - accelerations[0]) / (2 * time);
+  const VectorXd third = solution(
+      dynamics.mass(), -dynamics.stiffness() * dynamics.rates() - dynamics.damping() * dynamics.accelerations());
+  return (difference - third).norm() / third.norm();
+}
+
+/// `time` is short for the fastest motion, and a tenth of it long beside the round-off of differences.
+void expect_second_order(const Model& model, double time) {
+  const double large = error_of_third_derivative(model, time), small = error_of_third_derivative(model, 0.1 * time);
+  EXPECT_NEAR(std::log10(large / small), 2, 0.02) << large << ", " << small;
+}
+
+const scene::DirectSection kSoft = section(1e3, 4e2, 8, 10, 1, 2e-2, 1e-2);
+const Matrix3 kInertia = (Matrix3() << 0.1, 0.01, 0.02, 0.01, 0.2, -0.03, 0.02, -0.03, 0.25).finished();
+
+TEST(LinearDynamics, OfAFlexibleArmInMotion) {
+  SceneBuilder builder;
+  builder.scene.gravity = Vector3(0, 0.5, -2);
+  builder.beam("upper", {Vector3(1, 0, 0)}, kSoft, 2, 2);
+  builder.beam("fore", {Vector3(1, 0, 0)}, kSoft, 1, 3);
+  builder.body("load", 2, Vector3(0.1, 0.1, -0.05), kInertia);
+  builder.joint("shoulder", scene::JointKind::Spherical, "world", "upper");
+  builder.joint("elbow", scene::JointKind::Continuous, "upper", "fore", Vector3(1, 0, 0), Vector3::UnitY()).damping =
+      0.3;
+  builder.joint("grip", scene::JointKind::Prismatic, "fore", "load", Vector3(1, 0, 0), Vector3::UnitZ());
+  expect_second_order(build_model(builder.scene), 3e-4);
+}
+
+TEST(LinearDynamics, OfALoopInMotion) {
+  SceneBuilder builder;
+  builder.scene.gravity = Vector3(0, 0, -3);
+  for (const char* name : {"crank", "rocker", "coupler"}) builder.body(name, 2, Vector3(0.1, 0.1, -0.05), kInertia);
+  const Vector3 y = Vector3::UnitY();
+  builder.joint("root", scene::JointKind::Continuous, "world", "crank", Vector3::Zero(), y);
+  builder.joint("knee", scene::JointKind::Continuous, "crank", "coupler", Vector3(0, 0, -0.7), y);
+  builder.joint("foot", scene::JointKind::Continuous, "world", "rocker", Vector3(1, 0, 0.2), y);
+  close_loop(builder, "hip", scene::JointKind::Continuous, "coupler", "rocker", Vector3(0, 0, -0.9), y);
+  const Model model = build_model(builder.scene);
+  ASSERT_FALSE(model.closures.empty());
+  expect_second_order(model, 3e-3);
+}
+
+}  // namespace
+}  // namespace flexarm
