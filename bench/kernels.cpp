@@ -10,6 +10,9 @@
 #include <vector>
 
 #include "bench/scenes.h"
+#include "flexarm/scene/scene_description.h"
+#include "flexarm/scene/urdf_reader.h"
+#include "flexarm/simulation/linear_model.h"
 #include "flexarm/simulation/simulation.h"
 #include "integrators/step_system.h"
 #include "joints/joint_map.h"
@@ -203,6 +206,12 @@ void fold_maps(benchmark::State& state, bool with_tangent) {
   }
 }
 
+/// The demo as it stands: matrices, inputs, outputs.
+void linearise_demo(benchmark::State& state) {
+  Simulation simulation(*scene::read_scene_file(FLEXARM_SOURCE_DIR "/config/demo_arm.urdf").scene);
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(linearise(simulation).a.data());
+}
+
 template <class... Arguments>
 benchmark::internal::Benchmark* add(const std::string& name, void (*run)(benchmark::State&, Arguments...),
                                     Arguments... arguments) {
@@ -228,6 +237,7 @@ const bool registered = [] {
   add("scatter/order:4", scatter<5>);
   add("fold_maps/revolute/residual", fold_maps, false);
   add("fold_maps/revolute/tangent", fold_maps, true);
+  add("linearise/demo", linearise_demo);
   for (int order = 1; order <= 4; ++order) {
     add(fmt::format("begin/em/order:{}", order), begin_step, order);
     add(fmt::format("gather/order:{}", order), gather, order);
