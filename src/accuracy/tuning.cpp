@@ -308,6 +308,7 @@ TuningResult Search::result(const std::string& ended) {
     out.reference_error = reference_error_;
   } else {
     reference_ = finest();
+    if (reference_ && !moves(reference_->motion)) reference_ = nullptr;
   }
   const TrialRun* chosen = reference_ ? best() : nullptr;
   out.is_met = chosen != nullptr;
@@ -317,7 +318,7 @@ TuningResult Search::result(const std::string& ended) {
   if (reference_ && !out.reference)
     shortcomings_.emplace_back("no reference was made: errors are against the finest run");
   for (const TrialRun& run : trials_.all()) {
-    const double off = run.is_complete() ? error(run) : 0;
+    const double off = reference_ && run.is_complete() ? error(run) : 0;
     TunedRun row{run.settings, seconds_of(run), times_.count(&run) > 0, run.steps, run.iterations, run.unknowns,
                  off,          run.failure};
     if (&run == chosen) out.best = out.runs.size();
