@@ -38,10 +38,11 @@ struct Cost {
 
 std::unique_ptr<ResultWriter> make_writer(const Simulation& simulation, const Reading& reading) {
   if (reading.way != Reading::Way::InPlace && reading.way != Reading::Way::Background) return nullptr;
-  auto writer =
-      std::make_unique<CsvWriter>("/dev/null", ResultColumns(simulation, ResultColumns::Solver::With, reading.columns));
-  if (reading.way == Reading::Way::InPlace) return writer;
-  return std::make_unique<BackgroundWriter>(std::move(writer), simulation);
+  const auto make = [&](const Simulation& shown) {
+    return std::make_unique<CsvWriter>("/dev/null", ResultColumns(shown, ResultColumns::Solver::With, reading.columns));
+  };
+  if (reading.way == Reading::Way::InPlace) return make(simulation);
+  return std::make_unique<BackgroundWriter>(simulation, make);
 }
 
 Cost cost_of(const scene::SceneDescription& scene, int steps, const Reading& reading) {

@@ -62,8 +62,9 @@ std::unique_ptr<ResultWriter> open_output(const SimulateArguments& arguments, co
                                           RunSummary& summary) {
   if (arguments.output.empty()) return nullptr;
   try {
-    return std::make_unique<BackgroundWriter>(
-        std::make_unique<SummarisedWriter>(make_writer(arguments, simulation), summary), simulation);
+    return std::make_unique<BackgroundWriter>(simulation, [&](const Simulation& shown) {
+      return std::make_unique<SummarisedWriter>(make_writer(arguments, shown), summary);
+    });
   } catch (const std::invalid_argument& error) {
     throw InputError("flexarm: --columns: " + std::string(error.what()));
   } catch (const std::runtime_error& error) {

@@ -42,9 +42,9 @@ class SignalsBlocked {
 
 }  // namespace
 
-BackgroundWriter::BackgroundWriter(std::unique_ptr<ResultWriter> writer, const Simulation& simulation)
-    : writer_(std::move(writer)),
-      mirror_(simulation.copy()),
+BackgroundWriter::BackgroundWriter(const Simulation& simulation, const MakeWriter& make_writer)
+    : mirror_(simulation.copy()),
+      writer_(make_writer(mirror_)),
       ring_(entries_for(state_of(simulation))),
       returned_(entries_for(state_of(simulation))) {
   const SignalsBlocked blocked;

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <thread>
 #include <vector>
@@ -16,7 +17,10 @@ namespace flexarm {
 /// the writer by more than some rows waits for it. Where it fails, its error comes out of the next call.
 class BackgroundWriter : public ResultWriter {
  public:
-  BackgroundWriter(std::unique_ptr<ResultWriter> writer, const Simulation& simulation);
+  /// Makes the writer of the simulation that it will look at, which never steps.
+  using MakeWriter = std::function<std::unique_ptr<ResultWriter>(const Simulation& shown)>;
+
+  BackgroundWriter(const Simulation& simulation, const MakeWriter& make_writer);
   /// All rows that were handed over are written.
   ~BackgroundWriter() override;
 
@@ -42,8 +46,8 @@ class BackgroundWriter : public ResultWriter {
   void write_entries();
   void write(Entry& entry);
 
-  std::unique_ptr<ResultWriter> writer_;
   Simulation mirror_;  // never steps: what the writer looks at
+  std::unique_ptr<ResultWriter> writer_;
   SpscRing<Entry> ring_;
   SpscRing<Snapshot> returned_;  // memory, by the thread that writes
   std::vector<Snapshot> free_;   // memory, what came back last at the end

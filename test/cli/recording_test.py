@@ -2,6 +2,7 @@
 """HDF5 files and bags of `flexarm simulate`, read by h5py and rosbag: `recording_test.py PROGRAM`."""
 
 import csv
+import math
 import os
 import subprocess
 import sys
@@ -103,6 +104,23 @@ class Recording(unittest.TestCase):
             self.assertEqual(cells[-1].header.frame_id, "hand")
             latched = [c for c in bag._get_connections() if c.topic == "/tf_static"]
             self.assertEqual(latched[0].header.get("latching"), b"1")
+
+    def test_bag_has_the_numbers_of_the_table(self):
+        # So many rows at once that the thread that writes is behind the one that steps.
+        until = ("--until", "2")
+        with open(self.record("arm.csv", *until), encoding="utf-8") as lines:
+            rows = list(csv.DictReader(lines))
+        with rosbag.Bag(self.record("arm.bag", *until)) as bag:
+            joints = [message for _, message, _ in bag.read_messages("/joint_states")]
+            frames = [message.transforms[0].transform for _, message, _ in bag.read_messages("/tf")]
+        self.assertEqual(len(rows), len(joints))
+        for quantity in ("position", "velocity", "effort"):
+            self.assertEqual([getattr(message, quantity)[0] for message in joints],
+                             [float(row["joint/shoulder/" + quantity]) for row in rows], quantity)
+        # The joint is at the world's origin, and turns about its y axis.
+        for frame, row in zip(frames, rows):
+            sine = math.sin(float(row["joint/shoulder/position"]) / 2)
+            self.assertAlmostEqual(abs(frame.rotation.y), abs(sine), places=12)
 
     def test_what_cannot_be_written_is_an_error_of_input(self):
         for name in ("none/arm.h5", "none/arm.bag"):

@@ -43,8 +43,9 @@ class Recorder : public ResultWriter {
 Rows recorded(const scene::SceneDescription& scene, int steps, bool in_background) {
   Rows rows;
   Simulation simulation(scene);
-  std::unique_ptr<ResultWriter> writer = std::make_unique<Recorder>(simulation, rows);
-  if (in_background) writer = std::make_unique<BackgroundWriter>(std::move(writer), simulation);
+  const auto make = [&](const Simulation& shown) { return std::make_unique<Recorder>(shown, rows); };
+  std::unique_ptr<ResultWriter> writer = make(simulation);
+  if (in_background) writer = std::make_unique<BackgroundWriter>(simulation, make);
   writer->write_row(simulation);
   for (int n = 0; n < steps; ++n) {
     if (n == 2 * steps / 3) simulation.reset();
@@ -127,9 +128,9 @@ Simulation pendulum() {
 TEST(BackgroundWriter, LosesNoRowOfASlowWriter) {
   Simulation simulation = pendulum();
   std::vector<double> written, made;
-  BackgroundWriter writer(
-      std::make_unique<Noting>(written, [] { std::this_thread::sleep_for(std::chrono::microseconds(50)); }),
-      simulation);
+  BackgroundWriter writer(simulation, [&](const Simulation&) {
+    return std::make_unique<Noting>(written, [] { std::this_thread::sleep_for(std::chrono::microseconds(50)); });
+  });
   for (int n = 0; n < 1000; ++n) {
     simulation.step();
     made.push_back(simulation.time());
@@ -143,7 +144,7 @@ TEST(BackgroundWriter, WritesAllRowsWhereTheRunEndsByAnError) {
   Simulation simulation = pendulum();
   std::vector<double> written;
   {
-    BackgroundWriter writer(std::make_unique<Noting>(written, [] {}), simulation);
+    BackgroundWriter writer(simulation, [&](const Simulation&) { return std::make_unique<Noting>(written, [] {}); });
     for (int n = 0; n < 10; ++n) writer.write_row(simulation);
   }
   EXPECT_EQ(written.size(), 10u);
@@ -152,11 +153,11 @@ TEST(BackgroundWriter, WritesAllRowsWhereTheRunEndsByAnError) {
 TEST(BackgroundWriter, TellsTheWritersError) {
   Simulation simulation = pendulum();
   std::vector<double> written;
-  BackgroundWriter writer(std::make_unique<Noting>(written,
-                                                   [&] {
-                                                     if (written.size() == 5) throw std::runtime_error("disk full");
-                                                   }),
-                          simulation);
+  BackgroundWriter writer(simulation, [&](const Simulation&) {
+    return std::make_unique<Noting>(written, [&] {
+      if (written.size() == 5) throw std::runtime_error("disk full");
+    });
+  });
   std::string error;
   try {
     for (int n = 0; n < 10000; ++n) writer.write_row(simulation);
