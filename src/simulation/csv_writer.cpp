@@ -27,7 +27,8 @@ bool is_standard_output(const std::string& path) {
 
 std::FILE* open(const std::string& path) {
   std::FILE* file = is_standard_output(path) ? fdopen(dup(STDOUT_FILENO), "w") : std::fopen(path.c_str(), "w");
-  // Rows go out as a whole: a reader, or what is left when the process is killed, has no broken ones.
+  // Rows go out as a whole: a reader has no broken ones, nor has what is left when the process is killed, but where
+  // that is in the middle of a write into two pages, which Linux ends between them.
   if (file) std::setvbuf(file, nullptr, _IONBF, 0);
   return file;
 }
