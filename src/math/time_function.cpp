@@ -99,7 +99,15 @@ void read_table(std::string_view text, Function& function) {
 
 }  // namespace
 
+/// Copied, never moved: an expression that is compiled anew may throw.
 struct TimeFunction::Implementation {
+  Implementation() = default;
+  template <class Kind>
+  Implementation(std::string as_text, Kind kind) : text(std::move(as_text)), function(std::move(kind)) {}
+  Implementation(const Implementation&) = default;
+  Implementation& operator=(const Implementation&) = delete;
+  ~Implementation() = default;
+
   std::string text;
   Function function;
 };
@@ -109,7 +117,7 @@ TimeFunction::TimeFunction() : TimeFunction(1.0) {}
 TimeFunction::TimeFunction(double constant) {
   char text[32];
   const std::to_chars_result result = std::to_chars(text, text + sizeof text, constant);
-  implementation_ = std::make_shared<const Implementation>(Implementation{std::string(text, result.ptr), constant});
+  implementation_ = std::make_shared<const Implementation>(std::string(text, result.ptr), constant);
 }
 
 TimeFunction::TimeFunction(std::shared_ptr<const Implementation> implementation)
@@ -162,7 +170,7 @@ TimeFunction TimeFunction::spline(std::vector<double> times, std::vector<double>
     fmt::format_to(std::back_inserter(text), "{}{}:{}:{}", i > 0 ? " " : "", spline.times[i], spline.values[i],
                    spline.rates[i]);
   }
-  return TimeFunction(std::make_shared<const Implementation>(Implementation{to_string(text), std::move(spline)}));
+  return TimeFunction(std::make_shared<const Implementation>(to_string(text), std::move(spline)));
 }
 
 double TimeFunction::operator()(double t) const {
