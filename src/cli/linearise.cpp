@@ -44,7 +44,7 @@ void go_to_reference(const Arguments& arguments, Simulation& simulation) {
     warn_of_instability(result, arguments.wanted);
   else
     fmt::print(stderr, "flexarm: {}; the model is that of the initial configuration\n",
-               lack_of_equilibrium(simulation, result, initial_modes(simulation, 1)));
+               lack_of_equilibrium(simulation, result));
 }
 
 void print_poles(const LinearModel& model, const Arguments& arguments) {

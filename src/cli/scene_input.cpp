@@ -107,9 +107,10 @@ std::vector<Mode> modes_about_equilibrium(Simulation& simulation, int count, Equ
     warn_of_instability(result, wanted);
     return simulation.natural_modes(count);
   }
-  const std::vector<Mode> modes = initial_modes(simulation, count);
+  const std::vector<Mode> modes =
+      simulation.natural_modes(count + static_cast<int>(simulation.coordinate_names().size()));
   fmt::print(stderr, "flexarm: {}; the modes are those of the initial configuration\n",
-             lack_of_equilibrium(simulation, result, modes));
+             lack_of_equilibrium(simulation.scene(), model_of(simulation), result, modes));
   return modes;
 }
 
@@ -124,15 +125,6 @@ void warn_of_instability(const StaticResult& result, Equilibrium wanted) {
 
 bool are_modes_quick(const Simulation& simulation) {
   return flexarm::are_modes_quick(simulation.degrees_of_freedom(), simulation.coordinate_names().size());
-}
-
-std::vector<Mode> initial_modes(const Simulation& simulation, int count) {
-  return simulation.natural_modes(count + static_cast<int>(simulation.coordinate_names().size()));
-}
-
-std::string lack_of_equilibrium(const Simulation& simulation, const StepResult& result,
-                                const std::vector<Mode>& modes) {
-  return flexarm::lack_of_equilibrium(simulation.scene(), model_of(simulation), result, modes);
 }
 
 }  // namespace flexarm::cli

@@ -45,16 +45,12 @@ void add_equilibrium(CLI::App& command, Equilibrium& wanted);
 void warn_of_instability(const StaticResult& result, Equilibrium wanted);
 
 /// Goes to the equilibrium if there is one that can be found; the `count` first modes about it. A mechanism that can
-/// move freely has none, which is said on the standard error output; then initial_modes().
+/// move freely has none, which is said on the standard error output; then those about the initial configuration, as
+/// many more as there may be free motions.
 /// @throws std::runtime_error if the eigenvalue problem cannot be solved.
 std::vector<Mode> modes_about_equilibrium(Simulation& simulation, int count, Equilibrium wanted = Equilibrium::Stable);
 
 /// Whether a few modes take seconds and no more: without springs, there is a free one for every joint coordinate.
 bool are_modes_quick(const Simulation& simulation);
-/// Modes about the present configuration: `count`, and as many more as there may be free motions.
-std::vector<Mode> initial_modes(const Simulation& simulation, int count);
-
-/// Why solve_static() failed with `result`: by what nothing holds, if that is it. `modes`: initial_modes().
-std::string lack_of_equilibrium(const Simulation& simulation, const StepResult& result, const std::vector<Mode>& modes);
 
 }  // namespace flexarm::cli

@@ -41,8 +41,7 @@ int solve(const Arguments& arguments) {
   Simulation simulation = load_simulation(arguments.scene);
   const StaticResult result = simulation.solve_static(arguments.load_steps, arguments.wanted);
   if (!result.converged) {
-    const std::vector<Mode> modes = are_modes_quick(simulation) ? initial_modes(simulation, 1) : std::vector<Mode>();
-    fmt::print(stderr, "flexarm: {}\n", lack_of_equilibrium(simulation, result, modes));
+    fmt::print(stderr, "flexarm: {}\n", lack_of_equilibrium(simulation, result));
     return kFailed;
   }
   warn_of_instability(result, arguments.wanted);

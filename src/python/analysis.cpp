@@ -1,11 +1,9 @@
 #include <pybind11/stl.h>
 
-#include "flexarm/scene/scene_description.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/errors.h"
 #include "simulation/equilibrium_text.h"
-#include "simulation/inside.h"
 
 namespace py = pybind11;
 
@@ -31,22 +29,15 @@ std::vector<py::object> natural_modes(GuardedSimulation& guarded, int count) {
   return values;
 }
 
-/// As the command line looks for what nothing holds.
-std::string lack_of_equilibrium(GuardedSimulation& guarded, const StaticResult& result) {
-  return guarded.work([&](const Simulation& simulation) {
-    const std::size_t joints = simulation.coordinate_names().size();
-    const std::vector<Mode> modes = are_modes_quick(simulation.degrees_of_freedom(), joints)
-                                        ? simulation.natural_modes(1 + static_cast<int>(joints))
-                                        : std::vector<Mode>();
-    return flexarm::lack_of_equilibrium(simulation.scene(), model_of(simulation), result, modes);
-  });
-}
-
 void solve_static(GuardedSimulation& guarded, int load_steps, bool stable) {
   const Equilibrium wanted = stable ? Equilibrium::Stable : Equilibrium::UnderTheLoads;
   const StaticResult result =
       guarded.work([&](Simulation& simulation) { return simulation.solve_static(load_steps, wanted); });
-  if (!result.converged) raise_step_error(guarded.use(), lack_of_equilibrium(guarded, result), result.reason);
+  if (!result.converged) {
+    const std::string lack =
+        guarded.work([&](const Simulation& simulation) { return lack_of_equilibrium(simulation, result); });
+    raise_step_error(guarded.use(), lack, result.reason);
+  }
   const char* consequence =
       stable ? "falls from it; this is where it comes to rest (stable=False: the one that it falls from)"
              : "would fall from it";

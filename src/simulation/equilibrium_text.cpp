@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "simulation/inside.h"
+
 namespace flexarm {
 namespace {
 
@@ -60,6 +62,14 @@ std::string lack_of_equilibrium(const scene::SceneDescription& scene, const Mode
   return fmt::format(
       "no equilibrium: nothing holds {} in the initial configuration ({} free; a <motion> would hold it)",
       listed(joints), free == 1 ? "1 motion is" : fmt::format("{} motions are", free));
+}
+
+std::string lack_of_equilibrium(const Simulation& simulation, const StepResult& result) {
+  const std::size_t coordinates = simulation.coordinate_names().size();
+  std::vector<Mode> modes;
+  if (are_modes_quick(simulation.degrees_of_freedom(), coordinates))
+    modes = simulation.natural_modes(1 + static_cast<int>(coordinates));
+  return lack_of_equilibrium(simulation.scene(), model_of(simulation), result, modes);
 }
 
 std::vector<std::string> doubts_about_equilibrium(const StaticResult& result, const std::string& consequence) {

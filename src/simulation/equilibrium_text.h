@@ -6,6 +6,7 @@
 
 #include "flexarm/model/results.h"
 #include "flexarm/scene/scene_description.h"
+#include "flexarm/simulation/simulation.h"
 #include "model/model.h"
 
 namespace flexarm {
@@ -20,6 +21,8 @@ bool are_modes_quick(std::size_t unknowns, std::size_t coordinates);
 /// configuration: of all free motions; or none.
 std::string lack_of_equilibrium(const scene::SceneDescription& scene, const Model& model, const StepResult& result,
                                 const std::vector<Mode>& modes);
+/// The same of a simulation, which is as before solve_static(): looks for these modes where that is quick.
+std::string lack_of_equilibrium(const Simulation& simulation, const StepResult& result);
 
 /// That an equilibrium is not stable, or not the only one; empty if neither. `consequence`: what becomes of the link
 /// that falls.
