@@ -6,6 +6,8 @@
 #include <optional>
 #include <stdexcept>
 
+#include <fmt/format.h>
+
 #include "accuracy/scheme_tries.h"
 #include "flexarm/scene/scene_description.h"
 #include "schemes/scheme.h"
@@ -67,7 +69,7 @@ class TriesOfARun {
       else if (!goes_on)
         break;
     }
-    if (other_ && run_.scheme == kHigherOrder) own_.simulation().take_over(*simulation_of_other_);
+    if (other_ && run_.scheme() == kHigherOrder) own_.simulation().take_over(*simulation_of_other_);
     return std::move(run_);
   }
 
@@ -153,6 +155,13 @@ const char* to_string(AccurateRun::End end) {
       return "the most steps have been made";
   }
   return "";
+}
+
+std::string shortcoming(const AccurateRun& run, double accuracy, double more) {
+  const double estimate = run.estimate() + more;
+  const std::string reached = std::isnan(estimate) ? "unknown" : fmt::format("{:.2g}", estimate);
+  return fmt::format("the accuracy {:g} was not met: {}; estimated error {} after {} tries, {} steps", accuracy,
+                     to_string(run.end), reached, run.tries.size(), run.steps);
 }
 
 }  // namespace flexarm

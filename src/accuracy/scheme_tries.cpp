@@ -108,10 +108,9 @@ bool SchemeTries::attempt(AccurateRun& run) {
   steps_ = static_cast<int>(next_);
   set_steps();
   iterations_per_step_ = 0;
-  run.scheme = simulation_.scheme();
   run.steps_per_interval = steps_;
   run.interval = plan_.interval();
-  run.tries.push_back({run.scheme, static_cast<long>(plan_.total(steps_)), kUnknown});
+  run.tries.push_back({simulation_.scheme(), static_cast<long>(plan_.total(steps_)), kUnknown});
   plan_.watcher.begin(simulation_, run.tries.back().steps, expected_);
   run.motion = JudgedMotion(plan_.points.size());
   for (int i = 0; i <= plan_.intervals; ++i) {

@@ -114,16 +114,14 @@ Run run_accurately(SimulateArguments arguments, double accuracy, Simulation& sim
   run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const bool are_steps_good = result.end == AccurateRun::End::Met;
   run.is_accurate = are_steps_good && meshes.is_met;
-  const double estimate = result.estimate() + meshes.error;
-  const std::string reached = std::isnan(estimate) ? "unknown" : fmt::format("{:.2g}", estimate);
   if (!are_steps_good && result.end != AccurateRun::End::Failed)
-    fmt::print(stderr, "flexarm: the accuracy {:g} was not met: {}; estimated error {} after {} tries, {} steps\n",
-               accuracy, to_string(result.end), reached, result.tries.size(), result.steps);
+    fmt::print(stderr, "flexarm: {}\n", shortcoming(result, accuracy, meshes.error));
   else if (run.is_accurate && !arguments.quiet)
-    fmt::print(report_stream(arguments),
-               "accuracy {:g} asked for, error {} estimated, of {:.3g} m; {} steps of {}; {} tries, {} steps in all\n",
-               accuracy, reached, result.scale, result.tries.back().steps, result.scheme, result.tries.size(),
-               result.steps);
+    fmt::print(
+        report_stream(arguments),
+        "accuracy {:g} asked for, error {:.2g} estimated, of {:.3g} m; {} steps of {}; {} tries, {} steps in all\n",
+        accuracy, result.estimate() + meshes.error, result.scale, result.tries.back().steps, result.scheme(),
+        result.tries.size(), result.steps);
   return run;
 }
 

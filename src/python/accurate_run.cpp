@@ -1,10 +1,6 @@
 #include "flexarm/accuracy/accurate_run.h"
 
-#include <cmath>
-
 #include <pybind11/stl.h>
-
-#include <fmt/format.h>
 
 #include "python/arrays.h"
 #include "python/bindings.h"
@@ -51,13 +47,6 @@ class IntervalRecorder : public RunWatcher {
   SignalClock signals_;
 };
 
-/// What the command line says.
-std::string shortcoming(const AccurateRun& run, double accuracy) {
-  const std::string reached = std::isnan(run.estimate()) ? "unknown" : fmt::format("{:.2g}", run.estimate());
-  return fmt::format("the accuracy {:g} was not met: {}; estimated error {} after {} tries, {} steps", accuracy,
-                     to_string(run.end), reached, run.tries.size(), run.steps);
-}
-
 py::object run_accurately(GuardedSimulation& guarded, double until, double accuracy, int intervals,
                           const std::optional<std::vector<std::string>>& record, std::optional<double> scale,
                           const std::string& frame, int most_tries, double most_steps) {
@@ -72,7 +61,7 @@ py::object run_accurately(GuardedSimulation& guarded, double until, double accur
     raise_step_error(simulation, simulation.explain(run.last), run.last.reason, recorder.rows());
   if (run.end != AccurateRun::End::Met)
     raise(make("flexarm.errors", "AccuracyError", shortcoming(run, accuracy), run.estimate(), recorder.rows()));
-  return make("flexarm.values", "AccurateRun", run.estimate(), run.scale, run.scheme, run.tries.size(), run.steps,
+  return make("flexarm.values", "AccurateRun", run.estimate(), run.scale, run.scheme(), run.tries.size(), run.steps,
               run.steps_per_interval, run.interval, recorder.rows());
 }
 

@@ -129,7 +129,7 @@ TEST(AccurateRun, TakesASchemeOfHigherOrderWhereItMay) {
     ASSERT_EQ(run.end, AccurateRun::End::Met) << tries_of(run);
     SCOPED_TRACE(std::string(scheme) + ": " + tries_of(run));
     const bool is_auto = std::string(scheme) == "auto";
-    EXPECT_EQ(run.scheme, is_auto ? "em4" : "em");
+    EXPECT_EQ(run.scheme(), is_auto ? "em4" : "em");
     EXPECT_EQ(simulation.scheme(), "em");
     if (!is_auto) EXPECT_LT(steps, 0.5 * static_cast<double>(run.steps)) << "nothing is gained";
     steps = run.steps;

@@ -52,7 +52,6 @@ struct AccurateRun {
 
   End end = End::OutOfTries;
   double scale = 0;            ///< of errors [m]
-  std::string scheme;          ///< of the last try
   int steps_per_interval = 0;  ///< of the last try
   double interval = 0;         ///< [s]
   std::vector<Try> tries;
@@ -60,6 +59,8 @@ struct AccurateRun {
   StepResult last;  ///< of the last step
   JudgedMotion motion;
 
+  /// Of the last try; empty: there was none.
+  std::string scheme() const { return tries.empty() ? "" : tries.back().scheme; }
   /// The estimate of the last try.
   double estimate() const { return tries.empty() ? std::numeric_limits<double>::quiet_NaN() : tries.back().estimate; }
 };
@@ -74,5 +75,7 @@ struct AccurateRun {
 AccurateRun run_to_accuracy(Simulation& simulation, const AccuracyRequest& request, RunWatcher& watcher);
 
 const char* to_string(AccurateRun::End end);
+/// What is to be said of a run that was asked for `accuracy` and has not met it. `more`: what else errs, relative.
+std::string shortcoming(const AccurateRun& run, double accuracy, double more = 0);
 
 }  // namespace flexarm
