@@ -200,9 +200,7 @@ void add_simulate(CLI::App& app, int& status) {
   command
       ->add_option_function<std::string>(
           "--on-failure",
-          [arguments](const std::string& choice) {
-            arguments->options.on_failure = choice == "stop" ? OnFailure::Stop : OnFailure::Dissipate;
-          },
+          [arguments](const std::string& choice) { arguments->options.on_failure = on_failure_called(choice); },
           "what becomes of a step that the scheme cannot do (the scene's)")
       ->check(CLI::IsMember({"stop", "dissipate"}));
   CLI::Option* output = command->add_option(

@@ -13,6 +13,12 @@ const char* to_string(ServoMode mode) {
   return mode == ServoMode::Effort ? "effort" : mode == ServoMode::Velocity ? "velocity" : "position";
 }
 
+std::optional<ServoMode> servo_mode_called(std::string_view name) {
+  for (const ServoMode mode : {ServoMode::Effort, ServoMode::Velocity, ServoMode::Position})
+    if (name == to_string(mode)) return mode;
+  return std::nullopt;
+}
+
 const char* to_string(StepResult::Reason reason) {
   switch (reason) {
     case StepResult::Reason::None:

@@ -16,8 +16,7 @@ namespace flexarm::python {
 namespace {
 
 ServoMode mode_of(const std::string& name) {
-  for (const ServoMode mode : {ServoMode::Effort, ServoMode::Velocity, ServoMode::Position})
-    if (name == to_string(mode)) return mode;
+  if (const std::optional<ServoMode> mode = servo_mode_called(name)) return *mode;
   throw std::invalid_argument("mode: expected 'effort', 'velocity' or 'position', got '" + name + "'");
 }
 

@@ -16,8 +16,7 @@ namespace flexarm::python {
 namespace {
 
 OnFailure on_failure_of(const std::string& name) {
-  if (name == "stop") return OnFailure::Stop;
-  if (name == "dissipate") return OnFailure::Dissipate;
+  if (const std::optional<OnFailure> on_failure = on_failure_called(name)) return *on_failure;
   throw std::invalid_argument("on_failure: expected 'stop' or 'dissipate', got '" + name + "'");
 }
 

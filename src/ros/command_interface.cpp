@@ -13,12 +13,6 @@ namespace {
 constexpr std::chrono::seconds kWarningPeriod(1);
 constexpr int kQueueSize = 10;
 
-std::optional<ServoMode> mode_called(const std::string& name) {
-  for (const ServoMode mode : {ServoMode::Effort, ServoMode::Velocity, ServoMode::Position})
-    if (name == to_string(mode)) return mode;
-  return std::nullopt;
-}
-
 }  // namespace
 
 CommandInterface::CommandInterface(ros::NodeHandle& node, ros::NodeHandle& private_node, const Simulation& shown,
@@ -103,7 +97,7 @@ std::string CommandInterface::switch_mode(Simulation& simulation, const std::vec
   const Snapshot before = simulation.snapshot();
   for (std::size_t i = 0; i < names.size(); ++i) {
     const std::optional<std::size_t> coordinate = simulation.find_coordinate(names[i]);
-    const std::optional<ServoMode> mode = mode_called(modes[i]);
+    const std::optional<ServoMode> mode = servo_mode_called(modes[i]);
     std::string fault = !coordinate ? "there is no joint coordinate '" + names[i] + "'"
                         : !mode     ? "mode must be 'effort', 'velocity' or 'position', got '" + modes[i] + "'"
                                     : std::string();

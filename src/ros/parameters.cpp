@@ -91,9 +91,9 @@ void read_on_failure(ParameterReader& reader, IntegratorDescription& integrator)
   std::string choice;
   reader.read("on_failure", choice);
   if (choice.empty()) return;
-  if (choice != "stop" && choice != "dissipate")
-    return reader.complain("on_failure", "must be 'stop', 'dissipate' or empty", "'" + choice + "'");
-  integrator.on_failure = choice == "stop" ? OnFailure::Stop : OnFailure::Dissipate;
+  const std::optional<OnFailure> on_failure = on_failure_called(choice);
+  if (!on_failure) return reader.complain("on_failure", "must be 'stop', 'dissipate' or empty", "'" + choice + "'");
+  integrator.on_failure = *on_failure;
   for (const OptionConflict& conflict : option_conflicts(integrator))
     reader.complain("on_failure", conflict.message, "'" + choice + "'");
 }

@@ -32,6 +32,12 @@ bool has_own_interpolation(std::string_view name) {
 
 }  // namespace
 
+std::optional<OnFailure> on_failure_called(std::string_view name) {
+  if (name == "stop") return OnFailure::Stop;
+  if (name == "dissipate") return OnFailure::Dissipate;
+  return std::nullopt;
+}
+
 const std::vector<std::string_view>& scheme_names() {
   static const std::vector<std::string_view> names = [] {
     std::vector<std::string_view> out = {"auto"};

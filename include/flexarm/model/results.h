@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "flexarm/math/pose.h"
@@ -179,6 +180,8 @@ enum class ServoMode {
 
 /// As scenes name it.
 const char* to_string(ServoMode mode);
+/// By what to_string() says; empty: there is none of that name.
+std::optional<ServoMode> servo_mode_called(std::string_view name);
 
 /// Where a joint coordinate is to be, and how fast; what is not given stays as it is.
 struct CoordinateState {

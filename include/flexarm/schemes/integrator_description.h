@@ -28,6 +28,9 @@ enum class OnFailure {
   Dissipate  ///< it is done from its beginning by edmc2, with its own numerical dissipation
 };
 
+/// "stop" or "dissipate"; empty: there is none of that name.
+std::optional<OnFailure> on_failure_called(std::string_view name);
+
 /// Of Newton's method; with more there would be nothing left of it.
 constexpr double kLargestTolerance = 1;
 /// Beyond it, servos' integrals are no numbers any more [s].
