@@ -6,13 +6,11 @@
 #include "elements/nodal_inertia.h"
 #include "joints/joint_kinematics.h"
 #include "math/pi.h"
+#include "simulation/agreement.h"
 
 namespace flexarm {
 namespace {
 
-/// Changes of the mean rate from step to step that differ by less than this part of their sum belong to a smooth
-/// motion: one is at most twice the other.
-constexpr double kSmoothRate = 1.0 / 3;
 /// Turns that are larger have no tangent-scaled increment to speak of [rad].
 constexpr double kLargestTurn = 0.5 * kPi;
 
@@ -36,10 +34,8 @@ Eigen::Matrix<double, Size, 1> LastSteps::rate_at_end(const MeanRates<Size>& mea
   const Rate last = h0 / (h0 + h1) * (mean[0] - mean[1]);
   if (count < 3) return mean[0] + last;
   const Rate before = h0 / (h1 + h2) * (mean[1] - mean[2]);
-  if ((last - before).norm() <= kSmoothRate * (last + before).norm())
-    return mean[0] + last + (h0 + h1) / (h0 + h1 + h2) * (last - before);
-  const double agreement = last.dot(before), square = last.squaredNorm();
-  return agreement > 0 ? Rate(mean[0] + std::min(agreement / square, 1.0) * last) : mean[0];
+  if (belong_to_smooth_motion(last, before)) return mean[0] + last + (h0 + h1) / (h0 + h1 + h2) * (last - before);
+  return mean[0] + agreed_part(last, before);
 }
 template Eigen::Matrix<double, 1, 1> LastSteps::rate_at_end<1>(const MeanRates<1>&) const;
 template Eigen::Matrix<double, 3, 1> LastSteps::rate_at_end<3>(const MeanRates<3>&) const;

@@ -5,21 +5,16 @@
 #include "elements/nodal_inertia.h"
 #include "joints/joint_kinematics.h"
 #include "math/cayley.h"
+#include "simulation/agreement.h"
 #include "simulation/observables.h"
 
 namespace flexarm {
 namespace {
 
-/// Rates of change that differ by less than this part of their sum belong to a smooth motion: one is at most twice the
-/// other.
-constexpr double kSmooth = 1.0 / 3;
-
 /// By which something goes on to change, as its last two rates of change have it: their mean, or the lesser of both as
 /// far as they agree.
 Vector3 agreed(const Vector3& last, const Vector3& before) {
-  if ((last - before).norm() <= kSmooth * (last + before).norm()) return 0.5 * (last + before);
-  const double agreement = last.dot(before);
-  return agreement > 0 ? Vector3(std::min(agreement / last.squaredNorm(), 1.0) * last) : Vector3::Zero();
+  return belong_to_smooth_motion(last, before) ? Vector3(0.5 * (last + before)) : agreed_part(last, before);
 }
 
 Vector3 increment(const State& state, int step, int equation) {
