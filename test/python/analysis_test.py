@@ -6,7 +6,7 @@ import numpy
 import pytest
 
 import flexarm
-from conftest import bits, command_line, example, read_csv
+from conftest import bits, command_line, example, hinged_rod, read_csv
 
 
 def test_statics_are_those_of_the_command_line(tmp_path):
@@ -24,17 +24,8 @@ def test_statics_are_those_of_the_command_line(tmp_path):
 
 def test_no_equilibrium(tmp_path):
     """A rotor that a constant moment drives has none."""
-    scene = """
-<robot name="rotor">
-  <link name="world"/>
-  <joint name="hinge" type="continuous"> <parent link="world"/> <child link="rod"/> <axis xyz="0 0 1"/> </joint>
-  <link name="rod">
-    <inertial> <mass value="1"/> <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/> </inertial>
-  </link>
-  <simulation> <effort joint="hinge" history="1"/> </simulation>
-</robot>"""
     path = tmp_path / "rotor.urdf"
-    path.write_text(scene)
+    path.write_text(hinged_rod("0 0 1", "0 0 0", (1, 1, 1), '<effort joint="hinge" history="1"/>'))
     simulation = flexarm.Simulation(flexarm.read_scene(path))
     before = bits(simulation.row())
     with pytest.raises(flexarm.StepError) as caught:
@@ -47,22 +38,9 @@ def test_no_equilibrium(tmp_path):
         simulation.solve_static(load_steps=0)
 
 
-def test_a_warning_says_what_falls(tmp_path):
+def test_a_warning_says_what_falls():
     """A rod that stands upright on a hinge, pulled down by gravity."""
-    scene = """
-<robot name="upright">
-  <link name="world"/>
-  <joint name="hinge" type="continuous"> <parent link="world"/> <child link="rod"/> <axis xyz="0 1 0"/> </joint>
-  <link name="rod">
-    <inertial>
-      <origin xyz="0 0 1"/> <mass value="1"/>
-      <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/>
-    </inertial>
-  </link>
-</robot>"""
-    path = tmp_path / "upright.urdf"
-    path.write_text(scene)
-    simulation = flexarm.Simulation(flexarm.read_scene(path))
+    simulation = flexarm.Simulation(flexarm.read_scene_text(hinged_rod("0 1 0", "0 0 1", (0.1, 0.1, 0.1))))
     with pytest.warns(flexarm.SceneWarning, match="would fall from it"):
         simulation.solve_static(stable=False)
     assert bits(simulation.positions) == bits(numpy.zeros(1))

@@ -10,23 +10,28 @@ import flexarm
 
 ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
 
-# From 1 s on its steps cannot be done: they may not be halved, and Newton's method is not given enough iterations.
-FAILING = """
-<robot name="failing">
+
+def hinged_rod(axis, centre, inertia, simulation=""):
+    """The scene of a rod of 1 kg on a hinge: its axis, its centre of mass [m], its three moments of inertia [kg m^2]."""
+    return """
+<robot name="hinged_rod">
   <link name="world"/>
-  <joint name="hinge" type="continuous"> <parent link="world"/> <child link="rod"/> <axis xyz="0 1 0"/> </joint>
+  <joint name="hinge" type="continuous"> <parent link="world"/> <child link="rod"/> <axis xyz="%s"/> </joint>
   <link name="rod">
     <inertial>
-      <origin xyz="0.5 0 0"/> <mass value="1"/>
-      <inertia ixx="1e-4" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/>
+      <origin xyz="%s"/> <mass value="1"/>
+      <inertia ixx="%s" ixy="0" ixz="0" iyy="%s" iyz="0" izz="%s"/>
     </inertial>
   </link>
-  <simulation>
-    <integrator step="0.1" max_iterations="4" max_halvings="0"/>
-    <effort joint="hinge" history="t &lt; 0.95 ? 0 : 1e4"/>
-  </simulation>
+  <simulation> %s </simulation>
 </robot>
-"""
+""" % (axis, centre, *inertia, simulation)
+
+
+# From 1 s on its steps cannot be done: they may not be halved, and Newton's method is not given enough iterations.
+FAILING = hinged_rod("0 1 0", "0.5 0 0", (1e-4, 0.1, 0.1), """
+    <integrator step="0.1" max_iterations="4" max_halvings="0"/>
+    <effort joint="hinge" history="t &lt; 0.95 ? 0 : 1e4"/>""")
 
 
 def example(name):

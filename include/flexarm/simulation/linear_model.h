@@ -30,10 +30,10 @@ enum class LinearisedAbout {
 /// | output              | is                                                                                       |
 /// |---------------------|------------------------------------------------------------------------------------------|
 /// | `position:JOINT`    | of a coordinate [m or rad]; `velocity:` and `acceleration:` are its derivatives            |
-/// | `position:POINT:x`  | displacement (x y z) [m] or small rotation (rx ry rz) [rad] of a point, world axes; the same
-/// | | `effort:JOINT`      | what drives a coordinate that a <motion> drives [N or N m] |
+/// | `position:POINT:x`  | displacement (x y z) [m] or small rotation (rx ry rz) [rad] of a point, world axes         |
+/// | `effort:JOINT`      | what drives a coordinate that a <motion> drives [N or N m]                                |
 ///
-/// Without a component a point means all six.
+/// Without a component a point means all six; points have `velocity:` and `acceleration:`, too.
 struct LinearRequest {
   LinearisedAbout about = LinearisedAbout::Rest;
   std::vector<std::string> inputs;   ///< none: the efforts on all coordinates that may be commanded
