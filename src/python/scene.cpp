@@ -7,6 +7,7 @@
 #include "python/bindings.h"
 #include "python/errors.h"
 #include "python/names.h"
+#include "simulation/scene_identity.h"
 
 namespace py = pybind11;
 
@@ -52,6 +53,15 @@ ScenePointer read_scene_text(const std::string& text, const std::string& name, c
   return scene_of(scene::read_scene_text(text, name, {clamp_start, lock_massless, equilibrium_start, parameters}));
 }
 
+/// flexarm.Parameter, in the order of the file.
+py::list parameters_of(const SceneDescription& scene) {
+  py::list parameters;
+  for (const scene::ParameterDescription& parameter : scene.parameters)
+    parameters.append(
+        make("flexarm.values", "Parameter", parameter.name, parameter.value, parameter.min, parameter.max));
+  return parameters;
+}
+
 std::vector<std::string> beams_of(const SceneDescription& scene) {
   std::vector<std::string> names;
   for (const scene::LinkDescription& link : scene.links)
@@ -86,6 +96,11 @@ read_scene() and read_scene_text() make it.)");
           "probes", [](const SceneDescription& s) { return names_of(s.probes); }, "names")
       .def_property_readonly(
           "sensors", [](const SceneDescription& s) { return names_of(s.sensors); }, "names")
+      .def_property_readonly("parameters", &parameters_of, "flexarm.Parameter of each, with the value that it has here")
+      .def_property_readonly(
+          "identity", [](const SceneDescription& s) { return scene_identity(s); },
+          "text that two scenes have in common where a state of one is a state of the other (checkpoints are asked for "
+          "it)")
       .def_property_readonly(
           "gravity", [](const SceneDescription& s) { return std::vector<double>(s.gravity.begin(), s.gravity.end()); },
           "x y z [m/s^2]")

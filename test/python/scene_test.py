@@ -119,3 +119,39 @@ def test_starts_outside_of_limits_may_be_clamped(tmp_path):
         flexarm.read_scene(path)
     scene = flexarm.read_scene(path, clamp_start=True)
     assert flexarm.Simulation(scene).positions[0] == 0.25
+
+
+ROD = """
+<robot name="rod">
+  <parameter name="mass" value="2" min="0.5"/>
+  <parameter name="half" value="${mass/2}"/>
+  <link name="world"/>
+  <joint name="hinge" type="continuous"> <parent link="world"/> <child link="rod"/> <axis xyz="0 1 0"/> </joint>
+  <link name="rod">
+    <inertial>
+      <mass value="${mass}"/> <inertia ixx="${half}" ixy="0" ixz="0" iyy="${half}" iyz="0" izz="${half}"/>
+    </inertial>
+  </link>
+</robot>
+"""
+
+
+def test_parameters_have_the_values_that_are_given():
+    scene = flexarm.read_scene_text(ROD, parameters={"mass": 3})
+    assert scene.parameters == [("mass", 3.0, 0.5, None), ("half", 1.5, None, None)]
+    assert scene.parameters[0].min == 0.5
+    assert flexarm.read_scene_text(ROD).parameters[1] == flexarm.Parameter("half", 1.0, None, None)
+
+
+def test_values_of_parameters_must_be_finite():
+    for value in (float("nan"), float("inf")):
+        with pytest.raises(flexarm.SceneError, match="mass"):
+            flexarm.read_scene_text(ROD, parameters={"mass": value})
+
+
+def test_the_identity_is_that_of_states():
+    def identity(mass, text=ROD):
+        return flexarm.read_scene_text(text, parameters={"mass": mass}).identity
+
+    assert identity(2) == identity(2, ROD.replace("\n", "\n\n"))
+    assert identity(2) != identity(3)

@@ -28,6 +28,7 @@ _HOMES = {
     "AccurateRun": "values",
     "Energies": "values",
     "Mode": "values",
+    "Parameter": "values",
     "Tuning": "values",
     "Wrench": "values",
     "Environment": "environment",

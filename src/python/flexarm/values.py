@@ -17,6 +17,15 @@ class Energies(typing.NamedTuple):
     dissipated: float  # since the start
 
 
+class Parameter(typing.NamedTuple):
+    """A number that the expressions of a scene name."""
+
+    name: str
+    value: float  # that the scene was read with
+    min: typing.Optional[float]  # what it may be set to; None: anything
+    max: typing.Optional[float]
+
+
 class Mode(typing.NamedTuple):
     """A motion Re(shape exp((rate + 2 pi i frequency) t)) of small amplitude about a configuration."""
 
