@@ -31,6 +31,7 @@ void add_modes(CLI::App& app, int& status);
 void add_linearise(CLI::App& app, int& status);
 void add_replay(CLI::App& app, int& status);
 void add_tune(CLI::App& app, int& status);
+void add_sweep(CLI::App& app, int& status);
 void add_bench(CLI::App& app, int& status);
 
 }  // namespace flexarm::cli

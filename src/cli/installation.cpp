@@ -36,6 +36,11 @@ std::optional<std::string> own_scenes(const std::string& folder) {
   return first_of({prefix / "share/flexarm/config" / folder, fs::path(FLEXARM_SOURCE_DIR) / "config" / folder});
 }
 
+std::optional<std::string> python_folder() {
+  const fs::path folder = program_folder().parent_path() / "python3/dist-packages";
+  return first_of({folder / "flexarm"}) ? std::optional<std::string>(folder.string()) : std::nullopt;
+}
+
 bool draw(const std::string& script, const std::string& data, const std::string& picture) {
   const std::optional<std::string> path =
       first_of({program_folder() / script, fs::path(FLEXARM_SOURCE_DIR) / "scripts" / script});

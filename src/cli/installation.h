@@ -9,6 +9,9 @@ namespace flexarm::cli {
 /// The scenes that come with flexarm, or a folder of them; empty: they are not installed.
 std::optional<std::string> own_scenes(const std::string& folder = {});
 
+/// The folder of the Python package; empty: it is not installed.
+std::optional<std::string> python_folder();
+
 /// Runs a script that draws `picture` of the file `data`; false if this machine cannot.
 bool draw(const std::string& script, const std::string& data, const std::string& picture);
 

@@ -1,0 +1,138 @@
+"""The command `flexarm sweep`."""
+
+import argparse
+import os
+import signal
+import sys
+import time
+import warnings
+
+SIGNALS = signal.SIGINT, signal.SIGTERM, signal.SIGHUP
+DONE, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 128  # exit status, as of the other commands
+
+try:
+    from . import cluster, processes
+    from .input import InputError
+    from .plan import read_plan
+    from .progress import ProgressBar, duration_text
+    from .results import Results
+except ModuleNotFoundError as error:
+    sys.exit("flexarm: sweep needs Python's package '%s', Debian's python3-%s" % (error.name, error.name))
+
+
+class Interrupted(Exception):
+    """A signal wants the program to end; its number."""
+
+
+def interrupt(number, _frame):
+    raise Interrupted(number)
+
+
+def whole_number(least):
+    def number(text):
+        if not text.isdecimal() or int(text) < least:
+            raise argparse.ArgumentTypeError("expected a whole number >= %d, got '%s'" % (least, text))
+        return int(text)
+
+    return number
+
+
+def read_arguments(words):
+    parser = argparse.ArgumentParser(
+        prog="flexarm sweep", description="Runs a scene many times, with the parameters of a plan (docs/sweep.md).")
+    parser.add_argument("scene", help="scene file, with parameters")
+    parser.add_argument("plan", help="YAML file: which values parameters have, and what is measured")
+    parser.add_argument("--output", help="CSV file for the results, which goes on where it was (PLAN_results.csv)")
+    places = parser.add_mutually_exclusive_group()
+    places.add_argument("--workers", type=whole_number(1), help="processes (one for each processor)")
+    places.add_argument("--scheduler", metavar="ADDRESS",
+                        help="of a Dask scheduler, whose workers do the runs; or its scheduler file, FILE.json")
+    parser.add_argument("--retries", type=whole_number(0), default=2,
+                        help="how often a run is repeated whose process died (2)")
+    parser.add_argument("--repeat-failed", action="store_true", help="does runs again that failed")
+    parser.add_argument("--quiet", action="store_true", help="no progress bar and no summary")
+    return parser.parse_args(words)
+
+
+def output_of(arguments):
+    """Refuses to write over what is read."""
+    stem = os.path.splitext(os.path.basename(arguments.plan))[0]
+    output = arguments.output or stem + "_results.csv"
+    for path in (arguments.scene, arguments.plan):
+        if os.path.exists(output) and os.path.exists(path) and os.path.samefile(output, path):
+            raise InputError("--output would overwrite '%s'" % path)
+    return output
+
+
+def runs_of(plan, output, numbers):
+    """Arguments of perform() for each of them: the number, the parameters, and the file of the history."""
+    path = ""
+    if plan.job.history:
+        folder = os.path.abspath(os.path.splitext(output)[0] + "_histories")
+        os.makedirs(folder, exist_ok=True)
+        path = os.path.join(folder, "run_%06d." + {"hdf5": "h5", "csv": "csv"}[plan.job.history.format])
+    return [(number, dict(zip(plan.design.names, plan.design.rows[number - 1])), path and path % number)
+            for number in numbers]
+
+
+def sweep(arguments):
+    output = output_of(arguments)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        plan = read_plan(arguments.scene, arguments.plan)
+    for warning in caught:
+        print(warning.message, file=sys.stderr)
+    results = Results(output, plan, arguments.repeat_failed)
+    begin, there = time.monotonic(), len(results.rows)
+    bar = ProgressBar(there, len(plan.design.rows), not arguments.quiet)
+    runs = runs_of(plan, output, results.missing())
+    if arguments.scheduler:
+        outcomes = cluster.perform_all(plan.job, runs, arguments.scheduler, arguments.retries)
+    else:
+        workers = arguments.workers or len(os.sched_getaffinity(0))
+        outcomes = processes.perform_all(plan.job, runs, workers, arguments.retries)
+    failures = results.failures()
+    try:
+        for number, outcome in outcomes:
+            signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)  # a row is written whole
+            results.add(number, outcome)
+            signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
+            failures += bool(outcome.failure)
+            bar.show(len(results.rows), failures)
+        results.finish()
+    except (Interrupted, OSError):
+        bar.clear()
+        print("flexarm: %d of %d runs are in '%s'; the same command does the others"
+              % (len(results.rows), len(plan.design.rows), output), file=sys.stderr)
+        raise
+    finally:
+        bar.clear()
+        outcomes.close()
+        results.close()
+    if not arguments.quiet:
+        print("%s: %d runs, %d of them now, in %s%s"
+              % (output, len(results.rows), len(results.rows) - there, duration_text(time.monotonic() - begin),
+                 "; %d failed, the column 'failure' says why" % failures if failures else ""))
+    return DONE
+
+
+def main(words=None):
+    arguments = read_arguments(words)
+    for number in SIGNALS:
+        if signal.getsignal(number) != signal.SIG_IGN:
+            signal.signal(number, interrupt)
+    try:
+        return sweep(arguments)
+    except InputError as error:
+        print("flexarm: %s" % error, file=sys.stderr)
+        return BAD_INPUT
+    except Interrupted as error:
+        print("flexarm: interrupted", file=sys.stderr)
+        return INTERRUPTED + error.args[0]
+    except (OSError, MemoryError) as error:
+        print("flexarm: %s" % (error or "not enough memory"), file=sys.stderr)
+        return FAILED
+
+
+if __name__ == "__main__":
+    sys.exit(main())

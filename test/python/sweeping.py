@@ -1,0 +1,85 @@
+"""What the tests of sweeps share: a scene of one rod, which is quick, and how to sweep over it."""
+
+import os
+import subprocess
+import textwrap
+
+from flexarm.sweep.plan import read_plan
+from flexarm.sweep.run import perform
+
+# Steps after 1 s cannot be done with a kick of 1e4 N m: they may not be halved, and Newton's method is not given enough
+# iterations.
+SCENE = """
+<robot name="rod">
+  <parameter name="mass" value="1" min="0.1" max="10"/>
+  <parameter name="effort" value="0.5"/>
+  <parameter name="kick" value="0"/>
+  <link name="world"/>
+  <joint name="hinge" type="continuous"> <parent link="world"/> <child link="rod"/> <axis xyz="0 1 0"/> </joint>
+  <link name="rod">
+    <inertial>
+      <origin xyz="0.5 0 0"/> <mass value="${mass}"/>
+      <inertia ixx="1e-4" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/>
+    </inertial>
+  </link>
+  <simulation>
+    <gravity xyz="0 0 0"/>
+    <integrator step="0.1" max_iterations="4" max_halvings="0"/>
+    <effort joint="hinge" history="t &lt; 0.95 ? ${effort} : ${kick}"/>
+    <probe name="tip" link="rod" at="1 0 0"/>
+  </simulation>
+</robot>
+"""
+
+GRID = """
+    design:
+      kind: grid
+      parameters:
+        mass: [1, 2, 4]
+        effort: {from: 0, to: 1, count: 4}
+    until: 2
+    measures:
+      angle: {final: joint/hinge/position}
+      speed: {maximum: abs(joint/hinge/velocity)}
+"""
+
+# Runs of some tenths of a second, which are there to be disturbed.
+LONG = """
+    design:
+      kind: random
+      runs: 8
+      parameters: {effort: {from: -1, to: 1}}
+    until: 10000
+    every: 50000
+    measures: {angle: {final: joint/hinge/position}}
+"""
+
+
+def write(folder, name, text):
+    path = folder / name
+    path.write_text(textwrap.dedent(text))
+    return path
+
+
+def plan_of(folder, text, scene=SCENE):
+    return read_plan(str(write(folder, "rod.urdf", scene)), str(write(folder, "plan.yaml", text)))
+
+
+def outcomes(plan):
+    """Measures of each run, made here; none fails."""
+    for number, row in enumerate(plan.design.rows, 1):
+        outcome = perform(plan.job, number, dict(zip(plan.design.names, row)), "")
+        assert outcome.failure == ""
+        yield outcome.measures
+
+
+def command(*arguments):
+    return [os.environ["FLEXARM_PROGRAM"], "sweep", *map(str, arguments)]
+
+
+def sweep(folder, *arguments, status=0):
+    """Runs `flexarm sweep rod.urdf plan.yaml ...` there; what it says on the error and on the standard output."""
+    result = subprocess.run(command("rod.urdf", "plan.yaml", *arguments), cwd=folder, check=False,
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, timeout=120)
+    assert result.returncode == status, result.stderr
+    return result.stderr, result.stdout
