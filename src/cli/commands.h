@@ -32,6 +32,7 @@ void add_linearise(CLI::App& app, int& status);
 void add_replay(CLI::App& app, int& status);
 void add_tune(CLI::App& app, int& status);
 void add_sweep(CLI::App& app, int& status);
+void add_identify(CLI::App& app, int& status);
 void add_bench(CLI::App& app, int& status);
 
 }  // namespace flexarm::cli

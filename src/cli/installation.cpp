@@ -41,9 +41,12 @@ std::optional<std::string> python_folder() {
   return first_of({folder / "flexarm"}) ? std::optional<std::string>(folder.string()) : std::nullopt;
 }
 
+std::optional<std::string> own_script(const std::string& name) {
+  return first_of({program_folder() / name, fs::path(FLEXARM_SOURCE_DIR) / "scripts" / name});
+}
+
 bool draw(const std::string& script, const std::string& data, const std::string& picture) {
-  const std::optional<std::string> path =
-      first_of({program_folder() / script, fs::path(FLEXARM_SOURCE_DIR) / "scripts" / script});
+  const std::optional<std::string> path = own_script(script);
   if (!path) return false;
   const std::string command = "/usr/bin/python3 " + quoted(*path) + " " + quoted(data) + " " + quoted(picture);
   return std::system(command.c_str()) == 0;

@@ -12,6 +12,9 @@ std::optional<std::string> own_scenes(const std::string& folder = {});
 /// The folder of the Python package; empty: it is not installed.
 std::optional<std::string> python_folder();
 
+/// A script that comes with flexarm; empty: it is not installed.
+std::optional<std::string> own_script(const std::string& name);
+
 /// Runs a script that draws `picture` of the file `data`; false if this machine cannot.
 bool draw(const std::string& script, const std::string& data, const std::string& picture);
 

@@ -24,6 +24,7 @@ int run(int argc, char** argv) {
   add_replay(app, status);
   add_tune(app, status);
   add_sweep(app, status);
+  add_identify(app, status);
   add_bench(app, status);
   try {
     app.parse(argc, argv);

@@ -1,0 +1,151 @@
+"""An experiment that is simulated again: what would have been measured, were the unknowns these?"""
+
+import math
+import typing
+
+import numpy
+from scipy.interpolate import CubicSpline
+
+from .. import Simulation, read_scene
+from .inputs import InputError
+
+# Times that are so near to the end of a step, in steps, are there: stamps are rounded.
+ROUNDED = 1e-5
+MOST_STEPS = 10**7
+# Of the longest step: shorter ones, which would end at the measurements, cost more than a spline between longer ones.
+SHORTEST = 0.25
+
+
+def choose_step(times, longest):
+    """The longest step, at most `longest` [s], of which all `times` are multiples; None: none is worth it."""
+    spacings = numpy.diff(numpy.unique(numpy.append(0.0, times)))
+    if not len(spacings):
+        return None
+    spacing = spacings.min()
+    # Of a grid the last time says best how wide it is.
+    spacing = times.max() / max(round(times.max() / spacing), 1)
+    if spacing < SHORTEST * longest or abs(times / spacing - numpy.round(times / spacing)).max() > ROUNDED:
+        return None
+    step = spacing / math.ceil(spacing / longest * (1 - ROUNDED))
+    return longest if abs(step / longest - 1) < ROUNDED else step
+
+
+class Sampling:
+    """Rows of a simulation, one at the start and one after each step, looked at at any time.
+
+    Where all times are ends of steps, these rows are taken; else a cubic spline goes through the rows, which is off by
+    the fourth power of the step.
+    """
+
+    def __init__(self, times, step):
+        """times: a list of arrays, one for each column [s]."""
+        self.steps = max(math.ceil(max(column.max() for column in times) / step - ROUNDED), 1)
+        self._times, self._step = times, step
+        at = [numpy.round(column / step).astype(int) for column in times]
+        self.is_exact = all(abs(column / step - rows).max() <= ROUNDED for column, rows in zip(times, at))
+        self.every = int(numpy.gcd.reduce(numpy.concatenate([*at, [self.steps]]))) if self.is_exact else 1
+        self._rows = [rows // self.every for rows in at]
+        if not self.is_exact:
+            self.steps = max(self.steps, 3)  # which a spline asks for
+
+    def look(self, rows):
+        """Values of the columns of `rows` at their times, one after the other, shape (values,)."""
+        if self.is_exact:
+            return numpy.concatenate([rows[at, i] for i, at in enumerate(self._rows)])
+        grid = self._step * numpy.arange(self.steps + 1)
+        spline = CubicSpline(grid, rows)
+        return numpy.concatenate([spline(times)[:, i] for i, times in enumerate(self._times)])
+
+
+class Setting(typing.NamedTuple):
+    """How a scene is simulated whatever the unknowns: by fixed steps and one tolerance results are smooth in them."""
+
+    scene: str  # path
+    values: typing.Dict[str, float]  # of parameters that are known, in the place of the file's
+    step: float  # [s]
+    tolerance: float
+
+
+class Experiment:
+    """unknowns: of a plan. initial: coordinates at the start that are known, by JOINT/position and JOINT/velocity.
+    measurements: a list of Measurement. efforts: histories by names of joints. setting: a Setting.
+
+    steps, step: of each simulation. is_exact: values are taken at ends of steps. units: of the columns.
+    measured, shape (values,): all columns, one after the other, as simulate() returns them.
+    parts: slices of it, one for each column.
+    """
+
+    def __init__(self, unknowns, initial, measurements, efforts, setting):
+        self.unknowns, self.measurements = unknowns, measurements
+        self.measured = numpy.concatenate([measurement.values for measurement in measurements])
+        ends = numpy.cumsum([0] + [len(measurement.values) for measurement in measurements])
+        self.parts = [slice(begin, end) for begin, end in zip(ends, ends[1:])]
+        self.step = setting.step
+        self._setting, self._initial = setting, initial
+        times = [measurement.times for measurement in measurements]
+        longest = max(column.max() for column in times)
+        if longest / setting.step > MOST_STEPS:
+            raise InputError("the measurements last until %g s of simulated time, more than %d steps of %g s: 'begin' "
+                             "of the plan is the time in them at which the scene starts"
+                             % (longest, MOST_STEPS, setting.step))
+        self._sampling = Sampling(times, setting.step)
+        self.steps, self.is_exact = self._sampling.steps, self._sampling.is_exact
+        simulation = self._simulation([unknown.start for unknown in unknowns])
+        self._record = [measurement.column.name for measurement in measurements]
+        self._order, self.units = self._columns(simulation)
+        self._joints, self._efforts = self._commands(simulation, efforts)
+
+    def _columns(self, simulation):
+        """Where the columns are in a row of results, and their units."""
+        for measurement in self.measurements:
+            column = measurement.column
+            try:
+                names = [name for name, _ in simulation.columns([column.name])]
+            except ValueError as error:
+                raise column.entry.error(str(error)) from None
+            if names[1:] != [column.name]:
+                raise column.entry.error("expected the name of one column, got those of %s" % ", ".join(names[1:]))
+        columns = simulation.columns(self._record)
+        names = [name for name, _ in columns]
+        order = [names.index(name) for name in self._record]
+        return order, [columns[i][1] for i in order]
+
+    def _commands(self, simulation, efforts):
+        """Joints, and their efforts in each step, shape (steps, joints); None: the scene's."""
+        if not efforts:
+            return None, None
+        for joint in efforts:
+            if joint not in simulation.effort_joints:
+                raise InputError("efforts are given for '%s': expected joints that take some, of %s"
+                                 % (joint, ", ".join(simulation.effort_joints)))
+        edges = self.step * numpy.arange(self.steps + 1)
+        return list(efforts), numpy.column_stack([history.means(edges) for history in efforts.values()])
+
+    def _simulation(self, values):
+        setting = self._setting
+        given = {unknown.name: float(value) for unknown, value in zip(self.unknowns, values) if not unknown.of_start}
+        scene = read_scene(setting.scene, parameters={**setting.values, **given})
+        simulation = Simulation(scene, step=setting.step, tolerance=setting.tolerance)
+        start = dict(self._initial)
+        start.update((unknown.name, value) for unknown, value in zip(self.unknowns, values) if unknown.of_start)
+        if start:
+            split = {"position": {}, "velocity": {}}
+            for name, value in start.items():
+                joint, _, suffix = name.rpartition("/")
+                split[suffix][joint] = value
+            try:
+                simulation.set_joint_state(split["position"], split["velocity"])
+            except ValueError as error:
+                raise InputError("initial: %s" % error) from None
+        return simulation
+
+    def simulate(self, values):
+        """What would be measured, shape (values,).
+
+        values: of the unknowns. Several threads may call it.
+        Raises flexarm.SceneError, flexarm.StepError, InputError if there is no scene, motion or start with these.
+        """
+        simulation = self._simulation(values)
+        first = simulation.row(self._record)
+        rows = simulation.run(self.steps, self._efforts, self._joints, record=self._record, every=self._sampling.every)
+        return self._sampling.look(numpy.vstack([first, rows])[:, self._order])

@@ -1,0 +1,44 @@
+"""Measured histories, in simulated time."""
+
+import typing
+
+import numpy
+
+from . import bags
+from .inputs import InputError, read_table
+from .plan import Column
+
+
+class Measurement(typing.NamedTuple):
+    """A column that was measured."""
+
+    column: Column
+    times: numpy.ndarray  # simulated, not decreasing, shape (values,) [s]
+    values: numpy.ndarray
+
+
+def read_measurements(path, plan):
+    """What a CSV file or a bag has of the plan's columns while the scene is simulated.
+
+    Returns measurements in the plan's order, and the time of the data at which the scene starts [s].
+    Raises InputError.
+    """
+    if bags.is_bag(path):
+        series = bags.read_columns(path, plan.columns, plan.joint_states)
+    else:
+        times, table = read_table(path, [column.data for column in plan.columns])
+        series = {column.name: (times, table[column.data]) for column in plan.columns}
+    begin = min(times[0] for times, _ in series.values()) if plan.begin is None else plan.begin
+    until = numpy.inf if plan.until is None else plan.until
+    return [_cut(column, path, *series[column.name], begin, until) for column in plan.columns], begin
+
+
+def _cut(column, path, times, values, begin, until):
+    """Numbers alone, of the time that is simulated, with what round-off of times makes of its ends."""
+    simulated = times - begin
+    slack = 1e-9 * (1 + abs(begin))
+    used = numpy.isfinite(values) & (simulated >= -slack) & (simulated <= until + slack)
+    if not used.any():
+        raise InputError("%s: '%s' has no value between %g s, where the scene starts ('begin' of the plan), and %g s"
+                         % (path, column.data, begin, begin + until))
+    return Measurement(column, numpy.maximum(simulated[used], 0.0), values[used])

@@ -1,0 +1,85 @@
+"""What the tests of the identification share."""
+
+import numpy
+from scipy.stats import binom
+
+import flexarm
+from flexarm.identification import Column, Experiment, Measurement, Setting, Unknown
+
+# A rod on a hinge with a spring: quick to simulate.
+ROD = """
+<robot name="rod">
+  <parameter name="mass" value="1.5" min="0.1" max="10"/>
+  <parameter name="damping" value="0.2" min="0"/>
+  <parameter name="nothing" value="1"/>
+  <link name="world"/>
+  <joint name="hinge" type="continuous">
+    <parent link="world"/> <child link="rod"/> <axis xyz="0 1 0"/> <dynamics damping="${damping}"/>
+  </joint>
+  <link name="rod">
+    <inertial>
+      <origin xyz="0.5 0 0"/> <mass value="${mass}"/>
+      <inertia ixx="1e-4" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/>
+    </inertial>
+  </link>
+  <simulation> <integrator step="0.01"/> </simulation>
+</robot>
+"""
+TRUE = {"mass": 2.0, "damping": 0.5}
+# What a chance of one in ten thousand is left to.
+CHANCE = 1e-4
+
+
+def column(name, noise=None):
+    return Column(name, name, noise, None)
+
+
+def unknown(name, start, least=-numpy.inf, most=numpy.inf, of_start=False):
+    return Unknown(name, of_start, start, least, most, abs(start) or 1.0)
+
+
+def rod_experiment(path, times, noise=None, unknowns=None, values=None, initial=None, efforts=None, step=0.01):
+    """Of the rod's angle; measured is zero."""
+    unknowns = unknowns or [unknown("mass", 1.5, 0.1, 10), unknown("damping", 0.2, 0)]
+    measurement = Measurement(column("joint/hinge/position", noise), times, 0 * times)
+    setting = Setting(str(path), values or {}, step, 1e-10)
+    return Experiment(unknowns, initial or {}, [measurement], efforts or {}, setting)
+
+
+def measured_with(experiment, values, random=None, noise=0.0):
+    """Lets an experiment have measured what is simulated with these values, and noise."""
+    exact = experiment.simulate(values)
+    experiment.measured[:] = exact + (noise * random.standard_normal(len(exact)) if random else 0)
+    return experiment
+
+
+def coverage_limits(count, level=0.95):
+    """Between which numbers of intervals of a level cover the truth, of so many."""
+    return binom.ppf([CHANCE, 1 - CHANCE], count, level)
+
+
+class Formula:
+    """In place of an experiment: a function of time and the unknowns."""
+
+    def __init__(self, function, unknowns, truth, noise=None, times=numpy.linspace(0, 2, 201), random=None, sigma=0.0):
+        self.unknowns, self._function, self._times = unknowns, function, times
+        self.simulations = 0
+        exact = numpy.asarray(function(times, *truth))
+        self.measured = exact + (sigma * random.standard_normal(len(times)) if random else 0)
+        self.measurements = [Measurement(column("y", noise), times, self.measured)]
+        self.parts, self.units, self.steps, self.step = [slice(0, len(times))], ["m"], len(times) - 1, times[1]
+
+    def simulate(self, values):
+        self.simulations += 1
+        return numpy.asarray(self._function(self._times, *values))
+
+
+def failing_beyond(limit):
+    """A decay that fails where its rate is beyond the limit."""
+
+    def function(times, size, rate):
+        if rate > limit:
+            raise flexarm.StepError("too fast", 0.0, "too fast")
+        return size * numpy.exp(-rate * times)
+
+    return function
