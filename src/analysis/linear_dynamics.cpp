@@ -51,6 +51,26 @@ double second_derivative(const TimeFunction& motion, double time) {
   return (motion.derivative(to) - motion.derivative(from)) / (to - from);
 }
 
+/// Variations of rows' x' and x'' by coordinates y, and of x'' by y'.
+struct VariedRates {
+  Eigen::MatrixXd first, second, second_by_rates;
+};
+
+/// Of a node's material angular velocity W: spin' + W x spin.
+VariedRates varied_rates(const DegreesOfFreedom& dof, const MovingMatrix& motion, const CoordinateRates& rows) {
+  VariedRates out{motion.first, motion.second, 2 * motion.first};
+  for (int i = 0; i < dof.node_count; ++i) {
+    const int at = dof.first[i] + 3;
+    const Matrix3 velocity = so3::hat(Vector3(rows.first.segment<3>(at)));
+    const Matrix3 acceleration = so3::hat(Vector3(rows.second.segment<3>(at)));
+    const auto spins = motion.value.middleRows<3>(at);
+    out.first.middleRows<3>(at) += velocity * spins;
+    out.second_by_rates.middleRows<3>(at) += velocity * spins;
+    out.second.middleRows<3>(at) += acceleration * spins + velocity * motion.first.middleRows<3>(at);
+  }
+  return out;
+}
+
 }  // namespace
 
 LinearDynamics::LinearDynamics(const Model& model, const State& state, const Scheme& scheme, Reference reference,
@@ -245,24 +265,14 @@ void LinearDynamics::assemble() {
   put_loads(force);
   balance();
 
-  // Rates of a node's material spin: the variation of W is spin' + W x spin.
-  Eigen::MatrixXd carried = motion_.first, carried_twice = motion_.second;
-  Eigen::MatrixXd doubled = 2 * motion_.first;
-  for (int i = 0; i < dof_.node_count; ++i) {
-    const int at = dof_.first[i] + 3;
-    const Matrix3 velocity = so3::hat(Vector3(rows.first.segment<3>(at)));
-    const Matrix3 acceleration = so3::hat(Vector3(rows.second.segment<3>(at)));
-    const auto spins = motion_.value.middleRows<3>(at);
-    carried.middleRows<3>(at) += velocity * spins;
-    doubled.middleRows<3>(at) += velocity * spins;
-    carried_twice.middleRows<3>(at) += acceleration * spins + velocity * motion_.first.middleRows<3>(at);
-  }
+  const VariedRates varied = varied_rates(dof_, motion_, rows);
   const Eigen::MatrixXd tests = motion_.value.transpose(), unknowns = unknowns_ * allowed_.value;
   const Eigen::Index count = maps_.columns();
   mass_ = tests * (own.mass * motion_.value);
-  damping_ = tests * (own.mass * doubled + own.damping * motion_.value + stretched.by_rates * motion_.value);
+  damping_ =
+      tests * (own.mass * varied.second_by_rates + own.damping * motion_.value + stretched.by_rates * motion_.value);
   stiffness_ = unknowns.transpose() * (tangent_.topLeftCorner(count, count) * unknowns) +
-               tests * (own.mass * carried_twice + own.damping * carried + own.turning * motion_.value +
+               tests * (own.mass * varied.second + own.damping * varied.first + own.turning * motion_.value +
                         stretched.by_rates * motion_.first + stretched.by_places * motion_.value);
   const Eigen::Index coordinates = maps_.rows() - 6 * static_cast<Eigen::Index>(dof_.node_count);
   residual_ = unknowns.transpose() * system_.residual().head(count) +

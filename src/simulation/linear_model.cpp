@@ -103,19 +103,26 @@ struct Partition {
   }
 };
 
-/// `place_of`: of a coordinate in y, or -1.
-template <class PlaceOf>
-Partition partition(const Model& model, int size, const std::vector<LinearPort>& inputs, const PlaceOf& place_of) {
+/// Of a coordinate in y, or -1.
+int place_of(int coordinate, const Model& model, const LinearDynamics& dynamics) {
+  const auto& scalars = dynamics.scalars();
+  const auto place =
+      std::find(scalars.begin(), scalars.end(), dynamics.degrees_of_freedom().scalar_of(model.coordinates[coordinate]));
+  return place == scalars.end() ? -1 : static_cast<int>(place - scalars.begin());
+}
+
+Partition partition(const Model& model, const LinearDynamics& dynamics, const std::vector<LinearPort>& inputs) {
   Partition out;
-  std::vector<bool> is_driven(size, false);
+  std::vector<bool> is_driven(dynamics.size(), false);
   for (std::size_t c = 0; c < model.coordinates.size(); ++c)
-    if (const int place = place_of(static_cast<int>(c)); place >= 0 && model.coordinates[c].motion >= 0)
+    if (const int place = place_of(static_cast<int>(c), model, dynamics);
+        place >= 0 && model.coordinates[c].motion >= 0)
       is_driven[place] = true;
-  for (int i = 0; i < size; ++i)
+  for (int i = 0; i < dynamics.size(); ++i)
     if (!is_driven[i]) out.free.push_back(i);
   for (const LinearPort& input : inputs) {
     if (input.kind != Kind::Motion) continue;
-    const int place = place_of(input.coordinate);
+    const int place = place_of(input.coordinate, model, dynamics);
     if (std::find(out.moved.begin(), out.moved.end(), place) != out.moved.end())
       throw std::invalid_argument(fmt::format("input '{}' is there twice", input.name));
     out.moved.push_back(place);
@@ -179,6 +186,47 @@ OutputRows output_rows(const LinearPort& port, const MovingMatrix& motion, Eigen
   }
 }
 
+std::vector<std::string> names_of(const std::vector<LinearPort>& ports) {
+  std::vector<std::string> names;
+  for (const LinearPort& port : ports) names.push_back(port.name);
+  return names;
+}
+
+/// All but states, inputs and outputs.
+LinearModel equations(const Simulation& simulation, const LinearDynamics& dynamics) {
+  LinearModel out;
+  out.coordinates = coordinate_names(model_of(simulation), dynamics);
+  out.mass = dynamics.mass();
+  out.damping = dynamics.damping();
+  out.stiffness = dynamics.stiffness();
+  out.residual = dynamics.residual();
+  out.left_out = left_out(model_of(simulation), state_of(simulation));
+  return out;
+}
+
+/// What inputs do to y, a column each; motions, which are no forces, nothing.
+MatrixXd forces_of(const std::vector<LinearPort>& inputs, const Simulation& simulation,
+                   const LinearDynamics& dynamics) {
+  MatrixXd forces = port_motion(simulation, dynamics, inputs).value.transpose();
+  for (std::size_t i = 0; i < inputs.size(); ++i)
+    if (inputs[i].kind == Kind::Motion) forces.col(static_cast<Eigen::Index>(i)).setZero();
+  return forces;
+}
+
+void set_states(const std::vector<int>& places, const LinearDynamics& dynamics, const Accelerations& accelerations,
+                LinearModel& out) {
+  const auto count = static_cast<Eigen::Index>(places.size());
+  for (const int place : places) out.states.push_back(out.coordinates[place]);
+  for (const int place : places) out.states.push_back("d/dt " + out.coordinates[place]);
+  out.a = MatrixXd::Zero(2 * count, 2 * count);
+  out.a.topRightCorner(count, count).setIdentity();
+  out.a.bottomRows(count) = accelerations.by_state;
+  out.b = MatrixXd::Zero(2 * count, accelerations.by_input.cols());
+  out.b.bottomRows(count) = accelerations.by_input;
+  out.drift.resize(2 * count);
+  out.drift << dynamics.rates()(places), dynamics.accelerations()(places);
+}
+
 }  // namespace
 
 LinearModel linearise(const Simulation& simulation, const LinearRequest& request) {
@@ -187,52 +235,28 @@ LinearModel linearise(const Simulation& simulation, const LinearRequest& request
   const std::vector<LinearPort> outputs = output_ports(simulation, request.outputs);
   const LinearDynamics dynamics(model, state_of(simulation), make_scheme(simulation.scene().integrator),
                                 reference_of(request.about), rates_of(simulation));
-  LinearModel out;
-  out.coordinates = coordinate_names(model, dynamics);
-  out.mass = dynamics.mass();
-  out.damping = dynamics.damping();
-  out.stiffness = dynamics.stiffness();
-  out.residual = dynamics.residual();
-  out.left_out = left_out(model, state_of(simulation));
-
-  const auto place_of = [&](int coordinate) {
-    const auto& scalars = dynamics.scalars();
-    const auto place = std::find(scalars.begin(), scalars.end(),
-                                 dynamics.degrees_of_freedom().scalar_of(model.coordinates[coordinate]));
-    return place == scalars.end() ? -1 : static_cast<int>(place - scalars.begin());
-  };
-  const Partition parts = partition(model, dynamics.size(), inputs, place_of);
-  const std::vector<int> states = parts.states();
-  const Eigen::Index count = static_cast<Eigen::Index>(states.size());
-  MatrixXd forces = port_motion(simulation, dynamics, inputs).value.transpose();
-  for (std::size_t i = 0; i < inputs.size(); ++i)
-    if (inputs[i].kind == Kind::Motion) forces.col(static_cast<Eigen::Index>(i)).setZero();
+  LinearModel out = equations(simulation, dynamics);
+  out.inputs = names_of(inputs);
+  out.outputs = names_of(outputs);
+  const Partition parts = partition(model, dynamics, inputs);
+  const std::vector<int> places = parts.states();
+  const MatrixXd forces = forces_of(inputs, simulation, dynamics);
   const Accelerations accelerations = StateSpace(out, parts).accelerations(forces, inputs);
+  set_states(places, dynamics, accelerations, out);
 
-  out.a = MatrixXd::Zero(2 * count, 2 * count);
-  out.a.topRightCorner(count, count).setIdentity();
-  out.a.bottomRows(count) = accelerations.by_state;
-  out.b = MatrixXd::Zero(2 * count, forces.cols());
-  out.b.bottomRows(count) = accelerations.by_input;
-  out.drift.resize(2 * count);
-  out.drift << dynamics.rates()(states), dynamics.accelerations()(states);
   const MovingMatrix motion = port_motion(simulation, dynamics, outputs);
-  out.c.resize(static_cast<Eigen::Index>(outputs.size()), 2 * count);
-  out.d.resize(out.c.rows(), forces.cols());
+  out.c.resize(static_cast<Eigen::Index>(outputs.size()), out.a.cols());
+  out.d.resize(out.c.rows(), out.b.cols());
   for (Eigen::Index i = 0; i < out.c.rows(); ++i) {
     const LinearPort& port = outputs[static_cast<std::size_t>(i)];
-    const int driven = port.kind == Kind::Effort ? place_of(port.coordinate) : -1;
+    const int driven = port.kind == Kind::Effort ? place_of(port.coordinate, model, dynamics) : -1;
     const OutputRows rows = output_rows(port, motion, i, out, driven);
-    const Eigen::RowVectorXd acceleration = rows.acceleration(states);
-    out.c.row(i) << rows.place(states), rows.rate(states);
+    const Eigen::RowVectorXd acceleration = rows.acceleration(places);
+    out.c.row(i) << rows.place(places), rows.rate(places);
     out.c.row(i) += acceleration * accelerations.by_state;
     out.d.row(i) = acceleration * accelerations.by_input;
     if (driven >= 0) out.d.row(i) -= forces.row(driven);
   }
-  for (const int place : states) out.states.push_back(out.coordinates[place]);
-  for (const int place : states) out.states.push_back("d/dt " + out.coordinates[place]);
-  for (const LinearPort& port : inputs) out.inputs.push_back(port.name);
-  for (const LinearPort& port : outputs) out.outputs.push_back(port.name);
   return out;
 }
 
