@@ -118,7 +118,7 @@ void add_linearise(CLI::App& app, int& status) {
   command
       ->add_option("--outputs", arguments->request.outputs,
                    "position:, velocity: or acceleration: with JOINT, POINT or POINT:x; effort:JOINT of a <motion>; "
-                   "positions of all joints and probes by default")
+                   "strain:SENSOR, section_force:SENSOR; positions of all joints and probes by default")
       ->delimiter(',');
   command->add_option("--count", arguments->count, "number of poles to print")
       ->capture_default_str()

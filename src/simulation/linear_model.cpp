@@ -176,6 +176,8 @@ OutputRows output_rows(const LinearPort& port, const MovingMatrix& motion, Eigen
   const Eigen::RowVectorXd zero = Eigen::RowVectorXd::Zero(motion.value.cols());
   switch (port.kind) {
     case Kind::Position:
+    case Kind::Strain:
+    case Kind::SectionForce:
       return {motion.value.row(row), zero, zero};
     case Kind::Velocity:
       return {motion.first.row(row), motion.value.row(row), zero};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 
@@ -10,6 +11,7 @@
 #include "flexarm/scene/scene_description.h"
 #include "simulation/inside.h"
 #include "simulation/observables.h"
+#include "simulation/section_variation.h"
 
 namespace flexarm {
 namespace {
@@ -43,8 +45,40 @@ std::vector<NamedPoint> points_of(const Simulation& simulation) {
   return points;
 }
 
+/// The kind of sensors that an output of this kind is.
+std::optional<scene::SensorKind> sensor_kind(Kind kind) {
+  if (kind == Kind::Strain) return scene::SensorKind::Strain;
+  if (kind == Kind::SectionForce) return scene::SensorKind::SectionForce;
+  return std::nullopt;
+}
+
+std::vector<NamedPoint> sensors_of(const Simulation& simulation, scene::SensorKind kind) {
+  std::vector<NamedPoint> sensors;
+  for (std::size_t i = 0; i < simulation.scene().sensors.size(); ++i)
+    if (const scene::Sensor& sensor = simulation.scene().sensors[i]; sensor.kind == kind)
+      sensors.push_back({sensor.name, model_of(simulation).sensors[i].point});
+  return sensors;
+}
+
+/// Points at which something of this kind may be.
+std::vector<NamedPoint> points_of(const Simulation& simulation, Kind kind) {
+  if (const auto sensors = sensor_kind(kind)) return sensors_of(simulation, *sensors);
+  return kind == Kind::Effort || kind == Kind::Motion ? std::vector<NamedPoint>() : points_of(simulation);
+}
+
+/// Of what is at a point; a strain is one number.
+std::vector<std::string> components_of(Kind kind) {
+  if (kind == Kind::Strain) return {""};
+  const Components& names = kind == Kind::Wrench || kind == Kind::SectionForce ? kWrench : kPlaces;
+  return {names.begin(), names.end()};
+}
+
 bool is_driven(const Simulation& simulation, std::size_t coordinate) {
   return model_of(simulation).coordinates[coordinate].motion >= 0;
+}
+
+bool is_of_coordinates(Kind kind) {
+  return kind != Kind::Wrench && !sensor_kind(kind);
 }
 
 /// What may stand behind a kind's colon, for errors.
@@ -54,19 +88,16 @@ std::string existing(const Simulation& simulation, Kind kind) {
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
     const bool fits = kind == Kind::Effort   ? simulation.is_commandable(i)
                       : kind == Kind::Motion ? is_driven(simulation, i)
-                      : kind == Kind::Wrench ? false
-                                             : true;
+                                             : is_of_coordinates(kind);
     if (fits) names.push_back(coordinates[i]);
   }
-  if (kind != Kind::Effort && kind != Kind::Motion)
-    for (const NamedPoint& point : points_of(simulation)) names.push_back(point.name);
+  for (const NamedPoint& point : points_of(simulation, kind)) names.push_back(point.name);
   return names.empty() ? "there is none" : fmt::format("there are {}", fmt::join(names, ", "));
 }
 
 class PortReader {
  public:
-  PortReader(const Simulation& simulation, bool is_input)
-      : simulation_(simulation), is_input_(is_input), points_(points_of(simulation)) {}
+  PortReader(const Simulation& simulation, bool is_input) : simulation_(simulation), is_input_(is_input) {}
 
   void read(const std::string& text, std::vector<LinearPort>& ports) const {
     const std::size_t colon = text.find(':');
@@ -75,7 +106,8 @@ class PortReader {
       throw std::invalid_argument(
           fmt::format("'{}' is no {}: expected {}", text, is_input_ ? "input" : "output",
                       is_input_ ? "effort:JOINT, motion:JOINT or wrench:POINT:fx"
-                                : "position:, velocity: or acceleration: and a joint or a point, or effort:JOINT"));
+                                : "position:, velocity: or acceleration: and a joint or a point, effort:JOINT, "
+                                  "strain:SENSOR or section_force:SENSOR"));
     const std::string name = text.substr(colon + 1);
     if (add_coordinate(*kind, name, text, ports) || add_point(*kind, name, text, ports)) return;
     throw std::invalid_argument(fmt::format("'{}' does not exist: of '{}:' {}", text, text.substr(0, colon),
@@ -92,13 +124,15 @@ class PortReader {
     if (!is_input_ && word == "position") return Kind::Position;
     if (!is_input_ && word == "velocity") return Kind::Velocity;
     if (!is_input_ && word == "acceleration") return Kind::Acceleration;
+    if (!is_input_ && word == "strain") return Kind::Strain;
+    if (!is_input_ && word == "section_force") return Kind::SectionForce;
     return std::nullopt;
   }
 
   bool add_coordinate(Kind kind, const std::string& name, const std::string& text,
                       std::vector<LinearPort>& ports) const {
     const std::optional<std::size_t> index = simulation_.find_coordinate(name);
-    if (!index || kind == Kind::Wrench) return false;
+    if (!index || !is_of_coordinates(kind)) return false;
     if (kind == Kind::Effort && is_input_ && !simulation_.is_commandable(*index)) return false;
     if ((kind == Kind::Motion || driven_effort(kind)) && !is_driven(simulation_, *index)) return false;
     LinearPort port;
@@ -110,26 +144,28 @@ class PortReader {
   }
 
   bool add_point(Kind kind, const std::string& name, const std::string& text, std::vector<LinearPort>& ports) const {
-    if (kind == Kind::Effort || kind == Kind::Motion) return false;
-    const Components& components = kind == Kind::Wrench ? kWrench : kPlaces;
-    for (const NamedPoint& candidate : points_)
-      for (int k = 0; k < 6; ++k) {
-        const bool is_whole = name == candidate.name;
-        if (!is_whole && name != candidate.name + ":" + components[k]) continue;
+    const std::vector<std::string> components = components_of(kind);
+    for (const NamedPoint& candidate : points_of(simulation_, kind)) {
+      const bool is_whole = name == candidate.name;
+      bool is_found = false;
+      for (std::size_t k = 0; k < components.size(); ++k) {
+        const std::string suffix = components[k].empty() ? "" : ":" + components[k];
+        if (!is_whole && name != candidate.name + suffix) continue;
         LinearPort port;
         port.kind = kind;
         port.point = candidate.point;
-        port.component = k;
-        port.name = is_whole ? text + ":" + components[k] : text;
+        port.component = static_cast<int>(k);
+        port.name = is_whole ? text + suffix : text;
         ports.push_back(port);
-        if (!is_whole || k == 5) return true;
+        is_found = true;
       }
+      if (is_found) return true;
+    }
     return false;
   }
 
   const Simulation& simulation_;
   bool is_input_;
-  std::vector<NamedPoint> points_;
 };
 
 std::vector<LinearPort> read(const Simulation& simulation, bool is_input, const std::vector<std::string>& names) {
@@ -137,6 +173,25 @@ std::vector<LinearPort> read(const Simulation& simulation, bool is_input, const 
   std::vector<LinearPort> ports;
   for (const std::string& name : names) reader.read(name, ports);
   return ports;
+}
+
+/// Of a port's place, by the rates of all scalars and by {v, w} of the nodes, world axes.
+using PortRate = std::function<double(const Eigen::VectorXd& scalars, const std::vector<Vector6>& velocities)>;
+
+/// `state`: must outlive what is returned.
+PortRate rate_of(const LinearPort& port, const Model& model, const DegreesOfFreedom& dof, const State& state) {
+  if (port.coordinate >= 0)
+    return [scalar = dof.scalar_of(model.coordinates[port.coordinate])](const Eigen::VectorXd& scalars, const auto&) {
+      return scalars[scalar];
+    };
+  if (sensor_kind(port.kind))
+    return [gradient = port.kind == Kind::Strain ? fibre_strain_gradient(model, state, port.point)
+                                                 : section_force_gradient(model, state, port.point, port.component)](
+               const Eigen::VectorXd&, const auto& velocities) { return gradient.along(velocities); };
+  return [&](const Eigen::VectorXd&, const std::vector<Vector6>& velocities) {
+    const ProbeState probe = probe_state(model, state, velocities, port.point);
+    return port.component < 3 ? probe.velocity[port.component] : probe.angular_velocity[port.component - 3];
+  };
 }
 
 }  // namespace
@@ -176,23 +231,17 @@ MovingMatrix port_motion(const Simulation& simulation, const LinearDynamics& dyn
   MovingMatrix motion =
       dynamics.along_reference([&](const MechanismPose& pose, const Eigen::MatrixXd& rows) -> Eigen::MatrixXd {
         const State state = state_at(pose);
-        Eigen::MatrixXd out = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(ports.size()), rows.cols());
+        std::vector<PortRate> rates;
+        for (const LinearPort& port : ports) rates.push_back(rate_of(port, model, dof, state));
+        Eigen::MatrixXd out(static_cast<Eigen::Index>(ports.size()), rows.cols());
         std::vector<Vector6> velocities(pose.nodes.size());
         for (Eigen::Index column = 0; column < rows.cols(); ++column) {
           for (std::size_t n = 0; n < velocities.size(); ++n) {
             velocities[n] = rows.col(column).segment<6>(dof.first[n]);
             velocities[n].tail<3>() = (pose.nodes[n].rotation * velocities[n].tail<3>()).eval();
           }
-          for (std::size_t i = 0; i < ports.size(); ++i) {
-            const LinearPort& port = ports[i];
-            double& entry = out(static_cast<Eigen::Index>(i), column);
-            if (port.coordinate >= 0) {
-              entry = rows(dof.scalar_of(model.coordinates[port.coordinate]), column);
-              continue;
-            }
-            const ProbeState probe = probe_state(model, state, velocities, port.point);
-            entry = port.component < 3 ? probe.velocity[port.component] : probe.angular_velocity[port.component - 3];
-          }
+          for (std::size_t i = 0; i < ports.size(); ++i)
+            out(static_cast<Eigen::Index>(i), column) = rates[i](rows.col(column), velocities);
         }
         return out;
       });

@@ -11,12 +11,12 @@ namespace flexarm {
 
 /// An input or an output: one scalar of the mechanism.
 struct LinearPort {
-  enum class Kind { Effort, Motion, Wrench, Position, Velocity, Acceleration };
+  enum class Kind { Effort, Motion, Wrench, Position, Velocity, Acceleration, Strain, SectionForce };
   Kind kind = Kind::Effort;
   int coordinate = -1;  ///< of Model::coordinates; -1: a point
-  ProbePoint point;
-  int component = 0;  ///< of the point
-  std::string name;   ///< as users write it, with the component
+  ProbePoint point;     ///< of a sensor, too
+  int component = 0;    ///< of the point
+  std::string name;     ///< as users write it, with the component
 };
 
 /// @throws std::invalid_argument if there is no such input.

@@ -6,21 +6,12 @@
 #include "elements/element_configuration.h"
 #include "joints/joint_kinematics.h"
 #include "joints/servo_step.h"
-#include "math/quadrature.h"
 #include "math/shape_functions.h"
 #include "model/carried_origin.h"
+#include "simulation/beam_sections.h"
 
 namespace flexarm {
 namespace {
-
-/// Visits an element of a beam by its index in the group of its order.
-template <class Visit>
-void visit_element(const Model& model, const BeamLink& beam, int index, const Visit& visit) {
-  for_each_group(model.beams, [&](const auto& group) {
-    using Element = typename std::decay_t<decltype(group.elements)>::value_type;
-    if (Element::kNodes == beam.order + 1) visit(group.elements[beam.elements[index]]);
-  });
-}
 
 /// Section pose at the parent coordinate xi, nodes on the mass centroid.
 template <int Nodes>
@@ -30,17 +21,12 @@ Pose section_pose(const std::array<Vector3, Nodes>& positions, const LocalRotati
   return {interpolate<Nodes>(functions.values, positions), Quaternion(rotation).normalized()};
 }
 
-/// The polynomial through the values at the stiffness points, where stress is most accurate, at xi.
+/// From the values at the stiffness points.
 template <int Nodes>
 Vector6 extended(const std::array<Vector6, Nodes - 1>& values, double xi) {
-  const auto& abscissa = GaussLegendre<Nodes - 1>::points;
+  const std::array<double, Nodes - 1> weights = extension_weights<Nodes>(xi);
   Vector6 sum = Vector6::Zero();
-  for (int a = 0; a < Nodes - 1; ++a) {
-    double weight = 1;
-    for (int b = 0; b < Nodes - 1; ++b)
-      if (b != a) weight *= (xi - abscissa[b]) / (abscissa[a] - abscissa[b]);
-    sum += weight * values[a];
-  }
+  for (int a = 0; a < Nodes - 1; ++a) sum += weights[a] * values[a];
   return sum;
 }
 

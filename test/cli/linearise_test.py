@@ -113,6 +113,7 @@ class Linearise(unittest.TestCase):
             (("--outputs", "position:bob:q"), ("position:bob:q", "hinge, bob, tip")),
             (("--outputs", "effort:hinge"), ("effort:hinge", "there is none")),
             (("--output", "model.txt"), ("model.txt", ".mat")),
+            (("--outputs", "strain:gauge"), ("strain:gauge", "there is none")),
         ):
             result = self.run_program(*options)
             self.assertEqual(result.returncode, 2, options)

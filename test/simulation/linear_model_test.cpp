@@ -104,6 +104,72 @@ TEST(LinearModel, KelvinVoigtDamping) {
   EXPECT_GT(seen, 4);
 }
 
+std::string gauged_cantilever(const std::string& load) {
+  // The centre of mass, at which nodes stand, is off the line, about which strains and forces are.
+  return R"(<robot name="cantilever"><link name="world"/>
+    <joint name="clamp" type="fixed"> <parent link="world"/> <child link="beam"/> </joint>
+    <link name="beam"> <beam elements="3" order="2"> <centerline> <line to="1.2 0 0"/> </centerline>
+      <section_matrix stiffness="1e6 0 0 0 0 0  0 1e5 0 0 0 0  0 0 1e5 0 0 0  0 0 0 200 0 0  0 0 0 0 250 0  0 0 0 0 0 300"
+        inertia="0.5 0 0 0 -0.01 -0.015  0 0.5 0 0.01 0 0  0 0 0.5 0.015 0 0
+                 0 0.01 0.015 0.03 0 0  -0.01 0 0 0 0.02 0  -0.015 0 0 0 0 0.01"/>
+    </beam> </link>
+    <sensor name="gauge" kind="strain" link="beam" at="0.31 0.02 -0.03"/>
+    <sensor name="section" kind="section_force" link="beam" at="0.31 0 0"/>
+    <simulation> <gravity xyz="0 0 0"/> <integrator scheme="newmark" tolerance="1e-13"/> )" +
+         load + "</simulation> </robot>";
+}
+
+/// Outputs per unit of a constant input.
+VectorXd static_gain(const LinearModel& model) {
+  return model.d - model.c * test::solution(model.a, model.b);
+}
+
+// Bending by a force P at the tip: M(s) = P (L - s), which elements have exactly; the fibre at y is strained by -y
+// M/EI.
+TEST(LinearModel, StrainGaugeByBeamTheory) {
+  LinearRequest request;
+  request.inputs = {"wrench:beam/tip:fy"};
+  request.outputs = {"strain:gauge", "section_force:section"};
+  const LinearModel model = linearise(simulation_of(gauged_cantilever("")), request);
+  ASSERT_EQ(model.outputs,
+            (std::vector<std::string>{"strain:gauge", "section_force:section:fx", "section_force:section:fy",
+                                      "section_force:section:fz", "section_force:section:mx",
+                                      "section_force:section:my", "section_force:section:mz"}));
+  const VectorXd gain = static_gain(model);
+  const double arm = 1.2 - 0.31;
+  // Round-off of displacements is 1e-16 times the ratio of the squares of frequencies, 1e5; forces are differences of
+  // displacements of 1e-3 m times 1e6 N over an element of 0.2 m.
+  EXPECT_NEAR(gain[0], -0.02 * arm / 300, 1e-7 * arm / 300);
+  EXPECT_NEAR(gain[2], 1, 1e-7);
+  EXPECT_NEAR(gain[6], arm, 1e-7);
+  for (const int none : {1, 3, 4, 5}) EXPECT_NEAR(gain[none], 0, 1e-7);
+}
+
+// Of a strongly bent beam: differences of equilibria under loads that differ by h are off by h^2.
+TEST(LinearModel, StrainGaugeOfABentBeam) {
+  const double force = 150, way = 1e-2;
+  const auto load = [](double value) {
+    return fmt::format(R"(<load link="beam" at="1.2 0 0" force="0 {} 10"/>)", value);
+  };
+  const auto sampled = [&](double value) {
+    Simulation simulation = simulation_of(gauged_cantilever(load(value)));
+    if (!simulation.solve_static(10).converged) throw std::runtime_error("no equilibrium");
+    VectorXd values(7);
+    values[0] = simulation.sample(0).values[0];
+    for (int i = 0; i < 6; ++i) values[1 + i] = simulation.sample(1).values[i];
+    return values;
+  };
+  const VectorXd expected = (sampled(force + way) - sampled(force - way)) / (2 * way);
+  Simulation simulation = simulation_of(gauged_cantilever(load(force)));
+  ASSERT_TRUE(simulation.solve_static(10).converged);
+  LinearRequest request;
+  request.inputs = {"wrench:beam/tip:fy"};
+  request.outputs = {"strain:gauge", "section_force:section"};
+  const VectorXd gain = static_gain(linearise(simulation, request));
+  EXPECT_LT(std::abs(gain[0] - expected[0]), 1e-6 * std::abs(expected[0]));
+  EXPECT_LT((gain - expected).norm(), 1e-6 * expected.norm());
+}
+
 // ---------------------------------------------------------------- against the simulator
 
 constexpr const char* kBody = R"(<inertial> <origin xyz="{0} 0.1 -0.05"/> <mass value="2"/>

@@ -32,8 +32,10 @@ enum class LinearisedAbout {
 /// | `position:JOINT`    | of a coordinate [m or rad]; `velocity:` and `acceleration:` are its derivatives            |
 /// | `position:POINT:x`  | displacement (x y z) [m] or small rotation (rx ry rz) [rad] of a point, world axes         |
 /// | `effort:JOINT`      | what drives a coordinate that a <motion> drives [N or N m]                                |
+/// | `strain:SENSOR`     | what a strain gauge of the scene measures, without its errors [-]                         |
+/// | `section_force:SENSOR:fx` | of a sensor of elastic forces: (fx fy fz) [N] and moments (mx my mz) [N m]          |
 ///
-/// Without a component a point means all six; points have `velocity:` and `acceleration:`, too.
+/// Without a component a point, or a section, means all six; points have `velocity:` and `acceleration:`, too.
 struct LinearRequest {
   LinearisedAbout about = LinearisedAbout::Rest;
   std::vector<std::string> inputs;   ///< none: the efforts on all coordinates that may be commanded
