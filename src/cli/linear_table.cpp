@@ -1,6 +1,7 @@
 #include "cli/linear_table.h"
 
 #include "cli/json_text.h"
+#include "math/pi.h"
 #include "simulation/csv_fields.h"
 
 namespace flexarm::cli {
@@ -12,10 +13,34 @@ std::string json_matrix(const Eigen::MatrixXd& matrix) {
   return "[" + rows + "]";
 }
 
-std::string json_names(const std::vector<std::string>& names) {
+std::string json_complex(const std::complex<double>& number) {
+  return "[" + json_number(number.real()) + ", " + json_number(number.imag()) + "]";
+}
+
+/// "[...]" of `text(entry)` of each entry.
+template <class List, class Text>
+std::string json_list(const List& entries, const char* separator, const Text& text) {
   std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + json_string(name);
+  for (const auto& entry : entries) list += (list.empty() ? "" : separator) + text(entry);
   return "[" + list + "]";
+}
+
+/// A matrix for each frequency.
+std::string json_gains(const std::vector<Eigen::MatrixXcd>& gains) {
+  return json_list(gains, ",\n  ", [](const Eigen::MatrixXcd& matrix) {
+    return json_list(matrix.rowwise(), ", ", [](const auto& row) { return json_list(row, ", ", json_complex); });
+  });
+}
+
+std::string json_names(const std::vector<std::string>& names) {
+  return json_list(names, ", ", json_string);
+}
+
+/// "kind OUTPUT / INPUT" of each pair, inputs fastest.
+void append_pairs(std::string& header, const LinearModel& model, const std::vector<std::string>& kinds) {
+  for (const std::string& output : model.outputs)
+    for (const std::string& input : model.inputs)
+      for (const std::string& kind : kinds) csv::append(header, kind + output + " / " + input);
 }
 
 void append_rows(std::string& table, const std::vector<std::string>& names, const Eigen::MatrixXd& by_states,
@@ -31,7 +56,7 @@ void append_rows(std::string& table, const std::vector<std::string>& names, cons
 
 }  // namespace
 
-std::string linear_model_as_json(const std::string& scene, const LinearModel& model) {
+std::string linear_model_as_json(const std::string& scene, const LinearModel& model, const LinearResponses& responses) {
   std::string members;
   append_member(members, "scene", json_string(scene));
   append_member(members, "states", json_names(model.states));
@@ -43,11 +68,21 @@ std::string linear_model_as_json(const std::string& scene, const LinearModel& mo
   append_member(members, "C", json_matrix(model.c));
   append_member(members, "D", json_matrix(model.d));
   append_member(members, "drift", json_array(model.drift));
+  append_member(members, "poles",
+                json_list(poles(model), ", ", [](const Pole& pole) { return json_complex(pole.value); }));
   append_member(members, "coordinates", json_names(model.coordinates));
   append_member(members, "mass", json_matrix(model.mass));
   append_member(members, "damping", json_matrix(model.damping));
   append_member(members, "stiffness", json_matrix(model.stiffness));
   append_member(members, "residual", json_array(model.residual));
+  if (const auto& [frequencies, gains] = responses.frequency; !frequencies.empty()) {
+    append_member(members, "frequencies", json_list(frequencies, ", ", json_number));
+    append_member(members, "gains", json_gains(gains));
+  }
+  if (const auto& [times, outputs] = responses.step; !times.empty()) {
+    append_member(members, "times", json_list(times, ", ", json_number));
+    append_member(members, "step_response", json_list(outputs, ",\n  ", json_matrix));
+  }
   return "{" + members + "}\n";
 }
 
@@ -59,6 +94,37 @@ std::string linear_model_as_csv(const LinearModel& model) {
   std::string table = header + "\n";
   append_rows(table, model.states, model.a, model.b);
   append_rows(table, model.outputs, model.c, model.d);
+  return table;
+}
+
+std::string frequency_response_as_csv(const LinearModel& model, const FrequencyResponse& response) {
+  std::string table = "frequency";
+  append_pairs(table, model, {"gain ", "phase "});
+  table += "\n";
+  for (std::size_t n = 0; n < response.frequencies.size(); ++n) {
+    std::string line;
+    csv::append(line, response.frequencies[n]);
+    for (const auto& row : response.gains[n].rowwise())
+      for (const std::complex<double>& gain : row) {
+        csv::append(line, std::abs(gain));
+        csv::append(line, std::arg(gain) * 180 / kPi);
+      }
+    table += line + "\n";
+  }
+  return table;
+}
+
+std::string step_response_as_csv(const LinearModel& model, const StepResponse& response) {
+  std::string table = "time";
+  append_pairs(table, model, {""});
+  table += "\n";
+  for (std::size_t n = 0; n < response.times.size(); ++n) {
+    std::string line;
+    csv::append(line, response.times[n]);
+    for (const auto& row : response.outputs[n].rowwise())
+      for (const double value : row) csv::append(line, value);
+    table += line + "\n";
+  }
   return table;
 }
 

@@ -4,8 +4,10 @@
 
 #include "cli/commands.h"
 #include "cli/files.h"
+#include "cli/installation.h"
 #include "cli/linear_table.h"
 #include "cli/recording_library.h"
+#include "cli/response_options.h"
 #include "cli/scene_input.h"
 #include "flexarm/scene/scene_description.h"
 #include "flexarm/simulation/linear_model.h"
@@ -19,6 +21,7 @@ constexpr double kVisible = 0.05;
 struct Arguments {
   SceneInput scene;
   LinearRequest request;
+  ResponseOptions responses;
   std::optional<double> time;
   bool is_steady = false, prints_shapes = false;
   Equilibrium wanted = Equilibrium::Stable;
@@ -55,38 +58,72 @@ void print_poles(const LinearModel& model, const Arguments& arguments) {
     if (count++ == arguments.count) break;
     fmt::print("{:>14.7g} {:>14.4g} {:>14.7g} {:>14.7g}  {}\n", pole.frequency(), pole.damping_ratio(),
                pole.value.real(), pole.value.imag(), model.states[pole.state]);
-    for (Eigen::Index i = 0; arguments.prints_shapes && i < model.a.rows() / 2; ++i)
+    for (Eigen::Index i = 0; arguments.prints_shapes && i < model.positions; ++i)
       if (std::abs(pole.mode[i]) > kVisible)
         fmt::print("    {:<32} {:>10.4f} {:>+10.4f}i\n", model.states[i], pole.mode[i].real(), pole.mode[i].imag());
   }
 }
 
-void write_model(const std::string& path, const std::string& scene, const LinearModel& model) {
+LinearModel model_of(const Simulation& simulation, const Arguments& arguments) {
+  try {
+    LinearModel model = linearise(simulation, arguments.request);
+    for (const std::string& effect : model.left_out) fmt::print(stderr, "flexarm: warning: left out: {}\n", effect);
+    return model;
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("flexarm: {}", error.what()));
+  }
+}
+
+std::string csv_of(const LinearModel& model, const LinearResponses& responses) {
+  if (!responses.frequency.frequencies.empty()) return frequency_response_as_csv(model, responses.frequency);
+  if (!responses.step.times.empty()) return step_response_as_csv(model, responses.step);
+  return linear_model_as_csv(model);
+}
+
+void write_model(const std::string& path, const std::string& scene, const LinearModel& model,
+                 const LinearResponses& responses) {
   if (path.empty()) return;
   const std::string kind = kind_of_file(path);
-  if (kind == ".mat") return recording_library().mat(path, scene, model);
-  const std::string text = kind == ".csv" ? linear_model_as_csv(model) : linear_model_as_json(scene, model);
+  if (kind == ".mat") return recording_library().mat(path, scene, model, responses);
+  const std::string text = kind == ".csv" ? csv_of(model, responses) : linear_model_as_json(scene, model, responses);
   if (is_standard_output(path))
     fmt::print("{}", text);
   else
     write_file(path, text);
 }
 
-int linearise_scene(Arguments arguments) {
+void draw_picture(const std::string& picture, const std::string& scene, const LinearModel& model,
+                  const LinearResponses& responses) {
+  if (picture.empty()) return;
+  const std::string data = data_of_picture(picture);
+  write_model(data, scene, model, responses);
+  if (!draw("plot_bode.py", data, picture))
+    throw std::runtime_error("no picture: it needs python3-matplotlib; its numbers are in '" + data + "'");
+}
+
+void check_files(const Arguments& arguments) {
+  const auto& [frequencies, step_until, picture] = arguments.responses;
+  if (kind_of_file(arguments.output) == ".csv" && !frequencies.empty() && step_until)
+    throw InputError("flexarm: --output: a .csv file has one table: expected .mat or .json for both responses");
   refuse_overwriting("--output", arguments.output, arguments.scene.path);
   require_writable("--output", arguments.output);
+  if (picture.empty()) return;
+  for (const std::string& file : {picture, data_of_picture(picture)}) {
+    refuse_overwriting("--plot", file, arguments.scene.path);
+    require_writable("--plot", file);
+  }
+}
+
+int linearise_scene(Arguments arguments) {
+  check_files(arguments);
   Simulation simulation = load_simulation(arguments.scene);
   go_to_reference(arguments, simulation);
   if (arguments.time) arguments.request.about = LinearisedAbout::Instant;
   if (arguments.is_steady) arguments.request.about = LinearisedAbout::Steady;
-  LinearModel model;
-  try {
-    model = linearise(simulation, arguments.request);
-  } catch (const std::invalid_argument& error) {
-    throw InputError(fmt::format("flexarm: {}", error.what()));
-  }
-  for (const std::string& effect : model.left_out) fmt::print(stderr, "flexarm: warning: left out: {}\n", effect);
-  write_model(arguments.output, simulation.scene().name, model);
+  const LinearModel model = model_of(simulation, arguments);
+  const LinearResponses responses = responses_of(model, arguments.responses);
+  write_model(arguments.output, simulation.scene().name, model, responses);
+  draw_picture(arguments.responses.picture, simulation.scene().name, model, responses);
   if (!is_standard_output(arguments.output)) print_poles(model, arguments);
   return kDone;
 }
@@ -124,8 +161,10 @@ void add_linearise(CLI::App& app, int& status) {
       ->capture_default_str()
       ->check(CLI::Range(0, 100000));
   command->add_flag("--shapes", arguments->prints_shapes, "prints what moves in each pole's mode");
+  add_responses(*command, arguments->responses);
   command
-      ->add_option("-o,--output", arguments->output, "file: .mat (MATLAB), .json or .csv; -: JSON to standard output")
+      ->add_option("-o,--output", arguments->output,
+                   "file: .mat (MATLAB), .json or .csv (the matrices, or a response); -: JSON to standard output")
       ->check(check_file);
   command->callback([arguments, &status] { status = linearise_scene(*arguments); });
 }

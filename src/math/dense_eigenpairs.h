@@ -13,9 +13,8 @@ struct Eigenpairs {
 /// @throws std::runtime_error if the iteration does not converge
 Eigenpairs dense_eigenpairs(const Eigen::MatrixXd& matrix);
 
-/// The same after scaling coordinates by powers of two until the rows and columns of each are alike (Parlett and
-/// Reinsch 1969): small eigenvalues keep their digits where coordinates have units of very different sizes.
-Eigenpairs balanced_eigenpairs(Eigen::MatrixXd matrix);
+/// The same after scaling coordinates, see balanced().
+Eigenpairs balanced_eigenpairs(const Eigen::MatrixXd& matrix);
 
 struct SymmetricEigenpairs {
   Eigen::VectorXd values;   ///< the smallest first

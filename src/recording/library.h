@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "flexarm/simulation/linear_model.h"
+#include "flexarm/simulation/linear_response.h"
 #include "flexarm/simulation/result_writer.h"
 #include "recording/replay.h"
 
@@ -19,7 +19,8 @@ struct Library {
   /// A ROS bag, see BagWriter.
   std::unique_ptr<ResultWriter> (*bag)(const std::string& path, const Simulation& simulation);
   /// A file of MATLAB, see write_mat().
-  void (*mat)(const std::string& path, const std::string& scene, const LinearModel& model);
+  void (*mat)(const std::string& path, const std::string& scene, const LinearModel& model,
+              const LinearResponses& responses);
   /// See recording::replay().
   ReplayReport (*replay)(Simulation simulation, const ReplayOptions& options);
 };

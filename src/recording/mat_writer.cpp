@@ -37,9 +37,38 @@ Variable cells(const char* name, const std::vector<std::string>& values) {
   return {Mat_VarCreate(name, MAT_C_CELL, MAT_T_CELL, 2, size.data(), entries.data(), 0), &Mat_VarFree};
 }
 
+Variable numbers(const char* name, const std::vector<double>& column) {
+  return numbers(name, Eigen::Map<const Eigen::VectorXd>(column.data(), static_cast<Eigen::Index>(column.size())));
+}
+
+/// A matrix for each frequency, behind each other.
+Variable gains(const std::vector<Eigen::MatrixXcd>& matrices) {
+  std::vector<double> real, imaginary;
+  for (const Eigen::MatrixXcd& matrix : matrices)
+    for (const std::complex<double>& gain : matrix.reshaped()) {
+      real.push_back(gain.real());
+      imaginary.push_back(gain.imag());
+    }
+  std::array<size_t, 3> size = {static_cast<size_t>(matrices.front().rows()),
+                                static_cast<size_t>(matrices.front().cols()), matrices.size()};
+  mat_complex_split_t parts = {real.data(), imaginary.data()};
+  return {Mat_VarCreate("gains", MAT_C_DOUBLE, MAT_T_DOUBLE, 3, size.data(), &parts, MAT_F_COMPLEX), &Mat_VarFree};
+}
+
+/// As MATLAB's step() has it: times first.
+Variable step_outputs(const std::vector<Eigen::MatrixXd>& matrices) {
+  std::array<size_t, 3> size = {matrices.size(), static_cast<size_t>(matrices.front().rows()),
+                                static_cast<size_t>(matrices.front().cols())};
+  std::vector<double> values;
+  for (Eigen::Index k = 0; k < matrices.front().size(); ++k)
+    for (const Eigen::MatrixXd& matrix : matrices) values.push_back(matrix.reshaped()[k]);
+  return {Mat_VarCreate("step_response", MAT_C_DOUBLE, MAT_T_DOUBLE, 3, size.data(), values.data(), 0), &Mat_VarFree};
+}
+
 }  // namespace
 
-void write_mat(const std::string& path, const std::string& scene, const LinearModel& model) {
+void write_mat(const std::string& path, const std::string& scene, const LinearModel& model,
+               const LinearResponses& responses) {
   ReplacedFile place(path);
   std::unique_ptr<mat_t, decltype(&Mat_Close)> file(
       Mat_CreateVer(place.unfinished().c_str(), "MATLAB 5.0 MAT-file, written by flexarm", MAT_FT_MAT5), &Mat_Close);
@@ -63,6 +92,14 @@ void write_mat(const std::string& path, const std::string& scene, const LinearMo
   write(cells("outputs", model.outputs));
   write(cells("coordinates", model.coordinates));
   write(cells("left_out", model.left_out));
+  if (!responses.frequency.frequencies.empty()) {
+    write(numbers("frequencies", responses.frequency.frequencies));
+    write(gains(responses.frequency.gains));
+  }
+  if (!responses.step.times.empty()) {
+    write(numbers("times", responses.step.times));
+    write(step_outputs(responses.step.outputs));
+  }
   if (Mat_Close(file.release()) != 0) place.fail("cannot be written");
   place.put_in_place();
 }

@@ -218,6 +218,7 @@ MatrixXd forces_of(const std::vector<LinearPort>& inputs, const Simulation& simu
 void set_states(const std::vector<int>& places, const LinearDynamics& dynamics, const Accelerations& accelerations,
                 LinearModel& out) {
   const auto count = static_cast<Eigen::Index>(places.size());
+  out.positions = static_cast<int>(count);
   for (const int place : places) out.states.push_back(out.coordinates[place]);
   for (const int place : places) out.states.push_back("d/dt " + out.coordinates[place]);
   out.a = MatrixXd::Zero(2 * count, 2 * count);
@@ -278,7 +279,7 @@ std::vector<Pole> poles(const LinearModel& model) {
     Pole pole{pairs.values[i], 0, pairs.vectors.col(i)};
     if (pole.value.imag() < -kReal * largest) continue;
     Eigen::Index state = 0;
-    pole.mode.head(model.a.rows() / 2).cwiseAbs().maxCoeff(&state);
+    pole.mode.head(model.positions).cwiseAbs().maxCoeff(&state);
     pole.state = static_cast<int>(state);
     pole.mode /= pole.mode[state];
     out.push_back(std::move(pole));

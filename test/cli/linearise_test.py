@@ -96,6 +96,60 @@ class Linearise(unittest.TestCase):
         whole = numpy.block([[a, b], [c, d]])
         numpy.testing.assert_array_equal([[float(number) for number in row[1:]] for row in rows], whole)
 
+    def gain(self, frequency):
+        """Of the angle by the effort."""
+        rate = 2j * numpy.pi * frequency
+        return 1 / (INERTIA * rate**2 + 0.3 * rate + WEIGHT)
+
+    def test_frequency_response_by_formula(self):
+        model = self.model("--outputs", "position:hinge,velocity:tip:x", "--frequencies", "0.01:100:9")
+        frequencies = numpy.array(model["frequencies"])
+        numpy.testing.assert_allclose(frequencies, numpy.logspace(-2, 2, 9), rtol=1e-14)
+        gains = numpy.array(model["gains"]) @ [1, 1j]
+        expected = self.gain(frequencies)
+        numpy.testing.assert_allclose(gains[:, 0, 0], expected, rtol=1e-12)
+        numpy.testing.assert_allclose(gains[:, 1, 0], -2j * numpy.pi * frequencies * expected, rtol=1e-12)
+        poles = numpy.array(model["poles"]) @ [1, 1j]
+        numpy.testing.assert_allclose(poles, numpy.roots([INERTIA, 0.3, WEIGHT])[:1], rtol=1e-12)
+
+    def test_responses_in_files(self):
+        options = ("--frequencies", "0.5,2,1", "--step-response", "0.7")
+        model = self.model(*options)
+        self.assertEqual(model["frequencies"], [0.5, 2, 1])
+        gains = numpy.array(model["gains"]) @ [1, 1j]
+        self.assertEqual(self.run_program("--output", self.path("model.mat"), *options).returncode, 0)
+        matlab = scipy.io.loadmat(self.path("model.mat"))
+        numpy.testing.assert_array_equal(matlab["frequencies"][:, 0], model["frequencies"])
+        numpy.testing.assert_array_equal(matlab["gains"], numpy.moveaxis(gains, 0, 2))
+        numpy.testing.assert_array_equal(matlab["times"][:, 0], model["times"])
+        numpy.testing.assert_array_equal(matlab["step_response"], model["step_response"])
+        rows = self.table(*options[:2])
+        names = ["%s %s / effort:hinge" % (kind, name) for name in model["outputs"] for kind in ("gain", "phase")]
+        self.assertEqual(rows[0], ["frequency"] + names)
+        values = numpy.array(rows[1:], dtype=float)
+        numpy.testing.assert_allclose(values[:, 1::2], abs(gains[:, :, 0]), rtol=1e-15)
+        numpy.testing.assert_allclose(values[:, 2::2], numpy.degrees(numpy.angle(gains[:, :, 0])), rtol=1e-14)
+        rows = self.table(*options[2:])
+        self.assertEqual(rows[0], ["time"] + [name + " / effort:hinge" for name in model["outputs"]])
+        values = numpy.array(rows[1:], dtype=float)
+        numpy.testing.assert_array_equal(values[:, 0], model["times"])
+        numpy.testing.assert_array_equal(values[:, 1:], numpy.array(model["step_response"])[:, :, 0])
+        self.assertEqual(model["times"][-1], 0.7)
+        self.assertEqual(self.run_program("--output", self.path("model.csv"), *options).returncode, 2)
+
+    def table(self, *options):
+        self.assertEqual(self.run_program("--output", self.path("model.csv"), *options).returncode, 0)
+        with open(self.path("model.csv"), encoding="utf-8") as file:
+            return list(csv.reader(file))
+
+    def test_a_picture_is_drawn(self):
+        result = self.run_program("--frequencies", "0.1:10:50", "--plot", self.path("bode.png"))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        with open(self.path("bode.png"), "rb") as file:
+            self.assertEqual(file.read(4), b"\x89PNG")
+        with open(self.path("bode.json"), encoding="utf-8") as file:
+            self.assertEqual(len(json.load(file)["gains"]), 50)
+
     def test_poles_are_printed(self):
         text = self.run_program().stdout.splitlines()
         frequency, ratio = text[2].split()[:2]
@@ -114,6 +168,10 @@ class Linearise(unittest.TestCase):
             (("--outputs", "effort:hinge"), ("effort:hinge", "there is none")),
             (("--output", "model.txt"), ("model.txt", ".mat")),
             (("--outputs", "strain:gauge"), ("strain:gauge", "there is none")),
+            (("--frequencies", "1:0.5:3"), ("1:0.5:3", "FROM:TO:COUNT")),
+            (("--frequencies", "1:2"), ("1:2", "FROM:TO:COUNT")),
+            (("--frequencies", "1,-2"), ("-2", "> 0")),
+            (("--plot", "bode.png"), ("--plot", "--frequencies")),
         ):
             result = self.run_program(*options)
             self.assertEqual(result.returncode, 2, options)

@@ -52,6 +52,7 @@ struct LinearModel {
   Eigen::MatrixXd mass, damping, stiffness;  ///< by y; damping: with gyroscopic, stiffness: with centrifugal terms
   Eigen::VectorXd residual;                  ///< efforts that drive the driven ones in the reference, zeros else
   std::vector<std::string> states, inputs, outputs;
+  int positions = 0;  ///< the first of the states; the others are their rates
   Eigen::MatrixXd a, b, c, d;
   Eigen::VectorXd drift;              ///< x' of the reference itself; zeros at rest
   std::vector<std::string> left_out;  ///< effects of the scene that a linear model does not have, in words

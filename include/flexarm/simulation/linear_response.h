@@ -1,0 +1,38 @@
+#pragma once
+/// What linear models answer to inputs: over frequency, and over time.
+
+#include <complex>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "flexarm/simulation/linear_model.h"
+
+namespace flexarm {
+
+/// Amplitudes and phases of the outputs once what was before has died out: where the input j is Re(exp(2 pi i f t)),
+/// the output k is Re(gains(k, j) exp(2 pi i f t)).
+struct FrequencyResponse {
+  std::vector<double> frequencies;      ///< f [Hz]
+  std::vector<Eigen::MatrixXcd> gains;  ///< c (2 pi i f - a)^-1 b + d of each, outputs x inputs
+};
+/// @throws std::runtime_error at a frequency of an undamped pole, where there is no such response.
+FrequencyResponse frequency_response(const LinearModel& model, const std::vector<double>& frequencies);
+
+/// Outputs after an input went from 0 to 1 at time 0, all else at rest.
+struct StepResponse {
+  std::vector<double> times;             ///< [s]
+  std::vector<Eigen::MatrixXd> outputs;  ///< at each of them, outputs x inputs: by each input alone
+};
+/// At 0 and the ends of `intervals` equal parts of the time until `until` [s], exact but for round-off.
+/// @throws std::invalid_argument if `until` is not > 0 or `intervals` < 1; std::runtime_error if it grows beyond all
+/// numbers.
+StepResponse step_response(const LinearModel& model, double until, int intervals);
+
+/// What is written beside a model; empty: was not asked for.
+struct LinearResponses {
+  FrequencyResponse frequency;
+  StepResponse step;
+};
+
+}  // namespace flexarm

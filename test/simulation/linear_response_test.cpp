@@ -1,0 +1,144 @@
+// Responses of linear models against closed forms and the defining equations.
+#include "flexarm/simulation/linear_response.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "flexarm/scene/scene_description.h"
+#include "flexarm/scene/urdf_reader.h"
+#include "math/pi.h"
+#include "support/dense_solution.h"
+
+namespace flexarm {
+namespace {
+
+using Complex = std::complex<double>;
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// y'' + 2 ratio frequency y' + frequency^2 y = u; outputs y, y' and y''.
+LinearModel oscillator(double frequency, double ratio) {
+  LinearModel model;
+  model.positions = 1;
+  model.states = {"y", "d/dt y"};
+  model.inputs = {"u"};
+  model.outputs = {"y", "d/dt y", "acceleration"};
+  model.a = (MatrixXd(2, 2) << 0, 1, -frequency * frequency, -2 * ratio * frequency).finished();
+  model.b = (MatrixXd(2, 1) << 0, 1).finished();
+  model.c = (MatrixXd(3, 2) << MatrixXd::Identity(2, 2), model.a.bottomRows(1)).finished();
+  model.d = (MatrixXd(3, 1) << 0, 0, 1).finished();
+  model.drift = VectorXd::Zero(2);
+  return model;
+}
+
+/// A damped beam of three elements, by its tip.
+LinearModel cantilever(const std::string& joint) {
+  scene::ReadResult result = scene::read_scene_text(R"(<robot name="cantilever"><link name="world"/>
+    <joint name="root" type=")" + joint + R"("> <parent link="world"/> <child link="beam"/> <axis xyz="0 0 1"/> </joint>
+    <link name="beam"> <beam elements="3" order="2"> <centerline> <line to="1 0 0"/> </centerline>
+      <section ea="1e4" ga2="4e3" ga3="4e3" gj="8" ei2="10" ei3="12" mass="1" j1="2e-3" j2="1e-3" j3="1e-3"/>
+      <damping stiffness_proportional="2e-3"/> </beam> </link>
+    <simulation> <gravity xyz="0 0 0"/> </simulation> </robot>)",
+                                                    "test.urdf");
+  if (!result.scene) throw std::runtime_error(scene::to_text(result.diagnostics));
+  LinearRequest request;
+  request.inputs = {"wrench:beam/tip:fy", "wrench:beam/tip:fz"};
+  request.outputs = {"position:beam/tip:y", "position:beam/tip:z", "acceleration:beam/tip:y"};
+  return linearise(Simulation(std::move(*result.scene)), request);
+}
+
+std::vector<double> logarithmic(double from, double to, int count) {
+  std::vector<double> values;
+  for (int i = 0; i < count; ++i) values.push_back(from * std::pow(to / from, double(i) / (count - 1)));
+  return values;
+}
+
+// 1 / (w0^2 - w^2 + 2 i z w0 w), whose round-off the resonance makes larger by 1/(2 z).
+TEST(FrequencyResponse, OfAnOscillatorByFormula) {
+  const double natural = 7, ratio = 0.01;
+  const std::vector<double> frequencies = logarithmic(0.01, 100, 200);
+  const FrequencyResponse response = frequency_response(oscillator(natural, ratio), frequencies);
+  ASSERT_EQ(response.gains.size(), frequencies.size());
+  for (std::size_t n = 0; n < frequencies.size(); ++n) {
+    const Complex rate = {0, 2 * kPi * frequencies[n]};
+    const Complex expected = 1.0 / (natural * natural + 2 * ratio * natural * rate + rate * rate);
+    EXPECT_LT(std::abs(response.gains[n](0, 0) - expected), 1e-13 / ratio * std::abs(expected));
+    EXPECT_LT(std::abs(response.gains[n](1, 0) - rate * expected), 1e-13 / ratio * std::abs(rate * expected));
+    // The acceleration is a difference of 1 and what the position's gain makes.
+    EXPECT_LT(std::abs(response.gains[n](2, 0) - rate * rate * expected), 1e-13 / ratio * (1 + std::abs(expected)));
+  }
+}
+
+// Elimination of the matrix as it stands loses as many digits as its largest entry is over the way to the next pole.
+TEST(FrequencyResponse, SolvesItsEquations) {
+  const LinearModel model = cantilever("fixed");
+  for (const double frequency : {0.3, 2.0, 40.0}) {
+    const Complex rate = {0, 2 * kPi * frequency};
+    double distance = std::abs(rate);
+    for (const Pole& pole : poles(model)) distance = std::min(distance, std::abs(rate - pole.value));
+    const double round_off = 1e-15 * model.a.cwiseAbs().maxCoeff() / distance;
+    const MatrixXcd gains = frequency_response(model, {frequency}).gains[0];
+    const MatrixXcd matrix = rate * MatrixXcd::Identity(model.a.rows(), model.a.cols()) - model.a.cast<Complex>();
+    for (Eigen::Index j = 0; j < model.b.cols(); ++j) {
+      const Eigen::VectorXcd states = test::complex_solution(matrix, model.b.col(j).cast<Complex>());
+      const Eigen::VectorXcd positions = model.c.topRows(2).cast<Complex>() * states;
+      EXPECT_LT((gains.col(j).head(2) - positions).norm(), round_off * states.norm());
+    }
+  }
+}
+
+// Where one mode is alone, within its half-power band, whose half width is the damping ratio of the frequency.
+TEST(FrequencyResponse, PeaksAtThePole) {
+  const LinearModel model = cantilever("fixed");
+  for (const Pole& pole : poles(model)) {
+    if (pole.damping_ratio() > 0.05) break;
+    const std::vector<double> near = logarithmic(0.8 * pole.frequency(), 1.25 * pole.frequency(), 2001);
+    const FrequencyResponse response = frequency_response(model, near);
+    const int axis = std::abs((model.c * pole.mode)[0]) > std::abs((model.c * pole.mode)[1]) ? 0 : 1;
+    std::size_t peak = 0;
+    for (std::size_t n = 0; n < near.size(); ++n)
+      if (std::abs(response.gains[n](axis, axis)) > std::abs(response.gains[peak](axis, axis))) peak = n;
+    EXPECT_NEAR(near[peak] / pole.frequency(), 1, pole.damping_ratio());
+  }
+}
+
+TEST(FrequencyResponse, SaysWhereThereIsNone) {
+  EXPECT_THROW(frequency_response(oscillator(1, 0), {1 / (2 * kPi)}), std::runtime_error);
+}
+
+TEST(StepResponse, OfAnOscillatorByFormula) {
+  const double natural = 7, ratio = 0.1, until = 3;
+  const StepResponse response = step_response(oscillator(natural, ratio), until, 60);
+  ASSERT_EQ(response.times.size(), 61u);
+  EXPECT_EQ(response.times.back(), until);
+  const double decay = ratio * natural, damped = natural * std::sqrt(1 - ratio * ratio);
+  for (std::size_t n = 0; n < response.times.size(); ++n) {
+    const double phase = damped * response.times[n];
+    const double wave = std::cos(phase) + decay / damped * std::sin(phase);
+    const double expected = (1 - std::exp(-decay * response.times[n]) * wave) / (natural * natural);
+    EXPECT_NEAR(response.outputs[n](0, 0), expected, 1e-13);
+  }
+  EXPECT_THROW(step_response(oscillator(1, 1), 0, 10), std::invalid_argument);
+  EXPECT_THROW(step_response(oscillator(1, 1), 1, 0), std::invalid_argument);
+}
+
+// Poles of very different sizes: what is fast is there at once, what is slow keeps its digits but for those that 30
+// squarings lose.
+TEST(StepResponse, OfAStiffModel) {
+  LinearModel model = oscillator(1, 1);
+  model.a = (MatrixXd(2, 2) << -1e6, 0, 0, -1).finished();
+  model.b = (MatrixXd(2, 1) << 1e6, 1).finished();
+  model.c = MatrixXd::Identity(2, 2);
+  model.d = MatrixXd::Zero(2, 1);
+  const StepResponse response = step_response(model, 5, 5);
+  for (std::size_t n = 1; n < response.times.size(); ++n) {
+    EXPECT_NEAR(response.outputs[n](0, 0), 1, 1e-9);
+    EXPECT_NEAR(response.outputs[n](1, 0), -std::expm1(-response.times[n]), 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace flexarm
