@@ -10,13 +10,15 @@
 #include "cli/response_options.h"
 #include "cli/scene_input.h"
 #include "flexarm/scene/scene_description.h"
-#include "flexarm/simulation/linear_model.h"
+#include "flexarm/simulation/linear_reduction.h"
 
 namespace flexarm::cli {
 namespace {
 
 /// Of the state that moves most; smaller parts are left out of what is printed.
 constexpr double kVisible = 0.05;
+/// Of the largest Hankel singular value; smaller ones that are left out are not printed.
+constexpr double kLarge = 1e-6;
 
 struct Arguments {
   SceneInput scene;
@@ -26,6 +28,7 @@ struct Arguments {
   bool is_steady = false, prints_shapes = false;
   Equilibrium wanted = Equilibrium::Stable;
   int count = 20;
+  std::optional<int> order;  // of a reduced model
   std::string output;
 };
 
@@ -64,11 +67,29 @@ void print_poles(const LinearModel& model, const Arguments& arguments) {
   }
 }
 
+void print_reduction(const ReducedModel& reduced, int order) {
+  fmt::print("{} states, of which {} are of poles that do not decay\n", reduced.model.states.size(), reduced.kept);
+  if (static_cast<std::size_t>(order) > reduced.model.states.size())
+    fmt::print("others are not reached by inputs, or not seen by outputs\n");
+  const Eigen::VectorXd& values = reduced.hankel_singular_values;
+  const Eigen::Index balanced = static_cast<Eigen::Index>(reduced.model.states.size()) - reduced.kept;
+  fmt::print("Hankel singular values:");
+  for (Eigen::Index i = 0; i < values.size() && (i <= balanced || values[i] > kLarge * values[0]); ++i) {
+    if (i == balanced) fmt::print("; left out:");
+    fmt::print(" {:.4g}", values[i]);
+  }
+  fmt::print("\ngains are off by {:.4g} at most\n", 2 * values.tail(values.size() - balanced).sum());
+}
+
+/// As wide as was asked for.
 LinearModel model_of(const Simulation& simulation, const Arguments& arguments) {
   try {
     LinearModel model = linearise(simulation, arguments.request);
     for (const std::string& effect : model.left_out) fmt::print(stderr, "flexarm: warning: left out: {}\n", effect);
-    return model;
+    if (!arguments.order) return model;
+    ReducedModel reduced = flexarm::reduced(model, *arguments.order);
+    if (!is_standard_output(arguments.output)) print_reduction(reduced, *arguments.order);
+    return std::move(reduced.model);
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("flexarm: {}", error.what()));
   }
@@ -161,6 +182,11 @@ void add_linearise(CLI::App& app, int& status) {
       ->capture_default_str()
       ->check(CLI::Range(0, 100000));
   command->add_flag("--shapes", arguments->prints_shapes, "prints what moves in each pole's mode");
+  command
+      ->add_option_function<int>(
+          "--reduce", [arguments](int order) { arguments->order = order; },
+          "a model of so many states: balanced truncation of what decays")
+      ->check(CLI::Range(0, 100000));
   add_responses(*command, arguments->responses);
   command
       ->add_option("-o,--output", arguments->output,

@@ -32,4 +32,15 @@ std::vector<Eigen::Index> independent_rows(const Eigen::MatrixXd& matrix, double
   return {rows.data(), rows.data() + qr.rank()};
 }
 
+Eigen::MatrixXd column_space(const Eigen::MatrixXd& matrix, Eigen::Index rank) {
+  if (rank == 0) return Eigen::MatrixXd(matrix.rows(), 0);
+  return matrix.colPivHouseholderQr().householderQ() * Eigen::MatrixXd::Identity(matrix.rows(), rank);
+}
+
+Eigen::MatrixXd triangular_factor(const Eigen::MatrixXd& tall) {
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(tall);
+  const Eigen::MatrixXd triangle = qr.matrixQR().topRows(tall.cols()).triangularView<Eigen::Upper>();
+  return triangle * qr.colsPermutation().transpose();
+}
+
 }  // namespace flexarm

@@ -24,4 +24,10 @@ Eigen::MatrixXd square_solution(const Eigen::MatrixXd& matrix, const Eigen::Matr
 /// than `threshold`, and than this part of the largest.
 std::vector<Eigen::Index> independent_rows(const Eigen::MatrixXd& matrix, double threshold);
 
+/// An orthonormal basis of the columns of a matrix of this rank.
+Eigen::MatrixXd column_space(const Eigen::MatrixXd& matrix, Eigen::Index rank);
+
+/// F, square, with F^T F = tall^T tall, of a matrix that has at least as many rows as columns.
+Eigen::MatrixXd triangular_factor(const Eigen::MatrixXd& tall);
+
 }  // namespace flexarm

@@ -150,6 +150,16 @@ class Linearise(unittest.TestCase):
         with open(self.path("bode.json"), encoding="utf-8") as file:
             self.assertEqual(len(json.load(file)["gains"]), 50)
 
+    def test_a_smaller_model(self):
+        result = self.run_program("--reduce", "1")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        values = result.stdout.split("Hankel singular values: ")[1].splitlines()
+        left_out = float(values[0].split("; left out: ")[1])
+        # Four digits are printed.
+        self.assertAlmostEqual(float(values[1].split("off by ")[1].split()[0]) / (2 * left_out), 1, delta=1e-3)
+        self.assertEqual(len(self.model("--reduce", "1")["A"]), 1)
+        self.assertEqual(self.run_program("--reduce", "3").returncode, 2)
+
     def test_poles_are_printed(self):
         text = self.run_program().stdout.splitlines()
         frequency, ratio = text[2].split()[:2]

@@ -1,4 +1,4 @@
-// Responses of linear models against closed forms and the defining equations.
+// Responses of linear models, and of smaller ones that replace them, against closed forms and the defining equations.
 #include "flexarm/simulation/linear_response.h"
 
 #include <algorithm>
@@ -8,6 +8,7 @@
 
 #include "flexarm/scene/scene_description.h"
 #include "flexarm/scene/urdf_reader.h"
+#include "flexarm/simulation/linear_reduction.h"
 #include "math/pi.h"
 #include "support/dense_solution.h"
 
@@ -138,6 +139,73 @@ TEST(StepResponse, OfAStiffModel) {
     EXPECT_NEAR(response.outputs[n](0, 0), 1, 1e-9);
     EXPECT_NEAR(response.outputs[n](1, 0), -std::expm1(-response.times[n]), 1e-9);
   }
+}
+
+// ---------------------------------------------------------------- smaller models
+
+double largest_error(const LinearModel& whole, const LinearModel& small, const std::vector<double>& frequencies) {
+  const FrequencyResponse expected = frequency_response(whole, frequencies),
+                          got = frequency_response(small, frequencies);
+  double largest = 0;
+  for (std::size_t n = 0; n < frequencies.size(); ++n) {
+    // The largest singular value, by powers of the error's square.
+    const MatrixXcd error = got.gains[n] - expected.gains[n], square = error.adjoint() * error;
+    Eigen::VectorXcd direction = Eigen::VectorXcd::Ones(square.cols());
+    double value = 0;
+    for (int k = 0; k < 50; ++k) {
+      direction = square * direction;
+      value = direction.norm();
+      if (value == 0) break;
+      direction /= value;
+    }
+    largest = std::max(largest, std::sqrt(value));
+  }
+  return largest;
+}
+
+// Of a single lag with the gain 1: 1/2.
+TEST(ReducedModel, HankelSingularValueOfALag) {
+  LinearModel model = oscillator(1, 1);
+  model.a = MatrixXd::Constant(1, 1, -3);
+  model.b = MatrixXd::Constant(1, 1, 3);
+  model.c = MatrixXd::Ones(1, 1);
+  model.d = MatrixXd::Zero(1, 1);
+  model.drift = VectorXd::Zero(1);
+  model.states = {"x"};
+  const ReducedModel same = reduced(model, 1);
+  ASSERT_EQ(same.hankel_singular_values.size(), 1);
+  EXPECT_NEAR(same.hankel_singular_values[0], 0.5, 1e-14);
+  EXPECT_NEAR(same.model.a(0, 0), -3, 1e-13);
+}
+
+// Glover 1984: the error is at most twice the sum of what is left out, at any frequency; and there is one of at least
+// the largest of them.
+TEST(ReducedModel, ErrorIsWithinItsBound) {
+  const LinearModel model = cantilever("fixed");
+  const std::vector<double> frequencies = logarithmic(0.01, 1e4, 300);
+  for (const int order : {2, 4, 8, 12}) {
+    const ReducedModel small = reduced(model, order);
+    EXPECT_EQ(small.kept, 0);
+    ASSERT_EQ(small.model.a.rows(), order);
+    const VectorXd& values = small.hankel_singular_values;
+    const double bound = 2 * values.tail(values.size() - order).sum();
+    // Round-off of the whole model's gains.
+    EXPECT_LT(largest_error(model, small.model, frequencies), bound + 1e-10 * values[0]) << order;
+    for (const Pole& pole : poles(small.model)) EXPECT_LT(pole.value.real(), 0) << order;
+  }
+}
+
+// A beam on a hinge that nothing holds: two poles at 0 stay, and the bound is that of the rest.
+TEST(ReducedModel, KeepsFreeMotions) {
+  const LinearModel model = cantilever("continuous");
+  const std::vector<double> frequencies = logarithmic(0.1, 1e4, 200);
+  const ReducedModel small = reduced(model, 10);
+  EXPECT_EQ(small.kept, 2);
+  const VectorXd& values = small.hankel_singular_values;
+  const double free = frequency_response(model, {0.1}).gains[0].norm();
+  EXPECT_LT(largest_error(model, small.model, frequencies), 2 * values.tail(values.size() - 8).sum() + 1e-9 * free);
+  EXPECT_THROW(reduced(model, 1), std::invalid_argument);
+  EXPECT_THROW(reduced(model, static_cast<int>(model.a.rows()) + 1), std::invalid_argument);
 }
 
 }  // namespace

@@ -1,0 +1,47 @@
+#include "math/gramians.h"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "math/least_squares.h"
+
+namespace flexarm {
+namespace {
+
+/// It halves what is far from -1 at worst: 1e-30 of the largest eigenvalue would be reached.
+constexpr int kMostSteps = 100;
+/// A step shorter than this part, and longer than that part of the one before, is round-off: they shrink as squares.
+constexpr double kShort = 1e-3, kShorter = 0.5;
+
+/// F with F^T F = [first; second]^T [first; second] and at most as many rows as columns.
+Eigen::MatrixXd root_of_sum(const Eigen::MatrixXd& first, const Eigen::MatrixXd& second) {
+  Eigen::MatrixXd stacked(first.rows() + second.rows(), first.cols());
+  stacked << first, second;
+  return stacked.rows() > stacked.cols() ? triangular_factor(stacked) : stacked;
+}
+
+}  // namespace
+
+GramianRoots gramian_roots(Eigen::MatrixXd a, const Eigen::MatrixXd& b, const Eigen::MatrixXd& c) {
+  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(a.rows(), a.cols());
+  Eigen::MatrixXd reached = b.transpose(), seen = c;  // transposed: both grow by rows
+  double last = std::numeric_limits<double>::infinity();
+  for (int n = 0; n < kMostSteps; ++n) {
+    const Eigen::MatrixXd inverse = square_solution(a, identity);
+    const double scale = std::sqrt(a.norm() / inverse.norm());
+    const Eigen::MatrixXd next = a / (2 * scale) + inverse * (scale / 2);
+    if (!next.allFinite()) break;
+    const double part = 1 / std::sqrt(2 * scale);
+    reached = root_of_sum(part * reached, (part * scale) * (reached * inverse.transpose()));
+    seen = root_of_sum(part * seen, (part * scale) * (seen * inverse));
+    const double change = (next - a).norm() / next.norm();
+    a = next;
+    if (change == 0 || (change < kShort && change > kShorter * last))
+      return {reached.transpose() / std::sqrt(2.0), seen / std::sqrt(2.0)};
+    last = change;
+  }
+  throw std::runtime_error("the Gramians are not found: some pole hardly decays");
+}
+
+}  // namespace flexarm

@@ -1,0 +1,108 @@
+#include "flexarm/simulation/linear_reduction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "math/gramians.h"
+#include "math/hessenberg.h"
+#include "math/invariant_subspace.h"
+#include "math/least_squares.h"
+#include "math/singular_values.h"
+
+namespace flexarm {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Poles that decay more slowly than this part of the largest do not: round-off splits a double pole at 0, as every
+/// free motion has one, by as much.
+const double kDecaying = std::sqrt(std::numeric_limits<double>::epsilon());
+
+/// The states x = basis z of what has other poles than the rest, z = projection x.
+struct Part {
+  MatrixXd basis, projection;
+};
+
+struct Parts {
+  Part kept, decaying;
+};
+
+Parts parts_of(const MatrixXd& a, double slowest) {
+  const auto decays = [&](std::complex<double> pole) { return pole.real() < -slowest; };
+  Parts parts;
+  parts.kept.basis = invariant_subspace(a, [&](std::complex<double> pole) { return !decays(pole); });
+  parts.decaying.basis = invariant_subspace(a, decays);
+  MatrixXd both(a.rows(), a.cols());
+  both << parts.kept.basis, parts.decaying.basis;
+  const MatrixXd inverse = square_solution(both, MatrixXd::Identity(a.rows(), a.cols()));
+  parts.kept.projection = inverse.topRows(parts.kept.basis.cols());
+  parts.decaying.projection = inverse.bottomRows(parts.decaying.basis.cols());
+  return parts;
+}
+
+/// Smaller Hankel singular values than this part of the largest are round-off: those states are neither reached nor
+/// seen.
+constexpr double kSeen = 1e-14;
+
+struct BalancedPart {
+  GramianRoots roots;
+  SingularValues hankel;
+  Index seen = 0;  ///< singular values that are no round-off
+};
+
+BalancedPart balance(const Part& part, const MatrixXd& a, const MatrixXd& b, const MatrixXd& c) {
+  BalancedPart out;
+  if (part.basis.cols() == 0) return out;
+  out.roots = gramian_roots(part.projection * a * part.basis, part.projection * b, c * part.basis);
+  out.hankel = singular_values(out.roots.seen * out.roots.reached);
+  const VectorXd& values = out.hankel.values;
+  if (values.size() > 0) out.seen = (values.array() > kSeen * values[0]).count();
+  return out;
+}
+
+/// Of the part's `order` states that inputs reach and outputs see most.
+Part truncated(const Part& part, const BalancedPart& balanced, Index order) {
+  if (order == 0) return {MatrixXd(part.basis.rows(), 0), MatrixXd(0, part.basis.rows())};
+  const auto& [roots, hankel, seen] = balanced;
+  const VectorXd scales = hankel.values.head(order).cwiseSqrt().cwiseInverse();
+  return {part.basis * (roots.reached * hankel.right.leftCols(order)) * scales.asDiagonal(),
+          scales.asDiagonal() * (hankel.left.leftCols(order).transpose() * roots.seen) * part.projection};
+}
+
+}  // namespace
+
+ReducedModel reduced(const LinearModel& model, int order) {
+  const Balanced balanced = flexarm::balanced(model.a);
+  const MatrixXd b = balanced.scales.cwiseInverse().asDiagonal() * model.b, c = model.c * balanced.scales.asDiagonal();
+  double largest = 0;
+  for (const Pole& pole : poles(model)) largest = std::max(largest, std::abs(pole.value));
+  const auto [kept, decaying] = parts_of(balanced.matrix, kDecaying * largest);
+  if (order < kept.basis.cols() || order > model.a.rows())
+    throw std::invalid_argument(
+        fmt::format("a reduced model has {} to {} states, {} of them of poles that do not decay; got {}",
+                    kept.basis.cols(), model.a.rows(), kept.basis.cols(), order));
+  const BalancedPart rest = balance(decaying, balanced.matrix, b, c);
+  const Index more = std::min<Index>(order - kept.basis.cols(), rest.seen);
+  const Part best = truncated(decaying, rest, more);
+
+  MatrixXd basis(model.a.rows(), kept.basis.cols() + more), projection(basis.cols(), basis.rows());
+  basis << kept.basis, best.basis;
+  projection << kept.projection, best.projection;
+  ReducedModel out{model, rest.hankel.values, static_cast<int>(kept.basis.cols())};
+  out.model.a = projection * balanced.matrix * basis;
+  out.model.b = projection * b;
+  out.model.c = c * basis;
+  out.model.drift = projection * (balanced.scales.cwiseInverse().asDiagonal() * model.drift);
+  out.model.positions = static_cast<int>(basis.cols());
+  out.model.states.clear();
+  for (Index i = 0; i < basis.cols(); ++i) out.model.states.push_back(fmt::format("reduced:{}", i));
+  return out;
+}
+
+}  // namespace flexarm
