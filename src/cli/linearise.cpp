@@ -11,6 +11,7 @@
 #include "cli/scene_input.h"
 #include "flexarm/scene/scene_description.h"
 #include "flexarm/simulation/linear_reduction.h"
+#include "simulation/step_resolution.h"
 
 namespace flexarm::cli {
 namespace {
@@ -86,6 +87,8 @@ LinearModel model_of(const Simulation& simulation, const Arguments& arguments) {
   try {
     LinearModel model = linearise(simulation, arguments.request);
     for (const std::string& effect : model.left_out) fmt::print(stderr, "flexarm: warning: left out: {}\n", effect);
+    if (const std::string doubt = arguments.time ? doubt_about_instant(simulation, model) : ""; !doubt.empty())
+      fmt::print(stderr, "flexarm: warning: {}\n", doubt);
     if (!arguments.order) return model;
     ReducedModel reduced = flexarm::reduced(model, *arguments.order);
     if (!is_standard_output(arguments.output)) print_reduction(reduced, *arguments.order);

@@ -11,7 +11,9 @@
 #include "flexarm/scene/scene_description.h"
 #include "flexarm/scene/urdf_reader.h"
 #include "math/pi.h"
+#include "simulation/step_resolution.h"
 #include "support/dense_solution.h"
+#include "support/source_path.h"
 
 namespace flexarm {
 namespace {
@@ -341,6 +343,22 @@ TEST(LinearModel, DefectOfFourBarIsQuadratic) {
     <simulation> <gravity xyz="0 0 -3"/> </simulation> </robot>)",
                                       fmt::format(kBody, 0.1), beam()),
                           "crank_joint", "coupler", 1);
+}
+
+// Ringing that steps do not resolve, and the same motion in steps that do.
+TEST(LinearModel, SaysWhereStepsAreTooLong) {
+  scene::ReadResult result = scene::read_scene_file(test::source_path("config/examples/four_bar.urdf"));
+  ASSERT_TRUE(result.scene);
+  for (const double step : {2e-3, 2e-4}) {
+    SimulationOptions options;
+    options.step = step;
+    Simulation simulation(scene::SceneDescription(*result.scene), options);
+    while (simulation.time() < 0.1 - step / 2) ASSERT_TRUE(simulation.step().converged);
+    LinearRequest request;
+    request.about = LinearisedAbout::Instant;
+    const LinearModel model = linearise(simulation, request);
+    EXPECT_EQ(doubt_about_instant(simulation, model).empty(), step < 1e-3);
+  }
 }
 
 }  // namespace
