@@ -71,6 +71,40 @@ def test_modes():
         simulation.natural_modes(0)
 
 
+def test_linear_models():
+    with open(example("rigid_double_pendulum"), encoding="utf-8") as file:
+        text = file.read().replace('<dynamics damping="0.01" friction="0.002"/>', '<dynamics damping="0.1"/>')
+    simulation = flexarm.Simulation(flexarm.read_scene_text(text))
+    simulation.set_joint_state({"shoulder": math.pi / 2})  # hangs
+    model = simulation.linearise(outputs=["position:elbow", "velocity:shoulder"])
+    assert model.states == ["shoulder", "elbow", "d/dt shoulder", "d/dt elbow"]
+    assert model.inputs == ["effort:shoulder", "effort:elbow"] and len(model.outputs) == 2
+    assert model.a.shape == (4, 4) and model.b.shape == (4, 2) and model.c.shape == (2, 4) and model.d.shape == (2, 2)
+    assert model.mass.shape == model.damping.shape == model.stiffness.shape == (2, 2)
+    assert model.coordinates == ["shoulder", "elbow"] and model.left_out == []
+    assert bits(model.drift) == bits(numpy.zeros(4))
+    poles = numpy.linalg.eigvals(model.a)
+    assert sorted(poles[poles.imag > 0], key=abs) == pytest.approx(list(model.poles()), rel=1e-12)
+    frequencies = [0.1, 1.0]
+    gains = model.frequency_response(frequencies)
+    assert gains.shape == (2, 2, 2) and gains.dtype == complex
+    for gain, frequency in zip(gains, frequencies):
+        states = numpy.linalg.solve(2j * math.pi * frequency * numpy.eye(4) - model.a, model.b)
+        numpy.testing.assert_allclose(gain, model.c @ states + model.d, rtol=1e-12)
+    times, outputs = model.step_response(20000.0, intervals=4)
+    assert times.tolist() == [0, 5000, 10000, 15000, 20000] and outputs.shape == (5, 2, 2)
+    # Nothing is left of what was on the way.
+    numpy.testing.assert_allclose(outputs[-1], model.d - model.c @ numpy.linalg.solve(model.a, model.b), atol=1e-10)
+    small, hankel = model.reduced(2)
+    assert len(small.states) == 2 and len(hankel) == 4
+    error = numpy.linalg.norm(small.frequency_response(frequencies) - gains, 2, axis=(1, 2))
+    assert (error <= 2 * hankel[2:].sum()).all()
+    with pytest.raises(ValueError, match="there are shoulder, elbow"):
+        simulation.linearise(["effort:wrist"])
+    with pytest.raises(ValueError, match="'now'"):
+        simulation.linearise(about="now")
+
+
 def test_runs_to_an_accuracy_are_those_of_the_command_line(tmp_path, pendulum):
     path = tmp_path / "accurate.csv"
     status, said = command_line("simulate", example("rigid_double_pendulum"), "--until", "1", "--accuracy", "1e-4",

@@ -25,7 +25,7 @@ def named_examples():
 
 
 def test_there_is_an_example_for_each_job():
-    assert len([code for _, code in EXAMPLES if code]) == TEXT.count("```python\n") == 9
+    assert len([code for _, code in EXAMPLES if code]) == TEXT.count("```python\n") == 10
 
 
 @pytest.mark.parametrize("code", named_examples())

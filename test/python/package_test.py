@@ -32,7 +32,8 @@ def test_all_names_are_there():
 
 
 def test_everything_is_explained():
-    for type_ in (flexarm.Simulation, flexarm.Scene, flexarm.State, flexarm.StepResult, flexarm.Environment):
+    for type_ in (flexarm.Simulation, flexarm.LinearModel, flexarm.Scene, flexarm.State, flexarm.StepResult,
+                  flexarm.Environment):
         for name, member in vars(type_).items():
             if not name.startswith("_") and (callable(member) or isinstance(member, property)):
                 text = pydoc.getdoc(member)

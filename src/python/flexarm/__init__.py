@@ -17,6 +17,7 @@ _HOMES = {
     "read_scene": "_flexarm",
     "read_scene_text": "_flexarm",
     "tune": "_flexarm",
+    "LinearModel": "_flexarm",
     "Scene": "_flexarm",
     "Simulation": "_flexarm",
     "State": "_flexarm",
