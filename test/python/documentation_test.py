@@ -1,22 +1,26 @@
-"""The examples of docs/python.md, each by itself."""
+"""The examples of docs/python.md and docs/linearise.md, each by itself."""
 
 import os
 import re
+import shlex
 import shutil
 
 import pytest
 
-from conftest import ROOT, example
+from conftest import ROOT, command_line, example
 
-with open(os.path.join(ROOT, "docs", "python.md"), encoding="utf-8") as file:
-    TEXT = file.read()
-EXAMPLES = re.findall(r"^## (.*?)$|^```python\n(.*?)^```", TEXT, re.DOTALL | re.MULTILINE)
+DEMO = os.path.join(ROOT, "config", "demo_arm.urdf")
 
 
-def named_examples():
+def text_of(name):
+    with open(os.path.join(ROOT, "docs", name), encoding="utf-8") as file:
+        return file.read()
+
+
+def examples_of(name):
     """Named by their headings, which are entries without code."""
     heading, number = "", 0
-    for title, code in EXAMPLES:
+    for title, code in re.findall(r"^## (.*?)$|^```python\n(.*?)^```", text_of(name), re.DOTALL | re.MULTILINE):
         if title:
             heading, number = title, 0
         else:
@@ -24,14 +28,28 @@ def named_examples():
             yield pytest.param(code, id="%s %d" % (heading, number))
 
 
-def test_there_is_an_example_for_each_job():
-    assert len([code for _, code in EXAMPLES if code]) == TEXT.count("```python\n") == 10
+EXAMPLES = {name: list(examples_of(name)) for name in ("python.md", "linearise.md")}
 
 
-@pytest.mark.parametrize("code", named_examples())
+@pytest.mark.parametrize("name, count", [("python.md", 10), ("linearise.md", 2)])
+def test_there_is_an_example_for_each_job(name, count):
+    assert len(EXAMPLES[name]) == text_of(name).count("```python\n") == count
+
+
+@pytest.mark.parametrize("code", [code for examples in EXAMPLES.values() for code in examples])
+@pytest.mark.filterwarnings("ignore:nothing holds link 'shoulder'")  # of the demo arm, in orbit
 def test_example(code, tmp_path, monkeypatch, capsys):
-    for name in ("flexible_two_link_arm", "rigid_double_pendulum"):
-        shutil.copy(example(name), tmp_path)
+    for path in (example("flexible_two_link_arm"), example("rigid_double_pendulum"), DEMO):
+        shutil.copy(path, tmp_path)
     monkeypatch.chdir(tmp_path)
-    exec(compile(code, "docs/python.md", "exec"), {"__name__": "example"})
+    exec(compile(code, "docs", "exec"), {"__name__": "example"})
     print(capsys.readouterr().out)
+
+
+def test_command(tmp_path):
+    """`flexarm linearise ...` of docs/linearise.md."""
+    (text,) = re.findall(r"^```sh\nflexarm (.*?)\n```", text_of("linearise.md"), re.MULTILINE)
+    shutil.copy(DEMO, tmp_path)
+    status, said = command_line(*shlex.split(text), folder=tmp_path)
+    assert status == 0, said
+    assert (tmp_path / "bode.png").stat().st_size > 0 and (tmp_path / "bode.json").stat().st_size > 0
