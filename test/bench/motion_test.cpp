@@ -22,10 +22,16 @@ TEST_P(FreeFlight, KeepsWhatTheSchemeClaims) {
     EXPECT_LT(drift.value.linear_momentum, kept);
     EXPECT_LT(drift.value.angular_momentum, kept);
   }
-  if (scheme.conserves_energy) EXPECT_LT(drift.value.energy, kept);
-  if (scheme.dissipation.any()) EXPECT_LT(drift.value.growth, kept);
+  if (scheme.conserves_energy) {
+    EXPECT_LT(drift.value.energy, kept);
+  }
+  if (scheme.dissipation.any()) {
+    EXPECT_LT(drift.value.growth, kept);
+  }
   // The measurement can see an error: nobody is conserving by accident.
-  if (!scheme.conserves_energy) EXPECT_GT(drift.value.energy, kept);
+  if (!scheme.conserves_energy) {
+    EXPECT_GT(drift.value.energy, kept);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Schemes, FreeFlight, ::testing::ValuesIn(variants()), test_name);
@@ -45,8 +51,12 @@ TEST_P(EachScheme, ReversibleIfSymmetric) {
   ASSERT_EQ(distance.has_value(), !GetParam().scheme.dissipation.any());
   if (!distance) return;
   ASSERT_FALSE(distance->failure);
-  if (GetParam().claims_time_symmetry()) EXPECT_LT(distance->value, 1e-10);
-  if (GetParam().scheme.alpha < 0 || GetParam().scheme.backward_velocity) EXPECT_GT(distance->value, 1e-6);
+  if (GetParam().claims_time_symmetry()) {
+    EXPECT_LT(distance->value, 1e-10);
+  }
+  if (GetParam().scheme.alpha < 0 || GetParam().scheme.backward_velocity) {
+    EXPECT_GT(distance->value, 1e-6);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Schemes, EachScheme, ::testing::ValuesIn(default_variants()), test_name);

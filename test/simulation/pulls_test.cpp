@@ -180,8 +180,8 @@ TEST(ShownWrenches, EffortsActAlongTheirAxes) {
   b.body("slide", 1, Vector3::Zero(), Matrix3::Identity());
   b.joint("hinge", JointKind::Revolute, "world", "arm", {0, 0, 2}, Vector3::UnitZ());
   b.joint("rail", JointKind::Prismatic, "arm", "slide", {1, 0, 0}, Vector3::UnitX());
-  b.scene.initial_joints.push_back({"hinge", M_PI / 2, 0});
-  b.scene.initial_joints.push_back({"rail", 0.25, 0});
+  b.scene.initial_joints.push_back({"hinge", M_PI / 2, 0, {}});
+  b.scene.initial_joints.push_back({"rail", 0.25, 0, {}});
   Simulation simulation(b.scene);
   simulation.command_effort(0, 4);
   simulation.command_effort(1, -2);
@@ -228,7 +228,7 @@ TEST(Shown, MassAndFixedLinks) {
 // As the beam lies in its link's frame before anything has bent it, wherever the link starts.
 TEST(Shown, UndeformedSections) {
   SceneBuilder b = body_with_beam();
-  b.scene.initial_joints.push_back({"ball/rz", 0.7, 0});
+  b.scene.initial_joints.push_back({"ball/rz", 0.7, 0, {}});
   Simulation simulation(b.scene);
   const std::size_t beam = index_of(simulation, "beam");
   for (int n = 0; n < 20; ++n) ASSERT_TRUE(simulation.step().converged);

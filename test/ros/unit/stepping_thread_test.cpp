@@ -244,7 +244,9 @@ TEST(SteppingThread, GoesOnWhereAStepIsCutForLackOfTime) {
     reports.take(1);
     EXPECT_FALSE(reports.last.has_failed);
     cut += !reports.last.result.converged;
-    if (!reports.last.result.converged) EXPECT_EQ(reports.last.result.reason, StepResult::Reason::OutOfTime);
+    if (!reports.last.result.converged) {
+      EXPECT_EQ(reports.last.result.reason, StepResult::Reason::OutOfTime);
+    }
   }
   thread.halt();
   EXPECT_GT(cut, 0);
