@@ -12,7 +12,7 @@ ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)),
 
 
 def hinged_rod(axis, centre, inertia, simulation=""):
-    """The scene of a rod of 1 kg on a hinge: its axis, its centre of mass [m], its three moments of inertia [kg m^2]."""
+    """The scene of a rod of 1 kg on a hinge: axis, centre of mass [m], three moments of inertia [kg m^2]."""
     return """
 <robot name="hinged_rod">
   <link name="world"/>
