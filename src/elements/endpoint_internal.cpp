@@ -2,38 +2,10 @@
 
 #include "elements/additive_beam.h"
 #include "elements/endpoint_beam.h"
+#include "elements/endpoint_stress.h"
 #include "elements/orders.h"
 
 namespace flexarm {
-namespace {
-
-/// Stress at a point with stiffness-proportional damping.
-struct PointStress {
-  Vector6 stress, strain_rate;
-  double slope = 1;       ///< d(stress)/d(strain) = stiffness + (slope - 1) damped
-  double dissipated = 0;  ///< over the step [J/m]
-};
-
-/// `damping`: eta of BeamElement::stiffness_damping; `damped`: D C D of the same. `rule` null: statics. `begin`,
-/// `strain_rate`: at the beginning of the step, used where there is damping.
-PointStress point_stress(const Matrix6& stiffness, double damping, const Matrix6& damped, const Vector6& strain,
-                         const NewmarkRule* rule, const PointKinematics& begin, const Vector6& strain_rate) {
-  PointStress out;
-  out.stress = stiffness * strain;
-  out.strain_rate.setZero();
-  if (!rule || damping == 0) return out;
-  const Vector6 increment = (strain - begin.strain) / (1 + rule->alpha);
-  out.strain_rate = (increment / rule->step - (1 - rule->gamma) * strain_rate) / rule->gamma;
-  const Vector6 rate = (1 + rule->alpha) * out.strain_rate - rule->alpha * strain_rate;
-  const Vector6 damping_stress = damping * (damped * rate);
-  out.stress += damping_stress;
-  out.slope += damping / (rule->gamma * rule->step);
-  out.dissipated = damping_stress.dot(increment);
-  return out;
-}
-
-}  // namespace
-
 template <int Nodes, class Form>
 void endpoint_internal(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const NewmarkRule* rule,
                        const PointKinematics* begin, const Vector6* strain_rates, bool with_tangent,
@@ -52,10 +24,13 @@ void endpoint_internal(const BeamElement<Nodes>& element, const ElementNodes<Nod
     const auto rotation = rotations.evaluate(constants.shape, constants.derivative, reference, generalised);
     end[k] = end_kinematics<Nodes>(constants, nodes, rotation);
     const auto stress_at = [&](const Vector6& strain) {
-      return point_stress(constants.stiffness, element.stiffness_damping, is_even ? constants.stiffness : damped,
-                          strain, rule, begin[k], strain_rates[k]);
+      EndpointStress<Matrix6> stress(constants.stiffness, strain);
+      if (rule && element.stiffness_damping != 0)
+        stress.add_damping(element.stiffness_damping, is_even ? constants.stiffness : damped, strain, begin[k].strain,
+                           strain_rates[k], *rule);
+      return stress;
     };
-    const PointStress point = stress_at(end[k].strain);
+    const EndpointStress<Matrix6> point = stress_at(end[k].strain);
     system.dissipated += constants.weight * point.dissipated;
     new_strain_rates[k] = point.strain_rate;
     const auto in_space = [&](const Vector3& material) -> Vector3 { return end[k].rotation * material; };
@@ -65,7 +40,7 @@ void endpoint_internal(const BeamElement<Nodes>& element, const ElementNodes<Nod
     if (!is_even) sum = constants.stiffness + (point.slope - 1) * damped;
     endpoint::PointForces forces{end[k], is_even ? constants.stiffness : sum, slope, n, m, n, m};
     if (carried) {
-      const PointStress seen = stress_at(carried[k]);
+      const EndpointStress<Matrix6> seen = stress_at(carried[k]);
       forces.seen_n = in_space(seen.stress.template head<3>());
       forces.seen_m = in_space(seen.stress.template tail<3>());
     }

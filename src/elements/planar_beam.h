@@ -183,6 +183,37 @@ Vector3T<S> resultant_slope(const typename Element<Nodes, S>::Point& constants, 
   return {force[0], force[1], stress[2]};
 }
 
+/// Adds the tangent of add_residual(): `position`, `turns` are {dn, dm} of variations of dr' and of the nodes' spins,
+/// `couple` d(arm x n) of dr'.
+template <int Nodes, typename S>
+[[gnu::always_inline]] inline void add_point_tangent(const typename Element<Nodes, S>::Point& constants, const S& slope,
+                                                     const Vector2T<S>& arm, const std::array<Vector3T<S>, 2>& position,
+                                                     const std::array<S, 2>& couple,
+                                                     const std::array<Vector3T<S>, Nodes>& turns,
+                                                     BlockSystem<Nodes, S>& system) {
+  std::array<S, Nodes> turned_couple;
+  for (int j = 0; j < Nodes; ++j) turned_couple[j] = cross<S>(arm, force_of<S>(turns[j]));
+  for (int i = 0; i < Nodes; ++i) {
+    const S &shape = constants.shape[i], &derivative = constants.derivative[i], test = slope * derivative;
+    for (int c = 0; c < 2; ++c) {
+      const S moment = test * position[c][2] - shape * couple[c];
+      const Vector2T<S> row = derivative * force_of<S>(position[c]);
+      for (int j = 0; j < Nodes; ++j) {
+        auto& block = system.tangent[i][j];
+        block(0, c) += constants.derivative[j] * row[0];
+        block(1, c) += constants.derivative[j] * row[1];
+        block(2, c) += constants.derivative[j] * moment;
+      }
+    }
+    for (int j = 0; j < Nodes; ++j) {
+      auto& block = system.tangent[i][j];
+      block(0, 2) += derivative * turns[j][0];
+      block(1, 2) += derivative * turns[j][1];
+      block(2, 2) += test * turns[j][2] - shape * turned_couple[j];
+    }
+  }
+}
+
 /// Adds the tangent of an element's internal forces, after set_forces().
 template <int Nodes, typename S>
 void add_tangent(const Element<Nodes, S>& element, const S& slope, const Nodal<Nodes, S>& nodes, const TimeRule& rule,
@@ -219,31 +250,10 @@ void add_tangent(const Element<Nodes, S>& element, const S& slope, const Nodal<N
     const std::array<S, 2> couple = {cross<S>(p.arm, force_of<S>(position[0])) + S(0.5) * n[1],
                                      cross<S>(p.arm, force_of<S>(position[1])) - S(0.5) * n[0]};
     std::array<Vector3T<S>, Nodes> turns;
-    std::array<S, Nodes> turned_couple;
-    for (int j = 0; j < Nodes; ++j) {
+    for (int j = 0; j < Nodes; ++j)
       turns[j] = constants.shape[j] * Vector3T<S>(spin + rate[j] * increment) +
                  constants.derivative[j] * Vector3T<S>(spin_derivative + rate[j] * increment_derivative);
-      turned_couple[j] = cross<S>(p.arm, force_of<S>(turns[j]));
-    }
-    for (int i = 0; i < Nodes; ++i) {
-      const S &shape = constants.shape[i], &derivative = constants.derivative[i], test = slope * derivative;
-      for (int c = 0; c < 2; ++c) {
-        const S moment = test * position[c][2] - shape * couple[c];
-        const Vector2T<S> row = derivative * force_of<S>(position[c]);
-        for (int j = 0; j < Nodes; ++j) {
-          auto& block = system.tangent[i][j];
-          block(0, c) += constants.derivative[j] * row[0];
-          block(1, c) += constants.derivative[j] * row[1];
-          block(2, c) += constants.derivative[j] * moment;
-        }
-      }
-      for (int j = 0; j < Nodes; ++j) {
-        auto& block = system.tangent[i][j];
-        block(0, 2) += derivative * turns[j][0];
-        block(1, 2) += derivative * turns[j][1];
-        block(2, 2) += test * turns[j][2] - shape * turned_couple[j];
-      }
-    }
+    add_point_tangent<Nodes, S>(constants, slope, p.arm, position, couple, turns, system);
     if (!is_corrected) continue;
     const PointForm<S> form = multiplier.form(constants.weight, p);
     for (int j = 0; j < Nodes; ++j) {

@@ -2,96 +2,27 @@
 
 #include <algorithm>
 
-#include "integrators/gathered.h"
 #include "math/simd.h"
 
 namespace flexarm {
-namespace {
-
-/// Four numbers of each lane, lane by lane; get(lane) points to them.
-template <class Get>
-[[gnu::always_inline]] inline std::array<Pack, 4> gathered_four(const Get& get) {
-  std::array<Pack, 4> out;
-  for (int k = 0; k < 4; ++k) out[k] = gathered([&](int lane) { return get(lane)[k]; });
-  return out;
-}
-
-}  // namespace
 
 PlanarBeams::PlanarBeams(const StepConfiguration& configuration, const PlaneOfMotion& plane)
-    : configuration_(configuration),
-      plane_(plane),
-      rule_(configuration.scheme()),
-      begin_poses_(configuration.model().nodes.size()),
-      end_poses_(begin_poses_.size()),
-      rates_(begin_poses_.size()),
-      forces_(begin_poses_.size()),
-      carried_(begin_poses_.size()),
-      has_memory_(rule_.dissipation.any()) {
+    : PlanarFamily(configuration, plane), rates_(begin_poses_.size()), has_memory_(rule_.dissipation.any()) {
   const Model& model = configuration.model();
-  for (std::size_t i = 0; i < model.nodes.size(); ++i) {
-    const Quaternion& frame = plane.frames[i];
-    frames_.push_back(
-        {frame.coeffs(), (Quaternion(0, plane.normal.x(), plane.normal.y(), plane.normal.z()) * frame).coeffs()});
-    const Vector3 normal = plane.material_normal(static_cast<int>(i));
-    material_normals_.push_back(normal);
-    const NodalInertia& inertia = model.inertias[i];
-    Matrix3 rotary = inertia.rotary;
-    if (rule_.nodal_rotary_inertia) rotary += inertia.beam_rotary;
-    if (inertia.mass != 0 || !rotary.isZero(0))
-      inertias_.push_back({static_cast<int>(i), inertia.mass, normal.dot(rotary * normal)});
-  }
   for_each_group(model.beams, [&](const auto& group) {
     constexpr int N = std::decay_t<decltype(group)>::kNodes;
     auto& packs = std::get<Group<N>>(groups_);
-    packs = packs_of<N>(group.elements);
+    set_packs(group.elements, packs);
     if (!packs.empty() && packs.front().element.has_stiffness_damping) has_memory_ = true;
   });
   if (has_memory_) end_memory_.resize(model.stiffness_point_count);
 }
 
-template <int Nodes>
-PlanarBeams::Group<Nodes> PlanarBeams::packs_of(const std::vector<BeamElement<Nodes>>& elements) {
-  constexpr int lanes = Pack::kLanes;
-  const int count = static_cast<int>(elements.size());
-  Group<Nodes> packs((count + lanes - 1) / lanes);
-  // Which terms there are is the same for a whole group, so that an element does not feel its neighbours.
-  bool is_damped_evenly = true, has_stiffness_damping = false, has_mass_damping = false;
-  for (std::size_t p = 0; p < packs.size(); ++p) {
-    ElementPack<Nodes>& pack = packs[p];
-    const int first = static_cast<int>(p) * lanes;
-    pack.lanes = std::min(lanes, count - first);
-    for (int lane = 0; lane < lanes; ++lane) {
-      const BeamElement<Nodes>& element = elements[std::min(first + lane, count - 1)];
-      pack.nodes[lane] = element.nodes;
-      pack.first_block[lane] = element.first_block;
-      pack.first_stiffness_point[lane] = element.first_stiffness_point;
-      pack.basis[lane] = plane_.strain_basis(element.nodes[0]);
-      planar::set_lane(pack.element, lane, element, pack.basis[lane]);
-    }
-    is_damped_evenly = is_damped_evenly && pack.element.is_damped_evenly;
-    has_stiffness_damping = has_stiffness_damping || pack.element.has_stiffness_damping;
-    has_mass_damping = has_mass_damping || pack.element.has_mass_damping;
-  }
-  for (ElementPack<Nodes>& pack : packs) {
-    pack.element.is_damped_evenly = is_damped_evenly;
-    pack.element.has_stiffness_damping = has_stiffness_damping;
-    pack.element.has_mass_damping = has_mass_damping;
-  }
-  return packs;
-}
-
-PlanarPose PlanarBeams::pose(std::size_t node, const NodePose& at) const {
-  const Frame& frame = frames_[node];
-  const auto& q = at.orientation.coeffs();
-  return {plane_.first.dot(at.position), plane_.second.dot(at.position), q.dot(frame.cosine), q.dot(frame.sine)};
-}
-
 void PlanarBeams::begin() {
   const StepMotion step = configuration_.motion();
-  for (std::size_t i = 0; i < begin_poses_.size(); ++i) {
+  set_begin_poses();
+  for (std::size_t i = 0; i < rates_.size(); ++i) {
     const NodeState& node = step.state.nodes[i];
-    begin_poses_[i] = pose(i, step.begin[i]);
     rates_[i] = {0, plane_.first.dot(node.velocity), plane_.second.dot(node.velocity),
                  material_normals_[i].dot(node.angular_velocity)};
   }
@@ -111,14 +42,9 @@ void PlanarBeams::set_begin_points() {
   for_each_group(groups_, [&](auto& packs) {
     constexpr int N = std::decay_t<decltype(packs)>::value_type::kNodes;
     for (auto& pack : packs) {
-      std::array<planar::Vector2T<Pack>, N> position;
-      std::array<Pack, N> cosine, sine;
-      for (int i = 0; i < N; ++i) {
-        const auto at = gathered_four([&](int lane) { return &begin_poses_[pack.nodes[lane][i]].x; });
-        position[i] = {at[0], at[1]};
-        cosine[i] = at[2], sine[i] = at[3];
-      }
-      planar::packs::element_points<N>(pack.element, position, cosine, sine, pack.points[begin_].data());
+      const Places<N> places = PlanarFamily::gather<N>(pack, begin_poses_);
+      planar::packs::element_points<N>(pack.element, places.position, places.cosine, places.sine,
+                                       pack.points[begin_].data());
     }
   });
 }
@@ -152,7 +78,7 @@ void PlanarBeams::set_end() {
 }
 
 template <int Nodes>
-planar::Nodal<Nodes, Pack> PlanarBeams::gather(const ElementPack<Nodes>& pack) const {
+planar::Nodal<Nodes, Pack> PlanarBeams::gather_motion(const ConservingPack<Nodes>& pack) const {
   planar::Nodal<Nodes, Pack> nodes;
   for (int i = 0; i < Nodes; ++i) {
     const auto begin = gathered_four([&](int lane) { return &begin_poses_[pack.nodes[lane][i]].x; });
@@ -169,7 +95,7 @@ planar::Nodal<Nodes, Pack> PlanarBeams::gather(const ElementPack<Nodes>& pack) c
 }
 
 template <int Nodes>
-void PlanarBeams::gather(const ElementPack<Nodes>& pack,
+void PlanarBeams::gather(const ConservingPack<Nodes>& pack,
                          std::array<planar::StrainMemory<Pack>, Nodes - 1>& memory) const {
   for (int k = 0; k < Nodes - 1; ++k)
     for (int lane = 0; lane < Pack::kLanes; ++lane) {
@@ -182,7 +108,7 @@ void PlanarBeams::gather(const ElementPack<Nodes>& pack,
 }
 
 template <int Nodes>
-void PlanarBeams::scatter(const ElementPack<Nodes>& pack,
+void PlanarBeams::scatter(const ConservingPack<Nodes>& pack,
                           const std::array<planar::StrainMemory<Pack>, Nodes - 1>& memory) {
   for (int k = 0; k < Nodes - 1; ++k)
     for (int lane = 0; lane < pack.lanes; ++lane) {
@@ -192,31 +118,11 @@ void PlanarBeams::scatter(const ElementPack<Nodes>& pack,
     }
 }
 
-template <int Nodes>
-void PlanarBeams::scatter(const ElementPack<Nodes>& pack, const planar::BlockSystem<Nodes, Pack>& system,
-                          Balance& balance) {
-  std::array<double*, Pack::kLanes> targets;
-  for (int i = 0; i < Nodes; ++i) {
-    for (int lane = 0; lane < pack.lanes; ++lane) targets[lane] = forces_[pack.nodes[lane][i]].at;
-    add_lanes<4>(system.residual[i].data(), pack.lanes, targets.data());
-    if (balance.carried) {
-      for (int lane = 0; lane < pack.lanes; ++lane) targets[lane] = carried_[pack.nodes[lane][i]].at;
-      add_lanes<4>(system.carried[i].data(), pack.lanes, targets.data());
-    }
-    for (int j = 0; j < Nodes && balance.tangent; ++j) {
-      for (int lane = 0; lane < pack.lanes; ++lane)
-        targets[lane] = balance.tangent->element_block(pack.first_block[lane] + i * Nodes + j);
-      add_lanes<12, true>(system.tangent[i][j].data(), pack.lanes, targets.data());
-    }
-  }
-}
-
 void PlanarBeams::add_forces(Balance& balance) {
   const double step = configuration_.step();
   set_end();
   std::fill(forces_.begin(), forces_.end(), NodeForce());
   if (balance.carried) std::fill(carried_.begin(), carried_.end(), NodeForce());
-  double dissipated = 0;
   for_each_group(groups_, [&](auto& packs) {
     if (packs.empty()) return;
     constexpr int N = std::decay_t<decltype(packs)>::value_type::kNodes;
@@ -225,17 +131,15 @@ void PlanarBeams::add_forces(Balance& balance) {
       planar::BlockSystem<N, Pack> system;
       for (auto& pack : packs) {
         if (has_memory_) gather<N>(pack, memory);
-        planar::packs::beam<N>(pack.element, pack.slope, gather<N>(pack), rule_, pack.points[begin_].data(),
+        planar::packs::beam<N>(pack.element, pack.slope, gather_motion<N>(pack), rule_, pack.points[begin_].data(),
                                has_memory_ ? memory.data() : nullptr, step, balance.tangent != nullptr,
                                balance.carried ? &pack.carried : nullptr, pack.points[1 - begin_].data(),
                                has_memory_ ? new_memory.data() : nullptr, system);
         if (has_memory_) scatter<N>(pack, new_memory);
-        scatter<N>(pack, system, balance);
-        for (int lane = 0; lane < pack.lanes; ++lane) dissipated += system.dissipated[lane];
+        PlanarFamily::scatter<N>(pack, system, forces_, balance);
       }
     });
   });
-  balance.dissipated += dissipated;
   if (balance.tangent) carries_strains_ = false;
 }
 
@@ -256,26 +160,15 @@ void PlanarBeams::add_inertia(Balance& balance) {
     tangent[5] += mass * rate_of_step;
     tangent[10] += rotary * rate_of_step * (1 + 0.25 * rate.increment * rate.increment);
   }
-  for (std::size_t i = 0; i < forces_.size(); ++i) {
-    const int node = static_cast<int>(i);
-    balance.residual.node(node) += plane_.expanded(Eigen::Map<const Vector3>(forces_[i].at));
-    if (balance.carried) balance.carried->node(node) += plane_.expanded(Eigen::Map<const Vector3>(carried_[i].at));
-  }
+  hand_over(balance);
 }
 
 void PlanarBeams::carry_strains(const double* update) {
-  std::array<Vector3, Pack::kLanes> moved;
   for_each_group(groups_, [&](auto& packs) {
     constexpr int N = std::decay_t<decltype(packs)>::value_type::kNodes;
     for (auto& pack : packs) {
-      std::array<Vector3T<Pack>, N> updates;
-      for (int i = 0; i < N; ++i) {
-        for (int lane = 0; lane < Pack::kLanes; ++lane)
-          moved[lane] = plane_.projected(Eigen::Map<const Vector6>(update + 6 * pack.nodes[lane][i]));
-        updates[i] = gathered_vector([&](int lane) -> const Vector3& { return moved[lane]; });
-      }
-      planar::packs::carry_strains<N>(pack.element, pack.slope, gather<N>(pack), pack.points[begin_].data(), updates,
-                                      pack.points[1 - begin_].data(), pack.carried);
+      planar::packs::carry_strains<N>(pack.element, pack.slope, gather_motion<N>(pack), pack.points[begin_].data(),
+                                      gather_update<N>(pack, update), pack.points[1 - begin_].data(), pack.carried);
     }
   });
   carries_strains_ = configuration_.model().stiffness_point_count > 0;

@@ -6,7 +6,7 @@ namespace flexarm {
 
 PlanarStep::PlanarStep(const StepConfiguration& configuration, PlaneOfMotion found)
     : plane(std::move(found)),
-      beams(configuration, plane),
+      beams(make_planar_family(configuration, plane)),
       tangent(configuration.model(), configuration.degrees_of_freedom(), plane) {
   const Model& model = configuration.model();
   for (const JointMap& joint : model.joints) {

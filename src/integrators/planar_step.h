@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "integrators/planar_beams.h"
+#include "integrators/planar_family.h"
 #include "solver/planar_tangent.h"
 
 namespace flexarm {
@@ -21,11 +21,11 @@ struct PlanarStep {
   /// The state was changed by somebody else.
   void invalidate() {
     is_sure = false;
-    beams.invalidate();
+    beams->invalidate();
   }
 
   PlaneOfMotion plane;
-  PlanarBeams beams;
+  std::unique_ptr<BeamFamily> beams;
   PlanarTangent tangent;
   std::vector<Vector3> joint_normals;  ///< the normal in joints' frames
   bool is_on = false;                  ///< the step is taken in the plane

@@ -96,7 +96,7 @@ class StepSystem {
 
  private:
   const Scheme& scheme() const { return configuration_.scheme(); }
-  BeamFamily& beams() { return is_planar() ? planar_->beams : *beams_; }
+  BeamFamily& beams() { return is_planar() ? *planar_->beams : *beams_; }
   void add_forces(Balance& balance);
   void accept_rest(State& state);
 

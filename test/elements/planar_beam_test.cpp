@@ -1,8 +1,7 @@
 // The planar kernel of the energy-momentum family is that of three dimensions, seen in the plane.
 #include "elements/planar_beam.h"
 #include "elements/conserving_kernel.h"
-#include "elements/kernel_checks.h"
-#include "model/plane.h"
+#include "elements/random_planar_step.h"
 
 namespace flexarm {
 namespace {
@@ -29,50 +28,23 @@ const Options kOptions[] = {{true, false},
                             {true, false, MidFunctions::Symmetric},
                             {true, true, MidFunctions::Explicit, 2}};
 
-/// A step of a curved element with a full section, all in one plane that lies anyhow.
 template <int Nodes>
-struct PlanarStep {
-  using Element = BeamElement<Nodes>;
+struct PlanarStep : RandomPlanarStep<Nodes> {
+  using Base = RandomPlanarStep<Nodes>;
+  using Base::begin, Base::end, Base::velocity, Base::begin_angle, Base::end_angle, Base::plane, Base::basis,
+      Base::element, Base::height, Base::turned;
 
-  PlanarStep(RandomSource& random, const Options& options) : options(options), rule(options.rule()) {
-    const Matrix3 axes = random.rotation(3.0).toRotationMatrix();
-    plane.first = axes.col(0), plane.second = axes.col(1), plane.normal = axes.col(2);
-    height = random.number();
-    const Quaternion frame = random.rotation(3.0);
-    plane.frames.assign(Nodes, frame);
-    basis = plane.strain_basis(0);
-    RandomStep<Nodes> any(random, 0.1);  // for its shape functions
-    element = any.element;
-    for (auto& point : element.stiffness_points) {
-      const Eigen::Matrix<double, 6, 3> rest = basis_out_of_plane();
-      point.stiffness = basis * random.positive_definite<3>() * basis.transpose() +
-                        rest * random.positive_definite<3>() * rest.transpose();
-      point.reference_strain = basis * random.vector();
-    }
+  PlanarStep(RandomSource& random, const Options& options)
+      : Base(random, options.size), options(options), rule(options.rule()) {
     if (options.is_damped) element.stiffness_damping = element.mass_damping = 0.2;
-    for (int i = 0; i < Nodes; ++i) {
-      begin_angle[i] = 2 + 0.4 * random.number();
-      end_angle[i] = begin_angle[i] + options.size * (1 + 0.5 * random.number());
-      begin[i] = {1.5 * i / (Nodes - 1) + 0.1 * random.number(), 0.3 * random.number()};
-      end[i] = begin[i] + options.size * Vector2(random.number(), random.number());
-      velocity[i] = {random.number(), random.number()};
-      foreseen[i] = options.mid == MidFunctions::Explicit ? options.size * random.number() : 0.0;
+    for (double& turn : foreseen) turn = options.mid == MidFunctions::Explicit ? options.size * random.number() : 0.0;
+    for (StrainMemory& m : memory) {
+      m.average = basis * random.vector();
+      m.rate = basis * random.vector();
+      m.delayed_rate = basis * random.vector();
     }
-    for (StrainMemory& m : memory) m = {basis * random.vector(), basis * random.vector(), basis * random.vector()};
   }
 
-  /// Columns of the other strains.
-  Eigen::Matrix<double, 6, 3> basis_out_of_plane() const {
-    Eigen::Matrix<double, 6, 3> rest = Eigen::Matrix<double, 6, 3>::Zero();
-    rest.col(0).template head<3>() = plane.material_normal(0);
-    rest.col(1).template tail<3>() = basis.col(0).template head<3>();
-    rest.col(2).template tail<3>() = basis.col(1).template head<3>();
-    return rest;
-  }
-  Vector3 in_space(const Vector2& v, double height = 0) const {
-    return v[0] * plane.first + v[1] * plane.second + height * plane.normal;
-  }
-  Quaternion turned(double angle) const { return so3::exp_quaternion(Vector3(angle * plane.normal)) * plane.frames[0]; }
   double increment(int i) const { return 2 * std::tan(0.5 * (end_angle[i] - begin_angle[i])); }
 
   /// By the kernel of three dimensions: {f_1, f_2, phi} and blocks of the nodes.
@@ -82,11 +54,11 @@ struct PlanarStep {
     std::array<Vector3, Nodes> turns;
     ElementNodes<Nodes> nodes;
     for (int i = 0; i < Nodes; ++i) {
-      nodes.begin[i] = in_space(begin[i], height);
-      nodes.end[i] = in_space(end[i], height);
+      nodes.begin[i] = this->in_space(begin[i], height);
+      nodes.end[i] = this->in_space(end[i], height);
       nodes.orientation[i] = turned(end_angle[i]);
       nodes.increment[i] = increment(i) * plane.normal;
-      nodes.velocity[i] = in_space(velocity[i]);
+      nodes.velocity[i] = this->in_space(velocity[i]);
       begin_orientation[i] = turned(begin_angle[i]);
       turns[i] = foreseen[i] * plane.normal;
     }
@@ -121,8 +93,8 @@ struct PlanarStep {
     std::array<double, Nodes> cosine, sine;
     double mean = 0;
     for (int i = 0; i < Nodes; ++i) {
-      const PlanarPose first = plane.pose(i, in_space(begin[i], height), turned(begin_angle[i])),
-                       last = plane.pose(i, in_space(end[i], height), turned(end_angle[i]));
+      const PlanarPose first = plane.pose(i, this->in_space(begin[i], height), turned(begin_angle[i])),
+                       last = plane.pose(i, this->in_space(end[i], height), turned(end_angle[i]));
       nodes.begin[i] = {first.x, first.y}, nodes.end[i] = {last.x, last.y};
       cosine[i] = first.cosine, sine[i] = first.sine;
       nodes.cosine[i] = last.cosine, nodes.sine[i] = last.sine;
@@ -146,24 +118,9 @@ struct PlanarStep {
     return system;
   }
 
-  /// Node i moved along {dx, dy, spin}.
-  PlanarStep moved(int i, int component, double by) const {
-    PlanarStep out = *this;
-    if (component == 2)
-      out.end_angle[i] += by;
-    else
-      out.end[i][component] += by;
-    return out;
-  }
-
   Options options;
   TimeRule rule;
-  PlaneOfMotion plane;
-  double height;
-  Eigen::Matrix<double, 6, 3> basis;
-  Element element;
-  std::array<double, Nodes> begin_angle, end_angle, foreseen;
-  std::array<Vector2, Nodes> begin, end, velocity;
+  std::array<double, Nodes> foreseen;
   std::array<StrainMemory, Nodes - 1> memory, end_memory;
   std::array<flexarm::PointKinematics, Nodes - 1> end_points;
   std::array<planar::StrainMemory<double>, Nodes - 1> planar_memory;
@@ -171,6 +128,13 @@ struct PlanarStep {
   bool is_carried = false;
   Vector3 carried_end = {0.1, -0.2, 0.3}, carried_s = {0.2, 0.05, -0.1};
 };
+
+template <int Nodes>
+std::array<Vector3, Nodes> forces_of(const planar::BlockSystem<Nodes>& system) {
+  std::array<Vector3, Nodes> forces;
+  for (int i = 0; i < Nodes; ++i) forces[i] = system.residual[i].template head<3>();
+  return forces;
+}
 
 template <class Count>
 class PlanarBeam : public ::testing::Test {};
@@ -189,23 +153,10 @@ TYPED_TEST(PlanarBeam, IsTheKernelOfThreeDimensionsSeenInThePlane) {
       const double turn = options.is_corrected ? 0.5 * options.size : 1.0;
       const double scale = std::max(largest(space.residual), 1.0) / turn,
                    slope = largest(space.tangent) / (turn * turn);
-      for (int i = 0; i < N; ++i) {
-        const Vector6 expected = space.residual.template segment<6>(6 * i);
-        EXPECT_LE(largest(step.plane.projected(expected) - plane.residual[i].template head<3>()), kRoundOff * scale);
-        EXPECT_LE(largest(expected - step.plane.expanded(step.plane.projected(expected))), kRoundOff * scale);
-        if (is_carried) {
-          const Vector6 carried = space.carried.template segment<6>(6 * i);
-          EXPECT_LE(largest(step.plane.projected(carried) - plane.carried[i].template head<3>()), kRoundOff * slope);
-        }
-        for (int j = 0; j < N; ++j) {
-          const Matrix6 block = space.tangent.template block<6, 6>(6 * i, 6 * j);
-          for (int c = 0; c < 3; ++c) {
-            const Vector6 column = block * step.plane.expanded(Vector3(Vector3::Unit(c)));
-            EXPECT_LE(largest(step.plane.projected(column) - plane.tangent[i][j].col(c).template head<3>()),
-                      kRoundOff * slope);
-            EXPECT_LE(largest(column - step.plane.expanded(step.plane.projected(column))), kRoundOff * slope);
-          }
-        }
+      expect_same_in_plane<N>(step.plane, space, forces_of(plane), plane, kRoundOff * scale, kRoundOff * slope);
+      for (int i = 0; i < N && is_carried; ++i) {
+        const Vector6 carried = space.carried.template segment<6>(6 * i);
+        EXPECT_LE(largest(step.plane.projected(carried) - plane.carried[i].template head<3>()), kRoundOff * slope);
       }
       EXPECT_NEAR(space.dissipated, plane.dissipated, kRoundOff * std::max(1.0, std::abs(space.dissipated)));
       for (int k = 0; k < N - 1; ++k) {
@@ -223,28 +174,12 @@ TYPED_TEST(PlanarBeam, HasTheTangentOfItsResidual) {
   constexpr int N = TypeParam::value;
   RandomSource random(8);
   for (const Options& options : kOptions) {
-    PlanarStep<N> step(random, options);
-    const planar::BlockSystem<N> system = step.in_plane(true);
-    double scale = 1;
-    for (const auto& row : system.tangent)
-      for (const auto& block : row) scale = std::max(scale, largest(block));
-    const double size = std::min(1.0, options.size);
-    for (int j = 0; j < N; ++j)
-      for (int c = 0; c < 3; ++c) {
-        using Column = Eigen::Matrix<double, 3 * N, 1>;
-        const Column expected = difference(
-            [&](double h) {
-              PlanarStep<N> moved = step.moved(j, c, h);
-              const planar::BlockSystem<N> at = moved.in_plane(false);
-              Column column;
-              for (int i = 0; i < N; ++i) column.template segment<3>(3 * i) = at.residual[i].template head<3>();
-              return column;
-            },
-            difference_step * size);
-        for (int i = 0; i < N; ++i)
-          EXPECT_LE(largest(expected.template segment<3>(3 * i) - system.tangent[i][j].col(c).template head<3>()),
-                    difference_tolerance / size * scale);
-      }
+    const PlanarStep<N> step(random, options);
+    expect_consistent_planar_tangent<N>(step, [](PlanarStep<N> at, bool with_tangent, std::array<Vector3, N>& forces) {
+      const planar::BlockSystem<N> system = at.in_plane(with_tangent);
+      forces = forces_of(system);
+      return system;
+    });
   }
 }
 
