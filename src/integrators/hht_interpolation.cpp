@@ -14,7 +14,8 @@ HhtInterpolation::HhtInterpolation(const StepConfiguration& configuration, const
       end_forces_(interpolated_.size(), Vector6::Zero()),
       end_reactions_(interpolated_.size(), Vector6::Zero()) {}
 
-void HhtInterpolation::begin_evaluation() {
+void HhtInterpolation::begin_evaluation(bool in_plane) {
+  is_in_plane_ = in_plane;
   std::fill(end_forces_.begin(), end_forces_.end(), Vector6::Zero());
   const double alpha = configuration_.scheme().alpha;
   for (std::size_t i = 0; i < interpolated_.size(); ++i) {
@@ -33,7 +34,7 @@ HhtInterpolation::Moment HhtInterpolation::moment(int node, const Vector3& begin
                                                   bool with_derivative) const {
   const double alpha = configuration_.scheme().alpha;
   Moment out{(1 + alpha) * end - alpha * begin, (1 + alpha) * Matrix3::Identity(), Matrix3::Zero()};
-  if (configuration_.scheme().hht != HhtForm::AdditiveForces) return out;
+  if (!of_rotation_vectors()) return out;
   const Vector3 &theta_begin = configuration_.state().total_rotations[node], &theta = total_rotations_[node];
   const Vector3 between = (1 + alpha) * theta - alpha * theta_begin;
   const so3::ExponentialMap<double> map(theta);
@@ -69,8 +70,11 @@ void HhtInterpolation::add_forces(Balance& balance) const {
       const Moment interpolated = moment(node, begin.tail<3>(), end_forces_[i].tail<3>(), balance.tangent != nullptr);
       force.head<3>() = (1 + alpha) * end_forces_[i].head<3>() - alpha * begin.head<3>();
       force.tail<3>() = interpolated.value;
-      if (balance.tangent)
-        Eigen::Map<Matrix6>(balance.tangent->diagonal_block(node)).bottomRightCorner<3, 3>() += interpolated.derivative;
+      if (balance.tangent && of_rotation_vectors()) {
+        Matrix6 tangent = Matrix6::Zero();
+        tangent.bottomRightCorner<3, 3>() = interpolated.derivative;
+        balance.tangent->add_to_node(node, tangent);
+      }
     }
     balance.residual.node(node) += force;
   }

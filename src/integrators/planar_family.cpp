@@ -1,6 +1,7 @@
 #include "integrators/planar_family.h"
 
 #include "integrators/planar_beams.h"
+#include "integrators/planar_endpoint_beams.h"
 
 namespace flexarm {
 
@@ -46,6 +47,8 @@ void PlanarFamily::hand_over(Balance& balance) const {
 }
 
 std::unique_ptr<BeamFamily> make_planar_family(const StepConfiguration& configuration, const PlaneOfMotion& plane) {
+  if (configuration.scheme().stress == StressRule::EndPoint)
+    return std::make_unique<PlanarEndpointBeams>(configuration, plane);
   return std::make_unique<PlanarBeams>(configuration, plane);
 }
 

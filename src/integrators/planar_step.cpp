@@ -41,6 +41,10 @@ void PlanarStep::tidy(const StepConfiguration& configuration, IncrementHistory& 
   }
 }
 
+void PlanarStep::tidy_start(const Model& model, State& state) const {
+  if (acts_in_plane(model, plane, state) && starts_in_plane(model, plane, state)) tidy(model, state);
+}
+
 bool PlanarStep::choose(const Model& model, const State& state) {
   const bool was_on = is_on;
   is_on = acts_in_plane(model, plane, state) && (is_sure || lies_in_plane(model, plane, state));

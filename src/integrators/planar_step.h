@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "integrators/planar_family.h"
+#include "model/plane_finder.h"
 #include "solver/planar_tangent.h"
 
 namespace flexarm {
@@ -18,6 +19,10 @@ struct PlanarStep {
   /// Takes round-off out of the newest increments: extrapolation would magnify it, and Newton's method leaves what is
   /// out of the plane as it is.
   void tidy(const StepConfiguration& configuration, IncrementHistory& history) const;
+  /// The same for all of a state that lies in the plane.
+  void tidy(const Model& model, State& state) const { keep_in_plane(model, plane, state); }
+  /// The same for what schemes make of the beginning of a motion by differences, unless it leaves the plane.
+  void tidy_start(const Model& model, State& state) const;
   /// The state was changed by somebody else.
   void invalidate() {
     is_sure = false;

@@ -33,6 +33,7 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme, BackendChoice b
       nodal_update_(6 * static_cast<std::size_t>(dof_.node_count)),
       scales_(model, dof_) {
   beams_->set_interpolation(interpolation_.get());
+  if (planar_) planar_->beams->set_interpolation(interpolation_.get());
 }
 
 void StepSystem::begin(const State& state, double step, Guess guess) {
@@ -89,10 +90,10 @@ bool StepSystem::evaluate(bool with_tangent) {
     carried_rows_.set_zero();
     balance.carried = &carried_rows_;
   }
-  if (with_tangent && scheme().stress != StressRule::Conjugate && !scheme().is_static)
+  if (with_tangent && scheme().stress != StressRule::Conjugate && !scheme().is_static && !is_planar())
     configuration_.set_inverse_tangents();
 
-  if (interpolation_) interpolation_->begin_evaluation();
+  if (interpolation_) interpolation_->begin_evaluation(is_planar());
   add_forces(balance);
   if (interpolation_) interpolation_->add_forces(balance);
   if (scheme().is_static) {
@@ -152,6 +153,7 @@ void StepSystem::accept(State& state) {
   actuators_.accept(state);
   beams().accept(state);
   if (interpolation_) interpolation_->accept(state);
+  if (interpolation_ && is_planar()) planar_->tidy(model_, state);
   state.time += configuration_.step();
 }
 
@@ -189,9 +191,11 @@ void StepSystem::initialise(State& state) {
   if (interpolation_) state.momentum_rates.assign(model_.mass_point_count + model_.nodes.size(), Vector3::Zero());
   configuration_.begin(state, 0);
   beams_->initialise(state);
-  if (!interpolation_) return;
-  bodies_.initialise(state);
-  state.forces = StepSystem(model_, statics_of(scheme())).nodal_forces(state);
+  if (interpolation_) {
+    bodies_.initialise(state);
+    state.forces = StepSystem(model_, statics_of(scheme())).nodal_forces(state);
+  }
+  if (planar_ && !scheme().is_incremental()) planar_->tidy_start(model_, state);
 }
 
 }  // namespace flexarm

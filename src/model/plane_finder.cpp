@@ -1,6 +1,7 @@
 #include "model/plane_finder.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -141,7 +142,7 @@ bool is_separable(const Matrix6& stiffness, const Eigen::Matrix<double, 6, 3>& b
 }
 
 std::string flaw_of_beams(const Model& model, const PlaneOfMotion& plane) {
-  bool is_turned = false, is_coupled = false, is_bent = false;
+  bool is_turned = false, is_coupled = false, is_bent = false, is_uneven = false;
   for_each_element(model.beams, [&](const auto& element) {
     const Eigen::Matrix<double, 6, 3> basis = plane.strain_basis(element.nodes[0]);
     Eigen::Matrix<double, 6, 3> rest = Eigen::Matrix<double, 6, 3>::Zero();
@@ -158,8 +159,12 @@ std::string flaw_of_beams(const Model& model, const PlaneOfMotion& plane) {
       is_coupled = is_coupled || !is_separable(point.stiffness, basis, rest) ||
                    !is_separable(damped_stiffness(element, k), basis, rest);
     }
+    const Vector3 normal = plane.material_normal(element.nodes[0]);
+    for (const auto& point : element.mass_points)
+      is_uneven = is_uneven || !is_along(normal, point.inertia * normal, point.inertia.norm());
   });
   if (is_turned || is_bent) return "a beam is bent or twisted out of the plane";
+  if (is_uneven) return "no principal axis of a section's inertia is normal to the plane";
   return is_coupled ? "a section couples motions in the plane with others" : "";
 }
 
@@ -239,36 +244,80 @@ std::string flaw_of_start(const Model& model, const PlaneOfMotion& plane) {
   return velocities.is_round_off() && turns.is_round_off() ? "" : "initial velocities point out of the plane";
 }
 
-bool moves_in_plane(const Model& model, const PlaneOfMotion& plane, const State& state) {
-  Largest velocities, turns, spins;
-  const Vector3& normal = plane.normal;
+// ---------------------------------------------------------------- states
+
+bool stands_in_plane(const Model& model, const PlaneOfMotion& plane, const State& state) {
   for (std::size_t i = 0; i < state.nodes.size(); ++i) {
     const NodeState& node = state.nodes[i];
-    if (!is_normal_to(normal, node.position - state.nodes[0].position, model.length_scale)) return false;
-    if (!is_along(normal, (node.orientation * plane.frames[i].conjugate()).vec(), 1)) return false;
-    const Vector3 across = plane.material_normal(static_cast<int>(i));
-    velocities.add(node.velocity, normal.dot(node.velocity) * normal);
-    turns.add(node.angular_velocity, node.angular_velocity - across.dot(node.angular_velocity) * across);
-    spins.add(node.mean_spin, node.mean_spin - normal.dot(node.mean_spin) * normal);
+    if (!is_normal_to(plane.normal, node.position - state.nodes[0].position, model.length_scale)) return false;
+    if (!is_along(plane.normal, (node.orientation * plane.frames[i].conjugate()).vec(), 1)) return false;
   }
-  return velocities.is_round_off() && turns.is_round_off() && spins.is_round_off();
+  return true;
 }
 
-bool remembers_the_plane(const Model& model, const PlaneOfMotion& plane, const State& state) {
-  if (state.strain_memory.empty()) return true;
-  Largest strains, curvatures;
+/// What a state has beside places. The first two are velocities; the others follow from them or from the past.
+enum Quantity { kVelocity, kTurning, kSpin, kAcceleration, kTurningRate, kStrain, kCurvature, kForce, kMoment, kCount };
+
+/// Whether a vector of the kind points along the normal, or is normal to it.
+bool is_axial(Quantity quantity) {
+  return quantity != kVelocity && quantity != kAcceleration && quantity != kStrain && quantity != kForce;
+}
+
+/// visit(quantity, normal, vector), both in the same frame.
+template <class AnyState, class Visit>
+void for_each_vector_of_points(const Model& model, const PlaneOfMotion& plane, AnyState& state, const Visit& visit) {
   for_each_element(model.beams, [&](const auto& element) {
     const Vector3 normal = plane.material_normal(element.nodes[0]);
+    const auto visit_strain = [&](auto& strain) {
+      visit(kStrain, normal, strain.template head<3>());
+      visit(kCurvature, normal, strain.template tail<3>());
+    };
     for (int k = 0; k < element.kStiffnessPoints; ++k) {
-      const StrainMemory& memory = state.strain_memory[element.first_stiffness_point + k];
-      for (const Vector6* strain : {&memory.average, &memory.rate, &memory.delayed_rate}) {
-        const Vector3 gamma = strain->head<3>(), curvature = strain->tail<3>();
-        strains.add(gamma, normal.dot(gamma) * normal);
-        curvatures.add(curvature, curvature - normal.dot(curvature) * normal);
-      }
+      visit_strain(state.strain_rates[element.first_stiffness_point + k]);
+      if (state.strain_memory.empty()) continue;
+      auto& memory = state.strain_memory[element.first_stiffness_point + k];
+      for (auto* strain : {&memory.average, &memory.rate, &memory.delayed_rate}) visit_strain(*strain);
+    }
+    for (int k = 0; k < element.kMassPoints; ++k) {
+      auto& point = state.mass_points[element.first_mass_point + k];
+      visit(kTurning, normal, point.angular_velocity);
+      visit(kTurningRate, normal, point.angular_acceleration);
     }
   });
-  return strains.is_round_off() && curvatures.is_round_off();
+}
+template <class AnyState, class Visit>
+void for_each_vector(const Model& model, const PlaneOfMotion& plane, AnyState& state, const Visit& visit) {
+  for (std::size_t i = 0; i < state.nodes.size(); ++i) {
+    auto& node = state.nodes[i];
+    const Vector3 across = plane.material_normal(static_cast<int>(i));
+    visit(kVelocity, plane.normal, node.velocity);
+    visit(kTurning, across, node.angular_velocity);
+    visit(kSpin, plane.normal, node.mean_spin);
+    visit(kAcceleration, plane.normal, node.acceleration);
+    visit(kTurningRate, across, node.angular_acceleration);
+  }
+  for_each_vector_of_points(model, plane, state, visit);
+  for (auto* wrenches : {&state.forces, &state.reactions})
+    for (auto& wrench : *wrenches) {
+      visit(kForce, plane.normal, wrench.template head<3>());
+      visit(kMoment, plane.normal, wrench.template tail<3>());
+    }
+  for (auto& rotation : state.total_rotations) visit(kSpin, plane.normal, rotation);
+  for (auto& moment : state.momentum_rates) visit(kMoment, plane.normal, moment);
+}
+
+Vector3 out_of_plane(Quantity quantity, const Vector3& normal, const Vector3& vector) {
+  const Vector3 along = normal.dot(vector) * normal;
+  return is_axial(quantity) ? Vector3(vector - along) : along;
+}
+
+/// Of the first `count` quantities.
+bool moves_in_plane(const Model& model, const PlaneOfMotion& plane, const State& state, Quantity count) {
+  std::array<Largest, kCount> largest;
+  for_each_vector(model, plane, state, [&](Quantity quantity, const Vector3& normal, const Vector3& vector) {
+    largest[quantity].add(vector, out_of_plane(quantity, normal, vector));
+  });
+  return std::all_of(largest.begin(), largest.begin() + count, [](const Largest& l) { return l.is_round_off(); });
 }
 
 }  // namespace
@@ -284,7 +333,17 @@ PlaneSearch find_plane(const Model& model) {
 }
 
 bool lies_in_plane(const Model& model, const PlaneOfMotion& plane, const State& state) {
-  return moves_in_plane(model, plane, state) && remembers_the_plane(model, plane, state);
+  return stands_in_plane(model, plane, state) && moves_in_plane(model, plane, state, kCount);
+}
+
+bool starts_in_plane(const Model& model, const PlaneOfMotion& plane, const State& state) {
+  return stands_in_plane(model, plane, state) && moves_in_plane(model, plane, state, kSpin);
+}
+
+void keep_in_plane(const Model& model, const PlaneOfMotion& plane, State& state) {
+  for_each_vector(model, plane, state, [](Quantity quantity, const Vector3& normal, auto&& vector) {
+    vector -= out_of_plane(quantity, normal, vector);
+  });
 }
 
 bool acts_in_plane(const Model& model, const PlaneOfMotion& plane, const State& state) {

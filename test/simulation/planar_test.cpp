@@ -12,6 +12,7 @@
 #include "schemes/scheme.h"
 #include "simulation/inside.h"
 #include "simulation/same_bits.h"
+#include "support/allocations.h"
 #include "support/scene_builder.h"
 #include "support/source_path.h"
 
@@ -23,7 +24,8 @@ using scene::JointKind;
 /// Round-off of some hundred steps of a mechanism that magnifies it, relative to its size.
 constexpr double kSame = 1e-11;
 
-const std::vector<std::string> kPlanarSchemes = {"em", "em0", "em_symmetric", "em_scaled", "em4", "edmc1", "edmc2"};
+const std::vector<std::string> kPlanarSchemes = {"em",    "em0",     "em_symmetric", "em_scaled", "em4", "edmc1",
+                                                 "edmc2", "newmark", "hht1",         "hht2",      "hht3"};
 
 PlaneSearch plane_of(const scene::SceneDescription& scene, const std::string& scheme = "em") {
   SimulationOptions options;
@@ -67,11 +69,14 @@ scene::SceneDescription in_space(scene::SceneDescription scene) {
 double distance(const Simulation& a, const Simulation& b) {
   double largest = 0;
   const double length = model_of(a).length_scale, h = a.step_size();
+  const double difference = 1e-2 * h;  // of the velocities that Newmark's first accelerations are the differences of
   for (std::size_t i = 0; i < state_of(a).nodes.size(); ++i) {
     const NodeState &x = state_of(a).nodes[i], &y = state_of(b).nodes[i];
-    largest = std::max(
-        {largest, (x.position - y.position).norm() / length, h * (x.velocity - y.velocity).norm() / length,
-         h * (x.angular_velocity - y.angular_velocity).norm(), 1 - std::abs(x.orientation.dot(y.orientation))});
+    largest =
+        std::max({largest, (x.position - y.position).norm() / length, h * (x.velocity - y.velocity).norm() / length,
+                  h * (x.angular_velocity - y.angular_velocity).norm(), 1 - std::abs(x.orientation.dot(y.orientation)),
+                  difference * h * (x.acceleration - y.acceleration).norm() / length,
+                  difference * h * (x.angular_acceleration - y.angular_acceleration).norm()});
   }
   return largest;
 }
@@ -105,6 +110,7 @@ TEST(Planar, IsFoundInAnyPlane) {
   }
   scene::SceneDescription scene = in_space(tilted_arm(kTilt).scene);
   EXPECT_EQ(plane_of(scene).reason, "three dimensions are asked for");
+  EXPECT_EQ(plane_of(tilted_arm(kTilt).scene, "m1").reason, "scheme 'm1' is three-dimensional");
 }
 
 TEST(Planar, IsTheSameMotionAsInThreeDimensions) {
@@ -122,6 +128,21 @@ TEST(Planar, IsTheSameMotionInScenesOfTheExamples) {
     EXPECT_TRUE(search.plane) << file << ": " << search.reason;
     for (const std::string& scheme : kPlanarSchemes)
       if (scheme != "em_scaled" || read.scene->motions.empty()) expect_same_motion(*read.scene, scheme, 60);
+  }
+}
+
+TEST(Planar, AllocatesNothingAfterTheFirstStep) {
+  if (!kCountsAllocations) GTEST_SKIP() << "this C library's allocator cannot be counted";
+  for (const std::string& scheme : kPlanarSchemes) {
+    SimulationOptions options;
+    options.scheme = scheme;
+    Simulation simulation(tilted_arm(kTilt).scene, options);
+    ASSERT_TRUE(simulation.step().converged) << scheme;
+    EXPECT_EQ(allocations_in([&] {
+                for (int n = 0; n < 50; ++n) simulation.step();
+              }),
+              0)
+        << scheme;
   }
 }
 
@@ -227,7 +248,7 @@ TEST(Planar, IsNotTakenWhereTheStartMovesOutOfIt) {
 // What acts out of the plane lifts the motion to three dimensions, where it is what it would have been there.
 TEST(Planar, IsLiftedByWrenches) {
   const scene::SceneDescription scene = tilted_arm(kTilt).scene;
-  for (const char* scheme : {"em", "edmc2"})
+  for (const char* scheme : {"em", "edmc2", "newmark", "hht1", "hht2", "hht3"})
     expect_same_motion(scene, scheme, 60, [](Simulation& simulation, int n) {
       const std::size_t tip = simulation.link_names().size() - 1;
       if (n == 20) simulation.apply_wrenches({{tip, Vector3::Zero(), {kTilt * Vector3(0, 0, 1), Vector3::Zero()}}});
@@ -237,19 +258,27 @@ TEST(Planar, IsLiftedByWrenches) {
 
 TEST(Planar, StaysInThePlaneUnderWrenchesThere) {
   const scene::SceneDescription scene = tilted_arm(kTilt).scene;
-  Simulation simulation(scene);
-  const Vector3 normal = kTilt * Vector3::UnitZ();
-  const std::size_t tip = simulation.link_names().size() - 1;
-  simulation.apply_wrenches({{tip, Vector3::Zero(), {kTilt * Vector3(1, 2, 0), 0.1 * normal}}});
-  for (int n = 0; n < 2000; ++n) ASSERT_TRUE(simulation.step().converged);
-  const PlaneSearch search = plane_of(scene);
-  EXPECT_TRUE(lies_in_plane(model_of(simulation), *search.plane, state_of(simulation)));
+  for (const char* scheme : {"em", "hht1", "hht3"}) {
+    SimulationOptions options;
+    options.scheme = scheme;
+    Simulation simulation(scene, options);
+    const Vector3 normal = kTilt * Vector3::UnitZ();
+    const std::size_t tip = simulation.link_names().size() - 1;
+    const PlaneSearch search = plane_of(scene, scheme);
+    EXPECT_TRUE(lies_in_plane(model_of(simulation), *search.plane, state_of(simulation))) << scheme << ", at the start";
+    simulation.apply_wrenches({{tip, Vector3::Zero(), {kTilt * Vector3(1, 2, 0), 0.1 * normal}}});
+    for (int n = 0; n < 2000; ++n) ASSERT_TRUE(simulation.step().converged) << scheme << " step " << n;
+    EXPECT_TRUE(lies_in_plane(model_of(simulation), *search.plane, state_of(simulation))) << scheme;
+  }
 }
 
 // Which space a step is taken in follows from the state alone.
-TEST(Planar, GoesOnFromAnySnapshot) {
+class PlanarSnapshots : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(PlanarSnapshots, GoOnFromAny) {
   SimulationOptions options;
   options.reuse_factorisation = false;
+  options.scheme = GetParam();
   Simulation simulation(tilted_arm(kTilt).scene, options);
   const std::size_t tip = simulation.link_names().size() - 1;
   const auto run = [](Simulation& s, int steps) {
@@ -274,7 +303,7 @@ TEST(Planar, GoesOnFromAnySnapshot) {
   copy.restore(in_plane);
   run(copy, 10);
   EXPECT_TRUE(same_bits(state_of(simulation), state_of(copy)));
-  const PlaneSearch search = plane_of(tilted_arm(kTilt).scene);
+  const PlaneSearch search = plane_of(tilted_arm(kTilt).scene, GetParam());
   EXPECT_TRUE(lies_in_plane(model_of(simulation), *search.plane, state_of(simulation)));
   simulation.reset();
   run(simulation, 10);
@@ -283,11 +312,12 @@ TEST(Planar, GoesOnFromAnySnapshot) {
   EXPECT_TRUE(same_bits(state_of(simulation), state_of(fresh)));
 }
 
-TEST(Planar, GoesOnFromFilesAndOtherSimulations) {
+TEST_P(PlanarSnapshots, GoOnFromFilesAndOtherSimulations) {
   const scene::SceneDescription scene = tilted_arm(kTilt).scene;
   SimulationOptions options;
   options.reuse_factorisation = false;
-  const std::string path = testing::TempDir() + "flexarm_planar.state";
+  options.scheme = GetParam();
+  const std::string path = testing::TempDir() + "flexarm_planar_" + GetParam() + ".state";
   for (const bool is_lifted : {false, true}) {
     Simulation simulation(scene, options), other(scene, options), taken(scene, options);
     const std::size_t tip = simulation.link_names().size() - 1;
@@ -301,13 +331,15 @@ TEST(Planar, GoesOnFromFilesAndOtherSimulations) {
       for (Simulation* one : {&simulation, &other, &taken}) ASSERT_TRUE(one->step().converged);
     EXPECT_TRUE(same_bits(state_of(simulation), state_of(other))) << is_lifted;
     EXPECT_LE(distance(simulation, taken), kSame) << is_lifted;
-    EXPECT_EQ(lies_in_plane(model_of(other), *plane_of(scene).plane, state_of(other)), !is_lifted);
+    EXPECT_EQ(lies_in_plane(model_of(other), *plane_of(scene, GetParam()).plane, state_of(other)), !is_lifted);
   }
   std::remove(path.c_str());
 }
 
+INSTANTIATE_TEST_SUITE_P(Schemes, PlanarSnapshots, ::testing::Values("em", "newmark", "hht1", "hht2", "hht3"));
+
 TEST(Planar, GoesOnFromOtherJointStates) {
-  for (const char* scheme : {"em", "edmc2"})
+  for (const char* scheme : {"em", "edmc2", "newmark", "hht1", "hht3"})
     expect_same_motion(tilted_arm(kTilt).scene, scheme, 40, [](Simulation& simulation, int n) {
       if (n == 20)
         simulation.set_joint_state(
