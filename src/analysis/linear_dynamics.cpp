@@ -11,8 +11,6 @@
 namespace flexarm {
 namespace {
 
-/// Columns of constraints that are smaller than this part of the largest do not move what a loop holds.
-constexpr double kIndependent = 1e-9;
 /// Between the poses of differences along a motion [rad]: their truncation, of eighth order, and their round-off are
 /// alike there, some 1e-12 of the derivative.
 constexpr double kTurn = 0.05;
@@ -123,29 +121,18 @@ Eigen::VectorXd LinearDynamics::coordinates_of(const KnownRates& known) const {
 }
 
 void LinearDynamics::choose_independent() {
-  std::vector<int> scalar_of(maps_.columns());
-  for (int scalar = 0; scalar < maps_.rows(); ++scalar)
-    if (dof_.equation[scalar] >= 0) scalar_of[dof_.equation[scalar]] = scalar;
   std::vector<bool> is_driven(maps_.columns(), false);
   for (std::size_t c = 0; c < model_.coordinates.size(); ++c)
     if (const int column = dof_.equation[dof_.scalar_of(model_.coordinates[c])]; column >= 0 && is_driven_[c])
       is_driven[column] = true;
-  const Eigen::MatrixXd rows = maps_.constraints(pose_, maps_.at(pose_));
-  std::vector<int> candidates;
-  for (int column = 0; column < maps_.columns(); ++column)
-    if (!is_driven[column]) candidates.push_back(column);
-  if (rows.rows() > 0)
-    for (const Eigen::Index i : independent_rows(rows(Eigen::all, candidates).transpose(), kIndependent))
-      dependent_.push_back(candidates[i]);
-  if (static_cast<Eigen::Index>(dependent_.size()) != rows.rows())
-    throw std::runtime_error("at a dead point, a loop cannot be linearised");
-  std::sort(dependent_.begin(), dependent_.end());
-  for (int column = 0; column < maps_.columns(); ++column) {
-    if (std::binary_search(dependent_.begin(), dependent_.end(), column)) continue;
-    independent_.push_back(column);
-    scalars_.push_back(scalar_of[column]);
+  MotionMaps::Split columns = maps_.split(pose_, is_driven);
+  const std::vector<int> scalars = maps_.scalars_of_columns();
+  for (const int column : columns.independent) {
+    scalars_.push_back(scalars[column]);
     is_driven_place_.push_back(is_driven[column]);
   }
+  independent_ = std::move(columns.independent);
+  dependent_ = std::move(columns.dependent);
 }
 
 std::vector<int> LinearDynamics::free_places() const {

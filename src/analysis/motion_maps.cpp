@@ -10,6 +10,12 @@
 #include "math/so3.h"
 
 namespace flexarm {
+namespace {
+
+/// Columns of constraints that are smaller than this part of the largest do not move what a loop holds.
+constexpr double kIndependent = 1e-9;
+
+}  // namespace
 
 MechanismPose pose_of(const State& state) {
   MechanismPose pose;
@@ -129,6 +135,30 @@ Eigen::MatrixXd MotionMaps::constraints(const MechanismPose& pose, const Eigen::
       ++row;
     }
   return rows;
+}
+
+std::vector<int> MotionMaps::scalars_of_columns() const {
+  std::vector<int> scalars(columns_);
+  for (int scalar = 0; scalar < rows_; ++scalar)
+    if (dof_.equation[scalar] >= 0) scalars[dof_.equation[scalar]] = scalar;
+  return scalars;
+}
+
+MotionMaps::Split MotionMaps::split(const MechanismPose& pose, const std::vector<bool>& is_driven) const {
+  Split out;
+  const Eigen::MatrixXd rows = constraints(pose, at(pose));
+  std::vector<int> candidates;
+  for (int column = 0; column < columns_; ++column)
+    if (!is_driven[column]) candidates.push_back(column);
+  if (rows.rows() > 0)
+    for (const Eigen::Index i : independent_rows(rows(Eigen::all, candidates).transpose(), kIndependent))
+      out.dependent.push_back(candidates[i]);
+  if (static_cast<Eigen::Index>(out.dependent.size()) != rows.rows())
+    throw std::runtime_error("at a dead point, a loop cannot be linearised");
+  std::sort(out.dependent.begin(), out.dependent.end());
+  for (int column = 0; column < columns_; ++column)
+    if (!std::binary_search(out.dependent.begin(), out.dependent.end(), column)) out.independent.push_back(column);
+  return out;
 }
 
 Eigen::MatrixXd MotionMaps::allowed(const MechanismPose& pose, const Eigen::MatrixXd& maps,

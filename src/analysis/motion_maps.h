@@ -47,6 +47,16 @@ class MotionMaps {
   /// @throws std::runtime_error where the others do not follow from these.
   Eigen::MatrixXd allowed(const MechanismPose& pose, const Eigen::MatrixXd& maps,
                           const std::vector<int>& independent) const;
+  /// Which columns loops leave free, and which follow from these, both increasing; driven ones are free before others.
+  /// @throws std::runtime_error at a dead point.
+  struct Split {
+    std::vector<int> independent, dependent;
+  };
+  Split split(const MechanismPose& pose, const std::vector<bool>& is_driven) const;
+  /// Per column: the scalar of DegreesOfFreedom that it is.
+  std::vector<int> scalars_of_columns() const;
+  /// The slave node that carries the link of a node that is no slave; -1: the world.
+  int carrier(int node) const { return carriers_[node]; }
   /// Where the pose is after `time` [s] of a motion with these rates, exact up to the second order of time.
   MechanismPose moved(const MechanismPose& pose, const CoordinateRates& rates, double time) const;
   /// Rows of the constraints that close loops by the columns, from at() of the same pose.

@@ -5,8 +5,8 @@
 #include <csignal>
 #include <utility>
 
+#include "model/state_numbers.h"
 #include "simulation/inside.h"
-#include "simulation/state_numbers.h"
 
 namespace flexarm {
 namespace {

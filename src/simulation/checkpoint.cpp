@@ -11,10 +11,10 @@
 
 #include <fmt/format.h>
 
+#include "model/state_numbers.h"
 #include "simulation/fingerprint.h"
 #include "simulation/inside.h"
 #include "simulation/scene_identity.h"
-#include "simulation/state_numbers.h"
 #include "simulation/unfinished_file.h"
 
 namespace flexarm {

@@ -11,8 +11,8 @@
 #include "math/least_squares.h"
 #include "math/pi.h"
 #include "simulation/inside.h"
+#include "simulation/linear_names.h"
 #include "simulation/linear_ports.h"
-#include "simulation/output_velocities.h"
 
 namespace flexarm {
 namespace {
@@ -24,49 +24,9 @@ using Kind = LinearPort::Kind;
 /// Imaginary parts below this part of the largest pole are round-off.
 constexpr double kReal = 1e-12;
 
-KnownRates rates_of(const Simulation& simulation) {
-  const Model& model = model_of(simulation);
-  OutputVelocities velocities;
-  const DegreesOfFreedom dof(model);
-  const Scheme scheme = make_scheme(simulation.scene().integrator);
-  velocities.update_rates(model, dof, scheme, state_of(simulation));
-  velocities.update_nodes(model, dof, scheme, state_of(simulation));
-  KnownRates rates{velocities.nodes(), {}};
-  for (const Coordinate& coordinate : model.coordinates) rates.coordinates.push_back(velocities.rate(coordinate));
-  return rates;
-}
-
 Reference reference_of(LinearisedAbout about) {
   if (about == LinearisedAbout::Steady) return Reference::Steady;
   return about == LinearisedAbout::Instant ? Reference::Instant : Reference::Rest;
-}
-
-/// By the link that has the node, counted from the link's first.
-std::string name_of_node(const Model& model, int node) {
-  for (const LinkFrame& link : model.links) {
-    const int last = link.beam ? link.beam->tip.node : link.frame.node;
-    if (link.frame.node >= 0 && link.frame.node <= node && node <= last)
-      return fmt::format("{}/{}", link.name, node - link.frame.node);
-  }
-  return fmt::format("node {}", node);
-}
-
-std::vector<std::string> coordinate_names(const Model& model, const LinearDynamics& dynamics) {
-  const DegreesOfFreedom& dof = dynamics.degrees_of_freedom();
-  std::vector<std::string> names;
-  for (const int scalar : dynamics.scalars()) {
-    const char* const axes[] = {"x", "y", "z", "rx", "ry", "rz"};
-    if (scalar < 6 * dof.node_count) {
-      names.push_back(fmt::format("{}:{}", name_of_node(model, scalar / 6), axes[scalar % 6]));
-      continue;
-    }
-    const auto named = std::find_if(model.coordinates.begin(), model.coordinates.end(),
-                                    [&](const Coordinate& own) { return dof.scalar_of(own) == scalar; });
-    names.push_back(named == model.coordinates.end() ? fmt::format("scalar {}", scalar) : named->name);
-  }
-  for (const int actuator : dynamics.rotors())
-    names.push_back("rotor:" + model.coordinates[model.actuators[actuator].coordinate].name);
-  return names;
 }
 
 std::vector<std::string> left_out(const Model& model, const State& state) {
@@ -197,7 +157,8 @@ std::vector<std::string> names_of(const std::vector<LinearPort>& ports) {
 /// All but states, inputs and outputs.
 LinearModel equations(const Simulation& simulation, const LinearDynamics& dynamics) {
   LinearModel out;
-  out.coordinates = coordinate_names(model_of(simulation), dynamics);
+  out.coordinates =
+      coordinate_names(model_of(simulation), dynamics.degrees_of_freedom(), dynamics.scalars(), dynamics.rotors());
   out.mass = dynamics.mass();
   out.damping = dynamics.damping();
   out.stiffness = dynamics.stiffness();
@@ -237,7 +198,7 @@ LinearModel linearise(const Simulation& simulation, const LinearRequest& request
   const std::vector<LinearPort> inputs = input_ports(simulation, request.inputs);
   const std::vector<LinearPort> outputs = output_ports(simulation, request.outputs);
   const LinearDynamics dynamics(model, state_of(simulation), make_scheme(simulation.scene().integrator),
-                                reference_of(request.about), rates_of(simulation));
+                                reference_of(request.about), published_rates(simulation));
   LinearModel out = equations(simulation, dynamics);
   out.inputs = names_of(inputs);
   out.outputs = names_of(outputs);

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "simulation/state_numbers.h"
+#include "model/state_numbers.h"
 
 namespace flexarm {
 namespace {
