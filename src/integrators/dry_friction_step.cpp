@@ -195,6 +195,10 @@ bool DryFrictionStep::tangent_holds() const {
   return true;
 }
 
+void DryFrictionStep::stick_as(const DryFrictionStep& other) {
+  for (std::size_t c = 0; c < carriers_.size(); ++c) carriers_[c].law.take_branch(other.carriers_[c].law);
+}
+
 bool DryFrictionStep::revise() {
   bool revised = false;
   for (FrictionCarrier& carrier : carriers_) {

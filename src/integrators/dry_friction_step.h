@@ -26,6 +26,8 @@ class DryFrictionStep {
   DryFrictionStep(StepConfiguration& configuration, const HhtInterpolation* interpolation);
 
   void begin();
+  /// The same coordinates stick, or slip the same way, as in another system of the same joints.
+  void stick_as(const DryFrictionStep& other);
   /// Joints are about to add their friction.
   void begin_evaluation();
   /// Adds friction of constant capacity to the row of a coordinate that moves by `increment` over the step.

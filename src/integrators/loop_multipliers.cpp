@@ -14,26 +14,25 @@ ClosurePoses LoopMultipliers::poses(const LoopClosure& closure, const std::vecto
   return {closure.parent < 0 ? NodePose() : nodes[closure.parent], nodes[closure.child]};
 }
 
-/// visit(multiplier, its equation)
 template <class Visit>
-void LoopMultipliers::for_each(const Visit& visit) {
+void LoopMultipliers::for_each(const Visit& visit) const {
   const DegreesOfFreedom& dof = configuration_.degrees_of_freedom();
   for (std::size_t k = 0; k < values_.size(); ++k) {
     const int first = dof.first[dof.variable_of_closure(static_cast<int>(k))];
-    for (int i = 0; i < values_[k].size(); ++i) visit(values_[k][i], dof.equation[first + i]);
+    for (int i = 0; i < values_[k].size(); ++i) visit(k, i, dof.equation[first + i]);
   }
 }
 
 void LoopMultipliers::begin() {
-  for_each([](double& value, int) { value = 0; });
+  for (ReleasedVector& values : values_) values.setZero();
 }
 
-void LoopMultipliers::extrapolate() {
-  for_each([&](double& value, int equation) { value = configuration_.state().history.increments[0][equation]; });
+void LoopMultipliers::extrapolate(const IncrementHistory& history) {
+  for_each([&](std::size_t k, int i, int equation) { values_[k][i] = history.increments[0][equation]; });
 }
 
 void LoopMultipliers::update(const Eigen::VectorXd& increment) {
-  for_each([&](double& value, int equation) { value += increment[equation]; });
+  for_each([&](std::size_t k, int i, int equation) { values_[k][i] += increment[equation]; });
 }
 
 double LoopMultipliers::end_weight() const {
@@ -66,8 +65,8 @@ void LoopMultipliers::evaluate(Balance& balance) const {
   }
 }
 
-void LoopMultipliers::accept(State& state) {
-  for_each([&](double value, int equation) { state.history.increments[0][equation] = value; });
+void LoopMultipliers::remember(IncrementHistory& history) const {
+  for_each([&](std::size_t k, int i, int equation) { history.increments[0][equation] = values_[k][i]; });
 }
 
 LoopMultipliers::Opening LoopMultipliers::largest_opening() const {

@@ -14,15 +14,15 @@ class LoopMultipliers {
 
   /// No forces.
   void begin();
-  /// Those of the last step.
-  void extrapolate();
+  /// Those of the newest step of a history.
+  void extrapolate(const IncrementHistory& history);
   void evaluate(Balance& balance) const;
   /// What they add to the residual of a closure's child.
   Vector6 on_child(int closure) const;
   /// A Newton update, one entry per unknown.
   void update(const Eigen::VectorXd& increment);
   /// The history keeps the multipliers in the place of increments of their own.
-  void accept(State& state);
+  void remember(IncrementHistory& history) const;
 
   struct Opening {
     double size = 0;   ///< over the model's length scale, or in rad
@@ -37,8 +37,9 @@ class LoopMultipliers {
 
  private:
   ClosurePoses poses(const LoopClosure& closure, const std::vector<NodePose>& nodes) const;
+  /// visit(closure, multiplier of it, its equation)
   template <class Visit>
-  void for_each(const Visit& visit);
+  void for_each(const Visit& visit) const;
 
   const StepConfiguration& configuration_;
   std::vector<ReleasedVector> values_;  // per closure

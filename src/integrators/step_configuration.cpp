@@ -50,9 +50,8 @@ void StepConfiguration::set_prescribed(double time) {
       released_[coordinate.joint].displacement[coordinate.component] = model_.histories[coordinate.motion](time);
 }
 
-void StepConfiguration::extrapolate(int order) {
+void StepConfiguration::extrapolate(const IncrementHistory& history, int order) {
   const State& state = *state_;
-  const IncrementHistory& history = state.history;
   const bool has_last = history.holds_for(dof_.unknowns);
   IncrementHistory::Weights weights = history.weights(order, 0, step_);
   if (weights[0] == 0) weights = history.weights(0, 0, step_);

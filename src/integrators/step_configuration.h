@@ -29,8 +29,8 @@ class StepConfiguration {
 
   /// Both ends are the configuration of `state`, which must outlive the step. `step` [s]; 0: statics.
   void begin(const State& state, double step);
-  /// Moves the trial end by the extrapolation of that order, see IncrementHistory.
-  void extrapolate(int order);
+  /// Moves the trial end by the extrapolation of that order of a history, see IncrementHistory.
+  void extrapolate(const IncrementHistory& history, int order);
   /// Prescribed coordinates take their values at `time` [s].
   void set_prescribed(double time);
   /// A Newton update, one entry per unknown: released coordinates and nodes that are no slaves.

@@ -36,7 +36,7 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme, BackendChoice b
   if (planar_) planar_->beams->set_interpolation(interpolation_.get());
 }
 
-void StepSystem::begin(const State& state, double step, Guess guess) {
+void StepSystem::start(const State& state, double step) {
   configuration_.begin(state, step);
   histories_.begin(configuration_);
   if (planar_ && planar_->choose(model_, state)) beams().invalidate();
@@ -46,15 +46,39 @@ void StepSystem::begin(const State& state, double step, Guess guess) {
   friction_.begin();
   actuators_.begin();
   reversals_.begin();
-  const bool stands = guess == Guess::Extrapolated && state.history.order == IncrementHistory::kNoMotion;
-  if (guess != Guess::Unchanged && !stands) {
-    contacts_.before_update();
-    configuration_.extrapolate(guess == Guess::Extrapolated ? state.history.order : 0);
-    contacts_.after_update();
-    if (state.history.holds_for(dof_.unknowns)) loops_.extrapolate();
-  }
-  configuration_.set_prescribed(state.time + step);
+}
+
+void StepSystem::move_ahead(const IncrementHistory& history, int order) {
+  contacts_.before_update();
+  configuration_.extrapolate(history, order);
+  contacts_.after_update();
+  if (history.holds_for(dof_.unknowns)) loops_.extrapolate(history);
+}
+
+void StepSystem::place_followers() {
+  configuration_.set_prescribed(configuration_.state().time + configuration_.step());
   configuration_.set_slaves();
+}
+
+void StepSystem::begin(const State& state, double step, Guess guess) {
+  start(state, step);
+  const bool stands = guess == Guess::Extrapolated && state.history.order == IncrementHistory::kNoMotion;
+  if (guess != Guess::Unchanged && !stands)
+    move_ahead(state.history, guess == Guess::Extrapolated ? state.history.order : 0);
+  place_followers();
+}
+
+void StepSystem::begin_beside(const StepSystem& other, const State& state, const IncrementHistory& guess) {
+  invalidate();
+  start(state, other.configuration().step());
+  friction_.stick_as(other.friction_);
+  move_ahead(guess, 0);
+  place_followers();
+}
+
+void StepSystem::remember_increments(IncrementHistory& history) const {
+  configuration_.remember_increments(history);
+  loops_.remember(history);
 }
 
 void StepSystem::begin_equilibrium(const State& state, double load_factor, double drag) {
@@ -147,7 +171,7 @@ void StepSystem::accept(State& state) {
   configuration_.remember_increments(state.history);
   if (is_planar()) planar_->tidy(configuration_, state.history);
   scales_.choose_order(state.history);
-  loops_.accept(state);
+  loops_.remember(state.history);
   bodies_.accept(state);
   joints_.accept(state);
   actuators_.accept(state);

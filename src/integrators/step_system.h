@@ -48,6 +48,11 @@ class StepSystem {
   /// Starts a step of length `step` [s] from `state`, which must outlive it. Prescribed coordinates take their end
   /// values.
   void begin(const State& state, double step, Guess guess);
+  /// Starts the step that `other`, of a like model and the same scheme, has solved, from another state, which must
+  /// outlive it: by the newest increments and multipliers of `guess`, and with the same coordinates sticking.
+  void begin_beside(const StepSystem& other, const State& state, const IncrementHistory& guess);
+  /// Writes the increments of the step, and the multipliers, as the newest of the history.
+  void remember_increments(IncrementHistory& history) const;
   /// Starts the search for an equilibrium, of a scheme made by statics_of(), from `state`: gravity and loads scaled by
   /// `load_factor`, histories and motions at time 0. `drag`: see Drag::strength.
   void begin_equilibrium(const State& state, double load_factor, double drag = 0);
@@ -95,6 +100,9 @@ class StepSystem {
   std::vector<Vector6> nodal_forces(const State& state);
 
  private:
+  void start(const State& state, double step);
+  void move_ahead(const IncrementHistory& history, int order);
+  void place_followers();
   const Scheme& scheme() const { return configuration_.scheme(); }
   BeamFamily& beams() { return is_planar() ? *planar_->beams : *beams_; }
   void add_forces(Balance& balance);

@@ -84,8 +84,10 @@ void Stepper::observe(StepObserver* observer) {
 bool Stepper::sub_step(State& state, double step, StepResult& result) {
   if (!scheme_.is_composition && !scaling_) return simple_step(state, step, result);
   before_ = state;
+  if (follower_) follower_->keep();
   const auto fail = [&] {
     state = before_;
+    if (follower_) follower_->take_back();
     invalidate();
     return false;
   };
@@ -139,6 +141,7 @@ bool Stepper::simple_step(State& state, double step, StepResult& result) {
     if (result.reason == StepResult::Reason::None && may_find && system_.has_event())
       result.reason = StepResult::Reason::EventWithin;
     if (result.reason != StepResult::Reason::None) return false;
+    if (follower_) follower_->follow(state, system_);
     enter(StepPhase::Accept);
     system_.accept(state);
     result.other_guesses += attempt.guess != Guess::Extrapolated;
@@ -167,6 +170,7 @@ StepResult Stepper::advance_by_scheme(State& state) {
   state.halving_level = std::clamp(state.halving_level, 0, finest);
   state.drives.begin();
   state.transmitted.begin();
+  if (follower_) follower_->begin_step();
   while (done < whole) {
     const int level = state.halving_level;
     const bool is_done = sub_step(state, std::ldexp(settings_.step, -level), result);
@@ -193,6 +197,7 @@ StepResult Stepper::advance_by_scheme(State& state) {
   state.time = begin + settings_.step;
   state.drives.end(settings_.step);
   state.transmitted.end(settings_.step);
+  if (follower_) follower_->end_step(settings_.step);
   ++state.steps;
   result.converged = true;
   return result;

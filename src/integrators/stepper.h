@@ -6,6 +6,7 @@
 
 #include "flexarm/model/results.h"
 #include "integrators/newton.h"
+#include "integrators/step_follower.h"
 #include "integrators/step_settings.h"
 #include "integrators/step_system.h"
 #include "integrators/velocity_scaling.h"
@@ -40,6 +41,8 @@ class Stepper {
   const DegreesOfFreedom& degrees_of_freedom() const { return system_.degrees_of_freedom(); }
   /// Tells the phases of all steps from now on; null: nobody.
   void observe(StepObserver* observer);
+  /// Takes somebody along from now on; null: nobody.
+  void accompany(StepFollower* follower) { follower_ = follower; }
 
  private:
   StepResult advance_by_scheme(State& state);
@@ -64,6 +67,7 @@ class Stepper {
   std::unique_ptr<DissipativeSubstitute> substitute_;  // where it is allowed
   State before_;                                       // of a step that may have to be taken back
   StepObserver* observer_ = nullptr;
+  StepFollower* follower_ = nullptr;
 };
 
 }  // namespace flexarm

@@ -26,6 +26,28 @@ const std::vector<double>& update_norms_of(const Simulation& simulation) {
   const auto& inside = Inside::of(simulation);
   return inside.static_norms.empty() ? inside.stepper->update_norms() : inside.static_norms;
 }
+const State& initial_state_of(const Simulation& simulation) {
+  return *Inside::of(simulation).initial;
+}
+void accompany(Simulation& simulation, StepFollower* follower) {
+  Inside::of(simulation).stepper->accompany(follower);
+}
+void show(const State& state, Simulation& simulation) {
+  auto& inside = Inside::of(simulation);
+  inside.state = state;
+  inside.forget_published();
+}
+State start_at(const Simulation& simulation, const std::vector<NodePose>& poses, const std::vector<Released>& released,
+               const std::vector<Vector6>& velocities) {
+  auto& inside = Inside::of(simulation);
+  Model placed = inside.model;
+  placed.nodes = poses;
+  placed.initial_released = released;
+  placed.initial_velocity = velocities;
+  State state = initial_state(placed);
+  inside.stepper->initialise(state);
+  return state;
+}
 void restore(Simulation& simulation, const State& state) {
   Inside::of(simulation).restore(state);
 }

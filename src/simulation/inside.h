@@ -12,6 +12,8 @@
 
 namespace flexarm {
 
+class StepFollower;
+
 const Model& model_of(const Simulation& simulation);
 const State& state_of(const Simulation& simulation);
 /// Per link; empty for those that have no beam, or one with elements.
@@ -25,6 +27,17 @@ struct MadeForOutput {
 MadeForOutput made_for_output(const Simulation& simulation);
 /// Update norms of the last Newton solve, for tests of the rate of convergence.
 const std::vector<double>& update_norms_of(const Simulation& simulation);
+
+/// Where a simulation starts, with what the scheme keeps there.
+const State& initial_state_of(const Simulation& simulation);
+/// Takes somebody along with the steps of a simulation from now on; null: nobody.
+void accompany(Simulation& simulation, StepFollower* follower);
+/// Puts any state of a simulation of a like model in the place of its own, so that it is looked at.
+void show(const State& state, Simulation& simulation);
+/// The state in which a simulation would start if its nodes and joints were placed like this, at these velocities
+/// ({v, w}, world axes).
+State start_at(const Simulation& simulation, const std::vector<NodePose>& poses, const std::vector<Released>& released,
+               const std::vector<Vector6>& velocities);
 
 /// Replaces the state by any that the simulator could have come to, as one read from a file.
 /// @throws std::invalid_argument if it is not one of this simulation's; which is as before then

@@ -1,0 +1,94 @@
+#pragma once
+/// Neighbours of a run: their steps are solved with factors of the run's own tangent, and tell how the run changes with
+/// its parameters and with its start. (docs/notes/sensitivities.md)
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "integrators/step_follower.h"
+#include "integrators/step_system.h"
+
+namespace flexarm {
+
+/// Another run of a like mechanism, close to the one whose derivative is sought.
+struct Neighbour {
+  double offset = 0;                   ///< how far it is off, in units of Direction::difference
+  double weight = 0;                   ///< in the derivative: of how far off it has come, over Direction::difference
+  std::unique_ptr<StepSystem> system;  ///< of its own model; null: it has that of the run
+  State state;
+};
+
+/// What a run is differentiated by, and the derivative of its state as a difference of neighbours.
+struct Direction {
+  double difference = 0;             ///< in the parameter's unit, or that of the state's coordinate
+  bool has_free_difference = false;  ///< it may be chosen anew in any step: neighbours have the run's own model
+  std::vector<Neighbour> neighbours;
+  std::vector<double> derivative = {};  ///< of all numbers of the state (model/state_numbers.h), see measure()
+};
+
+/// Takes neighbours along with a run. The derivative of a step's solution is what the equations of the neighbours come
+/// to beside it, whose own Newton's method it is, with the factors of the run's tangent. Every few sub-steps
+/// they are put anew to the state of the run, +- difference times the derivative: so they stay as close however long
+/// the run is. Allocates nothing after the first step.
+class NeighbourSteps : public StepFollower {
+ public:
+  /// Of a run of that model and scheme; the model must outlive this.
+  /// @throws ModelError if the scheme has no derivatives.
+  NeighbourSteps(const Model& model, const Scheme& scheme);
+
+  std::vector<Direction>& directions() { return directions_; }
+  const std::vector<Direction>& directions() const { return directions_; }
+  /// Why there are no derivatives any more; empty: there are.
+  const std::string& lost() const { return lost_; }
+  void lose(const std::string& why) {
+    if (lost_.empty()) lost_ = why;
+  }
+  /// Back to the beginning of a run, once neighbours stand there.
+  void restart() { lost_.clear(), factorised_step_ = 0, followed_ = 0; }
+
+  /// Direction::derivative from what the neighbours and the run, in `state`, have come to.
+  void measure(Direction& direction, const State& state);
+  /// Puts the neighbours beside the run, in `state`, by difference and derivative.
+  void place(Direction& direction, const State& state);
+  /// How far neighbours are off at best, where their difference may be chosen: the third derivative of what beams do,
+  /// (way over radius of gyration)^2, and round-off of velocities, round-off over step over way, are alike there.
+  static constexpr double kDistance = 1e-5;
+  /// How far the neighbours are off the run, in `state`: the largest displacement over the model's length scale or
+  /// rotation [rad], that which velocities make in `step` [s] included.
+  double distance(const Direction& direction, const State& state, double step) const;
+
+  void begin_step() override;
+  void end_step(double duration) override;
+  void keep() override;
+  void take_back() override;
+  void follow(const State& state, const StepSystem& solved) override;
+
+ private:
+  void place_slaves(Neighbour& neighbour);
+  bool make_factors(const State& state, const StepSystem& solved);
+  /// Why it does not go along, or nothing.
+  std::string advance(Neighbour& neighbour, const State& state, const StepSystem& solved);
+  /// False if it does not converge.
+  bool solve(StepSystem& system);
+  template <class Visit>
+  void for_each_neighbour(const Visit& visit) {
+    for (Direction& direction : directions_)
+      for (Neighbour& neighbour : direction.neighbours) visit(neighbour);
+  }
+
+  const Model& model_;
+  StepSystem system_;  // the run's once more: its factors are kept here
+  std::vector<Direction> directions_;
+  std::string lost_;
+  double factorised_step_ = 0;     // for which the factors hold [s]; 0: none
+  long followed_ = 0;              // sub-steps
+  int updates_ = 0;                // of the present sub-step, by all neighbours
+  IncrementHistory made_, guess_;  // by the run in the present sub-step; the same of a neighbour, as is expected
+  Eigen::VectorXd update_;
+  std::vector<NodePose> poses_;  // scratch
+  std::vector<double> numbers_;  // scratch
+  std::vector<State> kept_;      // at the beginning of a step that may be taken back
+};
+
+}  // namespace flexarm

@@ -1,0 +1,195 @@
+#include "flexarm/simulation/sensitivities.h"
+
+#include <limits>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "analysis/mechanism_states.h"
+#include "flexarm/model/model_error.h"
+#include "flexarm/scene/scene_description.h"
+#include "math/so3.h"
+#include "model/state_numbers.h"
+#include "simulation/inside.h"
+#include "simulation/linear_names.h"
+#include "simulation/port_values.h"
+#include "simulation/sensitivity_directions.h"
+
+namespace flexarm {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Stands where it starts: what is commanded does not count.
+bool is_at_start(const Simulation& simulation) {
+  State own = state_of(simulation), start = initial_state_of(simulation);
+  if (own.steps != 0 || own.history.count != 0) return false;
+  for (State* state : {&own, &start}) {
+    state->wrenches.clear();
+    state->commands.clear();
+    for (ActuatorState& actuator : state->actuators) static_cast<ServoCommand&>(actuator.servo) = {};
+  }
+  std::vector<double> numbers;
+  for_each_number(start, [&](const char*, double number) { numbers.push_back(number); });
+  std::size_t i = 0;
+  bool is_same = true;
+  for_each_number(own, [&](const char*, double number) {
+    is_same = is_same && i < numbers.size() && (number == numbers[i] || std::isnan(number));
+    ++i;
+  });
+  return is_same && i == numbers.size();
+}
+
+MechanismMotion motion_of(const Simulation& simulation) {
+  return {pose_of(state_of(simulation)), published_rates(simulation)};
+}
+
+}  // namespace
+
+class Sensitivities::Implementation {
+ public:
+  Implementation(Simulation& own, SensitivityRequest wanted)
+      : simulation(own), request(std::move(wanted)), steps(model_of(own), make_scheme(own.scene().integrator)) {
+    if (!is_at_start(own))
+      throw std::invalid_argument("derivatives are those of a whole run: the simulation has moved, reset() it first");
+    for (const std::string& name : request.parameters) {
+      parameters.push_back(std::make_unique<ParameterDirection>(simulation, request, name));
+      names.push_back(name);
+      steps.directions().push_back(parameters.back()->start(steps));
+    }
+    if (!request.initial_state) return;
+    look = std::make_unique<Simulation>(own.copy());
+    for (Direction& direction : initial_state_directions(own, steps, names))
+      steps.directions().push_back(std::move(direction));
+  }
+
+  StepResult step() {
+    if (simulation.time() != time || state_of(simulation).steps != count)
+      throw std::logic_error("somebody else has moved the simulation since the last step of its sensitivities");
+    const std::vector<int> lines = state_of(simulation).left_lines;
+    accompany(simulation, &steps);
+    const StepResult result = simulation.step();
+    const State& state = state_of(simulation);
+    const std::string when = fmt::format("the step to t = {:.9g} s ", time + simulation.step_size());
+    if (state.left_lines != lines)
+      steps.lose(fmt::format("a slider has left its line before t = {:.9g} s", simulation.time()));
+    else
+      accompany(simulation, nullptr);
+    if (!result.converged) steps.lose(when + "has failed");
+    if (result.is_dissipated) steps.lose(when + "was done by another scheme");
+    time = simulation.time();
+    count = state.steps;
+    for (std::size_t i = 0; i < parameters.size() && steps.lost().empty(); ++i)
+      parameters[i]->come_closer(steps, steps.directions()[i], state);
+    return result;
+  }
+
+  /// The difference quotient, in each direction, of what `observe` makes of neighbours less what it makes of the run.
+  template <class Observe>
+  MatrixXd derivative(Eigen::Index size, const Observe& observe) const {
+    const Eigen::Index count = static_cast<Eigen::Index>(steps.directions().size());
+    if (!steps.lost().empty()) return MatrixXd::Constant(size, count, std::numeric_limits<double>::quiet_NaN());
+    MatrixXd out = MatrixXd::Zero(size, count);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const Direction& direction = steps.directions()[static_cast<std::size_t>(k)];
+      for (std::size_t i = 0; i < direction.neighbours.size(); ++i) {
+        Simulation& neighbour =
+            k < static_cast<Eigen::Index>(parameters.size()) ? parameters[static_cast<std::size_t>(k)]->look(i) : *look;
+        show(direction.neighbours[i].state, neighbour);
+        out.col(k) += direction.neighbours[i].weight / direction.difference * observe(neighbour);
+      }
+    }
+    return out;
+  }
+
+  Simulation& simulation;
+  SensitivityRequest request;
+  NeighbourSteps steps;
+  std::vector<std::unique_ptr<ParameterDirection>> parameters;
+  std::unique_ptr<Simulation> look;  // at neighbours of its own model
+  std::vector<std::string> names;
+  double time = simulation.time();
+  long count = 0;  // of steps done
+};
+
+Sensitivities::Sensitivities(Simulation& simulation, const SensitivityRequest& request)
+    : implementation_(std::make_unique<Implementation>(simulation, request)) {}
+Sensitivities::~Sensitivities() = default;
+Sensitivities::Sensitivities(Sensitivities&&) noexcept = default;
+Sensitivities& Sensitivities::operator=(Sensitivities&&) noexcept = default;
+
+StepResult Sensitivities::step() {
+  return implementation_->step();
+}
+const std::vector<std::string>& Sensitivities::directions() const {
+  return implementation_->names;
+}
+const std::string& Sensitivities::lost() const {
+  return implementation_->steps.lost();
+}
+
+MatrixXd Sensitivities::of(const std::function<VectorXd(const Simulation&)>& observable) const {
+  const VectorXd own = observable(implementation_->simulation);
+  return implementation_->derivative(
+      own.size(), [&](const Simulation& neighbour) -> VectorXd { return observable(neighbour) - own; });
+}
+
+MatrixXd Sensitivities::positions() const {
+  return of([](const Simulation& simulation) {
+    VectorXd values(static_cast<Eigen::Index>(simulation.coordinate_names().size()));
+    for (Eigen::Index i = 0; i < values.size(); ++i) values[i] = simulation.position(static_cast<std::size_t>(i));
+    return values;
+  });
+}
+
+MatrixXd Sensitivities::velocities() const {
+  return of([](const Simulation& simulation) {
+    VectorXd values(static_cast<Eigen::Index>(simulation.coordinate_names().size()));
+    for (Eigen::Index i = 0; i < values.size(); ++i) values[i] = simulation.velocity(static_cast<std::size_t>(i));
+    return values;
+  });
+}
+
+MatrixXd Sensitivities::probe(std::size_t index) const {
+  const Quaternion start = implementation_->simulation.probe_pose(index).orientation;
+  return of([&](const Simulation& simulation) {
+    const ProbeState probe = simulation.probe(index);
+    const Quaternion turned = probe.pose.orientation * start.conjugate();
+    VectorXd values(12);
+    values << probe.pose.position, so3::log(so3::nearer_of_two(turned, Quaternion(Quaternion::Identity()))),
+        probe.velocity, probe.angular_velocity;
+    return values;
+  });
+}
+
+MatrixXd Sensitivities::outputs(const std::vector<std::string>& names) const {
+  const Simulation& own = implementation_->simulation;
+  const std::vector<LinearPort> ports = output_ports(own, names);
+  return of([&](const Simulation& simulation) { return port_values(simulation, own, ports); });
+}
+
+std::vector<std::string> Sensitivities::output_names(const std::vector<std::string>& names) const {
+  std::vector<std::string> all;
+  for (const LinearPort& port : output_ports(implementation_->simulation, names)) all.push_back(port.name);
+  return all;
+}
+
+MatrixXd Sensitivities::states() const {
+  const Simulation& own = implementation_->simulation;
+  const MechanismStates states(model_of(own), motion_of(own));
+  const Eigen::Index size = 2 * static_cast<Eigen::Index>(states.scalars().size());
+  return implementation_->derivative(
+      size, [&](const Simulation& neighbour) { return states.deviation(motion_of(neighbour)); });
+}
+
+std::vector<std::string> Sensitivities::state_names() const {
+  const Simulation& own = implementation_->simulation;
+  const MechanismStates states(model_of(own), motion_of(own));
+  std::vector<std::string> names = coordinate_names(model_of(own), states.degrees_of_freedom(), states.scalars(), {});
+  const std::size_t count = names.size();
+  for (std::size_t i = 0; i < count; ++i) names.push_back("d/dt " + names[i]);
+  return names;
+}
+
+}  // namespace flexarm

@@ -1,0 +1,201 @@
+#include "simulation/sensitivity_directions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "analysis/mechanism_states.h"
+#include "flexarm/model/model_error.h"
+#include "flexarm/scene/scene_description.h"
+#include "model/state_numbers.h"
+#include "simulation/inside.h"
+#include "simulation/linear_names.h"
+
+namespace flexarm {
+namespace {
+
+/// Largest difference of a parameter, over its size: what a single step makes of it is smooth.
+constexpr double kLargestDifference = 3e-4;
+/// Neighbours further off than so many times the best distance come closer, for which models are built anew.
+constexpr double kTooFar = 3;
+/// Differences at the start, by the formula of fourth order. They are larger: accelerations there are differences
+/// over 1e-2 of a step, with more round-off.
+constexpr double kStartDifference = 1e-2;
+const std::vector<std::pair<double, double>> kFourthOrder = {{1, 2. / 3}, {-1, -2. / 3}, {2, -1. / 12}, {-2, 1. / 12}};
+const std::vector<std::pair<double, double>> kCentral = {{1, 0.5}, {-1, -0.5}}, kAbove = {{1, 2}, {2, -0.5}},
+                                             kBelow = {{-1, -2}, {-2, 0.5}};
+
+bool is_the_same(const IntegratorDescription& a, const IntegratorDescription& b) {
+  return a.step == b.step && a.beta == b.beta && a.gamma == b.gamma && a.alpha == b.alpha &&
+         a.rho_infinity == b.rho_infinity;
+}
+
+/// To be compared: 0 where there are none.
+std::vector<double> numbers_of(const State& state) {
+  std::vector<double> numbers;
+  for_each_number(state, [&](const char*, double number) { numbers.push_back(std::isnan(number) ? 0 : number); });
+  return numbers;
+}
+
+/// Of the same unknowns, so that one's factors solve for the other.
+bool is_alike(const Simulation& a, const Simulation& b) {
+  const Model &model = model_of(a), &other = model_of(b);
+  if (model.nodes.size() != other.nodes.size() || a.coordinate_names() != b.coordinate_names()) return false;
+  const DegreesOfFreedom dof(model), other_dof(other);
+  return dof.equation == other_dof.equation && model.node_parents == other.node_parents &&
+         model.histories.size() == other.histories.size() &&
+         numbers_of(initial_state_of(a)).size() == numbers_of(initial_state_of(b)).size();
+}
+
+}  // namespace
+
+/// A simulation with another value of the parameter, or why there is none.
+struct ParameterDirection::Attempt {
+  std::optional<Simulation> simulation;
+  std::string fault;
+};
+
+ParameterDirection::ParameterDirection(const Simulation& simulation, const SensitivityRequest& request,
+                                       const std::string& name)
+    : simulation_(simulation), request_(request), name_(name) {
+  const auto& parameters = simulation.scene().parameters;
+  const auto known = std::find_if(parameters.begin(), parameters.end(),
+                                  [&](const scene::ParameterDescription& own) { return own.name == name; });
+  if (known == parameters.end()) {
+    std::vector<std::string> names;
+    for (const scene::ParameterDescription& own : parameters) names.push_back(own.name);
+    throw std::invalid_argument(
+        names.empty() ? fmt::format("unknown parameter '{}': the scene has no <parameter>", name)
+                      : fmt::format("unknown parameter '{}': expected one of {}", name, fmt::join(names, ", ")));
+  }
+  if (!request.read) throw std::invalid_argument("parameters need a scene that can be read once more");
+  value_ = known->value;
+  if (value_ != 0) scale_ = std::abs(value_);
+  if (const scene::ReadResult again = request_.read(name_, value_); again.scene) integrator_ = again.scene->integrator;
+  if (numbers_of(initial_state_of(built(value_))) != numbers_of(initial_state_of(simulation)))
+    throw std::invalid_argument("the scene that is read once more is another one than that of the simulation");
+  choose_side();
+}
+
+ParameterDirection::Attempt ParameterDirection::attempt(double value) const {
+  try {
+    scene::ReadResult result = request_.read(name_, value);
+    if (!result.scene) return {std::nullopt, scene::to_text(result.diagnostics)};
+    const scene::SceneDescription& own = simulation_.scene();
+    IntegratorDescription& integrator = result.scene->integrator;
+    if (!is_the_same(integrator, integrator_)) return {std::nullopt, "it changes the <integrator>"};
+    integrator.scheme = own.integrator.scheme;
+    integrator.step = own.integrator.step;
+    integrator.on_failure = own.integrator.on_failure;
+    integrator.tolerance = own.integrator.tolerance;
+    Attempt out{Simulation(std::move(*result.scene)), ""};
+    if (!is_alike(simulation_, *out.simulation))
+      return {std::nullopt, "it changes the numbers of nodes, joints or unknowns"};
+    return out;
+  } catch (const ModelError& error) {
+    return {std::nullopt, error.what()};
+  }
+}
+
+Simulation ParameterDirection::built(double value) const {
+  Attempt made = attempt(value);
+  if (made.simulation) return std::move(*made.simulation);
+  while (!made.fault.empty() && made.fault.back() == '\n') made.fault.pop_back();
+  throw std::invalid_argument(
+      fmt::format("the run cannot be differentiated by parameter '{}': with {:.17g} in the place "
+                  "of {:.17g}: {}",
+                  name_, value, value_, made.fault));
+}
+
+/// Differences are central but at the end of what the parameter may be.
+void ParameterDirection::choose_side() {
+  const double way = kLargestDifference * scale_;
+  const bool above = attempt(value_ + way).simulation.has_value();
+  if (attempt(value_ - way).simulation.has_value())
+    rule_ = above ? kCentral : kBelow;
+  else if (above)
+    rule_ = kAbove;
+  else
+    built(value_ + way);  // says why not
+}
+
+void ParameterDirection::set_neighbours(Direction& direction) {
+  looks_.clear();
+  direction.neighbours.clear();
+  for (const auto& [offset, weight] : rule_) {
+    Simulation& look = looks_.emplace_back(built(value_ + offset * direction.difference));
+    const Scheme scheme = make_scheme(look.scene().integrator);
+    direction.neighbours.push_back(
+        {offset, weight, std::make_unique<StepSystem>(model_of(look), scheme), initial_state_of(look)});
+  }
+}
+
+std::vector<double> ParameterDirection::derivative_at_start(NeighbourSteps& steps) const {
+  Direction direction;
+  direction.difference = rule_ == kCentral ? kStartDifference * scale_ : kLargestDifference * scale_;
+  const auto add = [&](const std::vector<std::pair<double, double>>& rule) {
+    for (const auto& [offset, weight] : rule)
+      direction.neighbours.push_back(
+          {offset, weight, nullptr, initial_state_of(built(value_ + offset * direction.difference))});
+  };
+  const double reach = 2 * direction.difference;
+  const bool has_room = rule_ == kCentral && attempt(value_ + reach).simulation && attempt(value_ - reach).simulation;
+  if (rule_ == kCentral && !has_room) direction.difference = kLargestDifference * scale_;
+  add(has_room ? kFourthOrder : rule_);
+  steps.measure(direction, state_of(simulation_));
+  return direction.derivative;
+}
+
+Direction ParameterDirection::start(NeighbourSteps& steps) {
+  Direction direction;
+  direction.difference = kLargestDifference * scale_;
+  set_neighbours(direction);
+  direction.derivative = derivative_at_start(steps);
+  const State& state = state_of(simulation_);
+  steps.place(direction, state);
+  come_closer(steps, direction, state);
+  return direction;
+}
+
+void ParameterDirection::come_closer(NeighbourSteps& steps, Direction& direction, const State& state) {
+  const double way = steps.distance(direction, state, simulation_.step_size());
+  if (way <= kTooFar * NeighbourSteps::kDistance) return;
+  steps.measure(direction, state);
+  direction.difference *= NeighbourSteps::kDistance / way;
+  set_neighbours(direction);
+  steps.place(direction, state);
+}
+
+std::vector<Direction> initial_state_directions(const Simulation& simulation, NeighbourSteps& steps,
+                                                std::vector<std::string>& names) {
+  const State& state = state_of(simulation);
+  const MechanismStates states(model_of(simulation), {pose_of(state), published_rates(simulation)});
+  const std::vector<std::string> positions =
+      coordinate_names(model_of(simulation), states.degrees_of_freedom(), states.scalars(), {});
+  const int count = static_cast<int>(positions.size());
+  std::vector<Direction> directions;
+  for (int k = 0; k < 2 * count; ++k) {
+    const auto name = positions.begin() + k % count;
+    names.push_back(k < count ? *name : "d/dt " + *name);
+    Direction direction;
+    direction.has_free_difference = true;
+    direction.difference = kLargestDifference;
+    for (const auto& [offset, weight] : kFourthOrder) {
+      const MechanismMotion motion = states.moved(k, offset * direction.difference);
+      direction.neighbours.push_back(
+          {offset, weight, nullptr, start_at(simulation, motion.pose.nodes, motion.pose.released, motion.rates.nodes)});
+    }
+    steps.measure(direction, state);
+    direction.neighbours.erase(direction.neighbours.begin() + 2, direction.neighbours.end());
+    for (std::size_t i = 0; i < kCentral.size(); ++i)
+      std::tie(direction.neighbours[i].offset, direction.neighbours[i].weight) = kCentral[i];
+    steps.place(direction, state);
+    directions.push_back(std::move(direction));
+  }
+  return directions;
+}
+
+}  // namespace flexarm
