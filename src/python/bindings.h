@@ -20,6 +20,7 @@ void bind_commands(SimulationClass& simulation);
 void bind_runs(SimulationClass& simulation);
 void bind_analysis(SimulationClass& simulation);
 void bind_linear_models(pybind11::module_& module, SimulationClass& simulation);
+void bind_sensitivities(pybind11::module_& module, SimulationClass& simulation);
 void bind_accurate_run(SimulationClass& simulation);
 void bind_tuning(pybind11::module_& module);
 

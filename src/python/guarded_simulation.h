@@ -10,9 +10,9 @@
 
 #include <pybind11/pybind11.h>
 
-#include "flexarm/scene/scene_description.h"
 #include "flexarm/simulation/result_columns.h"
 #include "flexarm/simulation/simulation.h"
+#include "python/read_scene.h"
 
 namespace flexarm::python {
 
@@ -20,7 +20,7 @@ namespace flexarm::python {
 /// this class's own members included, is changed only by who holds the lock.
 class GuardedSimulation {
  public:
-  GuardedSimulation(std::shared_ptr<const scene::SceneDescription> scene, Simulation simulation)
+  GuardedSimulation(std::shared_ptr<const ReadScene> scene, Simulation simulation)
       : scene_(std::move(scene)), simulation_(std::move(simulation)) {}
   GuardedSimulation(const GuardedSimulation& other, Simulation simulation)
       : scene_(other.scene_), family_(other.family_), simulation_(std::move(simulation)) {}
@@ -53,7 +53,7 @@ class GuardedSimulation {
     return columns_.emplace(patterns, ResultColumns(use(), ResultColumns::Solver::With, patterns)).first->second;
   }
 
-  const std::shared_ptr<const scene::SceneDescription>& scene() const { return scene_; }
+  const std::shared_ptr<const ReadScene>& scene() const { return scene_; }
   /// The same for all that are copies of each other: their snapshots fit.
   const void* family() const { return family_.get(); }
 
@@ -70,7 +70,7 @@ class GuardedSimulation {
     bool& flag_;
   };
 
-  std::shared_ptr<const scene::SceneDescription> scene_;
+  std::shared_ptr<const ReadScene> scene_;
   std::shared_ptr<const char> family_ = std::make_shared<const char>();
   Simulation simulation_;
   std::map<std::vector<std::string>, ResultColumns> columns_;

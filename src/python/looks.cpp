@@ -20,7 +20,7 @@ OnFailure on_failure_of(const std::string& name) {
   throw std::invalid_argument("on_failure: expected 'stop' or 'dissipate', got '" + name + "'");
 }
 
-std::shared_ptr<GuardedSimulation> simulation_of(const std::shared_ptr<scene::SceneDescription>& scene,
+std::shared_ptr<GuardedSimulation> simulation_of(const std::shared_ptr<ReadScene>& scene,
                                                  const std::optional<std::string>& scheme, std::optional<double> step,
                                                  std::optional<double> tolerance, bool reuse_factorisation,
                                                  const std::optional<std::string>& on_failure,

@@ -33,6 +33,7 @@ PYBIND11_MODULE(_flexarm, module) {
   bind_runs(simulation);
   bind_analysis(simulation);
   bind_linear_models(module, simulation);
+  bind_sensitivities(module, simulation);
   bind_accurate_run(simulation);
   bind_tuning(module);
 }

@@ -36,6 +36,10 @@ std::size_t link_index(const Simulation& simulation, const Key& link) {
   return index_of("link", simulation.link_names(), link);
 }
 
+std::size_t probe_index(const Simulation& simulation, const Key& probe) {
+  return index_of("probe", probe_names(simulation), probe);
+}
+
 std::size_t sensor_index(const Simulation& simulation, const Key& sensor) {
   return index_of("sensor", sensor_names(simulation), sensor);
 }

@@ -23,6 +23,7 @@ std::vector<std::string> names_of(const Things& things) {
 // Indices; @throws std::invalid_argument where there is none, with the names that there are.
 std::size_t joint_index(const Simulation& simulation, const Key& joint);
 std::size_t link_index(const Simulation& simulation, const Key& link);
+std::size_t probe_index(const Simulation& simulation, const Key& probe);
 std::size_t sensor_index(const Simulation& simulation, const Key& sensor);
 
 std::vector<std::string> probe_names(const Simulation& simulation);

@@ -7,6 +7,7 @@
 #include "python/bindings.h"
 #include "python/errors.h"
 #include "python/names.h"
+#include "python/read_scene.h"
 #include "simulation/scene_identity.h"
 
 namespace py = pybind11;
@@ -15,8 +16,7 @@ namespace flexarm::python {
 namespace {
 
 using scene::ParameterValues;
-using scene::SceneDescription;
-using ScenePointer = std::shared_ptr<SceneDescription>;
+using ScenePointer = std::shared_ptr<ReadScene>;
 
 constexpr const char* kReadScene = R"(Reads a URDF file with flexarm's extension elements (docs/scene_format.md).
 
@@ -32,11 +32,19 @@ constexpr const char* kReadSceneText = R"(Reads the text of a scene. `name` stan
 
 Options and errors as read_scene() has them.)";
 
-/// Findings become warnings, errors an exception with the text that the command line prints.
-ScenePointer scene_of(scene::ReadResult result) {
+/// What `read` finds with other options, so that it is there to be read once more. Findings become warnings, errors an
+/// exception with the text that the command line prints.
+ScenePointer scene_of(const scene::ReadOptions& options,
+                      const std::function<scene::ReadResult(const scene::ReadOptions&)>& read) {
+  scene::ReadResult result = read(options);
   if (result.scene) {
     for (const scene::Diagnostic& warning : result.diagnostics) warn(warning.text());
-    return std::make_shared<SceneDescription>(std::move(*result.scene));
+    const SceneReader again = [options, read](const std::string& parameter, double value) {
+      scene::ReadOptions others = options;
+      others.parameters[parameter] = value;
+      return read(others);
+    };
+    return std::make_shared<ReadScene>(std::move(*result.scene), again);
   }
   std::string findings = scene::to_text(result.diagnostics);
   if (!findings.empty()) findings.pop_back();  // the end of the last line
@@ -45,16 +53,21 @@ ScenePointer scene_of(scene::ReadResult result) {
 
 ScenePointer read_scene(const std::filesystem::path& path, const ParameterValues& parameters, bool clamp_start,
                         bool equilibrium_start, bool lock_massless) {
-  return scene_of(scene::read_scene_file(path.string(), {clamp_start, lock_massless, equilibrium_start, parameters}));
+  return scene_of({clamp_start, lock_massless, equilibrium_start, parameters},
+                  [path = std::filesystem::absolute(path).string()](const scene::ReadOptions& options) {
+                    return scene::read_scene_file(path, options);
+                  });
 }
 
 ScenePointer read_scene_text(const std::string& text, const std::string& name, const ParameterValues& parameters,
                              bool clamp_start, bool equilibrium_start, bool lock_massless) {
-  return scene_of(scene::read_scene_text(text, name, {clamp_start, lock_massless, equilibrium_start, parameters}));
+  return scene_of(
+      {clamp_start, lock_massless, equilibrium_start, parameters},
+      [text, name](const scene::ReadOptions& options) { return scene::read_scene_text(text, name, options); });
 }
 
 /// flexarm.Parameter, in the order of the file.
-py::list parameters_of(const SceneDescription& scene) {
+py::list parameters_of(const ReadScene& scene) {
   py::list parameters;
   for (const scene::ParameterDescription& parameter : scene.parameters)
     parameters.append(
@@ -62,14 +75,14 @@ py::list parameters_of(const SceneDescription& scene) {
   return parameters;
 }
 
-std::vector<std::string> beams_of(const SceneDescription& scene) {
+std::vector<std::string> beams_of(const ReadScene& scene) {
   std::vector<std::string> names;
   for (const scene::LinkDescription& link : scene.links)
     if (link.beam) names.push_back(link.name);
   return names;
 }
 
-std::string text_of(const SceneDescription& scene) {
+std::string text_of(const ReadScene& scene) {
   return fmt::format(
       "<flexarm.Scene '{}' from '{}': {} links ({} with beams), {} joints, {} loop joints, {} probes, {} sensors, "
       "scheme {}, step {:g} s>",
@@ -80,34 +93,34 @@ std::string text_of(const SceneDescription& scene) {
 }  // namespace
 
 void bind_scene(py::module_& module) {
-  py::class_<SceneDescription, ScenePointer> scene(module, "Scene", R"(What a scene file says; it does not change.
+  py::class_<ReadScene, ScenePointer> scene(module, "Scene", R"(What a scene file says; it does not change.
 
 read_scene() and read_scene_text() make it.)");
   scene.attr("__module__") = "flexarm";
-  scene.def_readonly("name", &SceneDescription::name, "of the robot")
-      .def_readonly("file", &SceneDescription::file, "from which it was read")
+  scene.def_readonly("name", &ReadScene::name, "of the robot")
+      .def_readonly("file", &ReadScene::file, "from which it was read")
       .def_property_readonly(
-          "links", [](const SceneDescription& s) { return names_of(s.links); }, "names")
+          "links", [](const ReadScene& s) { return names_of(s.links); }, "names")
       .def_property_readonly("beams", &beams_of, "names of the links with beams")
       .def_property_readonly(
-          "joints", [](const SceneDescription& s) { return names_of(s.joints); },
+          "joints", [](const ReadScene& s) { return names_of(s.joints); },
           "names of the joints of the tree, not yet of their coordinates")
       .def_property_readonly(
-          "probes", [](const SceneDescription& s) { return names_of(s.probes); }, "names")
+          "probes", [](const ReadScene& s) { return names_of(s.probes); }, "names")
       .def_property_readonly(
-          "sensors", [](const SceneDescription& s) { return names_of(s.sensors); }, "names")
+          "sensors", [](const ReadScene& s) { return names_of(s.sensors); }, "names")
       .def_property_readonly("parameters", &parameters_of, "flexarm.Parameter of each, with the value that it has here")
       .def_property_readonly(
-          "identity", [](const SceneDescription& s) { return scene_identity(s); },
+          "identity", [](const ReadScene& s) { return scene_identity(s); },
           "text that two scenes have in common where a state of one is a state of the other (checkpoints are asked for "
           "it)")
       .def_property_readonly(
-          "gravity", [](const SceneDescription& s) { return std::vector<double>(s.gravity.begin(), s.gravity.end()); },
+          "gravity", [](const ReadScene& s) { return std::vector<double>(s.gravity.begin(), s.gravity.end()); },
           "x y z [m/s^2]")
       .def_property_readonly(
-          "scheme", [](const SceneDescription& s) { return s.integrator.scheme; }, "of time integration, as it says")
+          "scheme", [](const ReadScene& s) { return s.integrator.scheme; }, "of time integration, as it says")
       .def_property_readonly(
-          "step", [](const SceneDescription& s) { return s.integrator.step; }, "[s]")
+          "step", [](const ReadScene& s) { return s.integrator.step; }, "[s]")
       .def("__repr__", &text_of);
 
   module.def("read_scene", &read_scene, kReadScene, py::arg("path"), py::arg("parameters") = ParameterValues(),

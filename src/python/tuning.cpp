@@ -15,8 +15,6 @@ namespace py = pybind11;
 namespace flexarm::python {
 namespace {
 
-using scene::SceneDescription;
-
 TuningGoal goal_of(std::optional<double> accuracy, std::optional<double> real_time, double margin) {
   const auto require = [](bool ok, const char* name, double got) {
     if (!ok) throw std::invalid_argument(fmt::format("{}: expected a number > 0, got {}", name, got));
@@ -36,7 +34,7 @@ std::string shortcoming(const TuningGoal& goal, const TuningResult& result) {
   return fmt::format("{} cannot be met: {}", wanted, result.shortcoming);
 }
 
-py::object tune_scene(const std::shared_ptr<SceneDescription>& scene, std::optional<double> accuracy,
+py::object tune_scene(const std::shared_ptr<ReadScene>& scene, std::optional<double> accuracy,
                       std::optional<double> real_time, double until, double margin, bool any_scheme, double budget,
                       int intervals) {
   const TuningGoal goal = goal_of(accuracy, real_time, margin);
@@ -56,7 +54,12 @@ py::object tune_scene(const std::shared_ptr<SceneDescription>& scene, std::optio
   if (PyErr_Occurred()) throw py::error_already_set();
   if (!result.is_met) raise(make("flexarm.errors", "AccuracyError", shortcoming(goal, result), result.estimate));
   const TunedRun& best = result.runs[*result.best];
-  return make("flexarm.values", "Tuning", std::make_shared<SceneDescription>(with_settings(*scene, best.settings)),
+  const SceneReader read = [scene, settings = best.settings](const std::string& parameter, double value) {
+    scene::ReadResult result = scene->read(parameter, value);
+    if (result.scene) result.scene = with_settings(*result.scene, settings);
+    return result;
+  };
+  return make("flexarm.values", "Tuning", std::make_shared<ReadScene>(with_settings(*scene, best.settings), read),
               best.settings.mesh(), best.settings.scheme, best.settings.step, best.settings.tolerance, best.error,
               result.scale, best.seconds / until, result.runs.size());
 }

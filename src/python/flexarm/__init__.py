@@ -19,6 +19,7 @@ _HOMES = {
     "tune": "_flexarm",
     "LinearModel": "_flexarm",
     "Scene": "_flexarm",
+    "Sensitivities": "_flexarm",
     "Simulation": "_flexarm",
     "State": "_flexarm",
     "StepResult": "_flexarm",

@@ -1,0 +1,175 @@
+#include "flexarm/simulation/sensitivities.h"
+
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+
+#include <fmt/format.h>
+
+#include "python/arrays.h"
+#include "python/bindings.h"
+#include "python/effort_rows.h"
+#include "python/errors.h"
+#include "python/signal_clock.h"
+
+namespace py = pybind11;
+
+namespace flexarm::python {
+namespace {
+
+using Patterns = std::vector<std::string>;
+
+/// Sensitivities beside the simulation of a program of Python's.
+class GuardedSensitivities {
+ public:
+  GuardedSensitivities(std::shared_ptr<GuardedSimulation> simulation, const SensitivityRequest& request)
+      : simulation_(std::move(simulation)),
+        own_(simulation_->work([&](Simulation& own) { return Sensitivities(own, request); })) {}
+
+  GuardedSimulation& simulation() { return *simulation_; }
+  std::shared_ptr<GuardedSimulation> pointer() const { return simulation_; }
+  /// `work(sensitivities, simulation)`, while other threads of Python's run.
+  template <class Work>
+  auto work(const Work& work) {
+    return simulation_->work([&](Simulation& simulation) { return work(own_, simulation); });
+  }
+  const Sensitivities& look() {
+    simulation_->use();
+    return own_;
+  }
+
+ private:
+  std::shared_ptr<GuardedSimulation> simulation_;
+  Sensitivities own_;
+};
+
+std::unique_ptr<GuardedSensitivities> sensitivities_of(const std::shared_ptr<GuardedSimulation>& simulation,
+                                                       const std::vector<std::string>& parameters, bool initial_state) {
+  try {
+    return std::make_unique<GuardedSensitivities>(
+        simulation, SensitivityRequest{parameters, simulation->scene()->read, initial_state});
+  } catch (const ModelError& error) {
+    raise_scene_error(error.what());
+  }
+}
+
+StepResult step(GuardedSensitivities& guarded) {
+  const StepResult result = guarded.work([](Sensitivities& own, Simulation&) { return own.step(); });
+  const Simulation& simulation = guarded.simulation().use();
+  if (!result.converged) raise_step_error(simulation, simulation.explain(result), result.reason);
+  return result;
+}
+
+/// Derivatives of a row of results.
+Eigen::MatrixXd derivatives(const Sensitivities& own, ResultColumns& columns) {
+  return own.of([&](const Simulation& simulation) -> Eigen::VectorXd {
+    const std::vector<double>& row = columns.row(simulation, {});
+    return Eigen::Map<const Eigen::VectorXd>(row.data(), static_cast<Eigen::Index>(row.size()));
+  });
+}
+
+py::object run(GuardedSensitivities& guarded, long steps, const std::optional<Array>& efforts,
+               const std::optional<std::vector<Key>>& joints, const std::optional<Patterns>& record, long every) {
+  if (steps < 0) throw std::invalid_argument(fmt::format("steps: expected a number >= 0, got {}", steps));
+  if (every < 1) throw std::invalid_argument(fmt::format("every: expected a number >= 1, got {}", every));
+  GuardedSimulation& simulation = guarded.simulation();
+  const EffortRows commands(simulation.use(), efforts, joints, steps);
+  ResultColumns* const columns = record ? &simulation.columns(*record) : nullptr;
+  const std::size_t width = columns ? columns->columns().size() : 0;
+  const std::size_t directions = guarded.look().directions().size();
+  py::array_t<double> results({columns ? static_cast<std::size_t>(steps / every) : 0, width, directions});
+  double* place = results.mutable_data();
+  const StepResult last = guarded.work([&](Sensitivities& own, Simulation& moving) {
+    StepResult result;
+    result.converged = true;
+    SignalClock signals;
+    for (long n = 0; n < steps && result.converged && !signals.is_interrupted(); ++n) {
+      commands.command(moving, n);
+      result = own.step();
+      if (!columns || !result.converged || (n + 1) % every != 0) continue;
+      const Eigen::MatrixXd rows = derivatives(own, *columns);
+      for (Eigen::Index i = 0; i < rows.rows(); ++i)
+        for (Eigen::Index k = 0; k < rows.cols(); ++k) *place++ = rows(i, k);
+    }
+    return result;
+  });
+  if (PyErr_Occurred()) throw py::error_already_set();
+  if (!last.converged) raise_step_error(simulation.use(), simulation.use().explain(last), last.reason);
+  return columns ? py::object(results) : py::none();
+}
+
+constexpr const char* kClass =
+    R"(Derivatives of the run of a simulation, which goes on with the same bits as without them.
+
+Columns of all arrays are the directions: parameters in the order asked for, then states at the start. They are NaN once
+`lost` says why there are none: where a stop is touched or friction sticks in one of two runs that are as close as can be,
+a slider leaves its line, a step fails. docs/notes/sensitivities.md)";
+
+constexpr const char* kMake = R"(Sensitivities of the run that begins now, of a simulation that is at its start.
+
+parameters: names of parameters of the scene.
+initial_state: the states of linear models about the start, too (LinearModel.states): positions, then their rates.
+
+Steps are those of the object that is returned, whose `simulation` this is. Raises ValueError if a parameter is unknown, or
+changes what no derivative tells (numbers of elements, the step), and if the simulation has moved; SceneError if its scheme
+has none; RuntimeError for initial states at a dead point or behind elastic gears.)";
+
+constexpr const char* kRun = R"(Advances by so many steps while other threads run.
+
+steps, efforts, joints: as Simulation.run() takes them.
+record: patterns of the columns whose derivatives are recorded (["joint/elbow/[pv]*", "probe/tip/[xyz]"]); []: all. None: nothing.
+every: they are recorded after every so many steps.
+
+Returns an array of the shape (steps // every, columns, directions), in the order of simulation.columns(record), the time
+first; per unit of the parameter or the state. None if nothing is recorded. Raises StepError if a step fails.)";
+
+}  // namespace
+
+void bind_sensitivities(py::module_& module, SimulationClass& simulation) {
+  py::class_<GuardedSensitivities> type(module, "Sensitivities", kClass);
+  type.attr("__module__") = "flexarm";
+  type.def_property_readonly(
+          "simulation", [](const GuardedSensitivities& own) { return own.pointer(); }, "Whose run it is.")
+      .def_property_readonly(
+          "directions", [](GuardedSensitivities& own) { return own.look().directions(); }, "Names.")
+      .def_property_readonly(
+          "lost", [](GuardedSensitivities& own) { return own.look().lost(); },
+          "Why there are no derivatives any more; empty: there are.")
+      .def("step", &step, "Simulation.step() with all derivatives. Returns a StepResult; raises StepError if it fails.")
+      .def("run", &run, kRun, py::arg("steps"), py::arg("efforts") = py::none(), py::arg("joints") = py::none(),
+           py::arg("record") = py::none(), py::arg("every") = 1)
+      .def_property_readonly(
+          "positions", [](GuardedSensitivities& own) { return own.look().positions(); },
+          "Of joints' positions, shape (joints, directions) [rad or m per unit].")
+      .def_property_readonly(
+          "velocities", [](GuardedSensitivities& own) { return own.look().velocities(); },
+          "Of joints' velocities, shape (joints, directions) [rad/s or m/s per unit].")
+      .def(
+          "probe",
+          [](GuardedSensitivities& own, const Key& probe) {
+            return own.look().probe(probe_index(own.simulation().use(), probe));
+          },
+          R"(Of a probe: {position, small rotation, velocity, angular velocity}, world axes, shape (12, directions).
+
+probe: name or index.)",
+          py::arg("probe"))
+      .def(
+          "outputs",
+          [](GuardedSensitivities& own, const std::vector<std::string>& names) { return own.look().outputs(names); },
+          R"(Of outputs of linear models, shape (outputs, directions).
+
+names: as linearise() takes them: position: and velocity: of joints and points, acceleration: of points, effort: of driven
+joints; none: positions of joints and probes. Raises ValueError if there is no such output.)",
+          py::arg("names") = std::vector<std::string>())
+      .def_property_readonly(
+          "states", [](GuardedSensitivities& own) { return own.look().states(); },
+          R"(Of the states of linear models about now, shape (states, directions).
+
+The columns of the initial states are the matrix dx(t)/dx(0).)")
+      .def_property_readonly(
+          "state_names", [](GuardedSensitivities& own) { return own.look().state_names(); },
+          "Names of the rows of `states`.");
+  simulation.def("sensitivities", &sensitivities_of, kMake, py::arg("parameters") = std::vector<std::string>(),
+                 py::kw_only(), py::arg("initial_state") = false);
+}
+
+}  // namespace flexarm::python
