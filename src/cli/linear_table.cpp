@@ -43,12 +43,13 @@ void append_pairs(std::string& header, const LinearModel& model, const std::vect
       for (const std::string& kind : kinds) csv::append(header, kind + output + " / " + input);
 }
 
-void append_rows(std::string& table, const std::vector<std::string>& names, const Eigen::MatrixXd& by_states,
-                 const Eigen::MatrixXd& by_inputs) {
-  for (Eigen::Index i = 0; i < by_states.rows(); ++i) {
+/// A row for each name, of all matrices beside each other.
+void append_rows(std::string& table, const std::vector<std::string>& names,
+                 const std::vector<const Eigen::MatrixXd*>& matrices) {
+  for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(names.size()); ++i) {
     std::string line;
     csv::append(line, names[static_cast<std::size_t>(i)]);
-    for (const Eigen::MatrixXd* matrix : {&by_states, &by_inputs})
+    for (const Eigen::MatrixXd* matrix : matrices)
       for (Eigen::Index j = 0; j < matrix->cols(); ++j) csv::append(line, (*matrix)(i, j));
     table += line + "\n";
   }
@@ -83,17 +84,27 @@ std::string linear_model_as_json(const std::string& scene, const LinearModel& mo
     append_member(members, "times", json_list(times, ", ", json_number));
     append_member(members, "step_response", json_list(outputs, ",\n  ", json_matrix));
   }
+  if (const RunDerivatives& run = responses.derivatives; !run.parameters.empty()) {
+    append_member(members, "parameters", json_names(run.parameters));
+    append_member(members, "states_by_parameters", json_matrix(run.states));
+    append_member(members, "outputs_by_parameters", json_matrix(run.outputs));
+  }
+  if (const RunDerivatives& run = responses.derivatives; !run.initial_states.empty()) {
+    append_member(members, "initial_states", json_names(run.initial_states));
+    append_member(members, "transition", json_matrix(run.transition));
+  }
   return "{" + members + "}\n";
 }
 
-std::string linear_model_as_csv(const LinearModel& model) {
+std::string linear_model_as_csv(const LinearModel& model, const RunDerivatives& run) {
   std::string header;
   csv::append(header, "row");
   for (const auto* names : {&model.states, &model.inputs})
     for (const std::string& name : *names) csv::append(header, name);
+  for (const std::string& name : run.parameters) csv::append(header, "parameter " + name);
   std::string table = header + "\n";
-  append_rows(table, model.states, model.a, model.b);
-  append_rows(table, model.outputs, model.c, model.d);
+  append_rows(table, model.states, {&model.a, &model.b, &run.states});
+  append_rows(table, model.outputs, {&model.c, &model.d, &run.outputs});
   return table;
 }
 

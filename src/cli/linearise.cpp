@@ -8,6 +8,7 @@
 #include "cli/linear_table.h"
 #include "cli/recording_library.h"
 #include "cli/response_options.h"
+#include "cli/run_derivatives.h"
 #include "cli/scene_input.h"
 #include "flexarm/scene/scene_description.h"
 #include "flexarm/simulation/linear_reduction.h"
@@ -25,6 +26,7 @@ struct Arguments {
   SceneInput scene;
   LinearRequest request;
   ResponseOptions responses;
+  DerivativeOptions derivatives;
   std::optional<double> time;
   bool is_steady = false, prints_shapes = false;
   Equilibrium wanted = Equilibrium::Stable;
@@ -37,11 +39,11 @@ std::string kind_of_file(const std::string& path) {
   return std::filesystem::path(path).extension().string();
 }
 
-/// Brings the simulation to what it is linearised about.
-void go_to_reference(const Arguments& arguments, Simulation& simulation) {
+/// Brings the simulation to what it is linearised about, together with its sensitivities where there are any.
+void go_to_reference(const Arguments& arguments, Simulation& simulation, Sensitivities* sensitivities) {
   if (arguments.time) {
     while (simulation.time() < *arguments.time - 0.5 * simulation.step_size())
-      if (const StepResult result = simulation.step(); !result.converged)
+      if (const StepResult result = sensitivities ? sensitivities->step() : simulation.step(); !result.converged)
         throw std::runtime_error(
             fmt::format("simulation failed after t = {:.17g} s: {}", simulation.time(), simulation.explain(result)));
     return;
@@ -101,7 +103,7 @@ LinearModel model_of(const Simulation& simulation, const Arguments& arguments) {
 std::string csv_of(const LinearModel& model, const LinearResponses& responses) {
   if (!responses.frequency.frequencies.empty()) return frequency_response_as_csv(model, responses.frequency);
   if (!responses.step.times.empty()) return step_response_as_csv(model, responses.step);
-  return linear_model_as_csv(model);
+  return linear_model_as_csv(model, responses.derivatives);
 }
 
 void write_model(const std::string& path, const std::string& scene, const LinearModel& model,
@@ -141,14 +143,19 @@ void check_files(const Arguments& arguments) {
 int linearise_scene(Arguments arguments) {
   check_files(arguments);
   Simulation simulation = load_simulation(arguments.scene);
-  go_to_reference(arguments, simulation);
+  const std::unique_ptr<Sensitivities> sensitivities =
+      sensitivities_of(simulation, arguments.scene, arguments.derivatives);
+  go_to_reference(arguments, simulation, sensitivities.get());
   if (arguments.time) arguments.request.about = LinearisedAbout::Instant;
   if (arguments.is_steady) arguments.request.about = LinearisedAbout::Steady;
   const LinearModel model = model_of(simulation, arguments);
-  const LinearResponses responses = responses_of(model, arguments.responses);
+  LinearResponses responses = responses_of(model, arguments.responses);
+  if (sensitivities) responses.derivatives = derivatives_of(*sensitivities, model, arguments.derivatives);
   write_model(arguments.output, simulation.scene().name, model, responses);
   draw_picture(arguments.responses.picture, simulation.scene().name, model, responses);
-  if (!is_standard_output(arguments.output)) print_poles(model, arguments);
+  if (is_standard_output(arguments.output)) return kDone;
+  print_poles(model, arguments);
+  print_derivatives(responses.derivatives, model, arguments.count);
   return kDone;
 }
 
@@ -185,11 +192,14 @@ void add_linearise(CLI::App& app, int& status) {
       ->capture_default_str()
       ->check(CLI::Range(0, 100000));
   command->add_flag("--shapes", arguments->prints_shapes, "prints what moves in each pole's mode");
+  add_derivatives(*command, arguments->derivatives, time);
   command
       ->add_option_function<int>(
           "--reduce", [arguments](int order) { arguments->order = order; },
           "a model of so many states: balanced truncation of what decays")
-      ->check(CLI::Range(0, 100000));
+      ->check(CLI::Range(0, 100000))
+      ->excludes("--sensitivities")
+      ->excludes("--transition");
   add_responses(*command, arguments->responses);
   command
       ->add_option("-o,--output", arguments->output,

@@ -100,6 +100,16 @@ void write_mat(const std::string& path, const std::string& scene, const LinearMo
     write(numbers("times", responses.step.times));
     write(step_outputs(responses.step.outputs));
   }
+  const RunDerivatives& run = responses.derivatives;
+  if (!run.parameters.empty()) {
+    write(cells("parameters", run.parameters));
+    write(numbers("states_by_parameters", run.states));
+    write(numbers("outputs_by_parameters", run.outputs));
+  }
+  if (!run.initial_states.empty()) {
+    write(cells("initial_states", run.initial_states));
+    write(numbers("transition", run.transition));
+  }
   if (Mat_Close(file.release()) != 0) place.fail("cannot be written");
   place.put_in_place();
 }

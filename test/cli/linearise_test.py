@@ -12,7 +12,7 @@ import unittest
 import numpy
 import scipy.io
 
-PENDULUM = """<robot name="pendulum"> <link name="world"/>
+PENDULUM = """<robot name="pendulum"> {parameters} <link name="world"/>
   <joint name="hinge" type="continuous"> <parent link="world"/> <child link="bob"/> <axis xyz="0 1 0"/>
     <dynamics damping="0.3" friction="{friction}"/> </joint>
   <link name="bob"> <inertial> <origin xyz="0 0 -0.5"/> <mass value="2"/>
@@ -32,9 +32,9 @@ class Linearise(unittest.TestCase):
     def path(self, name):
         return os.path.join(self.folder.name, name)
 
-    def run_program(self, *options, simulation="", friction=0):
+    def run_program(self, *options, simulation="", friction=0, parameters=""):
         with open(self.path("scene.urdf"), "w", encoding="utf-8") as file:
-            file.write(PENDULUM.format(simulation=simulation, friction=friction))
+            file.write(PENDULUM.format(simulation=simulation, friction=friction, parameters=parameters))
         command = [PROGRAM, "linearise", self.path("scene.urdf")] + list(options)
         return subprocess.run(
             command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, check=False
@@ -76,6 +76,37 @@ class Linearise(unittest.TestCase):
         numpy.testing.assert_allclose(model["A"], [[0, 1], row], rtol=1e-10, atol=1e-10)
         acceleration = (-WEIGHT * numpy.sin(0.4) - 0.3 * 2) / INERTIA
         numpy.testing.assert_allclose(model["drift"], [2, acceleration], rtol=1e-12)
+
+    def test_sensitivities_are_differences_of_runs(self):
+        simulation = '<initial joint="hinge" position="${angle}"/> <integrator step="0.005" tolerance="1e-10"/>'
+        parameters = '<parameter name="angle" value="0.4"/> <parameter name="load" value="0.2"/>'
+        load = '<effort joint="hinge" history="${load}"/>'
+        scene = dict(simulation=simulation + load, parameters=parameters)
+        model = self.model("--time", "0.5", "--sensitivities", "angle,load", "--transition", **scene)
+        self.assertEqual(model["parameters"], ["angle", "load"])
+        self.assertEqual(model["initial_states"], ["hinge", "d/dt hinge"])
+        by_angle = numpy.array(model["states_by_parameters"])[:, 0]
+        transition = numpy.array(model["transition"])
+        numpy.testing.assert_allclose(transition[:, 0], by_angle, rtol=1e-6)
+        # Trapezoidal steps of a small motion would keep areas but for the damping.
+        self.assertAlmostEqual(numpy.linalg.det(transition), numpy.exp(-0.3 / INERTIA * 0.5), delta=1e-3)
+        output = model["outputs"].index("position:hinge")
+        by_parameters = model["outputs_by_parameters"][output]
+        numpy.testing.assert_allclose(by_parameters, model["states_by_parameters"][0], rtol=1e-6)
+        path = self.path("model.mat")
+        result = self.run_program("--time", "0.5", "--sensitivities", "angle,load", "--output", path, **scene)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("derivatives with respect to parameters", result.stdout)
+        numpy.testing.assert_allclose(
+            scipy.io.loadmat(path)["states_by_parameters"], model["states_by_parameters"], rtol=1e-9)
+
+    def test_sensitivities_that_there_are_not(self):
+        result = self.run_program("--time", "0.5", "--sensitivities", "angle")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("--sensitivities: unknown parameter 'angle': the scene has no <parameter>", result.stderr)
+        result = self.run_program("--sensitivities", "angle")
+        self.assertNotEqual(result.returncode, 0)
+        self.assertIn("--time", result.stderr)
 
     def test_files_have_the_same_numbers(self):
         model = self.model()

@@ -2,6 +2,7 @@
 /// What linear models answer to inputs: over frequency, and over time.
 
 #include <complex>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -29,10 +30,19 @@ struct StepResponse {
 /// numbers.
 StepResponse step_response(const LinearModel& model, double until, int intervals);
 
+/// Derivatives of the run that has led to the instant of a model (simulation/sensitivities.h).
+struct RunDerivatives {
+  std::vector<std::string> parameters;
+  Eigen::MatrixXd states, outputs;          ///< of the model's, by the parameters
+  std::vector<std::string> initial_states;  ///< of a model about the start
+  Eigen::MatrixXd transition;               ///< states by them
+};
+
 /// What is written beside a model; empty: was not asked for.
 struct LinearResponses {
   FrequencyResponse frequency;
   StepResponse step;
+  RunDerivatives derivatives = {};
 };
 
 }  // namespace flexarm

@@ -1,0 +1,36 @@
+#pragma once
+/// Options of `flexarm linearise` that ask how the run to its instant changes.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/scene_input.h"
+#include "flexarm/simulation/linear_response.h"
+#include "flexarm/simulation/sensitivities.h"
+
+namespace flexarm::cli {
+
+struct DerivativeOptions {
+  std::vector<std::string> parameters;
+  bool by_initial_state = false;
+  bool are_wanted() const { return !parameters.empty() || by_initial_state; }
+};
+
+/// `time`: an option without which there are none; `options` must outlive the command.
+void add_derivatives(CLI::App& command, DerivativeOptions& options, CLI::Option* time);
+
+/// Of a simulation of that input, at its start.
+/// @throws InputError naming what cannot be differentiated.
+std::unique_ptr<Sensitivities> sensitivities_of(Simulation& simulation, const SceneInput& input,
+                                                const DerivativeOptions& options);
+
+/// Of the states and outputs of a model about now.
+/// @throws InputError for outputs that have none; std::runtime_error if they are lost.
+RunDerivatives derivatives_of(const Sensitivities& sensitivities, const LinearModel& model,
+                              const DerivativeOptions& options);
+
+/// A row for each output and the first `count` states, a column for each parameter.
+void print_derivatives(const RunDerivatives& run, const LinearModel& model, int count);
+
+}  // namespace flexarm::cli
