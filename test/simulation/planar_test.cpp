@@ -12,7 +12,6 @@
 #include "schemes/scheme.h"
 #include "simulation/inside.h"
 #include "simulation/same_bits.h"
-#include "support/allocations.h"
 #include "support/scene_builder.h"
 #include "support/source_path.h"
 
@@ -128,21 +127,6 @@ TEST(Planar, IsTheSameMotionInScenesOfTheExamples) {
     EXPECT_TRUE(search.plane) << file << ": " << search.reason;
     for (const std::string& scheme : kPlanarSchemes)
       if (scheme != "em_scaled" || read.scene->motions.empty()) expect_same_motion(*read.scene, scheme, 60);
-  }
-}
-
-TEST(Planar, AllocatesNothingAfterTheFirstStep) {
-  if (!kCountsAllocations) GTEST_SKIP() << "this C library's allocator cannot be counted";
-  for (const std::string& scheme : kPlanarSchemes) {
-    SimulationOptions options;
-    options.scheme = scheme;
-    Simulation simulation(tilted_arm(kTilt).scene, options);
-    ASSERT_TRUE(simulation.step().converged) << scheme;
-    EXPECT_EQ(allocations_in([&] {
-                for (int n = 0; n < 50; ++n) simulation.step();
-              }),
-              0)
-        << scheme;
   }
 }
 
