@@ -222,7 +222,8 @@ std::string NeighbourSteps::advance(Neighbour& neighbour, const State& state, co
       guess_.increments[0][i] += neighbour.state.history.increments[0][i] - state.history.increments[0][i];
   system.begin_beside(solved, neighbour.state, guess_);
   for (int retries = 0; !solve(system); ++retries) {
-    if (retries > 0 || !make_factors(state, solved)) return "a neighbour is not found beside the run";
+    if (retries > 0 || !make_factors(state, solved))
+      return "a neighbour is not found by the factors of the run: the equations change within their difference";
     system.begin_beside(solved, neighbour.state, made_);
   }
   if (system.revise_friction()) return "friction sticks or slips within the difference of neighbours";
