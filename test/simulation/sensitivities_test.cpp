@@ -324,6 +324,32 @@ TEST(Sensitivities, FrequencyAfterThousandPeriods) {
   EXPECT_NEAR(sensitivities.positions()(0, 0), by_rate / (2 * rate), 1e-6 * 0.5 * steps * step / (2 * rate));
 }
 
+// A rod that turns freely, until a stop is in its way.
+std::string rod_with_stop(double upper, const std::string& gravity, const std::string& integrator) {
+  return fmt::format(R"(<robot name="rod"> <parameter name="speed" value="0.7"/> <link name="world"/>
+    <joint name="hinge" type="revolute"> <parent link="world"/> <child link="rod"/> <axis xyz="0 1 0"/>
+      <limit lower="-10" upper="{:.17g}" effort="0" velocity="100"/> </joint>
+    <link name="rod"> <inertial> <origin xyz="0.8 0 0"/> <mass value="2"/>
+      <inertia ixx="0.01" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
+    <simulation> <gravity xyz="{}"/> <initial joint="hinge" velocity="${{speed}}"/> <integrator {}/>
+    </simulation> </robot>)",
+                     upper, gravity, integrator);
+}
+
+// Where run and neighbours touch it in the same step, the steps have a derivative: also after the rod has come back.
+TEST(Sensitivities, RunThatHitsAStop) {
+  const Scene scene{rod_with_stop(0.3, "0 0 -9.81", "scheme=\"em\" step=\"0.005\" tolerance=\"1e-10\"")};
+  expect_differences(scene, {{"speed", 0.7}}, 60, 1e-5);
+  Simulation simulation = scene.simulation();
+  double largest = 0;
+  for (int i = 0; i < 60; ++i) {
+    simulation.step();
+    largest = std::max(largest, simulation.position(0));
+  }
+  EXPECT_GT(largest, 0.3);
+  EXPECT_LT(simulation.position(0), 0.3);
+}
+
 // ---------------------------------------------------------------- where there are none
 
 std::string refusal(const Scene& scene, const std::string& parameter) {
@@ -348,6 +374,33 @@ TEST(Sensitivities, ParametersThatHaveNoneAreRefused) {
   text.replace(text.find(step), step.size(), "step=\"${0.0025*payload}\"");
   EXPECT_NE(refusal({text}, "payload").find("it changes the <integrator>"), std::string::npos)
       << refusal({text}, "payload");
+}
+
+// A step that ends at the stop, to round-off, is on both sides of it.
+TEST(Sensitivities, LostWhereAStopIsTouchedByOneNeighbourAlone) {
+  const int steps = 10;
+  const double half = 0.5 * 0.7 * 0.01;  // a free rod turns by 2 atan(half) in a step
+  const Scene scene{rod_with_stop(2 * steps * std::atan(half), "0 0 0", "scheme=\"em\" step=\"0.01\"")};
+  Simulation simulation = scene.simulation();
+  Sensitivities sensitivities(simulation, scene.request({"speed"}));
+  for (int i = 1; i < steps; ++i) ASSERT_TRUE(sensitivities.step().converged);
+  EXPECT_EQ(sensitivities.lost(), "");
+  EXPECT_NEAR(sensitivities.positions()(0, 0), 0.01 * (steps - 1) / (1 + half * half), 1e-6 * 0.09);
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(sensitivities.step().converged);
+  EXPECT_EQ(sensitivities.lost(),
+            "at t = 0.1 s joint coordinate 'hinge' touches its stop within the difference of neighbours");
+  EXPECT_TRUE(sensitivities.positions().array().isNaN().all());
+}
+
+TEST(Sensitivities, LostWhereAStepFails) {
+  const Scene scene{
+      rod_with_stop(3, "0 0 -9.81", "scheme=\"em\" step=\"0.5\" max_iterations=\"1\" max_halvings=\"0\"")};
+  Simulation simulation = scene.simulation();
+  Sensitivities sensitivities(simulation, scene.request({"speed"}));
+  EXPECT_FALSE(sensitivities.step().converged);
+  EXPECT_EQ(sensitivities.lost(), "the step to t = 0.5 s has failed");
+  EXPECT_TRUE(sensitivities.velocities().array().isNaN().all());
+  EXPECT_EQ(simulation.time(), 0);
 }
 
 TEST(Sensitivities, RunThatHasBegunIsRefused) {

@@ -28,7 +28,7 @@ struct SensitivityRequest {
 /// Derivatives of the run of a simulation, per unit of parameters and of states at the start. Directions are the
 /// columns of all matrices: parameters in the order asked for, then states.
 ///
-/// They are those of the steps as they are taken, to about 1e-7 of the largest; the simulation goes on with the same
+/// They are those of the steps as they are taken, to about 1e-6 of the largest; the simulation goes on with the same
 /// bits as without them. The scheme 'em_scaled' and iterative interpolation have none.
 class Sensitivities {
  public:
