@@ -137,6 +137,13 @@ void bind_sensitivities(py::module_& module, SimulationClass& simulation) {
       .def("step", &step, "Simulation.step() with all derivatives. Returns a StepResult; raises StepError if it fails.")
       .def("run", &run, kRun, py::arg("steps"), py::arg("efforts") = py::none(), py::arg("joints") = py::none(),
            py::arg("record") = py::none(), py::arg("every") = 1)
+      .def(
+          "row",
+          [](GuardedSensitivities& own, const Patterns& record) {
+            ResultColumns& columns = own.simulation().columns(record);
+            return derivatives(own.look(), columns);
+          },
+          R"(Of Simulation.row(record) now, shape (columns, directions); 0 of the time.)", py::arg("record"))
       .def_property_readonly(
           "positions", [](GuardedSensitivities& own) { return own.look().positions(); },
           "Of joints' positions, shape (joints, directions) [rad or m per unit].")

@@ -37,6 +37,12 @@ void show(const State& state, Simulation& simulation) {
   inside.state = state;
   inside.forget_published();
 }
+void take_samples(State& state, Simulation& simulation, bool all) {
+  show(state, simulation);
+  auto& inside = Inside::of(simulation);
+  inside.take_samples(all);
+  state.samples = inside.state.samples;
+}
 State start_at(const Simulation& simulation, const std::vector<NodePose>& poses, const std::vector<Released>& released,
                const std::vector<Vector6>& velocities) {
   auto& inside = Inside::of(simulation);

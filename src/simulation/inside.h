@@ -34,6 +34,8 @@ const State& initial_state_of(const Simulation& simulation);
 void accompany(Simulation& simulation, StepFollower* follower);
 /// Puts any state of a simulation of a like model in the place of its own, so that it is looked at.
 void show(const State& state, Simulation& simulation);
+/// Lets sensors measure in a state of a simulation of a like model: all of them, or those of which a sample is due.
+void take_samples(State& state, Simulation& simulation, bool all);
 /// The state in which a simulation would start if its nodes and joints were placed like this, at these velocities
 /// ({v, w}, world axes).
 State start_at(const Simulation& simulation, const std::vector<NodePose>& poses, const std::vector<Released>& released,

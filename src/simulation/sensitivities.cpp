@@ -58,10 +58,12 @@ class Sensitivities::Implementation {
       names.push_back(name);
       steps.directions().push_back(parameters.back()->start(steps));
     }
-    if (!request.initial_state) return;
-    look = std::make_unique<Simulation>(own.copy());
-    for (Direction& direction : initial_state_directions(own, steps, names))
-      steps.directions().push_back(std::move(direction));
+    if (request.initial_state) {
+      look = std::make_unique<Simulation>(own.copy());
+      for (Direction& direction : initial_state_directions(own, steps, names))
+        steps.directions().push_back(std::move(direction));
+    }
+    take_samples(true);
   }
 
   StepResult step() {
@@ -80,9 +82,29 @@ class Sensitivities::Implementation {
     if (result.is_dissipated) steps.lose(when + "was done by another scheme");
     time = simulation.time();
     count = state.steps;
-    for (std::size_t i = 0; i < parameters.size() && steps.lost().empty(); ++i)
-      parameters[i]->come_closer(steps, steps.directions()[i], state);
+    if (!steps.lost().empty()) return result;
+    take_samples(false);
+    for (std::size_t i = 0; i < parameters.size(); ++i) parameters[i]->come_closer(steps, steps.directions()[i], state);
     return result;
+  }
+
+  /// A simulation of the model of a neighbour.
+  Simulation& look_at(std::size_t direction, std::size_t neighbour) const {
+    return direction < parameters.size() ? parameters[direction]->look(neighbour) : *look;
+  }
+
+  /// What sensors measure is taken by the run after each of its steps, with errors that depend on their number.
+  void take_samples(bool all) {
+    if (simulation.scene().sensors.empty()) return;
+    const State& state = state_of(simulation);
+    for (std::size_t k = 0; k < steps.directions().size(); ++k) {
+      std::vector<Neighbour>& neighbours = steps.directions()[k].neighbours;
+      for (std::size_t i = 0; i < neighbours.size(); ++i) {
+        neighbours[i].state.steps = state.steps;
+        neighbours[i].state.time = state.time;
+        flexarm::take_samples(neighbours[i].state, look_at(k, i), all);
+      }
+    }
   }
 
   /// The difference quotient, in each direction, of what `observe` makes of neighbours less what it makes of the run.
@@ -94,8 +116,7 @@ class Sensitivities::Implementation {
     for (Eigen::Index k = 0; k < count; ++k) {
       const Direction& direction = steps.directions()[static_cast<std::size_t>(k)];
       for (std::size_t i = 0; i < direction.neighbours.size(); ++i) {
-        Simulation& neighbour =
-            k < static_cast<Eigen::Index>(parameters.size()) ? parameters[static_cast<std::size_t>(k)]->look(i) : *look;
+        Simulation& neighbour = look_at(static_cast<std::size_t>(k), i);
         show(direction.neighbours[i].state, neighbour);
         out.col(k) += direction.neighbours[i].weight / direction.difference * observe(neighbour);
       }

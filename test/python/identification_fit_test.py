@@ -171,6 +171,38 @@ def test_differences_are_derivatives(rod):
         assert errors[0] / errors[1] == pytest.approx(10, rel=0.1)
 
 
+def test_forward_derivatives_are_those_of_differences(rod):
+    experiment = rod_experiment(rod, numpy.linspace(0, 1, 41), efforts={"hinge": EffortHistory([0.0], [1.0])})
+    values = numpy.array([2.0, 0.5])
+
+    def quotient(way):
+        moves = way * numpy.eye(2)
+        return numpy.column_stack([experiment.simulate(values + move) - experiment.simulate(values - move)
+                                   for move in moves]) / (2 * way)
+
+    expected = (4 * quotient(0.005) - quotient(0.01)) / 3
+    found = experiment.derivatives(values)
+    assert (abs(found - expected).max(axis=0) < 1e-6 * abs(expected).max(axis=0)).all()
+
+
+def test_forward_derivatives_lead_to_the_same_result(rod):
+    random, times = numpy.random.default_rng(2), numpy.linspace(0, 1, 101)
+    experiment = measured_with(rod_experiment(rod, times, 0.01), TRUE.values(), random, 0.01)
+    result, forward = fit(experiment), fit(experiment, forward=True)
+    assert forward.is_converged and forward.simulations < result.simulations
+    # Searches end within a hundredth of the standard errors.
+    assert (abs(result.values - forward.values) < 0.02 * result.certainty.standard_errors).all()
+    assert forward.certainty.standard_errors == pytest.approx(result.certainty.standard_errors, rel=1e-3)
+
+
+def test_differences_stand_in_where_there_are_no_forward_derivatives(rod):
+    times = numpy.linspace(0, 1, 41)
+    experiment = rod_experiment(rod, times, 0.01, initial={"hinge/velocity": 0.3})
+    assert experiment.derivatives([2.0, 0.5]) is None
+    result = fit(measured_with(experiment, TRUE.values()), forward=True)
+    assert result.is_converged and result.values == pytest.approx(list(TRUE.values()), rel=1e-6)
+
+
 def test_standard_errors_cover_the_truth(rod):
     """Each in 95 of 100 runs, and errors in units of standard errors have the variance 1."""
     runs, sigma, truth = 100, 0.01, numpy.array(list(TRUE.values()))

@@ -75,7 +75,9 @@ until: 2
      ":3: commands: between: expected 'hold' or 'line', got 'spline'"),
     ("parameters: {mass: }\n" + COLUMNS + "stop: 3\n",
      ":3: expected a key of parameters, initial, columns, commands, begin, until, step, tolerance, difference, "
-     "joint_states, got 'stop'"),
+     "derivatives, joint_states, got 'stop'"),
+    ("parameters: {mass: }\n" + COLUMNS + "derivatives: complex\n",
+     ":3: derivatives: expected 'differences' or 'forward', got 'complex'"),
     ("parameters: {mass: 1\n", ":2: expected ',' or '}', but got '<stream end>'"),
 ])
 def test_errors_of_plans_say_where(tmp_path, text, error):

@@ -52,6 +52,28 @@ def test_derivatives_are_those_of_differences():
     numpy.testing.assert_array_equal(found[-1, 1], sensitivities.outputs(["position:hinge"])[0])
 
 
+def test_what_sensors_measure():
+    """Samples are taken of neighbours, too, with the same errors."""
+    cell = '<sensor name="cell" kind="wrench" link="rod" rate="50" noise="0.05"/> <simulation>'
+    text = ROD.replace("<simulation>", cell)
+
+    def simulation(mass):
+        return flexarm.Simulation(flexarm.read_scene_text(text, parameters={"mass": mass}))
+
+    def quotient(way):
+        return (simulation(2 + way).run(STEPS, record=["sensor/*"])
+                - simulation(2 - way).run(STEPS, record=["sensor/*"])) / (2 * way)
+
+    sensitivities = simulation(2).sensitivities(["mass"])
+    first = sensitivities.row(["sensor/*"])
+    assert first.shape == (7, 1) and first[0, 0] == 0
+    found = sensitivities.run(STEPS, record=["sensor/*"])
+    expected = (4 * quotient(0.01) - quotient(0.02)) / 3
+    assert abs(found[:, :, 0] - expected).max() < 1e-6 * abs(expected).max()
+    numpy.testing.assert_array_equal(found[3:7, 1:], found[[3], 1:].repeat(4, axis=0))
+    numpy.testing.assert_array_equal(found[-1], sensitivities.row(["sensor/*"]))
+
+
 def test_run_keeps_its_bits():
     simulation = simulation_of()
     simulation.sensitivities(["mass"], initial_state=True).run(STEPS)

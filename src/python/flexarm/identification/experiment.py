@@ -7,6 +7,7 @@ import numpy
 from scipy.interpolate import CubicSpline
 
 from .. import Simulation, read_scene
+from ..errors import SceneError
 from .inputs import InputError
 
 # Times that are so near to the end of a step, in steps, are there: stamps are rounded.
@@ -149,3 +150,23 @@ class Experiment:
         first = simulation.row(self._record)
         rows = simulation.run(self.steps, self._efforts, self._joints, record=self._record, every=self._sampling.every)
         return self._sampling.look(numpy.vstack([first, rows])[:, self._order])
+
+    def derivatives(self, values):
+        """Of simulate() by the unknowns, shape (values, unknowns), as sensitivities of one run.
+
+        None where there are none: with unknowns or known coordinates of the start, at events, for some schemes
+        (docs/notes/sensitivities.md). Raises as simulate() does.
+        """
+        if self._initial or any(unknown.of_start for unknown in self.unknowns):
+            return None
+        simulation = self._simulation(values)
+        try:
+            run = simulation.sensitivities([unknown.name for unknown in self.unknowns])
+        except (ValueError, SceneError):
+            return None
+        first = run.row(self._record)
+        rows = run.run(self.steps, self._efforts, self._joints, record=self._record, every=self._sampling.every)
+        if run.lost:
+            return None
+        rows = numpy.concatenate([first[None], rows])[:, self._order]
+        return numpy.column_stack([self._sampling.look(rows[:, :, i]) for i in range(rows.shape[2])])

@@ -59,8 +59,8 @@ class _Failed(typing.NamedTuple):
 class _Search:
     """Simulations of a search, counted, the best one kept. Unknowns are in units of their scales."""
 
-    def __init__(self, experiment, difference, workers, show):
-        self._experiment, self._difference, self._show = experiment, difference, show
+    def __init__(self, experiment, difference, forward, workers, show):
+        self._experiment, self._difference, self._forward, self._show = experiment, difference, forward, show
         self._pool = ThreadPoolExecutor(workers)
         unknowns = experiment.unknowns
         self.scales = numpy.array([unknown.scale for unknown in unknowns])
@@ -112,25 +112,37 @@ class _Search:
     def jacobian(self, x):
         """Derivatives of residuals() at the best point."""
         assert numpy.array_equal(x, self.best)
-        jacobian = sensitivities(self, x, self.predicted) * self.weights[:, None]
+        derivatives = self._derivatives(x) if self._forward else None
+        if derivatives is None:
+            derivatives = differences(self, x, self.predicted)
+        jacobian = derivatives * self.weights[:, None]
         self.jacobian_at_best = jacobian
         self.iterations += 1
         self._show(Iteration(self.iterations, self.simulations, numpy.sqrt(self.cost / len(self.weights)),
                              x * self.scales))
         return jacobian
 
-    def differences(self, x):
+    def _derivatives(self, x):
+        """By sensitivities of one run, shape (values, unknowns); None where it has none."""
+        self.simulations += 1
+        try:
+            derivatives = self._experiment.derivatives(x * self.scales)
+        except (StepError, SceneError, InputError):  # of a neighbour
+            return None
+        return None if derivatives is None else derivatives * self.scales
+
+    def lengths(self, x):
         """By which unknowns are varied: fixed parts of their sizes, to the side where there is more room."""
         sizes = self._difference * numpy.maximum(abs(x), 0.1)
         return numpy.where(x + sizes <= self.upper, sizes, -sizes)
 
 
-def sensitivities(search, x, predicted):
+def differences(search, x, predicted):
     """Derivatives of what is simulated by the unknowns, shape (values, unknowns), by one-sided differences.
 
-    predicted: what is simulated with `x`. Forward sensitivities of the simulation would take this function's place.
+    predicted: what is simulated with `x`.
     """
-    steps = search.differences(x)
+    steps = search.lengths(x)
     varied = search.simulate([x + step * row for step, row in zip(steps, numpy.eye(len(x)))])
     for i, result in enumerate(varied):
         if isinstance(result, _Failed):  # the other side may do
@@ -177,10 +189,11 @@ def _descend(search, start):
     return False, "not converged after %d tries of values" % MOST_ITERATIONS
 
 
-def fit(experiment, difference=1e-4, workers=None, show=lambda iteration: None):
+def fit(experiment, difference=1e-4, workers=None, show=lambda iteration: None, forward=False):
     """Finds the unknowns of an experiment.
 
     difference: by which unknowns are varied, relative to their size.
+    forward: derivatives are sensitivities of one run, where it has them, in the place of differences of several.
     workers: threads for simulations; None: one for each processor. The result does not depend on it.
     show: called with an Iteration after each.
 
@@ -188,7 +201,7 @@ def fit(experiment, difference=1e-4, workers=None, show=lambda iteration: None):
     that of the residuals. Interruption ends the search with the best so far. Raises FitError where nothing can be
     simulated at its start.
     """
-    search = _Search(experiment, difference, workers, show)
+    search = _Search(experiment, difference, forward, workers, show)
     is_converged, ending, signal = False, "", None
     try:
         x = numpy.array([unknown.start for unknown in experiment.unknowns]) / search.scales

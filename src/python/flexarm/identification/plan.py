@@ -46,11 +46,12 @@ class Plan(typing.NamedTuple):
     step: typing.Optional[float]  # [s]; None: chosen
     tolerance: float  # of Newton's method
     difference: float  # by which unknowns are varied, relative to their size
+    forward: bool  # derivatives are sensitivities of runs, where these have them
     joint_states: str  # topic of a bag
 
 
 KEYS = ("parameters", "initial", "columns", "commands", "begin", "until", "step", "tolerance", "difference",
-        "joint_states")
+        "derivatives", "joint_states")
 SUFFIXES = ("position", "velocity")
 
 
@@ -84,6 +85,7 @@ def read_plan(path, parameters):
     return Plan(unknowns, initial, columns, _commands(path, entries.get("commands")),
                 _begin(entries.get("begin")), optional.positive("until", None), optional.positive("step", None),
                 optional.positive("tolerance", 1e-10), optional.positive("difference", 1e-4),
+                "derivatives" in entries and entries["derivatives"].choice("differences", "forward") == "forward",
                 entries["joint_states"].string() if "joint_states" in entries else "/joint_states")
 
 

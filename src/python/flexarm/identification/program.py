@@ -134,8 +134,8 @@ def _identify(arguments, draw):
     warnings.simplefilter("ignore", SceneWarning)  # that of the start has been said
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, _interrupt)
-    result = fit(experiment, plan.difference, arguments.workers, (lambda iteration: None) if arguments.quiet else
-                 _show(experiment))
+    show = (lambda iteration: None) if arguments.quiet else _show(experiment)
+    result = fit(experiment, plan.difference, arguments.workers, show, plan.forward)
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.SIG_IGN)  # what was found is written
     files = _keep(arguments, outputs, experiment, values, result)
