@@ -150,6 +150,7 @@ OutputRows output_rows(const LinearPort& port, const MovingMatrix& motion, Eigen
 
 std::vector<std::string> names_of(const std::vector<LinearPort>& ports) {
   std::vector<std::string> names;
+  names.reserve(ports.size());
   for (const LinearPort& port : ports) names.push_back(port.name);
   return names;
 }

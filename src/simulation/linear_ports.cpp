@@ -232,6 +232,7 @@ MovingMatrix port_motion(const Simulation& simulation, const LinearDynamics& dyn
       dynamics.along_reference([&](const MechanismPose& pose, const Eigen::MatrixXd& rows) -> Eigen::MatrixXd {
         const State state = state_at(pose);
         std::vector<PortRate> rates;
+        rates.reserve(ports.size());
         for (const LinearPort& port : ports) rates.push_back(rate_of(port, model, dof, state));
         Eigen::MatrixXd out(static_cast<Eigen::Index>(ports.size()), rows.cols());
         std::vector<Vector6> velocities(pose.nodes.size());

@@ -71,7 +71,7 @@ class Sensitivities::Implementation {
       throw std::logic_error("somebody else has moved the simulation since the last step of its sensitivities");
     const std::vector<int> lines = state_of(simulation).left_lines;
     accompany(simulation, &steps);
-    const StepResult result = simulation.step();
+    StepResult result = simulation.step();
     const State& state = state_of(simulation);
     const std::string when = fmt::format("the step to t = {:.9g} s ", time + simulation.step_size());
     if (state.left_lines != lines)

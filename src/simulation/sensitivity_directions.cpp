@@ -66,6 +66,7 @@ ParameterDirection::ParameterDirection(const Simulation& simulation, const Sensi
                                   [&](const scene::ParameterDescription& own) { return own.name == name; });
   if (known == parameters.end()) {
     std::vector<std::string> names;
+    names.reserve(parameters.size());
     for (const scene::ParameterDescription& own : parameters) names.push_back(own.name);
     throw std::invalid_argument(
         names.empty() ? fmt::format("unknown parameter '{}': the scene has no <parameter>", name)
