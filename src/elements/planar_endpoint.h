@@ -125,8 +125,7 @@ EndpointStress<Matrix3T<S>> endpoint_stress(const Element<Nodes, S>& element, in
 template <typename S, class Constants>
 Vector3T<S> endpoint_slope(const Constants& constants, const S& weight, const S* extra, const Turn<S>& turn,
                            const Vector2T<S>& tangent, const PointVariation<S>& v) {
-  const Vector2T<S> strain = turn.to_section(v.position - v.spin * quarter_turn<S>(tangent));
-  const Vector3T<S> change(strain[0], strain[1], v.spin_derivative);
+  const Vector3T<S> change = strain_slope<S>(turn, tangent, v.position, v.spin, v.spin_derivative);
   Vector3T<S> stress = constants.section.stress(change);
   if (extra) stress += *extra * constants.damped.stress(change);
   stress *= weight;
@@ -206,10 +205,9 @@ void carry_endpoint_strains(const Element<Nodes, S>& element, const std::array<P
   for (int k = 0; k < Nodes - 1; ++k) {
     const auto& constants = element.points[k];
     const PointKinematics<S>& at = points[k];
-    const Vector2T<S> moved = sum_of<Nodes, S>(constants.derivative, displacement),
-                      strain = Turn<S>{at.cosine, at.sine}.to_section(moved - sum_of<Nodes, S>(constants.shape, spin) *
-                                                                                  quarter_turn<S>(at.tangent));
-    carried[k] = at.strain + Vector3T<S>(strain[0], strain[1], sum_of<Nodes, S>(constants.derivative, spin));
+    carried[k] = at.strain +
+                 strain_slope<S>({at.cosine, at.sine}, at.tangent, sum_of<Nodes, S>(constants.derivative, displacement),
+                                 sum_of<Nodes, S>(constants.shape, spin), sum_of<Nodes, S>(constants.derivative, spin));
   }
 }
 

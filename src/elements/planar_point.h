@@ -139,14 +139,22 @@ struct StrainSlopes {
   Vector3T<S> end, conjugate;
 };
 
+/// Of the strain at one configuration, in which the section has turned so, with the tangent r'.
+template <typename S>
+Vector3T<S> strain_slope(const Turn<S>& turn, const Vector2T<S>& tangent, const Vector2T<S>& position, const S& spin,
+                         const S& spin_derivative) {
+  const Vector2T<S> strain = turn.to_section(position - spin * quarter_turn<S>(tangent));
+  return {strain[0], strain[1], spin_derivative};
+}
+
 template <typename S>
 StrainSlopes<S> strain_slopes(const Point<S>& p, const PointVariation<S>& v) {
-  const Vector2T<S> end = p.end.to_section(v.position - v.spin * quarter_turn<S>(p.end_tangent));
   const Vector2T<S> stretch =
       v.position - (S(0.5) * p.increment) * quarter_turn<S>(v.position) - v.increment * quarter_turn<S>(p.arm);
   const Vector2T<S> conjugate =
       p.average.to_section(stretch) - (S(0.5) * v.spin) * p.end.to_section(quarter_turn<S>(p.stretch));
-  return {{end[0], end[1], v.spin_derivative}, {conjugate[0], conjugate[1], v.increment_derivative}};
+  return {strain_slope<S>(p.end, p.end_tangent, v.position, v.spin, v.spin_derivative),
+          {conjugate[0], conjugate[1], v.increment_derivative}};
 }
 
 /// A linear form of a variation.
