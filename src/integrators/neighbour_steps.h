@@ -30,7 +30,7 @@ struct Direction {
 /// Takes neighbours along with a run. The derivative of a step's solution is what the equations of the neighbours come
 /// to beside it, whose own Newton's method it is, with the factors of the run's tangent. Every few sub-steps
 /// they are put anew to the state of the run, +- difference times the derivative: so they stay as close however long
-/// the run is. Allocates nothing after the first step.
+/// the run is. Allocates nothing once they have been put back for the first time.
 class NeighbourSteps : public StepFollower {
  public:
   /// Of a run of that model and scheme; the model must outlive this.
@@ -44,8 +44,6 @@ class NeighbourSteps : public StepFollower {
   void lose(const std::string& why) {
     if (lost_.empty()) lost_ = why;
   }
-  /// Back to the beginning of a run, once neighbours stand there.
-  void restart() { lost_.clear(), factorised_step_ = 0, followed_ = 0; }
 
   /// Direction::derivative from what the neighbours and the run, in `state`, have come to.
   void measure(Direction& direction, const State& state);

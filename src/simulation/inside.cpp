@@ -38,10 +38,11 @@ void show(const State& state, Simulation& simulation) {
   inside.forget_published();
 }
 void take_samples(State& state, Simulation& simulation, bool all) {
-  show(state, simulation);
   auto& inside = Inside::of(simulation);
-  inside.take_samples(all);
-  state.samples = inside.state.samples;
+  const MotionView view = {inside.model, inside.stepper->degrees_of_freedom(), inside.scheme, state};
+  inside.forget_published();
+  flexarm::take_samples(inside.scene.sensors, view, inside.published, all, state.samples);
+  inside.forget_published();
 }
 State start_at(const Simulation& simulation, const std::vector<NodePose>& poses, const std::vector<Released>& released,
                const std::vector<Vector6>& velocities) {

@@ -1,5 +1,6 @@
 #include "flexarm/simulation/sensitivities.h"
 
+#include <algorithm>
 #include <limits>
 #include <stdexcept>
 
@@ -73,13 +74,13 @@ class Sensitivities::Implementation {
     accompany(simulation, &steps);
     StepResult result = simulation.step();
     const State& state = state_of(simulation);
-    const std::string when = fmt::format("the step to t = {:.9g} s ", time + simulation.step_size());
     if (state.left_lines != lines)
       steps.lose(fmt::format("a slider has left its line before t = {:.9g} s", simulation.time()));
     else
       accompany(simulation, nullptr);
-    if (!result.converged) steps.lose(when + "has failed");
-    if (result.is_dissipated) steps.lose(when + "was done by another scheme");
+    if (!result.converged || result.is_dissipated)
+      steps.lose(fmt::format("the step to t = {:.9g} s {}", time + simulation.step_size(),
+                             result.converged ? "was done by another scheme" : "has failed"));
     time = simulation.time();
     count = state.steps;
     if (!steps.lost().empty()) return result;
@@ -97,6 +98,8 @@ class Sensitivities::Implementation {
   void take_samples(bool all) {
     if (simulation.scene().sensors.empty()) return;
     const State& state = state_of(simulation);
+    const auto is_new = [&](const SensorSample& sample) { return sample.time == state.time; };
+    if (!all && std::none_of(state.samples.begin(), state.samples.end(), is_new)) return;
     for (std::size_t k = 0; k < steps.directions().size(); ++k) {
       std::vector<Neighbour>& neighbours = steps.directions()[k].neighbours;
       for (std::size_t i = 0; i < neighbours.size(); ++i) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "flexarm/simulation/sensitivities.h"
 #include "simulation/everything_scene.h"
 #include "simulation/inside.h"
 #include "support/allocations.h"
@@ -249,6 +250,30 @@ TEST_F(Allocation, NoneWhereWrenchesBeginAndEnd) {
               }
             }),
             0);
+}
+
+TEST_F(Allocation, NoneInSensitivitiesOfTheStart) {
+  SceneBuilder b;
+  b.beam("upper", {{1, 0, 0}}, section(2e4, 1e4, 20, 25, 0.5, 2e-3, 1e-3), 2, 2);
+  b.body("lower", 0.3, {0.1, 0, 0}, 1e-3 * Matrix3::Identity());
+  b.joint("shoulder", scene::JointKind::Continuous, "world", "upper").damping = 0.1;
+  b.joint("ball", scene::JointKind::Spherical, "upper", "lower", {1, 0, 0});
+  b.sensor("gauge", scene::SensorKind::Strain, "upper", {0.1, 0.01, 0});
+  for (const std::string scheme : {"em", "em4", "newmark"}) {
+    SimulationOptions options;
+    options.scheme = scheme;
+    Simulation simulation(b.scene, options);
+    SensitivityRequest request;
+    request.initial_state = true;
+    Sensitivities sensitivities(simulation, request);
+    for (int n = 0; n < 10; ++n) ASSERT_TRUE(sensitivities.step().converged);
+    EXPECT_EQ(allocations_in([&] {
+                for (int n = 0; n < 20; ++n) sensitivities.step();
+              }),
+              0)
+        << scheme;
+    EXPECT_EQ(sensitivities.lost(), "");
+  }
 }
 
 // What the node reads in every cycle.

@@ -13,37 +13,13 @@
 #include "model/state_numbers.h"
 #include "simulation/inside.h"
 #include "simulation/linear_names.h"
+#include "simulation/sensitivity_scenes.h"
 
-namespace flexarm {
+namespace flexarm::test {
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-struct Scene {
-  std::string text;
-
-  Simulation simulation(const scene::ParameterValues& values = {}) const {
-    scene::ReadResult result = scene::read_scene_text(text, "test.urdf", {false, false, false, values});
-    if (!result.scene) throw std::runtime_error(scene::to_text(result.diagnostics));
-    return Simulation(std::move(*result.scene));
-  }
-  SensitivityRequest request(std::vector<std::string> parameters) const {
-    SensitivityRequest request;
-    request.parameters = std::move(parameters);
-    request.read = [text = text](const std::string& name, double value) {
-      return scene::read_scene_text(text, "test.urdf", {false, false, false, {{name, value}}});
-    };
-    return request;
-  }
-};
-
-std::string with_scheme(std::string scene, const std::string& scheme, double step) {
-  const std::string place = "<simulation>";
-  scene.insert(scene.find(place) + place.size(),
-               fmt::format(" <integrator scheme=\"{}\" step=\"{}\" tolerance=\"1e-10\"/>", scheme, step));
-  return scene + "</robot>";
-}
 
 /// Positions, and what follows from velocities smoothly: those that are put out are chosen from several guesses.
 VectorXd observed(const Simulation& simulation) {
@@ -97,38 +73,6 @@ void expect_differences(const Scene& scene, const std::vector<std::pair<std::str
 }
 
 // ---------------------------------------------------------------- scenes
-
-const std::string kPendulum = R"(<robot name="pendulum">
-  <parameter name="damping" value="0.5" min="0"/> <parameter name="payload" value="2"/>
-  <parameter name="angle" value="1.2"/> <parameter name="speed" value="0.7"/> <parameter name="reach" value="0.8"/>
-  <link name="world"/>
-  <joint name="hinge" type="continuous"> <parent link="world"/> <child link="rod"/> <axis xyz="0 1 0"/>
-    <dynamics damping="${damping}"/> </joint>
-  <link name="rod"> <inertial> <origin xyz="${reach} 0 0"/> <mass value="${payload}"/>
-    <inertia ixx="0.01" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
-  <simulation> <initial joint="hinge" position="${angle}" velocity="${speed}"/>
-    <probe name="end" link="rod" at="1 0 0"/> </simulation>
-  )";
-
-/// A boom that bends, and a load on a hinge at its end.
-std::string arm(const std::string& wrist_axis) {
-  return R"(<robot name="arm">
-  <parameter name="young" value="7e9"/> <parameter name="payload" value="0.4"/> <parameter name="damping" value="0.3"/>
-  <parameter name="length" value="1"/> <parameter name="elements" value="3"/> <parameter name="turn" value="0.3"/>
-  <link name="world"/>
-  <joint name="shoulder" type="continuous"> <parent link="world"/> <child link="boom"/> <axis xyz="0 1 0"/>
-    <dynamics damping="${damping}"/> </joint>
-  <link name="boom"> <beam elements="${elements}"> <centerline> <line to="${length} 0 0"/> </centerline>
-    <circle radius="0.01"/> <material young="${young}" poisson="0.3" density="2700"/> </beam> </link>
-  <joint name="wrist" type="continuous"> <parent link="boom"/> <child link="load"/> <origin xyz="${length} 0 0"/>
-    <axis xyz=")" +
-         wrist_axis + R"x("/> </joint>
-  <link name="load"> <inertial> <origin xyz="0.1 0.02 0"/> <mass value="${payload}"/>
-    <inertia ixx="1e-3" iyy="2e-3" izz="2e-3" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
-  <simulation> <effort joint="shoulder" history="3*sin(5*t)"/>
-    <initial joint="wrist" position="${turn}" velocity="1"/> <probe name="tip" link="load"/> </simulation>
-  )x";
-}
 
 // A rigid leg slides on a flexible rail that is bent.
 const std::string kSlider = R"(<robot name="slider"> <link name="world"/>
@@ -324,18 +268,6 @@ TEST(Sensitivities, FrequencyAfterThousandPeriods) {
   EXPECT_NEAR(sensitivities.positions()(0, 0), by_rate / (2 * rate), 1e-6 * 0.5 * steps * step / (2 * rate));
 }
 
-// A rod that turns freely, until a stop is in its way.
-std::string rod_with_stop(double upper, const std::string& gravity, const std::string& integrator) {
-  return fmt::format(R"(<robot name="rod"> <parameter name="speed" value="0.7"/> <link name="world"/>
-    <joint name="hinge" type="revolute"> <parent link="world"/> <child link="rod"/> <axis xyz="0 1 0"/>
-      <limit lower="-10" upper="{:.17g}" effort="0" velocity="100"/> </joint>
-    <link name="rod"> <inertial> <origin xyz="0.8 0 0"/> <mass value="2"/>
-      <inertia ixx="0.01" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
-    <simulation> <gravity xyz="{}"/> <initial joint="hinge" velocity="${{speed}}"/> <integrator {}/>
-    </simulation> </robot>)",
-                     upper, gravity, integrator);
-}
-
 // Where run and neighbours touch it in the same step, the steps have a derivative: also after the rod has come back.
 TEST(Sensitivities, RunThatHitsAStop) {
   const Scene scene{rod_with_stop(0.3, "0 0 -9.81", "scheme=\"em\" step=\"0.005\" tolerance=\"1e-10\"")};
@@ -350,76 +282,20 @@ TEST(Sensitivities, RunThatHitsAStop) {
   EXPECT_LT(simulation.position(0), 0.3);
 }
 
-// ---------------------------------------------------------------- where there are none
-
-std::string refusal(const Scene& scene, const std::string& parameter) {
-  Simulation simulation = scene.simulation();
-  try {
-    const Sensitivities sensitivities(simulation, scene.request({parameter}));
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
-}
-
-TEST(Sensitivities, ParametersThatHaveNoneAreRefused) {
-  const Scene scene{with_scheme(arm("0 0 1"), "em", 2e-3)};
-  EXPECT_EQ(refusal(scene, "stiffnes"),
-            "unknown parameter 'stiffnes': expected one of young, payload, damping, length, elements, turn");
-  EXPECT_NE(refusal(scene, "elements").find("the run cannot be differentiated by parameter 'elements'"),
-            std::string::npos)
-      << refusal(scene, "elements");
-  std::string text = with_scheme(kPendulum, "em", 5e-3);
-  const std::string step = "step=\"0.005\"";
-  text.replace(text.find(step), step.size(), "step=\"${0.0025*payload}\"");
-  EXPECT_NE(refusal({text}, "payload").find("it changes the <integrator>"), std::string::npos)
-      << refusal({text}, "payload");
-}
-
-// A step that ends at the stop, to round-off, is on both sides of it.
-TEST(Sensitivities, LostWhereAStopIsTouchedByOneNeighbourAlone) {
-  const int steps = 10;
-  const double half = 0.5 * 0.7 * 0.01;  // a free rod turns by 2 atan(half) in a step
-  const Scene scene{rod_with_stop(2 * steps * std::atan(half), "0 0 0", "scheme=\"em\" step=\"0.01\"")};
+// Friction takes as much speed in each step, and what is left in the last one, over which the rod goes at half of it.
+TEST(Sensitivities, RunThatFrictionBringsToRest) {
+  const double speed = 0.72, step = 0.01;
+  const Scene scene{braked_rod(speed)};
   Simulation simulation = scene.simulation();
   Sensitivities sensitivities(simulation, scene.request({"speed"}));
-  for (int i = 1; i < steps; ++i) ASSERT_TRUE(sensitivities.step().converged);
-  EXPECT_EQ(sensitivities.lost(), "");
-  EXPECT_NEAR(sensitivities.positions()(0, 0), 0.01 * (steps - 1) / (1 + half * half), 1e-6 * 0.09);
-  for (int i = 0; i < 3; ++i) ASSERT_TRUE(sensitivities.step().converged);
-  EXPECT_EQ(sensitivities.lost(),
-            "at t = 0.1 s joint coordinate 'hinge' touches its stop within the difference of neighbours");
-  EXPECT_TRUE(sensitivities.positions().array().isNaN().all());
-}
-
-TEST(Sensitivities, LostWhereAStepFails) {
-  const Scene scene{
-      rod_with_stop(3, "0 0 -9.81", "scheme=\"em\" step=\"0.5\" max_iterations=\"1\" max_halvings=\"0\"")};
-  Simulation simulation = scene.simulation();
-  Sensitivities sensitivities(simulation, scene.request({"speed"}));
-  EXPECT_FALSE(sensitivities.step().converged);
-  EXPECT_EQ(sensitivities.lost(), "the step to t = 0.5 s has failed");
-  EXPECT_TRUE(sensitivities.velocities().array().isNaN().all());
-  EXPECT_EQ(simulation.time(), 0);
-}
-
-TEST(Sensitivities, RunThatHasBegunIsRefused) {
-  const Scene scene{with_scheme(kPendulum, "em", 5e-3)};
-  Simulation simulation = scene.simulation();
-  simulation.step();
-  EXPECT_THROW(Sensitivities(simulation, scene.request({"payload"})), std::invalid_argument);
-  simulation.reset();
-  Sensitivities sensitivities(simulation, scene.request({"payload"}));
-  sensitivities.step();
-  simulation.step();
-  EXPECT_THROW(sensitivities.step(), std::logic_error);
-}
-
-TEST(Sensitivities, SchemesWithoutThemAreRefused) {
-  const Scene scene{with_scheme(kPendulum, "em_scaled", 5e-3)};
-  Simulation simulation = scene.simulation();
-  EXPECT_THROW(Sensitivities(simulation, scene.request({"payload"})), ModelError);
+  while (simulation.time() < speed / kBraking + 0.1) ASSERT_TRUE(sensitivities.step().converged);
+  ASSERT_EQ(sensitivities.lost(), "");
+  const double expected = (std::floor(speed / (kBraking * step)) + 0.5) * step;
+  // It turns by 2 atan(half the angle) in a step.
+  const double largest_half = 0.5 * speed * step;
+  EXPECT_NEAR(sensitivities.positions()(0, 0), expected, expected * largest_half * largest_half);
+  EXPECT_NEAR(sensitivities.velocities()(0, 0), 0, 1e-6);
 }
 
 }  // namespace
-}  // namespace flexarm
+}  // namespace flexarm::test
