@@ -52,7 +52,7 @@ std::unique_ptr<GuardedSensitivities> sensitivities_of(const std::shared_ptr<Gua
   }
 }
 
-StepResult step(GuardedSensitivities& guarded) {
+StepResult step_with_derivatives(GuardedSensitivities& guarded) {
   const StepResult result = guarded.work([](Sensitivities& own, Simulation&) { return own.step(); });
   const Simulation& simulation = guarded.simulation().use();
   if (!result.converged) raise_step_error(simulation, simulation.explain(result), result.reason);
@@ -67,8 +67,9 @@ Eigen::MatrixXd derivatives(const Sensitivities& own, ResultColumns& columns) {
   });
 }
 
-py::object run(GuardedSensitivities& guarded, long steps, const std::optional<Array>& efforts,
-               const std::optional<std::vector<Key>>& joints, const std::optional<Patterns>& record, long every) {
+py::object run_with_derivatives(GuardedSensitivities& guarded, long steps, const std::optional<Array>& efforts,
+                                const std::optional<std::vector<Key>>& joints, const std::optional<Patterns>& record,
+                                long every) {
   if (steps < 0) throw std::invalid_argument(fmt::format("steps: expected a number >= 0, got {}", steps));
   if (every < 1) throw std::invalid_argument(fmt::format("every: expected a number >= 1, got {}", every));
   GuardedSimulation& simulation = guarded.simulation();
@@ -134,9 +135,10 @@ void bind_sensitivities(py::module_& module, SimulationClass& simulation) {
       .def_property_readonly(
           "lost", [](GuardedSensitivities& own) { return own.look().lost(); },
           "Why there are no derivatives any more; empty: there are.")
-      .def("step", &step, "Simulation.step() with all derivatives. Returns a StepResult; raises StepError if it fails.")
-      .def("run", &run, kRun, py::arg("steps"), py::arg("efforts") = py::none(), py::arg("joints") = py::none(),
-           py::arg("record") = py::none(), py::arg("every") = 1)
+      .def("step", &step_with_derivatives,
+           "Simulation.step() with all derivatives. Returns a StepResult; raises StepError if it fails.")
+      .def("run", &run_with_derivatives, kRun, py::arg("steps"), py::arg("efforts") = py::none(),
+           py::arg("joints") = py::none(), py::arg("record") = py::none(), py::arg("every") = 1)
       .def(
           "row",
           [](GuardedSensitivities& own, const Patterns& record) {
