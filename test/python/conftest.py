@@ -11,21 +11,26 @@ import flexarm
 ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
 
 
-def hinged_rod(axis, centre, inertia, simulation=""):
-    """The scene of a rod of 1 kg on a hinge: axis, centre of mass [m], three moments of inertia [kg m^2]."""
+def hinged_rod(axis, centre, inertia, simulation="", mass="1", parameters="", dynamics=""):
+    """The scene of a rod on a hinge: axis, centre of mass [m], three moments of inertia [kg m^2], mass [kg].
+
+    simulation: what <simulation> has. parameters: lines before all links. dynamics: elements of the joint.
+    """
     return """
-<robot name="hinged_rod">
-  <link name="world"/>
-  <joint name="hinge" type="continuous"> <parent link="world"/> <child link="rod"/> <axis xyz="%s"/> </joint>
+<robot name="rod">
+%s  <link name="world"/>
+  <joint name="hinge" type="continuous">
+    <parent link="world"/> <child link="rod"/> <axis xyz="%s"/> %s
+  </joint>
   <link name="rod">
     <inertial>
-      <origin xyz="%s"/> <mass value="1"/>
+      <origin xyz="%s"/> <mass value="%s"/>
       <inertia ixx="%s" ixy="0" ixz="0" iyy="%s" iyz="0" izz="%s"/>
     </inertial>
   </link>
   <simulation> %s </simulation>
 </robot>
-""" % (axis, centre, *inertia, simulation)
+""" % (parameters, axis, dynamics, centre, mass, *inertia, simulation)
 
 
 # From 1 s on its steps cannot be done: they may not be halved, and Newton's method is not given enough iterations.

@@ -4,27 +4,16 @@ import numpy
 from scipy.stats import binom
 
 import flexarm
+from conftest import hinged_rod
 from flexarm.identification import Column, Experiment, Measurement, Setting, Unknown
 
 # A rod on a hinge with a spring: quick to simulate.
-ROD = """
-<robot name="rod">
+ROD = hinged_rod("0 1 0", "0.5 0 0", (1e-4, 0.1, 0.1), '<integrator step="0.01"/>', mass="${mass}",
+                 dynamics='<dynamics damping="${damping}"/>', parameters="""\
   <parameter name="mass" value="1.5" min="0.1" max="10"/>
   <parameter name="damping" value="0.2" min="0"/>
   <parameter name="nothing" value="1"/>
-  <link name="world"/>
-  <joint name="hinge" type="continuous">
-    <parent link="world"/> <child link="rod"/> <axis xyz="0 1 0"/> <dynamics damping="${damping}"/>
-  </joint>
-  <link name="rod">
-    <inertial>
-      <origin xyz="0.5 0 0"/> <mass value="${mass}"/>
-      <inertia ixx="1e-4" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/>
-    </inertial>
-  </link>
-  <simulation> <integrator step="0.01"/> </simulation>
-</robot>
-"""
+""")
 TRUE = {"mass": 2.0, "damping": 0.5}
 # What a chance of one in ten thousand is left to.
 CHANCE = 1e-4

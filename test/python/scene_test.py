@@ -5,7 +5,7 @@ import warnings
 import pytest
 
 import flexarm
-from conftest import command_line, example
+from conftest import command_line, example, hinged_rod
 
 
 def test_a_scene_says_what_it_is():
@@ -53,18 +53,8 @@ def test_errors_are_those_of_the_command_line(tmp_path, old, new):
     assert isinstance(error.value, ValueError)
 
 
-PARAMETERS = """
-<robot name="rod">
-  <parameter name="mass" value="3" min="0"/>
-  <link name="world"/>
-  <joint name="hinge" type="continuous"> <parent link="world"/> <child link="rod"/> <axis xyz="0 1 0"/> </joint>
-  <link name="rod">
-    <inertial>
-      <mass value="${mass}"/> <inertia ixx="${mass/8}" ixy="0" ixz="0" iyy="${mass/8}" iyz="0" izz="${mass/8}"/>
-    </inertial>
-  </link>
-</robot>
-"""
+PARAMETERS = hinged_rod("0 1 0", "0 0 0", ["${mass/8}"] * 3, mass="${mass}",
+                        parameters='  <parameter name="mass" value="3" min="0"/>\n')
 
 
 def test_parameters_have_other_values(tmp_path):
@@ -121,19 +111,10 @@ def test_starts_outside_of_limits_may_be_clamped(tmp_path):
     assert flexarm.Simulation(scene).positions[0] == 0.25
 
 
-ROD = """
-<robot name="rod">
+ROD = hinged_rod("0 1 0", "0 0 0", ["${half}"] * 3, mass="${mass}", parameters="""\
   <parameter name="mass" value="2" min="0.5"/>
   <parameter name="half" value="${mass/2}"/>
-  <link name="world"/>
-  <joint name="hinge" type="continuous"> <parent link="world"/> <child link="rod"/> <axis xyz="0 1 0"/> </joint>
-  <link name="rod">
-    <inertial>
-      <mass value="${mass}"/> <inertia ixx="${half}" ixy="0" ixz="0" iyy="${half}" iyz="0" izz="${half}"/>
-    </inertial>
-  </link>
-</robot>
-"""
+""")
 
 
 def test_parameters_have_the_values_that_are_given():

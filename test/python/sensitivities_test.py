@@ -4,17 +4,15 @@ import numpy
 import pytest
 
 import flexarm
-from conftest import bits
+from conftest import bits, hinged_rod
 
-ROD = """<robot name="rod"> <parameter name="damping" value="0.2" min="0"/> <parameter name="mass" value="2"/>
+ROD = hinged_rod("0 1 0", "0.5 0 0", (0.01, 0.1, 0.1), """
+    <integrator step="0.005" tolerance="1e-10" max_halvings="${14+elements}"/>
+    <initial joint="hinge" position="${angle}"/> <probe name="end" link="rod" at="1 0 0"/>""",
+                 mass="${mass}", dynamics='<dynamics damping="${damping}"/>', parameters="""\
+  <parameter name="damping" value="0.2" min="0"/> <parameter name="mass" value="2"/>
   <parameter name="angle" value="0.4"/> <parameter name="elements" value="0"/>
-  <link name="world"/>
-  <joint name="hinge" type="continuous"> <parent link="world"/> <child link="rod"/> <axis xyz="0 1 0"/>
-    <dynamics damping="${damping}"/> </joint>
-  <link name="rod"> <inertial> <origin xyz="0.5 0 0"/> <mass value="${mass}"/>
-    <inertia ixx="0.01" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/> </inertial> </link>
-  <simulation> <integrator step="0.005" tolerance="1e-10" max_halvings="${14+elements}"/>
-    <initial joint="hinge" position="${angle}"/> <probe name="end" link="rod" at="1 0 0"/> </simulation> </robot>"""
+""")
 RECORD = ["joint/hinge/position", "probe/end/[xyz]"]
 STEPS = 100
 

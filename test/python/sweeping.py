@@ -4,32 +4,21 @@ import os
 import subprocess
 import textwrap
 
+from conftest import hinged_rod
 from flexarm.sweep.plan import read_plan
 from flexarm.sweep.run import perform
 
 # Steps after 1 s cannot be done with a kick of 1e4 N m: they may not be halved, and Newton's method is not given enough
 # iterations.
-SCENE = """
-<robot name="rod">
-  <parameter name="mass" value="1" min="0.1" max="10"/>
-  <parameter name="effort" value="0.5"/>
-  <parameter name="kick" value="0"/>
-  <link name="world"/>
-  <joint name="hinge" type="continuous"> <parent link="world"/> <child link="rod"/> <axis xyz="0 1 0"/> </joint>
-  <link name="rod">
-    <inertial>
-      <origin xyz="0.5 0 0"/> <mass value="${mass}"/>
-      <inertia ixx="1e-4" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/>
-    </inertial>
-  </link>
-  <simulation>
+SCENE = hinged_rod("0 1 0", "0.5 0 0", (1e-4, 0.1, 0.1), """
     <gravity xyz="0 0 0"/>
     <integrator step="0.1" max_iterations="4" max_halvings="0"/>
     <effort joint="hinge" history="t &lt; 0.95 ? ${effort} : ${kick}"/>
-    <probe name="tip" link="rod" at="1 0 0"/>
-  </simulation>
-</robot>
-"""
+    <probe name="tip" link="rod" at="1 0 0"/>""", mass="${mass}", parameters="""\
+  <parameter name="mass" value="1" min="0.1" max="10"/>
+  <parameter name="effort" value="0.5"/>
+  <parameter name="kick" value="0"/>
+""")
 
 GRID = """
     design:
