@@ -21,7 +21,7 @@ std::string refusal(const Scene& scene, const std::string& parameter) {
 }
 
 TEST(LostSensitivities, ParametersThatHaveNoneAreRefused) {
-  const Scene scene{with_scheme(arm("0 0 1"), "em", 2e-3)};
+  const Scene scene{with_scheme(flexible_arm("0 0 1"), "em", 2e-3)};
   EXPECT_EQ(refusal(scene, "stiffnes"),
             "unknown parameter 'stiffnes': expected one of young, payload, damping, length, elements, turn");
   EXPECT_NE(refusal(scene, "elements").find("the run cannot be differentiated by parameter 'elements'"),

@@ -114,14 +114,14 @@ TEST(Sensitivities, RigidPendulumByItsParametersAndItsStart) {
 TEST(Sensitivities, FlexibleArm) {
   for (const std::string scheme : {"em", "edmc2", "hht2", "newmark"}) {
     SCOPED_TRACE(scheme);
-    expect_differences({with_scheme(arm("0 0 1"), scheme, 2e-3)},
+    expect_differences({with_scheme(flexible_arm("0 0 1"), scheme, 2e-3)},
                        {{"young", 7e9}, {"payload", 0.4}, {"damping", 0.3}, {"length", 1}}, 300, 2e-3);
   }
 }
 
 // Five sub-steps each, some of them backwards.
 TEST(Sensitivities, ComposedSteps) {
-  expect_differences({with_scheme(arm("0 1 0"), "em4", 5e-3)}, {{"payload", 0.4}, {"damping", 0.3}}, 40, 2e-3);
+  expect_differences({with_scheme(flexible_arm("0 1 0"), "em4", 5e-3)}, {{"payload", 0.4}, {"damping", 0.3}}, 40, 2e-3);
 }
 
 TEST(Sensitivities, Loop) {
@@ -176,14 +176,14 @@ void expect_transition(const Scene& scene, int steps, double way) {
 
 TEST(Sensitivities, TransitionOfPendulumArmSliderAndLoop) {
   expect_transition({with_scheme(kPendulum, "em", 5e-3)}, 200, 1e-3);
-  expect_transition({with_scheme(arm("0 0 1"), "em", 2e-3)}, 100, 1e-3);
+  expect_transition({with_scheme(flexible_arm("0 0 1"), "em", 2e-3)}, 100, 1e-3);
   expect_transition({with_scheme(kSlider, "em", 2e-3)}, 100, 3e-4);
   expect_transition({with_scheme(kLoop, "em", 2e-3)}, 200, 1e-3);
 }
 
 // A joint that starts elsewhere is a state of the start.
 TEST(Sensitivities, StatesOfTheStartAreWhatInitialSays) {
-  const Scene scene{with_scheme(arm("0 0 1"), "em", 2e-3)};
+  const Scene scene{with_scheme(flexible_arm("0 0 1"), "em", 2e-3)};
   Simulation simulation = scene.simulation();
   SensitivityRequest request = scene.request({"turn"});
   request.initial_state = true;
@@ -233,7 +233,7 @@ std::vector<double> numbers_of(const State& state) {
 
 TEST(Sensitivities, RunKeepsItsBits) {
   for (const std::string scheme : {"em", "em4", "hht2"}) {
-    const Scene scene{with_scheme(arm("0 1 0"), scheme, 2e-3)};  // it moves in a plane
+    const Scene scene{with_scheme(flexible_arm("0 1 0"), scheme, 2e-3)};  // it moves in a plane
     Simulation alone = scene.simulation(), accompanied = scene.simulation();
     SensitivityRequest request = scene.request({"young", "payload"});
     request.initial_state = true;

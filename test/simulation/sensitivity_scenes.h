@@ -54,7 +54,7 @@ inline const std::string kPendulum = R"(<robot name="pendulum">
   )";
 
 /// A boom that bends, and a load on a hinge at its end.
-inline std::string arm(const std::string& wrist_axis) {
+inline std::string flexible_arm(const std::string& wrist_axis) {
   return R"(<robot name="arm">
   <parameter name="young" value="7e9"/> <parameter name="payload" value="0.4"/> <parameter name="damping" value="0.3"/>
   <parameter name="length" value="1"/> <parameter name="elements" value="3"/> <parameter name="turn" value="0.3"/>
