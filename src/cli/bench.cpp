@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct BenchArguments {
   std::string output = "docs/reports", scenes;
   std::vector<std::string> problems;
   std::vector<std::string> cases, groups;  ///< of the hard ones
@@ -34,7 +34,7 @@ struct Arguments {
 
 /// The file of a report, in a folder that is made. Minutes later would be a bad time to find out that it cannot be
 /// written; what is there stays until then.
-fs::path report_file(const Arguments& arguments, const std::string& name) {
+fs::path report_file(const BenchArguments& arguments, const std::string& name) {
   std::error_code error;
   fs::create_directories(arguments.output, error);  // what is wrong is found below
   const fs::path file = fs::path(arguments.output) / (name + ".md");
@@ -59,7 +59,7 @@ class Progress {
 };
 
 /// The folder of scenes that was named, or flexarm's own.
-fs::path scene_folder(const Arguments& arguments, const std::string& own) {
+fs::path scene_folder(const BenchArguments& arguments, const std::string& own) {
   const std::optional<std::string> scenes =
       arguments.scenes.empty() ? own_scenes(own) : std::optional<std::string>(arguments.scenes);
   if (!scenes) throw std::runtime_error("flexarm's scenes are not installed; name their folder by --scenes");
@@ -69,7 +69,7 @@ fs::path scene_folder(const Arguments& arguments, const std::string& own) {
 /// Writes report NAME.md, its data, and the picture that plot_NAME.py draws of them. measure(progress) calls
 /// progress(part done, what is measured).
 template <class Measure, class ToData>
-int write_report(const Arguments& arguments, const std::string& name, const std::string& data_name,
+int write_report(const BenchArguments& arguments, const std::string& name, const std::string& data_name,
                  const Measure& measure, const ToData& to_data) {
   const fs::path file = report_file(arguments, name), folder = arguments.output, data = folder / (data_name + ".csv"),
                  picture = folder / (data_name + ".png");
@@ -85,7 +85,7 @@ int write_report(const Arguments& arguments, const std::string& name, const std:
   return kDone;
 }
 
-int measure_properties(const Arguments& arguments) {
+int measure_properties(const BenchArguments& arguments) {
   return write_report(
       arguments, "properties", "properties_dissipation",
       [&](const auto& progress) {
@@ -94,7 +94,7 @@ int measure_properties(const Arguments& arguments) {
       bench::decay_to_csv);
 }
 
-int measure_thesis(const Arguments& arguments) {
+int measure_thesis(const BenchArguments& arguments) {
   const fs::path scenes = scene_folder(arguments, "thesis"), file = report_file(arguments, "thesis"),
                  folder = arguments.output;
   bench::ThesisReport report;
@@ -116,7 +116,7 @@ int measure_thesis(const Arguments& arguments) {
   return kDone;
 }
 
-int measure_scaling(const Arguments& arguments) {
+int measure_scaling(const BenchArguments& arguments) {
   return write_report(
       arguments, "scaling", "scaling",
       [&](const auto& progress) {
@@ -134,7 +134,7 @@ std::vector<bench::SpeedProblem> named_problems(const std::vector<std::string>& 
   return problems;
 }
 
-int measure_speed(const Arguments& arguments) {
+int measure_speed(const BenchArguments& arguments) {
   const fs::path scenes = scene_folder(arguments, "");
   return write_report(
       arguments, "speed", "speed",
@@ -144,7 +144,7 @@ int measure_speed(const Arguments& arguments) {
       bench::runs_to_csv);
 }
 
-int measure_accuracy(const Arguments& arguments) {
+int measure_accuracy(const BenchArguments& arguments) {
   const std::string scenes = scene_folder(arguments, "").string();
   return write_report(
       arguments, "accuracy", "accuracy",
@@ -162,7 +162,7 @@ bool is_meant(const std::vector<std::string>& parts, const std::string& name) {
                                       [&](const std::string& part) { return name.find(part) != std::string::npos; });
 }
 
-std::vector<bench::HardCase> chosen_cases(const Arguments& arguments) {
+std::vector<bench::HardCase> chosen_cases(const BenchArguments& arguments) {
   std::vector<bench::HardCase> chosen;
   for (bench::HardCase& hard : bench::hard_cases())
     if (is_in(arguments.groups, hard.group) && is_meant(arguments.cases, hard.name)) chosen.push_back(std::move(hard));
@@ -184,7 +184,7 @@ int print_scenes(const std::vector<bench::HardCase>& cases) {
   return kDone;
 }
 
-int measure_hard(Arguments arguments) {
+int measure_hard(BenchArguments arguments) {
   const std::vector<bench::HardCase> cases = chosen_cases(arguments);
   if (arguments.print_only) return print_scenes(cases);
   arguments.hard.quick = arguments.quick;
@@ -215,7 +215,7 @@ std::vector<std::string> scheme_choice() {
 void add_bench(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("bench", "Measures the simulator itself");
   command->require_subcommand(1);
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<BenchArguments>();
   CLI::App* properties =
       command->add_subcommand("properties", "Properties of all time integration schemes, as a report");
   properties->add_option("--output", arguments->output, "folder for the report")->capture_default_str();

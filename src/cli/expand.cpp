@@ -9,12 +9,12 @@
 namespace flexarm::cli {
 namespace {
 
-struct Arguments {
+struct ExpandArguments {
   SceneInput scene;
   std::string output = "-";
 };
 
-int expand(const Arguments& arguments) {
+int expand(const ExpandArguments& arguments) {
   refuse_overwriting("--output", arguments.output, arguments.scene.path);
   require_writable("--output", arguments.output);
   const std::string text = read_scene(arguments.scene).urdf;
@@ -28,7 +28,7 @@ int expand(const Arguments& arguments) {
 }  // namespace
 
 void add_expand(CLI::App& app, int& status) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ExpandArguments>();
   CLI::App* command = app.add_subcommand(
       "expand", "Writes a scene with numbers in the place of its expressions, for programs that know none");
   add_scene(*command, arguments->scene);

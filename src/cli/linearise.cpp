@@ -18,11 +18,11 @@ namespace flexarm::cli {
 namespace {
 
 /// Of the state that moves most; smaller parts are left out of what is printed.
-constexpr double kVisible = 0.05;
+constexpr double kVisiblePart = 0.05;
 /// Of the largest Hankel singular value; smaller ones that are left out are not printed.
 constexpr double kLarge = 1e-6;
 
-struct Arguments {
+struct LineariseArguments {
   SceneInput scene;
   LinearRequest request;
   ResponseOptions responses;
@@ -40,7 +40,7 @@ std::string kind_of_file(const std::string& path) {
 }
 
 /// Brings the simulation to what it is linearised about, together with its sensitivities where there are any.
-void go_to_reference(const Arguments& arguments, Simulation& simulation, Sensitivities* sensitivities) {
+void go_to_reference(const LineariseArguments& arguments, Simulation& simulation, Sensitivities* sensitivities) {
   if (arguments.time) {
     while (simulation.time() < *arguments.time - 0.5 * simulation.step_size())
       if (const StepResult result = sensitivities ? sensitivities->step() : simulation.step(); !result.converged)
@@ -56,7 +56,7 @@ void go_to_reference(const Arguments& arguments, Simulation& simulation, Sensiti
                lack_of_equilibrium(simulation, result));
 }
 
-void print_poles(const LinearModel& model, const Arguments& arguments) {
+void print_poles(const LinearModel& model, const LineariseArguments& arguments) {
   fmt::print("{} states, {} inputs, {} outputs\n", model.states.size(), model.inputs.size(), model.outputs.size());
   fmt::print("{:>14} {:>14} {:>14} {:>14}  {}\n", "frequency [Hz]", "damping ratio", "real [1/s]", "imaginary", "most");
   int count = 0;
@@ -65,7 +65,7 @@ void print_poles(const LinearModel& model, const Arguments& arguments) {
     fmt::print("{:>14.7g} {:>14.4g} {:>14.7g} {:>14.7g}  {}\n", pole.frequency(), pole.damping_ratio(),
                pole.value.real(), pole.value.imag(), model.states[pole.state]);
     for (Eigen::Index i = 0; arguments.prints_shapes && i < model.positions; ++i)
-      if (std::abs(pole.mode[i]) > kVisible)
+      if (std::abs(pole.mode[i]) > kVisiblePart)
         fmt::print("    {:<32} {:>10.4f} {:>+10.4f}i\n", model.states[i], pole.mode[i].real(), pole.mode[i].imag());
   }
 }
@@ -85,7 +85,7 @@ void print_reduction(const ReducedModel& reduced, int order) {
 }
 
 /// As wide as was asked for.
-LinearModel model_of(const Simulation& simulation, const Arguments& arguments) {
+LinearModel model_of(const Simulation& simulation, const LineariseArguments& arguments) {
   try {
     LinearModel model = linearise(simulation, arguments.request);
     for (const std::string& effect : model.left_out) fmt::print(stderr, "flexarm: warning: left out: {}\n", effect);
@@ -127,7 +127,7 @@ void draw_picture(const std::string& picture, const std::string& scene, const Li
     throw std::runtime_error("no picture: it needs python3-matplotlib; its numbers are in '" + data + "'");
 }
 
-void check_files(const Arguments& arguments) {
+void check_files(const LineariseArguments& arguments) {
   const auto& [frequencies, step_until, picture] = arguments.responses;
   if (kind_of_file(arguments.output) == ".csv" && !frequencies.empty() && step_until)
     throw InputError("flexarm: --output: a .csv file has one table: expected .mat or .json for both responses");
@@ -140,7 +140,7 @@ void check_files(const Arguments& arguments) {
   }
 }
 
-int linearise_scene(Arguments arguments) {
+int linearise_scene(LineariseArguments arguments) {
   check_files(arguments);
   Simulation simulation = load_simulation(arguments.scene);
   const std::unique_ptr<Sensitivities> sensitivities =
@@ -168,7 +168,7 @@ std::string check_file(const std::string& path) {
 }  // namespace
 
 void add_linearise(CLI::App& app, int& status) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<LineariseArguments>();
   CLI::App* command =
       app.add_subcommand("linearise", "Linear model (A, B, C, D) about the equilibrium, with its poles");
   add_scene(*command, arguments->scene);

@@ -8,9 +8,9 @@ namespace flexarm::cli {
 namespace {
 
 /// Of the largest component; below it an imaginary part does not show in the digits printed.
-constexpr double kVisible = 1e-4;
+constexpr double kVisibleImaginary = 1e-4;
 
-struct Arguments {
+struct ModesArguments {
   SceneInput scene;
   int count = 10;
   Equilibrium wanted = Equilibrium::Stable;
@@ -28,7 +28,8 @@ void print_shape(const Simulation& simulation, const Mode& mode) {
   for (const NamedMotion& probe : probe_motions(simulation, mode)) motions.push_back(probe);
   for (const auto& [name, motion] : motions) {
     print_motion(name, motion.real());
-    if (motion.imag().cwiseAbs().maxCoeff() > kVisible) print_motion("  a quarter period later", -motion.imag());
+    if (motion.imag().cwiseAbs().maxCoeff() > kVisibleImaginary)
+      print_motion("  a quarter period later", -motion.imag());
   }
 }
 
@@ -52,7 +53,7 @@ void print_text(const Simulation& simulation, const std::vector<Mode>& modes) {
   }
 }
 
-int solve(const Arguments& arguments) {
+int solve(const ModesArguments& arguments) {
   Simulation simulation = load_simulation(arguments.scene);
   std::vector<Mode> modes = modes_about_equilibrium(simulation, arguments.count, arguments.wanted);
   modes.resize(std::min<std::size_t>(modes.size(), arguments.count));
@@ -68,7 +69,7 @@ int solve(const Arguments& arguments) {
 }  // namespace
 
 void add_modes(CLI::App& app, int& status) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ModesArguments>();
   CLI::App* command = app.add_subcommand("modes", "Frequencies, growth or decay, and shapes about the equilibrium");
   add_scene(*command, arguments->scene);
   add_equilibrium(*command, arguments->wanted);

@@ -13,7 +13,7 @@
 namespace flexarm::cli {
 namespace {
 
-struct Arguments {
+struct ReplayArguments {
   SceneInput scene;
   SimulationOptions simulation;
   recording::ReplayOptions replay;
@@ -37,7 +37,7 @@ bool print_report(const recording::ReplayReport& report, double largest) {
   return agrees;
 }
 
-int replay(const Arguments& arguments) {
+int replay(const ReplayArguments& arguments) {
   Simulation simulation = load_simulation(arguments.scene, arguments.simulation);
   try {
     if (!arguments.resume.empty()) read_checkpoint(simulation, arguments.resume);
@@ -55,7 +55,7 @@ int replay(const Arguments& arguments) {
 }  // namespace
 
 void add_replay(CLI::App& app, int& status) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ReplayArguments>();
   CLI::App* command = app.add_subcommand(
       "replay", "Gives the commands of a recorded run to the scene again, and compares the joints' motion");
   command->add_option("bag", arguments->replay.bag, "recorded by rosbag")->required()->check(CLI::ExistingFile);

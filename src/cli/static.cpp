@@ -10,7 +10,7 @@
 namespace flexarm::cli {
 namespace {
 
-struct Arguments {
+struct StaticArguments {
   SceneInput scene;
   std::string output;
   int load_steps = kLoadSteps;
@@ -35,7 +35,7 @@ void print_equilibrium(const Simulation& simulation) {
   fmt::print("strain energy {:.7g} J\n", simulation.energies().strain);
 }
 
-int solve(const Arguments& arguments) {
+int solve(const StaticArguments& arguments) {
   refuse_overwriting("--output", arguments.output, arguments.scene.path);
   require_writable("--output", arguments.output);
   Simulation simulation = load_simulation(arguments.scene);
@@ -56,7 +56,7 @@ int solve(const Arguments& arguments) {
 }  // namespace
 
 void add_static(CLI::App& app, int& status) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<StaticArguments>();
   CLI::App* command = app.add_subcommand("static", "Finds the equilibrium under gravity and the loads at t = 0");
   add_scene(*command, arguments->scene);
   command->add_option("--load-steps", arguments->load_steps, "steps in which gravity and loads grow")

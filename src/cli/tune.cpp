@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct TuneArguments {
   SceneInput scene;
   std::string output, commands;
   std::optional<double> accuracy, real_time;
@@ -33,10 +33,10 @@ struct Arguments {
 };
 
 /// Times at which motions are compared, at most.
-constexpr int kJudgedTimes = 150;
+constexpr int kMostJudgedTimes = 150;
 
 /// STEM_tuned.urdf, in the folder of now.
-std::string output_of(const Arguments& arguments) {
+std::string output_of(const TuneArguments& arguments) {
   const fs::path scene = arguments.scene.path;
   return !arguments.output.empty() ? arguments.output : scene.stem().string() + "_tuned" + scene.extension().string();
 }
@@ -52,7 +52,7 @@ scene::SceneDescription read(const SceneInput& input) {
   return load_simulation(input).scene();
 }
 
-void check(const Arguments& arguments) {
+void check(const TuneArguments& arguments) {
   if (arguments.accuracy.has_value() == arguments.real_time.has_value())
     throw InputError("flexarm: tune: either --accuracy or --real-time is expected");
   const std::string output = output_of(arguments);
@@ -62,7 +62,7 @@ void check(const Arguments& arguments) {
   require_writable("--output", output);
 }
 
-TuningResult search(const Arguments& arguments, TrialRuns& trials) {
+TuningResult search(const TuneArguments& arguments, TrialRuns& trials) {
   ProgressBar bar(0, 1, true);
   TuningGoal goal;
   goal.accuracy = arguments.accuracy;
@@ -71,7 +71,7 @@ TuningResult search(const Arguments& arguments, TrialRuns& trials) {
 }
 
 /// What was asked for and what was found, in sentences.
-void print_result(const Arguments& arguments, const TuningResult& result, const JudgedTimes& times) {
+void print_result(const TuneArguments& arguments, const TuningResult& result, const JudgedTimes& times) {
   fmt::print("{}", tuning_table(result, times));
   if (!result.shortcoming.empty()) fmt::print("{}\n", result.shortcoming);
   fmt::print("{} runs, {:.3g} s of computing\n", result.runs.size(), result.seconds);
@@ -87,11 +87,11 @@ void print_result(const Arguments& arguments, const TuningResult& result, const 
                                   : fmt::format("{:g} times real time", *arguments.real_time));
 }
 
-int tune_scene(const Arguments& arguments) {
+int tune_scene(const TuneArguments& arguments) {
   check(arguments);
   const scene::SceneDescription scene = read(arguments.scene);
   catch_interruptions();
-  const JudgedTimes times = judged_times(arguments.until, scene.integrator.step, kJudgedTimes);
+  const JudgedTimes times = judged_times(arguments.until, scene.integrator.step, kMostJudgedTimes);
   TrialRuns trials(scene, times, arguments.limits, bench::effort_commands(arguments.commands),
                    [] { return interruption() == 0; });
   const TuningResult result = search(arguments, trials);
@@ -118,7 +118,7 @@ int tune_scene(const Arguments& arguments) {
 }  // namespace
 
 void add_tune(CLI::App& app, int& status) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<TuneArguments>();
   CLI::App* command = app.add_subcommand(
       "tune",
       "Finds the cheapest meshes, scheme, step and tolerance for an accuracy, or the most accurate for a speed");

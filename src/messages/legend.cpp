@@ -16,7 +16,7 @@ namespace {
 constexpr double kDistance = 1.25;  ///< from the scene's centre
 constexpr double kHalfHeight = 0.4;
 constexpr double kBarRadius = 0.025;
-constexpr double kTextHeight = 0.08;
+constexpr double kLegendTextHeight = 0.08;
 constexpr double kTextDistance = 0.2;  ///< from the bar
 constexpr double kLine = 0.13;         ///< from one line of text to the next
 
@@ -45,7 +45,7 @@ class Legend {
     message_.markers.push_back(bar);
     for (const double part : {0.0, 0.5, 1.0})
       add_text(-kTextDistance, height(part), fmt::format("{:.2g} %", 100 * part * largest));
-    add_text(0, height(1) + 2 * kTextHeight, "edge strain");
+    add_text(0, height(1) + 2 * kLegendTextHeight, "edge strain");
   }
 
   /// Below the bar.
@@ -77,7 +77,7 @@ class Legend {
                 const std_msgs::ColorRGBA& color = make_color(1, 1, 1)) {
     visualization_msgs::Marker marker = next(visualization_msgs::Marker::TEXT_VIEW_FACING);
     marker.pose.position = to_point(place(right, up));
-    marker.scale.z = kTextHeight * extent_.radius;
+    marker.scale.z = kLegendTextHeight * extent_.radius;
     marker.color = color;
     marker.text = text;
     message_.markers.push_back(marker);

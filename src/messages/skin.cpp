@@ -16,7 +16,7 @@ namespace {
 /// is nearest may jump along it.
 constexpr double kLongestReach = 2, kShortestEdge = 0.25;
 /// Of a skin: beyond them nothing is split any more.
-constexpr std::size_t kMostTriangles = 60000;
+constexpr std::size_t kMostSkinTriangles = 60000;
 
 }  // namespace
 
@@ -40,7 +40,7 @@ class Skin::Splitter {
       int worst = 0;
       for (int k = 1; k < 3; ++k)
         if (reach(triangle, k) > reach(triangle, worst)) worst = k;
-      if (reach(triangle, worst) <= kLongestReach || waiting.size() + done.size() >= kMostTriangles) {
+      if (reach(triangle, worst) <= kLongestReach || waiting.size() + done.size() >= kMostSkinTriangles) {
         done.push_back(triangle);
         continue;
       }

@@ -15,7 +15,7 @@ namespace {
 constexpr double kSize = 0.06;  ///< of a handle, as a part of the scene's radius
 /// rviz is heard of four times a second while it drags.
 constexpr std::chrono::milliseconds kPatience(1500);
-constexpr double kWarningPeriod = 1;  // s
+constexpr double kPullWarningPeriod = 1;  // s
 
 visualization_msgs::InteractiveMarkerControl ball(double size) {
   visualization_msgs::Marker marker;
@@ -108,10 +108,10 @@ void PullHandles::receive(Handle& handle, const Feedback& feedback) {
   if (feedback.event_type != Feedback::POSE_UPDATE) return;
   const Vector3 target = messages::to_vector(feedback.pose.position);
   if (feedback.header.frame_id != root_frame_ || !target.allFinite()) {
-    ROS_WARN_STREAM_THROTTLE(kWarningPeriod, "'" << feedback.marker_name
-                                                 << "' is not pulled: expected a finite place in "
-                                                 << "frame '" << root_frame_ << "', got " << target.transpose()
-                                                 << " in '" << feedback.header.frame_id << "'");
+    ROS_WARN_STREAM_THROTTLE(kPullWarningPeriod, "'" << feedback.marker_name
+                                                     << "' is not pulled: expected a finite place in "
+                                                     << "frame '" << root_frame_ << "', got " << target.transpose()
+                                                     << " in '" << feedback.header.frame_id << "'");
     return;
   }
   handle.target = target;
