@@ -4,7 +4,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "analysis/rotor_motion.h"
 #include "math/least_squares.h"
 #include "math/so3.h"
 
@@ -82,7 +81,13 @@ LinearDynamics::LinearDynamics(const Model& model, const State& state, const Sch
       system_(model_, resting(scheme), BackendChoice::Matrix),
       dof_(system_.degrees_of_freedom()),
       maps_(model_, dof_),
+      rotor_rates_(model.actuators.size(), 0.0),
       pose_(maps_.moved(pose_of(state), standstill(maps_.columns()), 0)) {
+  if (reference == Reference::Instant) {
+    rotor_rates_ = known.rotors;
+    command_by_rates(model, known, model_, state_);
+    system_.hold_rotors();
+  }
   choose_independent();
   const Eigen::Index count = static_cast<Eigen::Index>(independent_.size());
   Eigen::VectorXd rates = Eigen::VectorXd::Zero(count), accelerations = rates;
@@ -104,9 +109,7 @@ LinearDynamics::LinearDynamics(const Model& model, const State& state, const Sch
     set_motion(rates, accelerations);
     assemble();
   }
-  add_rotors();
-  if (reference == Reference::Instant && !rotors_.empty())
-    throw std::runtime_error("a mechanism with elastic gears is linearised about an equilibrium alone");
+  add_rotors(reference);
 }
 
 Eigen::VectorXd LinearDynamics::coordinates_of(const KnownRates& known) const {
@@ -218,7 +221,7 @@ void LinearDynamics::put_loads(const Eigen::VectorXd& force) {
   }
 }
 
-void LinearDynamics::balance() {
+void LinearDynamics::balance(const Eigen::VectorXd& efforts) {
   const auto evaluate = [&] {
     if (!system_.evaluate(true)) throw std::runtime_error("the stiffness is not finite");
     const auto& tangent = static_cast<const SparseTangent&>(system_.tangent());
@@ -235,22 +238,42 @@ void LinearDynamics::balance() {
     const bool is_independent = place != independent_.end() && *place == column;
     if (!is_independent || !is_driven_place_[place - independent_.begin()]) rows.push_back(column);
   }
-  const Eigen::MatrixXd forces = tangent_(rows, Eigen::seq(maps_.columns(), Eigen::last));
+  const int count = maps_.columns();
+  const Eigen::MatrixXd forces = unknowns_.transpose() * tangent_.topRightCorner(count, dof_.unknowns - count);
+  const Eigen::VectorXd lacking = unknowns_.transpose() * system_.residual().head(count) +
+                                  row_maps_.bottomRows(efforts.size()).transpose() * efforts;
   Eigen::VectorXd update = Eigen::VectorXd::Zero(dof_.unknowns);
-  update.tail(forces.cols()) = -least_squares(forces, system_.residual()(rows));
+  update.tail(forces.cols()) = -least_squares(forces(rows, Eigen::all), lacking(rows));
   system_.update(update);
   evaluate();
+}
+
+ActuatorRates LinearDynamics::actuator_rates(const Eigen::VectorXd& rows) const {
+  ActuatorRates out{{}, rotor_rates_};
+  for (const Coordinate& coordinate : model_.coordinates) out.coordinates.push_back(rows[dof_.scalar_of(coordinate)]);
+  return out;
 }
 
 void LinearDynamics::assemble() {
   const CoordinateRates rows = {row_maps_ * columns_.first,
                                 motion_.value * rates_.second + motion_.first * rates_.first};
-  const NodalDynamics own = nodal_dynamics(model_, dof_, state_, contact_time_, rows);
+  NodalDynamics own = nodal_dynamics(model_, dof_, state_, contact_time_, rows);
+  const std::vector<ActuatorTerms> motors = actuator_terms(model_, state_);
+  const std::vector<double> dampers = efforts_of_gear_dampers(model_, state_, actuator_rates(rows.first));
+  const auto scalar_of = [&](std::size_t actuator) {
+    return dof_.scalar_of(model_.coordinates[model_.actuators[actuator].coordinate]);
+  };
+  // What controllers ask for because of rates is among the commands.
+  for (std::size_t i = 0; i < motors.size(); ++i)
+    own.force[scalar_of(i)] -= dampers[i] + motors[i].servo_damping * rows.first[scalar_of(i)];
   put_dampers_stress(damped_stretches(model_, dof_, pose_), rows.first);
   const StretchDamping stretched = stretch_damping(model_, dof_, maps_, pose_, columns_, spacing_);
   const Eigen::VectorXd force = own.force + stretched.of_springs;
+  const Eigen::Index coordinates = maps_.rows() - 6 * static_cast<Eigen::Index>(dof_.node_count);
   put_loads(force);
-  balance();
+  balance(force.tail(coordinates));
+  for (std::size_t i = 0; i < motors.size(); ++i)
+    if (system_.actuators().is_cut(i)) own.damping.coeffRef(scalar_of(i), scalar_of(i)) -= motors[i].servo_damping;
 
   const VariedRates varied = varied_rates(dof_, motion_, rows);
   const Eigen::MatrixXd tests = motion_.value.transpose(), unknowns = unknowns_ * allowed_.value;
@@ -261,7 +284,6 @@ void LinearDynamics::assemble() {
   stiffness_ = unknowns.transpose() * (tangent_.topLeftCorner(count, count) * unknowns) +
                tests * (own.mass * varied.second + own.damping * varied.first + own.turning * motion_.value +
                         stretched.by_rates * motion_.first + stretched.by_places * motion_.value);
-  const Eigen::Index coordinates = maps_.rows() - 6 * static_cast<Eigen::Index>(dof_.node_count);
   residual_ = unknowns.transpose() * system_.residual().head(count) +
               motion_.value.bottomRows(coordinates).transpose() * force.tail(coordinates);
 }
@@ -310,7 +332,7 @@ Eigen::VectorXd LinearDynamics::free_accelerations() const {
   return accelerations;
 }
 
-void LinearDynamics::add_rotors() {
+void LinearDynamics::add_rotors(Reference reference) {
   const int count = maps_.columns();
   const RotorEntries entries = rotor_entries(model_, dof_, state_, system_.actuators(), count);
   rotors_ = entries.actuators;
@@ -319,19 +341,34 @@ void LinearDynamics::add_rotors() {
   Eigen::MatrixXd allowed = Eigen::MatrixXd::Zero(count + more, own + more);
   allowed.topLeftCorner(count, own) = allowed_.value;
   allowed.bottomRightCorner(more, more).setIdentity();
-  const auto extend = [&](Eigen::MatrixXd& matrix, const std::vector<Eigen::Triplet<double>>& added) {
+  Eigen::MatrixXd turning = Eigen::MatrixXd::Zero(count + more, own + more);  // of what dampers feel
+  turning.topLeftCorner(count, own) = allowed_.first;
+  const auto summed = [&](const std::vector<Eigen::Triplet<double>>& added) {
     Eigen::SparseMatrix<double> sum(count + more, count + more);
     sum.setFromTriplets(added.begin(), added.end());
-    Eigen::MatrixXd extended = allowed.transpose() * (sum * allowed);
+    return sum;
+  };
+  const auto extend = [&](Eigen::MatrixXd& matrix, const Eigen::MatrixXd& added) {
+    Eigen::MatrixXd extended = allowed.transpose() * added;
     extended.topLeftCorner(own, own) += matrix;
     matrix = std::move(extended);
   };
-  extend(mass_, entries.mass);
-  extend(damping_, entries.damping);
-  extend(stiffness_, entries.stiffness);
+  const Eigen::SparseMatrix<double> damping = summed(entries.damping);
+  extend(mass_, summed(entries.mass) * allowed);
+  extend(damping_, damping * allowed);
+  extend(stiffness_, summed(entries.stiffness) * allowed + damping * turning);
   for (Eigen::VectorXd* vector : {&residual_, &rates_.first, &rates_.second}) {
     vector->conservativeResize(own + more);
     vector->tail(more).setZero();
+  }
+  if (reference != Reference::Instant) return;
+  const Eigen::VectorXd rows = row_maps_ * columns_.first;
+  const std::vector<double> dampers = efforts_of_gear_dampers(model_, state_, actuator_rates(rows));
+  for (Eigen::Index r = 0; r < more; ++r) {
+    const int actuator = rotors_[r];
+    rates_.first[own + r] = rotor_rates_[actuator];
+    rates_.second[own + r] =
+        (system_.actuators().effort_on_rotor(actuator) - dampers[actuator]) / model_.actuators[actuator].drive.inertia;
   }
 }
 

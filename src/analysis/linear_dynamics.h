@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "analysis/nodal_dynamics.h"
+#include "analysis/rotor_motion.h"
 #include "integrators/step_system.h"
 
 namespace flexarm {
@@ -19,9 +20,8 @@ enum class Reference {
 };
 
 /// How fast it moves.
-struct KnownRates {
-  std::vector<Vector6> nodes;       ///< {v, w}, world axes
-  std::vector<double> coordinates;  ///< per coordinate
+struct KnownRates : ActuatorRates {
+  std::vector<Vector6> nodes;  ///< {v, w}, world axes
 };
 
 /// The continuous equations of motion of the nodes, linearised. The coordinates y are those of MotionMaps
@@ -67,12 +67,13 @@ class LinearDynamics {
   void put_dampers_stress(const std::vector<Stretch>& stretches, const Eigen::VectorXd& speeds);
   void put_loads(const Eigen::VectorXd& force);
   /// The balance of what is at rest under inertia's forces, with the multipliers that close loops best.
-  void balance();
+  void balance(const Eigen::VectorXd& efforts);
   void assemble();
+  ActuatorRates actuator_rates(const Eigen::VectorXd& rows) const;
   void move_to_steady(const Eigen::VectorXd& rates);
   void move(const Eigen::VectorXd& increment);
   Eigen::VectorXd free_accelerations() const;
-  void add_rotors();
+  void add_rotors(Reference reference);
   std::vector<int> free_places() const;
 
   Model model_;  // in which time stands still, and driven coordinates are free
@@ -86,6 +87,7 @@ class LinearDynamics {
   MotionMaps maps_;
   std::vector<int> independent_, dependent_, scalars_, rotors_;
   std::vector<bool> is_driven_place_;  // per independent column
+  std::vector<double> rotor_rates_;    // per actuator
 
   // ---- of the reference
   MechanismPose pose_;

@@ -1,7 +1,11 @@
 #include "analysis/rotor_motion.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <Eigen/SparseCore>
 
+#include "integrators/step_histories.h"
 #include "joints/elasticity.h"
 #include "joints/motor_step.h"
 
@@ -27,6 +31,22 @@ void add(const Coupling& coupling, int q, int rotor, Triplets& entries) {
 /// Of the controller in force; null where none is, or it is off.
 const ServoLaw* law_in_force(const Actuator& actuator, const ActuatorState& state) {
   return actuator.servo && state.servo.off == 0 ? &law_of(*actuator.servo, state.servo) : nullptr;
+}
+
+/// Of a controller, at a time of a motion.
+struct SetPointNow {
+  double value, rate;
+};
+
+SetPointNow set_point_now(const Model& model, const Servo& servo, const ServoState& state, double time) {
+  if (!std::isnan(state.set_point)) {
+    const double ahead = std::min(time - state.set_time, 0.0);
+    return {state.set_point + ahead * (state.set_rate + 0.5 * ahead * state.set_acceleration),
+            time <= state.set_time ? state.set_rate + ahead * state.set_acceleration : 0};
+  }
+  if (servo.set_point < 0) return {servo.start, 0};
+  const TimeFunction& history = model.histories[servo.set_point];
+  return {history(time), history.derivative(time)};
 }
 
 /// Side of a servo on which a gain acts.
@@ -56,9 +76,42 @@ std::vector<ActuatorTerms> actuator_terms(const Model& model, const State& state
     const double spring = actuator.spring ? actuator.spring->elasticity.damping : 0;
     const ServoLaw* law = law_in_force(actuator, state.actuators[i]);
     const double servo = law && !actuator.drive.gear ? law->derivative : 0;
-    terms.push_back({coordinate.joint, coordinate.component, spring + servo, armature(model, coordinate)});
+    terms.push_back({coordinate.joint, coordinate.component, spring + servo, armature(model, coordinate), servo});
   }
   return terms;
+}
+
+void command_by_rates(const Model& model, const ActuatorRates& rates, Model& frozen, State& state) {
+  for (std::size_t i = 0; i < model.actuators.size(); ++i) {
+    const Actuator& actuator = model.actuators[i];
+    const std::size_t c = actuator.coordinate;
+    const ServoLaw* law = law_in_force(actuator, state.actuators[i]);
+    if (!law || law->mode == ServoMode::Effort || model.coordinates[c].motion >= 0) continue;
+    const Servo& servo = *actuator.servo;
+    const SetPointNow set = set_point_now(model, servo, state.actuators[i].servo, state.time);
+    if (!std::isnan(state.actuators[i].servo.set_point)) state.actuators[i].servo.set_point = set.value;
+    const double measured = actuator.drive.gear && !servo.on_link ? rates.rotors[i] : rates.coordinates[c];
+    const double wanted = law->mode == ServoMode::Velocity ? set.value : set.rate;
+    Coordinate& coordinate = frozen.coordinates[c];
+    const double of_scene = coordinate.effort < 0 ? 0 : frozen.histories[coordinate.effort](state.time);
+    state.commands[c] = applied_effort(coordinate, state.commands[c], of_scene) + law->derivative * (wanted - measured);
+    double& limit = frozen.actuators[i].servo->effort_limit;
+    if (coordinate.effort_limit > 0) limit = std::min(limit, coordinate.effort_limit);
+    coordinate.effort_limit = 0;
+  }
+}
+
+std::vector<double> efforts_of_gear_dampers(const Model& model, const State& state, const ActuatorRates& rates) {
+  std::vector<double> efforts(model.actuators.size(), 0.0);
+  for (std::size_t i = 0; i < efforts.size(); ++i) {
+    const Actuator& actuator = model.actuators[i];
+    if (!actuator.drive.gear) continue;
+    const Coordinate& coordinate = model.coordinates[actuator.coordinate];
+    const double position = state.released[coordinate.joint].displacement[coordinate.component % 3];
+    efforts[i] = elastic_damping(*actuator.drive.gear, state.actuators[i].angle - position) *
+                 (rates.rotors[i] - rates.coordinates[actuator.coordinate]);
+  }
+  return efforts;
 }
 
 RotorEntries rotor_entries(const Model& model, const DegreesOfFreedom& dof, const State& state,
@@ -74,7 +127,7 @@ RotorEntries rotor_entries(const Model& model, const DegreesOfFreedom& dof, cons
     CoordinateStep twist;
     twist.begin = twist.end = state.actuators[i].angle - position;
     const Elasticity& gear = *actuator.drive.gear;
-    const ServoLaw* law = law_in_force(actuator, state.actuators[i]);
+    const ServoLaw* law = resting.is_cut(i) ? nullptr : law_in_force(actuator, state.actuators[i]);
     const bool holds = law && law->mode == ServoMode::Position;
     add(coupling(-elastic_effort(gear, twist).slope, actuator.servo, holds ? law->proportional : 0), q, rotor,
         entries.stiffness);

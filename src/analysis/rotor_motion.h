@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include <Eigen/Core>
 #include <Eigen/SparseCore>
 
 #include "integrators/actuators.h"
@@ -23,11 +24,25 @@ struct MotionMatrices {
 struct ActuatorTerms {
   int joint, component;
   double damping = 0, mass = 0;
+  double servo_damping = 0;  ///< part of the damping
 };
 std::vector<ActuatorTerms> actuator_terms(const Model& model, const State& state);
 
+/// Rates of what motors and controllers measure.
+struct ActuatorRates {
+  std::vector<double> coordinates;  ///< per coordinate
+  std::vector<double> rotors;       ///< per actuator, of rotors behind elastic gears
+};
+
+/// An equilibrium knows no rates: for a motion's instant what controllers ask for because of them, and set points that
+/// move, become commands to the motors. Limits cut the sum. `frozen`: the model in which time stands still.
+void command_by_rates(const Model& model, const ActuatorRates& rates, Model& frozen, State& state);
+
+/// What the dampers of elastic gears take from each rotor, per actuator [N m or N].
+std::vector<double> efforts_of_gear_dampers(const Model& model, const State& state, const ActuatorRates& rates);
+
 /// What rotors behind elastic gears, each with a row and a column of its own from `first` on, add to K, D and M,
-/// where the stiffness has them follow their coordinates at rest, as `resting` says.
+/// where the stiffness has them follow their coordinates at rest, or hold them, as `resting` says.
 struct RotorEntries {
   std::vector<Eigen::Triplet<double>> stiffness, damping, mass;
   std::vector<int> actuators;  ///< of the rotors

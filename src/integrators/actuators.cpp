@@ -245,7 +245,9 @@ void Actuators::evaluate(Balance& balance) {
       rotor.acceleration_offset += rotor.acceleration_slope * part.carried;
       part.load_by_carried = actuator.drive.inertia * rotor.acceleration_slope;
     }
-    part.action = motor_action(actuator.drive, part.demand, rotor, link, part.action.increment);
+    part.action = holds_rotors_ && actuator.drive.gear
+                      ? held_motor_action(actuator.drive, part.demand, rotor, link)
+                      : motor_action(actuator.drive, part.demand, rotor, link, part.action.increment);
     if (is_gyroscope) add_moment(*actuator.gyroscope, configuration_.state().actuators[i], part, balance);
     const PassiveEffort spring = actuator.spring ? spring_effort(*actuator.spring, link) : PassiveEffort();
     balance.dissipated += part.action.dissipated + spring.dissipated;

@@ -20,6 +20,8 @@ class Actuators {
   /// against friction that sticks or samples.
   Actuators(StepConfiguration& configuration, const StepHistories& histories, const HhtInterpolation* interpolation);
 
+  /// Of an equilibrium: from now on rotors behind elastic gears stay where the state has them.
+  void hold_rotors() { holds_rotors_ = true; }
   void begin();
   /// Before joints fold their slaves.
   void evaluate(Balance& balance);
@@ -34,6 +36,12 @@ class Actuators {
   double hand_to_integrals(State& state) const;
   /// Of an actuator's motor on its coordinate, at the last evaluation [N m/rad or N/m].
   double stiffness(std::size_t actuator) const { return -parts_[actuator].action.slope; }
+  /// The sum of what gear and motor do to its rotor, at the last evaluation [N m or N].
+  double effort_on_rotor(std::size_t actuator) const {
+    return parts_[actuator].action.motor - parts_[actuator].action.effort;
+  }
+  /// The motor gives less than it was asked for at the last evaluation.
+  bool is_cut(std::size_t actuator) const { return parts_[actuator].action.motor != parts_[actuator].action.demand; }
 
  private:
   /// Of one actuator in this step.
@@ -70,6 +78,7 @@ class Actuators {
   const HhtInterpolation* interpolation_;
   std::vector<Part> parts_;        // per actuator
   std::vector<int> gyroscope_of_;  // per joint: the actuator that has one, or -1
+  bool holds_rotors_ = false;
 };
 
 }  // namespace flexarm

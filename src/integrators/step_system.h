@@ -57,6 +57,9 @@ class StepSystem {
   /// `load_factor`, histories and motions at time 0. `drag`: see Drag::strength.
   void begin_equilibrium(const State& state, double load_factor, double drag = 0);
 
+  /// See Actuators::hold_rotors().
+  void hold_rotors() { actuators_.hold_rotors(); }
+
   /// Assembles residual (and tangent) of the trial configuration. False if something is not finite, or a slider is off
   /// its line.
   bool evaluate(bool with_tangent);

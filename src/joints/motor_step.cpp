@@ -168,4 +168,9 @@ MotorAction motor_action(const Drive& drive, const MotorDemand& demand, const Ro
   return balance.action(u, balance.smooth(u), true);
 }
 
+MotorAction held_motor_action(const Drive& drive, const MotorDemand& demand, const RotorStep& rotor,
+                              const CoordinateStep& link) {
+  return RotorBalance(drive, demand, rotor, link).action(0, {}, false);
+}
+
 }  // namespace flexarm

@@ -37,5 +37,8 @@ struct MotorAction {
 /// `link`: step of the coordinate; `guess`: of the rotor's increment.
 MotorAction motor_action(const Drive& drive, const MotorDemand& demand, const RotorStep& rotor,
                          const CoordinateStep& link, double guess);
+/// The same of a rotor behind an elastic gear that stays where it is.
+MotorAction held_motor_action(const Drive& drive, const MotorDemand& demand, const RotorStep& rotor,
+                              const CoordinateStep& link);
 
 }  // namespace flexarm

@@ -41,6 +41,8 @@ std::vector<std::string> left_out(const Model& model, const State& state) {
     const Actuator& actuator = model.actuators[coordinate.actuator];
     if (actuator.drive.friction != 0 || actuator.drive.loss != 0)
       effects.push_back(fmt::format("friction and losses of the drive of '{}'", coordinate.name));
+    if (std::isfinite(actuator.drive.velocity_limit))
+      effects.push_back(fmt::format("what the motor of '{}' loses with its speed", coordinate.name));
     if (actuator.gyroscope)
       effects.push_back(fmt::format("the momentum of the rotor of '{}' as its axis turns", coordinate.name));
     if (!actuator.servo) continue;

@@ -48,8 +48,10 @@ KnownRates published_rates(const Simulation& simulation) {
   const Scheme scheme = make_scheme(simulation.scene().integrator);
   velocities.update_rates(model, dof, scheme, state_of(simulation));
   velocities.update_nodes(model, dof, scheme, state_of(simulation));
-  KnownRates rates{velocities.nodes(), {}};
+  KnownRates rates;
+  rates.nodes = velocities.nodes();
   for (const Coordinate& coordinate : model.coordinates) rates.coordinates.push_back(velocities.rate(coordinate));
+  for (const ActuatorState& actuator : state_of(simulation).actuators) rates.rotors.push_back(actuator.rate);
   return rates;
 }
 

@@ -49,18 +49,25 @@ double error_of_third_derivative(const Model& model, double time) {
   const Scheme scheme = *find_scheme("newmark");
   const DegreesOfFreedom dof(model);
   const MotionMaps maps(model, dof);
-  const State start = initial_state(model);
+  State start = initial_state(model);
+  for (std::size_t i = 0; i < model.actuators.size(); ++i) {
+    start.actuators[i].angle = 0.2 - 0.3 * static_cast<double>(i);
+    start.actuators[i].rate = -0.4 + 0.7 * static_cast<double>(i);
+  }
   VectorXd rates(maps.columns());
   for (Eigen::Index i = 0; i < rates.size(); ++i) rates[i] = 0.3 * std::sin(1.7 * static_cast<double>(i) + 1);
   const VectorXd none = VectorXd::Zero(rates.size());
-  const auto at = [&](const MechanismPose& pose, const VectorXd& own) {
-    return LinearDynamics(model, placed(start, pose), scheme, Reference::Instant,
-                          rates_by(model, dof, maps, pose, own));
+  const auto at = [&](const MechanismPose& pose, const VectorXd& own, const std::vector<ActuatorState>& actuators) {
+    State state = placed(start, pose);
+    state.actuators = actuators;
+    KnownRates known = rates_by(model, dof, maps, pose, own);
+    for (const ActuatorState& actuator : actuators) known.rotors.push_back(actuator.rate);
+    return LinearDynamics(model, state, scheme, Reference::Instant, known);
   };
   const MechanismPose straight = maps.moved(pose_of(start), {none, none}, 0);
   // Without loops the pose may be any; with them, what moves alone is the independent coordinates.
   const MechanismPose pose = model.closures.empty() ? maps.moved(straight, {rates, none}, 0.2) : straight;
-  const LinearDynamics dynamics = at(pose, rates);
+  const LinearDynamics dynamics = at(pose, rates, start.actuators);
   const auto columns = [&](const VectorXd& own) {
     VectorXd all = VectorXd::Zero(rates.size());
     for (std::size_t i = 0; i < dynamics.scalars().size(); ++i)
@@ -68,11 +75,23 @@ double error_of_third_derivative(const Model& model, double time) {
     return all;
   };
   const CoordinateRates way = dynamics.rates_of_columns();
+  const auto rotors_ahead = [&](double ahead) {
+    std::vector<ActuatorState> actuators = start.actuators;
+    const Eigen::Index count = static_cast<Eigen::Index>(dynamics.rotors().size());
+    for (Eigen::Index r = 0; r < count; ++r) {
+      ActuatorState& rotor = actuators[dynamics.rotors()[r]];
+      const double acceleration = dynamics.accelerations().tail(count)[r];
+      rotor.angle += ahead * (rotor.rate + 0.5 * ahead * acceleration);
+      rotor.rate += ahead * acceleration;
+    }
+    return actuators;
+  };
   std::array<VectorXd, 2> accelerations;
   for (const int side : {0, 1}) {
     const double ahead = side ? time : -time;
-    accelerations[side] =
-        at(maps.moved(pose, way, ahead), columns(dynamics.rates() + ahead * dynamics.accelerations())).accelerations();
+    accelerations[side] = at(maps.moved(pose, way, ahead), columns(dynamics.rates() + ahead * dynamics.accelerations()),
+                             rotors_ahead(ahead))
+                              .accelerations();
   }
   const VectorXd difference = (accelerations[1] - accelerations[0]) / (2 * time);
   const VectorXd third = solution(
@@ -102,7 +121,27 @@ TEST(LinearDynamics, OfAFlexibleArmInMotion) {
   expect_second_order(build_model(builder.scene), 3e-4);
 }
 
-TEST(LinearDynamics, OfALoopInMotion) {
+/// A motor on `coordinate`, behind an elastic gear if that has a stiffness.
+scene::DriveDescription drive(const std::string& coordinate, double inertia, double stiffness, double damping) {
+  scene::DriveDescription out;
+  out.coordinate = coordinate;
+  out.gear = 1;
+  out.rotor_inertia = inertia;
+  out.stiffness = stiffness;
+  out.damping = damping;
+  return out;
+}
+
+scene::ServoDescription servo(const std::string& coordinate, double kp, double kd) {
+  scene::ServoDescription out;
+  out.coordinate = coordinate;
+  out.kp = kp;
+  out.kd = kd;
+  return out;
+}
+
+/// The loop below, whose joints have dampers.
+SceneBuilder damped_four_bar() {
   SceneBuilder builder;
   builder.scene.gravity = Vector3(0, 0, -3);
   for (const char* name : {"crank", "rocker", "coupler"}) builder.body(name, 2, Vector3(0.1, 0.1, -0.05), kInertia);
@@ -111,9 +150,41 @@ TEST(LinearDynamics, OfALoopInMotion) {
   builder.joint("knee", scene::JointKind::Continuous, "crank", "coupler", Vector3(0, 0, -0.7), y);
   builder.joint("foot", scene::JointKind::Continuous, "world", "rocker", Vector3(1, 0, 0.2), y);
   close_loop(builder, "hip", scene::JointKind::Continuous, "coupler", "rocker", Vector3(0, 0, -0.9), y);
+  for (scene::JointDescription& joint : builder.scene.joints) joint.damping = 0.4;
+  return builder;
+}
+
+TEST(LinearDynamics, OfALoopInMotion) {
+  SceneBuilder builder = damped_four_bar();
+  for (scene::JointDescription& joint : builder.scene.joints) joint.damping = 0;
   const Model model = build_model(builder.scene);
   ASSERT_FALSE(model.closures.empty());
   expect_second_order(model, 3e-3);
+}
+
+// Efforts of coordinates that a loop holds turn with the others.
+TEST(LinearDynamics, OfALoopWithDampersInMotion) {
+  expect_second_order(build_model(damped_four_bar().scene), 3e-3);
+}
+
+TEST(LinearDynamics, OfRotorsBehindElasticGearsInMotion) {
+  SceneBuilder builder;
+  builder.scene.gravity = Vector3(0, 0.5, -2);
+  builder.beam("upper", {Vector3(1, 0, 0)}, kSoft, 2, 2);
+  builder.body("load", 2, Vector3(0.1, 0.1, -0.05), kInertia);
+  builder.joint("shoulder", scene::JointKind::Continuous, "world", "upper", Vector3::Zero(), Vector3::UnitZ());
+  builder.joint("wrist", scene::JointKind::Continuous, "upper", "load", Vector3(1, 0, 0), Vector3::UnitY());
+  builder.scene.drives = {drive("shoulder", 0.4, 50, 0.7), drive("wrist", 0.1, 20, 0.3)};
+  builder.scene.servos = {servo("shoulder", 30, 2), servo("wrist", 5, 0.4)};
+  builder.scene.servos[1].side = scene::ServoDescription::Side::Link;
+  expect_second_order(build_model(builder.scene), 3e-4);
+}
+
+TEST(LinearDynamics, OfAMotorOnALoopInMotion) {
+  SceneBuilder builder = damped_four_bar();
+  builder.scene.drives = {drive("root", 0.4, 50, 0.7), drive("foot", 0.1, 20, 0.3)};
+  builder.scene.servos = {servo("root", 30, 2), servo("foot", 5, 0.4)};
+  expect_second_order(build_model(builder.scene), 3e-3);
 }
 
 }  // namespace
