@@ -24,9 +24,6 @@ Vector3 rotation_between(const Quaternion& from, const Quaternion& to) {
 
 MechanismStates::MechanismStates(const Model& model, const MechanismMotion& reference)
     : model_(undriven(model)), dof_(model_), maps_(model_, dof_), reference_(reference) {
-  if (std::any_of(model.actuators.begin(), model.actuators.end(),
-                  [](const Actuator& actuator) { return actuator.drive.gear.has_value(); }))
-    throw std::runtime_error("a mechanism with elastic gears has no linear states about an instant");
   std::vector<bool> is_driven(maps_.columns(), false);
   for (std::size_t c = 0; c < model.coordinates.size(); ++c)
     if (const int column = dof_.equation[dof_.scalar_of(model.coordinates[c])]; column >= 0)
@@ -38,6 +35,10 @@ MechanismStates::MechanismStates(const Model& model, const MechanismMotion& refe
     columns_.push_back(column);
     scalars_.push_back(scalars[column]);
   }
+  for (std::size_t i = 0; i < model.actuators.size(); ++i)
+    if (model.actuators[i].drive.gear &&
+        dof_.equation[dof_.scalar_of(model.coordinates[model.actuators[i].coordinate])] >= 0)
+      rotors_.push_back(static_cast<int>(i));
   for (int i = 0; i < dof_.node_count; ++i)
     if (const int column = dof_.equation[dof_.first[i] + 3]; column >= 0) spins_.push_back(column);
   for (const Coordinate& coordinate : model.coordinates)
@@ -105,25 +106,32 @@ Eigen::VectorXd MechanismStates::turning(const Eigen::VectorXd& turned) const {
 
 Eigen::VectorXd MechanismStates::deviation(const MechanismMotion& motion) const {
   const Eigen::VectorXd way = places(motion.pose), rate = rates(motion) - rates_ + turning(way);
-  Eigen::VectorXd out(2 * static_cast<Eigen::Index>(columns_.size()));
-  out << way(columns_), rate(columns_);
+  const auto count = static_cast<Eigen::Index>(rotors_.size());
+  Eigen::VectorXd turns(count), spins(count);
+  for (Eigen::Index r = 0; r < count; ++r) {
+    const int rotor = rotors_[r];
+    turns[r] = motion.rotors[rotor] - reference_.rotors[rotor];
+    spins[r] = motion.rates.rotors[rotor] - reference_.rates.rotors[rotor];
+  }
+  Eigen::VectorXd out(size());
+  out << way(columns_), turns, rate(columns_), spins;
   return out;
 }
 
 MechanismMotion MechanismStates::moved(int state, double way) const {
-  const int count = static_cast<int>(columns_.size());
-  const int column = columns_[state % count];
-  const bool is_rate = state >= count;
+  const int place = state % positions(), own_count = static_cast<int>(columns_.size());
+  const bool is_rate = state >= positions(), is_rotor = place >= own_count;
+  const int column = is_rotor ? -1 : columns_[place];
   const Eigen::MatrixXd maps = maps_.at(reference_.pose);
   Eigen::VectorXd turned = Eigen::VectorXd::Zero(maps_.columns());
-  if (!is_rate) {
-    const auto place = std::lower_bound(independent_.begin(), independent_.end(), column) - independent_.begin();
-    turned = way * maps_.allowed(reference_.pose, maps, independent_).col(place);
+  if (!is_rate && !is_rotor) {
+    const auto free = std::lower_bound(independent_.begin(), independent_.end(), column) - independent_.begin();
+    turned = way * maps_.allowed(reference_.pose, maps, independent_).col(free);
   }
   MechanismMotion out;
   out.pose = maps_.moved(reference_.pose, {turned, Eigen::VectorXd::Zero(turned.size())}, 1);
   Eigen::VectorXd rate = rates_ - turning(turned);
-  if (is_rate) rate[column] += way;
+  if (is_rate && !is_rotor) rate[column] += way;
   const Eigen::MatrixXd own = maps_.at(out.pose);
   const Eigen::VectorXd columns = maps_.allowed(out.pose, own, independent_) * rate(independent_), rows = own * columns;
   for (int i = 0; i < dof_.node_count; ++i) {
@@ -133,6 +141,9 @@ MechanismMotion MechanismStates::moved(int state, double way) const {
   }
   for (const Coordinate& coordinate : model_.coordinates)
     out.rates.coordinates.push_back(rows[dof_.scalar_of(coordinate)]);
+  out.rotors = reference_.rotors;
+  out.rates.rotors = reference_.rates.rotors;
+  if (is_rotor) (is_rate ? out.rates.rotors : out.rotors)[rotors_[place - own_count]] += way;
   return out;
 }
 

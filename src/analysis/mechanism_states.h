@@ -13,17 +13,21 @@ namespace flexarm {
 struct MechanismMotion {
   MechanismPose pose;
   KnownRates rates;
+  std::vector<double> rotors;  ///< angles, per actuator
 };
 
-/// Positions y, those of LinearDynamics that no motion drives, then their rates, seen from a reference.
+/// Positions y, those of LinearDynamics that no motion drives, rotors behind elastic gears last, then their rates, seen
+/// from a reference.
 class MechanismStates {
  public:
-  /// @throws std::runtime_error at a dead point, and behind elastic gears, whose rotors are no states about an instant.
+  /// @throws std::runtime_error at a dead point.
   MechanismStates(const Model& model, const MechanismMotion& reference);
   MechanismStates(const MechanismStates&) = delete;
 
-  /// Scalars of degrees_of_freedom() that y are; states are twice as many.
+  int size() const { return 2 * positions(); }
+  /// Scalars of degrees_of_freedom() that the first of y are, and actuators whose rotors the others are.
   const std::vector<int>& scalars() const { return scalars_; }
+  const std::vector<int>& rotors() const { return rotors_; }
   const DegreesOfFreedom& degrees_of_freedom() const { return dof_; }
   /// The states of another motion, less those of the reference, up to what is quadratic in how far off it is. The
   /// mechanism may be another one with the same numbering.
@@ -38,6 +42,7 @@ class MechanismStates {
   /// Of columns that are spins: by which their rate differs from the derivative of a small rotation, `turned` from the
   /// reference.
   Eigen::VectorXd turning(const Eigen::VectorXd& turned) const;
+  int positions() const { return static_cast<int>(columns_.size() + rotors_.size()); }
 
   Model model_;  // whose driven coordinates are free
   DegreesOfFreedom dof_;
@@ -45,6 +50,7 @@ class MechanismStates {
   MechanismMotion reference_;
   std::vector<int> independent_;        // columns, the driven ones included
   std::vector<int> columns_, scalars_;  // that y are
+  std::vector<int> rotors_;             // actuators
   std::vector<int> spins_;              // first of three columns that are the spin of a node or a joint
   Eigen::VectorXd rates_;               // of the reference, per column
 };

@@ -112,7 +112,7 @@ initial_state: the states of linear models about the start, too (LinearModel.sta
 
 Steps are those of the object that is returned, whose `simulation` this is. Raises ValueError if a parameter is unknown, or
 changes what no derivative tells (numbers of elements, the step), and if the simulation has moved; SceneError if its scheme
-has none; RuntimeError for initial states at a dead point or behind elastic gears.)";
+has none; RuntimeError for initial states at a dead point.)";
 
 constexpr const char* kRun = R"(Advances by so many steps while other threads run.
 

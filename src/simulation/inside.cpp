@@ -1,5 +1,6 @@
 #include "simulation/inside.h"
 
+#include "analysis/mechanism_states.h"
 #include "simulation/implementation.h"
 
 namespace flexarm {
@@ -44,14 +45,18 @@ void take_samples(State& state, Simulation& simulation, bool all) {
   flexarm::take_samples(inside.scene.sensors, view, inside.published, all, state.samples);
   inside.forget_published();
 }
-State start_at(const Simulation& simulation, const std::vector<NodePose>& poses, const std::vector<Released>& released,
-               const std::vector<Vector6>& velocities) {
+State start_at(const Simulation& simulation, const MechanismMotion& motion) {
   auto& inside = Inside::of(simulation);
   Model placed = inside.model;
-  placed.nodes = poses;
-  placed.initial_released = released;
-  placed.initial_velocity = velocities;
+  placed.nodes = motion.pose.nodes;
+  placed.initial_released = motion.pose.released;
+  placed.initial_velocity = motion.rates.nodes;
   State state = initial_state(placed);
+  for (std::size_t i = 0; i < state.actuators.size(); ++i) {
+    if (!placed.actuators[i].drive.gear) continue;  // the rotor turns with its coordinate
+    state.actuators[i].angle = motion.rotors[i];
+    state.actuators[i].rate = motion.rates.rotors[i];
+  }
   inside.stepper->initialise(state);
   return state;
 }

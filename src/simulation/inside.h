@@ -13,6 +13,7 @@
 namespace flexarm {
 
 class StepFollower;
+struct MechanismMotion;
 
 const Model& model_of(const Simulation& simulation);
 const State& state_of(const Simulation& simulation);
@@ -36,10 +37,8 @@ void accompany(Simulation& simulation, StepFollower* follower);
 void show(const State& state, Simulation& simulation);
 /// Lets sensors measure in a state of a simulation of a like model: all of them, or those of which a sample is due.
 void take_samples(State& state, Simulation& simulation, bool all);
-/// The state in which a simulation would start if its nodes and joints were placed like this, at these velocities
-/// ({v, w}, world axes).
-State start_at(const Simulation& simulation, const std::vector<NodePose>& poses, const std::vector<Released>& released,
-               const std::vector<Vector6>& velocities);
+/// The state in which a simulation would start in this motion.
+State start_at(const Simulation& simulation, const MechanismMotion& motion);
 
 /// Replaces the state by any that the simulator could have come to, as one read from a file.
 /// @throws std::invalid_argument if it is not one of this simulation's; which is as before then

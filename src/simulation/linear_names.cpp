@@ -55,4 +55,10 @@ KnownRates published_rates(const Simulation& simulation) {
   return rates;
 }
 
+MechanismMotion motion_of(const Simulation& simulation) {
+  MechanismMotion motion{pose_of(state_of(simulation)), published_rates(simulation), {}};
+  for (const ActuatorState& actuator : state_of(simulation).actuators) motion.rotors.push_back(actuator.angle);
+  return motion;
+}
+
 }  // namespace flexarm

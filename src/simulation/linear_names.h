@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "analysis/linear_dynamics.h"
+#include "analysis/mechanism_states.h"
 #include "flexarm/simulation/simulation.h"
 
 namespace flexarm {
@@ -15,5 +16,7 @@ std::vector<std::string> coordinate_names(const Model& model, const DegreesOfFre
 
 /// Velocities for output of all nodes and joint coordinates.
 KnownRates published_rates(const Simulation& simulation);
+/// The same with where they are.
+MechanismMotion motion_of(const Simulation& simulation);
 
 }  // namespace flexarm

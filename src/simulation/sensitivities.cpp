@@ -42,10 +42,6 @@ bool is_at_start(const Simulation& simulation) {
   return is_same && i == numbers.size();
 }
 
-MechanismMotion motion_of(const Simulation& simulation) {
-  return {pose_of(state_of(simulation)), published_rates(simulation)};
-}
-
 }  // namespace
 
 class Sensitivities::Implementation {
@@ -202,15 +198,15 @@ std::vector<std::string> Sensitivities::output_names(const std::vector<std::stri
 MatrixXd Sensitivities::states() const {
   const Simulation& own = implementation_->simulation;
   const MechanismStates states(model_of(own), motion_of(own));
-  const Eigen::Index size = 2 * static_cast<Eigen::Index>(states.scalars().size());
   return implementation_->derivative(
-      size, [&](const Simulation& neighbour) { return states.deviation(motion_of(neighbour)); });
+      states.size(), [&](const Simulation& neighbour) { return states.deviation(motion_of(neighbour)); });
 }
 
 std::vector<std::string> Sensitivities::state_names() const {
   const Simulation& own = implementation_->simulation;
   const MechanismStates states(model_of(own), motion_of(own));
-  std::vector<std::string> names = coordinate_names(model_of(own), states.degrees_of_freedom(), states.scalars(), {});
+  std::vector<std::string> names =
+      coordinate_names(model_of(own), states.degrees_of_freedom(), states.scalars(), states.rotors());
   const std::size_t count = names.size();
   for (std::size_t i = 0; i < count; ++i) names.push_back("d/dt " + names[i]);
   return names;

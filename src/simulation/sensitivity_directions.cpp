@@ -173,9 +173,9 @@ void ParameterDirection::come_closer(NeighbourSteps& steps, Direction& direction
 std::vector<Direction> initial_state_directions(const Simulation& simulation, NeighbourSteps& steps,
                                                 std::vector<std::string>& names) {
   const State& state = state_of(simulation);
-  const MechanismStates states(model_of(simulation), {pose_of(state), published_rates(simulation)});
+  const MechanismStates states(model_of(simulation), motion_of(simulation));
   const std::vector<std::string> positions =
-      coordinate_names(model_of(simulation), states.degrees_of_freedom(), states.scalars(), {});
+      coordinate_names(model_of(simulation), states.degrees_of_freedom(), states.scalars(), states.rotors());
   const int count = static_cast<int>(positions.size());
   std::vector<Direction> directions;
   for (int k = 0; k < 2 * count; ++k) {
@@ -186,8 +186,7 @@ std::vector<Direction> initial_state_directions(const Simulation& simulation, Ne
     direction.difference = kLargestDifference;
     for (const auto& [offset, weight] : kFourthOrder) {
       const MechanismMotion motion = states.moved(k, offset * direction.difference);
-      direction.neighbours.push_back(
-          {offset, weight, nullptr, start_at(simulation, motion.pose.nodes, motion.pose.released, motion.rates.nodes)});
+      direction.neighbours.push_back({offset, weight, nullptr, start_at(simulation, motion)});
     }
     steps.measure(direction, state);
     direction.neighbours.erase(direction.neighbours.begin() + 2, direction.neighbours.end());

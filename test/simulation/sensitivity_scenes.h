@@ -53,6 +53,11 @@ inline const std::string kPendulum = R"(<robot name="pendulum">
     <probe name="end" link="rod" at="1 0 0"/> </simulation>
   )";
 
+/// The same, held by a controller behind an elastic gear, by a rotor as heavy as the rod.
+inline const std::string kGearedPendulum = kPendulum + R"(
+  <drive joint="hinge" rotor_inertia="1.5" stiffness="200" damping="0.5"/>
+  <servo joint="hinge" mode="position" kp="40" kd="1" set_point="0.5"/>)";
+
 /// A boom that bends, and a load on a hinge at its end.
 inline std::string flexible_arm(const std::string& wrist_axis) {
   return R"(<robot name="arm">

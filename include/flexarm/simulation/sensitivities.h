@@ -35,7 +35,7 @@ class Sensitivities {
   /// Of a simulation at its start, which must outlive this and stay where it is: copies go without.
   /// @throws std::invalid_argument if a parameter is unknown, or changes what no derivative tells (numbers of elements,
   /// joints, the step); if the simulation has moved already. ModelError if its scheme has none; std::runtime_error for
-  /// initial states at a dead point or behind elastic gears.
+  /// initial states at a dead point.
   Sensitivities(Simulation& simulation, const SensitivityRequest& request);
   ~Sensitivities();
   Sensitivities(Sensitivities&&) noexcept;
