@@ -53,7 +53,7 @@ std::unique_ptr<GuardedSensitivities> sensitivities_of(const std::shared_ptr<Gua
 }
 
 StepResult step_with_derivatives(GuardedSensitivities& guarded) {
-  const StepResult result = guarded.work([](Sensitivities& own, Simulation&) { return own.step(); });
+  StepResult result = guarded.work([](Sensitivities& own, Simulation&) { return own.step(); });
   const Simulation& simulation = guarded.simulation().use();
   if (!result.converged) raise_step_error(simulation, simulation.explain(result), result.reason);
   return result;
