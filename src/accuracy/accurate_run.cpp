@@ -106,18 +106,23 @@ class TriesOfARun {
     return own > iterations_of_other() && make_other() ? *other_ : own_;
   }
 
-  /// Before it has been judged: of tries with one step and two in an interval, of which the second is good enough.
+  /// Until differences of its own tries tell more: those with one step in an interval, which the limit of the
+  /// simulation's scheme may find good enough, and with two.
   double iterations_of_other() const {
     if (other_ && other_->judged() >= 2) return other_->predicted_iterations();
-    const double steps = plan_.total(plan_.multiple) * (other_ && other_->judged() == 1 ? 2 : 3);
-    return kStages * own_.iterations_per_step() * steps;
+    const double step = plan_.total(plan_.multiple);
+    if (other_ && other_->judged() == 1) return 2 * step * other_->iterations_per_step();
+    return (own_.limit_may_judge() ? 1 : 3) * step * kStages * own_.iterations_per_step();
   }
 
   bool make_other() {
     if (other_) return true;
     simulation_of_other_ = of_higher_order(own_.at_start());
     is_other_bad_ = !simulation_of_other_;
-    if (simulation_of_other_) other_.emplace(*simulation_of_other_, plan_);
+    if (simulation_of_other_) {
+      other_.emplace(*simulation_of_other_, plan_);
+      other_->judge_first_by(own_.limit());
+    }
     return !is_other_bad_;
   }
 

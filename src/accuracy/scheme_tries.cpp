@@ -42,6 +42,22 @@ constexpr int kMostEventHalvings = 10;
 /// A scheme of higher order than this shows what it has in its own tries: at first it is taken for one of this order.
 constexpr double kCommonOrder = 2;
 
+/// The largest distance of any point from where a motion has it at the end of an interval [m].
+double distance(const std::vector<Vector3>& positions, const JudgedMotion& motion, int interval) {
+  double largest = 0;
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    largest = std::max(largest, (positions[i] - motion.points[i][interval]).norm());
+  return largest;
+}
+
+/// Without its error, which is this share of its difference to `coarse`.
+JudgedMotion extrapolated(JudgedMotion fine, const JudgedMotion& coarse, double share) {
+  for (std::size_t p = 0; p < fine.points.size(); ++p)
+    for (std::size_t i = 0; i < fine.points[p].size(); ++i)
+      fine.points[p][i] += share * (fine.points[p][i] - coarse.points[p][i]);
+  return fine;
+}
+
 }  // namespace
 
 SchemeTries::SchemeTries(Simulation& simulation, const TryPlan& plan)
@@ -55,6 +71,11 @@ SchemeTries::SchemeTries(Simulation& simulation, const TryPlan& plan)
 double SchemeTries::predicted_iterations() const {
   const double growth = std::pow(estimate_ / (kAim * plan_.request.accuracy), 1.0 / order_);
   return iterations_per_step_ * plan_.total(steps_before_) * std::max(growth, kLeastGrowth);
+}
+
+bool SchemeTries::limit_may_judge() const {
+  const double ratio = static_cast<double>(steps_before_) / steps_earlier_;
+  return std::pow(ratio * estimate_, 2) / 2 <= kEnough * plan_.request.accuracy / 2;
 }
 
 void SchemeTries::set_steps() {
@@ -79,14 +100,6 @@ bool SchemeTries::run_interval(AccurateRun& run) {
     if (!run.last.converged) return false;
   }
   return true;
-}
-
-/// The largest distance of any point from where the run before had it, at the end of an interval [m].
-double SchemeTries::distance(const std::vector<Vector3>& positions, int interval) const {
-  double largest = 0;
-  for (std::size_t i = 0; i < positions.size(); ++i)
-    largest = std::max(largest, (positions[i] - before_.points[i][interval]).norm());
-  return largest;
 }
 
 /// `difference`: between the last try and the one before, relative.
@@ -117,8 +130,8 @@ bool SchemeTries::attempt(AccurateRun& run) {
     if (i > 0 && !run_interval(run)) return false;
     const std::vector<Vector3> positions = plan_.points.positions(simulation_);
     run.motion.add(positions);
-    const bool is_compared = judged_ > 0;
-    plan_.watcher.after_interval(simulation_, is_compared ? share(order_) * distance(positions, i) : kUnknown);
+    const JudgedMotion* other = compared();
+    plan_.watcher.after_interval(simulation_, other ? compared_share() * distance(positions, *other, i) : kUnknown);
   }
   return true;
 }
@@ -137,15 +150,18 @@ bool SchemeTries::judge(AccurateRun& run) {
     if (difference > kSaturated) estimate_ = std::max(estimate_, difference);
     run.tries.back().estimate = estimate_;
     difference_ = difference;
+    limit_ = extrapolated(run.motion, before_, this->share(order_));
+  } else if (other_limit_) {
+    run.tries.back().estimate = motion_error(run.motion, *other_limit_, run.scale);
   }
   before_ = run.motion;
   steps_earlier_ = steps_before_;
   steps_before_ = steps_;
-  if (!is_compared) return false;
-  if (estimate_ <= kEnough * plan_.request.accuracy) {
+  if (run.estimate() <= kEnough * plan_.request.accuracy) {
     run.end = AccurateRun::End::Met;
     return true;
   }
+  if (!is_compared) return false;
   // Tries that make nothing better, each with more steps: round-off, or a motion that amplifies it.
   stagnations_ = estimate_ > 0.5 * last ? stagnations_ + 1 : 0;
   if (stagnations_ < (last < kRoundOffBelow ? 1 : kMostStagnations)) return false;

@@ -40,10 +40,18 @@ class SchemeTries {
   double predicted_iterations() const;
   int judged() const { return judged_; }
 
+  /// What the last two tries that were judged tend to, without the leading term of their errors.
+  const JudgedMotion& limit() const { return limit_; }
+  /// Whether that may be so near the true motion that a try of another scheme can be judged by it: its error is the
+  /// square of a phase error at least.
+  bool limit_may_judge() const;
+  /// What the tries of another scheme tend to, by which the first one of these is judged; it must outlive them.
+  void judge_first_by(const JudgedMotion& limit) { other_limit_ = &limit; }
+
   /// Makes the next try. False if a step has failed, or the run was interrupted, which `run.end` tells.
   bool attempt(AccurateRun& run);
-  /// Estimates the error of that try from its difference to the one before. True if nothing more is to be tried:
-  /// `run.end` tells why.
+  /// Estimates the error of that try from its difference to the one before, or to the other scheme's limit. True if
+  /// nothing more is to be tried: `run.end` tells why.
   bool judge(AccurateRun& run);
   /// The next try has more steps. `failed`: the last one was not judged. False if too many have failed in turn.
   bool go_on(bool failed);
@@ -53,7 +61,9 @@ class SchemeTries {
 
   void set_steps();
   bool run_interval(AccurateRun& run);
-  double distance(const std::vector<Vector3>& positions, int interval) const;
+  /// To what the next try is compared, and the part of the difference that is its error; null: to nothing.
+  const JudgedMotion* compared() const { return judged_ > 0 ? &before_ : other_limit_; }
+  double compared_share() const { return judged_ > 0 ? share(order_) : 1; }
   double supposed_order(double difference) const;
   double share(double order) const;
 
@@ -63,6 +73,8 @@ class SchemeTries {
   int order_, steps_ = 0;  // of the last try, in an interval
   double next_, expected_ = kUnknown, iterations_per_step_ = kUnknown;
   int failures_ = 0, stagnations_ = 0, judged_ = 0;
+  const JudgedMotion* other_limit_ = nullptr;
+  JudgedMotion limit_;
   // Of the last try that was judged, and of the one before that.
   JudgedMotion before_;
   int steps_before_ = 0, steps_earlier_ = 0;

@@ -155,6 +155,33 @@ TEST(AccurateRun, TakesASchemeOfHigherOrderWhereItMay) {
   }
 }
 
+/// A try of fourth order is judged by what two of second order tend to: it needs no second one. What that limit errs
+/// itself, in the fourth order, too, is in the estimate.
+TEST(AccurateRun, IsJudgedByTheLimitOfTheOtherScheme) {
+  constexpr double kAccuracy = 1e-5, kUntil = 1;
+  constexpr int kIntervals = 50;
+  SceneBuilder b = falling_links();
+  b.scene.integrator.scheme = "auto";
+  Simulation simulation(b.scene);
+  struct Estimates : RunWatcher {
+    double last = std::nan("");
+    void after_interval(const Simulation&, double estimate) override { last = estimate; }
+  } estimates;
+  const AccurateRun run = run_to_accuracy(simulation, {kAccuracy, kUntil, kIntervals}, estimates);
+  SCOPED_TRACE(tries_of(run));
+  ASSERT_EQ(run.end, AccurateRun::End::Met);
+  ASSERT_EQ(run.tries.size(), 3U);
+  EXPECT_EQ(run.tries[1].scheme, "em");
+  EXPECT_EQ(run.tries[2].scheme, "em4");
+  EXPECT_EQ(run.tries[2].steps, kIntervals);
+
+  SceneBuilder fine = b;
+  fine.scene.integrator.scheme = "em4";
+  const JudgedMotion reference = reference_motion(fine, kUntil, kIntervals, 20);
+  EXPECT_LE(motion_error(run.motion, reference, run.scale), run.estimate());
+  EXPECT_GT(estimates.last, 0) << "each interval has an estimate, too";
+}
+
 TEST(AccurateRun, EndsWithWhatWasReached) {
   const SceneBuilder b = falling_arm();
   RunWatcher nobody;
