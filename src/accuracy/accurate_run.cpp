@@ -16,11 +16,9 @@
 namespace flexarm {
 namespace {
 
-/// What is taken instead of the default scheme where that is left to flexarm, and its steps of the default scheme in
-/// one of its own.
+/// What is taken instead of the default scheme where that is left to flexarm.
 constexpr const char* kDefault = "em";
 constexpr const char* kHigherOrder = "em4";
-constexpr double kStages = 5;
 /// It is thought of where the other's error is known: below this estimate.
 constexpr double kKnown = 0.1;
 

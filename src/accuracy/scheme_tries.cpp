@@ -11,8 +11,9 @@ namespace flexarm {
 namespace {
 
 /// Of what is asked for: the largest estimate that is good enough, for true errors were up to 1.35 times their
-/// estimates; and at what the next try aims, so that an error a little larger than foreseen is small enough, too.
-constexpr double kEnough = 0.8, kAim = 0.6;
+/// estimates, the inverse of this; and at what the next try aims, so that an error a little larger than foreseen is
+/// small enough, too.
+constexpr double kEnough = 0.74, kAim = 0.6;
 /// The least by which steps are multiplied between tries: below it, a difference of runs says little.
 constexpr double kLeastGrowth = 1.2;
 /// An error is known the better, the smaller it is; from it, how many times as many steps the next try has at most.
@@ -29,8 +30,8 @@ constexpr double kRoundOffBelow = 1e-6;
 constexpr int kMostStagnations = 4;
 /// Tries in turn, each with twice the steps, in which a step fails: it has another reason than its length.
 constexpr int kMostFailures = 8;
-/// Newton's method leaves the square of its tolerance in every step. Over the step's length that is an error of the
-/// velocity, which goes on to the end: all together this share of what is asked for, half of that on average. And
+/// Newton's method leaves the square of its tolerance in every solve. Over the step's length that is an error of the
+/// velocity, which goes on to the end: with signs of their own, all together this share of what is asked for. And
 /// between which bounds a tolerance may be.
 constexpr double kRemainderShare = 0.1, kLeastTolerance = 1e-13, kMostTolerance = 1e-3;
 /// Points that move less, of the model's length, are at rest: what they do is round-off, or what a start leaves.
@@ -65,6 +66,7 @@ SchemeTries::SchemeTries(Simulation& simulation, const TryPlan& plan)
       plan_(plan),
       start_(simulation.snapshot()),
       order_(make_scheme(simulation.scene().integrator).order),
+      solves_(make_scheme(simulation.scene().integrator).is_composition ? kStages : 1),
       next_(plan.multiple),
       before_(plan.points.size()) {}
 
@@ -84,7 +86,7 @@ void SchemeTries::set_steps() {
   const double finest = kEventShare * accuracy * (plan_.request.until - plan_.begin);
   const int halvings = step > finest ? static_cast<int>(std::ceil(std::log2(step / finest))) : 0;
   simulation_.set_step_size(step, std::min(halvings, kMostEventHalvings));
-  const double remainder = kRemainderShare * accuracy / std::pow(plan_.total(steps_), 2);
+  const double remainder = kRemainderShare * accuracy / std::pow(plan_.total(steps_) * solves_, 1.5);
   simulation_.set_tolerance(std::clamp(std::sqrt(remainder), kLeastTolerance, kMostTolerance));
 }
 

@@ -20,6 +20,9 @@ struct TryPlan {
   double total(double steps) const { return steps * intervals; }
 };
 
+/// Steps of second order in one of the scheme of fourth.
+constexpr int kStages = 5;
+
 class SchemeTries {
  public:
   /// From where the simulation is.
@@ -70,7 +73,8 @@ class SchemeTries {
   Simulation& simulation_;
   const TryPlan& plan_;
   Snapshot start_;
-  int order_, steps_ = 0;  // of the last try, in an interval
+  int order_, solves_;  // of a step
+  int steps_ = 0;       // of the last try, in an interval
   double next_, expected_ = kUnknown, iterations_per_step_ = kUnknown;
   int failures_ = 0, stagnations_ = 0, judged_ = 0;
   const JudgedMotion* other_limit_ = nullptr;
