@@ -110,6 +110,7 @@ void judge(TrialRuns& trials, const JudgedMotion& motion, AccuracyOutcome& out) 
 AccuracyOutcome measure(const AccuracyCase& one, TrialRuns& trials, double asked) {
   AccuracyOutcome out;
   out.asked = asked;
+  out.may_change_scheme = one.scene.integrator.scheme == "auto";
   try {
     const JudgedMotion motion = run_accurately(one, trials, out);
     if (out.is_met) judge(trials, motion, out);

@@ -30,8 +30,9 @@ struct AccuracyOutcome {
   double all_seconds = 0;  ///< with all tries before it
   /// The cheapest fixed choice whose error is as small as `error`, by search; empty: none was found.
   std::optional<double> fixed_seconds;
-  std::string fixed;              ///< what that is
-  bool is_of_own_scheme = false;  ///< that is of the scheme of the scene, which the run has, too
+  std::string fixed;               ///< what that is
+  bool is_of_own_scheme = false;   ///< that is of the scheme of the scene
+  bool may_change_scheme = false;  ///< the scene leaves the scheme to the run
 
   bool is_judged() const { return is_met && error.has_value(); }
   /// Of the run over the best fixed choice.
