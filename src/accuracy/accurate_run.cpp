@@ -110,7 +110,7 @@ class TriesOfARun {
     if (other_ && other_->judged() >= 2) return other_->predicted_iterations();
     const double step = plan_.total(plan_.multiple);
     if (other_ && other_->judged() == 1) return 2 * step * other_->iterations_per_step();
-    return (own_.limit_may_judge() ? 1 : 3) * step * kStages * own_.iterations_per_step();
+    return (own_.limit_may_judge() ? 1 : 3) * step * kCompositionSteps * own_.iterations_per_step();
   }
 
   bool make_other() {

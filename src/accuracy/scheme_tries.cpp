@@ -66,7 +66,7 @@ SchemeTries::SchemeTries(Simulation& simulation, const TryPlan& plan)
       plan_(plan),
       start_(simulation.snapshot()),
       order_(make_scheme(simulation.scene().integrator).order),
-      solves_(make_scheme(simulation.scene().integrator).is_composition ? kStages : 1),
+      solves_(make_scheme(simulation.scene().integrator).solves_per_step()),
       next_(plan.multiple),
       before_(plan.points.size()) {}
 

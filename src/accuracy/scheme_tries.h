@@ -20,9 +20,6 @@ struct TryPlan {
   double total(double steps) const { return steps * intervals; }
 };
 
-/// Steps of second order in one of the scheme of fourth.
-constexpr int kStages = 5;
-
 class SchemeTries {
  public:
   /// From where the simulation is.

@@ -19,7 +19,7 @@ constexpr double kLargestStepRotation = 2.0;
 constexpr double kOpenLoop = 1e-4;
 /// Suzuki's composition of order four: parts of a step, the middle one runs backwards.
 const double kOuterPart = 1 / (4 - std::cbrt(4.0));
-const double kComposition[] = {kOuterPart, kOuterPart, 1 - 4 * kOuterPart, kOuterPart, kOuterPart};
+const double kComposition[kCompositionSteps] = {kOuterPart, kOuterPart, 1 - 4 * kOuterPart, kOuterPart, kOuterPart};
 /// A step that has been halved so often, and doubled again as often, does not come forward: it is given up.
 constexpr int kMostHalvings = 500;
 /// Converged sub-steps after which the step is doubled again.

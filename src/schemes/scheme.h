@@ -24,18 +24,23 @@ struct SchemeOptions {
   bool substitute = false;     ///< OnFailure::Dissipate: its state is one that edmc2 can go on from, and back
 };
 
+/// Steps of second order, one of them backwards, that make one of a composition (Suzuki 1990).
+constexpr int kCompositionSteps = 5;
+
 /// A scheme by name: its rule for the elements, what it claims, and what a scene may say of it.
 struct Scheme : TimeRule {
   std::string_view name, description;
   bool conserves_energy = false, conserves_momenta = false;
   int order = 2;                    ///< in time
   bool scales_velocities = false;   ///< closes the energy balance after the step (beyond.md 1.2)
-  bool is_composition = false;      ///< five sub-steps of a symmetric second-order step: order four
+  bool is_composition = false;      ///< sub-steps of a symmetric second-order step: order four
   bool heeds_slide_schemes = true;  ///< else the contact of all sliders is carried by SM-EM
   /// Of what touches a stop [s]: resolved by the scene's steps, and short to the eye.
   double contact_time = kContactSteps * IntegratorDescription().step;
   bool may_be_planar = true;  ///< else all is three-dimensional, the scene of a plane, too
   SchemeOptions options;
+
+  int solves_per_step() const { return is_composition ? kCompositionSteps : 1; }
 };
 
 /// All schemes with their default options, the default scheme first.
