@@ -81,7 +81,6 @@ LinearDynamics::LinearDynamics(const Model& model, const State& state, const Sch
       system_(model_, resting(scheme), BackendChoice::Matrix),
       dof_(system_.degrees_of_freedom()),
       maps_(model_, dof_),
-      rotor_rates_(model.actuators.size(), 0.0),
       pose_(maps_.moved(pose_of(state), standstill(maps_.columns()), 0)) {
   if (reference == Reference::Instant) {
     rotor_rates_ = known.rotors;
@@ -251,6 +250,8 @@ void LinearDynamics::balance(const Eigen::VectorXd& efforts) {
 ActuatorRates LinearDynamics::actuator_rates(const Eigen::VectorXd& rows) const {
   ActuatorRates out{{}, rotor_rates_};
   for (const Coordinate& coordinate : model_.coordinates) out.coordinates.push_back(rows[dof_.scalar_of(coordinate)]);
+  if (rotor_rates_.empty())  // in steady motion they turn with their coordinates
+    for (const Actuator& actuator : model_.actuators) out.rotors.push_back(out.coordinates[actuator.coordinate]);
   return out;
 }
 
@@ -263,17 +264,16 @@ void LinearDynamics::assemble() {
   const auto scalar_of = [&](std::size_t actuator) {
     return dof_.scalar_of(model_.coordinates[model_.actuators[actuator].coordinate]);
   };
-  // What controllers ask for because of rates is among the commands.
-  for (std::size_t i = 0; i < motors.size(); ++i)
-    own.force[scalar_of(i)] -= dampers[i] + motors[i].servo_damping * rows.first[scalar_of(i)];
+  for (std::size_t i = 0; i < motors.size(); ++i) own.force[scalar_of(i)] -= dampers[i];
   put_dampers_stress(damped_stretches(model_, dof_, pose_), rows.first);
   const StretchDamping stretched = stretch_damping(model_, dof_, maps_, pose_, columns_, spacing_);
   const Eigen::VectorXd force = own.force + stretched.of_springs;
   const Eigen::Index coordinates = maps_.rows() - 6 * static_cast<Eigen::Index>(dof_.node_count);
   put_loads(force);
   balance(force.tail(coordinates));
+  // In the balance what controllers ask for because of rates is among the commands.
   for (std::size_t i = 0; i < motors.size(); ++i)
-    if (system_.actuators().is_cut(i)) own.damping.coeffRef(scalar_of(i), scalar_of(i)) -= motors[i].servo_damping;
+    if (!system_.actuators().is_cut(i)) own.damping.coeffRef(scalar_of(i), scalar_of(i)) += motors[i].servo_damping;
 
   const VariedRates varied = varied_rates(dof_, motion_, rows);
   const Eigen::MatrixXd tests = motion_.value.transpose(), unknowns = unknowns_ * allowed_.value;

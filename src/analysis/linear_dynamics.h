@@ -66,7 +66,8 @@ class LinearDynamics {
   void set_motion(const Eigen::VectorXd& rates, const Eigen::VectorXd& accelerations);
   void put_dampers_stress(const std::vector<Stretch>& stretches, const Eigen::VectorXd& speeds);
   void put_loads(const Eigen::VectorXd& force);
-  /// The balance of what is at rest under inertia's forces, with the multipliers that close loops best.
+  /// The balance of what is at rest under inertia's forces, with the multipliers that close loops best. `efforts`: of
+  /// inertia and dampers on coordinates [N m or N], which `system_` does not have.
   void balance(const Eigen::VectorXd& efforts);
   void assemble();
   ActuatorRates actuator_rates(const Eigen::VectorXd& rows) const;
@@ -87,7 +88,7 @@ class LinearDynamics {
   MotionMaps maps_;
   std::vector<int> independent_, dependent_, scalars_, rotors_;
   std::vector<bool> is_driven_place_;  // per independent column
-  std::vector<double> rotor_rates_;    // per actuator
+  std::vector<double> rotor_rates_;    // per actuator, at an instant
 
   // ---- of the reference
   MechanismPose pose_;

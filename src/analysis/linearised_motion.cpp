@@ -148,7 +148,7 @@ void LinearisedMotion::assemble_damping() {
     diagonal(damping_, coordinate.joint, coordinate.component) +=
         damping_of(coordinate, stop_penalty(coordinate, contact_time_), state_.released[coordinate.joint]);
   for (const ActuatorTerms& terms : actuator_terms(model_, state_))
-    diagonal(damping_, terms.joint, terms.component) += terms.damping;
+    diagonal(damping_, terms.joint, terms.component) += terms.damping + terms.servo_damping;
   for (const PointSpring& spring : model_.springs) {
     const LoopClosure& ends = model_.closures[spring.closure];
     const Vector12 gradient = spring_gradient(ends, closure_poses(ends, state_));

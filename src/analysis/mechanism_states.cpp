@@ -35,10 +35,7 @@ MechanismStates::MechanismStates(const Model& model, const MechanismMotion& refe
     columns_.push_back(column);
     scalars_.push_back(scalars[column]);
   }
-  for (std::size_t i = 0; i < model.actuators.size(); ++i)
-    if (model.actuators[i].drive.gear &&
-        dof_.equation[dof_.scalar_of(model.coordinates[model.actuators[i].coordinate])] >= 0)
-      rotors_.push_back(static_cast<int>(i));
+  rotors_ = separate_rotors(model, dof_);
   for (int i = 0; i < dof_.node_count; ++i)
     if (const int column = dof_.equation[dof_.first[i] + 3]; column >= 0) spins_.push_back(column);
   for (const Coordinate& coordinate : model.coordinates)

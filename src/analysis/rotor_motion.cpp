@@ -33,17 +33,24 @@ const ServoLaw* law_in_force(const Actuator& actuator, const ActuatorState& stat
   return actuator.servo && state.servo.off == 0 ? &law_of(*actuator.servo, state.servo) : nullptr;
 }
 
+/// Of the coordinate that an actuator drives.
+int equation_of(const Model& model, const DegreesOfFreedom& dof, std::size_t actuator) {
+  return dof.equation[dof.scalar_of(model.coordinates[model.actuators[actuator].coordinate])];
+}
+
+/// Of an elastic gear [rad or m].
+double gear_twist(const Model& model, const State& state, std::size_t actuator) {
+  const Coordinate& coordinate = model.coordinates[model.actuators[actuator].coordinate];
+  return state.actuators[actuator].angle - state.released[coordinate.joint].displacement[coordinate.component % 3];
+}
+
 /// Of a controller, at a time of a motion.
 struct SetPointNow {
   double value, rate;
 };
 
 SetPointNow set_point_now(const Model& model, const Servo& servo, const ServoState& state, double time) {
-  if (!std::isnan(state.set_point)) {
-    const double ahead = std::min(time - state.set_time, 0.0);
-    return {state.set_point + ahead * (state.set_rate + 0.5 * ahead * state.set_acceleration),
-            time <= state.set_time ? state.set_rate + ahead * state.set_acceleration : 0};
-  }
+  if (!std::isnan(state.set_point)) return {state.set_point_at(time), state.set_rate_at(time, 0)};
   if (servo.set_point < 0) return {servo.start, 0};
   const TimeFunction& history = model.histories[servo.set_point];
   return {history(time), history.derivative(time)};
@@ -76,7 +83,7 @@ std::vector<ActuatorTerms> actuator_terms(const Model& model, const State& state
     const double spring = actuator.spring ? actuator.spring->elasticity.damping : 0;
     const ServoLaw* law = law_in_force(actuator, state.actuators[i]);
     const double servo = law && !actuator.drive.gear ? law->derivative : 0;
-    terms.push_back({coordinate.joint, coordinate.component, spring + servo, armature(model, coordinate), servo});
+    terms.push_back({coordinate.joint, coordinate.component, spring, armature(model, coordinate), servo});
   }
   return terms;
 }
@@ -86,10 +93,11 @@ void command_by_rates(const Model& model, const ActuatorRates& rates, Model& fro
     const Actuator& actuator = model.actuators[i];
     const std::size_t c = actuator.coordinate;
     const ServoLaw* law = law_in_force(actuator, state.actuators[i]);
-    if (!law || law->mode == ServoMode::Effort || model.coordinates[c].motion >= 0) continue;
+    if (!law || model.coordinates[c].motion >= 0) continue;
     const Servo& servo = *actuator.servo;
     const SetPointNow set = set_point_now(model, servo, state.actuators[i].servo, state.time);
     if (!std::isnan(state.actuators[i].servo.set_point)) state.actuators[i].servo.set_point = set.value;
+    if (law->mode == ServoMode::Effort) continue;
     const double measured = actuator.drive.gear && !servo.on_link ? rates.rotors[i] : rates.coordinates[c];
     const double wanted = law->mode == ServoMode::Velocity ? set.value : set.rate;
     Coordinate& coordinate = frozen.coordinates[c];
@@ -101,14 +109,19 @@ void command_by_rates(const Model& model, const ActuatorRates& rates, Model& fro
   }
 }
 
+std::vector<int> separate_rotors(const Model& model, const DegreesOfFreedom& dof) {
+  std::vector<int> rotors;
+  for (std::size_t i = 0; i < model.actuators.size(); ++i)
+    if (model.actuators[i].drive.gear && equation_of(model, dof, i) >= 0) rotors.push_back(static_cast<int>(i));
+  return rotors;
+}
+
 std::vector<double> efforts_of_gear_dampers(const Model& model, const State& state, const ActuatorRates& rates) {
   std::vector<double> efforts(model.actuators.size(), 0.0);
   for (std::size_t i = 0; i < efforts.size(); ++i) {
     const Actuator& actuator = model.actuators[i];
     if (!actuator.drive.gear) continue;
-    const Coordinate& coordinate = model.coordinates[actuator.coordinate];
-    const double position = state.released[coordinate.joint].displacement[coordinate.component % 3];
-    efforts[i] = elastic_damping(*actuator.drive.gear, state.actuators[i].angle - position) *
+    efforts[i] = elastic_damping(*actuator.drive.gear, gear_twist(model, state, i)) *
                  (rates.rotors[i] - rates.coordinates[actuator.coordinate]);
   }
   return efforts;
@@ -117,15 +130,13 @@ std::vector<double> efforts_of_gear_dampers(const Model& model, const State& sta
 RotorEntries rotor_entries(const Model& model, const DegreesOfFreedom& dof, const State& state,
                            const Actuators& resting, int first) {
   RotorEntries entries;
-  for (std::size_t i = 0; i < model.actuators.size(); ++i) {
+  entries.actuators = separate_rotors(model, dof);
+  int rotor = first;
+  for (const int i : entries.actuators) {
     const Actuator& actuator = model.actuators[i];
-    const Coordinate& coordinate = model.coordinates[actuator.coordinate];
-    const int q = dof.equation[dof.scalar_of(coordinate)];
-    if (!actuator.drive.gear || q < 0) continue;
-    const int rotor = first + static_cast<int>(entries.actuators.size());
-    const double position = state.released[coordinate.joint].displacement[coordinate.component % 3];
+    const int q = equation_of(model, dof, i);
     CoordinateStep twist;
-    twist.begin = twist.end = state.actuators[i].angle - position;
+    twist.begin = twist.end = gear_twist(model, state, i);
     const Elasticity& gear = *actuator.drive.gear;
     const ServoLaw* law = resting.is_cut(i) ? nullptr : law_in_force(actuator, state.actuators[i]);
     const bool holds = law && law->mode == ServoMode::Position;
@@ -135,7 +146,7 @@ RotorEntries rotor_entries(const Model& model, const DegreesOfFreedom& dof, cons
     add(coupling(elastic_damping(gear, twist.end), actuator.servo, law ? law->derivative : 0), q, rotor,
         entries.damping);
     entries.mass.emplace_back(rotor, rotor, actuator.drive.inertia);
-    entries.actuators.push_back(static_cast<int>(i));
+    ++rotor;
   }
   return entries;
 }

@@ -24,9 +24,12 @@ struct MotionMatrices {
 struct ActuatorTerms {
   int joint, component;
   double damping = 0, mass = 0;
-  double servo_damping = 0;  ///< part of the damping
+  double servo_damping = 0;  ///< of the controller, beside the other
 };
 std::vector<ActuatorTerms> actuator_terms(const Model& model, const State& state);
+
+/// The actuators whose rotors have an angle of their own behind elastic gears.
+std::vector<int> separate_rotors(const Model& model, const DegreesOfFreedom& dof);
 
 /// Rates of what motors and controllers measure.
 struct ActuatorRates {

@@ -103,21 +103,14 @@ void Actuators::begin() {
   }
 }
 
-/// Of a commanded set point that moves; 0 where it has arrived.
 double Actuators::rate_of_command(const ServoState& state, double time) const {
-  const double ahead = time - state.set_time;
-  return ahead <= kRoundOff * configuration_.step() ? state.set_rate + state.set_acceleration * std::min(ahead, 0.0)
-                                                    : 0;
+  return state.set_rate_at(time, kRoundOff * configuration_.step());
 }
 
 SetPoint Actuators::commanded_set_point(const ServoState& state) const {
   if (configuration_.scheme().is_static) return {state.set_point, state.set_point, 0};
-  const auto value = [&](double time) {
-    const double ahead = std::min(time - state.set_time, 0.0);
-    return state.set_point + ahead * (state.set_rate + 0.5 * ahead * state.set_acceleration);
-  };
   const double begin = configuration_.state().time, end = begin + configuration_.step();
-  return {value(begin), value(end), rate_of_command(state, end)};
+  return {state.set_point_at(begin), state.set_point_at(end), rate_of_command(state, end)};
 }
 
 SetPoint Actuators::set_point(const Servo& servo, const ServoState& state) const {

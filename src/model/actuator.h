@@ -2,6 +2,7 @@
 /// What drives or holds a scalar coordinate besides plain efforts: a spring, a motor with its gear, a controller.
 /// Efforts, angles and speeds of a motor are those seen at the joint: angles over the gear's ratio, efforts times it.
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -86,6 +87,16 @@ struct ServoCommand {
   double set_rate = 0, set_acceleration = 0, set_time = 0;
   double law = 0;  ///< in force, of Servo::laws; another one than the first only under a command
   double off = 0;  ///< 1 where it is switched off: the motor gives nothing; else 0
+
+  double set_point_at(double time) const {
+    const double ahead = std::min(time - set_time, 0.0);
+    return set_point + ahead * (set_rate + 0.5 * ahead * set_acceleration);
+  }
+  /// 0 where it has arrived, longer than `tolerance` ago [s].
+  double set_rate_at(double time, double tolerance) const {
+    const double ahead = time - set_time;
+    return ahead <= tolerance ? set_rate + set_acceleration * std::min(ahead, 0.0) : 0;
+  }
 };
 
 /// What time changes of a controller.

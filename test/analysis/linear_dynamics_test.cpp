@@ -121,7 +121,7 @@ TEST(LinearDynamics, OfAFlexibleArmInMotion) {
   expect_second_order(build_model(builder.scene), 3e-4);
 }
 
-/// A motor on `coordinate`, behind an elastic gear if that has a stiffness.
+/// A motor on `coordinate` behind an elastic gear.
 scene::DriveDescription drive(const std::string& coordinate, double inertia, double stiffness, double damping) {
   scene::DriveDescription out;
   out.coordinate = coordinate;
@@ -140,7 +140,7 @@ scene::ServoDescription servo(const std::string& coordinate, double kp, double k
   return out;
 }
 
-/// The loop below, whose joints have dampers.
+/// A loop of rigid links, whose joints have dampers.
 SceneBuilder damped_four_bar() {
   SceneBuilder builder;
   builder.scene.gravity = Vector3(0, 0, -3);

@@ -59,6 +59,14 @@ TEST(LinearMotors, SetPointThatMoves) {
   EXPECT_NEAR(model.a(1, 1), -2 / (kInertia + kRotor), 1e-12 * 30);
 }
 
+// What a program commands is added to what the controller asks for.
+TEST(LinearMotors, EffortBesideTheController) {
+  Simulation simulation = turning_wheel("", kFollowing);
+  const double alone = about_now(simulation).drift[1];
+  simulation.command_effort(0, 0.7);
+  EXPECT_NEAR(about_now(simulation).drift[1] - alone, 0.7 / (kInertia + kRotor), 1e-13);
+}
+
 // With mode velocity: (I + J) q'' = kp (s - q').
 TEST(LinearMotors, SetSpeed) {
   const Simulation simulation = turning_wheel("", R"(mode="velocity" kp="3")");
