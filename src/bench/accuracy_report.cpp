@@ -82,8 +82,7 @@ std::string summary_table(const AccuracyReport& report) {
   text += fmt::format("Cost of the run above 1.5 times that of the best fixed choice: {} of {} (target: none): {}.",
                       all.dear, all.costs.size(), all.dear == 0 ? "met" : "missed");
   if (all.bound > 0)
-    text += fmt::format(" In {} of them the best choice has another scheme than the scene, which names its own, wants.",
-                        all.bound);
+    text += fmt::format(" In {} of them the scene names its scheme, and the best choice has another one.", all.bound);
   text += "\n";
   return text;
 }
