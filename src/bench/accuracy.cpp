@@ -149,29 +149,30 @@ std::vector<const AccuracyOutcome*> AccuracyReport::judged() const {
   return found;
 }
 
-std::vector<AccuracyCase> accuracy_cases(const std::string& folder, bool quick) {
+std::vector<AccuracyCase> accuracy_cases(const std::string& folder, const AccuracyScope& scope) {
   std::vector<AccuracyCase> cases;
   for (const SpeedProblem& problem : speed_problems()) {
-    if (quick && problem.name != "six_joint_arm") continue;
+    if (scope.random_arms || (scope.quick && problem.name != "six_joint_arm")) continue;
     cases.push_back({"speed", problem.name, scene_of(scene::read_scene_file(folder + "/" + problem.scene)),
                      problem.commands.empty() ? "" : folder + "/" + problem.commands,
-                     quick ? 0.1 : std::min(problem.until, 10.0)});
+                     scope.quick ? 0.1 : std::min(problem.until, 10.0)});
   }
-  if (!quick)
+  if (!scope.quick && !scope.random_arms)
     for (const char* group : {"examples", "thesis"}) add_files(cases, folder, group);
-  for (int i = 0; i < (quick ? 2 : kRandomArms); ++i)
+  const auto [first, count] = scope.random_arms.value_or(std::pair(0, scope.quick ? 2 : kRandomArms));
+  for (int i = first; i < first + count; ++i)
     cases.push_back({"random", fmt::format("arm {}, {} joints", i, random_arm_joints(i)),
                      scene_of(scene::read_scene_text(random_arm(i), fmt::format("random arm {}", i))), "",
-                     quick ? 0.1 : 2.0});
+                     scope.quick ? 0.1 : 2.0});
   return cases;
 }
 
-AccuracyReport measure_accuracy(const std::string& folder, bool quick,
+AccuracyReport measure_accuracy(const std::string& folder, const AccuracyScope& scope,
                                 const std::function<void(double, const std::string&)>& progress) {
   AccuracyReport report;
-  report.quick = quick;
+  report.scope = scope;
   const double begin = processor_seconds();
-  const std::vector<AccuracyCase> cases = accuracy_cases(folder, quick);
+  const std::vector<AccuracyCase> cases = accuracy_cases(folder, scope);
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const AccuracyCase& one = cases[i];
     AccuracyMeasurement measurement{one.group, one.name, one.until, {}};
@@ -185,7 +186,7 @@ AccuracyReport measure_accuracy(const std::string& folder, bool quick,
     for (const double asked : kAccuracies) {
       show();
       measurement.outcomes.push_back(measure(one, trials, asked));
-      if (quick) break;
+      if (scope.quick) break;
     }
     report.measurements.push_back(std::move(measurement));
   }

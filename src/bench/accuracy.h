@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "flexarm/scene/scene_description.h"
@@ -45,10 +46,16 @@ struct AccuracyMeasurement {
   std::vector<AccuracyOutcome> outcomes;
 };
 
+/// Which scenes are measured.
+struct AccuracyScope {
+  bool quick = false;                              ///< three scenes, one accuracy
+  std::optional<std::pair<int, int>> random_arms;  ///< none but these: the first one, and how many
+};
+
 struct AccuracyReport {
   std::vector<AccuracyMeasurement> measurements;
   double seconds = 0;  ///< of the processor
-  bool quick = false;
+  AccuracyScope scope;
 
   /// All outcomes that have a reference.
   std::vector<const AccuracyOutcome*> judged() const;
@@ -56,10 +63,10 @@ struct AccuracyReport {
 
 /// Scenes of the speed report, of config/ and random arms. `folder`: of configuration.
 /// @throws std::runtime_error if one cannot be read.
-std::vector<AccuracyCase> accuracy_cases(const std::string& folder, bool quick);
+std::vector<AccuracyCase> accuracy_cases(const std::string& folder, const AccuracyScope& scope);
 
-/// `folder`: of configuration. `quick`: three scenes, one accuracy.
-AccuracyReport measure_accuracy(const std::string& folder, bool quick,
+/// `folder`: of configuration.
+AccuracyReport measure_accuracy(const std::string& folder, const AccuracyScope& scope,
                                 const std::function<void(double, const std::string&)>& progress);
 
 /// The tables. `picture`: file name of the picture next to them; empty if there is none.

@@ -97,13 +97,20 @@ std::string outcome_row(const AccuracyMeasurement& measurement, const AccuracyOu
               outcome.cost() ? fmt::format("{:.2f}", *outcome.cost()) : "–", outcome.fixed + why});
 }
 
+std::string scenes_of(const AccuracyScope& scope) {
+  if (!scope.random_arms) return "Scenes of the speed report, of `config/` and random arms";
+  const auto& [first, count] = *scope.random_arms;
+  return fmt::format("Random arms {} to {}, and no other scenes,", first, first + count - 1);
+}
+
 }  // namespace
 
 std::string to_markdown(const AccuracyReport& report, const std::string& picture) {
   std::string text =
       "# Accuracy asked for, error got\n\n"
-      "Written by `flexarm bench accuracy`. Scenes of the speed report, of `config/` and random arms are run as "
-      "`flexarm simulate\n"
+      "Written by `flexarm bench accuracy`. " +
+      scenes_of(report.scope) +
+      " are run as `flexarm simulate\n"
       "--accuracy` runs them: steps, and elements of beams with `elements=\"auto\"`, are chosen for the accuracy. The "
       "true error is that against a\n"
       "run which is estimated to be at least five times as accurate; where none is found in the time that a scene has, "
@@ -112,7 +119,7 @@ std::string to_markdown(const AccuracyReport& report, const std::string& picture
       "tune` finds for the error\n"
       "that the run really has: scheme, step, tolerance, and meshes where they are free ([notes](../notes/tuning.md)). "
       "Times are the processor's.\n\n";
-  if (report.quick) text += "**Quick run: shows that it works, measures nothing.**\n\n";
+  if (report.scope.quick) text += "**Quick run: shows that it works, measures nothing.**\n\n";
   text += summary_table(report);
   if (!picture.empty())
     text += fmt::format("\n![True error over asked-for error, and cost over the best fixed choice]({})\n", picture);

@@ -27,6 +27,7 @@ struct BenchArguments {
   std::string output = "docs/reports", scenes;
   std::vector<std::string> problems;
   std::vector<std::string> cases, groups;  ///< of the hard ones
+  std::vector<int> random_arms;            ///< of the accuracy report: the first one, and how many
   bench::HardOptions hard;
   bool print_only = false;
   bool quick = false;
@@ -146,10 +147,14 @@ int measure_speed(const BenchArguments& arguments) {
 
 int measure_accuracy(const BenchArguments& arguments) {
   const std::string scenes = scene_folder(arguments, "").string();
+  bench::AccuracyScope scope{arguments.quick, {}};
+  if (!arguments.random_arms.empty()) {
+    scope.random_arms = {arguments.random_arms[0], arguments.random_arms[1]};
+    if (scope.random_arms->second < 1) throw std::runtime_error("--random-arms: expected at least one arm, got '0'");
+  }
   return write_report(
       arguments, "accuracy", "accuracy",
-      [&](const auto& progress) { return bench::measure_accuracy(scenes, arguments.quick, progress); },
-      bench::accuracy_to_csv);
+      [&](const auto& progress) { return bench::measure_accuracy(scenes, scope, progress); }, bench::accuracy_to_csv);
 }
 
 bool is_in(const std::vector<std::string>& names, const std::string& name) {
@@ -237,6 +242,12 @@ void add_bench(CLI::App& app, int& status) {
   accuracy->add_option("--output", arguments->output, "folder for the report")->capture_default_str();
   accuracy->add_option("--scenes", arguments->scenes,
                        "folder of the scenes (default: config, which comes with flexarm)");
+  accuracy
+      ->add_option("--random-arms", arguments->random_arms,
+                   "only these: number of the first one, and how many (the report has 0 to 19)")
+      ->expected(2)
+      ->type_name("FIRST COUNT")
+      ->check(CLI::Range(0, 1000000));
   accuracy->add_flag("--quick", arguments->quick, "three short scenes, to see that all of it works");
   accuracy->callback([arguments, &status] { status = measure_accuracy(*arguments); });
   CLI::App* hard = command->add_subcommand("hard", "Scenes at which a simulator may break, as a report");
