@@ -109,5 +109,27 @@ BENCHMARK_CAPTURE(scene_file, sliding_arm, FLEXARM_SOURCE_DIR "/config/examples/
     ->Name("step_shares/sliding_arm")
     ->Unit(benchmark::kMicrosecond);
 
+enum class Kept { Free, Driven, Held, Fixed };
+
+/// A rigid arm of six joints that swings, and the last two of which are free, stand still by a function of time or by a
+/// number, or are none.
+void still_wrist(benchmark::State& state, Kept kept) {
+  scene::ReadResult read = scene::read_scene_file(FLEXARM_SOURCE_DIR "/config/speed/six_joint_arm.urdf");
+  if (!read.scene) return state.SkipWithError("the scene cannot be read");
+  scene::SceneDescription& scene = *read.scene;
+  if (kept != Kept::Free) scene.initial_joints.resize(4);
+  for (const int joint : {4, 5}) {
+    const std::string& name = scene.joints[joint].name;
+    if (kept == Kept::Fixed) scene.joints[joint].kind = scene::JointKind::Fixed;
+    if (kept == Kept::Held) scene.motions.push_back({name, TimeFunction(0), {}});
+    if (kept == Kept::Driven) scene.motions.push_back({name, TimeFunction::parse("0:0"), {}});
+  }
+  share(state, scene);
+}
+BENCHMARK_CAPTURE(still_wrist, free, Kept::Free)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(still_wrist, driven, Kept::Driven)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(still_wrist, held, Kept::Held)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(still_wrist, fixed, Kept::Fixed)->Unit(benchmark::kMicrosecond);
+
 }  // namespace
 }  // namespace flexarm

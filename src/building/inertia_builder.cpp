@@ -3,30 +3,11 @@
 #include <map>
 #include <utility>
 
+#include "building/rigid_body.h"
 #include "math/shape_functions.h"
-#include "math/so3.h"
 
 namespace flexarm {
 namespace {
-
-/// Rigid bodies carried by one node, in its frame.
-struct Body {
-  double mass = 0;
-  Vector3 center = Vector3::Zero();
-  Matrix3 inertia = Matrix3::Zero();  ///< about the centre
-
-  void operator+=(const Body& other) {
-    const double sum = mass + other.mass;
-    const Vector3 joint_center = sum > 0 ? Vector3((mass * center + other.mass * other.center) / sum) : other.center;
-    const auto shifted = [&](const Body& body) {
-      const Matrix3 d = so3::hat(Vector3(body.center - joint_center));
-      return Matrix3(body.inertia - body.mass * d * d);
-    };
-    inertia = shifted(*this) + shifted(other);
-    mass += other.mass;
-    center = joint_center;
-  }
-};
 
 /// The root link, then the joints' children.
 std::vector<int> links_root_to_leaf(const ScenePlan& plan) {
@@ -111,7 +92,7 @@ std::vector<bool> movable_nodes(const Mechanism& mechanism) {
 }
 
 /// On the ends of beams.
-void add_hubs(const ScenePlan& plan, const Model& model, std::map<int, Body>& bodies) {
+void add_hubs(const ScenePlan& plan, const Model& model, std::map<int, RigidBody>& bodies) {
   for (std::size_t link = 0; link < plan.scene.links.size(); ++link) {
     if (!plan.meshes[link]) continue;
     const BeamMesh& mesh = plan.meshes[link]->mesh;
@@ -125,14 +106,12 @@ void add_hubs(const ScenePlan& plan, const Model& model, std::map<int, Body>& bo
 }
 
 void add_bodies(const ScenePlan& plan, Mechanism& mechanism) {
-  std::map<int, Body> bodies;  // by node
+  std::map<int, RigidBody> bodies;  // by node
   for (const int link : links_root_to_leaf(plan)) {
     const std::optional<scene::RigidInertia>& inertial = plan.scene.links[link].inertial;
     const Attachment& frame = mechanism.model.links[link].frame;
     if (plan.meshes[link] || !inertial || frame.node < 0) continue;
-    const Matrix3 rotation = frame.offset.orientation.toRotationMatrix();
-    bodies[frame.node] +=
-        {inertial->mass, frame.offset * inertial->center_of_mass, rotation * inertial->inertia * rotation.transpose()};
+    bodies[frame.node] += body_of(*inertial, frame.offset);
   }
   add_hubs(plan, mechanism.model, bodies);
   // A joint's slave goes to the centre of mass of its body: one node and one joint for each rigid link.

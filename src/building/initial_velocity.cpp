@@ -154,8 +154,8 @@ void InitialVelocity::set_loop(const JointChain& chain) {
 
 void InitialVelocity::follow(int j, const ReleasedVector& rates) {
   rates_[j] = rates;
-  const SlaveVelocity slave = slave_velocity(model_, j, model_.nodes, model_.initial_released[j], velocity_);
-  velocity_[model_.joints[j].slave] = slave.carried + slave.columns * rates;
+  velocity_[model_.joints[j].slave] =
+      slave_velocity(model_, j, model_.nodes, model_.initial_released[j], velocity_).with(rates);
 }
 
 void InitialVelocity::follow_fixed(int link) {

@@ -26,6 +26,7 @@ class LoadBuilder {
     NodalLoad out =
         load_on(link.node, link.offset, load.at, load.force, load.moment, load.frame == scene::LoadFrame::Follower);
     out.history = add_history(load.history);
+    out.link = plan_.links[load.link];
     placed_.loads.push_back(out);
   }
 
@@ -47,6 +48,7 @@ class LoadBuilder {
       out.force = weights[i] * load.force;
       if (out.follows) out.force = mesh.nodes[i].pose.orientation.conjugate() * out.force;
       out.history = history;
+      out.link = link;
       placed_.loads.push_back(out);
     }
   }

@@ -168,9 +168,7 @@ void LoopBuilder::add_chain(const scene::JointDescription& joint, const std::vec
   rigid.origin.position = offset.position;
   rigid.slave_orientation = offset.orientation;
   mechanism_.slave_joint[slave] = static_cast<int>(model_.joints.size());
-  model_.joints.push_back(rigid);
-  model_.initial_released.push_back(Released());
-  model_.first_coordinate.push_back(static_cast<int>(model_.coordinates.size()));
+  mechanism_.append_joint(rigid, Released());
   mechanism_.loop_joints.push_back(chain);
 }
 
@@ -205,7 +203,8 @@ void sort_joints(Mechanism& mechanism) {
   permute(model.first_coordinate);
   for (JointMap& joint : model.joints)
     if (joint.leaving >= 0) joint.leaving = place[joint.leaving];
-  for (Coordinate& coordinate : model.coordinates) coordinate.joint = place[coordinate.joint];
+  for (Coordinate& coordinate : model.coordinates)
+    if (!is_held(model, coordinate)) coordinate.joint = place[coordinate.joint];
   // A chain stays together: nothing but its next joint hangs on a node inside it.
   for (auto* chains : {&mechanism.tree_joints, &mechanism.loop_joints})
     for (JointChain& chain : *chains)

@@ -67,8 +67,8 @@ std::vector<Composite> composites(const std::vector<int>& parents, const Model& 
 
 /// What a coordinate moves, at the start.
 struct MovedInertia {
-  double inertia;    ///< m |t|^2 + J |r|^2 [kg or kg m^2]
-  bool is_anything;  ///< more than round-off
+  double inertia = 0;        ///< m |t|^2 + J |r|^2 [kg or kg m^2]
+  bool is_anything = false;  ///< more than round-off
 };
 
 /// About an axis through `origin`, {translation, spin} in world axes, of all that hangs on a node: squares of distances
@@ -135,7 +135,7 @@ std::vector<int> finish_mass_properties(const std::vector<int>& parents, Model& 
   const std::vector<Composite> outboard = composites(parents, model);
   std::vector<MovedInertia> moved;
   for (const Coordinate& coordinate : model.coordinates) {
-    moved.push_back(moved_inertia(parents, model, coordinate, outboard));
+    moved.push_back(is_held(model, coordinate) ? MovedInertia() : moved_inertia(parents, model, coordinate, outboard));
     const double rotor = armature(model, coordinate);
     if (rotor > 0) moved.back() = {(moved.back().is_anything ? moved.back().inertia : 0) + rotor, true};
   }

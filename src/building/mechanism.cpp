@@ -39,13 +39,28 @@ int Mechanism::add_node(const Pose& pose, int parent) {
 
 int Mechanism::add_map(JointMap map, const Released& released) {
   const int joint = static_cast<int>(model.joints.size());
-  model.joints.push_back(map);
+  append_joint(map, released);
   const NodePose slave = slave_pose(model, joint, model.nodes, released);
   map.slave = model.joints[joint].slave = add_node({slave.position, slave.orientation}, map.master);
-  model.initial_released.push_back(released);
-  model.first_coordinate.push_back(static_cast<int>(model.coordinates.size()));
   slave_joint[map.slave] = joint;
   return map.slave;
+}
+
+void Mechanism::append_joint(const JointMap& map, const Released& released) {
+  const auto place = static_cast<std::ptrdiff_t>(model.joints.size());
+  if (model.joints.size_with_held() > model.joints.size())
+    for (Coordinate& coordinate : model.coordinates)
+      if (is_held(model, coordinate)) ++coordinate.joint;
+  model.joints.push_back(map);
+  model.initial_released.insert(model.initial_released.begin() + place, released);
+  model.first_coordinate.insert(model.first_coordinate.begin() + place, static_cast<int>(model.coordinates.size()));
+}
+
+int Mechanism::append_held_joint(const JointMap& map, const Released& released) {
+  model.joints.push_back_held(map);
+  model.initial_released.push_back(released);
+  model.first_coordinate.push_back(static_cast<int>(model.coordinates.size()));
+  return static_cast<int>(model.joints.size_with_held()) - 1;
 }
 
 int Mechanism::add_rigid(int master, const Pose& offset) {
@@ -58,16 +73,16 @@ int Mechanism::add_rigid(int master, const Pose& offset) {
 
 void Mechanism::move_nodes(const std::vector<Vector3>& ways) {
   for (std::size_t i = 0; i < ways.size(); ++i) model.nodes[i].position += model.nodes[i].rotation * ways[i];
-  for (JointMap& joint : model.joints) {
-    joint.arm += ways[joint.slave];
+  for (std::size_t j = 0; j < model.joints.size_with_held(); ++j) {
+    JointMap& joint = model.joints[j];
+    if (joint.slave >= 0) joint.arm += ways[joint.slave];
     if (joint.master >= 0) joint.origin.position -= ways[joint.master];
   }
   for (LinkFrame& link : model.links)
     if (link.frame.node >= 0) link.frame.offset.position -= ways[link.frame.node];
 }
 
-void Mechanism::add_coordinates(const scene::JointDescription& joint, const std::vector<std::string>& names) {
-  const int map = static_cast<int>(model.joints.size()) - 1;
+void Mechanism::add_coordinates(const scene::JointDescription& joint, const std::vector<std::string>& names, int map) {
   const JointMapKind kind = model.joints[map].kind;
   for (std::size_t c = 0; c < names.size(); ++c) {
     Coordinate coordinate;

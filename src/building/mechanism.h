@@ -34,11 +34,19 @@ struct Mechanism {
   /// Adds an elementary joint with its slave node; returns the node.
   int add_map(JointMap map, const Released& released);
   int add_rigid(int master, const Pose& offset);
+  /// Adds an elementary joint between nodes that there are; held ones make room for it.
+  void append_joint(const JointMap& map, const Released& released);
+  /// Adds an elementary joint that is held; returns its index.
+  int append_held_joint(const JointMap& map, const Released& released);
   /// Moves nodes inside the rigid bodies that they carry, by `ways` in their frames [m]. Of nodes that a joint places
   /// and nothing but joints and frames of rigid links refers to.
   void move_nodes(const std::vector<Vector3>& ways);
   /// Those of the elementary joint added last.
-  void add_coordinates(const scene::JointDescription& joint, const std::vector<std::string>& names);
+  void add_coordinates(const scene::JointDescription& joint, const std::vector<std::string>& names) {
+    add_coordinates(joint, names, static_cast<int>(model.joints.size()) - 1);
+  }
+  /// Those of an elementary joint.
+  void add_coordinates(const scene::JointDescription& joint, const std::vector<std::string>& names, int map);
 };
 
 // Each stage has all that those before it have: a pass cannot be called before those that it needs.

@@ -12,6 +12,7 @@
 #include "building/coordinate_builder.h"
 #include "building/damping_ratios.h"
 #include "building/elementary_joints.h"
+#include "building/held_joints.h"
 #include "building/inertia_builder.h"
 #include "building/initial_velocity.h"
 #include "building/load_builder.h"
@@ -53,6 +54,7 @@ BuiltModel build(const scene::SceneDescription& scene) {
   model.gravity = scene.gravity;
   set_stop_depths(model);
   std::vector<int> massless = finish_mass_properties(solvable.node_parents, model);
+  describe_held_joints(plan, solvable, model);
   set_damping_ratios(scene, solvable.node_parents, model);
   std::vector<int> dependent = coordinates_without_own_inertia(solvable.node_parents, model);
   model.node_parents = std::move(solvable.node_parents);
@@ -97,7 +99,9 @@ scene::SceneDescription with_locked(scene::SceneDescription scene, const BuiltMo
     if (coordinate.is_angle) continue;  // of a free rotation, which no motion can prescribe
     locked.insert(coordinate.name);
     const Released& start = built.model.initial_released[coordinate.joint];
-    scene.motions.push_back({coordinate.name, TimeFunction(start.displacement[coordinate.component]), {scene.file}});
+    // A function of time: what moves nothing is not worth to be held as a part of another body.
+    const std::string place = fmt::format("0:{}", start.displacement[coordinate.component]);
+    scene.motions.push_back({coordinate.name, TimeFunction::parse(place), {scene.file}});
   }
   const auto drop = [&](auto& entries) {
     entries.erase(std::remove_if(entries.begin(), entries.end(),

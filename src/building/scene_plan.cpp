@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "building/elementary_joints.h"
+#include "building/held_joints.h"
 #include "building/model_builder.h"
 #include "model/carried_origin.h"
 #include "scene/limits.h"
@@ -150,6 +151,7 @@ ScenePlan::ScenePlan(const scene::SceneDescription& scene)
       tree(scene, links),
       meshes(mesh_links(scene, links)),
       initial_positions(scene),
+      held(joints_to_hold(scene, links, tree)),
       floats(flexarm::floats(scene, tree, meshes)) {
   const auto& on_root = tree.below[tree.root];
   if (on_root.empty() || meshes[tree.root]) return;

@@ -62,6 +62,8 @@ struct ScenePlan {
   JointTree tree;
   LinkMeshes meshes;
   InitialPositions initial_positions;
+  /// Positions of the joints that are held, by name (building/held_joints.h).
+  std::unordered_map<std::string, double> held;
   /// Of the model, in the world [m]: the world's own, or the place of the first joint on the root link where that is
   /// far away beside the mechanism's size, so that positions have as many digits as at the world's origin.
   Vector3 origin = Vector3::Zero();

@@ -3,6 +3,7 @@
 #include "building/elementary_joints.h"
 #include "building/sensor_builder.h"
 #include "building/slide_builder.h"
+#include "joints/joint_map.h"
 #include "math/so3.h"
 
 namespace flexarm {
@@ -51,10 +52,29 @@ class TreeBuilder {
       place_link(child, frame);
       return {&joint, first, 0};
     }
+    if (const auto held = plan_.held.find(joint.name); held != plan_.held.end()) {
+      place_link(child, add_held(joint, held->second, frame));
+      return {&joint, first, 0};
+    }
     const int node = add_maps(joint, coordinate_names(joint), frame);
     const int end = next_map();
     place_child(child, node);
     return {&joint, first, end - first};
+  }
+
+  /// A joint that is held at `position`; returns the frame of its child, as that of a fixed joint.
+  Attachment add_held(const scene::JointDescription& joint, double position, const Attachment& frame) {
+    JointMap map = elementary_joints(joint).front();
+    place(map, frame.offset);
+    Released released;
+    released.displacement[0] = position;
+    const NodePose child = slave_pose(map, NodePose(), released);
+    map.master = map.slave = frame.node;
+    map.slave_orientation = so3::exp_quaternion(Vector3(-position * map.rotation));
+    map.arm = -child.position;
+    tree_.model.held.emplace_back().coordinate = static_cast<int>(model_.coordinates.size());
+    tree_.add_coordinates(joint, coordinate_names(joint), tree_.append_held_joint(map, released));
+    return {frame.node, Pose{child.position, child.orientation}};
   }
 
   /// A section that slides, and what turns on it.

@@ -22,7 +22,7 @@ JointFold::JointFold(const StepConfiguration& configuration, const StepHistories
       histories_(histories),
       friction_(friction),
       actuators_(actuators),
-      is_resisted_(configuration.model().joints.size(), false),
+      is_resisted_(configuration.model().joints.size_with_held(), false),
       applied_(configuration.model().coordinates.size(), 0.0),
       slide_maps_(most_active_nodes(configuration.model().slide_lines)),
       mimic_maps_(configuration.degrees_of_freedom().mimics.size()) {
@@ -95,7 +95,7 @@ void JointFold::fold(int j, Maps& maps, Balance& balance) {
 }
 
 void JointFold::evaluate(Balance& balance) {
-  const std::vector<JointMap>& joints = configuration_.model().joints;
+  const JointList& joints = configuration_.model().joints;
   friction_.begin_evaluation();
   for (int j = static_cast<int>(joints.size()) - 1; j >= 0; --j) {
     if (joints[j].kind == JointMapKind::Slide)
@@ -111,13 +111,15 @@ void JointFold::evaluate(Balance& balance) {
   if (balance.tangent) balance.tangent->fold_mimics(mimic_maps_);
 }
 
-void JointFold::find_drives(const ReducedResidual& residual, StepMeans& drives) {
+void JointFold::find_drives(const ReducedResidual& residual, HeldEfforts& held, StepMeans& drives) {
   const Model& model = configuration_.model();
+  for (const HeldJoint& joint : model.held)
+    applied_[joint.coordinate] = held.effort(joint, residual, friction_.effort_weight());
   const State& state = configuration_.state();
   for (std::size_t index = 0; index < model.coordinates.size(); ++index) {
     const Coordinate& coordinate = model.coordinates[index];
     if (coordinate.motion < 0) continue;
-    // A prescribed coordinate's row is the effort that drives it.
+    // A prescribed coordinate's row is the effort that drives it; that of a held one is empty.
     const int variable = configuration_.degrees_of_freedom().variable_of_joint(coordinate.joint);
     applied_[index] += residual.at(variable)[coordinate.component] / friction_.effort_weight();
     // Over the step; the Newmark family has that at its end, and none at the start of a simulation.

@@ -5,6 +5,7 @@
 
 #include "integrators/actuators.h"
 #include "integrators/dry_friction_step.h"
+#include "integrators/held_efforts.h"
 #include "integrators/step_configuration.h"
 #include "integrators/step_histories.h"
 #include "solver/reduced_residual.h"
@@ -21,7 +22,7 @@ class JointFold {
   /// Adds the work of efforts over the step to `work` [J].
   void add_work(double& work) const;
   /// Finds what drove prescribed coordinates; before add_work().
-  void find_drives(const ReducedResidual& residual, StepMeans& drives);
+  void find_drives(const ReducedResidual& residual, HeldEfforts& held, StepMeans& drives);
   /// Writes released coordinates and efforts.
   void accept(State& state) const;
   /// Per coordinate: effort in this step.

@@ -21,10 +21,11 @@ class JointReactions {
   void accept(const ReducedResidual& residual, State& state) const;
   /// The same of an equilibrium.
   void accept_rest(const ReducedResidual& residual, State& state) const;
-
- private:
+  /// {force, moment about the link's origin} over the step, or at its end in the Newmark family; world axes [N, N m].
+  /// @param residual  as the step left it
   Vector6 transmitted(const ReducedResidual& residual, const ReactionPlace& place) const;
 
+ private:
   const StepConfiguration& configuration_;
   const DryFrictionStep& friction_;
   const LoopMultipliers& loops_;

@@ -87,6 +87,24 @@ void NodalForces::evaluate(Balance& balance) const {
     if (wrench.pull.acts()) add_pull(wrench, balance);
 }
 
+Vector6 NodalForces::loads_on(const std::vector<bool>& links) const {
+  const std::vector<NodePose>&begin = configuration_.begin(), &end = configuration_.end();
+  const LoadPoint point = configuration_.scheme().is_incremental() ? LoadPoint::Mean : LoadPoint::End;
+  const auto is_on = [&](const NodalLoad& load) { return load.link >= 0 && links[load.link]; };
+  // Where the configuration is interpolated in time, so are the values of histories: from there to the end.
+  const TimeRule& rule = configuration_.scheme();
+  const double beyond = rule.hht == HhtForm::Kinematics ? 1 / (1 + rule.alpha) - 1 : 0;
+  Vector6 wrench = Vector6::Zero();
+  for_each_load([&](const NodalLoad& load, double value, double at_beginning) {
+    if (!is_on(load)) return;
+    const double now = histories_.factor * (value + beyond * (value - at_beginning));
+    wrench += load_action(load, now, begin[load.node].rotation, end[load.node].rotation, point).wrench;
+  });
+  for (const NodalLoad& load : configuration_.state().wrenches)
+    if (is_on(load) && load.pull.acts()) wrench += histories_.factor * pull(load).wrench;
+  return wrench;
+}
+
 void NodalForces::add_work(double& work) const {
   for_each_load([&](const NodalLoad& load, double value, double value_at_beginning) {
     const NodePose &begin = configuration_.begin()[load.node], &end = configuration_.end()[load.node];

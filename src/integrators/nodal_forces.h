@@ -15,6 +15,8 @@ class NodalForces {
   void evaluate(Balance& balance) const;
   /// Adds the work of loads over the step to `work` [J]; that of weights is in the potential energy.
   void add_work(double& work) const;
+  /// {force, moment about the node} of loads and wrenches on these links, which one node carries.
+  Vector6 loads_on(const std::vector<bool>& links) const;
 
  private:
   /// visit(load, its value where the scheme evaluates forces, its value at the beginning)

@@ -23,6 +23,7 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme, BackendChoice b
       actuators_(configuration_, histories_, interpolation_.get()),
       joints_(configuration_, histories_, friction_, actuators_),
       reactions_(configuration_, friction_, loops_),
+      held_efforts_(configuration_, histories_, forces_, reactions_),
       reversals_(configuration_),
       contacts_(configuration_),
       rows_(model, dof_),
@@ -158,7 +159,7 @@ void StepSystem::update(const Eigen::VectorXd& increment) {
 
 void StepSystem::accept(State& state) {
   if (scheme().is_static) return accept_rest(state);
-  joints_.find_drives(rows_, state.drives);
+  joints_.find_drives(rows_, held_efforts_, state.drives);
   reactions_.accept(rows_, state);
   friction_.accept(state);
   double work = 0;

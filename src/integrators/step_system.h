@@ -128,6 +128,7 @@ class StepSystem {
   Actuators actuators_;
   JointFold joints_;
   JointReactions reactions_;
+  HeldEfforts held_efforts_;
   SmoothReversals reversals_;
   StopContacts contacts_;
   // ---- the balance of what they add

@@ -49,6 +49,10 @@ class Expression {
     t_ = time;
     return parser_.Eval();
   }
+  /// Looking for variables writes to the parser: the expression must be a copy of one that is in use.
+  std::optional<double> constant() {
+    return parser_.GetUsedVar().empty() ? std::optional(parser_.Eval()) : std::nullopt;
+  }
 
  private:
   std::string text_;
@@ -187,6 +191,13 @@ double TimeFunction::derivative(double t) const {
   // Around the start the function may not exist for negative times: second-order forward difference.
   if (t >= 0 && t < step) return (-3 * (*this)(t) + 4 * (*this)(t + step) - (*this)(t + 2 * step)) / (2 * step);
   return ((*this)(t + step) - (*this)(t - step)) / (2 * step);
+}
+
+std::optional<double> TimeFunction::constant() const {
+  const Function& function = implementation_->function;
+  if (const double* value = std::get_if<double>(&function)) return *value;
+  if (const Expression* expression = std::get_if<Expression>(&function)) return Expression(*expression).constant();
+  return std::nullopt;
 }
 
 const std::string& TimeFunction::text() const {

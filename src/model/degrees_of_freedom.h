@@ -8,8 +8,8 @@
 namespace flexarm {
 
 /// Variables are blocks of scalars: first the nodes (6 scalars: displacement, spin), then the joints (their released
-/// coordinates), then the closures of loops (their multipliers). A slave node, a prescribed and a mimicking coordinate
-/// have no equation of their own.
+/// coordinates), those that are held last, then the closures of loops (their multipliers). A slave node, a prescribed
+/// and a mimicking coordinate have no equation of their own.
 struct DegreesOfFreedom {
   explicit DegreesOfFreedom(const Model& model);
 
@@ -20,10 +20,10 @@ struct DegreesOfFreedom {
     return first[variable_of_joint(coordinate.joint)] + coordinate.component;
   }
 
-  int node_count = 0, joint_count = 0;
-  std::vector<int> size;      ///< per variable: scalars
-  std::vector<int> first;     ///< per variable: index of its first scalar
-  std::vector<int> equation;  ///< per scalar: equation, or -1
+  int node_count = 0, joint_count = 0;  ///< held joints included
+  std::vector<int> size;                ///< per variable: scalars
+  std::vector<int> first;               ///< per variable: index of its first scalar
+  std::vector<int> equation;            ///< per scalar: equation, or -1
   int scalar_count = 0;
   int unknowns = 0;              ///< equations
   std::vector<int> slave_joint;  ///< per node: joint of which it is the slave, or -1

@@ -7,7 +7,9 @@
 /// Joints with one coordinate have A = I: axes stand in the master node's frame.
 /// A joint with several scalar coordinates is a chain of elementary ones through massless nodes.
 
+#include <cstddef>
 #include <memory>
+#include <vector>
 
 #include "flexarm/math/cam_profile.h"
 #include "flexarm/math/pose.h"
@@ -65,6 +67,32 @@ inline void place(JointMap& joint, const Pose& frame) {
   joint.rotation = turn * joint.rotation;
   joint.slave_orientation = turn * joint.slave_orientation;
 }
+
+/// Elementary joints, from the root to the leaves. Behind those that move stand those that constant motions hold: who
+/// goes over the list meets none of them, they are found by their indices alone (Coordinate::joint).
+class JointList {
+ public:
+  std::size_t size() const { return maps_.size() - held_; }  ///< of those that move
+  std::size_t size_with_held() const { return maps_.size(); }
+  bool is_held(int joint) const { return joint >= static_cast<int>(size()); }
+  auto begin() { return maps_.begin(); }
+  auto begin() const { return maps_.begin(); }
+  auto end() { return maps_.end() - static_cast<std::ptrdiff_t>(held_); }
+  auto end() const { return maps_.end() - static_cast<std::ptrdiff_t>(held_); }
+  JointMap& operator[](std::size_t joint) { return maps_[joint]; }
+  const JointMap& operator[](std::size_t joint) const { return maps_[joint]; }
+  const JointMap& front() const { return maps_.front(); }
+  /// Behind the last one that moves: the indices of those that are held grow by one.
+  void push_back(const JointMap& map) { maps_.insert(end(), map); }
+  void push_back_held(const JointMap& map) {
+    maps_.push_back(map);
+    ++held_;
+  }
+
+ private:
+  std::vector<JointMap> maps_;
+  std::size_t held_ = 0;
+};
 
 /// Values of the released coordinates.
 struct Released {

@@ -132,6 +132,19 @@ struct ReactionPlace {
   }
 };
 
+/// A joint whose motion is constant. The rigid links that it carries are parts of its master's body, or of the world:
+/// it costs a step nothing but its effort, which is found when the step is accepted. Its map has the master as its
+/// slave, too: which point of the master's frame is held where does not matter to what it says of axes and arms.
+struct HeldJoint {
+  int coordinate = -1;
+  // Of the rigid links that it carries, those behind fixed and other held joints included, in the master's frame:
+  double mass = 0;                    ///< [kg]
+  Vector3 centre = Vector3::Zero();   ///< of mass [m]
+  Matrix3 inertia = Matrix3::Zero();  ///< about the centre [kg m^2]
+  std::vector<bool> links;            ///< per link: whether it is one of them
+  std::vector<int> outboard;          ///< joints that hang on them
+};
+
 /// Where a sensor sits.
 struct SensorPlace {
   ProbePoint point;
@@ -145,14 +158,15 @@ struct Model {
   std::vector<NodalInertia> inertias;  ///< per node
   BeamGroups beams;
   int stiffness_point_count = 0, mass_point_count = 0;
-  std::vector<JointMap> joints;  ///< root to leaf
+  JointList joints;
+  std::vector<HeldJoint> held;
   std::vector<SlideLine> slide_lines;
   std::vector<LoopClosure> closures;       ///< loops that no joint closes by its slave
   std::vector<PointSpring> springs;        ///< each has a closure of its own, which couples its nodes
-  std::vector<Released> initial_released;  ///< per joint
+  std::vector<Released> initial_released;  ///< per joint, held ones included
   std::vector<Vector6> initial_velocity;   ///< per node {v, w}, spatial
   std::vector<Coordinate> coordinates;
-  std::vector<int> first_coordinate;  ///< per joint; its coordinates are consecutive
+  std::vector<int> first_coordinate;  ///< per joint, held ones included; its coordinates are consecutive
   std::vector<Actuator> actuators;
   std::vector<NodalLoad> loads;
   std::vector<Prestrain> prestrains;
@@ -180,6 +194,11 @@ inline double armature(const Model& model, const Coordinate& coordinate) {
   if (coordinate.actuator < 0) return 0;
   const Drive& drive = model.actuators[coordinate.actuator].drive;
   return drive.gear ? 0 : drive.inertia;
+}
+
+/// True for the coordinate of a HeldJoint.
+inline bool is_held(const Model& model, const Coordinate& coordinate) {
+  return model.joints.is_held(coordinate.joint);
 }
 
 /// True for coordinates that count in rad: free rotations, and scalars by which something turns.

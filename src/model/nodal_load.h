@@ -14,6 +14,7 @@ struct NodalLoad {
   bool follows = false;  ///< force and moment turn with the node; else they are fixed in the world
   int history = 0;       ///< index into Model::histories; a wrench of State::wrenches has none
   Pull pull = {};        ///< only of State::wrenches
+  int link = -1;         ///< on which it acts; index into Model::links
 };
 
 /// A force, and a moment about `point` of a link whose frame seen from the node is `link`. Their axes are the world's,
@@ -21,7 +22,7 @@ struct NodalLoad {
 inline NodalLoad load_on(int node, const Pose& link, const Vector3& point, const Vector3& force, const Vector3& moment,
                          bool follows) {
   const Quaternion turn = follows ? link.orientation : Quaternion::Identity();
-  return {node, link * point, turn * force, turn * moment, follows, 0, {}};
+  return {node, link * point, turn * force, turn * moment, follows, 0, {}, -1};
 }
 
 }  // namespace flexarm

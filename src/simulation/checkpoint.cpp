@@ -117,6 +117,8 @@ std::string wrenches_text(const std::vector<NodalLoad>& wrenches) {
   if (wrenches.empty()) return "";
   std::string text = fmt::format(" wrenches {}", wrenches.size());
   for (const NodalLoad& wrench : wrenches) text += fmt::format(" {} {:d}", wrench.node, wrench.follows);
+  text += " on";
+  for (const NodalLoad& wrench : wrenches) text += fmt::format(" {}", wrench.link);
   return text;
 }
 
@@ -154,6 +156,8 @@ void read_counts(Reader& reader, State& state) {
   if (in >> word) require(in >> wrenches && wrenches <= line.size());  // each takes some of its characters
   state.wrenches.assign(wrenches, {});
   for (NodalLoad& wrench : state.wrenches) require(static_cast<bool>(in >> wrench.node >> wrench.follows));
+  if (in >> word)  // what was kept before does not say it
+    for (NodalLoad& wrench : state.wrenches) require(word == "on" && in >> wrench.link);
   if (state.samples.empty()) return;
   const std::string transmitted = reader.next();
   std::istringstream numbers(transmitted);

@@ -118,7 +118,7 @@ class Follower {
       else
         follow_parent(node);
     }
-    for (int joint = 0; joint < dof_.joint_count; ++joint)
+    for (int joint = 0; joint < static_cast<int>(model_.joints.size()); ++joint)
       if (closes_loop(joint)) close(joint);
   }
 
@@ -133,9 +133,9 @@ class Follower {
     set_velocity(joint);
   }
   void set_velocity(int joint) {
-    const SlaveVelocity velocity =
-        slave_velocity(model_, joint, after_.poses, after_.released[joint], after_.velocities);
-    after_.velocities[model_.joints[joint].slave] = velocity.carried + velocity.columns * after_.rates[joint];
+    after_.velocities[model_.joints[joint].slave] =
+        slave_velocity(model_, joint, after_.poses, after_.released[joint], after_.velocities)
+            .with(after_.rates[joint]);
   }
   void follow_parent(int node) {
     const int parent = model_.node_parents[node];

@@ -10,6 +10,7 @@
 #include "math/dense_eigenpairs.h"
 #include "math/least_squares.h"
 #include "math/pi.h"
+#include "simulation/freed_joints.h"
 #include "simulation/inside.h"
 #include "simulation/linear_names.h"
 #include "simulation/linear_ports.h"
@@ -198,6 +199,7 @@ void set_states(const std::vector<int>& places, const LinearDynamics& dynamics, 
 
 LinearModel linearise(const Simulation& simulation, const LinearRequest& request) {
   const Model& model = model_of(simulation);
+  if (!model.held.empty()) return linearise(with_joints_freed(simulation), request);  // driven ones belong to y
   const std::vector<LinearPort> inputs = input_ports(simulation, request.inputs);
   const std::vector<LinearPort> outputs = output_ports(simulation, request.outputs);
   const LinearDynamics dynamics(model, state_of(simulation), make_scheme(simulation.scene().integrator),

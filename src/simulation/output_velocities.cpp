@@ -44,7 +44,7 @@ void OutputVelocities::update_rates(const Model& model, const DegreesOfFreedom& 
                                     const State& state) {
   poses_.resize(state.nodes.size());
   nodes_.resize(state.nodes.size());
-  rates_.resize(model.joints.size());
+  rates_.assign(model.joints.size_with_held(), ReleasedVector::Zero(1));  // those of held joints
   const IncrementHistory& history = state.history;
   has_steps_ = history.holds_for(dof.unknowns) && history.count >= 2;
   if (has_steps_) {
@@ -130,8 +130,8 @@ void OutputVelocities::set_rates(const Model& model, const DegreesOfFreedom& dof
 
 void OutputVelocities::set_slaves(const Model& model, const State& state) {
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
-    const SlaveVelocity slave = slave_velocity(model, static_cast<int>(j), poses_, state.released[j], nodes_);
-    nodes_[model.joints[j].slave] = slave.carried + slave.columns * rates_[j];
+    nodes_[model.joints[j].slave] =
+        slave_velocity(model, static_cast<int>(j), poses_, state.released[j], nodes_).with(rates_[j]);
   }
 }
 

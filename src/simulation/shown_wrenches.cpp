@@ -31,7 +31,7 @@ void effort_wrenches(const Model& model, const State& state, std::vector<ActingW
         slave_velocity(model, coordinate.joint, nodes, state.released[coordinate.joint], at_rest);
     const Vector6 column = slave.columns.col(coordinate.component);
     ActingWrench& out = wrenches.emplace_back();
-    out.position = moved_origin(joint, nodes[joint.slave]);
+    out.position = moved_origin(joint, slave_node_pose(joint, nodes));
     // The effort's power is that of the wrench: a moment where the coordinate turns, a force where it only travels.
     const bool turns = joint.kind != JointMapKind::Slide && !column.tail<3>().isZero(0);
     const Vector3 rate = turns ? column.tail<3>() : column.head<3>();

@@ -88,8 +88,17 @@ void check_servos(const Model& built, const State& state, Flaw& flaw) {
   }
 }
 
-void check_wrenches(const State& state, Flaw& flaw) {
+void check_held_joints(const Model& built, const State& state, Flaw& flaw) {
+  for (std::size_t j = built.joints.size(); j < std::min(state.released.size(), built.initial_released.size()); ++j) {
+    const double position = state.released[j].displacement[0], held = built.initial_released[j].displacement[0];
+    flaw.require(position == held, "the position of a joint whose motion is constant", position,
+                 fmt::format("{}", held));
+  }
+}
+
+void check_wrenches(const Model& built, const State& state, Flaw& flaw) {
   for (const NodalLoad& wrench : state.wrenches) {
+    flaw.require_range("the link of a wrench", wrench.link, -1, static_cast<double>(built.links.size()) - 1);
     flaw.require_range("the node of a wrench", wrench.node, 0, static_cast<double>(state.nodes.size()) - 1);
     for (const double number : {wrench.pull.stiffness, wrench.pull.damping})
       flaw.require(number >= 0, "the spring of a wrench", number, ">= 0");
@@ -114,7 +123,8 @@ std::string state_flaw(const Model& built, const State& initial, int finest_halv
   check_left_lines(built, state, flaw);
   check_sizes(initial, state, flaw);
   check_servos(built, state, flaw);
-  check_wrenches(state, flaw);
+  check_held_joints(built, state, flaw);
+  check_wrenches(built, state, flaw);
   check_history(state.history, flaw);
   flaw.require(state.steps >= 0, "the number of steps", static_cast<double>(state.steps), "0 or more");
   flaw.require_range("the halving level", state.halving_level, 0, finest_halving);

@@ -38,6 +38,7 @@ NodalLoad placed_wrench(const Model& model, const AppliedWrench& wrench) {
   const Attachment carrier = carrier_of(model, link, wrench.at);
   NodalLoad load = load_on(carrier.node, carrier.offset, wrench.at, force, moment, wrench.follows);
   load.pull = pull;
+  load.link = static_cast<int>(wrench.link);
   return load;
 }
 

@@ -36,8 +36,8 @@ PlanarTangent::PlanarTangent(const Model& model, const DegreesOfFreedom& dof, co
   coordinates_.resize(squares);
   for (int i = 0; i < dof.node_count; ++i) diagonal_blocks_.push_back(&nodes_[kPlanarBlock * i]);
   squares = 0;
-  for (int j = 0; j < dof.joint_count; ++j) {
-    const int size = dof.size[dof.variable_of_joint(j)];
+  for (std::size_t j = 0; j < model.joints.size(); ++j) {
+    const int size = dof.size[dof.variable_of_joint(static_cast<int>(j))];
     diagonal_blocks_.push_back(coordinates_.data() + squares);
     squares += size * size;
   }

@@ -176,7 +176,8 @@ std::vector<int> TreeOrder::elimination_tree(std::vector<std::vector<int>> parts
     for (const int node : model_.slide_lines[joint.line].nodes) parts[node].push_back(completion_[joint.slave]);
   }
   std::vector<std::vector<int>> ending(parts_.size());  // variables that stay in borders up to a part
-  for (std::size_t v = 0; v < last_.size(); ++v) ending[last_[v]].push_back(static_cast<int>(v));
+  for (std::size_t v = 0; v < last_.size(); ++v)
+    if (last_[v] >= 0) ending[last_[v]].push_back(static_cast<int>(v));  // else it is held
   std::vector<int> next(parts_.size(), -1), ancestor(parts_.size(), -1);
   for (int p = 0; p < static_cast<int>(parts_.size()); ++p)
     for (const int variable : ending[p])

@@ -56,6 +56,9 @@ TEST_P(Allocation, NoneInAThousandSteps) {
     builder.sensor(std::string("on_") + link, kind, link, {0.05, 0.01, 0});
     builder.scene.sensors.back().noise = {0.01};
   }
+  builder.body("held_body", 0.1, {0.02, 0, 0}, 1e-4 * Matrix3::Identity());
+  builder.joint("held", scene::JointKind::Revolute, "fixed_body", "held_body", {0.05, 0, 0});
+  builder.scene.motions.push_back({"held", TimeFunction(0.4), {}});
   scene::SceneDescription scene = builder.scene;
   if (scheme == "em_scaled") scene.motions.clear();              // refused with them
   const bool may_fail = scheme == "beta1" || scheme == "beta2";  // where the axial strain rests (beam.md 3.3)

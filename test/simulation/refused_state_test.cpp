@@ -243,6 +243,28 @@ TEST_F(DamagedCheckpoint, WrongContentIsRefused) {
                  "expected '" + text_.substr(0, first_line) + "'");
 }
 
+// What was kept before does not say on which links wrenches act.
+TEST_F(DamagedCheckpoint, LinksOfWrenches) {
+  AppliedWrench wrench;
+  wrench.link = 1;
+  wrench.wrench.force = {5, -3, 0};
+  simulation_->apply_wrenches({wrench});
+  text_ = checkpoint_text(*simulation_);
+  const std::string own = " on 1\n";
+  const std::size_t place = text_.find(own), end = text_.rfind("checksum ");
+  ASSERT_NE(place, std::string::npos);
+  const auto with = [&](const std::string& links) {
+    return sealed(text_.substr(0, place) + links + text_.substr(place + own.size(), end - place - own.size()));
+  };
+  expect_refused(with(" on 2\n"), "no such link", "the link of a wrench is 2, expected -1 to 1");
+  expect_refused(with(" on\n"), "no link");
+  expect_refused(with(" at 1\n"), "another word");
+  read_checkpoint_text(*simulation_, with("\n"), "text");
+  ASSERT_EQ(state_of(*simulation_).wrenches.size(), 1u);
+  EXPECT_EQ(state_of(*simulation_).wrenches[0].link, -1);
+  EXPECT_EQ(state_of(*simulation_).wrenches[0].force, wrench.wrench.force);
+}
+
 // Finite numbers, of which each alone could be.
 TEST_F(DamagedCheckpoint, EnergiesThatAreNotFiniteAreRefused) {
   const std::size_t counts = text_.find("\nsteps ") + 1, end = text_.rfind("checksum ");

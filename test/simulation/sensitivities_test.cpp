@@ -103,12 +103,32 @@ const std::string kLoop = R"(<robot name="loop"> <parameter name="mass" value="0
   <simulation> <initial joint="crank" velocity="2"/> <probe name="middle" link="coupler" at="0.3 0 0.1"/> </simulation>
   )";
 
+// A rod with a hand that a constant motion holds.
+const std::string kBentRod = R"(<robot name="bent_rod">
+  <parameter name="bend" value="0.6"/> <parameter name="payload" value="0.5"/> <link name="world"/>
+  <joint name="hinge" type="continuous"> <parent link="world"/> <child link="rod"/> <axis xyz="0 1 0"/> </joint>
+  <link name="rod"> <inertial> <origin xyz="0.5 0 0"/> <mass value="2"/>
+    <inertia ixx="0.01" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
+  <joint name="grip" type="continuous"> <parent link="rod"/> <child link="hand"/> <origin xyz="1 0 0"/>
+    <axis xyz="0 0.6 0.8"/> </joint>
+  <link name="hand"> <inertial> <origin xyz="0.2 0.1 0"/> <mass value="${payload}"/>
+    <inertia ixx="0.01" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
+  <simulation> <motion joint="grip" position="${bend}"/> <initial joint="hinge" velocity="0.7"/>
+    <probe name="end" link="hand" at="0.4 0 0"/> </simulation>
+  )";
+
 // ---------------------------------------------------------------- against differences of whole runs
 
 TEST(Sensitivities, RigidPendulumByItsParametersAndItsStart) {
   for (const std::string scheme : {"em", "newmark"})
     expect_differences({with_scheme(kPendulum, scheme, 5e-3)},
                        {{"damping", 0.5}, {"payload", 2}, {"angle", 1.2}, {"speed", 0.7}, {"reach", 0.8}}, 300, 1e-2);
+}
+
+TEST(Sensitivities, JointThatIsHeld) {
+  const Scene scene{with_scheme(kBentRod, "em", 5e-3)};
+  ASSERT_EQ(model_of(scene.simulation()).held.size(), 1U);
+  expect_differences(scene, {{"bend", 0.6}, {"payload", 0.5}}, 200, 1e-2);
 }
 
 TEST(Sensitivities, FlexibleArm) {

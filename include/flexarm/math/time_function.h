@@ -2,6 +2,7 @@
 /// Scalar functions of time as a scene writes them: a constant, a muParser expression of t, a table, or a spline.
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,6 +36,8 @@ class TimeFunction {
   /// Exact of a spline; else a central difference with a step of cbrt(machine epsilon) * max(1, |t|), one-sided
   /// (forward) at t = 0.
   double derivative(double t) const;
+  /// The value of a function in which there is no t; none of another one, which may have the same value all the time.
+  std::optional<double> constant() const;
   /// Text from which the function was made, or could have been.
   const std::string& text() const;
 
