@@ -10,11 +10,11 @@
 namespace flexarm {
 namespace {
 
+using test::kOneSecond;
 using test::kRampRms;
 using test::linear_element_error;
 using test::ramped_cantilever;
 
-constexpr JudgedTimes kTimes{0.02, 50};
 constexpr double kWay = 0.01;  // of the tip [m]
 
 MeshErrors measured(TrialRuns& trials, double wanted) {
@@ -29,7 +29,7 @@ MeshErrors measured(TrialRuns& trials, double wanted) {
 constexpr double kLeftOut = 1e-3;
 
 TEST(MeshErrors, AreThoseOfTheDeflection) {
-  TrialRuns trials(ramped_cantilever("order=\"1\""), kTimes, {}, {}, {});
+  TrialRuns trials(ramped_cantilever("order=\"1\""), kOneSecond, {}, {}, {});
   const MeshErrors errors = measured(trials, 1e-3);
   EXPECT_TRUE(errors.is_rich_enough) << errors.shortcoming;
   ASSERT_EQ(errors.beams.size(), 1u);
@@ -45,7 +45,7 @@ TEST(MeshErrors, AreThoseOfTheDeflection) {
 /// Elements of order 2 and more have a static tip exactly: of the cubic deflection a mesh sees every node.
 TEST(MeshErrors, VanishWhereElementsAreExact) {
   for (const char* mesh : {"order=\"2\"", "order=\"3\""}) {
-    TrialRuns trials(ramped_cantilever(mesh), kTimes, {}, {}, {});
+    TrialRuns trials(ramped_cantilever(mesh), kOneSecond, {}, {}, {});
     const MeshErrors errors = measured(trials, 1e-2);
     for (const MeshError& error : errors.beams.at(0))
       EXPECT_LE(size(error.error), kLeftOut * kWay) << error.mesh.text();
@@ -58,7 +58,7 @@ TEST(MeshErrors, OfARigidBeamAreAllThatItBends) {
   scene.joints[0].kind = scene::JointKind::Revolute;
   scene.joints[0].axis = Vector3::UnitY();
   scene.motions.push_back({"clamp", TimeFunction(0.0), {}});
-  TrialRuns trials(scene, kTimes, {}, {}, {});
+  TrialRuns trials(scene, kOneSecond, {}, {}, {});
   RunSettings settings = settings_of(trials.scene());
   const MeshErrors errors = measure_meshes(trials, settings, {{true}, true, false}, 1e-3 * kWay);
   const auto& beam = errors.beams.at(0);
@@ -69,7 +69,7 @@ TEST(MeshErrors, OfARigidBeamAreAllThatItBends) {
 }
 
 TEST(MeshErrors, ChoicesGetBetterAndDearer) {
-  TrialRuns trials(ramped_cantilever("order=\"1\""), kTimes, {}, {}, {});
+  TrialRuns trials(ramped_cantilever("order=\"1\""), kOneSecond, {}, {}, {});
   const std::vector<MeshChoice> choices = mesh_choices(measured(trials, 1e-3));
   for (std::size_t i = 1; i < choices.size(); ++i) {
     EXPECT_LT(size(choices[i].error), size(choices[i - 1].error));
@@ -90,7 +90,7 @@ TEST(MeshErrors, OfASceneWithoutBeamsAreNone) {
 // ---------------------------------------------------------------- elements="auto"
 
 TEST(AutomaticMeshes, AreTheFewestElements) {
-  TrialRuns trials(ramped_cantilever("elements=\"auto\" order=\"1\""), kTimes, {}, {}, {});
+  TrialRuns trials(ramped_cantilever("elements=\"auto\" order=\"1\""), kOneSecond, {}, {}, {});
   for (const double accuracy : {5e-2, 1e-2, 1e-3}) {
     const AutomaticMeshes meshes = automatic_meshes(trials, accuracy);
     EXPECT_TRUE(meshes.is_met) << meshes.shortcoming;
@@ -137,7 +137,7 @@ TEST(AutomaticMeshes, AreNoneWhereABeamMayBeRigid) {
 }
 
 TEST(AutomaticMeshes, LeaveNumbersOfElementsAlone) {
-  TrialRuns trials(ramped_cantilever("elements=\"2\" order=\"1\""), kTimes, {}, {}, {});
+  TrialRuns trials(ramped_cantilever("elements=\"2\" order=\"1\""), kOneSecond, {}, {}, {});
   const AutomaticMeshes meshes = automatic_meshes(trials, 1e-3);
   EXPECT_TRUE(meshes.is_met);
   EXPECT_EQ(meshes.runs, 0);
@@ -147,7 +147,7 @@ TEST(AutomaticMeshes, LeaveNumbersOfElementsAlone) {
 TEST(AutomaticMeshes, EndWhereTheirRunsAreUsedUp) {
   TrialLimits limits;
   limits.runs = 4;
-  TrialRuns trials(ramped_cantilever("elements=\"auto\" order=\"1\""), kTimes, limits, {}, {});
+  TrialRuns trials(ramped_cantilever("elements=\"auto\" order=\"1\""), kOneSecond, limits, {}, {});
   const AutomaticMeshes meshes = automatic_meshes(trials, 1e-9);
   EXPECT_FALSE(meshes.is_met);
   EXPECT_NE(meshes.shortcoming.find("4 runs"), std::string::npos) << meshes.shortcoming;

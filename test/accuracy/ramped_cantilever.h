@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "accuracy/trial_runs.h"
 #include "flexarm/scene/urdf_reader.h"
 
 namespace flexarm::test {
@@ -32,6 +33,8 @@ inline scene::SceneDescription ramped_cantilever(const std::string& mesh) {
   if (!read.scene) throw std::runtime_error(scene::to_text(read.diagnostics));
   return *read.scene;
 }
+
+constexpr JudgedTimes kOneSecond{0.02, 50};
 
 /// Root mean square over the second of the tip's way, relative to its end.
 const double kRampRms = std::sqrt(3.0 / 8);

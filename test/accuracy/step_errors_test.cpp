@@ -12,7 +12,7 @@ namespace flexarm {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr JudgedTimes kTimes{0.02, 25};
+constexpr JudgedTimes kHalfSecond{0.02, 25};
 
 scene::SceneDescription pendulum() {
   return scene::read_scene_file(test::source_path("config/examples/rigid_double_pendulum.urdf")).scene.value();
@@ -24,10 +24,10 @@ scene::SceneDescription smooth_arm() {
 }
 
 TEST(StepErrors, AreThoseAgainstTheTruth) {
-  TrialRuns trials(smooth_arm(), kTimes, {}, {}, {});
+  TrialRuns trials(smooth_arm(), kHalfSecond, {}, {}, {});
   RunSettings settings = settings_of(trials.scene()), fine = settings;
   fine.scheme = "em4";
-  fine.step = kTimes.interval / 32;
+  fine.step = kHalfSecond.interval / 32;
   fine.tolerance = 1e-10;
   const TrialRun& truth = trials.run(fine);
   const double scale = truth.motion.largest_displacement();
@@ -46,7 +46,7 @@ TEST(StepErrors, AreThoseAgainstTheTruth) {
 }
 
 TEST(StepErrors, BetweenRunsFollowTheOrder) {
-  TrialRuns trials(pendulum(), kTimes, {}, {}, {});
+  TrialRuns trials(pendulum(), kHalfSecond, {}, {}, {});
   const StepErrors errors = measure_steps(trials, settings_of(trials.scene()), 1e-4, kInfinity);
   ASSERT_TRUE(errors.is_met);
   const int finest = errors.parts.back();
@@ -67,7 +67,7 @@ TEST(StepErrors, EndAtRoundOff) {
 }
 
 TEST(StepErrors, EndWhereRunsTakeTooLong) {
-  TrialRuns trials(pendulum(), kTimes, {}, {}, {});
+  TrialRuns trials(pendulum(), kHalfSecond, {}, {}, {});
   const StepErrors errors = measure_steps(trials, settings_of(trials.scene()), 1e-12, 1e-3);
   EXPECT_FALSE(errors.is_met);
   EXPECT_NE(errors.shortcoming.find("given up"), std::string::npos) << errors.shortcoming;

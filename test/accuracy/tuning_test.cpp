@@ -9,8 +9,6 @@
 namespace flexarm {
 namespace {
 
-constexpr JudgedTimes kTimes{0.02, 50};
-
 scene::SceneDescription scene_of(const std::string& path) {
   return scene::read_scene_file(test::source_path(path)).scene.value();
 }
@@ -34,7 +32,7 @@ double true_error(TrialRuns& trials, RunSettings settings) {
 TEST(Tuning, KeepsTheAccuracyAndSavesTime) {
   for (const char* path : {"config/examples/rigid_double_pendulum.urdf", "config/speed/double_pendulum.urdf"})
     for (const double accuracy : {1e-2, 1e-4}) {
-      TrialRuns trials(scene_of(path), kTimes, {}, {}, {});
+      TrialRuns trials(scene_of(path), test::kOneSecond, {}, {}, {});
       TuningGoal goal;
       goal.accuracy = accuracy;
       const TuningResult result = tuned(trials, goal);
@@ -68,7 +66,7 @@ TEST(Tuning, EndsWithTheBestSoFar) {
   for (const int most : {1, 8, 30}) {
     TrialLimits limits;
     limits.runs = most;
-    TrialRuns trials(test::ramped_cantilever(""), kTimes, limits, {}, {});
+    TrialRuns trials(test::ramped_cantilever(""), test::kOneSecond, limits, {}, {});
     const TuningResult result = tuned(trials, goal);
     EXPECT_LE(static_cast<int>(result.runs.size()), most + 1);
     EXPECT_GE(static_cast<int>(result.runs.size()), last_count);
@@ -81,7 +79,7 @@ TEST(Tuning, EndsWithTheBestSoFar) {
 TEST(Tuning, RefusesWhatDoesNotMove) {
   scene::SceneDescription scene = test::ramped_cantilever("");
   scene.loads.clear();
-  TrialRuns trials(scene, kTimes, {}, {}, {});
+  TrialRuns trials(scene, test::kOneSecond, {}, {}, {});
   TuningGoal goal;
   goal.accuracy = 1e-2;
   const TuningResult result = tuned(trials, goal);

@@ -8,7 +8,7 @@ namespace flexarm::bench {
 namespace {
 
 // Round-off of logarithms of sizes up to 1e5 in a fit over a decade at least.
-constexpr double kRoundOff = 1e-12;
+constexpr double kSlopeRoundOff = 1e-12;
 
 TEST(Scaling, SlopeOfAPowerLawIsItsExponent) {
   for (const double exponent : {0.0, 1.0, 1.5, 3.0}) {
@@ -17,8 +17,8 @@ TEST(Scaling, SlopeOfAPowerLawIsItsExponent) {
       x.push_back(size);
       y.push_back(7e-6 * std::pow(size, exponent));
     }
-    EXPECT_NEAR(log_slope(x, y), exponent, kRoundOff);
-    EXPECT_NEAR(log_slope(x, y, 0.01), exponent, kRoundOff);
+    EXPECT_NEAR(log_slope(x, y), exponent, kSlopeRoundOff);
+    EXPECT_NEAR(log_slope(x, y, 0.01), exponent, kSlopeRoundOff);
   }
 }
 
@@ -27,7 +27,7 @@ TEST(Scaling, SlopeIsTheLeastSquaresFit) {
   const std::vector<double> x = {1, 10, 100};
   std::vector<double> y;
   for (int i = 0; i < 3; ++i) y.push_back(x[i] * x[i] * std::exp(i == 1 ? -0.2 : 0.1));
-  EXPECT_NEAR(log_slope(x, y), 2, kRoundOff);
+  EXPECT_NEAR(log_slope(x, y), 2, kSlopeRoundOff);
 }
 
 TEST(Scaling, FixedCostsOfSmallSizesDoNotCount) {
@@ -37,8 +37,8 @@ TEST(Scaling, FixedCostsOfSmallSizesDoNotCount) {
     y.push_back(size < 50 ? 1.0 : size);
   }
   // Over x = 0 ... 4 (decades) y = 0, 0, 2, 3, 4.
-  EXPECT_NEAR(log_slope(x, y), 1.1, kRoundOff);
-  EXPECT_NEAR(log_slope(x, y, 0.01), 1, kRoundOff);
+  EXPECT_NEAR(log_slope(x, y), 1.1, kSlopeRoundOff);
+  EXPECT_NEAR(log_slope(x, y, 0.01), 1, kSlopeRoundOff);
 }
 
 TEST(Scaling, OnePointHasNoSlope) {

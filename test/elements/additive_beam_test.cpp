@@ -3,15 +3,12 @@
 #include "elements/additive_to_spins.h"
 
 #include "elements/kernel_checks.h"
+#include "elements/tested_step.h"
 
 namespace flexarm {
 namespace {
 
 using namespace test;
-
-constexpr double kStep = 0.3;
-constexpr NewmarkRule kRule{0.3025, 0.6, kStep};
-constexpr double kRoundOff = 1e-12;
 
 template <class Count>
 class AdditiveBeam : public ::testing::Test {};
@@ -49,7 +46,7 @@ struct AdditiveStep {
         step.element, nodes, with_tangent,
         [&](int k, const InterpolatedRotation<double>& point, const GeneralisedShapeFunctions<Nodes>& generalised) {
           const RotaryRate rate = newmark_rotary_rate(step.element.mass_points[k].inertia, step.begin_mass_rotations[k],
-                                                      point.rotation, step.mass_points[k], kRule);
+                                                      point.rotation, step.mass_points[k], kNewmarkRule);
           if (form == WeakForm::Additive)
             add_additive_rotary_rate(step.element, nodes, k, rate, with_tangent, system);
           else
@@ -116,7 +113,7 @@ TYPED_TEST(AdditiveBeam, TangentInRotationVectors) {
   for (const double damping : {0.0, 0.2}) {
     const AdditiveStep<N> additive(random, damping);
     additive.expect_tangent_in_vectors(
-        [&](const ElementNodes<N>& nodes, bool with) { return additive.internal(nodes, &kRule, with); });
+        [&](const ElementNodes<N>& nodes, bool with) { return additive.internal(nodes, &kNewmarkRule, with); });
   }
 }
 
@@ -148,7 +145,7 @@ TYPED_TEST(AdditiveBeam, TangentInSpins) {
   for (const double damping : {0.0, 0.2}) {
     const AdditiveStep<N> additive(random, damping);
     additive.expect_tangent_in_spins(
-        [&](const ElementNodes<N>& nodes, bool with) { return additive.internal(nodes, &kRule, with); });
+        [&](const ElementNodes<N>& nodes, bool with) { return additive.internal(nodes, &kNewmarkRule, with); });
   }
 }
 
@@ -157,7 +154,7 @@ TYPED_TEST(AdditiveBeam, ResidualInSpinsIsTheAdditiveOneTurned) {
   RandomSource random(5);
   const AdditiveStep<N> additive(random, 0.2);
   const ElementNodes<N>& nodes = additive.step.nodes;
-  ElementSystem<N> system = additive.internal(nodes, &kRule, false);
+  ElementSystem<N> system = additive.internal(nodes, &kNewmarkRule, false);
   const auto expected = system.residual;
   additive_to_spins<N>(nodes, false, system);
   EXPECT_LE(largest(additive.to_vectors(system.residual) - expected), kRoundOff * largest(expected));
@@ -174,9 +171,9 @@ TYPED_TEST(AdditiveBeam, AgreesWithTheSpinFormWhereTheRotationIsUniform) {
     step.nodes.rotation_vector[i] = turn;
     step.set_orientation(i, so3::exp_quaternion(turn) * step.undeformed_orientation[i]);
   }
-  ElementSystem<N> system = additive.internal(step.nodes, &kRule, false);
+  ElementSystem<N> system = additive.internal(step.nodes, &kNewmarkRule, false);
   additive_to_spins<N>(step.nodes, false, system);
-  const ElementSystem<N> expected = additive.spin_internal(step.nodes, &kRule, false);
+  const ElementSystem<N> expected = additive.spin_internal(step.nodes, &kNewmarkRule, false);
   EXPECT_LE(largest(system.residual - expected.residual), kRoundOff * largest(expected.residual));
   EXPECT_NEAR(system.dissipated, expected.dissipated, kRoundOff * std::abs(expected.dissipated));
 

@@ -3,14 +3,13 @@
 #include "elements/endpoint_beam.h"
 #include "elements/kernel_checks.h"
 #include "elements/momentum_beam.h"
+#include "elements/tested_step.h"
 #include "schemes/scheme.h"
 
 namespace flexarm {
 namespace {
 
 using namespace test;
-
-constexpr double kStep = 0.3;
 
 template <int Nodes>
 using Row = Eigen::Matrix<double, 6 * Nodes, 1>;

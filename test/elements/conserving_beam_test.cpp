@@ -3,15 +3,12 @@
 
 #include "elements/conserving_kernel.h"
 #include "elements/kernel_checks.h"
+#include "elements/tested_step.h"
 
 namespace flexarm {
 namespace {
 
 using namespace test;
-
-constexpr double kStep = 0.3;
-/// Sums of some hundred terms of order one to a hundred: round-off.
-constexpr double kRoundOff = 1e-12;
 
 TimeRule conserving_rule(MidFunctions mid_functions = MidFunctions::Explicit) {
   TimeRule rule;

@@ -5,18 +5,19 @@
 #include "elements/conserving_points.h"
 #include "elements/conserving_tangent.h"
 #include "elements/random_element.h"
+#include "elements/tested_step.h"
 #include "schemes/scheme.h"
 
 namespace flexarm::test {
 
-/// Of a scheme with these options; damping relaxes over half a step, numerical dissipation (order 0: none) has the
-/// spectral radius 0.5. `step` [s].
-inline TimeRule time_rule(bool is_corrected, MidFunctions mid, int dissipation_order, double step) {
+/// Of a scheme with these options over kStep; damping relaxes over half of it, numerical dissipation (order 0: none)
+/// has the spectral radius 0.5.
+inline TimeRule time_rule(bool is_corrected, MidFunctions mid, int dissipation_order) {
   TimeRule rule;
   rule.mid_functions = mid;
   rule.correction = is_corrected ? EnergyCorrection::Multiplier : EnergyCorrection::None;
-  rule.damping_relaxation = 0.5 * step;
-  if (dissipation_order > 0) rule.dissipation = numerical_dissipation(dissipation_order, 0.5, step);
+  rule.damping_relaxation = 0.5 * kStep;
+  if (dissipation_order > 0) rule.dissipation = numerical_dissipation(dissipation_order, 0.5, kStep);
   return rule;
 }
 

@@ -2,15 +2,14 @@
 #include "elements/endpoint_beam.h"
 
 #include "elements/kernel_checks.h"
+#include "elements/tested_step.h"
 
 namespace flexarm {
 namespace {
 
 using namespace test;
 
-constexpr NewmarkRule kRule{0.3025, 0.6, 0.3};
-constexpr NewmarkRule kInterpolatedRule{0.3025, 0.6, 0.3, -0.1};
-constexpr double kRoundOff = 1e-12;
+constexpr NewmarkRule kInterpolatedRule{0.3025, 0.6, kStep, -0.1};
 
 template <class Count>
 class EndpointBeam : public ::testing::Test {};
@@ -44,7 +43,7 @@ TYPED_TEST(EndpointBeam, TangentWithDamping) {
   RandomStep<N> step(random, 0.5);
   step.element.stiffness_damping = 0.2;
   expect_consistent_tangent<N>(
-      step, [&](const ElementNodes<N>& nodes, bool with) { return internal<N>(step, nodes, &kRule, with); });
+      step, [&](const ElementNodes<N>& nodes, bool with) { return internal<N>(step, nodes, &kNewmarkRule, with); });
 }
 
 TYPED_TEST(EndpointBeam, TangentWithUnevenDamping) {
@@ -52,7 +51,7 @@ TYPED_TEST(EndpointBeam, TangentWithUnevenDamping) {
   RandomSource random(2);
   RandomStep<N> step(random, 0.5);
   step.damp_unevenly(0.2);
-  for (const NewmarkRule& rule : {kRule, kInterpolatedRule})
+  for (const NewmarkRule& rule : {kNewmarkRule, kInterpolatedRule})
     expect_consistent_tangent<N>(
         step, [&](const ElementNodes<N>& nodes, bool with) { return internal<N>(step, nodes, &rule, with); });
 }
@@ -81,7 +80,7 @@ TYPED_TEST(EndpointBeam, TangentWithGlobalInterpolations) {
     step.set_interpolation(random, interpolation);
     step.element.stiffness_damping = 0.2;
     expect_consistent_tangent<N>(
-        step, [&](const ElementNodes<N>& nodes, bool with) { return internal<N>(step, nodes, &kRule, with); });
+        step, [&](const ElementNodes<N>& nodes, bool with) { return internal<N>(step, nodes, &kNewmarkRule, with); });
   }
 }
 
@@ -94,8 +93,8 @@ TYPED_TEST(EndpointBeam, TangentOfNewmarkTranslation) {
     expect_consistent_tangent<N>(step, [&](const ElementNodes<N>& nodes, bool with) {
       ElementSystem<N> system;
       system.set_zero();
-      newmark_translation<N>(step.element, nodes, kRule, with, system);
-      newmark_mass_damping<N>(step.element, nodes, kRule, with, system);
+      newmark_translation<N>(step.element, nodes, kNewmarkRule, with, system);
+      newmark_mass_damping<N>(step.element, nodes, kNewmarkRule, with, system);
       return system;
     });
   }
@@ -168,20 +167,22 @@ TYPED_TEST(EndpointBeam, ForcesAreTheGradientOfTheStrainEnergy) {
 TEST(NewmarkRule, AgreesWithItsDefinition) {
   RandomSource random(8);
   const Vector3 v0 = random.vector(), a0 = random.vector(), a1 = random.vector();
-  const double h = kRule.step;
-  const Vector3 increment = h * v0 + h * h * ((0.5 - kRule.beta) * a0 + kRule.beta * a1);
-  EXPECT_LE((kRule.acceleration(increment, v0, a0) - a1).norm(), 1e-13);
-  EXPECT_LE((kRule.velocity(v0, a0, a1) - v0 - h * ((1 - kRule.gamma) * a0 + kRule.gamma * a1)).norm(), 1e-15);
-  const double slope =
-      scalar_difference([&](double d) { return kRule.acceleration(increment + d * Vector3::UnitX(), v0, a0).x(); });
-  EXPECT_NEAR(slope, kRule.acceleration_slope(), 1e-9);
-  EXPECT_NEAR(kRule.velocity_slope(), kRule.gamma * h * kRule.acceleration_slope(), 1e-12);
+  const double h = kNewmarkRule.step;
+  const Vector3 increment = h * v0 + h * h * ((0.5 - kNewmarkRule.beta) * a0 + kNewmarkRule.beta * a1);
+  EXPECT_LE((kNewmarkRule.acceleration(increment, v0, a0) - a1).norm(), 1e-13);
+  EXPECT_LE(
+      (kNewmarkRule.velocity(v0, a0, a1) - v0 - h * ((1 - kNewmarkRule.gamma) * a0 + kNewmarkRule.gamma * a1)).norm(),
+      1e-15);
+  const double slope = scalar_difference(
+      [&](double d) { return kNewmarkRule.acceleration(increment + d * Vector3::UnitX(), v0, a0).x(); });
+  EXPECT_NEAR(slope, kNewmarkRule.acceleration_slope(), 1e-9);
+  EXPECT_NEAR(kNewmarkRule.velocity_slope(), kNewmarkRule.gamma * h * kNewmarkRule.acceleration_slope(), 1e-12);
 }
 
 TYPED_TEST(EndpointBeam, StrainRateFollowsTheRule) {
   constexpr int N = TypeParam::value;
   RandomSource random(9);
-  for (const NewmarkRule& rule : {kRule, kInterpolatedRule}) {
+  for (const NewmarkRule& rule : {kNewmarkRule, kInterpolatedRule}) {
     RandomStep<N> step(random, 0.3);
     step.element.stiffness_damping = 0.2;
     std::array<PointKinematics, N - 1> end;
@@ -209,7 +210,7 @@ TYPED_TEST(EndpointBeam, StrainRateFollowsTheRule) {
 TYPED_TEST(EndpointBeam, MassDamping) {
   constexpr int N = TypeParam::value;
   RandomSource random(12);
-  for (const NewmarkRule& rule : {kRule, kInterpolatedRule}) {
+  for (const NewmarkRule& rule : {kNewmarkRule, kInterpolatedRule}) {
     RandomStep<N> step(random, 0.3);
     step.element.mass_damping = 0.4;
     ElementSystem<N> system;

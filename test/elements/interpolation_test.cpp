@@ -6,36 +6,20 @@ namespace {
 
 using namespace test;
 
-struct Choice {
-  Interpolation interpolation;
-  RotationParameters parameters = RotationParameters::Unscaled;
-};
-const Choice kChoices[] = {{Interpolation::Local},
-                           {Interpolation::Total},
-                           {Interpolation::Incremental},
-                           {Interpolation::Incremental, RotationParameters::TangentScaled},
-                           {Interpolation::Iterative}};
+const InterpolationChoice kAllInterpolations[] = {{Interpolation::Local},
+                                                  {Interpolation::Total},
+                                                  {Interpolation::Incremental},
+                                                  {Interpolation::Incremental, RotationParameters::TangentScaled},
+                                                  {Interpolation::Iterative}};
 
 template <class Count>
 class ElementInterpolation : public ::testing::Test {};
 TYPED_TEST_SUITE(ElementInterpolation, NodeCounts);
 
-/// Visits all interpolations on random steps.
-template <int Nodes, class Visit>
-void for_each_interpolation(unsigned seed, const Visit& visit) {
-  RandomSource random(seed);
-  for (const Choice& choice : kChoices) {
-    SCOPED_TRACE(static_cast<int>(choice.interpolation) + 10 * static_cast<int>(choice.parameters));
-    RandomStep<Nodes> step(random, 0.5);
-    step.set_interpolation(random, choice.interpolation, choice.parameters);
-    visit(step);
-  }
-}
-
 /// Rotation and curvature at a stiffness point.
 template <int Nodes>
-InterpolatedRotation<double> evaluate(const RandomStep<Nodes>& step, const ElementNodes<Nodes>& nodes, int k,
-                                      GeneralisedShapeFunctions<Nodes>& functions) {
+InterpolatedRotation<double> rotation_at(const RandomStep<Nodes>& step, const ElementNodes<Nodes>& nodes, int k,
+                                         GeneralisedShapeFunctions<Nodes>& functions) {
   const auto& point = step.element.stiffness_points[k];
   return ElementRotations<Nodes>(nodes, true)
       .evaluate(point.shape, point.derivative, &step.stiffness_reference[k], functions);
@@ -44,10 +28,10 @@ InterpolatedRotation<double> evaluate(const RandomStep<Nodes>& step, const Eleme
 // spin = I_g spin_i, d(curvature) = Lambda^T I_g' spin_i.
 TYPED_TEST(ElementInterpolation, VariationFunctions) {
   constexpr int N = TypeParam::value;
-  for_each_interpolation<N>(1, [](const RandomStep<N>& step) {
+  for_each_interpolation<N>(1, kAllInterpolations, [](const RandomStep<N>& step) {
     for (int k = 0; k < N - 1; ++k) {
       GeneralisedShapeFunctions<N> functions, unused;
-      const InterpolatedRotation<double> point = evaluate<N>(step, step.nodes, k, functions);
+      const InterpolatedRotation<double> point = rotation_at<N>(step, step.nodes, k, functions);
       double scale = 1;
       for (int i = 0; i < N; ++i)
         scale = std::max({scale, largest(functions.values[i]), largest(functions.derivatives[i])});
@@ -55,13 +39,13 @@ TYPED_TEST(ElementInterpolation, VariationFunctions) {
         for (int axis = 0; axis < 3; ++axis) {
           const int column = 6 * i + 3 + axis;
           const Matrix3 turning = difference([&](double h) {
-            return Matrix3(evaluate<N>(step, step.perturbed(column, h), k, unused).rotation *
+            return Matrix3(rotation_at<N>(step, step.perturbed(column, h), k, unused).rotation *
                            point.rotation.transpose());
           });
           const Vector3 spin = functions.values[i].col(axis);
           EXPECT_LE(largest(turning - so3::hat(spin)), difference_tolerance * scale);
           const Vector3 bending = difference(
-              [&](double h) { return Vector3(evaluate<N>(step, step.perturbed(column, h), k, unused).curvature); });
+              [&](double h) { return Vector3(rotation_at<N>(step, step.perturbed(column, h), k, unused).curvature); });
           EXPECT_LE(largest(point.rotation * bending - functions.derivatives[i].col(axis)),
                     difference_tolerance * scale);
         }
@@ -72,7 +56,7 @@ TYPED_TEST(ElementInterpolation, VariationFunctions) {
 // vee(Lambda^T dLambda/dx) along a parent coordinate, where the reference is a field that has a curvature of its own.
 TYPED_TEST(ElementInterpolation, CurvatureIsTheDerivativeOfTheRotation) {
   constexpr int N = TypeParam::value;
-  for_each_interpolation<N>(2, [](const RandomStep<N>& step) {
+  for_each_interpolation<N>(2, kAllInterpolations, [](const RandomStep<N>& step) {
     const bool has_reference = step.interpolation != Interpolation::Local;
     const LocalRotations<N> field(has_reference ? step.reference_orientation : step.nodes.orientation);
     const ElementRotations<N> rotations(step.nodes, false);
@@ -94,7 +78,7 @@ TYPED_TEST(ElementInterpolation, CurvatureIsTheDerivativeOfTheRotation) {
 // At a node the interpolation turns the reference by the node's own rotation; so all give the same at the nodes.
 TYPED_TEST(ElementInterpolation, PassesThroughTheNodes) {
   constexpr int N = TypeParam::value;
-  for_each_interpolation<N>(3, [](const RandomStep<N>& step) {
+  for_each_interpolation<N>(3, kAllInterpolations, [](const RandomStep<N>& step) {
     const bool has_reference = step.interpolation != Interpolation::Local;
     const LocalRotations<N> field(has_reference ? step.reference_orientation : step.nodes.orientation);
     const ElementRotations<N> rotations(step.nodes, false);
@@ -112,11 +96,11 @@ TYPED_TEST(ElementInterpolation, PassesThroughTheNodes) {
 // A common spin of all nodes turns the point alike only where the strain is invariant: the local interpolation.
 TYPED_TEST(ElementInterpolation, OnlyTheLocalOneIsStrainInvariant) {
   constexpr int N = TypeParam::value;
-  for_each_interpolation<N>(4, [](const RandomStep<N>& step) {
+  for_each_interpolation<N>(4, kAllInterpolations, [](const RandomStep<N>& step) {
     double defect = 0;
     for (int k = 0; k < N - 1; ++k) {
       GeneralisedShapeFunctions<N> functions;
-      evaluate<N>(step, step.nodes, k, functions);
+      rotation_at<N>(step, step.nodes, k, functions);
       Matrix3 sum = Matrix3::Zero();
       for (int i = 0; i < N; ++i) sum += functions.derivatives[i];
       defect = std::max(defect, largest(sum));

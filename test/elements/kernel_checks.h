@@ -5,15 +5,26 @@
 
 #include "elements/differences.h"
 #include "elements/random_element.h"
+#include "support/node_counts.h"
 
 namespace flexarm::test {
 
-/// The number of nodes as a type, for typed tests.
-template <int N>
-struct NodeCount {
-  static constexpr int value = N;
+struct InterpolationChoice {
+  Interpolation interpolation;
+  RotationParameters parameters = RotationParameters::Unscaled;
 };
-using NodeCounts = ::testing::Types<NodeCount<2>, NodeCount<3>, NodeCount<4>, NodeCount<5>>;
+
+/// Calls visit(step) for a random step with each of these interpolations.
+template <int Nodes, int Count, class Visit>
+void for_each_interpolation(unsigned seed, const InterpolationChoice (&choices)[Count], const Visit& visit) {
+  RandomSource random(seed);
+  for (const InterpolationChoice& choice : choices) {
+    SCOPED_TRACE(static_cast<int>(choice.interpolation) + 10 * static_cast<int>(choice.parameters));
+    RandomStep<Nodes> step(random, 0.5);
+    step.set_interpolation(random, choice.interpolation, choice.parameters);
+    visit(step);
+  }
+}
 
 /// Compares the tangent of kernel(nodes, with_tangent) -> ElementSystem with differences of its residual. `size`: over
 /// what increment the residual changes its shape; the differences' step follows it, their round-off grows inversely.

@@ -5,6 +5,7 @@
 
 #include "elements/differences.h"
 #include "elements/random_element.h"
+#include "support/node_poses.h"
 
 namespace flexarm {
 namespace {
@@ -18,10 +19,6 @@ NodalLoad random_load(RandomSource& random, bool follows) {
   load.moment = random.vector();
   load.follows = follows;
   return load;
-}
-
-NodePose node_pose_of(const Pose& pose) {
-  return {pose.position, pose.orientation, pose.orientation.toRotationMatrix()};
 }
 
 TEST(LoadAction, DerivativeForEveryFrameAndPoint) {
@@ -51,7 +48,7 @@ TEST(PullAction, Tangent) {
       load.pull = {random.vector(), 40, 3};
       const Pose begin = random.pose(1, 2), end{random.vector(), random.rotation(3)};
       const auto action = [&](const Pose& at_end) {
-        return pull_action(load, load.pull.target, node_pose_of(begin), node_pose_of(at_end), step, point);
+        return pull_action(load, load.pull.target, node_at(begin), node_at(at_end), step, point);
       };
       const PullAction here = action(end);
       for (int k = 0; k < 6; ++k) {
@@ -76,9 +73,8 @@ TEST(PullAction, Work) {
   const double lost = 20 * ((load.pull.target - from).squaredNorm() - (load.pull.target - to).squaredNorm());
   const double expected = lost - 3 / step * (to - from).squaredNorm();
   for (const LoadPoint point : {LoadPoint::Mean, LoadPoint::End})
-    EXPECT_NEAR(
-        pull_action(load, load.pull.target, node_pose_of(begin), node_pose_of(end), step, point).work / expected, 1,
-        1e-13);
+    EXPECT_NEAR(pull_action(load, load.pull.target, node_at(begin), node_at(end), step, point).work / expected, 1,
+                1e-13);
 }
 
 TEST(LoadAction, ForceAtAnArm) {

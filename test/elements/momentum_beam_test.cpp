@@ -3,16 +3,13 @@
 
 #include "elements/average_rotary.h"
 #include "elements/kernel_checks.h"
+#include "elements/tested_step.h"
 #include "schemes/scheme.h"
 
 namespace flexarm {
 namespace {
 
 using namespace test;
-
-constexpr double kStep = 0.3;
-/// Sums of some hundred terms of order one to a hundred: round-off.
-constexpr double kRoundOff = 1e-12;
 
 template <class Count>
 class MomentumBeam : public ::testing::Test {};

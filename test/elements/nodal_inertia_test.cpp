@@ -5,14 +5,14 @@
 
 #include "elements/differences.h"
 #include "elements/random_element.h"
+#include "elements/tested_step.h"
 #include "schemes/scheme.h"
+#include "support/node_poses.h"
 
 namespace flexarm {
 namespace {
 
 using namespace test;
-
-constexpr double kStep = 0.3;
 
 struct NodeSample {
   NodePose begin, end;
@@ -22,17 +22,14 @@ struct NodeSample {
   Vector3 momentum_rate;
 
   NodeSample(RandomSource& random, double size) {
-    begin = pose(random.vector(), random.rotation(3));
+    begin = node_at(random.vector(), random.rotation(3));
     state = {begin.position, begin.orientation, random.vector(), random.vector(), random.vector(), random.vector()};
     set_end(begin.position + size * random.vector(),
             so3::exp_quaternion(Vector3(size * random.vector())) * begin.orientation);
     momentum_rate = random.vector();
   }
-  static NodePose pose(const Vector3& position, const Quaternion& orientation) {
-    return {position, orientation, orientation.toRotationMatrix()};
-  }
   void set_end(const Vector3& position, const Quaternion& orientation) {
-    end = pose(position, orientation.normalized());
+    end = node_at(position, orientation.normalized());
     increment = cayley::increment(begin.orientation, end.orientation);
     inverse_tangent = cayley::inverse_tangent(increment);
   }

@@ -1,15 +1,13 @@
 // Dampers with a memory of the energy-momentum family: numerical dissipation and structural damping.
 #include "elements/conserving_kernel.h"
 #include "elements/kernel_checks.h"
+#include "elements/tested_step.h"
 #include "schemes/scheme.h"
 
 namespace flexarm {
 namespace {
 
 using namespace test;
-
-constexpr double kStep = 0.3;
-constexpr double kRoundOff = 1e-12;
 
 template <class Count>
 class DissipativeBeam : public ::testing::Test {};

@@ -5,6 +5,7 @@
 #include "elements/conserving_kernel.h"
 #include "elements/conserving_node.h"
 #include "elements/kernel_checks.h"
+#include "elements/tested_step.h"
 #include "math/simd.h"
 
 namespace flexarm {
@@ -12,21 +13,18 @@ namespace {
 
 using namespace test;
 
-constexpr double kStep = 0.3;
-/// Sums of some hundred terms of order one to a hundred: round-off.
-constexpr double kRoundOff = 1e-12;
 /// Increments of the second lane.
 constexpr double kSmallStep = 1e-3;
 
-struct Options {
+struct PackOptions {
   bool is_corrected, is_damped, is_coupled;
   MidFunctions mid = MidFunctions::Explicit;
   int dissipation_order = 0;
 
-  TimeRule rule() const { return time_rule(is_corrected, mid, dissipation_order, kStep); }
+  TimeRule rule() const { return time_rule(is_corrected, mid, dissipation_order); }
 };
 
-const Options kOptions[] = {
+const PackOptions kPackOptions[] = {
     {true, false, true},
     {true, true, false},
     {false, true, true},
@@ -38,7 +36,7 @@ const Options kOptions[] = {
 template <int Nodes>
 class Lanes {
  public:
-  explicit Lanes(const Options& options) : options_(options) {
+  explicit Lanes(const PackOptions& options) : options_(options) {
     RandomSource random(3);
     for (int lane = 0; lane < Pack::kLanes; ++lane) {
       steps_[lane] = std::make_unique<RandomStep<Nodes>>(random, lane == 0 ? 0.5 : lane == 1 ? kSmallStep : 0.1);
@@ -83,7 +81,7 @@ class Lanes {
     }
   }
 
-  Options options_;
+  PackOptions options_;
   std::array<std::unique_ptr<RandomStep<Nodes>>, Pack::kLanes> steps_;
   std::array<ElementFunctions<Nodes>, Pack::kLanes> functions_;
   std::array<std::array<StrainMemory, Nodes - 1>, Pack::kLanes> memory_;
@@ -112,7 +110,7 @@ struct Output {
 enum class Version { Baseline, Wide, ManyRegisters };
 
 template <int Nodes>
-void evaluate(KernelData<Nodes, Pack>& data, const TimeRule& rule, Version version) {
+void evaluate_as(KernelData<Nodes, Pack>& data, const TimeRule& rule, Version version) {
   const auto work = [&] { data.evaluate(rule, kStep, true); };
   if (version == Version::Baseline)
     simd::run_baseline(work);
@@ -135,12 +133,12 @@ TYPED_TEST_SUITE(PackBeam, NodeCounts);
 
 TYPED_TEST(PackBeam, LanesAreSingleElements) {
   constexpr int N = TypeParam::value;
-  for (const Options& options : kOptions) {
+  for (const PackOptions& options : kPackOptions) {
     const Lanes<N> lanes(options);
     for (const Version version : versions()) {
       KernelData<N, Pack> pack;
       lanes.fill(0, pack);
-      evaluate(pack, lanes.rule(), version);
+      evaluate_as(pack, lanes.rule(), version);
       for (int lane = 0; lane < Pack::kLanes; ++lane) {
         KernelData<N, double> single;
         single.set(0, lanes.input(lane));
@@ -177,16 +175,16 @@ TYPED_TEST(PackBeam, LanesAreSingleElements) {
 // Bit by bit: neither its lane nor its neighbours matter to an element, not even one that is not a number.
 TYPED_TEST(PackBeam, LanesDoNotFeelEachOther) {
   constexpr int N = TypeParam::value;
-  for (const Options& options : kOptions) {
+  for (const PackOptions& options : kPackOptions) {
     const Lanes<N> lanes(options);
     for (const Version version : versions()) {
       KernelData<N, Pack> pack, shifted;
       lanes.fill(0, pack);
-      evaluate(pack, lanes.rule(), version);
+      evaluate_as(pack, lanes.rule(), version);
       lanes.fill(1, shifted);
       shifted.nodes.end[0][0].set(3, std::numeric_limits<double>::quiet_NaN());
       shifted.nodes.orientation[0].w().set(3, std::numeric_limits<double>::quiet_NaN());
-      evaluate(shifted, lanes.rule(), version);
+      evaluate_as(shifted, lanes.rule(), version);
       for (int lane = 1; lane < Pack::kLanes; ++lane)
         EXPECT_TRUE(Output<N>(pack, lane) == Output<N>(shifted, lane - 1)) << "lane " << lane;
     }

@@ -2,31 +2,28 @@
 #include "elements/planar_beam.h"
 #include "elements/conserving_kernel.h"
 #include "elements/random_planar_step.h"
+#include "elements/tested_step.h"
 
 namespace flexarm {
 namespace {
 
 using namespace test;
 
-constexpr double kStep = 0.3;
-/// Sums of some hundred terms, relative to the largest: round-off.
-constexpr double kRoundOff = 1e-13;
-
-struct Options {
+struct PlanarOptions {
   bool is_corrected, is_damped;
   MidFunctions mid = MidFunctions::Explicit;
   int dissipation_order = 0;
   double size = 0.5;  // of the step
 
-  TimeRule rule() const { return time_rule(is_corrected, mid, dissipation_order, kStep); }
+  TimeRule rule() const { return time_rule(is_corrected, mid, dissipation_order); }
 };
 
-const Options kOptions[] = {{true, false},
-                            {true, true},
-                            {false, true},
-                            {true, false, MidFunctions::Explicit, 0, 1e-3},
-                            {true, false, MidFunctions::Symmetric},
-                            {true, true, MidFunctions::Explicit, 2}};
+const PlanarOptions kPlanarOptions[] = {{true, false},
+                                        {true, true},
+                                        {false, true},
+                                        {true, false, MidFunctions::Explicit, 0, 1e-3},
+                                        {true, false, MidFunctions::Symmetric},
+                                        {true, true, MidFunctions::Explicit, 2}};
 
 template <int Nodes>
 struct PlanarStep : RandomPlanarStep<Nodes> {
@@ -34,7 +31,7 @@ struct PlanarStep : RandomPlanarStep<Nodes> {
   using Base::begin, Base::end, Base::velocity, Base::begin_angle, Base::end_angle, Base::plane, Base::basis,
       Base::element, Base::height, Base::turned;
 
-  PlanarStep(RandomSource& random, const Options& options)
+  PlanarStep(RandomSource& random, const PlanarOptions& options)
       : Base(random, options.size), options(options), rule(options.rule()) {
     if (options.is_damped) element.stiffness_damping = element.mass_damping = 0.2;
     for (double& turn : foreseen) turn = options.mid == MidFunctions::Explicit ? options.size * random.number() : 0.0;
@@ -118,7 +115,7 @@ struct PlanarStep : RandomPlanarStep<Nodes> {
     return system;
   }
 
-  Options options;
+  PlanarOptions options;
   TimeRule rule;
   std::array<double, Nodes> foreseen;
   std::array<StrainMemory, Nodes - 1> memory, end_memory;
@@ -143,7 +140,7 @@ TYPED_TEST_SUITE(PlanarBeam, NodeCounts);
 TYPED_TEST(PlanarBeam, IsTheKernelOfThreeDimensionsSeenInThePlane) {
   constexpr int N = TypeParam::value;
   RandomSource random(7);
-  for (const Options& options : kOptions)
+  for (const PlanarOptions& options : kPlanarOptions)
     for (const bool is_carried : {false, true}) {
       PlanarStep<N> step(random, options);
       step.is_carried = is_carried;
@@ -153,18 +150,21 @@ TYPED_TEST(PlanarBeam, IsTheKernelOfThreeDimensionsSeenInThePlane) {
       const double turn = options.is_corrected ? 0.5 * options.size : 1.0;
       const double scale = std::max(largest(space.residual), 1.0) / turn,
                    slope = largest(space.tangent) / (turn * turn);
-      expect_same_in_plane<N>(step.plane, space, forces_of(plane), plane, kRoundOff * scale, kRoundOff * slope);
+      expect_same_in_plane<N>(step.plane, space, forces_of(plane), plane, kPlanarRoundOff * scale,
+                              kPlanarRoundOff * slope);
       for (int i = 0; i < N && is_carried; ++i) {
         const Vector6 carried = space.carried.template segment<6>(6 * i);
-        EXPECT_LE(largest(step.plane.projected(carried) - plane.carried[i].template head<3>()), kRoundOff * slope);
+        EXPECT_LE(largest(step.plane.projected(carried) - plane.carried[i].template head<3>()),
+                  kPlanarRoundOff * slope);
       }
-      EXPECT_NEAR(space.dissipated, plane.dissipated, kRoundOff * std::max(1.0, std::abs(space.dissipated)));
+      EXPECT_NEAR(space.dissipated, plane.dissipated, kPlanarRoundOff * std::max(1.0, std::abs(space.dissipated)));
       for (int k = 0; k < N - 1; ++k) {
         const Vector6 strain = step.basis * step.planar_points[k].strain;
-        EXPECT_LE(largest(strain - step.end_points[k].strain), kRoundOff * 10);
+        EXPECT_LE(largest(strain - step.end_points[k].strain), kPlanarRoundOff * 10);
         if (options.dissipation_order > 0) {
-          EXPECT_LE(largest(step.basis * step.planar_memory[k].average - step.end_memory[k].average), kRoundOff * 10);
-          EXPECT_LE(largest(step.basis * step.planar_memory[k].rate - step.end_memory[k].rate), kRoundOff * 100);
+          EXPECT_LE(largest(step.basis * step.planar_memory[k].average - step.end_memory[k].average),
+                    kPlanarRoundOff * 10);
+          EXPECT_LE(largest(step.basis * step.planar_memory[k].rate - step.end_memory[k].rate), kPlanarRoundOff * 100);
         }
       }
     }
@@ -173,7 +173,7 @@ TYPED_TEST(PlanarBeam, IsTheKernelOfThreeDimensionsSeenInThePlane) {
 TYPED_TEST(PlanarBeam, HasTheTangentOfItsResidual) {
   constexpr int N = TypeParam::value;
   RandomSource random(8);
-  for (const Options& options : kOptions) {
+  for (const PlanarOptions& options : kPlanarOptions) {
     const PlanarStep<N> step(random, options);
     expect_consistent_planar_tangent<N>(step, [](PlanarStep<N> at, bool with_tangent, std::array<Vector3, N>& forces) {
       const planar::BlockSystem<N> system = at.in_plane(with_tangent);

@@ -3,29 +3,26 @@
 #include "elements/endpoint_beam.h"
 #include "elements/random_planar_step.h"
 #include "elements/rotary_inertia.h"
+#include "elements/tested_step.h"
 
 namespace flexarm {
 namespace {
 
 using namespace test;
 
-/// Sums of some hundred terms, relative to the largest: round-off.
-constexpr double kRoundOff = 1e-13;
-constexpr double kStep = 0.3;
-
-struct Options {
+struct EndpointOptions {
   bool is_damped = false, is_uneven = false;
   double alpha = 0;           // strains are those of another instant than the accelerations
   double internal_slope = 1;  // internal forces are interpolated in time
 };
 
-const Options kOptions[] = {{}, {true}, {true, true}, {true, false, -0.1}, {true, false, 0, 0.7}};
+const EndpointOptions kEndpointOptions[] = {{}, {true}, {true, true}, {true, false, -0.1}, {true, false, 0, 0.7}};
 
 template <int Nodes>
 struct EndpointStep : RandomPlanarStep<Nodes> {
   using Base = RandomPlanarStep<Nodes>;
 
-  EndpointStep(RandomSource& random, const Options& options) : Base(random, 0.5), options(options) {
+  EndpointStep(RandomSource& random, const EndpointOptions& options) : Base(random, 0.5), options(options) {
     balance.rule = {0.3025, 0.6, kStep, options.alpha};
     balance.internal_slope = options.internal_slope;
     balance.interpolates_damping = options.alpha == 0;
@@ -141,7 +138,7 @@ struct EndpointStep : RandomPlanarStep<Nodes> {
     return system;
   }
 
-  Options options;
+  EndpointOptions options;
   planar::EndpointBalance balance;
   std::array<Vector2, Nodes> acceleration;
   std::array<MassPointState, Nodes> mass_points, end_motion;
@@ -159,7 +156,7 @@ TYPED_TEST_SUITE(PlanarEndpoint, NodeCounts);
 TYPED_TEST(PlanarEndpoint, IsTheKernelOfThreeDimensionsSeenInThePlane) {
   constexpr int N = TypeParam::value;
   RandomSource random(17);
-  for (const Options& options : kOptions)
+  for (const EndpointOptions& options : kEndpointOptions)
     for (const bool is_carried : {false, true}) {
       EndpointStep<N> step(random, options);
       step.is_carried = is_carried;
@@ -167,20 +164,21 @@ TYPED_TEST(PlanarEndpoint, IsTheKernelOfThreeDimensionsSeenInThePlane) {
       std::array<Vector3, N> forces;
       const planar::BlockSystem<N> plane = step.in_plane(true, forces);
       const double scale = std::max(largest(space.residual), 1.0), slope = std::max(largest(space.tangent), 1.0);
-      expect_same_in_plane<N>(step.plane, space, forces, plane, kRoundOff * slope, kRoundOff * slope);
+      expect_same_in_plane<N>(step.plane, space, forces, plane, kPlanarRoundOff * slope, kPlanarRoundOff * slope);
       for (int i = 0; i < N && is_carried; ++i) {
         const Vector6 carried = space.carried.template segment<6>(6 * i);
-        EXPECT_LE(largest(step.plane.projected(carried) - plane.carried[i].template head<3>()), kRoundOff * slope);
+        EXPECT_LE(largest(step.plane.projected(carried) - plane.carried[i].template head<3>()),
+                  kPlanarRoundOff * slope);
       }
-      EXPECT_NEAR(space.dissipated, plane.dissipated, kRoundOff * scale * slope);
+      EXPECT_NEAR(space.dissipated, plane.dissipated, kPlanarRoundOff * scale * slope);
       for (int k = 0; k < N - 1; ++k) {
         const double rates = std::max(1.0, largest(step.end_rates[k]));
-        EXPECT_LE(largest(step.basis * step.result.points[k].strain - step.end_points[k].strain), kRoundOff * 10);
-        EXPECT_LE(largest(step.basis * step.result.strain_rates[k] - step.end_rates[k]), kRoundOff * rates * 10);
+        EXPECT_LE(largest(step.basis * step.result.points[k].strain - step.end_points[k].strain), kPlanarRoundOff * 10);
+        EXPECT_LE(largest(step.basis * step.result.strain_rates[k] - step.end_rates[k]), kPlanarRoundOff * rates * 10);
       }
       for (int k = 0; k < N; ++k) {
         const Vector3& expected = step.end_motion[k].angular_acceleration;
-        EXPECT_LE(largest(step.result.rotary[k] * step.normal() - expected), kRoundOff * slope);
+        EXPECT_LE(largest(step.result.rotary[k] * step.normal() - expected), kPlanarRoundOff * slope);
       }
     }
 }
@@ -188,7 +186,7 @@ TYPED_TEST(PlanarEndpoint, IsTheKernelOfThreeDimensionsSeenInThePlane) {
 TYPED_TEST(PlanarEndpoint, HasTheTangentOfItsResidual) {
   constexpr int N = TypeParam::value;
   RandomSource random(18);
-  for (const Options& options : kOptions) {
+  for (const EndpointOptions& options : kEndpointOptions) {
     if (options.internal_slope != 1) continue;  // of forces that are interpolated later
     expect_consistent_planar_tangent<N>(EndpointStep<N>(random, options),
                                         [](EndpointStep<N> at, bool with_tangent, std::array<Vector3, N>& forces) {
@@ -201,7 +199,7 @@ TYPED_TEST(PlanarEndpoint, HasTheTangentOfItsResidual) {
 TYPED_TEST(PlanarEndpoint, CarriesStrainsToFirstOrder) {
   constexpr int N = TypeParam::value;
   RandomSource random(19);
-  EndpointStep<N> step(random, Options{});
+  EndpointStep<N> step(random, EndpointOptions{});
   std::array<Vector3T<double>, N> update;
   for (Vector3& u : update) u = random.vector();
   const auto strains = [&](double h) {

@@ -7,6 +7,9 @@
 
 namespace flexarm::test {
 
+/// Of planar kernels beside those of three dimensions: sums of some hundred terms, relative to the largest.
+constexpr double kPlanarRoundOff = 1e-13;
+
 /// A step of a curved element with a full section, all in one plane that lies anyhow.
 template <int Nodes>
 struct RandomPlanarStep {

@@ -13,6 +13,7 @@
 #include "elements/endpoint_beam.h"
 #include "elements/nodal_inertia.h"
 #include "schemes/scheme.h"
+#include "support/node_poses.h"
 #include "support/source_path.h"
 
 namespace flexarm {
@@ -176,8 +177,8 @@ class Comparison {
       for (const auto& point : element_.mass_points) length += point.weight * point.shape[i];
       NodalInertia inertia;
       inertia.beam_rotary = length * element_.mass_points[0].inertia;
-      const NodePose begin{nodes_.begin[i], begin_orientation_[i], begin_orientation_[i].toRotationMatrix()};
-      const NodePose end{nodes_.end[i], nodes_.orientation[i], nodes_.orientation[i].toRotationMatrix()};
+      const NodePose begin = node_at(nodes_.begin[i], begin_orientation_[i]);
+      const NodePose end = node_at(nodes_.end[i], nodes_.orientation[i]);
       NodeState state;
       state.velocity = nodes_.velocity[i];
       state.angular_velocity = data_.vector("node_angular_velocity", i);

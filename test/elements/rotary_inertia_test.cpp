@@ -2,14 +2,12 @@
 #include "elements/rotary_inertia.h"
 
 #include "elements/kernel_checks.h"
+#include "elements/tested_step.h"
 
 namespace flexarm {
 namespace {
 
 using namespace test;
-
-constexpr double kStep = 0.3;
-constexpr NewmarkRule kRule{0.3025, 0.6, kStep};
 
 template <class Count>
 class RotaryInertia : public ::testing::Test {};
@@ -17,8 +15,8 @@ TYPED_TEST_SUITE(RotaryInertia, NodeCounts);
 
 /// `rate(k, begin, end)`: of mass point k, from its rotation at the beginning and at the end.
 template <int Nodes, class Rate>
-ElementSystem<Nodes> evaluate(const RandomStep<Nodes>& step, const ElementNodes<Nodes>& nodes, const Rate& rate,
-                              bool with_tangent, std::array<Matrix3, Nodes>* rotations = nullptr) {
+ElementSystem<Nodes> rotary_system(const RandomStep<Nodes>& step, const ElementNodes<Nodes>& nodes, const Rate& rate,
+                                   bool with_tangent, std::array<Matrix3, Nodes>* rotations = nullptr) {
   ElementSystem<Nodes> system;
   system.set_zero();
   for_each_mass_point(
@@ -41,51 +39,42 @@ RotaryRate average_rate(const Matrix3& inertia, const Matrix3& begin, const Matr
                                               kStep, with_derivative);
 }
 
-/// Visits random steps with every interpolation.
-template <int Nodes, class Visit>
-void for_each_interpolation(unsigned seed, const Visit& visit) {
-  RandomSource random(seed);
-  for (const Interpolation interpolation : {Interpolation::Local, Interpolation::Total, Interpolation::Incremental}) {
-    SCOPED_TRACE(static_cast<int>(interpolation));
-    RandomStep<Nodes> step(random, 0.5);
-    step.set_interpolation(random, interpolation);
-    visit(step);
-  }
-}
+const InterpolationChoice kInterpolations[] = {
+    {Interpolation::Local}, {Interpolation::Total}, {Interpolation::Incremental}};
 
 TYPED_TEST(RotaryInertia, TangentOfAverageRule) {
   constexpr int N = TypeParam::value;
   for (const bool tangent_scaled : {false, true})
-    for_each_interpolation<N>(1, [&](const RandomStep<N>& step) {
+    for_each_interpolation<N>(1, kInterpolations, [&](const RandomStep<N>& step) {
       const auto rate = [&](int k, const Matrix3& begin, const Matrix3& end) {
         return average_rate(step.element.mass_points[k].inertia, begin, end, step.mass_points[k], tangent_scaled);
       };
       expect_consistent_tangent<N>(
-          step, [&](const ElementNodes<N>& nodes, bool with) { return evaluate<N>(step, nodes, rate, with); });
+          step, [&](const ElementNodes<N>& nodes, bool with) { return rotary_system<N>(step, nodes, rate, with); });
     });
 }
 
 TYPED_TEST(RotaryInertia, TangentOfNewmark) {
   constexpr int N = TypeParam::value;
-  for_each_interpolation<N>(2, [&](const RandomStep<N>& step) {
+  for_each_interpolation<N>(2, kInterpolations, [&](const RandomStep<N>& step) {
     const auto rate = [&](int k, const Matrix3& begin, const Matrix3& end) {
-      return newmark_rotary_rate(step.element.mass_points[k].inertia, begin, end, step.mass_points[k], kRule);
+      return newmark_rotary_rate(step.element.mass_points[k].inertia, begin, end, step.mass_points[k], kNewmarkRule);
     };
     expect_consistent_tangent<N>(
-        step, [&](const ElementNodes<N>& nodes, bool with) { return evaluate<N>(step, nodes, rate, with); });
+        step, [&](const ElementNodes<N>& nodes, bool with) { return rotary_system<N>(step, nodes, rate, with); });
   });
 }
 
 TYPED_TEST(RotaryInertia, TangentOfMomentumRate) {
   constexpr int N = TypeParam::value;
-  for_each_interpolation<N>(3, [&](const RandomStep<N>& step) {
+  for_each_interpolation<N>(3, kInterpolations, [&](const RandomStep<N>& step) {
     const auto rate = [&](int k, const Matrix3& begin, const Matrix3& end) {
       const Vector3 begin_rate = (k + 1) * Vector3(0.3, -0.2, 0.5);
       return momentum_rotary_rate(step.element.mass_points[k].inertia, begin, end, step.mass_points[k], begin_rate,
-                                  kRule);
+                                  kNewmarkRule);
     };
     expect_consistent_tangent<N>(
-        step, [&](const ElementNodes<N>& nodes, bool with) { return evaluate<N>(step, nodes, rate, with); });
+        step, [&](const ElementNodes<N>& nodes, bool with) { return rotary_system<N>(step, nodes, rate, with); });
   });
 }
 
@@ -100,7 +89,7 @@ TYPED_TEST(RotaryInertia, AngularMomentumBalance) {
     return r;
   };
   std::array<Matrix3, N> end;
-  const ElementSystem<N> system = evaluate<N>(step, step.nodes, rate, false, &end);
+  const ElementSystem<N> system = rotary_system<N>(step, step.nodes, rate, false, &end);
   Vector3 moment = Vector3::Zero(), expected = moment;
   for (int i = 0; i < N; ++i) moment += system.residual.template segment<3>(6 * i + 3);
   for (int k = 0; k < N; ++k) {
@@ -160,13 +149,14 @@ TEST(RotaryRate, MomentumRateFollowsNewmarksRule) {
   RandomSource random(7);
   const SectionStep s(random);
   const Vector3 before = random.vector();
-  const RotaryRate rate = momentum_rotary_rate(s.inertia, s.begin, s.end, s.state, before, kRule);
-  const RotaryRate newmark = newmark_rotary_rate(s.inertia, s.begin, s.end, s.state, kRule);
+  const RotaryRate rate = momentum_rotary_rate(s.inertia, s.begin, s.end, s.state, before, kNewmarkRule);
+  const RotaryRate newmark = newmark_rotary_rate(s.inertia, s.begin, s.end, s.state, kNewmarkRule);
   EXPECT_EQ(rate.end.angular_velocity, newmark.end.angular_velocity);
   EXPECT_EQ(rate.end.angular_acceleration, newmark.end.angular_acceleration);
   const Vector3 change =
       s.end * (s.inertia * rate.end.angular_velocity) - s.begin * (s.inertia * s.state.angular_velocity);
-  EXPECT_LE((kStep * ((1 - kRule.gamma) * before + kRule.gamma * rate.moment) - change).norm(), 1e-13 * change.norm());
+  EXPECT_LE((kStep * ((1 - kNewmarkRule.gamma) * before + kNewmarkRule.gamma * rate.moment) - change).norm(),
+            1e-13 * change.norm());
 }
 
 // A steady spin about a principal axis needs no moment and stays what it is.
@@ -177,7 +167,7 @@ TEST(RotaryRate, SteadySpinAboutAPrincipalAxis) {
   const Matrix3 begin = random.rotation(3).toRotationMatrix();
   const Matrix3 end = begin * so3::exp_quaternion(Vector3(0, speed * kStep, 0)).toRotationMatrix();
   const MassPointState state{Vector3(0, speed, 0), Vector3::Zero()};
-  const RotaryRate newmark = newmark_rotary_rate(inertia, begin, end, state, kRule);
+  const RotaryRate newmark = newmark_rotary_rate(inertia, begin, end, state, kNewmarkRule);
   EXPECT_LE(newmark.moment.norm(), 1e-12);
   EXPECT_LE((newmark.end.angular_velocity - state.angular_velocity).norm(), 1e-13);
   const Vector3 increment = so3::log(Matrix3(end * begin.transpose()));

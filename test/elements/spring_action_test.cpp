@@ -4,24 +4,13 @@
 
 #include "math/cayley.h"
 #include "math/so3.h"
+#include "support/node_poses.h"
 
 namespace flexarm::test {
 namespace {
 
-NodePose pose(const Vector3& position, const Vector3& rotation) {
-  NodePose out;
-  out.position = position;
-  out.orientation = so3::exp_quaternion(rotation);
-  out.rotation = out.orientation.toRotationMatrix();
-  return out;
-}
-
-NodePose moved(const NodePose& from, const Vector6& by) {
-  NodePose out = from;
-  out.position += by.head<3>();
-  out.orientation = so3::exp_quaternion(Vector3(by.tail<3>())) * from.orientation;
-  out.rotation = out.orientation.toRotationMatrix();
-  return out;
+NodePose turned_node(const Vector3& position, const Vector3& rotation) {
+  return node_at(position, so3::exp_quaternion(rotation));
 }
 
 class SpringActions : public ::testing::TestWithParam<bool> {
@@ -43,8 +32,9 @@ class SpringActions : public ::testing::TestWithParam<bool> {
 
   LoopClosure ends;
   PointSpring spring{0, 40, 0.7, 3};
-  ClosurePoses begin{pose({0, 0, 0}, {0.2, 0.1, -0.3}), pose({1, 0.4, -0.2}, {-0.1, 0.5, 0.2})};
-  ClosurePoses end{pose({0.02, -0.01, 0.03}, {0.25, 0.05, -0.3}), pose({1.05, 0.42, -0.15}, {-0.1, 0.6, 0.25})};
+  ClosurePoses begin{turned_node({0, 0, 0}, {0.2, 0.1, -0.3}), turned_node({1, 0.4, -0.2}, {-0.1, 0.5, 0.2})};
+  ClosurePoses end{turned_node({0.02, -0.01, 0.03}, {0.25, 0.05, -0.3}),
+                   turned_node({1.05, 0.42, -0.15}, {-0.1, 0.6, 0.25})};
 };
 
 // Central differences with a step of 1e-6 have errors of 1e-12 of third derivatives, and of 1e-16 / 1e-6 of the forces.

@@ -5,6 +5,7 @@
 
 #include "elements/differences.h"
 #include "elements/random_element.h"
+#include "support/node_poses.h"
 
 namespace flexarm {
 namespace {
@@ -12,20 +13,12 @@ namespace {
 using namespace test;
 using Kind = ClosureConstraint::Kind;
 
-NodePose node(const Pose& pose) {
-  return {pose.position, pose.orientation, pose.orientation.toRotationMatrix()};
-}
-NodePose moved(const NodePose& pose, const Vector6& update) {
-  const Vector3 spin = update.tail<3>();
-  return node({pose.position + update.head<3>(), so3::exp_quaternion(spin) * pose.orientation});
-}
-
 struct RandomClosure {
   RandomClosure(RandomSource& random, Kind kind) {
     closure.parent_arm = random.vector();
     closure.child_arm = random.vector();
     constraint = {kind, random.unit(), random.unit(), 0.3};
-    begin = {node(random.pose(1, 3)), node(random.pose(1, 3))};
+    begin = {node_at(random.pose(1, 3)), node_at(random.pose(1, 3))};
     end = {moved(begin.parent, 0.5 * random.vector6()), moved(begin.child, 0.5 * random.vector6())};
   }
   LoopClosure closure;

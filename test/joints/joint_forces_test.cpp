@@ -11,9 +11,9 @@ namespace {
 
 using namespace test;
 
-double slope_by_difference(const Coordinate& coordinate, const StopPenalty& penalty, const CoordinateStep& change,
-                           double scale) {
-  return test::slope_by_difference(
+double passive_slope_by_difference(const Coordinate& coordinate, const StopPenalty& penalty,
+                                   const CoordinateStep& change, double scale) {
+  return slope_by_difference(
       [&](const CoordinateStep& moved) { return passive_effort(coordinate, penalty, moved).effort; }, change, scale);
 }
 
@@ -34,7 +34,7 @@ TEST(PassiveEffort, DampingAndFriction) {
       EXPECT_GE(effort.dissipated, 0);
       EXPECT_NEAR(effort.dissipated, -effort.effort * change.increment, 1e-15);
       const double scale = kFrictionSpeed * h * gamma;  // of the increment, over which friction changes
-      EXPECT_NEAR(effort.slope, slope_by_difference(coordinate, penalty, change, scale), 1e-9 / scale);
+      EXPECT_NEAR(effort.slope, passive_slope_by_difference(coordinate, penalty, change, scale), 1e-9 / scale);
     }
 }
 

@@ -3,6 +3,7 @@
 
 #include "elements/differences.h"
 #include "joints/joint_step.h"
+#include "support/node_poses.h"
 
 namespace flexarm {
 namespace {
@@ -26,8 +27,8 @@ TEST_P(JointRates, VelocitiesAndRatesAreInverse) {
   // Against the motion itself.
   const Vector6 expected = difference([&](double h) {
     const Vector3 spin = h * master.tail<3>();
-    const NodePose moved_master =
-        node(step.master_end.position + h * master.head<3>(), so3::exp_quaternion(spin) * step.master_end.orientation);
+    const NodePose moved_master = node_at(step.master_end.position + h * master.head<3>(),
+                                          so3::exp_quaternion(spin) * step.master_end.orientation);
     const NodePose moved = slave_pose(step.joint, moved_master, updated(step.joint, step.end, h * rates));
     Vector6 increment;
     increment << moved.position - pose.position, cayley::increment(pose.orientation, moved.orientation);

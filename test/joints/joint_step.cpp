@@ -1,6 +1,7 @@
 #include "joints/joint_step.h"
 
 #include "math/so3.h"
+#include "support/node_poses.h"
 
 namespace flexarm::test {
 
@@ -19,10 +20,6 @@ JointStep JointStep::perturbed(int column, double h) const {
   return out;
 }
 
-NodePose node(const Vector3& position, const Quaternion& orientation) {
-  return {position, orientation, orientation.toRotationMatrix()};
-}
-
 JointStep random_step(RandomSource& random, const KindOfJoint& kind, bool world, double size) {
   JointStep out;
   out.joint.kind = kind.kind;
@@ -37,9 +34,9 @@ JointStep random_step(RandomSource& random, const KindOfJoint& kind, bool world,
   if (kind.by_profile)  // analytic: differences must not cross knots
     out.joint.profile = std::make_shared<CamProfile>(CamProfile::eccentric(0.6, 0.1));
   if (!world) {
-    out.master_begin = node(random.vector(), random.rotation(3));
-    out.master_end = node(out.master_begin.position + size * random.vector(),
-                          so3::exp_quaternion(Vector3(size * random.unit())) * out.master_begin.orientation);
+    out.master_begin = node_at(random.vector(), random.rotation(3));
+    out.master_end = node_at(out.master_begin.position + size * random.vector(),
+                             so3::exp_quaternion(Vector3(size * random.unit())) * out.master_begin.orientation);
   }
   const double sign = random.number() < 0 ? -1 : 1;
   if (kind.kind == JointMapKind::Scalar) {

@@ -30,8 +30,6 @@ struct JointStep {
   JointStep perturbed(int column, double h) const;
 };
 
-NodePose node(const Vector3& position, const Quaternion& orientation);
-
 struct KindOfJoint {
   const char* name;
   JointMapKind kind;

@@ -38,10 +38,10 @@ CoordinateStep step_to_end(double begin, double end, double step, double begin_r
   return change;
 }
 
-double slope_by_difference(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change,
-                           double scale) {
-  return test::slope_by_difference(
-      [&](const CoordinateStep& moved) { return stop_effort(limit, penalty, moved).effort; }, change, scale);
+double stop_slope_by_difference(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change,
+                                double scale) {
+  return slope_by_difference([&](const CoordinateStep& moved) { return stop_effort(limit, penalty, moved).effort; },
+                             change, scale);
 }
 
 /// Positions on both sides of both stops and on them.
@@ -57,7 +57,8 @@ TEST(StopEffort, InStaticsIsTheGradientOfItsEnergy) {
       const double gradient =
           scalar_difference([&](double h) { return stop_energy(limit, penalty, position + h); }, 1e-2);
       EXPECT_NEAR(effort.effort, -gradient, 1e-8 * (1 + std::abs(gradient)));
-      EXPECT_NEAR(effort.slope, slope_by_difference(limit, penalty, rest, 0.1), 1e-8 * (1 + std::abs(effort.slope)));
+      EXPECT_NEAR(effort.slope, stop_slope_by_difference(limit, penalty, rest, 0.1),
+                  1e-8 * (1 + std::abs(effort.slope)));
     }
   }
 }
@@ -125,7 +126,7 @@ TEST(StopEffort, Slope) {
                {step_between(begin, end, 0.1), step_to_end(begin, end, 0.1, 10 * (end - begin) + 0.1)}) {
             const double slope = stop_effort(limit, penalty, change).slope;
             // Round-off of differences of the quotient: epsilon / (increment * step).
-            EXPECT_NEAR(slope, slope_by_difference(limit, penalty, change, 0.01), 1e-6 * (1 + std::abs(slope)))
+            EXPECT_NEAR(slope, stop_slope_by_difference(limit, penalty, change, 0.01), 1e-6 * (1 + std::abs(slope)))
                 << begin << " -> " << end << " damping " << damping << " give " << give << " " << change.at_end;
           }
     }

@@ -13,7 +13,7 @@ namespace {
 
 using Complex = std::complex<double>;
 /// Of complex steps: no cancellation, so as small as it likes.
-constexpr double kStep = 1e-30;
+constexpr double kComplexStep = 1e-30;
 /// As in src/joints/slide_increment.cpp.
 constexpr double kShort = 1e-5, kUniform = 1e-24;
 
@@ -33,10 +33,10 @@ struct Configuration {
     const NodePose& node = nodes[line.nodes[i]];
     PoseT<S> pose{node.position.template cast<S>(), node.orientation.template cast<S>()};
     if constexpr (std::is_same_v<S, Complex>) {
-      if (i == perturbed_node && component < 3) pose.position[component] += Complex(0, kStep);
+      if (i == perturbed_node && component < 3) pose.position[component] += Complex(0, kComplexStep);
       if (i == perturbed_node && component >= 3) {
         Vector3T<S> spin = Vector3T<S>::Zero();
-        spin[component - 3] = Complex(0, kStep);
+        spin[component - 3] = Complex(0, kComplexStep);
         pose.orientation = so3::exp_quaternion(spin) * pose.orientation;
       }
     }
@@ -266,13 +266,13 @@ SlideRows slide_rows(const SlideTravel& travel, const Vector6& g, bool increment
     return out;
   };
   SlideRows out{evaluate().real(), Eigen::MatrixXd(1 + 6 * count, 1 + 6 * count)};
-  step.to += Complex(0, kStep);
-  out.derivatives.col(0) = evaluate().imag() / kStep;
+  step.to += Complex(0, kComplexStep);
+  out.derivatives.col(0) = evaluate().imag() / kComplexStep;
   step.to = travel.to;
   for (int column = 0; column < 6 * count; ++column) {
     step.end.perturbed_node = active.first + column / 6;
     step.end.component = column % 6;
-    out.derivatives.col(1 + column) = evaluate().imag() / kStep;
+    out.derivatives.col(1 + column) = evaluate().imag() / kComplexStep;
   }
   return out;
 }

@@ -9,8 +9,6 @@
 namespace flexarm::test {
 namespace {
 
-constexpr double roundoff = 16 * epsilon;  // a handful of products and sums of entries of order one
-
 TEST(Cayley, IsTheRationalFunctionOfTheSkewMatrix) {
   Samples samples;
   for (const double length : {0.0, 1e-12, 1e-3, 0.5, 2.0, 10.0}) {

@@ -9,8 +9,6 @@
 namespace flexarm::test {
 namespace {
 
-constexpr double roundoff = 16 * epsilon;  // a handful of products and sums of entries of order one
-
 /// Conformal vector by its definition.
 Vector conformal_vector(const Vector& axis, double angle) {
   return 4 * std::tan(0.25 * angle) * axis;

@@ -2,17 +2,16 @@
 
 #include "math/local_rotation.h"
 
-#include <type_traits>
-
 #include <gtest/gtest.h>
 
 #include "rotation_samples.h"
+#include "support/node_counts.h"
 
 namespace flexarm::test {
 namespace {
 
 /// An interpolated quantity passes through a logarithm, two products and an exponential, each of about 16 roundings.
-constexpr double roundoff = 64 * epsilon;
+constexpr double interpolation_roundoff = 64 * epsilon;
 
 template <int Nodes>
 using NodalMatrices = std::array<Matrix, Nodes>;
@@ -93,9 +92,7 @@ class LocalRotationTest : public ::testing::Test {
   Samples samples_;
 };
 
-using Counts = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>,
-                                std::integral_constant<int, 4>, std::integral_constant<int, 5>>;
-TYPED_TEST_SUITE(LocalRotationTest, Counts);
+TYPED_TEST_SUITE(LocalRotationTest, NodeCounts);
 
 /// Largest sum of |I^i'| over the points used, about 12 for five nodes: what round-off in a nodal rotation becomes.
 template <int Nodes>
@@ -107,7 +104,7 @@ TYPED_TEST(LocalRotationTest, AgreesWithTheTheorysFormulas) {
   constexpr int nodes = TypeParam::value;
   this->for_each_element([](const NodalMatrices<nodes>& rotations, const ShapeFunctions<nodes>& shape) {
     const Reference<nodes> expected(rotations, shape);
-    const double tolerance = roundoff * slope_sum(shape);
+    const double tolerance = interpolation_roundoff * slope_sum(shape);
     GeneralisedShapeFunctions<nodes> generalised;
     const LocalRotations<nodes> local(rotations);
     const InterpolatedRotation<> section =
@@ -140,7 +137,7 @@ TYPED_TEST(LocalRotationTest, BendsThroughPi) {
       const InterpolatedRotation<> section =
           LocalRotationVariation<nodes>(local).evaluate(shape.values, shape.derivatives, generalised);
       // T^-1 and the tangent of a quarter of the angle grow towards 2 pi.
-      const double tolerance = roundoff * slope_sum(shape) / std::sin(0.5 * turn) * turn;
+      const double tolerance = interpolation_roundoff * slope_sum(shape) / std::sin(0.5 * turn) * turn;
       EXPECT_LT(distance(section.curvature, Vector(0.5 * turn * axis)), tolerance) << turn;
       EXPECT_LT(distance(section.rotation, so3::exp(Vector(0.5 * turn * (1 + xi) * axis))), tolerance) << turn;
       for (int i = 0; i < nodes; ++i)
@@ -167,7 +164,7 @@ TYPED_TEST(LocalRotationTest, PassesThroughTheNodes) {
   const LocalRotations<nodes> local(rotations);
   for (int i = 0; i < nodes; ++i) {
     const ShapeFunctions<nodes> shape = lagrange<nodes>(node_coordinate<nodes>(i));
-    const double tolerance = roundoff * slope_sum(shape);
+    const double tolerance = interpolation_roundoff * slope_sum(shape);
     GeneralisedShapeFunctions<nodes> generalised;
     LocalRotationVariation<nodes>(local).evaluate(shape.values, shape.derivatives, generalised);
     EXPECT_LT(distance(local.evaluate(shape.values, shape.derivatives).rotation, rotations[i]), tolerance);
@@ -187,7 +184,7 @@ TYPED_TEST(LocalRotationTest, CurvatureIsTheRotationsDerivative) {
     const Vector theta = local.interpolate(shape.values), slope = local.interpolate(shape.derivatives);
     const Matrix rate = derivative(so3::exp(perturbed(theta, slope))) * local.reference_rotation();
     const Matrix skew = section.rotation.transpose() * rate;
-    EXPECT_LT(distance(section.curvature, so3::vee(skew)), roundoff * slope_sum(shape));
+    EXPECT_LT(distance(section.curvature, so3::vee(skew)), interpolation_roundoff * slope_sum(shape));
   });
 }
 
@@ -202,8 +199,8 @@ TYPED_TEST(LocalRotationTest, GeneralisedShapeFunctionsArePartitionOfUnity) {
       sum += generalised.values[i];
       derivative_sum += generalised.derivatives[i];
     }
-    EXPECT_LT(distance(sum, Matrix::Identity()), roundoff);
-    EXPECT_LT(distance(derivative_sum, Matrix::Zero()), roundoff * slope_sum(shape));
+    EXPECT_LT(distance(sum, Matrix::Identity()), interpolation_roundoff);
+    EXPECT_LT(distance(derivative_sum, Matrix::Zero()), interpolation_roundoff * slope_sum(shape));
   });
 }
 
@@ -223,7 +220,7 @@ TYPED_TEST(LocalRotationTest, GeneralisedShapeFunctionsAreTheVariation) {
     }
     const InterpolatedRotation<Complex> changed =
         LocalRotations<nodes, Complex>(moved).evaluate(shape.values, shape.derivatives);
-    const double tolerance = 2 * roundoff * slope_sum(shape);
+    const double tolerance = 2 * interpolation_roundoff * slope_sum(shape);
     EXPECT_LT(distance(derivative(changed.rotation), so3::hat(spin) * section.rotation), tolerance);
     EXPECT_LT(distance(derivative(changed.curvature), section.rotation.transpose() * spin_slope), tolerance);
   });
@@ -240,7 +237,7 @@ TYPED_TEST(LocalRotationTest, SuperposedRotationChangesNoStrain) {
                                                .evaluate(shape.values, shape.derivatives, before);
     const InterpolatedRotation<> moved =
         LocalRotationVariation<nodes>(LocalRotations<nodes>(turned)).evaluate(shape.values, shape.derivatives, after);
-    const double tolerance = roundoff * slope_sum(shape);
+    const double tolerance = interpolation_roundoff * slope_sum(shape);
     EXPECT_LT(distance(moved.curvature, section.curvature), tolerance);
     EXPECT_LT(distance(moved.rotation, superposed * section.rotation), tolerance);
     for (int i = 0; i < nodes; ++i) {
@@ -266,10 +263,10 @@ TYPED_TEST(LocalRotationTest, QuaternionsOfEitherSignGiveTheSame) {
         quaternions[i].coeffs() *= sign;
     }
     const LocalRotations<nodes> local(quaternions);
-    EXPECT_LT(distance(local.reference_rotation(), expected.reference_rotation()), roundoff);
-    EXPECT_LT(distance(local.quarter_tangent(), expected.quarter_tangent()), roundoff);
+    EXPECT_LT(distance(local.reference_rotation(), expected.reference_rotation()), interpolation_roundoff);
+    EXPECT_LT(distance(local.quarter_tangent(), expected.quarter_tangent()), interpolation_roundoff);
     for (int i = 0; i < nodes; ++i)
-      EXPECT_LT(distance(local.rotation_vectors()[i], expected.rotation_vectors()[i]), roundoff);
+      EXPECT_LT(distance(local.rotation_vectors()[i], expected.rotation_vectors()[i]), interpolation_roundoff);
   }
 }
 
@@ -286,8 +283,9 @@ TYPED_TEST(LocalRotationTest, UniformCurvatureIsExact) {
     for (const double xi : {-0.9, -0.2, 0.6}) {
       const ShapeFunctions<nodes> shape = lagrange<nodes>(xi);
       const InterpolatedRotation<> section = local.evaluate(shape.values, shape.derivatives);
-      EXPECT_LT(distance(section.curvature, curvature), roundoff * slope_sum(shape));
-      EXPECT_LT(distance(section.rotation, start * so3::exp(xi * curvature)), roundoff * slope_sum(shape));
+      EXPECT_LT(distance(section.curvature, curvature), interpolation_roundoff * slope_sum(shape));
+      EXPECT_LT(distance(section.rotation, start * so3::exp(xi * curvature)),
+                interpolation_roundoff * slope_sum(shape));
     }
   }
 }

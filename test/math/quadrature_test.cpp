@@ -12,7 +12,7 @@ namespace flexarm {
 namespace {
 
 // Weights add up to 2; each term carries a few roundings, the abscissa's own times the degree (9 at most).
-constexpr double roundoff = 16 * std::numeric_limits<double>::epsilon();
+constexpr double quadrature_roundoff = 16 * std::numeric_limits<double>::epsilon();
 
 template <int Points>
 double integral_of_power(int degree) {
@@ -30,15 +30,16 @@ double exact_integral_of_power(int degree) {
 template <typename Count>
 class GaussLegendreTest : public ::testing::Test {};
 
-using Counts =
+using PointCounts =
     ::testing::Types<std::integral_constant<int, 1>, std::integral_constant<int, 2>, std::integral_constant<int, 3>,
                      std::integral_constant<int, 4>, std::integral_constant<int, 5>>;
-TYPED_TEST_SUITE(GaussLegendreTest, Counts);
+TYPED_TEST_SUITE(GaussLegendreTest, PointCounts);
 
 TYPED_TEST(GaussLegendreTest, IsExactToDegreeTwiceThePointsMinusOne) {
   constexpr int points = TypeParam::value;
   for (int degree = 0; degree < 2 * points; ++degree) {
-    EXPECT_NEAR(integral_of_power<points>(degree), exact_integral_of_power(degree), roundoff) << "degree " << degree;
+    EXPECT_NEAR(integral_of_power<points>(degree), exact_integral_of_power(degree), quadrature_roundoff)
+        << "degree " << degree;
   }
 }
 
@@ -48,7 +49,7 @@ TYPED_TEST(GaussLegendreTest, MissesTheNextDegreeByTheKnownRemainder) {
   // it.
   const double factorial = std::tgamma(n + 1.0), factorial2 = std::tgamma(2 * n + 1.0);
   const double remainder = std::pow(2.0, 2 * n + 1) * std::pow(factorial, 4) / ((2 * n + 1) * factorial2 * factorial2);
-  EXPECT_NEAR(exact_integral_of_power(2 * n) - integral_of_power<n>(2 * n), remainder, roundoff);
+  EXPECT_NEAR(exact_integral_of_power(2 * n) - integral_of_power<n>(2 * n), remainder, quadrature_roundoff);
 }
 
 TYPED_TEST(GaussLegendreTest, PointsIncreaseAndAreSymmetric) {

@@ -19,6 +19,8 @@ using ComplexVector = Vector3T<Complex>;
 using ComplexMatrix = Matrix3T<Complex>;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
+/// Entries of the operators are sums of a handful of products: 16 roundings bound them, relative to the largest entry.
+constexpr double roundoff = 16 * epsilon;
 constexpr double pi = 3.14159265358979323846;
 constexpr long double long_pi = 3.141592653589793238462643383279502884L;
 

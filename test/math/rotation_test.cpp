@@ -50,9 +50,6 @@ class RotationTest : public ::testing::Test {
 using Parametrisations = ::testing::Types<RotationVector, TangentScaled, Conformal, UnitQuaternion>;
 TYPED_TEST_SUITE(RotationTest, Parametrisations);
 
-/// Entries of the operators are sums of a handful of products: 16 roundings bound them, relative to the largest entry.
-constexpr double roundoff = 16 * epsilon;
-
 TYPED_TEST(RotationTest, RotationAndQuaternionAgreeWithThePowerSeries) {
   this->for_each_vector([](const auto& v, double angle, const Vector& axis) {
     const LongMatrix expected = power_series(angle * axis, 0);

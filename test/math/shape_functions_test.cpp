@@ -5,22 +5,21 @@
 
 #include <cmath>
 #include <limits>
-#include <type_traits>
 
 #include <gtest/gtest.h>
+
+#include "support/node_counts.h"
 
 namespace flexarm {
 namespace {
 
 // Sums of at most five products of at most four factors, each below 11 in magnitude.
-constexpr double roundoff = 200 * std::numeric_limits<double>::epsilon();
+constexpr double shape_roundoff = 200 * std::numeric_limits<double>::epsilon();
 
 template <typename Count>
 class ShapeFunctionsTest : public ::testing::Test {};
 
-using Counts = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>,
-                                std::integral_constant<int, 4>, std::integral_constant<int, 5>>;
-TYPED_TEST_SUITE(ShapeFunctionsTest, Counts);
+TYPED_TEST_SUITE(ShapeFunctionsTest, test::NodeCounts);
 
 // The nodal polynomial is orthogonal to all polynomials of degree nodes - 3, which defines the Gauss-Lobatto points.
 TYPED_TEST(ShapeFunctionsTest, NodesAreTheGaussLobattoPoints) {
@@ -36,7 +35,7 @@ TYPED_TEST(ShapeFunctionsTest, NodesAreTheGaussLobattoPoints) {
       for (int i = 0; i < nodes; ++i) polynomial *= xi - node_coordinate<nodes>(i);
       integral += GaussLegendre<5>::weights[k] * polynomial;
     }
-    EXPECT_NEAR(integral, 0.0, roundoff);
+    EXPECT_NEAR(integral, 0.0, shape_roundoff);
   }
 }
 
@@ -44,7 +43,7 @@ TYPED_TEST(ShapeFunctionsTest, EachIsOneAtItsNodeAndZeroAtTheOthers) {
   constexpr int nodes = TypeParam::value;
   for (int k = 0; k < nodes; ++k) {
     const ShapeFunctions<nodes> at_node = lagrange<nodes>(node_coordinate<nodes>(k));
-    for (int i = 0; i < nodes; ++i) EXPECT_NEAR(at_node.values[i], i == k ? 1.0 : 0.0, roundoff);
+    for (int i = 0; i < nodes; ++i) EXPECT_NEAR(at_node.values[i], i == k ? 1.0 : 0.0, shape_roundoff);
   }
 }
 
@@ -59,9 +58,9 @@ TYPED_TEST(ShapeFunctionsTest, ReproducePolynomialsUpToTheirOrder) {
         value += shape.values[i] * nodal;
         derivative += shape.derivatives[i] * nodal;
       }
-      EXPECT_NEAR(value, std::pow(xi, degree), roundoff) << "degree " << degree << " at " << xi;
+      EXPECT_NEAR(value, std::pow(xi, degree), shape_roundoff) << "degree " << degree << " at " << xi;
       const double expected = degree == 0 ? 0.0 : degree * std::pow(xi, degree - 1);
-      EXPECT_NEAR(derivative, expected, roundoff) << "degree " << degree << " at " << xi;
+      EXPECT_NEAR(derivative, expected, shape_roundoff) << "degree " << degree << " at " << xi;
     }
   }
 }
@@ -70,8 +69,8 @@ TYPED_TEST(ShapeFunctionsTest, AreMirrorImages) {
   constexpr int nodes = TypeParam::value;
   const ShapeFunctions<nodes> right = lagrange<nodes>(0.37), left = lagrange<nodes>(-0.37);
   for (int i = 0; i < nodes; ++i) {
-    EXPECT_NEAR(right.values[i], left.values[nodes - 1 - i], roundoff);
-    EXPECT_NEAR(right.derivatives[i], -left.derivatives[nodes - 1 - i], roundoff);
+    EXPECT_NEAR(right.values[i], left.values[nodes - 1 - i], shape_roundoff);
+    EXPECT_NEAR(right.derivatives[i], -left.derivatives[nodes - 1 - i], shape_roundoff);
   }
 }
 

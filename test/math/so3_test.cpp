@@ -11,8 +11,6 @@
 namespace flexarm::test {
 namespace {
 
-constexpr double roundoff = 16 * epsilon;  // a handful of products and sums of entries of order one
-
 /// a_k from its definition in long double. Terms reach (2 pi)^6/7! = 12, which limits the sum.
 constexpr double series_error = 1e-18;
 long double series(int k, long double x) {

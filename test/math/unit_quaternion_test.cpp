@@ -13,7 +13,6 @@ using Vector4 = unit_quaternion::Vector4T<double>;
 using Matrix4 = unit_quaternion::Matrix4T<double>;
 using Matrix34 = unit_quaternion::Matrix34T<double>;
 
-constexpr double roundoff = 16 * epsilon;  // a handful of products and sums of entries of order one
 constexpr int repetitions = 50;
 
 TEST(UnitQuaternion, ProductAndConjugateAreThoseOfEigen) {

@@ -5,17 +5,17 @@
 namespace flexarm::test {
 namespace {
 
-constexpr double kStep = 0.02;
+constexpr double kLargestStep = 0.02;
 
 /// Lengths without a pattern, from a tenth of the step to the whole one; each holds for a few steps.
 double step_at(int n) {
   const double wave = std::sin(1.7 * (n / 7)) + std::sin(0.61 * (n / 7));
-  return kStep * (0.55 + 0.225 * wave);
+  return kLargestStep * (0.55 + 0.225 * wave);
 }
 
 /// As in equal steps, see FreeFlight and FreeTree.
 void expect_conserved(const SceneBuilder& builder, const Scheme& scheme, int steps, double momentum_tolerance) {
-  Simulation simulation(builder.scene, options(std::string(scheme.name), kStep, 1e-10));
+  Simulation simulation(builder.scene, options(std::string(scheme.name), kLargestStep, 1e-10));
   InvariantDrift drift(simulation);
   double end = 0;
   for (int n = 0; n < steps; ++n) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +14,11 @@
 #include "support/scene_builder.h"
 
 namespace flexarm::test {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr double kGravity = 9.81;  // m/s^2
+/// Of hinges whose links move in the x-z plane.
+const Vector3 kAcross(0, 1, 0);
 
 inline SimulationOptions options(const std::string& scheme, double step, double tolerance = 1e-8) {
   SimulationOptions out;

@@ -7,12 +7,12 @@
 namespace flexarm::test {
 namespace {
 
-constexpr double kLength = 10, kAxial = 2.8e7, kMass = 1.2, kSpeed = 6, kRampTime = 15;
+constexpr double kLength = 10, kAxialStiffness = 2.8e7, kMass = 1.2, kSpeed = 6, kRampTime = 15;
 
 SceneBuilder spin_up() {
   SceneBuilder b;
   b.beam("arm", {{kLength, 0, 0}},
-         scene::DirectSection{kAxial, 1e7, 1e7, 1.4e4, 1.4e4, 1.4e4, kMass, 1.2e-3, 6e-4, 6e-4}, 4, 2);
+         scene::DirectSection{kAxialStiffness, 1e7, 1e7, 1.4e4, 1.4e4, 1.4e4, kMass, 1.2e-3, 6e-4, 6e-4}, 4, 2);
   b.joint("hub", scene::JointKind::Revolute, "world", "arm", Vector3::Zero(), Vector3::UnitZ());
   b.scene.motions.push_back(
       {"hub", TimeFunction::parse("t < 15 ? 6/15*(t^2/2 + (15/(2*_pi))^2*(cos(2*_pi*t/15) - 1)) : 6*t - 45"), {}});
@@ -61,7 +61,7 @@ TEST_P(SpinUp, CompletesAndKeepsTheSteadyStretch) {
   // Radial equilibrium EA u'' + m W^2 (x + u) = 0. A steady turn by W h per step has chords in place of arcs: the
   // scheme's equilibrium is that of the speed 2 tan(W h / 2) / h, exactly.
   const double speed = 2 * std::tan(0.5 * kSpeed * step) / step;
-  const double k = std::sqrt(kMass * speed * speed / kAxial);
+  const double k = std::sqrt(kMass * speed * speed / kAxialStiffness);
   const double expected = std::tan(k * kLength) / k - kLength;
   std::printf("step %g: lag %.4f at %.2f s, residual deflection %.4f, stretch off by %.1e of %.6e\n", step, lag,
               lag_time, deflection, mean - expected, expected);

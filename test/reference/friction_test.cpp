@@ -1,5 +1,6 @@
 // Dry friction: sticking, stopping, and friction that grows with the force on the joint, against closed formulas.
 #include "reference/dynamics_joint_chain.h"
+#include "reference/one_coordinate_scenes.h"
 
 namespace flexarm::test {
 namespace {
@@ -7,14 +8,11 @@ namespace {
 using scene::JointKind;
 using Law = scene::FrictionDescription::Law;
 
-constexpr double kGravity = 9.81;
-constexpr double kMass = 2;
-
 /// A block on a rail along x, which falls by the angle `slope`; positive is uphill.
 SceneBuilder incline(double slope, double coefficient, double velocity) {
   SceneBuilder b;
   b.scene.gravity = kGravity * Vector3(-std::sin(slope), 0, -std::cos(slope));
-  b.body("block", kMass, {0, 0, 0}, Matrix3::Identity());
+  b.body("block", kBlockMass, {0, 0, 0}, Matrix3::Identity());
   b.joint("rail", JointKind::Prismatic, "world", "block", {0, 0, 0}, {1, 0, 0}).friction_law = {Law::Coulomb,
                                                                                                 coefficient, 0};
   initial_joint(b, "rail", 0, velocity);
@@ -58,7 +56,7 @@ TEST(Incline, SlidesAboveTheAngleOfFriction) {
       ASSERT_NEAR(simulation.velocity(0), acceleration * t, 1e-12) << scheme;
       ASSERT_NEAR(simulation.position(0), 0.5 * acceleration * t * t, 1e-12) << scheme;
     });
-    const double expected = coefficient * kMass * kGravity * std::cos(slope) * std::abs(simulation.position(0));
+    const double expected = coefficient * kBlockMass * kGravity * std::cos(slope) * std::abs(simulation.position(0));
     EXPECT_NEAR(simulation.energies().dissipated, expected, 1e-11);
   }
 }
@@ -76,7 +74,7 @@ TEST(Incline, HoldsOnAStiffBeam) {
   run(sticking, 100, [&] { ASSERT_EQ(sticking.position(0), rest); });
   Simulation sliding(beam_incline(slope, coefficient, 0).scene, options("em", 0.002));
   run(sliding, 200);
-  const double t = sliding.time(), force = kMass * kGravity;
+  const double t = sliding.time(), force = kBlockMass * kGravity;
   const double travel = -0.5 * kGravity * (std::sin(slope) - coefficient * std::cos(slope)) * t * t;
   const double bend = force * 2 * 2 / 1e8;  // slope of the deflected line
   EXPECT_NEAR(sliding.position(0) - 1, travel, 10 * bend * std::abs(travel));
@@ -93,7 +91,7 @@ TEST(Incline, DecelerationStopsAfterTheDistanceOfStopping) {
       const double exact = velocity * velocity / (2 * deceleration), way = std::abs(simulation.position(0));
       EXPECT_GE(way, exact - 1e-13);
       EXPECT_LE(way, exact + deceleration * step * step / 8 + 1e-13);
-      EXPECT_NEAR(simulation.energies().dissipated, 0.5 * kMass * velocity * velocity, 1e-12);
+      EXPECT_NEAR(simulation.energies().dissipated, 0.5 * kBlockMass * velocity * velocity, 1e-12);
       const double rest = simulation.position(0);
       run(simulation, 100, [&] { ASSERT_EQ(simulation.position(0), rest); });
       EXPECT_NEAR(simulation.velocity(0), 0, 1e-14);
@@ -158,7 +156,7 @@ TEST(Pendulum, LosesPerHalfSwingWhatItsBearingTakes) {
   for (const Law law : {Law::Coulomb, Law::Smooth}) {
     SceneBuilder b;
     b.scene.gravity = {0, 0, -kGravity};
-    b.body("bob", kMass, {0, 0, -length}, Matrix3::Zero());
+    b.body("bob", 2, {0, 0, -length}, Matrix3::Zero());
     b.joint("bearing", JointKind::Revolute, "world", "bob", {0, 0, 0}, {0, 1, 0}).friction_law = {law, 0.4, 0.1};
     initial_joint(b, "bearing", start, 0);
     Simulation simulation(b.scene, options("em", step));

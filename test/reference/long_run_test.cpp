@@ -1,6 +1,5 @@
 // A million steps of a free mechanism: the drift of what em conserves.
 #include <cstdio>
-#include <limits>
 
 #include "reference/dynamics_joint_chain.h"
 #include "simulation/inside.h"
@@ -8,8 +7,7 @@
 namespace flexarm::test {
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kStep = 0.05;  // s
+constexpr double kFlightStep = 0.05;  // s
 
 /// Two links of one linear element each on a spherical joint, which keeps its rotation as a quaternion: a hinge's angle
 /// is resolved to epsilon times the angle, which grows with the turns of a free flight.
@@ -31,7 +29,7 @@ void expect_slow_drift(Simulation& simulation, int steps, double position_error)
   // An error d of the position makes one of 2 d / h in v_1 = 2 Delta r / h - v_0, at both ends of the step, and twice
   // its ratio to v in the energy: C N with the following C if the errors of all N steps pull in one direction.
   const double speed = std::sqrt(2 * simulation.energies().kinetic / total_mass(simulation));
-  const double per_step = 2 * (2 * 2 * position_error / kStep) / speed;
+  const double per_step = 2 * (2 * 2 * position_error / kFlightStep) / speed;
   std::vector<double> rates;
   int done = 0;
   for (int until = 1000; until <= steps; until *= 10) {
@@ -56,7 +54,7 @@ void expect_slow_drift(Simulation& simulation, int steps, double position_error)
 // Full Newton steps leave the round-off of positions, of about the mechanism's size, without a preferred direction:
 // measured is sqrt(N), the bound is for N.
 TEST(LongRun, RoundOffOfAMillionSteps) {
-  SimulationOptions set = options("em", kStep, 1e-10);
+  SimulationOptions set = options("em", kFlightStep, 1e-10);
   set.reuse_factorisation = false;
   Simulation simulation(two_links().scene, set);
   expect_slow_drift(simulation, 1000000, kEpsilon * model_of(simulation).length_scale);
@@ -65,7 +63,7 @@ TEST(LongRun, RoundOffOfAMillionSteps) {
 // Kept factors let Newton's method stop where the next update would be below 1e-15 of the mechanism's size. What it
 // leaves out points in the direction in which it converges: measured is N.
 TEST(LongRun, RemainderOfNewtonsMethod) {
-  Simulation simulation(two_links().scene, options("em", kStep, 1e-10));
+  Simulation simulation(two_links().scene, options("em", kFlightStep, 1e-10));
   expect_slow_drift(simulation, 100000, (kEpsilon + 1e-15) * model_of(simulation).length_scale);
 }
 

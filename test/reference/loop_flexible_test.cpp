@@ -11,8 +11,6 @@ namespace {
 
 using scene::JointKind;
 
-const Vector3 kAcross(0, 1, 0);
-
 scene::DirectSection soft() {
   return section(2e4, 1e4, 150, 200, 0.5, 0.02, 0.01);
 }
@@ -201,16 +199,16 @@ TEST(FlexibleLoop, RingThatIsNotClosedIsRefused) {
 
 // ---------------------------------------------------------------- statics and modes
 
-enum class Ends { Clamped, ClampedBeside, Hinged };
+enum class HeldEnds { Clamped, ClampedBeside, Hinged };
 
 /// A beam of unit length along x that both its ends hold.
-SceneBuilder held_beam(Ends ends, int elements) {
+SceneBuilder held_beam(HeldEnds ends, int elements) {
   SceneBuilder b;
   b.beam("beam", {{1, 0, 0}}, section(1e6, 4e5, 50, 100, 0.5, 1e-4, 5e-5), elements, 2);
-  if (ends == Ends::Hinged) {
+  if (ends == HeldEnds::Hinged) {
     b.joint("near", JointKind::Universal, "world", "beam", {0, 0, 0}, {0, 1, 0}).axis2 = Vector3(0, 0, 1);
     close_loop(b, "far", JointKind::Spherical, "world", "beam", {1, 0, 0});
-  } else if (ends == Ends::Clamped) {
+  } else if (ends == HeldEnds::Clamped) {
     b.joint("near", JointKind::Fixed, "world", "beam");
     close_loop(b, "far", JointKind::Fixed, "world", "beam", {1, 0, 0});
   } else {  // by a body that sticks out from the tip
@@ -225,8 +223,8 @@ SceneBuilder held_beam(Ends ends, int elements) {
 // Bending and shear by a uniform load so small that the beam's stretching counts for less than 1e-7.
 TEST(FlexibleLoop, SagOfABeamHeldAtBothEnds) {
   const double load = 1e-3, ei = 100, ga = 4e5;
-  for (const Ends ends : {Ends::Clamped, Ends::ClampedBeside, Ends::Hinged}) {
-    const double expected = load / ei * (ends == Ends::Hinged ? 5 : 1) / 384 + load / ga / 8;
+  for (const HeldEnds ends : {HeldEnds::Clamped, HeldEnds::ClampedBeside, HeldEnds::Hinged}) {
+    const double expected = load / ei * (ends == HeldEnds::Hinged ? 5 : 1) / 384 + load / ga / 8;
     double error[3];
     for (int refinement = 0; refinement < 3; ++refinement) {
       SceneBuilder b = held_beam(ends, 2 << refinement);
@@ -245,9 +243,9 @@ TEST(FlexibleLoop, SagOfABeamHeldAtBothEnds) {
 
 // First frequency of a slender beam: 4.730041^2 or pi^2, times sqrt(EI / m L^4).
 TEST(FlexibleLoop, FrequencyOfABeamHeldAtBothEnds) {
-  for (const Ends ends : {Ends::Clamped, Ends::ClampedBeside, Ends::Hinged}) {
+  for (const HeldEnds ends : {HeldEnds::Clamped, HeldEnds::ClampedBeside, HeldEnds::Hinged}) {
     const Simulation simulation(held_beam(ends, 16).scene);
-    const double number = ends == Ends::Hinged ? kPi : 4.730040744862704;
+    const double number = ends == HeldEnds::Hinged ? kPi : 4.730040744862704;
     const double expected = number * number * std::sqrt(100 / 0.5) / (2 * kPi);
     // Shear and rotary inertia lower it by number^2 (EI / GA + J / m) times a factor of order one.
     EXPECT_NEAR(simulation.natural_modes(1)[0].frequency / expected, 1, 2 * number * number * (100 / 4e5 + 1e-4));

@@ -15,8 +15,6 @@ namespace {
 using Eigen::VectorXd;
 using scene::JointKind;
 
-const Vector3 kAcross(0, 1, 0);
-
 /// A slender bar along z from its link origin, with its centre beside its middle.
 void bar(SceneBuilder& b, const std::string& name, double mass, const Vector3& to, const Vector3& beside) {
   b.body(name, mass, 0.5 * to + beside, Vector3(0.1, 0.05, 0.08).asDiagonal());

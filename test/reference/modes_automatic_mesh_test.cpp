@@ -12,10 +12,10 @@
 namespace flexarm::test {
 namespace {
 
-constexpr double kAccuracy = 0.01;
+constexpr double kFrequencyAccuracy = 0.01;
 
 /// Largest relative error of the first four clamped-free and pinned-pinned frequencies.
-double largest_error(int elements, int order) {
+double largest_frequency_error(int elements, int order) {
   PlaneBeam beam;
   beam.rotary_inertia = beam.shear_compliance = 1e-5;
   double largest = 0;
@@ -31,8 +31,8 @@ double largest_error(int elements, int order) {
 TEST(AutomaticMesh, HasTheFewestElementsForFourFrequenciesWithinOnePercent) {
   for (int order = 1; order <= 4; ++order) {
     const int elements = automatic_element_count(order, 0);
-    EXPECT_LT(largest_error(elements, order), kAccuracy) << "order " << order;
-    EXPECT_GT(largest_error(elements - 1, order), kAccuracy) << "order " << order;
+    EXPECT_LT(largest_frequency_error(elements, order), kFrequencyAccuracy) << "order " << order;
+    EXPECT_GT(largest_frequency_error(elements - 1, order), kFrequencyAccuracy) << "order " << order;
   }
 }
 

@@ -13,14 +13,14 @@ namespace flexarm::test {
 namespace {
 
 /// EI / (EA R^2), EI / (GA R^2) and rotary inertia over m R^2.
-constexpr double kSlenderness = 1e-6;
-constexpr double kTorsion = 0.5;  ///< GJ [N m^2]
+constexpr double kThinness = 1e-6;
+constexpr double kTorsionStiffness = 0.5;  ///< GJ [N m^2]
 
 /// Radius 1 m, EI = 1 N m^2, 1 kg/m, in the x-y plane; its end is joined to its beginning.
 SceneBuilder ring(scene::JointKind seam = scene::JointKind::Fixed) {
   SceneBuilder b;
-  const double stiff = 1 / kSlenderness;
-  const scene::DirectSection thin = section(stiff, stiff, kTorsion, 1, 1, 2 * kSlenderness, kSlenderness);
+  const double stiff = 1 / kThinness;
+  const scene::DirectSection thin = section(stiff, stiff, kTorsionStiffness, 1, 1, 2 * kThinness, kThinness);
   scene::BeamDescription& beam = b.beam("ring", {}, thin, 16, 4);
   const Vector3 centre(-1, 0, 0);
   beam.centreline = {arc({-1, 1, 0}, centre), arc({-2, 0, 0}, centre), arc({-1, -1, 0}, centre),
@@ -39,7 +39,7 @@ double frequency(double n, double coupling) {
   return n * (n * n - 1) / std::sqrt(n * n + coupling);
 }
 
-// Each twice. Extension, shear and rotary inertia change them by some n^2 kSlenderness.
+// Each twice. Extension, shear and rotary inertia change them by some n^2 kThinness.
 TEST(Ring, FrequenciesInAndOutOfItsPlane) {
   SceneBuilder b = ring();
   b.joint("free", scene::JointKind::Floating, "world", "ring");
@@ -48,8 +48,8 @@ TEST(Ring, FrequenciesInAndOutOfItsPlane) {
   for (int k = 0; k < 6; ++k) EXPECT_TRUE(modes[k].is_free()) << k;
   for (int k = 6; k < 18; ++k) {
     const int n = 2 + (k - 6) / 4;
-    const double expected = frequency(n, (k - 6) % 4 < 2 ? 1 / kTorsion : 1);
-    EXPECT_NEAR(2 * kPi * modes[k].frequency, expected, 4 * n * n * kSlenderness * expected) << k;
+    const double expected = frequency(n, (k - 6) % 4 < 2 ? 1 / kTorsionStiffness : 1);
+    EXPECT_NEAR(2 * kPi * modes[k].frequency, expected, 4 * n * n * kThinness * expected) << k;
     EXPECT_EQ(modes[k].rate, 0) << k;
   }
 }
@@ -71,7 +71,7 @@ TEST(Ring, HingedAtTheSeam) {
   const std::vector<Mode> modes = simulation.natural_modes(7);
   EXPECT_TRUE(modes[5].is_free());
   EXPECT_GT(modes[6].frequency, 0);
-  EXPECT_LT(2 * kPi * modes[6].frequency, 0.95 * frequency(2, 1 / kTorsion));
+  EXPECT_LT(2 * kPi * modes[6].frequency, 0.95 * frequency(2, 1 / kTorsionStiffness));
 }
 
 }  // namespace

@@ -15,17 +15,17 @@ namespace {
 
 /// omega sqrt(m L^4 / EI) for rotary inertia j / (m L^2) and shear compliance EI / (GA L^2): Rayleigh-Ritz with
 /// Legendre polynomials, all digits converged.
-struct Spectrum {
+struct PublishedSpectrum {
   const char* name;
   EndCondition root, tip;
   double rotary_inertia, shear_compliance;
   std::vector<double> omega;
 };
-std::ostream& operator<<(std::ostream& out, const Spectrum& s) {
+std::ostream& operator<<(std::ostream& out, const PublishedSpectrum& s) {
   return out << s.name;
 }
 
-const Spectrum kTable[] = {
+const PublishedSpectrum kPublishedSpectra[] = {
     {"clamped_free_slender", kClamped, kFree, 1e-4, 3e-4, {3.5127523751, 21.8930973519, 60.768141754, 117.610507556}},
     {"clamped_free_short", kClamped, kFree, 1e-2, 3e-2, {3.2345869777, 14.5913018183, 31.8350778942, 48.540691485}},
     {"free_free_slender", kFree, kFree, 1e-4, 3e-4, {22.2774588901, 60.9280212693, 118.1055156903, 192.4184278171}},
@@ -38,7 +38,7 @@ const Spectrum kTable[] = {
     {"pinned_pinned_short", kPinned, kPinned, 1e-2, 3e-2, {8.4213965310, 25.5743611728, 44.6680712591, 57.735026919}},
 };
 
-class TimoshenkoSpectrum : public testing::TestWithParam<Spectrum> {
+class TimoshenkoSpectrum : public testing::TestWithParam<PublishedSpectrum> {
  protected:
   PlaneBeam beam() const {
     PlaneBeam beam;
@@ -78,7 +78,7 @@ TEST_P(TimoshenkoSpectrum, ErrorsFallWithOrderTwoP) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Table, TimoshenkoSpectrum, testing::ValuesIn(kTable),
+INSTANTIATE_TEST_SUITE_P(Table, TimoshenkoSpectrum, testing::ValuesIn(kPublishedSpectra),
                          [](const auto& info) { return std::string(info.param.name); });
 
 // A short square beam on simple supports in space, against closed forms and as published with

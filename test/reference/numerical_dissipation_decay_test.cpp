@@ -1,7 +1,6 @@
 // Numerical dissipation never adds energy and never touches momenta: hard cases.
 #include <algorithm>
 #include <cstdio>
-#include <limits>
 
 #include "reference/dynamics_joint_chain.h"
 #include "simulation/inside.h"
@@ -10,8 +9,6 @@ namespace flexarm::test {
 namespace {
 
 using scene::JointKind;
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 struct HardCase {
   std::string name;

@@ -3,7 +3,6 @@
 // these approach rho_infinity for stiff bars; strong damping takes them to zero.
 #include <complex>
 #include <cstdio>
-#include <limits>
 
 #include "math/dense_eigenpairs.h"
 #include "reference/dynamics_runs.h"
@@ -29,8 +28,7 @@ Polynomial operator+(Polynomial a, const Polynomial& b) {
   return a;
 }
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kStep = 0.01;  // s
+constexpr double kOscillatorStep = 0.01;  // s
 
 /// The scheme on an oscillator, in multiples of the displacement x: with p = (z - 1)/(z + 1), z the factor per step,
 /// q = (omega h)^2 and (kappa, nu, b) of numerical_dissipation(),
@@ -45,10 +43,10 @@ struct Oscillator {
   /// Order 0: no numerical dissipation.
   Oscillator(int order, double rho, double frequency, double damping = 0) : q(frequency * frequency), r(damping) {
     if (order == 0) return;
-    const NumericalDissipation d = numerical_dissipation(order, rho, kStep);
+    const NumericalDissipation d = numerical_dissipation(order, rho, kOscillatorStep);
     kappa = d.stiffness;
     nu = d.forgetting;
-    b = d.inertance / (kStep * kStep);
+    b = d.inertance / (kOscillatorStep * kOscillatorStep);
   }
   Complex value(const Complex& p) const {
     return (4 / q + 4 * b) * p * p + 1.0 + (kappa > 0 ? 4 * kappa * p * p / (2.0 * p + nu * (1.0 - p)) : 0.0) +
@@ -109,13 +107,13 @@ struct Case {
 /// One axial element, clamped: the consistent mass at its free end is a third of its 1 kg.
 Simulation bar(const Case& c) {
   SceneBuilder b;
-  const double omega = c.frequency / kStep;
+  const double omega = c.frequency / kOscillatorStep;
   b.beam("bar", {{1, 0, 0}}, scene::DirectSection{omega * omega / 3, 1, 1, 1, 1, 1, 1, 1, 1, 1}, 1, 1);
   b.joint("clamp", scene::JointKind::Fixed, "world", "bar");
-  b.scene.links.back().beam->stiffness_proportional_damping = c.damping * kStep;
+  b.scene.links.back().beam->stiffness_proportional_damping = c.damping * kOscillatorStep;
   b.scene.integrator.scheme = c.order == 0 ? "em" : "edmc" + std::to_string(c.order);
   if (c.order > 0) b.scene.integrator.rho_infinity = c.rho;
-  b.scene.integrator.step = kStep;
+  b.scene.integrator.step = kOscillatorStep;
   b.scene.integrator.tolerance = 1e-10;
   SimulationOptions set;
   set.reuse_factorisation = false;
@@ -132,8 +130,8 @@ void start_on(Simulation& simulation, const Oscillator& o, const Complex& p, con
   NodeState& tip = state.nodes[tip_node(simulation)];
   StrainMemory& memory = state.strain_memory.front();
   tip.position.x() = 1 + u.real();
-  tip.velocity.x() = memory.rate[0] = (2.0 * p * u).real() / kStep;
-  memory.delayed_rate[0] = (2.0 * p * u / (1.0 + 2.0 * p)).real() / kStep;
+  tip.velocity.x() = memory.rate[0] = (2.0 * p * u).real() / kOscillatorStep;
+  memory.delayed_rate[0] = (2.0 * p * u / (1.0 + 2.0 * p)).real() / kOscillatorStep;
   memory.average[0] = o.nu == 0 ? 0 : (o.nu * 2.0 * p * u / (2.0 * p + o.nu * (1.0 - p))).real();
   restore(simulation, state);
 }

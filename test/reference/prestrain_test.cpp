@@ -4,12 +4,11 @@
 #include "math/pi.h"
 #include "reference/dynamics_runs.h"
 #include "reference/reference_cantilever.h"
+#include "reference/strains.h"
 #include "support/loops.h"
 
 namespace flexarm::test {
 namespace {
-
-enum Strain { kAxial, kShearY, kShearZ, kTorsion, kBendingY, kBendingZ };
 
 constexpr scene::DirectSection kSection{4e3, 1e3, 1e3, 6, 8, 12, 1, 0.01, 0.004, 0.006};
 

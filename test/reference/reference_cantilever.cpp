@@ -1,6 +1,5 @@
 #include "reference_cantilever.h"
 
-#include <cmath>
 #include <stdexcept>
 
 namespace flexarm::test {
@@ -34,10 +33,6 @@ Pose static_tip(const Cantilever& cantilever, int elements, int order, int load_
   const StepResult result = simulation.solve_static(load_steps);
   if (!result.converged) throw std::runtime_error(std::string("no equilibrium: ") + to_string(result.reason));
   return simulation.probe(0).pose;
-}
-
-double observed_order(double coarse_error, double fine_error) {
-  return std::log2(coarse_error / fine_error);
 }
 
 }  // namespace flexarm::test

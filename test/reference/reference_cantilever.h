@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "reference/observed_order.h"
 #include "support/scene_builder.h"
 
 namespace flexarm::test {
@@ -26,9 +27,6 @@ SceneBuilder cantilever_scene(const Cantilever& cantilever, int elements, int or
 /// Tip section under the load.
 /// @throws std::runtime_error if Newton's method fails.
 Pose static_tip(const Cantilever& cantilever, int elements, int order, int load_steps = 1);
-
-/// Order of convergence seen between two meshes, the second twice as fine.
-double observed_order(double coarse_error, double fine_error);
 
 /// Observed orders of sequences with even powers of h tend to the theoretical one with an error of order h^2; the bound
 /// leaves that room on the meshes used here, and is a fraction of the distance to the next possible order.

@@ -10,8 +10,8 @@ namespace {
 using scene::JointKind;
 
 constexpr double kLength = 1.2, kMassPerLength = 0.8, kRotary = 2e-3;
-constexpr double kStep = 0.005;
-constexpr int kSteps = 300;
+constexpr double kPathStep = 0.005;
+constexpr int kPathSteps = 300;
 
 /// A double pendulum whose upper link is a beam of `stiffness` times a base value, or (infinite) a rigid body of the
 /// same mass.
@@ -38,9 +38,9 @@ SceneBuilder pendulum(double stiffness) {
 }
 
 std::vector<Vector3> tip_path(double stiffness, const std::string& scheme) {
-  Simulation simulation(pendulum(stiffness).scene, options(scheme, kStep, 1e-11));
+  Simulation simulation(pendulum(stiffness).scene, options(scheme, kPathStep, 1e-11));
   std::vector<Vector3> path;
-  run(simulation, kSteps, [&] { path.push_back(simulation.probe(0).pose.position); });
+  run(simulation, kPathSteps, [&] { path.push_back(simulation.probe(0).pose.position); });
   return path;
 }
 
@@ -58,7 +58,7 @@ TEST_P(RigidLimit, DifferenceFallsWithTheCompliance) {
   const double medium = largest_distance(tip_path(1e4, GetParam()), rigid);
   const double stiff = largest_distance(tip_path(1e6, GetParam()), rigid);
   // What is left at the stiff end is that the two links discretise time differently, at second order.
-  Simulation fine(pendulum(INFINITY).scene, options(GetParam(), kStep / 8, 1e-11));
+  Simulation fine(pendulum(INFINITY).scene, options(GetParam(), kPathStep / 8, 1e-11));
   double step_error = 0;
   for (const Vector3& point : rigid) {
     run(fine, 8);
@@ -76,7 +76,7 @@ Vector3 place_at_rest(double stiffness) {
   SceneBuilder b = pendulum(std::isinf(stiffness) ? 1 : stiffness);
   if (std::isinf(stiffness)) b.scene.links[1].beam->elements = 0;
   b.load("lower", {0.1, 0.05, -0.3}, {0.5, 0.2, 0});
-  Simulation simulation(b.scene, options("em", kStep, 1e-12));
+  Simulation simulation(b.scene, options("em", kPathStep, 1e-12));
   EXPECT_TRUE(simulation.solve_static(5).converged);
   return simulation.probe(0).pose.position;
 }
@@ -104,7 +104,7 @@ TEST(RigidLimit, IsTheMotionOfTheLinkWithoutElements) {
     if (std::isinf(stiffness)) b.scene.links[1].beam->elements = 0;
     b.scene.gravity.setZero();
     b.load("lower", {0.1, 0, -0.3}, {1, 0.5, 0}, Vector3::Zero(), "t^4*(1 - t)");
-    Simulation simulation(b.scene, options("edmc2", kStep, 1e-12));
+    Simulation simulation(b.scene, options("edmc2", kPathStep, 1e-12));
     std::vector<Vector3> places;
     run(simulation, 200, [&] { places.push_back(simulation.probe(0).pose.position); });
     return places;

@@ -12,8 +12,6 @@ namespace {
 using Eigen::VectorXd;
 using scene::JointKind;
 
-constexpr double kGravity = 9.81;
-
 /// A mechanism whose coordinates q obey q'' = acceleration(q, q').
 struct Mechanism {
   std::string name;

@@ -1,7 +1,6 @@
 // Chapter 6 of Muñoz 2004 by equation: the energy that M1 (6.17) and M2 (6.21) gain in a step, and what follows for
 // the sign of M2's; STD's energy (6.12) and its interpolation, which is not strain-invariant.
 #include <cstdio>
-#include <limits>
 
 #include "elements/beam_point.h"
 #include "reference/dynamics_joint_chain.h"
@@ -9,8 +8,6 @@
 
 namespace flexarm::test {
 namespace {
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 /// The right-hand sides of (6.17) and (6.21), evaluated from the states at both ends of a step.
 struct EnergyIncrement {

@@ -12,12 +12,12 @@
 namespace flexarm::test {
 namespace {
 
-constexpr double kLength = 1, kBending = 10, kMass = 1, kHub = 0.05;  // m, N m^2, kg/m, kg m^2
-constexpr double kProportional = 40, kDerivative = 4;                 // N m/rad, N m s/rad
+constexpr double kArmLength = 1, kArmBending = 10, kArmMass = 1, kHub = 0.05;  // m, N m^2, kg/m, kg m^2
+constexpr double kProportional = 40, kDerivative = 4;                          // N m/rad, N m s/rad
 // The motion is linear but for amplitude^2, the beam Euler's but for beta^2 EI / GA of a mode with the wave number
 // beta; beta < 8/m of those that move.
-constexpr double kAmplitude = 1e-3, kShear = 1e8;  // rad, N
-constexpr double kModel = kAmplitude * kAmplitude + 64 * kBending / kShear;
+constexpr double kAmplitude = 1e-3, kArmShear = 1e8;  // rad, N
+constexpr double kModel = kAmplitude * kAmplitude + 64 * kArmBending / kArmShear;
 constexpr double kEnd = 0.8;  // s
 // The set point is amplitude (1 - 9/8 cos(6 t) + 1/8 cos(18 t)), whose first three derivatives start at zero: modes
 // that are not resolved in time do not count.
@@ -32,15 +32,15 @@ class LinearArm {
  public:
   explicit LinearArm(int elements)
       : stiffness_(Eigen::MatrixXd::Zero(2 * elements + 2, 2 * elements + 2)), mass_(stiffness_) {
-    const double l = kLength / elements;
+    const double l = kArmLength / elements;
     Eigen::Matrix4d stiffness, mass;
     stiffness << 12, 6 * l, -12, 6 * l, 6 * l, 4 * l * l, -6 * l, 2 * l * l, -12, -6 * l, 12, -6 * l, 6 * l, 2 * l * l,
         -6 * l, 4 * l * l;
     mass << 156, 22 * l, 54, -13 * l, 22 * l, 4 * l * l, 13 * l, -3 * l * l, 54, 13 * l, 156, -22 * l, -13 * l,
         -3 * l * l, -22 * l, 4 * l * l;
     for (int e = 0; e < elements; ++e) {
-      stiffness_.block<4, 4>(2 * e, 2 * e) += kBending / (l * l * l) * stiffness;
-      mass_.block<4, 4>(2 * e, 2 * e) += kMass * l / 420 * mass;
+      stiffness_.block<4, 4>(2 * e, 2 * e) += kArmBending / (l * l * l) * stiffness;
+      mass_.block<4, 4>(2 * e, 2 * e) += kArmMass * l / 420 * mass;
     }
     const int count = 2 * elements + 1;  // without the deflection of the hinge
     stiffness_ = stiffness_.bottomRightCorner(count, count).eval();
@@ -56,7 +56,7 @@ class LinearArm {
     // What stays: the amplitude, turned as a rigid body, and the answer to the harmonics.
     Eigen::VectorXd stays(n), begin(n), begin_rate = Eigen::VectorXd::Zero(n);
     stays[0] = 1;
-    for (int i = 1; i < n; i += 2) stays.segment<2>(i) << kLength * (i + 1) / (n - 1), 1;
+    for (int i = 1; i < n; i += 2) stays.segment<2>(i) << kArmLength * (i + 1) / (n - 1), 1;
     begin = stays *= kAmplitude;
     for (const Harmonic& harmonic : kHarmonics) {
       const Complex rate(0, harmonic.rate);
@@ -97,10 +97,10 @@ class LinearArm {
 
 Eigen::Vector2d simulated(const char* scheme, int steps) {
   SceneBuilder b;
-  b.beam("arm", {{kLength, 0, 0}}, section(1e6, kShear, 5, kBending, kMass, 1e-7, 1e-7), 12, 3)
+  b.beam("arm", {{kArmLength, 0, 0}}, section(1e6, kArmShear, 5, kArmBending, kArmMass, 1e-7, 1e-7), 12, 3)
       .hubs.push_back({scene::HubDescription::End::Start, 0, {0, 0, kHub}, {}});
   b.joint("hinge", scene::JointKind::Revolute, "world", "arm");
-  b.probe("tip", "arm", {kLength, 0, 0});
+  b.probe("tip", "arm", {kArmLength, 0, 0});
   b.servo("hinge", kProportional, kDerivative).set_point =
       TimeFunction::parse(fmt::format("{}*(1-9/8*cos(6*t)+1/8*cos(18*t))", kAmplitude));
   Simulation simulation(b.scene, options(scheme, kEnd / steps, 1e-12));
@@ -110,7 +110,7 @@ Eigen::Vector2d simulated(const char* scheme, int steps) {
 
 TEST(ServoArm, FollowsTheLinearModelAtSecondOrder) {
   const Eigen::Vector2d expected = LinearArm(40).at(kEnd);
-  ASSERT_GT(std::abs(expected[1] - kLength * expected[0]), 0.02 * kAmplitude) << "it bends";
+  ASSERT_GT(std::abs(expected[1] - kArmLength * expected[0]), 0.02 * kAmplitude) << "it bends";
   for (const char* scheme : {"em", "m1", "newmark"}) {
     const Eigen::Vector2d coarse = simulated(scheme, 100), fine = simulated(scheme, 200);
     for (const int i : {0, 1}) {

@@ -4,11 +4,10 @@
 
 #include "math/pi.h"
 #include "reference/one_coordinate_scenes.h"
+#include "reference/strains.h"
 
 namespace flexarm::test {
 namespace {
-
-enum Strain { kAxial, kShearY, kShearZ, kTorsion, kBendingY, kBendingZ };
 
 // ---------------------------------------------------------------- strains
 

@@ -13,7 +13,7 @@
 namespace flexarm::test {
 namespace {
 
-constexpr double kAccuracy = 0.01;
+constexpr double kTipAccuracy = 0.01;
 
 /// Largest turning per element [rad], from a line with so many turns that nothing else counts.
 double turning_per_element(int order) {
@@ -31,7 +31,7 @@ Cantilever slender_arc(double angle, const Vector3& force) {
 }
 
 /// Error of the tip displacement relative to it; the largest for small forces along the three axes.
-double largest_error(double angle, int elements, int order) {
+double largest_tip_error(double angle, int elements, int order) {
   double largest = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const Cantilever cantilever = slender_arc(angle, 1e-4 * Vector3::Unit(axis));
@@ -48,7 +48,8 @@ TEST(AutomaticMesh, TurningPerElementKeepsTheTipOfArcsWithinOnePercent) {
     for (int degrees = 90; degrees < 180; degrees += 15) {
       const double angle = degrees * kPi / 180;
       const int elements = static_cast<int>(std::ceil(angle / turning_per_element(order)));
-      EXPECT_LT(largest_error(angle, elements, order), kAccuracy) << "order " << order << ", " << degrees << " degrees";
+      EXPECT_LT(largest_tip_error(angle, elements, order), kTipAccuracy)
+          << "order " << order << ", " << degrees << " degrees";
     }
   }
 }
@@ -57,7 +58,7 @@ TEST(AutomaticMesh, OneElementLessIsTooFewForTheWorstArc) {
   const double worst = 0.75 * kPi;
   for (int order = 1; order <= 3; ++order) {  // quartic elements do with one
     const int elements = static_cast<int>(std::ceil(worst / turning_per_element(order)));
-    EXPECT_GT(largest_error(worst, elements - 1, order), kAccuracy) << "order " << order;
+    EXPECT_GT(largest_tip_error(worst, elements - 1, order), kTipAccuracy) << "order " << order;
   }
 }
 

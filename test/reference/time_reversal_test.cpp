@@ -1,14 +1,11 @@
 // Symmetry in time: N steps, all velocities reversed, N steps lead back to the start.
 #include <cstdio>
-#include <limits>
 
 #include "reference/dynamics_joint_chain.h"
 #include "simulation/inside.h"
 
 namespace flexarm::test {
 namespace {
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 /// Configuration and internal state stay, velocities change their sign (times `factor`); the predictor is forgotten.
 State reversed(State state, double factor = 1) {

@@ -1,7 +1,6 @@
 // em_scaled closes the energy by scaling what the supports do not let move rigidly: energy exact, and every momentum
 // that the supports leave alone. Free trees: conservation_free_flight_test.cpp.
 #include <cstdio>
-#include <limits>
 
 #include "reference/dynamics_joint_chain.h"
 #include "simulation/inside.h"
@@ -11,7 +10,6 @@ namespace {
 
 using scene::JointKind;
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr int kSteps = 1000;
 constexpr double kStep = 0.02;
 

@@ -3,12 +3,6 @@
 namespace flexarm::scene {
 namespace {
 
-/// The good scene with one replacement has one error, at this line.
-void expect_error(const std::string& from, const std::string& to, int line, const std::string& fragment) {
-  SCOPED_TRACE(from + " -> " + to);
-  expect_one_error(good_scene_with(from, to), line, fragment);
-}
-
 /// Links a, b, c under the root link w, with these joints; each on a line of its own from line 2.
 std::string tree(const std::string& joints) {
   return R"(<robot name="r"><link name="w"/><link name="a"/><link name="b"/><link name="c"/>)"

@@ -1,16 +1,6 @@
 #include "scene/scene_text.h"
 
 namespace flexarm::scene {
-namespace {
-
-/// The good scene with one replacement has one error, at this line.
-void expect_error(const std::string& from, const std::string& to, int line, const std::string& fragment) {
-  SCOPED_TRACE(from + " -> " + to);
-  expect_one_error(good_scene_with(from, to), line, fragment);
-}
-
-}  // namespace
-
 TEST(LinkErrors, Inertial) {
   expect_error(R"(<mass value="2"/>)", R"(<mass value="-2"/>)", 16,
                "scene.urdf:16: <mass> of link 'upper': value must be >= 0, got '-2'");

@@ -55,6 +55,12 @@ inline void expect_one_error(const std::string& text, int line, const std::strin
                                                                             << result.diagnostics[0].text();
 }
 
+/// The good scene with one replacement has one error, at this line.
+inline void expect_error(const std::string& from, const std::string& to, int line, const std::string& fragment) {
+  SCOPED_TRACE(from + " -> " + to);
+  expect_one_error(good_scene_with(from, to), line, fragment);
+}
+
 /// Expects a scene, and among its warnings one at this line whose text contains the fragment.
 inline void expect_warning(const ReadResult& result, int line, const std::string& fragment) {
   ASSERT_TRUE(result.scene) << to_text(result.diagnostics);

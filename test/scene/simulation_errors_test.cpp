@@ -4,12 +4,6 @@
 namespace flexarm::scene {
 namespace {
 
-/// The good scene with one replacement has one error, at this line.
-void expect_error(const std::string& from, const std::string& to, int line, const std::string& fragment) {
-  SCOPED_TRACE(from + " -> " + to);
-  expect_one_error(good_scene_with(from, to), line, fragment);
-}
-
 /// The good scene with one more entry of <simulation>, on line 68, has one error there.
 void expect_entry_error(const std::string& entry, const std::string& fragment) {
   expect_error("  </simulation>", entry + "</simulation>", 68, fragment);

@@ -37,7 +37,7 @@ double residual(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& x, const E
   return (matrix * x - b).lpNorm<Eigen::Infinity>() / b.lpNorm<Eigen::Infinity>();
 }
 
-constexpr double kRoundOff = 1e-13;  // some hundred operations per entry
+constexpr double kSolutionRoundOff = 1e-13;  // some hundred operations per entry
 
 TEST(LinearSolver, Solves) {
   const Eigen::MatrixXd matrix = banded(50, 1);
@@ -48,7 +48,7 @@ TEST(LinearSolver, Solves) {
     const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(50, 1, 2 + repeat);
     Eigen::VectorXd x = b;
     ASSERT_TRUE(solver.solve(x));
-    EXPECT_LE(residual(matrix, x, b), kRoundOff);
+    EXPECT_LE(residual(matrix, x, b), kSolutionRoundOff);
   }
   EXPECT_EQ(solver.factorisations(), 1);
 }
@@ -68,8 +68,8 @@ TEST(LinearSolver, RefactorisationEqualsAFreshOne) {
     LinearSolver fresh(40, next.starts, next.rows);
     ASSERT_TRUE(fresh.factorise(next.values));
     ASSERT_TRUE(fresh.solve(fresh_x));
-    EXPECT_LE(residual(matrix, x, b), kRoundOff);
-    EXPECT_LE((x - fresh_x).lpNorm<Eigen::Infinity>(), kRoundOff);
+    EXPECT_LE(residual(matrix, x, b), kSolutionRoundOff);
+    EXPECT_LE((x - fresh_x).lpNorm<Eigen::Infinity>(), kSolutionRoundOff);
   }
 }
 
@@ -86,7 +86,7 @@ TEST(LinearSolver, ChoosesNewPivotsWhenTheOldOnesFail) {
     const Eigen::VectorXd b = Eigen::Vector3d(1, 2, 3);
     Eigen::VectorXd x = b;
     ASSERT_TRUE(solver.solve(x));
-    EXPECT_LE(residual(bad, x, b), kRoundOff);
+    EXPECT_LE(residual(bad, x, b), kSolutionRoundOff);
   }
 }
 
@@ -100,7 +100,7 @@ TEST(LinearSolver, ZeroPivotInARefactorisation) {
   ASSERT_TRUE(solver.factorise(swapped));
   Eigen::VectorXd x = Eigen::Vector2d(2, 3);
   ASSERT_TRUE(solver.solve(x));
-  EXPECT_LE((x - Eigen::Vector2d(3, 2)).norm(), kRoundOff);
+  EXPECT_LE((x - Eigen::Vector2d(3, 2)).norm(), kSolutionRoundOff);
 }
 
 TEST(LinearSolver, DetectsASingularMatrixAndRecovers) {
@@ -116,7 +116,7 @@ TEST(LinearSolver, DetectsASingularMatrixAndRecovers) {
   ASSERT_TRUE(solver.factorise(compressed.values));
   Eigen::VectorXd x = Eigen::Vector2d(5, 4);
   ASSERT_TRUE(solver.solve(x));
-  EXPECT_LE((x - Eigen::Vector2d(1, 1)).norm(), kRoundOff);
+  EXPECT_LE((x - Eigen::Vector2d(1, 1)).norm(), kSolutionRoundOff);
 }
 
 TEST(LinearSolver, StructurallySingular) {
