@@ -22,9 +22,10 @@ constexpr int kMostBeamNodes = 200000;                ///< of all beams: 2 GB
 constexpr int kMostNewtonIterations = 1000;
 constexpr int kMostHalvings = 30;  ///< a step over 2^30
 constexpr std::size_t kMostParameters = 1000;
-constexpr std::size_t kMostExpressions = 100000;  ///< in attributes: a second
-constexpr std::size_t kLongestName = 256;         ///< bytes, of links, joints, probes and sensors
-constexpr std::size_t kLongestShownValue = 80;    ///< bytes of a value repeated in a message
-constexpr std::size_t kMostFindings = 1000;       ///< listed; the rest is counted
+constexpr std::size_t kMostExpressions = 100000;    ///< in attributes: a second
+constexpr std::size_t kLongestName = 256;           ///< bytes, of links, joints, probes and sensors
+constexpr std::size_t kLongestParameterName = 100;  ///< bytes: what muParser takes as an identifier
+constexpr std::size_t kLongestShownValue = 80;      ///< bytes of a value repeated in a message
+constexpr std::size_t kMostFindings = 1000;         ///< listed; the rest is counted
 
 }  // namespace flexarm::scene

@@ -167,6 +167,8 @@ bool Expansion::is_good_name(const XmlElement& parameter, const std::string& nam
     parameter.attribute_error("name", "name is taken, by line " + std::to_string(first->second));
   } else if (!is_identifier(name)) {
     parameter.attribute_error("name", "name must be a letter or '_', then letters, digits and '_'");
+  } else if (name.size() > kLongestParameterName) {
+    parameter.attribute_error("name", fmt::format("name has at most {} characters", kLongestParameterName));
   } else if (table_.knows(name)) {
     parameter.attribute_error("name", "name must not be that of a function or constant of expressions");
   } else {

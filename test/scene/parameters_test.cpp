@@ -189,6 +189,12 @@ TEST(Parameters, Declarations) {
   expect_parameter_errors(R"(<parameter name="${pi}" value="1"/>)",
                           "scene.urdf:2: <parameter> of robot 'r': name must be a letter or '_', then letters, digits "
                           "and '_', got '${pi}'");
+  const std::string longest(100, 'p');
+  EXPECT_TRUE(
+      read(arm_with(R"(name="length")", "name=\"" + longest + R"(" value="1"/> <parameter name="length")")).scene);
+  expect_parameter_errors("<parameter name=\"" + longest + "p\" value=\"1\"/>",
+                          "scene.urdf:2: <parameter> of robot 'r': name has at most 100 characters, got '" +
+                              longest.substr(0, 80) + "...'");
   for (const char* taken : {"pi", "_pi", "_e", "sin", "min", "rint"})
     expect_parameter_errors(
         "<parameter name=\"" + std::string(taken) + "\" value=\"1\"/>",
