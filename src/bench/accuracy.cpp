@@ -10,6 +10,7 @@
 #include "accuracy/processor_time.h"
 #include "accuracy/tuning.h"
 #include "bench/effort_schedule.h"
+#include "bench/median.h"
 #include "bench/random_arms.h"
 #include "bench/speed.h"
 #include "flexarm/accuracy/accurate_run.h"
@@ -42,27 +43,38 @@ scene::SceneDescription scene_of(scene::ReadResult read) {
   return std::move(*read.scene);
 }
 
-/// Commands the tries of a run, and times the last of them.
+/// Commands the tries of a run, times the last of them and counts its iterations. The clock is asked between intervals
+/// alone, as in the runs of a search: where steps take microseconds, it would be a part of them.
 class TimedTries : public RunWatcher {
  public:
   explicit TimedTries(StepCommand command) : command_(std::move(command)), begin_(processor_seconds()) {}
 
-  void begin(const Simulation&, long, double) override { try_begin_ = processor_seconds(); }
+  void begin(const Simulation&, long, double) override {
+    try_begin_ = processor_seconds();
+    iterations_ = 0;
+  }
   void before_step(Simulation& simulation) override {
     if (command_) command_(simulation);
   }
-  bool after_step(const Simulation&, const StepResult&) override { return processor_seconds() - begin_ < kRunSeconds; }
+  bool after_step(const Simulation&, const StepResult& result) override {
+    iterations_ += result.iterations;
+    return has_time_;
+  }
+  void after_interval(const Simulation&, double) override { has_time_ = all() < kRunSeconds; }
   double last() const { return processor_seconds() - try_begin_; }
   double all() const { return processor_seconds() - begin_; }
+  long iterations() const { return iterations_; }
 
  private:
   StepCommand command_;
   double begin_, try_begin_ = 0;
+  long iterations_ = 0;
+  bool has_time_ = true;
 };
 
-/// The run as somebody gets it who asks for the accuracy; its motion.
-JudgedMotion run_accurately(const AccuracyCase& one, TrialRuns& trials, AccuracyOutcome& out) {
-  const AutomaticMeshes meshes = automatic_meshes(trials, kMeshShare * out.asked);
+/// With meshes that were chosen, the run as somebody gets it who asks for the accuracy; its times are those of this
+/// one.
+AccurateRun run_accurately(const AccuracyCase& one, const AutomaticMeshes& meshes, AccuracyOutcome& out) {
   Simulation simulation(with_settings(one.scene, meshes.settings));
   const auto commands = effort_commands(one.commands);
   TimedTries tries(commands ? commands(simulation) : StepCommand());
@@ -73,14 +85,15 @@ JudgedMotion run_accurately(const AccuracyCase& one, TrialRuns& trials, Accuracy
   AccurateRun run = run_to_accuracy(simulation, request, tries);
   out.seconds = tries.last();
   out.all_seconds = meshes.seconds + tries.all();
+  out.iterations = tries.iterations();
   out.estimate = run.estimate() + meshes.error;
   out.is_met = run.end == AccurateRun::End::Met && meshes.is_met;
   out.shortcoming = run.end != AccurateRun::End::Met ? to_string(run.end) : meshes.shortcoming;
-  return std::move(run.motion);
+  return run;
 }
 
-/// The error of what ran, and the best that a search finds for as small a one.
-void judge(TrialRuns& trials, const JudgedMotion& motion, AccuracyOutcome& out) {
+/// The error of what ran, and the best that a search finds for as small a one; empty: it finds none.
+std::optional<RunSettings> judge(TrialRuns& trials, const JudgedMotion& motion, AccuracyOutcome& out) {
   TuningFreedom freedom;
   freedom.all_meshes = false;
   const auto search = [&](double accuracy) {
@@ -91,20 +104,39 @@ void judge(TrialRuns& trials, const JudgedMotion& motion, AccuracyOutcome& out) 
   // Finer where the run is much better than was asked for.
   for (double wanted = out.asked; wanted > kFinest; wanted *= 0.1) {
     const TuningResult found = search(wanted);
-    if (!found.reference || found.reference_error > kGoodReference * out.asked) return;
+    if (!found.reference || found.reference_error > kGoodReference * out.asked) return std::nullopt;
     const JudgedMotion& reference = trials.run(*found.reference).motion;
     out.reference_error = found.reference_error;
     out.error = motion_error(motion, reference, reference.largest_displacement());
     if (found.reference_error <= kGoodReference * *out.error) break;
   }
-  if (!out.error || out.reference_error > kGoodReference * *out.error) return;
+  if (!out.error || out.reference_error > kGoodReference * *out.error) return std::nullopt;
   const TuningResult best = search(*out.error);
-  if (!best.is_met || !best.reference) return;
+  if (!best.is_met || !best.reference) return std::nullopt;
   const TunedRun& run = best.runs[*best.best];
   out.fixed_seconds = run.seconds;
+  out.fixed_iterations = run.iterations;
   out.is_of_own_scheme = run.settings.scheme == trials.scene().integrator.scheme;
   out.fixed = fmt::format("{}, {}, {:.3g} s, {:.0e}", run.settings.mesh(), run.settings.scheme, run.settings.step,
                           run.settings.tolerance);
+  return run.settings;
+}
+
+/// The run and the best fixed choice in turns, as a search times its best, so that neither has the machine at its worse
+/// moments: medians of three.
+void time_in_turns(const AccuracyCase& one, const AutomaticMeshes& meshes, TrialRuns& trials, const RunSettings& fixed,
+                   AccuracyOutcome& out) {
+  std::vector<double> last, all, best;
+  for (int i = 0; i < 3; ++i) {
+    AccuracyOutcome again = out;
+    run_accurately(one, meshes, again);
+    last.push_back(again.seconds);
+    all.push_back(again.all_seconds);
+    best.push_back(trials.time_again(fixed));
+  }
+  out.seconds = median(last);
+  out.all_seconds = median(all);
+  out.fixed_seconds = median(best);
 }
 
 AccuracyOutcome measure(const AccuracyCase& one, TrialRuns& trials, double asked) {
@@ -112,8 +144,11 @@ AccuracyOutcome measure(const AccuracyCase& one, TrialRuns& trials, double asked
   out.asked = asked;
   out.may_change_scheme = one.scene.integrator.scheme == "auto";
   try {
-    const JudgedMotion motion = run_accurately(one, trials, out);
-    if (out.is_met) judge(trials, motion, out);
+    const AutomaticMeshes meshes = automatic_meshes(trials, kMeshShare * asked);
+    const AccurateRun run = run_accurately(one, meshes, out);
+    if (!out.is_met) return out;
+    const std::optional<RunSettings> fixed = judge(trials, run.motion, out);
+    if (fixed) time_in_turns(one, meshes, trials, *fixed, out);
   } catch (const std::invalid_argument& error) {
     out.shortcoming = error.what();
   } catch (const ModelError& error) {

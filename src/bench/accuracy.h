@@ -27,10 +27,12 @@ struct AccuracyOutcome {
   /// Against the reference, which is `reference_error` off itself; empty: there is none that is good enough.
   std::optional<double> error;
   double reference_error = 0;
-  double seconds = 0;      ///< of the processor, of the run that has the accuracy
+  double seconds = 0;  ///< of the processor, of the run that has the accuracy: a median where there is a fixed choice
   double all_seconds = 0;  ///< with all tries before it
+  long iterations = 0;     ///< of Newton's method, in that run
   /// The cheapest fixed choice whose error is as small as `error`, by search; empty: none was found.
   std::optional<double> fixed_seconds;
+  long fixed_iterations = 0;
   std::string fixed;               ///< what that is
   bool is_of_own_scheme = false;   ///< that is of the scheme of the scene
   bool may_change_scheme = false;  ///< the scene leaves the scheme to the run
@@ -71,8 +73,8 @@ AccuracyReport measure_accuracy(const std::string& folder, const AccuracyScope& 
 
 /// The tables. `picture`: file name of the picture next to them; empty if there is none.
 std::string to_markdown(const AccuracyReport& report, const std::string& picture);
-/// Columns group, scene, until, asked, met, estimate, error, reference_error, seconds, all_seconds, fixed_seconds,
-/// fixed, shortcoming.
+/// Columns group, scene, until, asked, met, estimate, error, reference_error, seconds, all_seconds, iterations,
+/// fixed_seconds, fixed_iterations, fixed, shortcoming.
 std::string accuracy_to_csv(const AccuracyReport& report);
 
 }  // namespace flexarm::bench

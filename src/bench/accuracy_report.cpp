@@ -94,7 +94,8 @@ std::string outcome_row(const AccuracyMeasurement& measurement, const AccuracyOu
               outcome.error ? fmt::format("{:.2e}{}", *outcome.error, *outcome.error > outcome.asked ? " ▲" : "") : "–",
               fmt::format("{:.3g}", 1e3 * outcome.seconds), fmt::format("{:.3g}", 1e3 * outcome.all_seconds),
               outcome.fixed_seconds ? fmt::format("{:.3g}", 1e3 * *outcome.fixed_seconds) : "–",
-              outcome.cost() ? fmt::format("{:.2f}", *outcome.cost()) : "–", outcome.fixed + why});
+              outcome.cost() ? fmt::format("{:.2f}", *outcome.cost()) : "–", std::to_string(outcome.iterations),
+              outcome.fixed_seconds ? std::to_string(outcome.fixed_iterations) : "–", outcome.fixed + why});
 }
 
 std::string scenes_of(const AccuracyScope& scope) {
@@ -118,14 +119,15 @@ std::string to_markdown(const AccuracyReport& report, const std::string& picture
       "scene gives a number of elements, that mesh is the truth. The best fixed choice is what the search of `flexarm "
       "tune` finds for the error\n"
       "that the run really has: scheme, step, tolerance, and meshes where they are free ([notes](../notes/tuning.md)). "
-      "Times are the processor's.\n\n";
+      "Times are the processor's, medians of three where two are compared; iterations are those of Newton's method, "
+      "which cost the same where meshes are the same.\n\n";
   if (report.scope.quick) text += "**Quick run: shows that it works, measures nothing.**\n\n";
   text += summary_table(report);
   if (!picture.empty())
     text += fmt::format("\n![True error over asked-for error, and cost over the best fixed choice]({})\n", picture);
   text += "\n## All runs\n\n";
   text += head({"scene", "asked", "estimate", "error", "run [ms]", "with all tries [ms]", "best fixed [ms]", "cost",
-                "best fixed choice, or why not"});
+                "iterations of the run", "of the best fixed", "best fixed choice, or why not"});
   for (const AccuracyMeasurement& measurement : report.measurements)
     for (const AccuracyOutcome& outcome : measurement.outcomes) text += outcome_row(measurement, outcome);
   return text + fmt::format("\n{:.0f} s of computing.\n", report.seconds);
@@ -133,18 +135,19 @@ std::string to_markdown(const AccuracyReport& report, const std::string& picture
 
 std::string accuracy_to_csv(const AccuracyReport& report) {
   std::string text =
-      "group,scene,until,asked,met,estimate,error,reference_error,seconds,all_seconds,fixed_seconds,fixed,"
-      "shortcoming\n";
+      "group,scene,until,asked,met,estimate,error,reference_error,seconds,all_seconds,iterations,fixed_seconds,"
+      "fixed_iterations,fixed,shortcoming\n";
   const auto quoted = [](std::string cell) {
     std::replace(cell.begin(), cell.end(), '"', '\'');
     return '"' + cell + '"';
   };
   for (const AccuracyMeasurement& measurement : report.measurements)
     for (const AccuracyOutcome& o : measurement.outcomes)
-      text += fmt::format("{},{},{:g},{:g},{},{:.4g},{},{:.4g},{:.4g},{:.4g},{},{},{}\n", measurement.group,
+      text += fmt::format("{},{},{:g},{:g},{},{:.4g},{},{:.4g},{:.4g},{:.4g},{},{},{},{},{}\n", measurement.group,
                           quoted(measurement.name), measurement.until, o.asked, o.is_met ? 1 : 0, o.estimate,
                           o.error ? fmt::format("{:.4g}", *o.error) : "", o.reference_error, o.seconds, o.all_seconds,
-                          o.fixed_seconds ? fmt::format("{:.4g}", *o.fixed_seconds) : "", quoted(o.fixed),
+                          o.iterations, o.fixed_seconds ? fmt::format("{:.4g}", *o.fixed_seconds) : "",
+                          o.fixed_seconds ? std::to_string(o.fixed_iterations) : "", quoted(o.fixed),
                           quoted(o.shortcoming));
   return text;
 }
