@@ -63,7 +63,7 @@ class TriesOfARun {
       if (is_done && tries->judge(run_) && (run_.end == AccurateRun::End::Met || tries == &own_)) break;
       const bool goes_on = tries->go_on(!is_done);
       if (tries != &own_)
-        is_other_bad_ = !is_done || run_.end == AccurateRun::End::NoConvergence;
+        is_other_bad_ = !is_done || !goes_on || run_.end == AccurateRun::End::NoConvergence;
       else if (!goes_on)
         break;
     }

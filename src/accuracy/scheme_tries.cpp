@@ -28,7 +28,8 @@ constexpr double kSurprise = 2;
 /// or a motion that the first tries are far too coarse for.
 constexpr double kRoundOffBelow = 1e-6;
 constexpr int kMostStagnations = 4;
-/// Tries in turn, each with twice the steps, in which a step fails: it has another reason than its length.
+/// Tries in turn, each with more steps, in which a step fails or that are astray: it has another reason than its
+/// length.
 constexpr int kMostFailures = 8;
 /// Newton's method leaves the square of its tolerance in every solve. Over the step's length that is an error of the
 /// velocity, which goes on to the end: with signs of their own, all together this share of what is asked for. And
@@ -72,7 +73,7 @@ SchemeTries::SchemeTries(Simulation& simulation, const TryPlan& plan)
 
 double SchemeTries::predicted_iterations() const {
   const double growth = std::pow(estimate_ / (kAim * plan_.request.accuracy), 1.0 / order_);
-  return iterations_per_step_ * plan_.total(steps_before_) * std::max(growth, kLeastGrowth);
+  return iterations_before_ * plan_.total(steps_before_) * std::max(growth, kLeastGrowth);
 }
 
 bool SchemeTries::limit_may_judge() const {
@@ -96,6 +97,7 @@ bool SchemeTries::run_interval(AccurateRun& run) {
     run.last = simulation_.step();
     ++run.steps;
     iterations_per_step_ += run.last.iterations / plan_.total(steps_);
+    recoveries_ += run.last.other_guesses + run.last.halvings;
     run.end = AccurateRun::End::Interrupted;
     if (!plan_.watcher.after_step(simulation_, run.last)) return false;
     run.end = AccurateRun::End::Failed;
@@ -123,6 +125,7 @@ bool SchemeTries::attempt(AccurateRun& run) {
   steps_ = static_cast<int>(next_);
   set_steps();
   iterations_per_step_ = 0;
+  recoveries_ = 0;
   run.steps_per_interval = steps_;
   run.interval = plan_.interval();
   run.tries.push_back({simulation_.scheme(), static_cast<long>(plan_.total(steps_)), kUnknown});
@@ -141,6 +144,7 @@ bool SchemeTries::attempt(AccurateRun& run) {
 bool SchemeTries::judge(AccurateRun& run) {
   run.scale = plan_.request.scale.value_or(
       std::max(run.motion.largest_displacement(), kAtRest * model_of(simulation_).length_scale));
+  if (is_astray()) return false;
   const double last = estimate_;
   const bool is_compared = judged_++ > 0;
   if (is_compared) {
@@ -159,6 +163,7 @@ bool SchemeTries::judge(AccurateRun& run) {
   before_ = run.motion;
   steps_earlier_ = steps_before_;
   steps_before_ = steps_;
+  iterations_before_ = iterations_per_step_;
   if (run.estimate() <= kEnough * plan_.request.accuracy) {
     run.end = AccurateRun::End::Met;
     return true;
@@ -172,11 +177,14 @@ bool SchemeTries::judge(AccurateRun& run) {
 }
 
 bool SchemeTries::go_on(bool failed) {
-  failures_ = failed ? failures_ + 1 : 0;
-  const double growth = failed || std::isnan(estimate_)
-                            ? 2
-                            : std::clamp(std::pow(estimate_ / (kAim * plan_.request.accuracy), 1.0 / order_),
-                                         kLeastGrowth, most_growth(estimate_));
+  const bool is_useless = failed || is_astray();
+  failures_ = is_useless ? failures_ + 1 : 0;
+  double growth = 2;
+  if (!failed && is_useless)
+    growth = kLeastGrowth;
+  else if (!failed && !std::isnan(estimate_))
+    growth = std::clamp(std::pow(estimate_ / (kAim * plan_.request.accuracy), 1.0 / order_), kLeastGrowth,
+                        most_growth(estimate_));
   next_ = plan_.multiple * std::ceil(growth * steps_ / plan_.multiple);
   expected_ = estimate_ * std::pow(steps_before_ / next_, order_);
   return failures_ <= kMostFailures;

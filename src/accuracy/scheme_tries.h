@@ -34,8 +34,8 @@ class SchemeTries {
   /// In an interval: what the next try has.
   double next_steps() const { return next_; }
   double estimate() const { return estimate_; }  ///< of the last try that was judged, relative; NaN: there is none
-  /// Of the last try.
-  double iterations_per_step() const { return iterations_per_step_; }
+  /// Of the last try that was judged.
+  double iterations_per_step() const { return iterations_before_; }
   /// Iterations of a try that has the error which is asked for; NaN: unknown.
   double predicted_iterations() const;
   int judged() const { return judged_; }
@@ -50,8 +50,8 @@ class SchemeTries {
 
   /// Makes the next try. False if a step has failed, or the run was interrupted, which `run.end` tells.
   bool attempt(AccurateRun& run);
-  /// Estimates the error of that try from its difference to the one before, or to the other scheme's limit. True if
-  /// nothing more is to be tried: `run.end` tells why.
+  /// Estimates the error of that try from its difference to the one before, or to the other scheme's limit, unless it
+  /// is astray. True if nothing more is to be tried: `run.end` tells why.
   bool judge(AccurateRun& run);
   /// The next try has more steps. `failed`: the last one was not judged. False if too many have failed in turn.
   bool go_on(bool failed);
@@ -61,6 +61,9 @@ class SchemeTries {
 
   void set_steps();
   bool run_interval(AccurateRun& run);
+  /// Steps had to be saved, and Newton's method has more to do than in the longer ones of the try before: whatever is
+  /// solved there, it is not where the error has an expansion in the step.
+  bool is_astray() const { return recoveries_ > 0 && iterations_per_step_ > iterations_before_; }
   /// To what the next try is compared, and the part of the difference that is its error; null: to nothing.
   const JudgedMotion* compared() const { return judged_ > 0 ? &before_ : other_limit_; }
   double compared_share() const { return judged_ > 0 ? share(order_) : 1; }
@@ -72,6 +75,7 @@ class SchemeTries {
   Snapshot start_;
   int order_, solves_;  // of a step
   int steps_ = 0;       // of the last try, in an interval
+  int recoveries_ = 0;  // of its steps: other guesses and halvings
   double next_, expected_ = kUnknown, iterations_per_step_ = kUnknown;
   int failures_ = 0, stagnations_ = 0, judged_ = 0;
   const JudgedMotion* other_limit_ = nullptr;
@@ -79,7 +83,7 @@ class SchemeTries {
   // Of the last try that was judged, and of the one before that.
   JudgedMotion before_;
   int steps_before_ = 0, steps_earlier_ = 0;
-  double estimate_ = kUnknown, difference_ = kUnknown;
+  double estimate_ = kUnknown, difference_ = kUnknown, iterations_before_ = kUnknown;
 };
 
 }  // namespace flexarm
