@@ -21,6 +21,9 @@ const BeamResolution kPilotMesh{2, 3};
 /// Of the accuracy, what the reference may be off.
 constexpr double kReferenceShare = 0.1;
 constexpr double kReferenceTolerance = 1e-9;
+/// References whose steps had to be halved, after which one is taken as it is, and by how much the next has more steps.
+constexpr int kReferenceTries = 4;
+constexpr double kNextReference = 1.2;
 /// Accuracies by which runs become finer where a speed is asked for.
 constexpr double kAccuracies[] = {0.1, 0.03, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
 /// Newton's tolerances; what an iteration leaves is at most their square (docs/schemes.md).
@@ -168,15 +171,23 @@ double Search::measure_for_load() {
   return found;
 }
 
-// As much finer than what is asked for as needed to judge it.
+// As much finer than what is asked for as needed to judge it. Steps of em4 that go back through the damping of a beam
+// err more than longer ones, from which their error was predicted; that they had to be halved tells it (accuracy.md),
+// and slightly shorter ones are good.
 void Search::make_reference(double accuracy) {
   progress_(0.7, "reference");
   const Candidate finer = pool_.reference(kReferenceShare * accuracy);
   RunSettings settings = settings_for(finer);
   settings.tolerance = std::min(settings.tolerance, kReferenceTolerance);
-  const TrialRun& run = trials_.run(settings);
-  if (!run.is_complete()) throw SearchEnded("the reference fails: " + run.failure);
-  reference_ = &run;
+  const TrialRun* run = nullptr;
+  int parts = finer.parts;
+  for (int i = 0; i < kReferenceTries && (!run || run->halvings > 0); ++i) {
+    settings.step = trials_.times().interval / parts;
+    run = &trials_.run(settings);
+    if (!run->is_complete()) throw SearchEnded("the reference fails: " + run->failure);
+    parts = static_cast<int>(std::ceil(kNextReference * parts));
+  }
+  reference_ = run;
   reference_error_ = finer.error;
 }
 
