@@ -119,8 +119,8 @@ std::string to_markdown(const AccuracyReport& report, const std::string& picture
       "scene gives a number of elements, that mesh is the truth. The best fixed choice is what the search of `flexarm "
       "tune` finds for the error\n"
       "that the run really has: scheme, step, tolerance, and meshes where they are free ([notes](../notes/tuning.md)). "
-      "Times are the processor's, medians of three where two are compared; iterations are those of Newton's method, "
-      "which cost the same where meshes are the same.\n\n";
+      "Times are the\nprocessor's, medians of three in turns where two are compared; iterations are those of Newton's "
+      "method.\n\n";
   if (report.scope.quick) text += "**Quick run: shows that it works, measures nothing.**\n\n";
   text += summary_table(report);
   if (!picture.empty())
