@@ -47,7 +47,7 @@ struct AccurateRun {
   struct Try {
     std::string scheme;
     long steps;
-    double estimate;  ///< of motion_error(); NaN: the first one, or it failed
+    double estimate;  ///< of motion_error(); NaN: the first one, or it says nothing
   };
 
   End end = End::OutOfTries;
