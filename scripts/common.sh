@@ -56,11 +56,12 @@ build() {
     if [[ -f $build/CMakeCache.txt ]] && ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$build/CMakeCache.txt"; then
       rm -rf "$build/CMakeCache.txt" "$build/CMakeFiles"
     fi
-    # From nothing, files are compiled by eights; a folder goes on as it was configured first.
-    local together=()
-    [[ -f $build/CMakeCache.txt ]] || together=(-DFLEXARM_FILES_TOGETHER=ON)
+    # From nothing, files are compiled by eights, and by Ninja, which compiles a program's files while a library that it
+    # links is not complete yet: no processor waits. A folder goes on as it was configured first.
+    local from_nothing=()
+    [[ -f $build/CMakeCache.txt ]] || from_nothing=(-G Ninja -DFLEXARM_FILES_TOGETHER=ON)
     cmake -S "$root" -B "$build" \
-      -DPYTHON_EXECUTABLE=/usr/bin/python3 -DCATKIN_DEVEL_PREFIX="$devel" "${together[@]}" &&
+      -DPYTHON_EXECUTABLE=/usr/bin/python3 -DCATKIN_DEVEL_PREFIX="$devel" "${from_nothing[@]}" &&
       cmake --build "$build" --parallel "$(nproc)" --target "$@"
   } >"$log" 2>&1 </dev/null || {
     grep -E -B2 -A8 'error|Error' "$log" | tail -n 60 >&2 || tail -n 60 "$log" >&2
