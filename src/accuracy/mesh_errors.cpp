@@ -16,7 +16,7 @@ constexpr double kRigidCost = 0.2;
 constexpr int kRichOrder = 4, kFirstRichElements = 2, kMostRichElements = 32;
 
 /// Meshes that are tried, by number of nodes; `order`: of all of them, empty: any.
-std::vector<BeamResolution> ladder(const std::optional<int>& order) {
+std::vector<BeamResolution> ladder(std::optional<int> order) {
   if (!order)
     return {{1, 1}, {1, 2}, {1, 3}, {2, 2}, {2, 3},  {3, 2}, {4, 2},  {3, 3},  {2, 4},  {4, 3},  {6, 2}, {3, 4},
             {4, 4}, {6, 3}, {6, 4}, {8, 3}, {12, 2}, {8, 4}, {12, 3}, {16, 3}, {16, 4}, {32, 3}, {32, 4}};

@@ -114,7 +114,7 @@ void RotationReference::compute_points(std::vector<PointRotation>& stiffness, st
   for_each_element(model_.beams, [&](const auto& element) {
     using Element = std::decay_t<decltype(element)>;
     constexpr int N = Element::kNodes;
-    ElementNodes<N> nodes;
+    ElementNodes<N> nodes{};  // GCC does not always see that all of it is gathered
     gather(element, nodes);
     const ReferencedRotations<N> rotations(nodes.parameters, nodes.rotation_vector);
     GeneralisedShapeFunctions<N> unused;
