@@ -63,8 +63,8 @@ class IncrementalMaps {
         end_{travel.line, travel.end},
         piece_from_(line_.piece_at(travel.from)),
         piece_to_(line_.piece_at(travel.to)),
-        begin_frames_(travel_frames(begin_)),
-        end_frames_(travel_frames(end_)),
+        begin_frames_(travel_frames(begin_, travel.begin_frames, piece_from_)),
+        end_frames_(travel_frames(end_, travel.end_frames, piece_to_)),
         change_(travel.to - travel.from),
         rule_(slide::contact_rule(travel.step(), travel.arm_weight)),
         force_(g.head<3>()),
@@ -72,10 +72,7 @@ class IncrementalMaps {
         maps_(maps),
         weights_(travel, travel.to, first_active()) {
     slide::set_active(line_, piece_from_, piece_to_, with_tangent, maps);
-    if (with_tangent) {
-      from_.emplace(line_, piece_from_, travel.from, end_, end_frames_.from);
-      to_.emplace(line_, piece_to_, travel.to, end_, end_frames_.to);
-    }
+    if (with_tangent) set_variations();
     set_rows();
     if (!with_tangent) return;
     set_columns();
@@ -88,11 +85,21 @@ class IncrementalMaps {
   struct TravelFrames {
     slide::PieceFrames<double> from, to;
   };
-  TravelFrames travel_frames(const slide::LineNodes& nodes) const {
+  /// `known`: those of one piece, or null.
+  TravelFrames travel_frames(const slide::LineNodes& nodes, const slide::PieceFrames<double>* known, int piece) const {
+    const auto of = [&](int p) { return known && p == piece ? *known : slide::piece_frames<double>(line_, p, nodes); };
     TravelFrames out;
-    out.from = slide::piece_frames<double>(line_, piece_from_, nodes);
-    out.to = piece_to_ == piece_from_ ? out.from : slide::piece_frames<double>(line_, piece_to_, nodes);
+    out.from = of(piece_from_);
+    out.to = piece_to_ == piece_from_ ? out.from : of(piece_to_);
     return out;
+  }
+  void set_variations() {
+    const slide::BorderVariations borders(line_, piece_from_, end_);
+    from_.emplace(line_, piece_from_, travel_.from, end_, end_frames_.from, borders);
+    if (piece_to_ == piece_from_)
+      to_.emplace(line_, piece_to_, travel_.to, end_, end_frames_.to, borders);
+    else
+      to_.emplace(line_, piece_to_, travel_.to, end_, end_frames_.to, slide::BorderVariations(line_, piece_to_, end_));
   }
   double contact(int j) const { return (1 - rule_.weight) * weights_.begin[j] + rule_.weight * weights_.end[j]; }
 

@@ -9,6 +9,21 @@ namespace flexarm {
 
 using slide::Complex;
 
+namespace {
+
+NodePose section_pose(const SlideLine& line, const std::vector<NodePose>& nodes, double arc_length,
+                      const slide::PieceFrames<double>& frames) {
+  const Section<double> section =
+      section_at(line, line.piece_at(arc_length), arc_length, slide::LineNodes{line, nodes}, frames);
+  NodePose pose;
+  pose.position = section.position;
+  pose.orientation = Quaternion(section.rotation).normalized();
+  pose.rotation = pose.orientation.toRotationMatrix();
+  return pose;
+}
+
+}  // namespace
+
 SlideMaps::SlideMaps(std::size_t most_nodes) {
   left.reserve(most_nodes);
   right.reserve(most_nodes);
@@ -37,18 +52,17 @@ void slide::set_active(const SlideLine& line, int piece, int other_piece, bool w
   maps.master_master.assign(static_cast<std::size_t>(maps.count) * maps.count, Matrix6::Zero());
 }
 
+slide::PieceFrames<double> slide_frames(const SlideLine& line, const std::vector<NodePose>& nodes, double arc_length) {
+  return slide::piece_frames<double>(line, line.piece_at(arc_length), slide::LineNodes{line, nodes});
+}
+
 NodePose slide_pose(const SlideLine& line, const std::vector<NodePose>& nodes, double arc_length) {
-  const Section<double> section =
-      section_at(line, line.piece_at(arc_length), arc_length, slide::LineNodes{line, nodes});
-  NodePose pose;
-  pose.position = section.position;
-  pose.orientation = Quaternion(section.rotation).normalized();
-  pose.rotation = pose.orientation.toRotationMatrix();
-  return pose;
+  return section_pose(line, nodes, arc_length, slide_frames(line, nodes, arc_length));
 }
 
 NodePose slide_pose(const SlideTravel& travel, const Vector3& begin_position) {
-  NodePose pose = slide_pose(travel.line, travel.end, travel.to);
+  NodePose pose = travel.end_frames ? section_pose(travel.line, travel.end, travel.to, *travel.end_frames)
+                                    : slide_pose(travel.line, travel.end, travel.to);
   const slide::ContactRule rule = slide::contact_rule(travel.step(), travel.arm_weight);
   if (!rule.is_in_middle) return pose;
   pose.position = -begin_position;

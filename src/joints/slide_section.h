@@ -34,6 +34,23 @@ namespace slide {
 constexpr int kMostNodes = 5;                 ///< of an element
 constexpr int kMostWeights = 3 * kMostNodes;  ///< nodes on which a section depends
 
+/// Of the nodes of a piece with `node_count` of them, in the parent interval.
+struct PieceNodes {
+  std::array<double, kMostNodes> coordinates{};
+  std::array<std::array<double, kMostNodes>, kMostNodes> reciprocal_distances{};  ///< 1 / (xi_i - xi_k)
+};
+inline constexpr auto kPieceNodes = [] {
+  std::array<PieceNodes, kMostNodes + 1> table{};
+  for (int count = 2; count <= kMostNodes; ++count)
+    for (int i = 0; i < count; ++i) {
+      table[count].coordinates[i] = node_coordinate(count, i);
+      for (int k = 0; k < count; ++k)
+        if (k != i)
+          table[count].reciprocal_distances[i][k] = 1 / (node_coordinate(count, i) - node_coordinate(count, k));
+    }
+  return table;
+}();
+
 /// Calls visit(std::integral_constant<int, N>) for the number of nodes of a piece.
 template <class Visit>
 decltype(auto) with_node_count(int count, const Visit& visit) {
@@ -68,12 +85,13 @@ LagrangeWeights<S> lagrange_weights(const SlidePiece& piece, const S& arc_length
   out.count = piece.node_count;
   const double scale = 2 / piece.length();
   const S xi = scale * (arc_length - piece.begin) - S(1);
+  const PieceNodes& nodes = kPieceNodes[piece.node_count];
   for (int i = 0; i < piece.node_count; ++i) {
     S value(1), derivative(0);
     for (int k = 0; k < piece.node_count; ++k) {
       if (k == i) continue;
-      const double slope = 1 / (node_coordinate(piece.node_count, i) - node_coordinate(piece.node_count, k));
-      const S factor = slope * (xi - node_coordinate(piece.node_count, k));
+      const double slope = nodes.reciprocal_distances[i][k];
+      const S factor = slope * (xi - nodes.coordinates[k]);
       derivative = derivative * factor + value * slope;
       value *= factor;
     }
@@ -91,13 +109,13 @@ std::array<S, kMostNodes> lagrange_differences(const SlidePiece& piece, double f
   const double scale = 2 / piece.length();
   const double xi_from = scale * (from - piece.begin) - 1;
   const S xi_to = scale * (to - piece.begin) - S(1);
+  const PieceNodes& nodes = kPieceNodes[piece.node_count];
   for (int i = 0; i < piece.node_count; ++i) {
     double at_from = 1;
     S difference(0);
     for (int k = 0; k < piece.node_count; ++k) {
       if (k == i) continue;
-      const double node = node_coordinate(piece.node_count, k);
-      const double slope = 1 / (node_coordinate(piece.node_count, i) - node);
+      const double node = nodes.coordinates[k], slope = nodes.reciprocal_distances[i][k];
       difference = difference * (slope * (xi_to - node)) + at_from * slope;
       at_from *= slope * (xi_from - node);
     }
@@ -294,10 +312,11 @@ slide::Frame<S> frame_at(const SlideLine& line, int index, const S& arc_length, 
   return frame_at(line, index, arc_length, slide::piece_frames<S>(line, index, poses));
 }
 
-/// The section at arc length X.
+/// The section at arc length X; `frames`: of the piece.
 template <typename S, class Poses>
-Section<S> section_at(const SlideLine& line, int index, const S& arc_length, const Poses& poses) {
-  const slide::Frame<S> frame = frame_at(line, index, arc_length, poses);
+Section<S> section_at(const SlideLine& line, int index, const S& arc_length, const Poses& poses,
+                      const slide::PieceFrames<S>& frames) {
+  const slide::Frame<S> frame = frame_at(line, index, arc_length, frames);
   Section<S> out{Vector3T<S>::Zero(), Vector3T<S>::Zero(), frame.rotation, frame.spatial_curvature};
   const slide::LineWeights<S> w = slide::line_weights(line, index, arc_length);
   for (int i = 0; i < w.count; ++i) {
@@ -306,6 +325,11 @@ Section<S> section_at(const SlideLine& line, int index, const S& arc_length, con
     out.tangent += w.derivatives[i] * pose.position;
   }
   return out;
+}
+
+template <typename S, class Poses>
+Section<S> section_at(const SlideLine& line, int index, const S& arc_length, const Poses& poses) {
+  return section_at(line, index, arc_length, poses, slide::piece_frames<S>(line, index, poses));
 }
 
 }  // namespace flexarm
