@@ -20,6 +20,8 @@ StepConfiguration::StepConfiguration(const Model& model, const Scheme& scheme, c
     : model_(model),
       scheme_(scheme),
       dof_(dof),
+      free_nodes_(dof),
+      guess_(dof.unknowns),
       begin_(model.nodes),
       end_(model.nodes),
       released_(model.initial_released),
@@ -27,7 +29,11 @@ StepConfiguration::StepConfiguration(const Model& model, const Scheme& scheme, c
       inverse_tangents_(model.nodes.size(), Matrix3::Identity()),
       keeps_begin_rates_(!scheme.is_incremental() && !scheme.is_static),
       begin_velocities_(model.nodes.size()),
-      begin_rates_(model.joints.size()) {}
+      begin_rates_(model.joints.size()) {
+  if (!has_incremental_joints() || model.slide_lines.empty()) return;
+  begin_frames_.resize(model.joints.size());
+  end_frames_.resize(model.joints.size());
+}
 
 void StepConfiguration::begin(const State& state, double step) {
   state_ = &state;
@@ -36,6 +42,9 @@ void StepConfiguration::begin(const State& state, double step) {
   std::copy(begin_.begin(), begin_.end(), end_.begin());
   std::copy(state.released.begin(), state.released.end(), released_.begin());
   if (keeps_begin_rates_) find_begin_rates();
+  for (std::size_t j = 0; j < begin_frames_.size(); ++j)
+    if (const JointMap& joint = model_.joints[j]; joint.kind == JointMapKind::Slide)
+      begin_frames_[j] = slide_frames(model_.slide_lines[joint.line], begin_, state.released[j].displacement[0]);
 }
 
 void StepConfiguration::find_begin_rates() {
@@ -50,44 +59,45 @@ void StepConfiguration::set_prescribed(double time) {
       released_[coordinate.joint].displacement[coordinate.component] = model_.histories[coordinate.motion](time);
 }
 
-void StepConfiguration::extrapolate(const IncrementHistory& history, int order) {
-  const State& state = *state_;
-  const bool has_last = history.holds_for(dof_.unknowns);
-  IncrementHistory::Weights weights = history.weights(order, 0, step_);
-  if (weights[0] == 0) weights = history.weights(0, 0, step_);
-  const auto entry = [&](int variable, int k) {
-    const int equation = dof_.equation[dof_.first[variable] + k];
-    double sum = 0;
-    for (int i = 0; i <= order && equation >= 0 && weights[i] != 0; ++i)
-      sum += weights[i] * history.increments[i][equation];
-    return sum;
-  };
+/// Continues the velocities; released coordinates of the first step start where they are.
+void StepConfiguration::guess_from_velocities() {
+  guess_.setZero();
   for (int i = 0; i < dof_.node_count; ++i) {
     if (dof_.slave_joint[i] >= 0) continue;
-    Vector3 displacement = step_ * state.nodes[i].velocity;
-    Vector3 rotation = step_ * (begin_[i].rotation * state.nodes[i].angular_velocity);
-    if (has_last) {
-      Vector6 sum = Vector6::Zero();
-      for (int k = 0; k <= order && weights[k] != 0; ++k)
-        sum += weights[k] * Eigen::Map<const Vector6>(history.increments[k].data() + dof_.equation[dof_.first[i]]);
-      displacement = sum.head<3>();
-      rotation = sum.tail<3>();
-    }
-    end_[i].position += displacement;
-    end_[i].orientation = (cayley::quaternion(rotation) * begin_[i].orientation).normalized();
-    end_[i].rotation = end_[i].orientation.toRotationMatrix();
+    const NodeState& node = state_->nodes[i];
+    guess_.segment<6>(dof_.equation[dof_.first[i]]) << step_ * node.velocity,
+        step_ * (begin_[i].rotation * node.angular_velocity);
   }
-  if (!has_last) return;  // the released coordinates of the first step start where they are
+}
+
+void StepConfiguration::guess_from(const IncrementHistory& history, int order) {
+  IncrementHistory::Weights weights = history.weights(order, 0, step_);
+  if (weights[0] == 0) weights = history.weights(0, 0, step_);
+  guess_.setZero();
+  for (int i = 0; i <= order && weights[i] != 0; ++i)
+    guess_ += weights[i] * Eigen::Map<const Eigen::VectorXd>(history.increments[i].data(), guess_.size());
+}
+
+void StepConfiguration::extrapolate(const IncrementHistory& history, int order) {
+  if (history.holds_for(dof_.unknowns))
+    guess_from(history, order);
+  else
+    guess_from_velocities();
+  free_nodes_.advance(begin_, guess_, end_);
   for (std::size_t j = 0; j < model_.joints.size(); ++j) {
     const JointMap& joint = model_.joints[j];
     const int variable = dof_.variable_of_joint(static_cast<int>(j)), count = released_count(joint.kind);
+    const auto entry = [&](int k) {
+      const int equation = dof_.equation[dof_.first[variable] + k];
+      return equation >= 0 ? guess_[equation] : 0.0;
+    };
     if (joint.kind == JointMapKind::Scalar || joint.kind == JointMapKind::Slide) {
-      released_[j].displacement[0] += entry(variable, 0);
+      released_[j].displacement[0] += entry(0);
     } else if (count > 0) {
       Vector3 rotation;
       for (int k = 0; k < 3; ++k) {
-        if (count == 6) released_[j].displacement[k] += entry(variable, k);
-        rotation[k] = entry(variable, count - 3 + k);
+        if (count == 6) released_[j].displacement[k] += entry(k);
+        rotation[k] = entry(count - 3 + k);
       }
       released_[j].rotation = (cayley::quaternion(rotation) * released_[j].rotation).normalized();
     }
@@ -95,14 +105,7 @@ void StepConfiguration::extrapolate(const IncrementHistory& history, int order) 
 }
 
 void StepConfiguration::update(const Eigen::VectorXd& increment) {
-  for (int i = 0; i < dof_.node_count; ++i) {
-    if (dof_.slave_joint[i] >= 0) continue;
-    const int equation = dof_.equation[dof_.first[i]];
-    end_[i].position += increment.segment<3>(equation);
-    const Vector3 spin = increment.segment<3>(equation + 3);
-    end_[i].orientation = (so3::exp_quaternion(spin) * end_[i].orientation).normalized();
-    end_[i].rotation = end_[i].orientation.toRotationMatrix();
-  }
+  free_nodes_.update(increment, end_);
   for (std::size_t j = 0; j < model_.joints.size(); ++j) {
     const int variable = dof_.variable_of_joint(static_cast<int>(j));
     ReleasedVector part(dof_.size[variable]);
@@ -125,18 +128,19 @@ void StepConfiguration::set_slaves() {
   for (std::size_t j = 0; j < model_.joints.size(); ++j) {
     const JointMap& joint = model_.joints[j];
     const bool slides = joint.kind == JointMapKind::Slide;
-    if (slides && has_incremental_joints())
+    if (slides && has_incremental_joints()) {
+      end_frames_[j] = slide_frames(model_.slide_lines[joint.line], end_, released_[j].displacement[0]);
       end_[joint.slave] = slide_pose(slide_travel(static_cast<int>(j)), begin_[joint.slave].position);
-    else
+    } else {
       end_[joint.slave] = slave_pose(model_, static_cast<int>(j), end_, released_[j]);
+    }
     // Which of two opposite quaternions it is tells how far an element is bent (LocalRotations).
     Quaternion& orientation = end_[joint.slave].orientation;
     orientation = so3::nearer_of_two(orientation, begin_[joint.slave].orientation);
     if (slides && off_line_joint_ < 0 && !is_on_line(joint, static_cast<int>(j))) off_line_joint_ = static_cast<int>(j);
   }
   if (scheme_.is_static) return;
-  for (std::size_t i = 0; i < end_.size(); ++i)
-    increments_[i] = cayley::increment(begin_[i].orientation, end_[i].orientation);
+  set_increments(begin_, end_, increments_);
 }
 
 void StepConfiguration::set_inverse_tangents() {
@@ -198,7 +202,9 @@ SlideTravel StepConfiguration::slide_travel(int j) const {
           state_->released[j].displacement[0],
           released_[j].displacement[0],
           scheme_.heeds_slide_schemes ? joint.algorithm : SlideAlgorithm(),
-          scheme_.arm_weight()};
+          scheme_.arm_weight(),
+          begin_frames_.empty() ? nullptr : &begin_frames_[j],
+          end_frames_.empty() ? nullptr : &end_frames_[j]};
 }
 
 void StepConfiguration::joint_maps(int j, const Vector6& g, FoldMaps& maps, bool with_tangent) const {

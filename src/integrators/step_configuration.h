@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "integrators/free_nodes.h"
 #include "integrators/step_motion.h"
 #include "joints/joint_forces.h"
 #include "joints/joint_map.h"
@@ -92,6 +93,8 @@ class StepConfiguration {
   void keep_begin_rates() { keeps_begin_rates_ = !scheme_.is_static; }
 
  private:
+  void guess_from(const IncrementHistory& history, int order);
+  void guess_from_velocities();
   SlideTravel slide_travel(int joint) const;
   double largest_overshoot(const JointMap& joint) const;
   bool is_on_line(const JointMap& joint, int j) const;
@@ -99,10 +102,13 @@ class StepConfiguration {
   const Model& model_;
   Scheme scheme_;
   const DegreesOfFreedom& dof_;
+  FreeNodes free_nodes_;
+  Eigen::VectorXd guess_;  // increments, one entry per unknown
   const State* state_ = nullptr;
   double step_ = 0;
   std::vector<NodePose> begin_, end_;
   std::vector<Released> released_;
+  std::vector<slide::PieceFrames<double>> begin_frames_, end_frames_;  // per joint, of sliders; empty without any
   std::vector<Vector3> increments_;
   std::vector<Matrix3> inverse_tangents_;
   int off_line_joint_ = -1;

@@ -27,16 +27,14 @@ class UnknownScales {
   void choose_order(IncrementHistory& history) const;
 
  private:
-  struct Unknown {
-    int equation;
-    bool is_rotation;
-  };
   struct Multiplier {
     int equation;
     double arm;  // of its force [m], or 1
   };
   double length_ = 1, mass_ = 0;
-  std::vector<Unknown> unknowns_;
+  // Per equation; neither has multipliers.
+  Eigen::ArrayXd scales_;     // [1/m], 1 of rotations
+  Eigen::ArrayXd rotations_;  // 1 of those, else 0
   std::vector<Multiplier> multipliers_;
 };
 

@@ -31,8 +31,12 @@ DegreesOfFreedom::DegreesOfFreedom(const Model& model)
   }
 
   equation.assign(scalar_count, -1);
-  for (int scalar = 0; scalar < scalar_count; ++scalar)
-    if (!dependent[scalar]) equation[scalar] = unknowns++;
+  for (int scalar = 0; scalar < scalar_count; ++scalar) {
+    if (dependent[scalar]) continue;
+    if (scalar == 0 || dependent[scalar - 1]) runs.push_back({scalar, unknowns, 0});
+    ++runs.back().count;
+    equation[scalar] = unknowns++;
+  }
 }
 
 }  // namespace flexarm

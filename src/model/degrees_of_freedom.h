@@ -24,6 +24,11 @@ struct DegreesOfFreedom {
   std::vector<int> size;                ///< per variable: scalars
   std::vector<int> first;               ///< per variable: index of its first scalar
   std::vector<int> equation;            ///< per scalar: equation, or -1
+  /// Scalars that are unknowns, where their equations follow one another as they do.
+  struct Run {
+    int scalar, equation, count;
+  };
+  std::vector<Run> runs;
   int scalar_count = 0;
   int unknowns = 0;              ///< equations
   std::vector<int> slave_joint;  ///< per node: joint of which it is the slave, or -1

@@ -47,8 +47,8 @@ void ReducedResidual::fold_mimics(std::vector<MimicMap>& maps) {
 }
 
 void ReducedResidual::gather(Eigen::VectorXd& residual) const {
-  for (int scalar = 0; scalar < dof_.scalar_count; ++scalar)
-    if (dof_.equation[scalar] >= 0) residual[dof_.equation[scalar]] = values_[scalar];
+  for (const auto& [scalar, equation, count] : dof_.runs)
+    std::copy_n(values_.data() + scalar, count, residual.data() + equation);
 }
 
 }  // namespace flexarm
