@@ -83,9 +83,11 @@ void share(benchmark::State& state, const scene::SceneDescription& scene, std::o
   for (const auto& [name, phase] : names) state.counters[name] = 100 * times.seconds(phase) / times.whole();
   state.counters["iterations"] = iterations / steps;
   state.counters["factorisations"] = factorisations / steps;
-  const double both = times.mean(StepPhase::Solve) + times.mean(StepPhase::Update);
-  state.counters["new/kept"] = (times.mean(StepPhase::Tangent) + times.mean(StepPhase::Factorise) + both) /
-                               (times.mean(StepPhase::Residual) + both);
+  const auto iteration = [&](StepPhase evaluation, StepPhase solution) {
+    return times.mean(evaluation) + times.mean(solution) + times.mean(StepPhase::Update);
+  };
+  state.counters["new/kept"] =
+      iteration(StepPhase::Tangent, StepPhase::Factorise) / iteration(StepPhase::Residual, StepPhase::Solve);
 }
 
 void right_angle_cantilever(benchmark::State& state) {

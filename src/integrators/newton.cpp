@@ -78,14 +78,10 @@ StepResult::Reason NewtonIteration::iterate(Updates updates, Factors factors, St
       if (const Reason failure = evaluate(true); failure != Reason::None) return failure;
     }
     ++result.iterations;
-    if (factorise) {
-      enter(StepPhase::Factorise);
-      ++result.factorisations;
-      if (!system_.tangent().factorise()) return Reason::SingularTangent;
-      factorised_step_ = step;
-    }
+    result.factorisations += factorise;
     progress.with_kept = !factorise;
     if (const Reason failure = find_update(updates, progress); failure != Reason::None) return failure;
+    if (factorise) factorised_step_ = step;
     if (diverges(progress)) return Reason::NoConvergence;
     const bool compares = progress.since_revision > 0 && progress.norm > kStagnation;
     factorise =
@@ -112,9 +108,11 @@ StepResult::Reason NewtonIteration::iterate(Updates updates, Factors factors, St
 }
 
 StepResult::Reason NewtonIteration::find_update(Updates updates, Progress& progress) {
-  enter(StepPhase::Solve);
+  enter(progress.with_kept ? StepPhase::Solve : StepPhase::Factorise);
   update_ = -system_.residual();
-  if (!system_.tangent().solve(update_)) return Reason::SingularTangent;
+  TangentBackend& tangent = system_.tangent();
+  if (!(progress.with_kept ? tangent.solve(update_) : tangent.factorise_and_solve(update_)))
+    return Reason::SingularTangent;
   enter(StepPhase::Update);
   const double rotation = system_.scales().largest_rotation(update_);
   progress.fraction = 1;

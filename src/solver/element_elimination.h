@@ -25,11 +25,15 @@ class ElementElimination {
     pivots_.resize(pivots);
   }
 
-  /// Of a part that is an element. False if a pivot is zero or not finite.
-  bool eliminate(int part, double* elements, double* diagonals) {
+  /// Of a part that is an element; right-hand sides, if `values` is not null, go through forward() on the way. False if
+  /// a pivot is zero or not finite.
+  bool eliminate(int part, double* elements, double* diagonals, double* values) {
     const std::array<double*, 5> at_nodes = of_nodes(part, diagonals, Front<2>::kBlock);
+    std::array<double*, 5> r{};
+    if (values) r = of_nodes(part, values, Front<2>::kColumn);
     return with_front(part, [&](auto front) {
-      return front.eliminate(block(part, elements), at_nodes.data(), pivots_.data() + first_pivot_[part]);
+      return front.eliminate(block(part, elements), at_nodes.data(), pivots_.data() + first_pivot_[part],
+                             values ? r.data() : nullptr);
     });
   }
   void forward(int part, double* elements, double* values) const {

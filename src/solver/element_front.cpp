@@ -1,7 +1,9 @@
 #include "solver/element_front.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 #include "math/pack.h"
@@ -12,6 +14,9 @@ namespace flexarm {
 namespace {
 
 using LaneMask = long long __attribute__((vector_size(32)));
+
+/// Of numbers that have a reciprocal.
+constexpr double kSmallest = std::numeric_limits<double>::min(), kLargest = std::numeric_limits<double>::max();
 
 /// Of a lane j: those behind it, and those before it.
 constexpr LaneMask kBehind[] = {{0, -1, -1, -1}, {0, 0, -1, -1}, {0, 0, 0, -1}, {0, 0, 0, 0}};
@@ -35,10 +40,12 @@ struct Sizes {
   static_assert(elimination + U * n <= ElementFront<Nodes, U>::kSize);
 };
 
-/// Rows of [A11 A10], and the multipliers of the elimination.
+/// Rows of [A11 A10 r1], and the multipliers of the elimination. The right-hand side has the first number that the
+/// columns of A10 leave of their lanes.
 template <int Nodes, int U>
 struct Rows {
   static constexpr int n = Sizes<Nodes, U>::n;
+  static_assert(U < 4 * Sizes<Nodes, U>::right_lanes);
   Lanes value[n][Sizes<Nodes, U>::row_lanes];
   double lower[n][n];
 
@@ -49,7 +56,8 @@ struct Rows {
 };
 
 template <int Nodes, int U>
-[[gnu::always_inline]] inline void gather(const double* blocks, double* const* diagonals, Rows<Nodes, U>& rows) {
+[[gnu::always_inline]] inline void gather(const double* blocks, double* const* diagonals, double* const* r,
+                                          Rows<Nodes, U>& rows) {
   using S = Sizes<Nodes, U>;
   // What fills the lanes up.
   for (auto& row : rows.value) row[Sizes<Nodes, U>::pivot_lanes - 1] = row[Sizes<Nodes, U>::row_lanes - 1] = Lanes{};
@@ -64,14 +72,38 @@ template <int Nodes, int U>
           for (int c = 0; c < U; ++c) to[c] = block[S::column * c + r];
       }
     }
+  for (int i = 0; i < S::n && r; ++i) rows.right(i)[U] = r[1 + i / U][i % U];
 }
 
-/// LU with partial pivoting of A11, carried out on A10 as well.
+/// L U with the pivots on the diagonal, carried out on A10 and r1 as well. A pivot is what products of a row's
+/// multipliers and a column's entries have left of the entry that stood there. Where all are positive and none has
+/// grown beyond twice that entry, the products are of the matrix' own size, and round-off is no worse than after a
+/// search for pivots. (Where A11 is symmetric and positive definite they all have one sign, and pivots only fall;
+/// scaling rows and columns changes nothing.) False otherwise.
 template <int Nodes, int U>
-[[gnu::always_inline]] inline bool factorise(Rows<Nodes, U>& rows, double* reciprocal, unsigned char* pivots) {
+[[gnu::always_inline]] inline bool factorise_on_diagonal(Rows<Nodes, U>& rows, double* reciprocal) {
   constexpr int n = Sizes<Nodes, U>::n, lanes = Sizes<Nodes, U>::row_lanes;
-  for (int i = 0; i < n; ++i) pivots[i] = static_cast<unsigned char>(i);
+  double entry[n];
+  for (int k = 0; k < n; ++k) entry[k] = rows.row(k)[k];
+  bool stays_small = true;
 #pragma GCC unroll 24
+  for (int k = 0; k < n; ++k) {
+    const double pivot = rows.row(k)[k];
+    stays_small = stays_small && pivot >= kSmallest && pivot <= std::min(2 * entry[k], kLargest);
+    reciprocal[k] = 1 / pivot;
+    for (int i = k + 1; i < n; ++i) {
+      const double multiplier = rows.row(i)[k] * reciprocal[k];
+      rows.lower[i][k] = multiplier;
+      for (int v = k / 4; v < lanes; ++v) rows.value[i][v] -= multiplier * rows.value[k][v];
+    }
+  }
+  return stays_small;
+}
+
+/// The same with partial pivoting.
+template <int Nodes, int U>
+[[gnu::noinline]] bool factorise_with_pivots(Rows<Nodes, U>& rows, double* reciprocal, unsigned char* pivots) {
+  constexpr int n = Sizes<Nodes, U>::n, lanes = Sizes<Nodes, U>::row_lanes;
   for (int k = 0; k < n; ++k) {
     int pivot = k;
     double largest = std::abs(rows.row(k)[k]);
@@ -96,13 +128,18 @@ template <int Nodes, int U>
 }
 
 template <int Nodes, int U>
-[[gnu::always_inline]] inline bool eliminate_front(double* blocks, double* const* diagonals, unsigned char* pivots) {
+[[gnu::always_inline]] inline bool eliminate_front(double* blocks, double* const* diagonals, unsigned char* pivots,
+                                                   double* const* r) {
   using S = Sizes<Nodes, U>;
   constexpr int n = S::n, right = S::pivot_lanes;
   Rows<Nodes, U> rows;
   double reciprocal[n];
-  gather<Nodes, U>(blocks, diagonals, rows);
-  if (!factorise<Nodes, U>(rows, reciprocal, pivots)) return false;
+  for (int i = 0; i < n; ++i) pivots[i] = static_cast<unsigned char>(i);
+  gather<Nodes, U>(blocks, diagonals, r, rows);
+  if (__builtin_expect(!factorise_on_diagonal<Nodes, U>(rows, reciprocal), 0)) {
+    gather<Nodes, U>(blocks, diagonals, r, rows);
+    if (!factorise_with_pivots<Nodes, U>(rows, reciprocal, pivots)) return false;
+  }
   for (int k = n - 1; k >= 0; --k) {  // X; column by column, so that rows do not wait for each other
     Lanes solved[S::right_lanes];
     for (int v = 0; v < S::right_lanes; ++v)
@@ -112,22 +149,24 @@ template <int Nodes, int U>
       for (int v = 0; v < S::right_lanes; ++v) rows.value[i][right + v] -= upper * solved[v];
     }
   }
-  for (int r = 0; r < U; ++r) {  // S
+  for (int i = 0; i < U; ++i) {  // S
     Lanes sums[S::right_lanes] = {};
     for (int j = 0; j < n; ++j) {
-      const double coupling = blocks[S::block * (1 + j / U) + S::column * (j % U) + r];
+      const double coupling = blocks[S::block * (1 + j / U) + S::column * (j % U) + i];
       for (int v = 0; v < S::right_lanes; ++v) sums[v] += coupling * rows.value[j][right + v];
     }
-    for (int c = 0; c < U; ++c) diagonals[0][S::column * c + r] += blocks[S::column * c + r] - sums[c / 4][c % 4];
+    for (int c = 0; c < U; ++c) diagonals[0][S::column * c + i] += blocks[S::column * c + i] - sums[c / 4][c % 4];
+    if (r) r[0][i] -= sums[U / 4][U % 4];
   }
+  for (int i = 0; i < n && r; ++i) r[1 + i / U][i % U] = rows.right(i)[U];
   double coupling[S::column * n];
   std::memcpy(coupling, blocks + S::block, sizeof(coupling));  // the blocks (0, j) stand in a row
   for (int c = 0; c < n; ++c)
-    for (int r = 0; r < S::stride; ++r)
-      blocks[S::stride * c + r] = r >= n ? 0.0 : r > c ? rows.lower[r][c] : r == c ? reciprocal[c] : rows.row(r)[c];
+    for (int i = 0; i < S::stride; ++i)
+      blocks[S::stride * c + i] = i >= n ? 0.0 : i > c ? rows.lower[i][c] : i == c ? reciprocal[c] : rows.row(i)[c];
   std::memcpy(blocks + S::coupling, coupling, sizeof(coupling));
   for (int c = 0; c < U; ++c)
-    for (int r = 0; r < n; ++r) blocks[S::elimination + n * c + r] = rows.right(r)[c];
+    for (int i = 0; i < n; ++i) blocks[S::elimination + n * c + i] = rows.right(i)[c];
   return true;
 }
 
@@ -178,9 +217,10 @@ template <int Nodes, int U>
 }  // namespace
 
 template <int Nodes, int U>
-bool ElementFront<Nodes, U>::eliminate(double* blocks, double* const* diagonals, unsigned char* rows) {
+bool ElementFront<Nodes, U>::eliminate(double* blocks, double* const* diagonals, unsigned char* rows,
+                                       double* const* r) {
   bool done = false;
-  simd::run([&] { done = eliminate_front<Nodes, U>(blocks, diagonals, rows); });
+  simd::run([&] { done = eliminate_front<Nodes, U>(blocks, diagonals, rows, r); });
   return done;
 }
 

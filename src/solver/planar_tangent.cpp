@@ -61,25 +61,32 @@ void PlanarTangent::hold_row(int joint, int component, int first, const Released
 
 // ---------------------------------------------------------------- factors
 
-bool PlanarTangent::factorise() {
+bool PlanarTangent::eliminate(bool with_right_hand_side) {
   const std::vector<TreePart>& parts = order_.parts();
   for (int p = 0; p < static_cast<int>(parts.size()); ++p) {
     const int joint = parts[p].joint;
-    if (joint >= 0 ? joints_[joint].eliminate(maps_[joint], diagonal_blocks_.data())
-                   : fronts_.eliminate(p, elements_.data(), nodes_.data()))
-      continue;
+    bool done;
+    if (joint < 0) {
+      done = fronts_.eliminate(p, elements_.data(), nodes_.data(), with_right_hand_side ? values_.data() : nullptr);
+    } else {
+      done = joints_[joint].eliminate(maps_[joint], diagonal_blocks_.data());
+      if (done && with_right_hand_side) joints_[joint].forward(maps_[joint], values_.data(), scalars_.data());
+    }
+    if (done) continue;
     singular_variable_ = joint >= 0 ? dof_.variable_of_joint(joint) : parts[p].nodes[parts[p].node_count - 1];
     return false;
   }
   return true;
 }
 
+bool PlanarTangent::factorise_and_solve(Eigen::VectorXd& b) {
+  set_right_hand_side(b);
+  return eliminate(true) && substitute_back(b);
+}
+
 // ---------------------------------------------------------------- solution
 
-bool PlanarTangent::solve(Eigen::VectorXd& b) {
-  const std::vector<TreePart>& parts = order_.parts();
-  const int part_count = static_cast<int>(parts.size());
-  const auto node = [&](int i) { return Eigen::Map<Vector3>(values_.data() + 4 * static_cast<std::size_t>(i)); };
+void PlanarTangent::set_right_hand_side(const Eigen::VectorXd& b) {
   for (int i = 0; i < dof_.node_count; ++i) {
     const int equation = dof_.equation[dof_.first[i]];
     if (equation >= 0)
@@ -89,12 +96,11 @@ bool PlanarTangent::solve(Eigen::VectorXd& b) {
   }
   for (int scalar = 6 * dof_.node_count; scalar < dof_.scalar_count; ++scalar)
     scalars_[scalar] = dof_.equation[scalar] >= 0 ? b[dof_.equation[scalar]] : 0.0;
-  for (int p = 0; p < part_count; ++p) {
-    const int joint = parts[p].joint;
-    joint >= 0 ? joints_[joint].forward(maps_[joint], values_.data(), scalars_.data())
-               : fronts_.forward(p, elements_.data(), values_.data());
-  }
-  for (int p = part_count - 1; p >= 0; --p) {
+}
+
+bool PlanarTangent::substitute_back(Eigen::VectorXd& b) {
+  const std::vector<TreePart>& parts = order_.parts();
+  for (int p = static_cast<int>(parts.size()) - 1; p >= 0; --p) {
     const int joint = parts[p].joint;
     joint >= 0 ? joints_[joint].backward(maps_[joint], values_.data(), scalars_.data())
                : fronts_.backward(p, elements_.data(), values_.data());
@@ -105,6 +111,17 @@ bool PlanarTangent::solve(Eigen::VectorXd& b) {
   for (int scalar = 6 * dof_.node_count; scalar < dof_.scalar_count; ++scalar)
     if (dof_.equation[scalar] >= 0) b[dof_.equation[scalar]] = scalars_[scalar];
   return b.allFinite();
+}
+
+bool PlanarTangent::solve(Eigen::VectorXd& b) {
+  const std::vector<TreePart>& parts = order_.parts();
+  set_right_hand_side(b);
+  for (int p = 0; p < static_cast<int>(parts.size()); ++p) {
+    const int joint = parts[p].joint;
+    joint >= 0 ? joints_[joint].forward(maps_[joint], values_.data(), scalars_.data())
+               : fronts_.forward(p, elements_.data(), values_.data());
+  }
+  return substitute_back(b);
 }
 
 const double* PlanarTangent::expanded_solution() {

@@ -27,7 +27,8 @@ class PlanarTangent : public TangentBackend {
   void fold(int) override {}  // is left to the elimination
   void finish() override {}
   void hold_row(int joint, int component, int first, const ReleasedVector& coefficients) override;
-  bool factorise() override;
+  bool factorise() override { return eliminate(false); }
+  bool factorise_and_solve(Eigen::VectorXd& b) override;
   int singular_variable() const override { return singular_variable_; }
   bool solve(Eigen::VectorXd& b) override;
   const double* expanded_solution() override;
@@ -40,6 +41,11 @@ class PlanarTangent : public TangentBackend {
   void fold_mimics(const std::vector<MimicMap>&) override {}
 
  private:
+  Eigen::Map<Vector3> node(int i) { return Eigen::Map<Vector3>(values_.data() + 4 * static_cast<std::size_t>(i)); }
+  void set_right_hand_side(const Eigen::VectorXd& b);
+  bool eliminate(bool with_right_hand_side);
+  bool substitute_back(Eigen::VectorXd& b);
+
   const DegreesOfFreedom& dof_;
   const PlaneOfMotion& plane_;
   TreeOrder order_;

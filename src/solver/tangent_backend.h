@@ -60,6 +60,8 @@ class TangentBackend {
   // ---- solution
   /// False if the tangent is singular or not finite.
   virtual bool factorise() = 0;
+  /// factorise(), then solve(b): backends may do part of both at once.
+  virtual bool factorise_and_solve(Eigen::VectorXd& b) { return factorise() && solve(b); }
   /// The variable whose elimination has failed then; -1: the backend cannot tell.
   virtual int singular_variable() const { return -1; }
   /// Replaces b, one entry per equation, by the solution with the factors made last. False if that is not finite.

@@ -75,43 +75,63 @@ void TreeTangent::hold_rows() {
 
 // ---------------------------------------------------------------- factors
 
-bool TreeTangent::factorise() {
+/// With a right-hand side, whose values stand ready, its forward elimination, too.
+bool TreeTangent::eliminate(const Eigen::VectorXd* b) {
   order_.update();
   hold_rows();
   bordered_.begin();
   const std::vector<TreePart>& parts = order_.parts();
-  for (int p = 0; p < static_cast<int>(parts.size()); ++p)
-    if (!(parts[p].has_border ? bordered_.eliminate(p)
-          : parts[p].joint >= 0
-              ? joints_[parts[p].joint].eliminate(blocks_.maps[parts[p].joint], diagonal_blocks_.data())
-              : elements_.eliminate(p, blocks_.elements.data(), blocks_.diagonals.data()))) {
-      singular_variable_ =
-          parts[p].joint >= 0 ? dof_.variable_of_joint(parts[p].joint) : parts[p].nodes[parts[p].node_count - 1];
-      return false;
+  for (int p = 0; p < static_cast<int>(parts.size()); ++p) {
+    const int j = parts[p].joint;
+    bool done;
+    if (parts[p].has_border) {
+      done = bordered_.eliminate(p);
+      if (done && b) bordered_.forward(p, *b, values_);
+    } else if (j >= 0) {
+      done = joints_[j].eliminate(blocks_.maps[j], diagonal_blocks_.data());
+      if (done && b) joints_[j].forward(blocks_.maps[j], values_.data());
+    } else {
+      done = elements_.eliminate(p, blocks_.elements.data(), blocks_.diagonals.data(), b ? values_.data() : nullptr);
     }
+    if (done) continue;
+    singular_variable_ = j >= 0 ? dof_.variable_of_joint(j) : parts[p].nodes[parts[p].node_count - 1];
+    return false;
+  }
   return true;
+}
+
+bool TreeTangent::factorise_and_solve(Eigen::VectorXd& b) {
+  set_right_hand_side(b);
+  return eliminate(&b) && substitute_back(b);
 }
 
 // ---------------------------------------------------------------- solution
 
-bool TreeTangent::solve(Eigen::VectorXd& b) {
+void TreeTangent::set_right_hand_side(const Eigen::VectorXd& b) {
+  std::fill(values_.begin(), values_.end(), 0.0);
+  for (const auto& [scalar, equation, count] : dof_.runs)
+    std::copy_n(b.data() + equation, count, values_.data() + scalar);
+}
+
+bool TreeTangent::substitute_back(Eigen::VectorXd& b) {
   const std::vector<TreePart>& parts = order_.parts();
-  const int part_count = static_cast<int>(parts.size());
-  for (int scalar = 0; scalar < dof_.scalar_count; ++scalar) {
-    const int equation = dof_.equation[scalar];
-    values_[scalar] = equation >= 0 ? b[equation] : 0.0;
-  }
-  for (int p = 0; p < part_count; ++p)
-    parts[p].has_border   ? bordered_.forward(p, b, values_)
-    : parts[p].joint >= 0 ? joints_[parts[p].joint].forward(blocks_.maps[parts[p].joint], values_.data())
-                          : elements_.forward(p, blocks_.elements.data(), values_.data());
-  for (int p = part_count - 1; p >= 0; --p)
+  for (int p = static_cast<int>(parts.size()) - 1; p >= 0; --p)
     parts[p].has_border   ? bordered_.backward(p, values_)
     : parts[p].joint >= 0 ? joints_[parts[p].joint].backward(blocks_.maps[parts[p].joint], values_.data())
                           : elements_.backward(p, blocks_.elements.data(), values_.data());
-  for (int scalar = 0; scalar < dof_.scalar_count; ++scalar)
-    if (dof_.equation[scalar] >= 0) b[dof_.equation[scalar]] = values_[scalar];
+  for (const auto& [scalar, equation, count] : dof_.runs)
+    std::copy_n(values_.data() + scalar, count, b.data() + equation);
   return b.allFinite();
+}
+
+bool TreeTangent::solve(Eigen::VectorXd& b) {
+  const std::vector<TreePart>& parts = order_.parts();
+  set_right_hand_side(b);
+  for (int p = 0; p < static_cast<int>(parts.size()); ++p)
+    parts[p].has_border   ? bordered_.forward(p, b, values_)
+    : parts[p].joint >= 0 ? joints_[parts[p].joint].forward(blocks_.maps[parts[p].joint], values_.data())
+                          : elements_.forward(p, blocks_.elements.data(), values_.data());
+  return substitute_back(b);
 }
 
 }  // namespace flexarm

@@ -36,7 +36,8 @@ class TreeTangent : public TangentBackend {
   void fold_mimics(const std::vector<MimicMap>& maps) override { blocks_.mimics = maps; }
   void finish() override {}
   void hold_row(int joint, int component, int first, const ReleasedVector& coefficients) override;
-  bool factorise() override;
+  bool factorise() override { return eliminate(nullptr); }
+  bool factorise_and_solve(Eigen::VectorXd& b) override;
   int singular_variable() const override { return singular_variable_; }
   bool solve(Eigen::VectorXd& b) override;
   const double* expanded_solution() override { return values_.data(); }
@@ -44,6 +45,9 @@ class TreeTangent : public TangentBackend {
 
  private:
   void hold_rows();
+  void set_right_hand_side(const Eigen::VectorXd& b);
+  bool eliminate(const Eigen::VectorXd* b);
+  bool substitute_back(Eigen::VectorXd& b);
 
   const Model& model_;
   const DegreesOfFreedom& dof_;
