@@ -14,8 +14,8 @@ constexpr int kLanes = Pack::kLanes;
 
 /// Products of unit quaternions do not stay of length one by themselves.
 [[gnu::always_inline]] inline QuaternionT<Pack> normalised(const QuaternionT<Pack>& q) {
-  const Pack scale = Pack(1) / sqrt(q.w() * q.w() + q.x() * q.x() + q.y() * q.y() + q.z() * q.z());
-  return {scale * q.w(), scale * q.x(), scale * q.y(), scale * q.z()};
+  const Pack norm = sqrt(q.w() * q.w() + q.x() * q.x() + q.y() * q.y() + q.z() * q.z());
+  return {q.w() / norm, q.x() / norm, q.y() / norm, q.z() / norm};
 }
 
 }  // namespace

@@ -81,13 +81,18 @@ inline Vector3T<typename Q::Scalar> increment(const Eigen::QuaternionBase<Q>& qu
   return {scale * quaternion.x(), scale * quaternion.y(), scale * quaternion.z()};
 }
 
-/// Spatial increment w with cay(w) = to from^-1, for unit quaternions.
+/// Spatial increment w with cay(w) = to from^-1, for quaternions of any norm: that of d = to - from and from, for
+/// to from* = |from|^2 + d from*. What does not turn has none, also where products are fused with sums; and the less
+/// it turns, the less is rounded.
 template <typename P, typename Q>
 inline Vector3T<typename P::Scalar> increment(const Eigen::QuaternionBase<P>& from,
                                               const Eigen::QuaternionBase<Q>& to) {
   using S = typename P::Scalar;
-  const QuaternionT<S> inverse(from.w(), -from.x(), -from.y(), -from.z());
-  return increment(QuaternionT<S>(to) * inverse);
+  const Vector3T<S> v(from.x(), from.y(), from.z());
+  const Vector3T<S> d(to.x() - from.x(), to.y() - from.y(), to.z() - from.z());
+  const S d0 = to.w() - from.w();
+  const S product = from.w() * to.w() + from.x() * to.x() + from.y() * to.y() + from.z() * to.z();
+  return (S(2) / product) * (from.w() * d - d0 * v - so3::cross(d, v));
 }
 
 /// S(w) = (I + hat(w)/2) / (1 + w.w/4): spatial spin per change of w.

@@ -183,7 +183,8 @@ std::vector<Direction> initial_state_directions(const Simulation& simulation, Ne
     names.push_back(k < count ? *name : "d/dt " + *name);
     Direction direction;
     direction.has_free_difference = true;
-    direction.difference = kLargestDifference;
+    // No strain is large because a rate is.
+    direction.difference = k < count ? kLargestDifference : kStartDifference;
     for (const auto& [offset, weight] : kFourthOrder) {
       const MechanismMotion motion = states.moved(k, offset * direction.difference);
       direction.neighbours.push_back({offset, weight, nullptr, start_at(simulation, motion)});

@@ -64,12 +64,12 @@ template <int Nodes, int U>
   for (int i = 1; i < Nodes; ++i)
     for (int j = 0; j < Nodes; ++j) {
       const double* block = blocks + S::block * (i * Nodes + j);
-      for (int r = 0; r < U; ++r) {
-        double* to = j == 0 ? rows.right(U * (i - 1) + r) : rows.row(U * (i - 1) + r) + U * (j - 1);
+      for (int k = 0; k < U; ++k) {
+        double* to = j == 0 ? rows.right(U * (i - 1) + k) : rows.row(U * (i - 1) + k) + U * (j - 1);
         if (i == j)
-          for (int c = 0; c < U; ++c) to[c] = block[S::column * c + r] + diagonals[i][S::column * c + r];
+          for (int c = 0; c < U; ++c) to[c] = block[S::column * c + k] + diagonals[i][S::column * c + k];
         else
-          for (int c = 0; c < U; ++c) to[c] = block[S::column * c + r];
+          for (int c = 0; c < U; ++c) to[c] = block[S::column * c + k];
       }
     }
   for (int i = 0; i < S::n && r; ++i) rows.right(i)[U] = r[1 + i / U][i % U];

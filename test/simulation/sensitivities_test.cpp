@@ -163,7 +163,8 @@ TEST(Sensitivities, ParameterAtTheEndOfItsRange) {
   EXPECT_LT(deviation(one_sided.of(observed), central.of(observed)), 1e-6);
 }
 
-/// Of joints' positions and rates at the start, with which whole runs start elsewhere, too.
+/// Of joints' positions and rates at the start, with which whole runs start elsewhere, too. The momentum of the slider
+/// has 2e-11 of round-off after its steps: a way of 3e-4 leaves 2e-6 of it in the differences to compare with.
 void expect_transition(const Scene& scene, int steps, double way) {
   Simulation simulation = scene.simulation();
   const MechanismStates states(model_of(simulation), motion_of(simulation));
@@ -197,13 +198,13 @@ void expect_transition(const Scene& scene, int steps, double way) {
 TEST(Sensitivities, TransitionOfPendulumArmSliderAndLoop) {
   expect_transition({with_scheme(kPendulum, "em", 5e-3)}, 200, 1e-3);
   expect_transition({with_scheme(flexible_arm("0 0 1"), "em", 2e-3)}, 100, 1e-3);
-  expect_transition({with_scheme(kSlider, "em", 2e-3)}, 100, 3e-4);
+  expect_transition({with_scheme(kSlider, "em", 2e-3)}, 100, 5e-3);
   expect_transition({with_scheme(kLoop, "em", 2e-3)}, 200, 1e-3);
 }
 
 TEST(Sensitivities, TransitionOfARotorBehindAnElasticGear) {
   for (const char* scheme : {"em", "newmark"})
-    expect_transition({with_scheme(kGearedPendulum, scheme, 5e-3)}, 200, 1e-3);
+    expect_transition({with_scheme(kGearedPendulum, scheme, 5e-3)}, 200, 1e-2);
 }
 
 // A joint that starts elsewhere is a state of the start.
