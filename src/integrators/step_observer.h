@@ -3,6 +3,7 @@
 
 namespace flexarm {
 
+/// Factorise: of the tangent that was evaluated last, with the solution that follows. Solve: with kept factors.
 enum class StepPhase { Begin, Residual, Tangent, Factorise, Solve, Update, Accept, Control };
 
 class StepObserver {

@@ -75,6 +75,18 @@ template <int Nodes, int U>
   for (int i = 0; i < S::n && r; ++i) rows.right(i)[U] = r[1 + i / U][i % U];
 }
 
+/// Subtracts the pivot's row from those below, so that nothing is left of column k there.
+template <int Nodes, int U>
+[[gnu::always_inline]] inline void clear_below(Rows<Nodes, U>& rows, int k, double* reciprocal) {
+  constexpr int n = Sizes<Nodes, U>::n, lanes = Sizes<Nodes, U>::row_lanes;
+  reciprocal[k] = 1 / rows.row(k)[k];
+  for (int i = k + 1; i < n; ++i) {
+    const double multiplier = rows.row(i)[k] * reciprocal[k];
+    rows.lower[i][k] = multiplier;
+    for (int v = k / 4; v < lanes; ++v) rows.value[i][v] -= multiplier * rows.value[k][v];
+  }
+}
+
 /// L U with the pivots on the diagonal, carried out on A10 and r1 as well. A pivot is what products of a row's
 /// multipliers and a column's entries have left of the entry that stood there. Where all are positive and none has
 /// grown beyond twice that entry, the products are of the matrix' own size, and round-off is no worse than after a
@@ -82,7 +94,7 @@ template <int Nodes, int U>
 /// scaling rows and columns changes nothing.) False otherwise.
 template <int Nodes, int U>
 [[gnu::always_inline]] inline bool factorise_on_diagonal(Rows<Nodes, U>& rows, double* reciprocal) {
-  constexpr int n = Sizes<Nodes, U>::n, lanes = Sizes<Nodes, U>::row_lanes;
+  constexpr int n = Sizes<Nodes, U>::n;
   double entry[n];
   for (int k = 0; k < n; ++k) entry[k] = rows.row(k)[k];
   bool stays_small = true;
@@ -90,12 +102,7 @@ template <int Nodes, int U>
   for (int k = 0; k < n; ++k) {
     const double pivot = rows.row(k)[k];
     stays_small = stays_small && pivot >= kSmallest && pivot <= std::min(2 * entry[k], kLargest);
-    reciprocal[k] = 1 / pivot;
-    for (int i = k + 1; i < n; ++i) {
-      const double multiplier = rows.row(i)[k] * reciprocal[k];
-      rows.lower[i][k] = multiplier;
-      for (int v = k / 4; v < lanes; ++v) rows.value[i][v] -= multiplier * rows.value[k][v];
-    }
+    clear_below(rows, k, reciprocal);
   }
   return stays_small;
 }
@@ -117,12 +124,7 @@ template <int Nodes, int U>
       for (int c = 0; c < k; ++c) std::swap(rows.lower[k][c], rows.lower[pivot][c]);
       std::swap(pivots[k], pivots[pivot]);
     }
-    reciprocal[k] = 1 / rows.row(k)[k];
-    for (int i = k + 1; i < n; ++i) {
-      const double multiplier = rows.row(i)[k] * reciprocal[k];
-      rows.lower[i][k] = multiplier;
-      for (int v = k / 4; v < lanes; ++v) rows.value[i][v] -= multiplier * rows.value[k][v];
-    }
+    clear_below(rows, k, reciprocal);
   }
   return true;
 }

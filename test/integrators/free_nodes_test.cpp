@@ -77,6 +77,14 @@ TEST_F(FreeNodesOf, AMechanismAreAdvancedByIncrementsThatAreFoundAgain) {
   }
 }
 
+// Also where products are fused with sums, so that a b - b a is not zero.
+TEST_F(FreeNodesOf, AMechanismThatStandsHaveNoIncrements) {
+  for (NodePose& pose : begin_) pose.orientation = random_.rotation(3);
+  std::vector<Vector3> increments(begin_.size(), Vector3::Ones());
+  set_increments(begin_, begin_, increments);
+  for (const Vector3& increment : increments) EXPECT_EQ(increment, Vector3(Vector3::Zero()));
+}
+
 TEST(DegreesOfFreedom, RunsAreAllUnknownsInTheirOrder) {
   for (const bool floating : {false, true}) {
     const DegreesOfFreedom dof(build_model(every_joint_scene(floating)));

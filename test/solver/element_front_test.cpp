@@ -73,8 +73,8 @@ struct Front {
   }
 };
 
-/// An element in other units: a root of numbers by columns, made positive definite with eigenvalues from 1 to 1e6, a
-/// part that is not symmetric, and unknowns that are measured in hundreds or hundredths.
+/// Almost symmetric and positive definite, with eigenvalues from 1 to some 1e6, and then in other units: each unknown
+/// is measured in a hundredth to a hundred times of its own.
 Eigen::MatrixXd stiff_matrix(int size, unsigned seed) {
   test::RandomSource random(seed);
   Eigen::MatrixXd root(size, size), turned(size, size);
@@ -114,6 +114,14 @@ TYPED_TEST(ElementFrontOf, SolvesWithTheSchurComplement) {
     x.head<U>() = test::solution(front.diagonal(0) + own, x.head<U>());
     Element::backward(front.blocks.data(), r.data());
     EXPECT_LE((a * x - b).norm(), round_off * (a.norm() * x.norm() + b.norm()));
+
+    Front<kNodes, U> at_once(seed);  // with the right-hand side on the way
+    Eigen::VectorXd y = b;
+    for (int i = 0; i < kNodes; ++i) r[i] = y.data() + U * i;
+    ASSERT_TRUE(at_once.eliminate(r.data()));
+    y.head<U>() = test::solution(at_once.diagonal(0) + own, y.head<U>());
+    Element::backward(at_once.blocks.data(), r.data());
+    EXPECT_LE((a * y - b).norm(), round_off * (a.norm() * y.norm() + b.norm()));
   }
 }
 
