@@ -36,6 +36,26 @@ constexpr double kRoundOff = 8 * std::numeric_limits<double>::epsilon();
   }
 }
 
+/// The rows of a border lose `count` pivots at once: four rows and two vectors of columns stay in registers meanwhile.
+/// `factors`: of the first pivot and the four rows, `upper`: the first pivot's row.
+template <int Vectors>
+[[gnu::always_inline]] inline void subtract_products(double* rows, int stride, const double* factors, int factor_stride,
+                                                     const double* upper, int count) {
+  Lanes sums[4][Vectors];
+  for (int r = 0; r < 4; ++r)
+    for (int v = 0; v < Vectors; ++v) sums[r][v] = load(rows + stride * r + 4 * v);
+  for (int k = 0; k < count; ++k, factors += factor_stride, upper += stride) {
+    Lanes values[Vectors];
+    for (int v = 0; v < Vectors; ++v) values[v] = load(upper + 4 * v);
+    for (int r = 0; r < 4; ++r) {
+      const Lanes factor = broadcast(factors[r]);
+      for (int v = 0; v < Vectors; ++v) sums[r][v] -= factor * values[v];
+    }
+  }
+  for (int r = 0; r < 4; ++r)
+    for (int v = 0; v < Vectors; ++v) store(sums[r][v], rows + stride * r + 4 * v);
+}
+
 [[gnu::always_inline]] inline Lanes absolute(const Lanes& value) {
   const Lanes zero = {};
   return value < zero ? -value : value;
@@ -53,15 +73,16 @@ constexpr double kRoundOff = 8 * std::numeric_limits<double>::epsilon();
 
 /// What DenseFront::eliminate() works on; in a loop that simd::run() compiles as a whole.
 struct Elimination {
-  int active, candidates, stride;
+  int active, candidates, stride, lower_stride;
   double *values, *lower, *column_sizes, *scales, *reciprocals;
   int *row_names, *column_names;
   int pivots = 0;
 
   [[gnu::always_inline]] inline double* row(int i) { return values + static_cast<std::size_t>(stride) * i; }
-  [[gnu::always_inline]] inline bool scale() {
+  /// Of rows among which pivots are looked for, and of those beside which they have to be large enough.
+  [[gnu::always_inline]] inline bool scale(int rows_in_all) {
     const int lanes = lanes_for(active), candidate_lanes = lanes_for(candidates);
-    for (int i = 0; i < active; ++i) {
+    for (int i = 0; i < rows_in_all; ++i) {
       double* own = row(i);
       for (int k = active; k < 4 * lanes; ++k) own[k] = 0;  // of what was folded
       const double size = largest(own, lanes);
@@ -78,19 +99,24 @@ struct Elimination {
 
   [[gnu::always_inline]] inline bool take_pivots(int certain, bool all) {
     for (int k = 0; k < certain; ++k)
-      if (!take_pivot(k, true)) return false;
+      if (!take_pivot(k, true, candidates)) return false;
+    clear_border();
     // A column that had no pivot may have one after others. Where all must go, the best come first.
     for (const bool must : {false, true}) {
       if (must && !all) break;
       for (int before = -1; before != pivots && pivots < candidates;) {
         before = pivots;
-        for (int k = pivots; k < candidates; ++k) take_pivot(k, must);
+        for (int k = pivots; k < candidates; ++k) take_pivot(k, must, active);
       }
     }
     return !all || pivots == candidates;
   }
 
  private:
+  [[gnu::always_inline]] inline double* multipliers(int k) {
+    return lower + static_cast<std::size_t>(lower_stride) * k;
+  }
+
   /// Of a column among rows, scaled by rows.
   [[gnu::always_inline]] inline double largest_entry(int column, int first, int last, int& at) {
     double most = 0;
@@ -102,8 +128,8 @@ struct Elimination {
     return most;
   }
 
-  /// Takes a pivot in the column, if one is good enough.
-  [[gnu::always_inline]] inline bool take_pivot(int column, bool must) {
+  /// Takes a pivot in the column, if one is good enough, from the rows up to `last_row`.
+  [[gnu::always_inline]] inline bool take_pivot(int column, bool must, int last_row) {
     int pivot_row, other;
     const double size = largest_entry(column, pivots, candidates, pivot_row);
     if (!(size > kRoundOff * column_sizes[column])) return false;
@@ -112,25 +138,52 @@ struct Elimination {
     swap_columns(column, pivots);
     const double* pivot_values = row(pivots);
     const double reciprocal = reciprocals[pivots] = 1 / pivot_values[pivots];
-    double* multipliers = lower + static_cast<std::size_t>(stride) * pivots;
-    for (int i = pivots / 4 * 4; i <= pivots; ++i) multipliers[i] = 0;
-    for (int i = active; i < stride; ++i) multipliers[i] = 0;
+    double* factors = multipliers(pivots);
+    for (int i = pivots / 4 * 4; i <= pivots; ++i) factors[i] = 0;
+    for (int i = active; i < stride; ++i) factors[i] = 0;
     const int first = pivots / 4, last = lanes_for(active);
     int i = pivots + 1;
-    for (; i + 4 <= active; i += 4) {
+    for (; i + 4 <= last_row; i += 4) {
       bool couples = false;  // a border has zeros where it has not come to be coupled yet
       for (int k = i; k < i + 4; ++k) {
-        multipliers[k] = row(k)[pivots] * reciprocal;
-        couples = couples || multipliers[k] != 0;
+        factors[k] = row(k)[pivots] * reciprocal;
+        couples = couples || factors[k] != 0;
       }
-      if (couples) subtract_four(row(i), stride, multipliers + i, pivot_values, first, last);
+      if (couples) subtract_four(row(i), stride, factors + i, pivot_values, first, last);
     }
-    for (; i < active; ++i) {
-      multipliers[i] = row(i)[pivots] * reciprocal;
-      subtract(row(i), multipliers[i], pivot_values, first, last);
+    for (; i < last_row; ++i) {
+      factors[i] = row(i)[pivots] * reciprocal;
+      subtract(row(i), factors[i], pivot_values, first, last);
     }
     ++pivots;
     return true;
+  }
+
+  /// Subtracts the pivots' rows from those of the border, which had no part in the search for them.
+  [[gnu::always_inline]] inline void clear_border() {
+    if (pivots == 0) return;
+    for (int k = 0; k < pivots; ++k) {
+      double* factors = multipliers(k);
+      for (int i = candidates; i < active; ++i) factors[i] = row(i)[k];
+    }
+    const int lanes = lanes_for(active - candidates);
+    for (int k = 0; k < pivots; ++k) {
+      double* own = multipliers(k) + candidates;
+      const Lanes reciprocal = broadcast(reciprocals[k]);
+      for (int v = 0; v < lanes; ++v) store(load(own + 4 * v) * reciprocal, own + 4 * v);
+      for (int j = k + 1; j < pivots; ++j) subtract(multipliers(j) + candidates, row(k)[j], own, 0, lanes);
+    }
+    for (int k = 0; k < pivots; ++k) std::fill(multipliers(k) + active, multipliers(k) + lower_stride, 0.0);
+    const int first = pivots / 4, last = lanes_for(active);
+    int i = candidates;
+    for (; i + 4 <= active; i += 4) {
+      int v = first;
+      for (; v + 2 <= last; v += 2)
+        subtract_products<2>(row(i) + 4 * v, stride, lower + i, lower_stride, values + 4 * v, pivots);
+      if (v < last) subtract_products<1>(row(i) + 4 * v, stride, lower + i, lower_stride, values + 4 * v, pivots);
+    }
+    for (; i < active; ++i)
+      for (int k = 0; k < pivots; ++k) subtract(row(i), multipliers(k)[i], row(k), first, last);
   }
 
   [[gnu::always_inline]] inline void swap_rows(int a, int b) {
@@ -140,7 +193,7 @@ struct Elimination {
       store(load(row(b) + v), row(a) + v);
       store(kept, row(b) + v);
     }
-    for (int k = 0; k < pivots; ++k) std::swap(lower[stride * k + a], lower[stride * k + b]);
+    for (int k = 0; k < pivots; ++k) std::swap(multipliers(k)[a], multipliers(k)[b]);
     std::swap(scales[a], scales[b]);
     std::swap(row_names[a], row_names[b]);
   }
@@ -160,7 +213,8 @@ void DenseFront::reserve(int size) {
   for (std::vector<int>* labels : {&rows, &columns}) labels->reserve(size);
   for (std::vector<double>* numbers : {&scales_, &reciprocals_}) numbers->reserve(size);
   column_sizes_.reserve(lanes);
-  for (FrontMemory* memory : {&values_, &lower_}) memory->reserve(lanes * size);
+  values_.reserve(lanes * size);
+  lower_.reserve((lanes + 1) * size);
   right_.reserve(6 * lanes);
 }
 
@@ -230,15 +284,24 @@ void DenseFront::clear_row(int scalar) {
 }
 
 int DenseFront::eliminate(int candidates, int certain, bool all) {
-  lower_.resize(std::max(lower_.size(), static_cast<std::size_t>(stride_ / 4) * candidates));
+  lower_.resize(std::max(lower_.size(), static_cast<std::size_t>(lower_stride() / 4) * candidates));
   scales_.resize(active_);
   column_sizes_.assign(lanes_for(candidates), {});
   reciprocals_.resize(candidates);
-  Elimination elimination{
-      active_,        candidates,          stride_,     numbers(values_), numbers(lower_), numbers(column_sizes_),
-      scales_.data(), reciprocals_.data(), rows.data(), columns.data()};
+  Elimination elimination{active_,
+                          candidates,
+                          stride_,
+                          lower_stride(),
+                          numbers(values_),
+                          numbers(lower_),
+                          numbers(column_sizes_),
+                          scales_.data(),
+                          reciprocals_.data(),
+                          rows.data(),
+                          columns.data()};
   bool done = false;
-  simd::run([&] { done = elimination.scale() && elimination.take_pivots(certain, all); });
+  const int searched = certain < candidates ? active_ : candidates;
+  simd::run([&] { done = elimination.scale(searched) && elimination.take_pivots(certain, all); });
   return done ? elimination.pivots : -1;
 }
 

@@ -48,10 +48,13 @@ class DenseFront {
   /// taken has no correct digits.
   int eliminate(int candidates, int certain, bool all);
   /// Columns of L behind the diagonal, by columns, and reciprocal pivots.
-  const double* lower(int k) const { return numbers(lower_) + static_cast<std::size_t>(stride_) * k; }
+  const double* lower(int k) const { return numbers(lower_) + static_cast<std::size_t>(lower_stride()) * k; }
   double reciprocal(int k) const { return reciprocals_[k]; }
 
  private:
+  /// Vectors that begin with the first row of a border may end behind the last one.
+  int lower_stride() const { return stride_ + 4; }
+
   int active_ = 0, stride_ = 0;
   FrontMemory values_, lower_, right_, column_sizes_;
   std::vector<double> scales_, reciprocals_;

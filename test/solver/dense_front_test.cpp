@@ -53,14 +53,36 @@ void expect_schur_complement(const Eigen::MatrixXd& matrix, DenseFront& front, i
       EXPECT_NEAR(front.row(pivots + i)[pivots + k], expected(i, k), kRoundOff * (1 + expected.norm()));
 }
 
-TEST(DenseFront, LeavesTheSchurComplement) {
+/// L and the first rows of U make the matrix' first columns and rows.
+void expect_factors(const Eigen::MatrixXd& matrix, DenseFront& front, int pivots) {
+  const int size = front.size();
+  Eigen::MatrixXd lower = Eigen::MatrixXd::Zero(size, pivots), upper = Eigen::MatrixXd::Zero(pivots, size);
+  for (int k = 0; k < pivots; ++k) {
+    lower(k, k) = 1;
+    for (int i = k + 1; i < size; ++i) lower(i, k) = front.lower(k)[i];
+    for (int j = k; j < size; ++j) upper(k, j) = front.row(k)[j];
+    EXPECT_DOUBLE_EQ(front.reciprocal(k), 1 / upper(k, k));
+  }
+  const Eigen::MatrixXd product = lower * upper;
+  for (int i = 0; i < size; ++i)
+    for (int k = 0; k < size; ++k) {
+      if (i >= pivots && k >= pivots) continue;
+      EXPECT_NEAR(product(i, k), matrix(front.rows[i], front.columns[k]), kRoundOff * (1 + matrix.norm()));
+    }
+}
+
+// Rows of the border come in fours and what is left of them, and those that are certain lose all their pivots at once.
+TEST(DenseFront, LeavesTheSchurComplementAndItsFactors) {
   RandomSource random(1);
-  for (const int size : {1, 4, 7, 18, 41}) {
+  for (const int size : {1, 4, 7, 18, 30, 41, 43}) {
     const Eigen::MatrixXd matrix = random_matrix(size, random) + 4 * Eigen::MatrixXd::Identity(size, size);
-    DenseFront front = front_of(matrix);
-    const int candidates = (size + 1) / 2;
-    ASSERT_EQ(front.eliminate(candidates, candidates, true), candidates);
-    expect_schur_complement(matrix, front, candidates);
+    for (const int candidates : {1, (size + 1) / 2, size})
+      for (const int certain : {0, (candidates + 1) / 2, candidates}) {
+        DenseFront front = front_of(matrix);
+        ASSERT_EQ(front.eliminate(candidates, certain, true), candidates);
+        expect_schur_complement(matrix, front, candidates);
+        expect_factors(matrix, front, candidates);
+      }
   }
 }
 
