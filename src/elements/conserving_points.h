@@ -7,6 +7,35 @@
 
 namespace flexarm {
 
+/// Rotations at the stiffness points; an element of two nodes has its only one half-way between them.
+template <int Nodes, typename S>
+std::array<InterpolatedRotation<S>, Nodes - 1> point_rotations(const ConservingElement<Nodes, S>& element,
+                                                               const LocalRotations<Nodes, S>& local) {
+  std::array<InterpolatedRotation<S>, Nodes - 1> rotations;
+  if constexpr (Nodes == 2) {
+    rotations[0] = evaluate_half_way(local, element.points[0].derivative[1]);
+  } else {
+    for (int k = 0; k < Nodes - 1; ++k)
+      rotations[k] = local.evaluate(element.points[k].shape, element.points[k].derivative);
+  }
+  return rotations;
+}
+/// The same with `functions(k)`, the generalised shape functions at the point k.
+template <int Nodes, typename S, class Functions>
+std::array<InterpolatedRotation<S>, Nodes - 1> point_rotations(const ConservingElement<Nodes, S>& element,
+                                                               const LocalRotations<Nodes, S>& local,
+                                                               const Functions& functions) {
+  std::array<InterpolatedRotation<S>, Nodes - 1> rotations;
+  if constexpr (Nodes == 2) {
+    rotations[0] = evaluate_half_way(local, element.points[0].derivative[1], functions(0));
+  } else {
+    const LocalRotationVariation<Nodes, S> variation(local);
+    for (int k = 0; k < Nodes - 1; ++k)
+      rotations[k] = variation.evaluate(element.points[k].shape, element.points[k].derivative, functions(k));
+  }
+  return rotations;
+}
+
 /// Generalised shape functions for the middle of a step from `orientation` by the `foreseen` tangent-scaled increments:
 /// those of the configuration half-way.
 template <int Nodes, typename S>
@@ -14,9 +43,8 @@ void mid_functions(const ConservingElement<Nodes, S>& element, const std::array<
                    const std::array<Vector3T<S>, Nodes>& foreseen, ElementFunctions<Nodes, S>& functions) {
   std::array<QuaternionT<S>, Nodes> half_way;
   for (int i = 0; i < Nodes; ++i) half_way[i] = cayley::half_quaternion(foreseen[i]) * orientation[i];
-  const LocalRotationVariation<Nodes, S> local{LocalRotations<Nodes, S>(half_way)};
-  for (int k = 0; k < Nodes - 1; ++k)
-    local.evaluate(element.points[k].shape, element.points[k].derivative, functions[k]);
+  point_rotations(
+      element, LocalRotations<Nodes, S>(half_way), [&](int k) -> auto& { return functions[k]; });
 }
 
 /// The stretch P = I + (cos(theta/2) - 1) e e^T, angle theta about e, of the mean of the `foreseen` increments: values
@@ -40,11 +68,11 @@ void stretch_mid_functions(const std::array<Vector3T<S>, Nodes>& foreseen, Eleme
 template <int Nodes, typename S>
 void element_points(const ConservingElement<Nodes, S>& element, const std::array<Vector3T<S>, Nodes>& position,
                     const std::array<QuaternionT<S>, Nodes>& orientation, PointKinematicsT<S>* points) {
-  const LocalRotations<Nodes, S> local(orientation);
+  const auto rotations = point_rotations(element, LocalRotations<Nodes, S>(orientation));
   for (int k = 0; k < Nodes - 1; ++k) {
     const auto& constants = element.points[k];
-    points[k] = point_kinematics(local.evaluate(constants.shape, constants.derivative),
-                                 interpolate<Nodes>(constants.derivative, position), constants.reference_strain);
+    points[k] =
+        point_kinematics(rotations[k], interpolate<Nodes>(constants.derivative, position), constants.reference_strain);
   }
 }
 
@@ -59,16 +87,11 @@ void set_points(const ConservingElement<Nodes, S>& element, const BeamNodes<Node
   constexpr int kPoints = Nodes - 1;
   at.mid = &functions;
   const bool is_symmetric = rule.mid_functions == MidFunctions::Symmetric;
-  const LocalRotations<Nodes, S> rotations(nodes.orientation);
-  std::array<InterpolatedRotation<S>, kPoints> rotation;
-  if (with_variation || is_symmetric) {
-    const LocalRotationVariation<Nodes, S> variation(rotations);
-    for (int k = 0; k < kPoints; ++k)
-      rotation[k] = variation.evaluate(element.points[k].shape, element.points[k].derivative, at.points[k].generalised);
-  } else {
-    for (int k = 0; k < kPoints; ++k)
-      rotation[k] = rotations.evaluate(element.points[k].shape, element.points[k].derivative);
-  }
+  const LocalRotations<Nodes, S> local(nodes.orientation);
+  const std::array<InterpolatedRotation<S>, kPoints> rotation =
+      with_variation || is_symmetric ? point_rotations(
+                                           element, local, [&](int k) -> auto& { return at.points[k].generalised; })
+                                     : point_rotations(element, local);
   if (is_symmetric) {
     for (int k = 0; k < kPoints; ++k)
       for (int i = 0; i < Nodes; ++i) {

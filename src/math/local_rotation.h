@@ -191,4 +191,33 @@ class LocalRotationVariation {
   std::array<Matrix3T<S>, Nodes> inverse_tangents_;
 };
 
+/// Half-way between the nodes of an element of two, where the local vector is zero: the frame is the reference.
+/// `slope`: of the second node's shape function. (docs/notes/beam.md 2.4)
+template <typename S>
+InterpolatedRotation<S> evaluate_half_way(const LocalRotations<2, S>& local, const S& slope) {
+  InterpolatedRotation<S> result;
+  result.rotation = local.reference_rotation();
+  result.curvature.noalias() = result.rotation.transpose() * Vector3T<S>((S(2) * slope) * local.rotation_vectors()[1]);
+  return result;
+}
+
+/// The same with generalised shape functions: values are the spin of the reference, derivatives are plus and minus one
+/// symmetric matrix, slope (e e^T + theta/sin(theta) (I - e e^T)).
+template <typename S>
+InterpolatedRotation<S> evaluate_half_way(const LocalRotations<2, S>& local, const S& slope,
+                                          GeneralisedShapeFunctions<2, S>& generalised) {
+  const Vector3T<S> half_tangent = S(0.5) * local.quarter_tangent(), &theta = local.rotation_vectors()[1];
+  const Matrix3T<S> skew = so3::hat(half_tangent);
+  generalised.values[0] = skew;
+  generalised.values[1] = skew.transpose();
+  for (Matrix3T<S>& value : generalised.values) value.diagonal().setConstant(S(0.5));
+  const std::array<S, 3> a = so3::series_coefficients<2>(so3::dot(theta, theta));
+  const S across = slope / a[0];
+  Matrix3T<S>& derivative = generalised.derivatives[1];
+  derivative.noalias() = Vector3T<S>((-a[2] * across) * theta) * theta.transpose();
+  derivative.diagonal().array() += across;
+  generalised.derivatives[0] = -derivative;
+  return evaluate_half_way(local, slope);
+}
+
 }  // namespace flexarm

@@ -121,6 +121,30 @@ TYPED_TEST(LocalRotationTest, AgreesWithTheTheorysFormulas) {
   });
 }
 
+TEST(HalfWayBetweenTwoNodes, AgreesWithTheTheorysFormulas) {
+  Samples samples;
+  const ShapeFunctions<2> shape = lagrange<2>(0.0);
+  // Angles between the nodes; near 2 pi theta/sin(theta) grows without bounds, and round-off of theta with it.
+  for (const double angle : {0.0, 1e-12, 1e-6, 1e-3, 0.1, 1.0, 2.0, 3.0}) {
+    const Matrix common = so3::exp(samples.vector());
+    const NodalMatrices<2> rotations{common, so3::exp(samples.of_length(angle)) * common};
+    const Reference<2> expected(rotations, shape);
+    const double tolerance = interpolation_roundoff * slope_sum(shape);
+    const LocalRotations<2> local(rotations);
+    GeneralisedShapeFunctions<2> generalised;
+    const InterpolatedRotation<> section = evaluate_half_way(local, shape.derivatives[1], generalised);
+    EXPECT_LT(distance(section.rotation, expected.rotation), tolerance);
+    EXPECT_LT(distance(section.curvature, expected.curvature), tolerance);
+    for (int i = 0; i < 2; ++i) {
+      EXPECT_LT(distance(generalised.values[i], expected.generalised.values[i]), tolerance);
+      EXPECT_LT(distance(generalised.derivatives[i], expected.generalised.derivatives[i]), tolerance);
+    }
+    const InterpolatedRotation<> strains_only = evaluate_half_way(local, shape.derivatives[1]);
+    EXPECT_EQ(strains_only.rotation, section.rotation);
+    EXPECT_EQ(strains_only.curvature, section.curvature);
+  }
+}
+
 // An element bent uniformly to less than 2 pi between neighbouring reference nodes has a uniform curvature, and spins
 // of its nodes move its sections as differences say; beyond pi only the signs of the quaternions tell.
 TYPED_TEST(LocalRotationTest, BendsThroughPi) {
