@@ -233,11 +233,13 @@ class IncrementalMaps {
                inverse.transpose() * Vector3(contact(k) * moment_ + 2 * share_ * (rotations_[k] - mean_rotation_))) /
               spread_;
       for (int j = 0; j < maps_.count; ++j) {
-        Matrix6& block = maps_.master_master[j * maps_.count + k];
-        block.bottomLeftCorner<3, 3>() = contact(j) * moved;
-        if (!redistributes) continue;
-        block.bottomRightCorner<3, 3>() =
-            (rotations_[j] - mean_rotation_) * row.transpose() + share_ * ((j == k) - 1.0 / maps_.count) * inverse;
+        auto& block = maps_.moment_master[j * maps_.count + k];
+        block.leftCols<3>() = contact(j) * moved;
+        if (redistributes)
+          block.rightCols<3>() =
+              (rotations_[j] - mean_rotation_) * row.transpose() + share_ * ((j == k) - 1.0 / maps_.count) * inverse;
+        else
+          block.rightCols<3>().setZero();
       }
     }
   }

@@ -29,7 +29,7 @@ SlideMaps::SlideMaps(std::size_t most_nodes) {
   right.reserve(most_nodes);
   released_master.reserve(most_nodes);
   master_released.reserve(most_nodes);
-  master_master.reserve(most_nodes * most_nodes);
+  moment_master.reserve(most_nodes * most_nodes);
 }
 
 std::size_t most_active_nodes(const std::vector<SlideLine>& lines) {
@@ -49,7 +49,7 @@ void slide::set_active(const SlideLine& line, int piece, int other_piece, bool w
   maps.released_released = 0;
   maps.released_master.assign(maps.count, Vector6::Zero());
   maps.master_released.assign(maps.count, Vector6::Zero());
-  maps.master_master.assign(static_cast<std::size_t>(maps.count) * maps.count, Matrix6::Zero());
+  maps.moment_master.resize(static_cast<std::size_t>(maps.count) * maps.count);
 }
 
 slide::PieceFrames<double> slide_frames(const SlideLine& line, const std::vector<NodePose>& nodes, double arc_length) {
@@ -96,6 +96,7 @@ void slide_variational_maps(const SlideLine& line, const std::vector<NodePose>& 
   maps.released_left << tangent, k;
   maps.released_right = maps.released_left;
   if (!with_tangent) return;
+  for (auto& block : maps.moment_master) block.setZero();
   for (int j = 0; j < maps.count; ++j) {  // d(k) = I_g' spin + (I_g spin) x k
     maps.released_master[j] << w.derivatives[j] * force,
         frame.derivatives[j].transpose() * moment + frame.values[j].transpose() * k.cross(moment);

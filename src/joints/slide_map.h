@@ -21,7 +21,8 @@ struct SlideMaps {
   std::vector<Matrix6> left, right;  ///< per active node
   double released_released = 0;
   std::vector<Vector6> released_master, master_released;  ///< per active node, the former as columns
-  std::vector<Matrix6> master_master;                     ///< [i * count + j]
+  /// Of the moment of master i with respect to master j, [i * count + j]; its force varies with the arc length alone.
+  std::vector<Eigen::Matrix<double, 3, 6>> moment_master;
 };
 
 /// Most nodes of any of the lines on which the sections of a step depend; for SlideMaps of any slider.

@@ -267,7 +267,7 @@ void BorderedElimination::add_geometric(const JointMap& joint, int j) {
   for_each_master(model_, joint, order_.window(j), [&](int node, int i) {
     if (!slides) return front_.add(6 * node + 3, 6 * node + 3, maps.moment_spin.data(), 3, 3, 3);
     for_each_master(model_, joint, order_.window(j), [&](int other, int k) {
-      front_.add(6 * node, 6 * other, slide.master_master[i * slide.count + k].data(), 6, 6, 6);
+      front_.add(6 * node + 3, 6 * other, slide.moment_master[i * slide.count + k].data(), 3, 6, 3);
     });
   });
 }

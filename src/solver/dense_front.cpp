@@ -240,10 +240,10 @@ void DenseFront::start(int active) {
 
 void DenseFront::add(int row, int column, const double* values, int row_count, int column_count, int distance) {
   const int first_row = row_place_[row], first_column = column_place_[column];
-  if (row_count == 6 && column_count == 6 && distance == 6) {  // most of them: loops that are unrolled
-    for (int r = 0; r < 6; ++r) {
+  if (column_count == 6) {  // most of them: a loop that is unrolled
+    for (int r = 0; r < row_count; ++r) {
       double* to = this->row(first_row + r) + first_column;
-      for (int c = 0; c < 6; ++c) to[c] += values[6 * c + r];
+      for (int c = 0; c < 6; ++c) to[c] += values[distance * c + r];
     }
     return;
   }

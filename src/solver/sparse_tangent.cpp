@@ -95,8 +95,8 @@ void SparseTangent::fold(int j, const SlideMaps& maps) {
     Eigen::Map<Vector6>(slide_block(fold.released_masters + node)) += maps.released_master[i];
     Eigen::Map<Vector6>(slide_block(fold.masters_released + node)) += maps.master_released[i];
     for (int k = 0; k < maps.count; ++k)
-      Eigen::Map<Matrix6>(slide_block(fold.masters_masters + node * count + maps.first + k)) +=
-          maps.master_master[i * maps.count + k];
+      Eigen::Map<Matrix6>(slide_block(fold.masters_masters + node * count + maps.first + k)).bottomRows<3>() +=
+          maps.moment_master[i * maps.count + k];
   }
 }
 

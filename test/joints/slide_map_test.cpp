@@ -268,9 +268,13 @@ TEST_P(SlideMapsOfLine, GeometricBlocksAreTheDerivativeOfTheRows) {
       Eigen::VectorXd actual = Eigen::VectorXd::Zero(expected.size());
       const int j = (column - 1) / 6, c = (column - 1) % 6;
       actual[0] = column == 0 ? maps.released_released : maps.released_master[j][c];
-      for (int i = 0; i < maps.count; ++i)
-        actual.segment<6>(1 + 6 * (maps.first + i)) =
-            column == 0 ? maps.master_released[i] : Vector6(maps.master_master[i * maps.count + j].col(c));
+      for (int i = 0; i < maps.count; ++i) {
+        const int row = 1 + 6 * (maps.first + i);
+        if (column == 0)
+          actual.segment<6>(row) = maps.master_released[i];
+        else
+          actual.segment<3>(row + 3) = maps.moment_master[i * maps.count + j].col(c);
+      }
       // Where nothing has travelled, differences of the rows take the curvature's short form: rough to its square.
       const double tolerance = (step.from == step.to ? 1e-6 : 10 * difference_tolerance / size) * (1 + expected.norm());
       EXPECT_LE((actual - expected).norm(), tolerance) << incremental << static_cast<int>(step.algorithm.within) << " "
@@ -303,14 +307,14 @@ TEST_P(SlideMapsOfLine, RowsAndDerivativesAgreeWithComplexSteps) {
     const int count = maps.count;
     ASSERT_EQ(expected.rows.size(), 1 + 6 * count);
     Eigen::VectorXd rows(1 + 6 * count);
-    Eigen::MatrixXd derivatives(1 + 6 * count, 1 + 6 * count);
+    Eigen::MatrixXd derivatives = Eigen::MatrixXd::Zero(1 + 6 * count, 1 + 6 * count);
     rows[0] = maps.released_left.dot(g);
     derivatives(0, 0) = maps.released_released;
     for (int i = 0; i < count; ++i) {
       rows.segment<6>(1 + 6 * i) = maps.left[i].transpose() * g;
       derivatives.block<6, 1>(1 + 6 * i, 0) = maps.master_released[i];
       derivatives.block<1, 6>(0, 1 + 6 * i) = maps.released_master[i].transpose();
-      for (int k = 0; k < count; ++k) derivatives.block<6, 6>(1 + 6 * i, 1 + 6 * k) = maps.master_master[i * count + k];
+      for (int k = 0; k < count; ++k) derivatives.block<3, 6>(4 + 6 * i, 1 + 6 * k) = maps.moment_master[i * count + k];
     }
     // Over a travel that is not short, the turn is the quotient of rotations by it, and its derivative by its square.
     const double travel = std::abs(step.to - step.from), quotient = incremental && travel > 1e-6 ? 1 / travel : 0;
