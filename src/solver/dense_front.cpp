@@ -57,17 +57,26 @@ template <int Vectors>
 }
 
 [[gnu::always_inline]] inline Lanes absolute(const Lanes& value) {
-  const Lanes zero = {};
-  return value < zero ? -value : value;
+  using Bits = long long __attribute__((vector_size(32)));
+  constexpr long long kAllButTheSign = std::numeric_limits<long long>::max();
+  const Bits mask = {kAllButTheSign, kAllButTheSign, kAllButTheSign, kAllButTheSign};
+  return reinterpret_cast<Lanes>(reinterpret_cast<Bits>(value) & mask);
 }
 
-/// Largest absolute value.
+[[gnu::always_inline]] inline Lanes larger(const Lanes& a, const Lanes& b) {
+  return a > b ? a : b;
+}
+
+/// Largest absolute value; every other vector goes its own way, so that they do not wait for each other.
 [[gnu::always_inline]] inline double largest(const double* values, int lanes) {
-  Lanes most = {};
-  for (int v = 0; v < lanes; ++v) {
-    const Lanes size = absolute(load(values + 4 * v));
-    most = size > most ? size : most;
+  Lanes even = {}, odd = {};
+  int v = 0;
+  for (; v + 2 <= lanes; v += 2) {
+    even = larger(absolute(load(values + 4 * v)), even);
+    odd = larger(absolute(load(values + 4 * v + 4)), odd);
   }
+  if (v < lanes) even = larger(absolute(load(values + 4 * v)), even);
+  const Lanes most = larger(even, odd);
   return std::max(std::max(most[0], most[1]), std::max(most[2], most[3]));
 }
 
@@ -90,8 +99,7 @@ struct Elimination {
       scales[i] = size > 0 ? 1 / size : 0.0;
       const Lanes scale = broadcast(scales[i]);
       for (int v = 0; v < candidate_lanes; ++v) {
-        const Lanes old = load(column_sizes + 4 * v), scaled = scale * absolute(load(own + 4 * v));
-        store(scaled > old ? scaled : old, column_sizes + 4 * v);
+        store(larger(scale * absolute(load(own + 4 * v)), load(column_sizes + 4 * v)), column_sizes + 4 * v);
       }
     }
     return true;

@@ -26,7 +26,7 @@ TreeTangent::TreeTangent(const Model& model, const DegreesOfFreedom& dof)
 double TreeTangent::cost_of_factors() const {
   // bench_kernels --benchmark_filter=step_shares, counter "new/kept"; with borders what makes least work (tree.md 4)
   const std::vector<TreePart>& parts = order_.parts();
-  return std::any_of(parts.begin(), parts.end(), [](const TreePart& part) { return part.has_border; }) ? 3 : 2.2;
+  return std::any_of(parts.begin(), parts.end(), [](const TreePart& part) { return part.has_border; }) ? 3.8 : 2.2;
 }
 
 void TreeTangent::set_zero() {
