@@ -17,10 +17,10 @@ namespace flexarm::test {
 struct Scene {
   std::string text;
 
-  Simulation simulation(const scene::ParameterValues& values = {}) const {
+  Simulation simulation(const scene::ParameterValues& values = {}, const SimulationOptions& options = {}) const {
     scene::ReadResult result = scene::read_scene_text(text, "test.urdf", {false, false, false, values});
     if (!result.scene) throw std::runtime_error(scene::to_text(result.diagnostics));
-    return Simulation(std::move(*result.scene));
+    return Simulation(std::move(*result.scene), options);
   }
   SensitivityRequest request(std::vector<std::string> parameters) const {
     SensitivityRequest request;
