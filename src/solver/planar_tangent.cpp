@@ -65,16 +65,14 @@ bool PlanarTangent::eliminate(bool with_right_hand_side) {
   const std::vector<TreePart>& parts = order_.parts();
   for (int p = 0; p < static_cast<int>(parts.size()); ++p) {
     const int joint = parts[p].joint;
-    bool done;
-    if (joint < 0) {
-      done = fronts_.eliminate(p, elements_.data(), nodes_.data(), with_right_hand_side ? values_.data() : nullptr);
-    } else {
-      done = joints_[joint].eliminate(maps_[joint], diagonal_blocks_.data());
-      if (done && with_right_hand_side) joints_[joint].forward(maps_[joint], values_.data(), scalars_.data());
+    const bool done = joint >= 0 ? joints_[joint].eliminate(maps_[joint], diagonal_blocks_.data())
+                                 : fronts_.eliminate(p, elements_.data(), nodes_.data(),
+                                                     with_right_hand_side ? values_.data() : nullptr);
+    if (!done) {
+      singular_variable_ = joint >= 0 ? dof_.variable_of_joint(joint) : parts[p].nodes[parts[p].node_count - 1];
+      return false;
     }
-    if (done) continue;
-    singular_variable_ = joint >= 0 ? dof_.variable_of_joint(joint) : parts[p].nodes[parts[p].node_count - 1];
-    return false;
+    if (with_right_hand_side && joint >= 0) forward(p);
   }
   return true;
 }
@@ -98,6 +96,12 @@ void PlanarTangent::set_right_hand_side(const Eigen::VectorXd& b) {
     scalars_[scalar] = dof_.equation[scalar] >= 0 ? b[dof_.equation[scalar]] : 0.0;
 }
 
+void PlanarTangent::forward(int p) {
+  const int joint = order_.parts()[p].joint;
+  joint >= 0 ? joints_[joint].forward(maps_[joint], values_.data(), scalars_.data())
+             : fronts_.forward(p, elements_.data(), values_.data());
+}
+
 bool PlanarTangent::substitute_back(Eigen::VectorXd& b) {
   const std::vector<TreePart>& parts = order_.parts();
   for (int p = static_cast<int>(parts.size()) - 1; p >= 0; --p) {
@@ -114,13 +118,8 @@ bool PlanarTangent::substitute_back(Eigen::VectorXd& b) {
 }
 
 bool PlanarTangent::solve(Eigen::VectorXd& b) {
-  const std::vector<TreePart>& parts = order_.parts();
   set_right_hand_side(b);
-  for (int p = 0; p < static_cast<int>(parts.size()); ++p) {
-    const int joint = parts[p].joint;
-    joint >= 0 ? joints_[joint].forward(maps_[joint], values_.data(), scalars_.data())
-               : fronts_.forward(p, elements_.data(), values_.data());
-  }
+  for (int p = 0; p < static_cast<int>(order_.parts().size()); ++p) forward(p);
   return substitute_back(b);
 }
 

@@ -44,6 +44,7 @@ class PlanarTangent : public TangentBackend {
   Eigen::Map<Vector3> node(int i) { return Eigen::Map<Vector3>(values_.data() + 4 * static_cast<std::size_t>(i)); }
   void set_right_hand_side(const Eigen::VectorXd& b);
   bool eliminate(bool with_right_hand_side);
+  void forward(int part);
   bool substitute_back(Eigen::VectorXd& b);
 
   const DegreesOfFreedom& dof_;

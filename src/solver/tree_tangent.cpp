@@ -83,19 +83,16 @@ bool TreeTangent::eliminate(const Eigen::VectorXd* b) {
   const std::vector<TreePart>& parts = order_.parts();
   for (int p = 0; p < static_cast<int>(parts.size()); ++p) {
     const int j = parts[p].joint;
-    bool done;
-    if (parts[p].has_border) {
-      done = bordered_.eliminate(p);
-      if (done && b) bordered_.forward(p, *b, values_);
-    } else if (j >= 0) {
-      done = joints_[j].eliminate(blocks_.maps[j], diagonal_blocks_.data());
-      if (done && b) joints_[j].forward(blocks_.maps[j], values_.data());
-    } else {
-      done = elements_.eliminate(p, blocks_.elements.data(), blocks_.diagonals.data(), b ? values_.data() : nullptr);
+    const bool is_element = !parts[p].has_border && j < 0;  // takes the right-hand side along
+    const bool done = parts[p].has_border ? bordered_.eliminate(p)
+                      : is_element        ? elements_.eliminate(p, blocks_.elements.data(), blocks_.diagonals.data(),
+                                                         b ? values_.data() : nullptr)
+                                          : joints_[j].eliminate(blocks_.maps[j], diagonal_blocks_.data());
+    if (!done) {
+      singular_variable_ = j >= 0 ? dof_.variable_of_joint(j) : parts[p].nodes[parts[p].node_count - 1];
+      return false;
     }
-    if (done) continue;
-    singular_variable_ = j >= 0 ? dof_.variable_of_joint(j) : parts[p].nodes[parts[p].node_count - 1];
-    return false;
+    if (b && !is_element) forward(p, *b);
   }
   return true;
 }
@@ -113,6 +110,13 @@ void TreeTangent::set_right_hand_side(const Eigen::VectorXd& b) {
     std::copy_n(b.data() + equation, count, values_.data() + scalar);
 }
 
+void TreeTangent::forward(int p, const Eigen::VectorXd& b) {
+  const TreePart& part = order_.parts()[p];
+  part.has_border   ? bordered_.forward(p, b, values_)
+  : part.joint >= 0 ? joints_[part.joint].forward(blocks_.maps[part.joint], values_.data())
+                    : elements_.forward(p, blocks_.elements.data(), values_.data());
+}
+
 bool TreeTangent::substitute_back(Eigen::VectorXd& b) {
   const std::vector<TreePart>& parts = order_.parts();
   for (int p = static_cast<int>(parts.size()) - 1; p >= 0; --p)
@@ -125,12 +129,8 @@ bool TreeTangent::substitute_back(Eigen::VectorXd& b) {
 }
 
 bool TreeTangent::solve(Eigen::VectorXd& b) {
-  const std::vector<TreePart>& parts = order_.parts();
   set_right_hand_side(b);
-  for (int p = 0; p < static_cast<int>(parts.size()); ++p)
-    parts[p].has_border   ? bordered_.forward(p, b, values_)
-    : parts[p].joint >= 0 ? joints_[parts[p].joint].forward(blocks_.maps[parts[p].joint], values_.data())
-                          : elements_.forward(p, blocks_.elements.data(), values_.data());
+  for (int p = 0; p < static_cast<int>(order_.parts().size()); ++p) forward(p, b);
   return substitute_back(b);
 }
 

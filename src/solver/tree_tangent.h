@@ -47,6 +47,7 @@ class TreeTangent : public TangentBackend {
   void hold_rows();
   void set_right_hand_side(const Eigen::VectorXd& b);
   bool eliminate(const Eigen::VectorXd* b);
+  void forward(int part, const Eigen::VectorXd& b);
   bool substitute_back(Eigen::VectorXd& b);
 
   const Model& model_;
