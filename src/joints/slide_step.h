@@ -57,7 +57,8 @@ inline ContactRule contact_rule(SlideStep step, double arm_weight) {
   return {arm_weight, arm_weight * (1 - arm_weight), false};
 }
 
-/// Sizes the maps for the nodes between two pieces and forgets what they were.
+/// Sizes the maps for the nodes between two pieces and forgets what they were, but for `moment_master`, whose blocks
+/// are all set where there is a tangent.
 void set_active(const SlideLine& line, int piece, int other_piece, bool with_tangent, SlideMaps& maps);
 
 }  // namespace flexarm::slide
