@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """PD controllers that close their loop on joint_states hold the guide's second arm, the demo, and a six-axis robot: one
-in roscpp at 1 kHz, one in rospy at 100 Hz."""
+in roscpp at 1 kHz, one in rospy at 100 Hz. The robot waits for its commands (lock step): its gears vibrate where a loop
+is late by some milliseconds, as a busy machine makes it."""
 
 import math
 import subprocess
@@ -39,18 +40,20 @@ class Listener:
 
 
 class PythonController(Listener):
-    """Efforts stiffness (set point - position) - damping velocity on every joint, at every tenth message."""
+    """Efforts stiffness (set point - position) - damping velocity on every joint, every 10 ms of stamps."""
 
     def __init__(self, namespace, stiffness, damping, offset):
         self.stiffness, self.damping = stiffness, damping
         self.commands = CommandTopic(namespace + "/joint_force_command", JointForceCommand)
+        self.next_stamp = 0
         super().__init__(namespace, offset)
         wait_until(lambda: self.states, "joint states of " + namespace)
 
     def receive(self, state):
         super().receive(state)
-        if len(self.states) % 10 == 1:
-            _, errors, velocities = self.states[-1]
+        stamp, errors, velocities = self.states[-1]
+        if stamp > self.next_stamp:
+            self.next_stamp = stamp + 0.0095
             efforts = [k * e - d * v for k, d, e, v in zip(self.stiffness, self.damping, errors, velocities)]
             self.commands.send(force_command(list(state.name), efforts))
 
@@ -86,9 +89,9 @@ class Control(unittest.TestCase):
         arm.pause()
         controller.end()
         self.assertFalse(arm.status().failed)
+        # On a busy machine, messages that are late by ten are left out.
         states = list(controller.states)
-        # Most of the messages arrive, also on a busy machine.
-        self.assertGreater(len(states), 0.5 * 1000 * DURATION)
+        self.assertGreater(len(states), 100 * DURATION)
         # Spring and damper to the set points only take energy out: no swing is wider than the first one, none is faster
         # than that of a mass on the springs.
         widest = max(math.sqrt(sum(e * e for e in errors)) for _, errors, _ in states)
@@ -108,6 +111,9 @@ class Control(unittest.TestCase):
     def test_demo_at_100_hz(self):
         self.hold(PythonController, "/demo", 2000.0, 300.0, 0.03, inertia=100)
 
+    def wait_for_steps(self, arm, steps):
+        end = arm.status().steps + steps
+        wait_until(lambda: arm.status().steps >= end, "step %d" % end, patience=60)
 
     # Its servos, switched to mode effort, give what holds the robot up; the controller is springs and dampers beside
     # that. It sees joints, its efforts act on motors behind elastic gears: what it takes out of a vibration of the gear
@@ -123,13 +129,12 @@ class Control(unittest.TestCase):
         self.assertTrue(arm.switch_mode(names=names, modes=["effort"] * 6).success)
         controller = RoscppController("/robot", stiffness.tolist(), damping, 0.0)
         arm.resume()
-        time.sleep(1)
+        self.wait_for_steps(arm, 1000)
         self.assertTrue(arm.apply_wrench("flange", force=(0, 0, force), duration=1.0).success)
-        time.sleep(DURATION)
+        self.wait_for_steps(arm, 1000 * DURATION)
         arm.pause()
         controller.end()
         self.assertFalse(arm.status().failed)
-        self.assertGreater(len(controller.states), 0.5 * 1000 * DURATION)
         errors = numpy.array([errors for _, errors, _ in controller.states])
         # The springs take up at most what a sudden force does on its way: sum of k e^2 / 2 <= force * sum of lever e;
         # gravity, which changes with the pose, is a twentieth of them.
