@@ -39,6 +39,8 @@ class BeamFamily {
   virtual const std::vector<Vector3>& total_rotations() const;
   /// To be set before the first step where forces are interpolated in time.
   virtual void set_interpolation(HhtInterpolation*) {}
+  /// Whether add_forces() heeds TangentBackend::condensation().
+  virtual bool evaluates_packs() const { return false; }
 };
 
 /// The family of the configuration's scheme.

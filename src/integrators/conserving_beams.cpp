@@ -6,8 +6,22 @@
 #include "integrators/gathered.h"
 #include "integrators/initial_strain_memory.h"
 #include "math/simd.h"
+#include "solver/interior_condensation.h"
 
 namespace flexarm {
+namespace {
+
+/// Where a pack is evaluated: the condensation's own system, where there is one.
+template <int Nodes>
+BlockSystem<Nodes, Pack>& system_of(std::size_t pack, InteriorCondensation* condensation,
+                                    BlockSystem<Nodes, Pack>& scattered) {
+  if constexpr (Nodes > 2) {
+    if (condensation) return condensation->system<Nodes>(pack);
+  }
+  return scattered;
+}
+
+}  // namespace
 
 ConservingBeams::ConservingBeams(const StepConfiguration& configuration, const StepPrestrains& prestrains)
     : configuration_(configuration),
@@ -119,8 +133,8 @@ void ConservingBeams::scatter(const ElementPack<Nodes>& pack, const std::array<S
 }
 
 template <int Nodes>
-void ConservingBeams::scatter(const ElementPack<Nodes>& pack, const BlockSystem<Nodes, Pack>& system,
-                              Balance& balance) {
+void ConservingBeams::scatter(const ElementPack<Nodes>& pack, const BlockSystem<Nodes, Pack>& system, Balance& balance,
+                              bool with_tangent) {
   std::array<double*, Pack::kLanes> targets;
   for (int i = 0; i < Nodes; ++i) {
     for (int lane = 0; lane < pack.lanes; ++lane) targets[lane] = balance.residual.at(pack.nodes[lane][i]);
@@ -129,7 +143,7 @@ void ConservingBeams::scatter(const ElementPack<Nodes>& pack, const BlockSystem<
       for (int lane = 0; lane < pack.lanes; ++lane) targets[lane] = balance.carried->at(pack.nodes[lane][i]);
       add_lanes<6>(system.carried[i].data(), pack.lanes, targets.data());
     }
-    for (int j = 0; j < Nodes && balance.tangent; ++j) {
+    for (int j = 0; j < Nodes && with_tangent; ++j) {
       for (int lane = 0; lane < pack.lanes; ++lane)
         targets[lane] = balance.tangent->element_block(pack.first_block[lane] + i * Nodes + j);
       if (balance.tangent->keeps_elements_apart())
@@ -210,17 +224,20 @@ void ConservingBeams::add_forces(Balance& balance) {
   for_each_group(groups_, [&](auto& packs) {
     if (packs.empty()) return;  // not even memories are made
     constexpr int N = std::decay_t<decltype(packs)>::value_type::kNodes;
+    InteriorCondensation* condensation = N > 2 && balance.tangent ? balance.tangent->condensation() : nullptr;
     simd::run([&] {
       std::array<StrainMemoryT<Pack>, N - 1> memory, new_memory;
-      BlockSystem<N, Pack> system;
-      for (auto& pack : packs) {
+      BlockSystem<N, Pack> scattered;
+      for (std::size_t p = 0; p < packs.size(); ++p) {
+        ElementPack<N>& pack = packs[p];
+        BlockSystem<N, Pack>& system = system_of(p, condensation, scattered);
         if (has_memory_) gather<N>(pack, step.state.strain_memory, memory);
         packs::conserving_beam<N>(pack.element, gather<N>(pack, step), rule_, pack.mid_functions,
                                   pack.points[begin_].data(), has_memory_ ? memory.data() : nullptr, step.step,
                                   balance.tangent != nullptr, balance.carried ? &pack.carried : nullptr,
                                   pack.points[1 - begin_].data(), has_memory_ ? new_memory.data() : nullptr, system);
         if (has_memory_) scatter<N>(pack, new_memory, end_memory_);
-        scatter<N>(pack, system, balance);
+        scatter<N>(pack, system, balance, balance.tangent && !condensation);
         for (int lane = 0; lane < pack.lanes; ++lane) dissipated += system.dissipated[lane];
       }
     });

@@ -22,6 +22,7 @@ class ConservingBeams : public BeamFamily {
   double work_of_prestrains() const override;
   void accept(State& state) override;
   void invalidate() override { holds_begin_points_ = false; }
+  bool evaluates_packs() const override { return true; }
 
  private:
   void set_prestrains();
@@ -37,7 +38,8 @@ class ConservingBeams : public BeamFamily {
   static void scatter(const ElementPack<Nodes>& pack, const std::array<StrainMemoryT<Pack>, Nodes - 1>& points,
                       std::vector<StrainMemory>& memory);
   template <int Nodes>
-  static void scatter(const ElementPack<Nodes>& pack, const BlockSystem<Nodes, Pack>& system, Balance& balance);
+  static void scatter(const ElementPack<Nodes>& pack, const BlockSystem<Nodes, Pack>& system, Balance& balance,
+                      bool with_tangent);
 
   const StepConfiguration& configuration_;
   const StepPrestrains& prestrains_;

@@ -34,6 +34,7 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme, BackendChoice b
       nodal_update_(6 * static_cast<std::size_t>(dof_.node_count)),
       scales_(model, dof_) {
   beams_->set_interpolation(interpolation_.get());
+  if (beams_->evaluates_packs()) tangent_->condense_interiors();
   if (planar_) planar_->beams->set_interpolation(interpolation_.get());
 }
 

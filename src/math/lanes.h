@@ -1,6 +1,9 @@
 #pragma once
 /// One lane of a pack or of a matrix of packs; a double has one lane.
 
+#include <array>
+#include <cstring>
+
 #include "math/pack.h"
 
 namespace flexarm {
@@ -31,30 +34,52 @@ auto get_lane(const Eigen::MatrixBase<From>& from, int lane) {
   return value;
 }
 
-/// targets[lane][i] += values[i][lane] for the first `lanes` lanes, Count consecutive numbers each: a transposition.
+/// {v[0][k], v[1][k], v[2][k], v[3][k]} for k = 0 ... 3: a transposition.
+[[gnu::always_inline]] inline std::array<Pack::Vector, 4> transposed(const Pack::Vector& a, const Pack::Vector& b,
+                                                                     const Pack::Vector& c, const Pack::Vector& d) {
+  const Pack::Vector ab_even = __builtin_shufflevector(a, b, 0, 4, 2, 6),
+                     ab_odd = __builtin_shufflevector(a, b, 1, 5, 3, 7),
+                     cd_even = __builtin_shufflevector(c, d, 0, 4, 2, 6),
+                     cd_odd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  return {__builtin_shufflevector(ab_even, cd_even, 0, 1, 4, 5), __builtin_shufflevector(ab_odd, cd_odd, 0, 1, 4, 5),
+          __builtin_shufflevector(ab_even, cd_even, 2, 3, 6, 7), __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 6, 7)};
+}
+
+// A typedef: clang does not heed the alignment of an alias by `using`.
+typedef double UnalignedLanes __attribute__((vector_size(sizeof(Pack::Vector)), aligned(alignof(double)), may_alias));
+
+/// targets[lane][i] += values[i][lane] for the first `lanes` lanes, Count consecutive numbers each.
 /// `set`: = in the place of +=.
 template <int Count, bool set = false>
 [[gnu::always_inline]] inline void add_lanes(const Pack* values, int lanes, double* const* targets) {
-  // A typedef: clang does not heed the alignment of an alias by `using`.
-  typedef double Unaligned __attribute__((vector_size(sizeof(Pack::Vector)), aligned(alignof(double)), may_alias));
   constexpr int whole = Count / Pack::kLanes * Pack::kLanes;
+  const auto add = [&](int lane, int i, const Pack::Vector& row) {
+    UnalignedLanes* target = reinterpret_cast<UnalignedLanes*>(targets[lane] + i);
+    *target = set ? row : *target + row;
+  };
   for (int i = 0; i < whole; i += Pack::kLanes) {
-    const Pack::Vector &a = values[i].values(), &b = values[i + 1].values(), &c = values[i + 2].values(),
-                       &d = values[i + 3].values();
-    const Pack::Vector ab_even = __builtin_shufflevector(a, b, 0, 4, 2, 6),
-                       ab_odd = __builtin_shufflevector(a, b, 1, 5, 3, 7),
-                       cd_even = __builtin_shufflevector(c, d, 0, 4, 2, 6),
-                       cd_odd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-    const Pack::Vector rows[Pack::kLanes] = {
-        __builtin_shufflevector(ab_even, cd_even, 0, 1, 4, 5), __builtin_shufflevector(ab_odd, cd_odd, 0, 1, 4, 5),
-        __builtin_shufflevector(ab_even, cd_even, 2, 3, 6, 7), __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 6, 7)};
-    for (int lane = 0; lane < lanes; ++lane) {
-      Unaligned* target = reinterpret_cast<Unaligned*>(targets[lane] + i);
-      *target = set ? rows[lane] : *target + rows[lane];
-    }
+    const std::array<Pack::Vector, 4> rows =
+        transposed(values[i].values(), values[i + 1].values(), values[i + 2].values(), values[i + 3].values());
+    add(0, i, rows[0]);
+    if (lanes > 1) add(1, i, rows[1]);
+    if (lanes > 2) add(2, i, rows[2]);
+    if (lanes > 3) add(3, i, rows[3]);
   }
   for (int lane = 0; lane < lanes; ++lane)
     for (int i = whole; i < Count; ++i) targets[lane][i] = values[i][lane] + (set ? 0.0 : targets[lane][i]);
+}
+
+/// values[i][lane] = sources[lane][i], Count consecutive numbers each.
+template <int Count>
+[[gnu::always_inline]] inline void load_lanes(const double* const* sources, Pack* values) {
+  constexpr int whole = Count / Pack::kLanes * Pack::kLanes;
+  for (int i = 0; i < whole; i += Pack::kLanes) {
+    Pack::Vector of_lane[Pack::kLanes];
+    for (int lane = 0; lane < Pack::kLanes; ++lane) std::memcpy(&of_lane[lane], sources[lane] + i, sizeof(of_lane[0]));
+    const std::array<Pack::Vector, 4> rows = transposed(of_lane[0], of_lane[1], of_lane[2], of_lane[3]);
+    for (int k = 0; k < Pack::kLanes; ++k) values[i + k] = Pack(rows[k]);
+  }
+  for (int i = whole; i < Count; ++i) values[i] = Pack(sources[0][i], sources[1][i], sources[2][i], sources[3][i]);
 }
 
 }  // namespace flexarm

@@ -23,7 +23,12 @@ class ElementElimination {
       if (part.node_count > 0) pivots += Unknowns * (part.node_count - 1);
     }
     pivots_.resize(pivots);
+    condensed_.resize(order.parts().size(), nullptr);
   }
+
+  /// The front of a part is one of the nodes at the element's ends, with these blocks in the place of `elements`: its
+  /// interior nodes are eliminated elsewhere. Or, with null, one of all its nodes, as it is at first.
+  void set_condensed(int part, double* blocks) { condensed_[part] = blocks; }
 
   /// Of a part that is an element; right-hand sides, if `values` is not null, go through forward() on the way. False if
   /// a pivot is zero or not finite.
@@ -51,17 +56,18 @@ class ElementElimination {
   using Front = ElementFront<Nodes, Unknowns>;
 
   double* block(int part, double* elements) const {
-    return elements + Front<2>::kBlock * order_.parts()[part].first_block;
+    return condensed_[part] ? condensed_[part] : elements + Front<2>::kBlock * order_.parts()[part].first_block;
   }
   std::array<double*, 5> of_nodes(int p, double* first, std::size_t size) const {
     const TreePart& part = order_.parts()[p];
     std::array<double*, 5> places{};
     for (int i = 0; i < part.node_count; ++i) places[i] = first + size * part.nodes[i];
+    if (condensed_[p]) places[1] = places[part.node_count - 1];
     return places;
   }
   template <class Visitor>
   auto with_front(int part, Visitor&& visit) const {
-    switch (order_.parts()[part].node_count) {
+    switch (condensed_[part] ? 2 : order_.parts()[part].node_count) {
       case 2:
         return visit(Front<2>());
       case 3:
@@ -76,6 +82,7 @@ class ElementElimination {
   const TreeOrder& order_;
   std::vector<std::size_t> first_pivot_;  // per part
   std::vector<unsigned char> pivots_;
+  std::vector<double*> condensed_;  // per part: blocks of its ends, or null
 };
 
 }  // namespace flexarm

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <utility>
 
 #include "math/pack.h"
@@ -14,9 +13,6 @@ namespace flexarm {
 namespace {
 
 using LaneMask = long long __attribute__((vector_size(32)));
-
-/// Of numbers that have a reciprocal.
-constexpr double kSmallest = std::numeric_limits<double>::min(), kLargest = std::numeric_limits<double>::max();
 
 /// Of a lane j: those behind it, and those before it.
 constexpr LaneMask kBehind[] = {{0, -1, -1, -1}, {0, 0, -1, -1}, {0, 0, 0, -1}, {0, 0, 0, 0}};
@@ -101,7 +97,7 @@ template <int Nodes, int U>
 #pragma GCC unroll 24
   for (int k = 0; k < n; ++k) {
     const double pivot = rows.row(k)[k];
-    stays_small = stays_small && pivot >= kSmallest && pivot <= std::min(2 * entry[k], kLargest);
+    stays_small = stays_small && pivot >= kSmallestPivot && pivot <= std::min(2 * entry[k], kLargestPivot);
     clear_below(rows, k, reciprocal);
   }
   return stays_small;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstring>
+#include <limits>
 #include <vector>
 
 // Vectors are passed between functions that are always inlined only: that their passing differs between processors does
@@ -25,6 +26,10 @@ using Lanes = double __attribute__((vector_size(32)));
 [[gnu::always_inline]] inline Lanes broadcast(double value) {
   return Lanes{value, value, value, value};
 }
+
+/// Of pivots: numbers that have a reciprocal.
+constexpr double kSmallestPivot = std::numeric_limits<double>::min(),
+                 kLargestPivot = std::numeric_limits<double>::max();
 
 constexpr int lanes_for(int count) {
   return (count + 3) / 4;

@@ -11,6 +11,8 @@
 
 namespace flexarm {
 
+class InteriorCondensation;
+
 /// Of a coordinate that follows another one: the factors of its row and of its column, the derivative of the former,
 /// and that derivative times the row, see ReducedResidual::fold_mimics.
 struct MimicMap {
@@ -38,6 +40,11 @@ class TangentBackend {
   /// True where no two elements share a block. Then set_zero() leaves these blocks alone, and who writes first into
   /// those of an element sets them; else all add.
   bool keeps_elements_apart() const { return keeps_elements_apart_; }
+  /// To be called once where beams evaluate packs of elements: a backend that eliminates interior nodes side by side
+  /// then has a condensation().
+  virtual void condense_interiors() {}
+  /// Where packs of elements with interior nodes are evaluated, in the place of their element_block(). Or null.
+  virtual InteriorCondensation* condensation() { return nullptr; }
   /// Adds constraint `index` of a closure with its multiplier, before joints are folded.
   virtual void add_closure(int closure, int index, double multiplier, const ClosureMaps& maps) = 0;
   /// Adds blocks of a closure's nodes with each other, {child, parent}: of a spring between them.

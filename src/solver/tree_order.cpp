@@ -9,7 +9,8 @@ TreeOrder::TreeOrder(const Model& model, const DegreesOfFreedom& dof)
       dof_(dof),
       completion_(dof.size.size(), -1),
       windows_(model.joints.size(), {0, 0}),
-      visited_(dof.size.size(), -1) {
+      visited_(dof.size.size(), -1),
+      receives_(dof.node_count) {
   order_parts();
   if (parts_.empty()) return;
   place_variables();
@@ -222,6 +223,17 @@ void TreeOrder::find_borders() {
   std::fill(visited_.begin(), visited_.end(), -1);
   for (TreePart& part : parts_) part.first_child = part.next_sibling = -1;
   for (std::size_t p = 0; p < parts_.size(); ++p) find_border(static_cast<int>(p));
+  find_kept_interiors();
+}
+
+void TreeOrder::find_kept_interiors() {
+  std::fill(receives_.begin(), receives_.end(), false);
+  for (const TreePart& part : parts_)
+    if (part.passes_node && part.border_count == 1) receives_[*border(part)] = true;
+  for (TreePart& part : parts_)
+    part.keeps_interior = part.node_count > 2 && !part.has_border &&
+                          std::none_of(part.nodes.begin() + 1, part.nodes.begin() + part.node_count - 1,
+                                       [&](int node) { return receives_[node]; });
 }
 
 /// What a part couples, but for sliders' windows and what others pass on to it.

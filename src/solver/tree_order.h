@@ -24,6 +24,7 @@ struct TreePart {
   int first_child = -1, next_sibling = -1;  ///< parts that pass on what more than one node couples
   bool has_border = false;                  ///< more is coupled here than the part's own nodes and coordinates
   bool passes_node = true;                  ///< what remains is a 6 x 6 block of the inboard node, or nothing
+  bool keeps_interior = false;              ///< an element without border, between whose ends nobody leaves anything
 };
 
 /// The parts in the order of their elimination, as a multifrontal method takes them: a variable is eliminated in the
@@ -61,6 +62,7 @@ class TreeOrder {
   int last_part_of_line(const SlideLine& line) const;
   void find_borders();
   void find_border(int index);
+  void find_kept_interiors();
   template <class Visit>
   void for_each_coupled(const TreePart& part, const Visit& visit) const;
   template <class Visit>
@@ -75,6 +77,7 @@ class TreeOrder {
   std::vector<int> completion_, last_;
   std::vector<NodeRange> windows_;  // per joint
   std::vector<int> border_, visited_, most_riders_;
+  std::vector<char> receives_;  // per node: a part leaves its block there
 };
 
 }  // namespace flexarm

@@ -75,14 +75,22 @@ void TreeTangent::hold_rows() {
 
 // ---------------------------------------------------------------- factors
 
+/// Of the elements that a part takes, before it does.
+void TreeTangent::condense(const TreePart& part, double* values) {
+  for (const int element : part.elements)
+    elements_.set_condensed(element, condensation_->prepare(element, blocks_, values));
+}
+
 /// With a right-hand side, whose values stand ready, its forward elimination, too.
 bool TreeTangent::eliminate(const Eigen::VectorXd* b) {
   order_.update();
   hold_rows();
   bordered_.begin();
+  if (condensation_) condensation_->begin();
   const std::vector<TreePart>& parts = order_.parts();
   for (int p = 0; p < static_cast<int>(parts.size()); ++p) {
     const int j = parts[p].joint;
+    if (condensation_) condense(parts[p], b ? values_.data() : nullptr);
     const bool is_element = !parts[p].has_border && j < 0;  // takes the right-hand side along
     const bool done = parts[p].has_border ? bordered_.eliminate(p)
                       : is_element        ? elements_.eliminate(p, blocks_.elements.data(), blocks_.diagonals.data(),
@@ -123,6 +131,7 @@ bool TreeTangent::substitute_back(Eigen::VectorXd& b) {
     parts[p].has_border   ? bordered_.backward(p, values_)
     : parts[p].joint >= 0 ? joints_[parts[p].joint].backward(blocks_.maps[parts[p].joint], values_.data())
                           : elements_.backward(p, blocks_.elements.data(), values_.data());
+  if (condensation_) condensation_->backward(values_.data());
   for (const auto& [scalar, equation, count] : dof_.runs)
     std::copy_n(values_.data() + scalar, count, b.data() + equation);
   return b.allFinite();
@@ -130,6 +139,7 @@ bool TreeTangent::substitute_back(Eigen::VectorXd& b) {
 
 bool TreeTangent::solve(Eigen::VectorXd& b) {
   set_right_hand_side(b);
+  if (condensation_) condensation_->forward(values_.data());
   for (int p = 0; p < static_cast<int>(order_.parts().size()); ++p) forward(p, b);
   return substitute_back(b);
 }

@@ -5,6 +5,7 @@
 
 #include "solver/bordered_elimination.h"
 #include "solver/element_elimination.h"
+#include "solver/interior_condensation.h"
 #include "solver/joint_front.h"
 #include "solver/tangent_backend.h"
 #include "solver/tree_blocks.h"
@@ -28,6 +29,8 @@ class TreeTangent : public TangentBackend {
   TreeTangent(const Model& model, const DegreesOfFreedom& dof);
 
   void set_zero() override;
+  void condense_interiors() override { condensation_ = std::make_unique<InteriorCondensation>(model_, order_); }
+  InteriorCondensation* condensation() override { return condensation_.get(); }
   void add_closure(int closure, int index, double multiplier, const ClosureMaps& maps) override;
   void add_coupling(int closure, const Eigen::Matrix<double, 12, 12>& blocks) override;
   FoldMaps& fold_maps(int joint) override { return blocks_.maps[joint]; }
@@ -47,6 +50,7 @@ class TreeTangent : public TangentBackend {
   void hold_rows();
   void set_right_hand_side(const Eigen::VectorXd& b);
   bool eliminate(const Eigen::VectorXd* b);
+  void condense(const TreePart& part, double* values);
   void forward(int part, const Eigen::VectorXd& b);
   bool substitute_back(Eigen::VectorXd& b);
 
@@ -54,6 +58,7 @@ class TreeTangent : public TangentBackend {
   const DegreesOfFreedom& dof_;
   TreeBlocks blocks_;
   TreeOrder order_;
+  std::unique_ptr<InteriorCondensation> condensation_;  // null unless beams leave their packs there
   ElementElimination<6> elements_;
   BorderedElimination bordered_;
   std::vector<JointFront> joints_;  // in the model's order
