@@ -1,16 +1,57 @@
 #include "integrators/unknown_scales.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
+
+#include "math/pack.h"
+#include "math/simd.h"
 
 namespace flexarm {
 namespace {
 
-/// Largest absolute value; NaN where one is not a number.
-template <class Values>
-double largest(const Eigen::ArrayBase<Values>& values) {
-  return values.size() > 0 ? values.abs().template maxCoeff<Eigen::PropagateNaN>() : 0.0;
+/// Largest absolute value of what it was given; NaN as soon as that was not a number.
+class Largest {
+ public:
+  [[gnu::always_inline]] void take(const Pack& values) {
+    const Pack size = abs(values);
+    is_broken_ |= values.values() != values.values();
+    largest_ = Pack(largest_.values() > size.values() ? largest_.values() : size.values());
+  }
+  double value() const {
+    double out = 0;
+    for (int lane = 0; lane < Pack::kLanes; ++lane) {
+      if (is_broken_[lane]) return std::numeric_limits<double>::quiet_NaN();
+      out = std::max(out, largest_[lane]);
+    }
+    return out;
+  }
+
+ private:
+  Pack largest_ = 0.0;
+  Pack::Mask is_broken_{};
+};
+
+/// take(next), four entries of `size` at a time: next(array) gives those of an array, zero beyond its end.
+template <class Take>
+[[gnu::always_inline]] inline void by_fours(std::size_t size, const Take& take) {
+  const std::size_t whole = size / Pack::kLanes * Pack::kLanes;
+  const auto entries = [](const double* from, std::size_t bytes) {
+    Pack::Vector out{};
+    std::memcpy(&out, from, bytes);
+    return Pack(out);
+  };
+  for (std::size_t i = 0; i < whole; i += Pack::kLanes)
+    take([&](const double* array) { return entries(array + i, sizeof(Pack)); });
+  if (whole < size) take([&](const double* array) { return entries(array + whole, (size - whole) * sizeof(double)); });
+}
+
+double largest_product(const Eigen::VectorXd& a, const Eigen::ArrayXd& b) {
+  Largest largest;
+  simd::run([&] { by_fours(a.size(), [&](const auto& next) { largest.take(next(a.data()) * next(b.data())); }); });
+  return largest.value();
 }
 
 }  // namespace
@@ -41,7 +82,7 @@ UnknownScales::UnknownScales(const Model& model, const DegreesOfFreedom& dof)
 
 double UnknownScales::norm(const Eigen::VectorXd& increment, double step) const {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  double norm = largest(increment.array() * scales_);
+  double norm = largest_product(increment, scales_);
   if (!std::isfinite(norm)) return infinity;
   if (step == 0 || mass_ == 0) return norm;
   const double way = step * step / (mass_ * length_);
@@ -53,26 +94,35 @@ double UnknownScales::norm(const Eigen::VectorXd& increment, double step) const 
 }
 
 double UnknownScales::largest_moment(const Eigen::VectorXd& residual) const {
-  return largest((scales_ > 0).select(residual.array() / scales_, 0.0));
+  if (residual.size() == 0) return 0;
+  return (scales_ > 0).select(residual.array().abs() / scales_, 0.0).maxCoeff<Eigen::PropagateNaN>();
 }
 
 double UnknownScales::largest_rotation(const Eigen::VectorXd& increment) const {
-  return largest(increment.array() * rotations_);
+  return largest_product(increment, rotations_);
 }
 
 void UnknownScales::choose_order(IncrementHistory& history) const {
   if (history.count < 2 || scales_.size() == 0) return;
-  const auto made = [&](int i) {
-    return Eigen::Map<const Eigen::ArrayXd>(history.increments[i].data(), scales_.size());
-  };
+  constexpr int kLowest = IncrementHistory::kNoMotion, kOrders = IncrementHistory::kHighestOrder + 1 - kLowest;
+  static_assert(IncrementHistory::kLength == 4);
+  std::array<IncrementHistory::Weights, kOrders> weights;
+  for (int i = 0; i < kOrders; ++i) weights[i] = history.weights(kLowest + i, 1, history.steps[0]);
+  std::array<Largest, kOrders> errors;
+  simd::run([&] {
+    by_fours(scales_.size(), [&](const auto& next) {
+      const auto made = [&](int i) { return next(history.increments[i].data()); };
+      const Pack made_0 = made(0), made_1 = made(1), made_2 = made(2), made_3 = made(3), scale = next(scales_.data());
+      for (int i = 0; i < kOrders; ++i) {
+        const auto& [unused, w_1, w_2, w_3] = weights[i];
+        errors[i].take((made_0 - (w_1 * made_1 + w_2 * made_2 + w_3 * made_3)) * scale);
+      }
+    });
+  });
   double smallest = std::numeric_limits<double>::infinity();
-  for (int order = IncrementHistory::kNoMotion; order <= IncrementHistory::kHighestOrder; ++order) {
-    const IncrementHistory::Weights weights = history.weights(order, 1, history.steps[0]);
-    if (weights[1] == 0 && order > IncrementHistory::kNoMotion) continue;
-    static_assert(IncrementHistory::kLength == 4);
-    const double error =
-        largest((made(0) - (weights[1] * made(1) + weights[2] * made(2) + weights[3] * made(3))) * scales_);
-    if (error < smallest) smallest = error, history.order = order;
+  for (int i = 0; i < kOrders; ++i) {
+    if (weights[i][1] == 0 && kLowest + i > IncrementHistory::kNoMotion) continue;
+    if (const double error = errors[i].value(); error < smallest) smallest = error, history.order = kLowest + i;
   }
 }
 
