@@ -94,13 +94,25 @@ class RotorBalance {
   double root(const SmoothDirection& direction, double guess) const {
     return increasing_root([&](double u) { return value(terms(u), direction); }, guess, scale());
   }
-  double smooth_root(double guess) const {
-    return increasing_root([&](double u) { return value(terms(u), smooth(u)); }, guess, scale());
-  }
 
+  /// At the root, with friction in the direction of the rotor's rate.
+  MotorAction smooth_action(double guess) const {
+    Terms t{};
+    SmoothDirection direction;
+    const auto evaluate = [&](double u) {
+      t = terms(u), direction = smooth(u);
+      return value(t, direction);
+    };
+    const double u = increasing_root(evaluate, guess, scale());
+    return action(u, t, direction, true);
+  }
   /// `slides`: the rotor follows the coordinate; else friction holds it.
   MotorAction action(double u, const SmoothDirection& direction, bool slides) const {
-    const Terms t = terms(u);
+    return action(u, terms(u), direction, slides);
+  }
+
+ private:
+  MotorAction action(double u, const Terms& t, const SmoothDirection& direction, bool slides) const {
     const ValueAndSlope balance = value(t, direction);
     const double by_link = t.gear.slope - drive_.loss * t.transmitted_by_twist * direction.value - t.motor.by_link;
     // Where nothing holds the rotor, as within the play at rest, it does not feel the coordinate either.
@@ -118,8 +130,6 @@ class RotorBalance {
     if (!is_static()) out.dissipated += (slides ? t.capacity * direction.value : -t.without_friction) * u;
     return out;
   }
-
- private:
   bool is_static() const { return link_.step == 0; }
   /// The twist's step if the rotor's increment is u.
   CoordinateStep twist(double u) const {
@@ -164,8 +174,7 @@ MotorAction motor_action(const Drive& drive, const MotorDemand& demand, const Ro
   if (!drive.gear) return rigid_action(drive, demand, rotor, link);
   const RotorBalance balance(drive, demand, rotor, link);
   if (drive.sticks && link.step != 0) return sticking_action(balance, rotor, guess);
-  const double u = balance.smooth_root(guess);
-  return balance.action(u, balance.smooth(u), true);
+  return balance.smooth_action(guess);
 }
 
 MotorAction held_motor_action(const Drive& drive, const MotorDemand& demand, const RotorStep& rotor,

@@ -13,7 +13,8 @@ struct ValueAndSlope {
 
 /// The root of a function that never falls and has one, whatever kinks it has: Newton's method from `guess`, between
 /// the bounds that the signs seen so far give, which are halved where it does not come forward. `evaluate(x)` returns a
-/// ValueAndSlope; `scale`: a length on the axis, first step where there is no slope.
+/// ValueAndSlope, last of all at the root but for round-off; `scale`: a length on the axis, first step where there is
+/// no slope.
 template <class Evaluate>
 double increasing_root(const Evaluate& evaluate, double guess, double scale) {
   constexpr int kMostSteps = 300;  // far more than bisection from any bounds takes

@@ -99,8 +99,9 @@ TEST(Pack, RotationsAreThoseOfTheLanes) {
         EXPECT_LE((get_lane(quaternion.coeffs(), l) - so3::exp_quaternion(vector).coeffs()).norm(), kRoundOff);
         EXPECT_LE((get_lane(logarithm, l) - vector).norm(), kRoundOff);
         const Quaternion opposite(-so3::exp_quaternion(vector).coeffs());
-        if (vector.norm() > 0.01)  // else the axis is round-off
+        if (vector.norm() > 0.01) {  // else the axis is round-off
           EXPECT_LE((get_lane(unfolded, l) - so3::unfolded_log(opposite)).norm(), 1e2 * kRoundOff) << vector.norm();
+        }
       }
     }
 }
