@@ -61,6 +61,7 @@ void BorderedElimination::reserve() {
   scalars_.reserve(scalars);
   memory_.resize(fours);
   runs_.reserve(most);
+  certain_.reserve(factors_.size());
   work_.resize(lanes_for(most));
   front_.reserve(most);
 }
@@ -80,9 +81,12 @@ std::size_t BorderedElimination::allocate(int numbers) {
 bool BorderedElimination::eliminate(int index) {
   const TreePart& part = order_.parts()[index];
   Factors& factors = factors_[index] = {};
+  if (part.front != index) return true;
   lay_out(index);
   assemble(index);
-  if (part.joint >= 0) fold_slave(part, factors);
+  for_each_member(index, [&](const TreePart& member) {
+    if (member.joint >= 0) fold_slave(member, factors);
+  });
   fold_mimics(part, factors);
   hold_rows(index, factors);
   const int pivots = front_.eliminate(candidates_, certain_, part.passes_node);
@@ -103,50 +107,67 @@ void BorderedElimination::add_scalars(int variable) {
   }
 }
 
+template <class Visit>
+void BorderedElimination::for_each_member(int index, const Visit& visit) const {
+  const std::vector<TreePart>& parts = order_.parts();
+  for (int p = parts[index].first_member; p >= 0; p = parts[p].next_member) visit(parts[p]);
+}
+
+bool BorderedElimination::is_folded(const TreePart& part, int variable) const {
+  if (variable < dof_.node_count) return dof_.slave_joint[variable] >= 0;
+  return std::any_of(part.mimics.begin(), part.mimics.end(),
+                     [&](int i) { return dof_.mimics[i].slave_variable == variable; });
+}
+
 /// Nodes that are complete, what was passed on without a pivot, coordinates and multipliers that are complete; what
 /// rides along; what is folded.
 void BorderedElimination::lay_out(int index) {
   const TreePart& part = order_.parts()[index];
-  const auto is_folded = [&](int variable) {
-    return variable < dof_.node_count ? dof_.slave_joint[variable] >= 0
-                                      : std::any_of(part.mimics.begin(), part.mimics.end(),
-                                                    [&](int i) { return dof_.mimics[i].slave_variable == variable; });
-  };
   front_.clear();
-  for (const int variable : part.complete)
-    if (variable < dof_.node_count && !is_folded(variable)) add_scalars(variable);
-  certain_ = front_.size();
-  for (int child = part.first_child; child >= 0; child = order_.parts()[child].next_sibling) {
-    const Factors& f = factors_[child];
-    const auto rows = scalars_.begin() + f.rows + f.pivots, columns = scalars_.begin() + f.columns + f.pivots;
-    front_.rows.insert(front_.rows.end(), rows, rows + f.delayed);
-    front_.columns.insert(front_.columns.end(), columns, columns + f.delayed);
-  }
-  for (const int variable : part.complete)
-    if (variable >= dof_.node_count && !is_folded(variable)) add_scalars(variable);
+  certain_.clear();
+  for_each_member(index, [&](const TreePart& member) {
+    for (const int variable : member.complete)
+      if (variable < dof_.node_count && !is_folded(member, variable)) add_scalars(variable);
+    certain_.push_back(front_.size());
+  });
+  for_each_member(index, [&](const TreePart& member) {
+    for (int child = member.first_child; child >= 0; child = order_.parts()[child].next_sibling) {
+      const Factors& f = factors_[child];  // without any where the child is a member
+      const auto rows = scalars_.begin() + f.rows + f.pivots, columns = scalars_.begin() + f.columns + f.pivots;
+      front_.rows.insert(front_.rows.end(), rows, rows + f.delayed);
+      front_.columns.insert(front_.columns.end(), columns, columns + f.delayed);
+    }
+  });
+  for_each_member(index, [&](const TreePart& member) {
+    for (const int variable : member.complete)
+      if (variable >= dof_.node_count && !is_folded(member, variable)) add_scalars(variable);
+  });
   candidates_ = front_.size();
   const int* border = order_.border(part);
   for (int i = 0; i < part.border_count; ++i)
     if (order_.completion(border[i]) > index) add_scalars(border[i]);
   const int active = front_.size();
-  for (const int variable : part.complete)
-    if (is_folded(variable)) add_scalars(variable);
+  for_each_member(index, [&](const TreePart& member) {
+    for (const int variable : member.complete)
+      if (is_folded(member, variable)) add_scalars(variable);
+  });
   front_.start(active);
 }
 
 void BorderedElimination::assemble(int index) {
-  const TreePart& part = order_.parts()[index];
-  for (int child = part.first_child; child >= 0; child = order_.parts()[child].next_sibling)
-    add_remainder(factors_[child]);
-  for (const int e : part.elements) {
-    const TreePart& element = order_.parts()[e];
-    for (int i = 0; i < element.node_count; ++i)
-      for (int j = 0; j < element.node_count; ++j)
-        front_.add(6 * element.nodes[i], 6 * element.nodes[j],
-                   blocks_.element(element.first_block + i * element.node_count + j), 6, 6, 6);
-  }
-  for (const int closure : part.closures) add_closure(closure);
-  for (const int variable : part.complete) add_diagonal(variable);
+  for_each_member(index, [&](const TreePart& part) {
+    for (int child = part.first_child; child >= 0; child = order_.parts()[child].next_sibling)
+      if (order_.parts()[child].front == child) add_remainder(factors_[child]);
+    for (const int e : part.elements) {
+      const TreePart& element = order_.parts()[e];
+      for (int i = 0; i < element.node_count; ++i)
+        for (int j = 0; j < element.node_count; ++j)
+          front_.add(6 * element.nodes[i], 6 * element.nodes[j],
+                     blocks_.element(element.first_block + i * element.node_count + j), 6, 6, 6);
+    }
+    for (const int closure : part.closures) add_closure(closure);
+    for (const int variable : part.complete) add_diagonal(variable);
+  });
 }
 
 void BorderedElimination::add_diagonal(int variable) {
@@ -192,6 +213,7 @@ void BorderedElimination::add_remainder(const Factors& f) {
 
 void BorderedElimination::fold_slave(const TreePart& part, Factors& factors) {
   const JointMap& joint = model_.joints[part.joint];
+  factors.joint = part.joint;
   set_targets(joint, part.joint, factors);
   set_maps(joint, part.joint, factors);
   const int distance = 4 * lanes_for(factors.target_count);
@@ -291,7 +313,7 @@ void BorderedElimination::hold_rows(int index, Factors& factors) {
   factors.held = scalars_.size();
   for (const TreeBlocks::HeldRow& held : blocks_.held) {
     const int variable = dof_.variable_of_joint(held.joint);
-    if (order_.completion(variable) != index) continue;
+    if (order_.parts()[order_.completion(variable)].front != index) continue;
     const int scalar = dof_.first[variable] + held.component;
     scalars_.push_back(scalar);
     front_.clear_row(scalar);

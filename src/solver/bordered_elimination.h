@@ -9,11 +9,11 @@
 
 namespace flexarm {
 
-/// One dense front per part that TreeOrder finds to have a border: what the part adds, what others have passed on, the
-/// fold of a slave, elimination of what is complete. What remains goes into the block of the inboard node or, where it
-/// couples more than that, to a later part. A released coordinate or a multiplier without a pivot that is large enough
-/// is passed on, too, until it finds one: multipliers have zeros on their diagonal, and a loop that is cut open may
-/// move without inertia or stiffness.
+/// One dense front for each part that TreeOrder finds to have a border, or for several of them: what they add, what
+/// others have passed on, the fold of a slave, elimination of what is complete. What remains goes into the block of the
+/// inboard node or, where it couples more than that, to a later part. A released coordinate or a multiplier without a
+/// pivot that is large enough is passed on, too, until it finds one: multipliers have zeros on their diagonal, and a
+/// loop that is cut open may move without inertia or stiffness.
 class BorderedElimination {
  public:
   /// All must outlive it.
@@ -21,7 +21,7 @@ class BorderedElimination {
 
   /// Forgets all factors.
   void begin();
-  /// False if the part is singular.
+  /// False if the part is singular. Of parts that share a front the last one eliminates all.
   bool eliminate(int part);
   /// `values`: per scalar of the mechanism, the right-hand side by rows, and after backward() the solution by columns.
   void forward(int part, const Eigen::VectorXd& b, std::vector<double>& values);
@@ -33,6 +33,7 @@ class BorderedElimination {
     int size = 0, pivots = 0, delayed = 0, stride = 0;
     std::size_t rows = 0, columns = 0, lower = 0, upper = 0, reciprocals = 0, forwarded = 0;
     std::size_t remainder = 0;  ///< Schur complement for a later part
+    int joint = -1;             ///< whose slave is folded
     int target_count = 0, held_count = 0;
     std::size_t targets = 0, left = 0, right = 0, held = 0, mimics = 0;
   };
@@ -46,6 +47,9 @@ class BorderedElimination {
   std::size_t allocate(int numbers);
   void reserve();
   void lay_out(int index);
+  template <class Visit>
+  void for_each_member(int index, const Visit& visit) const;
+  bool is_folded(const TreePart& part, int variable) const;
   void add_scalars(int variable);
   void assemble(int index);
   void add_diagonal(int variable);
@@ -65,7 +69,8 @@ class BorderedElimination {
   const TreeOrder& order_;
   TreeBlocks& blocks_;
   DenseFront front_;
-  int candidates_ = 0, certain_ = 0;
+  int candidates_ = 0;
+  std::vector<int> certain_;      // of the front's nodes, those of each of its parts end there
   std::vector<char> is_placed_;   // per scalar: it has rows and columns in fronts
   std::vector<Factors> factors_;  // per part
   std::vector<int> scalars_;

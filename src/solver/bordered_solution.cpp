@@ -9,8 +9,9 @@ namespace flexarm {
 void BorderedElimination::forward(int index, const Eigen::VectorXd& b, std::vector<double>& values) {
   const TreePart& part = order_.parts()[index];
   const Factors& f = factors_[index];
-  if (part.joint >= 0) {
-    const double *slave = values.data() + 6 * model_.joints[part.joint].slave, *left = memory(f.left);
+  if (part.front != index) return;
+  if (f.joint >= 0) {
+    const double *slave = values.data() + 6 * model_.joints[f.joint].slave, *left = memory(f.left);
     const int distance = 4 * lanes_for(f.target_count);
     for (int k = 0; k < 6; ++k)
       for (int t = 0; t < f.target_count; ++t) values[scalars_[f.targets + t]] += left[distance * k + t] * slave[k];
@@ -42,6 +43,7 @@ void BorderedElimination::forward(int index, const Eigen::VectorXd& b, std::vect
 void BorderedElimination::backward(int index, std::vector<double>& values) const {
   const TreePart& part = order_.parts()[index];
   const Factors& f = factors_[index];
+  if (part.front != index) return;
   double* x = numbers(work_);
   const int lanes = f.stride / 4;
   std::fill_n(x, f.stride, 0.0);
@@ -59,8 +61,8 @@ void BorderedElimination::backward(int index, std::vector<double>& values) const
     const DegreesOfFreedom::Mimic& mimic = dof_.mimics[part.mimics[i]];
     values[dof_.first[mimic.slave_variable]] = memory(f.mimics)[2 * i + 1] * values[dof_.first[mimic.master_variable]];
   }
-  if (part.joint < 0) return;
-  double* slave = values.data() + 6 * model_.joints[part.joint].slave;
+  if (f.joint < 0) return;
+  double* slave = values.data() + 6 * model_.joints[f.joint].slave;
   const double* right = memory(f.right);
   const int distance = 4 * lanes_for(f.target_count);
   for (int k = 0; k < 6; ++k) {

@@ -105,16 +105,19 @@ struct Elimination {
     return true;
   }
 
-  [[gnu::always_inline]] inline bool take_pivots(int certain, bool all) {
-    for (int k = 0; k < certain; ++k)
-      if (!take_pivot(k, true, candidates)) return false;
-    clear_border();
+  [[gnu::always_inline]] inline bool take_pivots(const std::vector<int>& certain, bool all) {
+    for (const int end : certain) {
+      const int first = pivots, group = end < certain.back() ? end : candidates;
+      while (pivots < end)
+        if (!take_pivot(pivots, true, group, group)) return false;
+      clear_below(first, group);
+    }
     // A column that had no pivot may have one after others. Where all must go, the best come first.
     for (const bool must : {false, true}) {
       if (must && !all) break;
       for (int before = -1; before != pivots && pivots < candidates;) {
         before = pivots;
-        for (int k = pivots; k < candidates; ++k) take_pivot(k, must, active);
+        for (int k = pivots; k < candidates; ++k) take_pivot(k, must, candidates, active);
       }
     }
     return !all || pivots == candidates;
@@ -136,10 +139,10 @@ struct Elimination {
     return most;
   }
 
-  /// Takes a pivot in the column, if one is good enough, from the rows up to `last_row`.
-  [[gnu::always_inline]] inline bool take_pivot(int column, bool must, int last_row) {
+  /// Takes a pivot in the column from the rows up to `searched`, if one is good enough, off those up to `last_row`.
+  [[gnu::always_inline]] inline bool take_pivot(int column, bool must, int searched, int last_row) {
     int pivot_row, other;
-    const double size = largest_entry(column, pivots, candidates, pivot_row);
+    const double size = largest_entry(column, pivots, searched, pivot_row);
     if (!(size > kRoundOff * column_sizes[column])) return false;
     if (!must && size < kThreshold * largest_entry(column, candidates, active, other)) return false;
     swap_rows(pivot_row, pivots);
@@ -167,31 +170,32 @@ struct Elimination {
     return true;
   }
 
-  /// Subtracts the pivots' rows from those of the border, which had no part in the search for them.
-  [[gnu::always_inline]] inline void clear_border() {
-    if (pivots == 0) return;
-    for (int k = 0; k < pivots; ++k) {
+  /// Subtracts the pivots from the first one on from rows that had no part in the search for them.
+  [[gnu::always_inline]] inline void clear_below(int first_pivot, int first_row) {
+    if (pivots == first_pivot) return;
+    for (int k = first_pivot; k < pivots; ++k) {
       double* factors = multipliers(k);
-      for (int i = candidates; i < active; ++i) factors[i] = row(i)[k];
+      for (int i = first_row; i < active; ++i) factors[i] = row(i)[k];
     }
-    const int lanes = lanes_for(active - candidates);
-    for (int k = 0; k < pivots; ++k) {
-      double* own = multipliers(k) + candidates;
+    const int lanes = lanes_for(active - first_row);
+    for (int k = first_pivot; k < pivots; ++k) {
+      double* own = multipliers(k) + first_row;
       const Lanes reciprocal = broadcast(reciprocals[k]);
       for (int v = 0; v < lanes; ++v) store(load(own + 4 * v) * reciprocal, own + 4 * v);
-      for (int j = k + 1; j < pivots; ++j) subtract(multipliers(j) + candidates, row(k)[j], own, 0, lanes);
+      for (int j = k + 1; j < pivots; ++j) subtract(multipliers(j) + first_row, row(k)[j], own, 0, lanes);
     }
-    for (int k = 0; k < pivots; ++k) std::fill(multipliers(k) + active, multipliers(k) + lower_stride, 0.0);
-    const int first = pivots / 4, last = lanes_for(active);
-    int i = candidates;
+    for (int k = first_pivot; k < pivots; ++k) std::fill(multipliers(k) + active, multipliers(k) + lower_stride, 0.0);
+    const int first = pivots / 4, last = lanes_for(active), count = pivots - first_pivot;
+    const double *factors = multipliers(first_pivot), *upper = row(first_pivot);
+    int i = first_row;
     for (; i + 4 <= active; i += 4) {
       int v = first;
       for (; v + 2 <= last; v += 2)
-        subtract_products<2>(row(i) + 4 * v, stride, lower + i, lower_stride, values + 4 * v, pivots);
-      if (v < last) subtract_products<1>(row(i) + 4 * v, stride, lower + i, lower_stride, values + 4 * v, pivots);
+        subtract_products<2>(row(i) + 4 * v, stride, factors + i, lower_stride, upper + 4 * v, count);
+      if (v < last) subtract_products<1>(row(i) + 4 * v, stride, factors + i, lower_stride, upper + 4 * v, count);
     }
     for (; i < active; ++i)
-      for (int k = 0; k < pivots; ++k) subtract(row(i), multipliers(k)[i], row(k), first, last);
+      for (int k = first_pivot; k < pivots; ++k) subtract(row(i), multipliers(k)[i], row(k), first, last);
   }
 
   [[gnu::always_inline]] inline void swap_rows(int a, int b) {
@@ -291,7 +295,7 @@ void DenseFront::clear_row(int scalar) {
   std::fill_n(row(row_place_[scalar]), stride_, 0.0);
 }
 
-int DenseFront::eliminate(int candidates, int certain, bool all) {
+int DenseFront::eliminate(int candidates, const std::vector<int>& certain, bool all) {
   lower_.resize(std::max(lower_.size(), static_cast<std::size_t>(lower_stride() / 4) * candidates));
   scales_.resize(active_);
   column_sizes_.assign(lanes_for(candidates), {});
@@ -308,7 +312,7 @@ int DenseFront::eliminate(int candidates, int certain, bool all) {
                           rows.data(),
                           columns.data()};
   bool done = false;
-  const int searched = certain < candidates ? active_ : candidates;
+  const int searched = !certain.empty() && certain.back() == candidates ? candidates : active_;
   simd::run([&] { done = elimination.scale(searched) && elimination.take_pivots(certain, all); });
   return done ? elimination.pivots : -1;
 }

@@ -42,11 +42,12 @@ class DenseFront {
   /// Replaces the row of a scalar by zeros.
   void clear_row(int scalar);
 
-  /// Eliminates of the first `candidates` rows and columns the first `certain` ones, and those of the others whose
-  /// pivots are large enough beside the rest of their columns; `all`: every one of them. They are put first, and their
-  /// rows have become those of U (from the diagonal on); the rest is the Schur complement. -1 if a pivot that must be
-  /// taken has no correct digits.
-  int eliminate(int candidates, int certain, bool all);
+  /// Eliminates of the first `candidates` rows and columns those that are certain, group by group up to the ends that
+  /// are given: every group looks for pivots in its own rows. Then those of the others whose pivots are large enough
+  /// beside the rest of their columns; `all`: every one of them. They are put first, and their rows have become those
+  /// of U (from the diagonal on); the rest is the Schur complement. -1 if a pivot that must be taken has no correct
+  /// digits.
+  int eliminate(int candidates, const std::vector<int>& certain, bool all);
   /// Columns of L behind the diagonal, by columns, and reciprocal pivots.
   const double* lower(int k) const { return numbers(lower_) + static_cast<std::size_t>(lower_stride()) * k; }
   double reciprocal(int k) const { return reciprocals_[k]; }

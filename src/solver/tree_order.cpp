@@ -223,7 +223,35 @@ void TreeOrder::find_borders() {
   std::fill(visited_.begin(), visited_.end(), -1);
   for (TreePart& part : parts_) part.first_child = part.next_sibling = -1;
   for (std::size_t p = 0; p < parts_.size(); ++p) find_border(static_cast<int>(p));
+  find_fronts();
   find_kept_interiors();
+}
+
+/// A part joins the front of the one that it passes on to where that has nothing else to eliminate or to leave: a
+/// slider and the elements of its window. No zeros come in, and nothing is handed over. (Fundamental supernodes: Liu,
+/// Ng and Peyton 1993)
+void TreeOrder::find_fronts() {
+  for (int p = 0; p < static_cast<int>(parts_.size()); ++p) parts_[p].first_member = p, parts_[p].next_member = -1;
+  for (int p = 0; p < static_cast<int>(parts_.size()); ++p) {
+    TreePart& part = parts_[p];
+    if (part.passes_to < 0 || !may_join(part, parts_[part.passes_to])) continue;
+    part.next_member = part.passes_to;
+    parts_[part.passes_to].first_member = part.first_member;
+  }
+  for (int p = static_cast<int>(parts_.size()) - 1; p >= 0; --p)
+    parts_[p].front = parts_[p].next_member < 0 ? p : parts_[parts_[p].next_member].front;
+}
+
+bool TreeOrder::may_join(const TreePart& part, const TreePart& next) const {
+  for (const TreePart* each : {&part, &next})
+    if (!each->closures.empty() || !each->mimics.empty()) return false;
+  if (parts_[next.first_member].next_member >= 0) return false;  // others have joined it
+  int folds = next.joint >= 0 ? 1 : 0;
+  for (int p = part.first_member; p >= 0; p = parts_[p].next_member) folds += parts_[p].joint >= 0 ? 1 : 0;
+  const int* rest = border(part);
+  const int first_multiplier = dof_.node_count + dof_.joint_count;  // they wait in fronts behind that of their closure
+  return folds <= 1 && next.complete.size() + next.border_count == static_cast<std::size_t>(part.border_count) &&
+         std::all_of(rest, rest + part.border_count, [&](int variable) { return variable < first_multiplier; });
 }
 
 void TreeOrder::find_kept_interiors() {
@@ -281,6 +309,7 @@ void TreeOrder::find_border(int index) {
       part.joint >= 0 ? part.elements.empty() : part.elements.size() == 1 && part.elements[0] == index;
   part.has_border =
       part.first_child >= 0 || !part.passes_node || !part.closures.empty() || !part.mimics.empty() || !has_own_element;
+  part.passes_to = part.passes_node ? -1 : next;
   if (part.passes_node) return;
   part.next_sibling = parts_[next].first_child;
   parts_[next].first_child = index;

@@ -22,6 +22,9 @@ struct TreePart {
   // ---- these follow the sliders
   int first_border = 0, border_count = 0;   ///< in TreeOrder::border(): what remains, eliminated by later parts
   int first_child = -1, next_sibling = -1;  ///< parts that pass on what more than one node couples
+  int passes_to = -1;                       ///< where that goes; -1: no more than a node's block remains
+  int front = -1;                           ///< the part in whose front this one is eliminated: itself, mostly
+  int first_member = -1, next_member = -1;  ///< of those in its own front; behind this one in its front, -1: none
   bool has_border = false;                  ///< more is coupled here than the part's own nodes and coordinates
   bool passes_node = true;                  ///< what remains is a 6 x 6 block of the inboard node, or nothing
   bool keeps_interior = false;              ///< an element without border, between whose ends nobody leaves anything
@@ -62,6 +65,8 @@ class TreeOrder {
   int last_part_of_line(const SlideLine& line) const;
   void find_borders();
   void find_border(int index);
+  void find_fronts();
+  bool may_join(const TreePart& part, const TreePart& next) const;
   void find_kept_interiors();
   template <class Visit>
   void for_each_coupled(const TreePart& part, const Visit& visit) const;

@@ -79,9 +79,26 @@ TEST(DenseFront, LeavesTheSchurComplementAndItsFactors) {
     for (const int candidates : {1, (size + 1) / 2, size})
       for (const int certain : {0, (candidates + 1) / 2, candidates}) {
         DenseFront front = front_of(matrix);
+        ASSERT_EQ(front.eliminate(candidates, {certain}, true), candidates);
+        expect_schur_complement(matrix, front, candidates);
+        expect_factors(matrix, front, candidates);
+      }
+  }
+}
+
+// Each group looks for pivots in its own rows; those of the others lose them all at once.
+TEST(DenseFront, GroupsGoOneAfterTheOther) {
+  RandomSource random(5);
+  for (const int size : {19, 30, 43}) {
+    const Eigen::MatrixXd matrix = random_matrix(size, random) + 4 * Eigen::MatrixXd::Identity(size, size);
+    for (const std::vector<int>& certain : {std::vector<int>{0, 6, 6, 18}, {12, 18}, {3, 7, 14}, {5, 17, 17}})
+      for (const int candidates : {18, size}) {
+        DenseFront front = front_of(matrix);
         ASSERT_EQ(front.eliminate(candidates, certain, true), candidates);
         expect_schur_complement(matrix, front, candidates);
         expect_factors(matrix, front, candidates);
+        for (std::size_t i = 0; i + 1 < certain.size(); ++i)
+          for (int k = 0; k < certain[i]; ++k) EXPECT_LT(front.rows[k], certain[i]);
       }
   }
 }
@@ -92,12 +109,12 @@ TEST(DenseFront, MultipliersFindPivotsOrWait) {
   Eigen::MatrixXd matrix = random_matrix(9, random);
   matrix.block<3, 3>(1, 1).setZero();  // one coordinate, three multipliers
   DenseFront front = front_of(matrix);
-  const int pivots = front.eliminate(4, 0, false);
+  const int pivots = front.eliminate(4, {0}, false);
   EXPECT_EQ(pivots, 2) << "a coordinate gives one multiplier its pivot";
   expect_schur_complement(matrix, front, pivots);
   DenseFront closed = front_of(matrix);
-  EXPECT_EQ(closed.eliminate(4, 0, true), -1) << "two more find none";
-  EXPECT_EQ(front_of(matrix).eliminate(9, 0, true), 9);
+  EXPECT_EQ(closed.eliminate(4, {0}, true), -1) << "two more find none";
+  EXPECT_EQ(front_of(matrix).eliminate(9, {0}, true), 9);
 }
 
 // Beside what it couples to, which is not complete, a pivot of 1e-9 would cost nine digits.
@@ -106,16 +123,16 @@ TEST(DenseFront, SmallPivotsWait) {
   Eigen::MatrixXd matrix = random_matrix(6, random);
   matrix(0, 0) = 1e-9;
   matrix(0, 5) = 1;
-  EXPECT_EQ(front_of(matrix).eliminate(1, 0, false), 0);
-  EXPECT_EQ(front_of(matrix).eliminate(1, 0, true), 1) << "but for the last chance";
+  EXPECT_EQ(front_of(matrix).eliminate(1, {0}, false), 0);
+  EXPECT_EQ(front_of(matrix).eliminate(1, {0}, true), 1) << "but for the last chance";
 }
 
 TEST(DenseFront, RoundOffIsNoPivot) {
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Constant(3, 3, 1.0 / 3);
   matrix(1, 1) += std::numeric_limits<double>::epsilon();
-  EXPECT_EQ(front_of(matrix).eliminate(2, 2, true), -1);
+  EXPECT_EQ(front_of(matrix).eliminate(2, {2}, true), -1);
   matrix(0, 0) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(front_of(matrix).eliminate(2, 2, true), -1);
+  EXPECT_EQ(front_of(matrix).eliminate(2, {2}, true), -1);
 }
 
 TEST(DenseFront, FoldsColumnsThenRows) {
