@@ -81,7 +81,7 @@ std::size_t BorderedElimination::allocate(int numbers) {
 bool BorderedElimination::eliminate(int index) {
   const TreePart& part = order_.parts()[index];
   Factors& factors = factors_[index] = {};
-  if (part.front != index) return true;
+  if (part.front != index) return true;  // and leaves nothing to that front
   lay_out(index);
   assemble(index);
   for_each_member(index, [&](const TreePart& member) {

@@ -231,21 +231,24 @@ void TreeOrder::find_borders() {
 /// slider and the elements of its window. No zeros come in, and nothing is handed over. (Fundamental supernodes: Liu,
 /// Ng and Peyton 1993)
 void TreeOrder::find_fronts() {
-  for (int p = 0; p < static_cast<int>(parts_.size()); ++p) parts_[p].first_member = p, parts_[p].next_member = -1;
-  for (int p = 0; p < static_cast<int>(parts_.size()); ++p) {
+  const int count = static_cast<int>(parts_.size());
+  for (int p = 0; p < count; ++p) {
     TreePart& part = parts_[p];
-    if (part.passes_to < 0 || !may_join(part, parts_[part.passes_to])) continue;
-    part.next_member = part.passes_to;
-    parts_[part.passes_to].first_member = part.first_member;
+    part.first_member = p;
+    part.next_member = -1;
+    int child = part.first_child;
+    while (child >= 0 && !may_join(parts_[child], part)) child = parts_[child].next_sibling;
+    if (child < 0) continue;
+    parts_[child].next_member = p;
+    part.first_member = parts_[child].first_member;
   }
-  for (int p = static_cast<int>(parts_.size()) - 1; p >= 0; --p)
+  for (int p = count - 1; p >= 0; --p)
     parts_[p].front = parts_[p].next_member < 0 ? p : parts_[parts_[p].next_member].front;
 }
 
 bool TreeOrder::may_join(const TreePart& part, const TreePart& next) const {
   for (const TreePart* each : {&part, &next})
     if (!each->closures.empty() || !each->mimics.empty()) return false;
-  if (parts_[next.first_member].next_member >= 0) return false;  // others have joined it
   int folds = next.joint >= 0 ? 1 : 0;
   for (int p = part.first_member; p >= 0; p = parts_[p].next_member) folds += parts_[p].joint >= 0 ? 1 : 0;
   const int* rest = border(part);
@@ -309,7 +312,6 @@ void TreeOrder::find_border(int index) {
       part.joint >= 0 ? part.elements.empty() : part.elements.size() == 1 && part.elements[0] == index;
   part.has_border =
       part.first_child >= 0 || !part.passes_node || !part.closures.empty() || !part.mimics.empty() || !has_own_element;
-  part.passes_to = part.passes_node ? -1 : next;
   if (part.passes_node) return;
   part.next_sibling = parts_[next].first_child;
   parts_[next].first_child = index;

@@ -22,7 +22,6 @@ struct TreePart {
   // ---- these follow the sliders
   int first_border = 0, border_count = 0;   ///< in TreeOrder::border(): what remains, eliminated by later parts
   int first_child = -1, next_sibling = -1;  ///< parts that pass on what more than one node couples
-  int passes_to = -1;                       ///< where that goes; -1: no more than a node's block remains
   int front = -1;                           ///< the part in whose front this one is eliminated: itself, mostly
   int first_member = -1, next_member = -1;  ///< of those in its own front; behind this one in its front, -1: none
   bool has_border = false;                  ///< more is coupled here than the part's own nodes and coordinates

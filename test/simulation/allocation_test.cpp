@@ -71,8 +71,9 @@ TEST_P(Allocation, NoneInAThousandSteps) {
   EXPECT_EQ(allocations_in([&] {
               for (int n = 0; n < steps; ++n) {
                 converged += simulation.step().converged;
-                if (n == 500) simulation.release_command(*simulation.find_coordinate("elbow"));
-                if (n % 100 == 0) simulation.command_effort(*simulation.find_coordinate("prismatic"), n * 1e-3);
+                if (n == steps / 2) simulation.release_command(*simulation.find_coordinate("elbow"));
+                if (n % (steps / 10) == 0)
+                  simulation.command_effort(*simulation.find_coordinate("prismatic"), n * 1e-3);
               }
             }),
             0);
