@@ -31,8 +31,8 @@ StepConfiguration::StepConfiguration(const Model& model, const Scheme& scheme, c
       begin_velocities_(model.nodes.size()),
       begin_rates_(model.joints.size()) {
   if (!has_incremental_joints() || model.slide_lines.empty()) return;
-  begin_frames_.resize(model.joints.size());
-  end_frames_.resize(model.joints.size());
+  begin_places_.resize(model.joints.size());
+  end_places_.resize(model.joints.size());
 }
 
 void StepConfiguration::begin(const State& state, double step) {
@@ -42,9 +42,9 @@ void StepConfiguration::begin(const State& state, double step) {
   std::copy(begin_.begin(), begin_.end(), end_.begin());
   std::copy(state.released.begin(), state.released.end(), released_.begin());
   if (keeps_begin_rates_) find_begin_rates();
-  for (std::size_t j = 0; j < begin_frames_.size(); ++j)
+  for (std::size_t j = 0; j < begin_places_.size(); ++j)
     if (const JointMap& joint = model_.joints[j]; joint.kind == JointMapKind::Slide)
-      begin_frames_[j] = slide_frames(model_.slide_lines[joint.line], begin_, state.released[j].displacement[0]);
+      begin_places_[j] = slide_place(model_.slide_lines[joint.line], begin_, state.released[j].displacement[0]);
 }
 
 void StepConfiguration::find_begin_rates() {
@@ -129,7 +129,7 @@ void StepConfiguration::set_slaves() {
     const JointMap& joint = model_.joints[j];
     const bool slides = joint.kind == JointMapKind::Slide;
     if (slides && has_incremental_joints()) {
-      end_frames_[j] = slide_frames(model_.slide_lines[joint.line], end_, released_[j].displacement[0]);
+      end_places_[j] = slide_place(model_.slide_lines[joint.line], end_, released_[j].displacement[0]);
       end_[joint.slave] = slide_pose(slide_travel(static_cast<int>(j)), begin_[joint.slave].position);
     } else {
       end_[joint.slave] = slave_pose(model_, static_cast<int>(j), end_, released_[j]);
@@ -203,8 +203,8 @@ SlideTravel StepConfiguration::slide_travel(int j) const {
           released_[j].displacement[0],
           scheme_.heeds_slide_schemes ? joint.algorithm : SlideAlgorithm(),
           scheme_.arm_weight(),
-          begin_frames_.empty() ? nullptr : &begin_frames_[j],
-          end_frames_.empty() ? nullptr : &end_frames_[j]};
+          begin_places_.empty() ? nullptr : &begin_places_[j],
+          end_places_.empty() ? nullptr : &end_places_[j]};
 }
 
 void StepConfiguration::joint_maps(int j, const Vector6& g, FoldMaps& maps, bool with_tangent) const {

@@ -108,7 +108,7 @@ class StepConfiguration {
   double step_ = 0;
   std::vector<NodePose> begin_, end_;
   std::vector<Released> released_;
-  std::vector<slide::PieceFrames<double>> begin_frames_, end_frames_;  // per joint, of sliders; empty without any
+  std::vector<slide::Place> begin_places_, end_places_;  // per joint, of sliders; empty without any
   std::vector<Vector3> increments_;
   std::vector<Matrix3> inverse_tangents_;
   int off_line_joint_ = -1;

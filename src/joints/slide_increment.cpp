@@ -21,37 +21,41 @@ constexpr double kUniform = 1e-24;
 /// Nodes that are active in a step.
 constexpr int kMostActive = (SlideLine::kMostPieces + 2) * slide::kMostNodes;
 
-/// Of the active nodes: I_n, I_{n+1}, and the divided difference D.
+/// Of the active nodes, the first of which is the line's node `first`.
 template <typename S>
-struct StepWeights {
-  std::array<S, kMostActive> begin, end, difference;
+using ActiveWeights = std::array<S, kMostActive>;
 
-  StepWeights(const SlideTravel& travel, const S& to, int first) {
-    const SlideLine& line = travel.line;
-    const int piece_from = line.piece_at(travel.from), piece_to = line.piece_at(travel.to);
-    const SlidePiece &p = line.pieces[piece_from], &q = line.pieces[piece_to];
-    begin.fill(S(0));
-    end.fill(S(0));
-    difference.fill(S(0));
-    const auto add = [&](const auto& weights, const S& factor, std::array<S, kMostActive>& sum) {
-      for (int i = 0; i < weights.count; ++i) sum[weights.first + i - first] += factor * weights.values[i];
-    };
-    add(slide::line_weights(line, piece_from, travel.from), S(1), begin);
-    add(slide::line_weights(line, piece_to, to), S(1), end);
-    if (piece_from == piece_to) {
-      add(slide::line_differences(line, piece_to, travel.from, to), S(1), difference);
-      return;
-    }
-    // By way of the borders between both elements: each part is free of cancellation.
-    const bool forward = piece_to > piece_from;
-    const double leave = forward ? p.end : p.begin, enter = forward ? q.begin : q.end;
-    const S change = to - travel.from;
-    add(slide::line_differences(line, piece_from, travel.from, leave), (leave - travel.from) / change, difference);
-    add(slide::line_differences(line, piece_to, enter, to), (to - enter) / change, difference);
-    difference[(forward ? p.end_node() - 1 : p.first_node) - first] -= S(1) / change;
-    difference[(forward ? q.first_node : q.end_node() - 1) - first] += S(1) / change;
+template <typename S, typename T, typename F>
+void add_weights(const slide::LineWeights<T>& weights, const F& factor, int first, ActiveWeights<S>& sum) {
+  for (int i = 0; i < weights.count; ++i) sum[weights.first + i - first] += factor * weights.values[i];
+}
+
+ActiveWeights<double> active_weights(const slide::Place& place, int first) {
+  ActiveWeights<double> out{};
+  add_weights(place.weights, 1.0, first, out);
+  return out;
+}
+
+/// The divided difference D between arc lengths in two pieces.
+template <typename S>
+ActiveWeights<S> divided_difference(const SlideLine& line, int piece_from, double from, int piece_to, const S& to,
+                                    int first) {
+  ActiveWeights<S> out{};
+  if (piece_from == piece_to) {
+    add_weights(slide::line_differences(line, piece_to, from, to), 1.0, first, out);
+    return out;
   }
-};
+  // By way of the borders between both elements: each part is free of cancellation.
+  const SlidePiece &p = line.pieces[piece_from], &q = line.pieces[piece_to];
+  const bool forward = piece_to > piece_from;
+  const double leave = forward ? p.end : p.begin, enter = forward ? q.begin : q.end;
+  const S change = to - from;
+  add_weights(slide::line_differences(line, piece_from, from, leave), S((leave - from) / change), first, out);
+  add_weights(slide::line_differences(line, piece_to, enter, to), S((to - enter) / change), first, out);
+  out[(forward ? p.end_node() - 1 : p.first_node) - first] -= S(1) / change;
+  out[(forward ? q.first_node : q.end_node() - 1) - first] += S(1) / change;
+  return out;
+}
 
 /// One step's maps: rows first, then what varies in them.
 class IncrementalMaps {
@@ -61,16 +65,19 @@ class IncrementalMaps {
         line_(travel.line),
         begin_{travel.line, travel.begin},
         end_{travel.line, travel.end},
-        piece_from_(line_.piece_at(travel.from)),
-        piece_to_(line_.piece_at(travel.to)),
-        begin_frames_(travel_frames(begin_, travel.begin_frames, piece_from_)),
-        end_frames_(travel_frames(end_, travel.end_frames, piece_to_)),
+        places_(travel),
+        piece_from_(places_.begin().piece),
+        piece_to_(places_.end().piece),
+        begin_frames_to_(frames_of(piece_to_, begin_, places_.begin())),
+        end_frames_from_(frames_of(piece_from_, end_, places_.end())),
         change_(travel.to - travel.from),
         rule_(slide::contact_rule(travel.step(), travel.arm_weight)),
         force_(g.head<3>()),
         moment_(g.tail<3>()),
         maps_(maps),
-        weights_(travel, travel.to, first_active()) {
+        begin_weights_(active_weights(places_.begin(), first_active())),
+        end_weights_(active_weights(places_.end(), first_active())),
+        differences_(divided_difference(line_, piece_from_, travel.from, piece_to_, travel.to, first_active())) {
     slide::set_active(line_, piece_from_, piece_to_, with_tangent, maps);
     if (with_tangent) set_variations();
     set_rows();
@@ -81,27 +88,20 @@ class IncrementalMaps {
   }
 
  private:
-  /// Of the pieces where the travel begins and ends, in one configuration.
-  struct TravelFrames {
-    slide::PieceFrames<double> from, to;
-  };
-  /// `known`: those of one piece, or null.
-  TravelFrames travel_frames(const slide::LineNodes& nodes, const slide::PieceFrames<double>* known, int piece) const {
-    const auto of = [&](int p) { return known && p == piece ? *known : slide::piece_frames<double>(line_, p, nodes); };
-    TravelFrames out;
-    out.from = of(piece_from_);
-    out.to = piece_to_ == piece_from_ ? out.from : of(piece_to_);
-    return out;
+  /// Of a piece in the configuration of a place.
+  slide::PieceFrames<double> frames_of(int piece, const slide::LineNodes& nodes, const slide::Place& place) const {
+    return piece == place.piece ? place.frames : slide::piece_frames<double>(line_, piece, nodes);
   }
   void set_variations() {
     const slide::BorderVariations borders(line_, piece_from_, end_);
-    from_.emplace(line_, piece_from_, travel_.from, end_, end_frames_.from, borders);
+    from_.emplace(line_, piece_from_, travel_.from, end_, end_frames_from_, borders);
     if (piece_to_ == piece_from_)
-      to_.emplace(line_, piece_to_, travel_.to, end_, end_frames_.to, borders);
+      to_.emplace(line_, piece_to_, travel_.to, end_, places_.end().frames, borders);
     else
-      to_.emplace(line_, piece_to_, travel_.to, end_, end_frames_.to, slide::BorderVariations(line_, piece_to_, end_));
+      to_.emplace(line_, piece_to_, travel_.to, end_, places_.end().frames,
+                  slide::BorderVariations(line_, piece_to_, end_));
   }
-  double contact(int j) const { return (1 - rule_.weight) * weights_.begin[j] + rule_.weight * weights_.end[j]; }
+  double contact(int j) const { return (1 - rule_.weight) * begin_weights_[j] + rule_.weight * end_weights_[j]; }
 
   int first_active() const {
     return line_.support(std::min(piece_from_, piece_to_), std::max(piece_from_, piece_to_)).first;
@@ -113,17 +113,12 @@ class IncrementalMaps {
   double middle() const { return 0.5 * (travel_.from + travel_.to); }
 
   RotationSplit split_rotation() const {
-    const slide::Frame<double> at_00 = frame_at(line_, piece_from_, travel_.from, begin_frames_.from),
-                               at_10 = frame_at(line_, piece_to_, travel_.to, begin_frames_.to);
-    slide::TravelledFrames frames{at_00.rotation, {}, at_10.rotation, {}, at_10.spatial_curvature, {}};
-    if (from_) {
-      frames.at_01 = from_->rotation;
-      frames.at_11 = to_->rotation;
-      frames.curvature_11 = to_->spatial_curvature;
-    } else {
-      frames.at_01 = frame_at(line_, piece_from_, travel_.from, end_frames_.from).rotation;
-      frames.at_11 = frame_at(line_, piece_to_, travel_.to, end_frames_.to).rotation;
-    }
+    const slide::Frame<double>&at_00 = places_.begin().frame, &at_11 = places_.end().frame;
+    const slide::Frame<double> at_10 = frame_at(line_, piece_to_, travel_.to, begin_frames_to_);
+    const Matrix3 at_01 =
+        from_ ? from_->rotation : frame_at(line_, piece_from_, travel_.from, end_frames_from_).rotation;
+    const slide::TravelledFrames frames{
+        at_00.rotation, at_01, at_10.rotation, at_11.rotation, at_10.spatial_curvature, at_11.spatial_curvature};
     if (!is_short()) return {frames, rule_.weight, change_, false, Vector3::Zero(), Vector3::Zero()};
     const int piece = line_.piece_at(middle());
     return {frames,
@@ -142,8 +137,8 @@ class IncrementalMaps {
       const PoseT<double> begin = begin_(maps_.first + j), end = end_(maps_.first + j);
       rotations_[j] = cayley::increment(begin.orientation, end.orientation);
       displacements_[j] = end.position - begin.position;
-      travel += weights_.difference[j] * (c * begin.position + (1 - c) * end.position);
-      defect_ += rule_.arm_product * weights_.difference[j] * displacements_[j];
+      travel += differences_[j] * (c * begin.position + (1 - c) * end.position);
+      defect_ += rule_.arm_product * differences_[j] * displacements_[j];
       interpolated_ += contact(j) * rotations_[j];
       mean_rotation_ += rotations_[j] / maps_.count;
     }
@@ -165,11 +160,11 @@ class IncrementalMaps {
   /// Columns of the slave at the end: dr = I^j dr_j + r' dX, spin = I_g^j spin_j + k dX; where the contact is in the
   /// middle, dr = d(2 I^j_c r_{j,1/2}).
   void set_columns() {
-    const slide::LineWeights<double> w = slide::line_weights(line_, piece_to_, travel_.to);
+    const slide::LineWeights<double>& w = places_.end().weights;
     const double c = rule_.weight;
     Vector3 tangent = Vector3::Zero();
     for (int j = 0; j < maps_.count; ++j)
-      maps_.right[j].topLeftCorner<3, 3>().diagonal().setConstant(rule_.is_in_middle ? contact(j) : weights_.end[j]);
+      maps_.right[j].topLeftCorner<3, 3>().diagonal().setConstant(rule_.is_in_middle ? contact(j) : end_weights_[j]);
     for (int i = 0; i < w.count; ++i) {
       const int j = w.first + i - maps_.first;
       maps_.right[j].bottomRightCorner<3, 3>() = to_->values[i];
@@ -223,7 +218,7 @@ class IncrementalMaps {
     const Vector3 lever = defect_.cross(force_), turned = force_.cross(interpolated_);
     for (int k = 0; k < maps_.count; ++k) {
       const Matrix3 inverse = cayley::inverse_tangent(rotations_[k]);
-      const double D = weights_.difference[k];
+      const double D = differences_[k];
       maps_.released_master[k] << (1 - c) * D * force_ - rule_.arm_product * D * turned,
           turn[k] - contact(k) * (inverse.transpose() * lever);
       const Matrix3 moved = -rule_.arm_product * change_ * D * so3::hat(force_);
@@ -246,10 +241,11 @@ class IncrementalMaps {
 
   void set_arc_length_derivatives() {
     const double c = rule_.weight;
-    const StepWeights<Complex> moved(travel_, Complex(travel_.to, slide::kComplexStep), maps_.first);
+    const ActiveWeights<Complex> moved = divided_difference(line_, piece_from_, travel_.from, piece_to_,
+                                                            Complex(travel_.to, slide::kComplexStep), maps_.first);
     Vector3 travel = Vector3::Zero(), interpolated = Vector3::Zero(), defect = Vector3::Zero();
     for (int j = 0; j < maps_.count; ++j) {
-      const double D = moved.difference[j].imag() / slide::kComplexStep;
+      const double D = moved[j].imag() / slide::kComplexStep;
       travel += D * (end_(maps_.first + j).position - c * displacements_[j]);
       interpolated += slopes_[j] * rotations_[j];
       defect += rule_.arm_product * D * displacements_[j];
@@ -267,14 +263,15 @@ class IncrementalMaps {
   const SlideTravel& travel_;
   const SlideLine& line_;
   slide::LineNodes begin_, end_;
+  slide::TravelPlaces places_;  // from at the beginning, to at the end
   int piece_from_, piece_to_;
-  TravelFrames begin_frames_, end_frames_;
+  slide::PieceFrames<double> begin_frames_to_, end_frames_from_;
   double change_;  // Delta X
   slide::ContactRule rule_;
   Vector3 force_, moment_;
   SlideMaps& maps_;
-  StepWeights<double> weights_;
-  std::optional<FrameVariation> from_, to_;  // at both places at the end
+  ActiveWeights<double> begin_weights_, end_weights_, differences_;  // I_n, I_{n+1}, D
+  std::optional<FrameVariation> from_, to_;                          // at both places at the end
   std::optional<RotationSplit> split_;
   RotationSplit::Gradient along_, fixed_;
   Vector3 slope_begin_, slope_end_;

@@ -11,13 +11,13 @@ using slide::Complex;
 
 namespace {
 
-NodePose section_pose(const SlideLine& line, const std::vector<NodePose>& nodes, double arc_length,
-                      const slide::PieceFrames<double>& frames) {
-  const Section<double> section =
-      section_at(line, line.piece_at(arc_length), arc_length, slide::LineNodes{line, nodes}, frames);
+NodePose section_pose(const SlideLine& line, const std::vector<NodePose>& nodes, const slide::Place& place) {
+  const slide::LineNodes poses{line, nodes};
   NodePose pose;
-  pose.position = section.position;
-  pose.orientation = Quaternion(section.rotation).normalized();
+  pose.position.setZero();
+  for (int i = 0; i < place.weights.count; ++i)
+    pose.position += place.weights.values[i] * poses(place.weights.first + i).position;
+  pose.orientation = Quaternion(place.frame.rotation).normalized();
   pose.rotation = pose.orientation.toRotationMatrix();
   return pose;
 }
@@ -52,29 +52,33 @@ void slide::set_active(const SlideLine& line, int piece, int other_piece, bool w
   maps.moment_master.resize(static_cast<std::size_t>(maps.count) * maps.count);
 }
 
-slide::PieceFrames<double> slide_frames(const SlideLine& line, const std::vector<NodePose>& nodes, double arc_length) {
-  return slide::piece_frames<double>(line, line.piece_at(arc_length), slide::LineNodes{line, nodes});
+slide::Place slide_place(const SlideLine& line, const std::vector<NodePose>& nodes, double arc_length) {
+  slide::Place place;
+  place.piece = line.piece_at(arc_length);
+  place.frames = slide::piece_frames<double>(line, place.piece, slide::LineNodes{line, nodes});
+  place.weights = slide::line_weights(line, place.piece, arc_length);
+  place.frame = frame_at(line, place.piece, arc_length, place.frames);
+  return place;
 }
 
 NodePose slide_pose(const SlideLine& line, const std::vector<NodePose>& nodes, double arc_length) {
-  return section_pose(line, nodes, arc_length, slide_frames(line, nodes, arc_length));
+  return section_pose(line, nodes, slide_place(line, nodes, arc_length));
 }
 
 NodePose slide_pose(const SlideTravel& travel, const Vector3& begin_position) {
-  NodePose pose = travel.end_frames ? section_pose(travel.line, travel.end, travel.to, *travel.end_frames)
-                                    : slide_pose(travel.line, travel.end, travel.to);
+  const slide::TravelPlaces places(travel);
+  NodePose pose = section_pose(travel.line, travel.end, places.end());
   const slide::ContactRule rule = slide::contact_rule(travel.step(), travel.arm_weight);
   if (!rule.is_in_middle) return pose;
   pose.position = -begin_position;
-  const auto add = [&](double factor, double arc_length) {
-    const slide::LineWeights<double> w = slide::line_weights(travel.line, travel.line.piece_at(arc_length), arc_length);
-    for (int i = 0; i < w.count; ++i) {
-      const int node = travel.line.nodes[w.first + i];
-      pose.position += factor * w.values[i] * (travel.begin[node].position + travel.end[node].position);
+  const auto add = [&](double factor, const slide::LineWeights<double>& weights) {
+    for (int i = 0; i < weights.count; ++i) {
+      const int node = travel.line.nodes[weights.first + i];
+      pose.position += factor * weights.values[i] * (travel.begin[node].position + travel.end[node].position);
     }
   };
-  add(1 - rule.weight, travel.from);
-  add(rule.weight, travel.to);
+  add(1 - rule.weight, places.begin().weights);
+  add(rule.weight, places.end().weights);
   return pose;
 }
 

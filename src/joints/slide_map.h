@@ -36,14 +36,14 @@ struct SlideTravel {
   SlideAlgorithm algorithm = {};
   /// Of the end of the step in the moment arms by which angular momentum is measured: 1/2, or 0 for M2.
   double arm_weight = 0.5;
-  /// slide_frames() of both ends of the step, for who has them at hand; null: they are found.
-  const slide::PieceFrames<double>*begin_frames = nullptr, *end_frames = nullptr;
+  /// slide_place() of both ends of the step, for who has them at hand; null: they are found.
+  const slide::Place *begin_place = nullptr, *end_place = nullptr;
 
   SlideStep step() const { return line.piece_at(from) == line.piece_at(to) ? algorithm.within : algorithm.across; }
 };
 
-/// What sections are made of in the piece where the arc length X lies; `nodes`: of the model.
-slide::PieceFrames<double> slide_frames(const SlideLine& line, const std::vector<NodePose>& nodes, double arc_length);
+/// Of the section at arc length X; `nodes`: of the model.
+slide::Place slide_place(const SlideLine& line, const std::vector<NodePose>& nodes, double arc_length);
 
 /// Pose of the section at arc length X; `nodes`: of the model.
 NodePose slide_pose(const SlideLine& line, const std::vector<NodePose>& nodes, double arc_length);

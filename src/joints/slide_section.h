@@ -312,11 +312,22 @@ slide::Frame<S> frame_at(const SlideLine& line, int index, const S& arc_length, 
   return frame_at(line, index, arc_length, slide::piece_frames<S>(line, index, poses));
 }
 
-/// The section at arc length X; `frames`: of the piece.
+namespace slide {
+
+/// Where a section is on its line in one configuration, and what all that is found there is made of.
+struct Place {
+  int piece = 0;
+  PieceFrames<double> frames;   ///< of the piece
+  LineWeights<double> weights;  ///< at the arc length
+  Frame<double> frame;          ///< of the section
+};
+
+}  // namespace slide
+
+/// The section at arc length X.
 template <typename S, class Poses>
-Section<S> section_at(const SlideLine& line, int index, const S& arc_length, const Poses& poses,
-                      const slide::PieceFrames<S>& frames) {
-  const slide::Frame<S> frame = frame_at(line, index, arc_length, frames);
+Section<S> section_at(const SlideLine& line, int index, const S& arc_length, const Poses& poses) {
+  const slide::Frame<S> frame = frame_at(line, index, arc_length, poses);
   Section<S> out{Vector3T<S>::Zero(), Vector3T<S>::Zero(), frame.rotation, frame.spatial_curvature};
   const slide::LineWeights<S> w = slide::line_weights(line, index, arc_length);
   for (int i = 0; i < w.count; ++i) {
@@ -325,11 +336,6 @@ Section<S> section_at(const SlideLine& line, int index, const S& arc_length, con
     out.tangent += w.derivatives[i] * pose.position;
   }
   return out;
-}
-
-template <typename S, class Poses>
-Section<S> section_at(const SlideLine& line, int index, const S& arc_length, const Poses& poses) {
-  return section_at(line, index, arc_length, poses, slide::piece_frames<S>(line, index, poses));
 }
 
 }  // namespace flexarm

@@ -1,6 +1,8 @@
 #pragma once
 /// What both forms of a slider's maps are made of.
 
+#include <optional>
+
 #include "joints/slide_map.h"
 #include "joints/slide_variation.h"
 
@@ -30,6 +32,25 @@ struct ComplexLineNodes {
     const NodePose& node = nodes[line.nodes[i]];
     return {node.position.cast<Complex>(), node.orientation.cast<Complex>()};
   }
+};
+
+/// Where a travel begins and ends: what it has at hand, or else found here.
+class TravelPlaces {
+ public:
+  explicit TravelPlaces(const SlideTravel& travel)
+      : begin_(travel.begin_place ? travel.begin_place
+                                  : &found_begin_.emplace(slide_place(travel.line, travel.begin, travel.from))),
+        end_(travel.end_place ? travel.end_place
+                              : &found_end_.emplace(slide_place(travel.line, travel.end, travel.to))) {}
+  TravelPlaces(const TravelPlaces&) = delete;
+  TravelPlaces& operator=(const TravelPlaces&) = delete;
+
+  const Place& begin() const { return *begin_; }
+  const Place& end() const { return *end_; }
+
+ private:
+  std::optional<Place> found_begin_, found_end_;
+  const Place *begin_, *end_;
 };
 
 /// What the forms of the incremental maps differ in.
