@@ -42,7 +42,7 @@ struct SlideTravel {
   SlideStep step() const { return line.piece_at(from) == line.piece_at(to) ? algorithm.within : algorithm.across; }
 };
 
-/// Of the section at arc length X; `nodes`: of the model.
+/// Piece, weights and frame of the section at arc length X [m]; `nodes`: of the model.
 slide::Place slide_place(const SlideLine& line, const std::vector<NodePose>& nodes, double arc_length);
 
 /// Pose of the section at arc length X; `nodes`: of the model.

@@ -314,12 +314,12 @@ slide::Frame<S> frame_at(const SlideLine& line, int index, const S& arc_length, 
 
 namespace slide {
 
-/// Where a section is on its line in one configuration, and what all that is found there is made of.
+/// A section at one arc length of its line, in one configuration: what its pose and a step's maps are made of.
 struct Place {
-  int piece = 0;
-  PieceFrames<double> frames;   ///< of the piece
-  LineWeights<double> weights;  ///< at the arc length
-  Frame<double> frame;          ///< of the section
+  int piece = 0;                ///< index in the line's pieces
+  PieceFrames<double> frames;   ///< of the piece, in space
+  LineWeights<double> weights;  ///< of the line's nodes at the arc length: [-], derivatives [1/m]
+  Frame<double> frame;          ///< of the section: section to space, curvature in space [1/m]
 };
 
 }  // namespace slide
