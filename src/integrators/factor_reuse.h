@@ -1,49 +1,55 @@
 #pragma once
 /// When Newton's method makes new factors of its tangent, and when it keeps those that it has.
 
-#include <algorithm>
-#include <cmath>
+#include <array>
 
 namespace flexarm {
 
-/// New factors are made in the first iterations of a solve, as many as the solves before have shown to pay (stiff parts
-/// that turn need more, slow motions none), and later where updates contract slowly.
+/// An update of a solve, and what is to come.
+struct UpdateOutlook {
+  double norm = 0;         ///< scaled
+  double contraction = 0;  ///< by which kept factors go on; 0: unknown
+  bool is_by_new = false;  ///< factors
+  double target = 0;       ///< for the norm of what is left
+};
+
+/// New factors are made in the first iterations of a solve, or in all: in how many is its plan. The plan is learned
+/// from what solves have cost: the cheapest one is taken, and now and then its neighbours are tried. Behind the first
+/// ones new factors are made where kept ones would take longer for the digits that are missing.
 class FactorReuse {
  public:
-  /// `cost`: of an iteration with new factors over that of one with kept ones, see TangentBackend. New factors square
-  /// the error, kept ones contract it by a rate 10^-L. In a typical solve an iteration more with new ones saves kept
-  /// ones for about 7.5 digits, one less costs kept ones for 15 digits at the rate L.
-  explicit FactorReuse(double cost) : slow_(std::pow(10.0, -7.5 / cost)), fast_(std::pow(10.0, -15.0 / cost)) {}
+  /// `cost`: of an iteration with new factors over that of one with kept ones, see TangentBackend.
+  explicit FactorReuse(double cost);
 
-  void reset() { fresh_ = unjudged_ = 0; }
+  /// Forgets all that was learned.
+  void reset() { *this = FactorReuse(cost_of_factors_); }
 
-  /// Starts a solve; whether its first iteration makes new factors. `hold`: there are some of such a system.
-  bool begin(bool hold) {
-    if (++unjudged_ > kPatience) fresh_ = std::max(fresh_ - 1, 0), unjudged_ = 0;
-    planned_ = hold ? fresh_ : std::max(fresh_, 1);
-    return planned_ > 0;
-  }
-
-  /// After the update of an iteration (counted from 0), by kept factors or new ones, whose ratio to the one before is
-  /// `contraction`: whether the next iteration makes new factors. `compares`: there is one before, of the same
-  /// equations, and the update is more than round-off.
-  bool renew(int iteration, bool was_kept, bool compares, double contraction) {
-    const bool is_slow = compares && contraction > slow_;
-    if (compares && was_kept) {
-      // The first shows best what kept factors are worth, but may profit from an error that the new ones left small.
-      if (iteration == std::max(planned_, 1) && contraction < fast_) fresh_ = std::max(planned_ - 1, 0);
-      if (is_slow) fresh_ = std::min(planned_ + 1, kMost);
-      unjudged_ = 0;
-    }
-    return is_slow || iteration + 1 < planned_;
-  }
+  /// Starts a solve by a plan; whether its first iteration makes new factors. `hold`: there are some of such a system.
+  bool begin(bool hold);
+  /// Whether iteration `next` (the first is 0) makes new factors, after `update`.
+  bool renew(int next, const UpdateOutlook& update) const;
+  /// Ends a solve. One that failed costs those that are made in its place, too, by whatever plan or without.
+  void end(int iterations, int factorisations, bool converged);
 
  private:
-  static constexpr int kMost = 3;
-  static constexpr int kPatience = 8;  // solves without kept factors after which some are tried
-  double slow_, fast_;                 // contraction above which new factors pay, and below which fewer are tried
-  int fresh_ = 0, planned_ = 0;        // first iterations with new factors: of the next solve, of this one
-  int unjudged_ = 0;                   // solves since kept factors have shown what they are worth
+  static constexpr int kFull = 3;  // the plan of full Newton: new factors in all iterations
+  struct Plan {
+    double cost = 0;  // of its solves, in iterations with kept factors: a mean that forgets
+    bool is_known = false;
+    double open_cost = 0;  // of one that is not solved yet
+    bool is_open = false;
+  };
+
+  int cheapest() const;
+  void record(Plan& plan);
+
+  double cost_of_factors_;
+  std::array<Plan, kFull + 1> plans_;  // by first iterations with new factors
+  int planned_ = 0;                    // of this solve
+  int tried_ = -1;                     // the plan on trial; -1: none
+  bool tries_more_ = true;
+  double pause_ = 0;  // solves from one trial to the next
+  int since_trial_ = 0;
 };
 
 }  // namespace flexarm

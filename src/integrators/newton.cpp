@@ -14,12 +14,20 @@ constexpr double kLargestRotationUpdate = 1.0;
 constexpr double kDivergence = 1e4;
 /// ... or than so much, since a good guess makes the first one tiny [- or rad].
 constexpr double kSmallestFirstUpdate = 1e-3;
-/// Updates that after so many iterations still do not shrink below this contraction are halved: full ones jump to and
-/// fro between two sides of a steep law, half ones fall between them.
+/// From so many iterations on an update is damped by half as much again as the last one, down to the strongest damping,
+/// where this one had left more than this share of its own: full updates jump to and fro between two sides of a steep
+/// law, parts of them fall between. Damping is taken back step by step when it has done well so often in a row.
+/// Measured: docs/notes/newton.md 6.
 constexpr int kPatience = 5;
 constexpr double kStalled = 0.5;
+constexpr double kStrongestDamping = 0.125;
+constexpr int kDoneWell = 2;
 /// Growth of updates by kept factors with which a solve begins anew: it happens where these are of another branch.
 constexpr double kAstray = 10;
+/// An update by kept factors is useless where it is more than this of the one before. Behind one by new factors it is
+/// left out; behind another one with which the solve began it begins anew: hardly anything is lost, and what bad
+/// updates have strained in a stiff system would take more iterations.
+constexpr double kUseless = 0.5;
 /// Updates that no longer shrink below this are the round-off of a stiff system: its condition, up to 1e4 in the test
 /// scenes of stiff bodies, times that of a double.
 constexpr double kStagnation = 1e-12;
@@ -27,6 +35,10 @@ constexpr double kStagnation = 1e-12;
 constexpr int kTrust = 8;
 /// By how much the next solve may do worse than the one that was watched.
 constexpr double kCaution = 3;
+/// Solves that trust in what an earlier one has shown of kept factors.
+constexpr int kTrustInContraction = 32;
+/// Of what kept factors left in an earlier solve so much is expected: it had less than that where it came to round-off.
+constexpr double kExpectedShare = 0.1;
 /// Scaled updates cannot be expected to become smaller than this.
 constexpr double kRoundOff = 1e-15;
 
@@ -44,11 +56,15 @@ void NewtonIteration::forget_factors() {
   factorised_step_ = 0;
   factor_reuse_.reset();
   starts_ = {};
+  kept_contractions_ = {};
 }
 
 bool NewtonIteration::solve(Updates updates, Factors factors, StepResult& result) {
+  const int iterations = result.iterations, factorisations = result.factorisations;
   const Reason reason = iterate(updates, factors, result);
   enter(StepPhase::Control);
+  if (settings_.reuse_factorisation)
+    factor_reuse_.end(result.iterations - iterations, result.factorisations - factorisations, reason == Reason::None);
   if (reason == Reason::None) return true;
   result.reason = reason;
   factorised_step_ = 0;
@@ -67,9 +83,11 @@ StepResult::Reason NewtonIteration::iterate(Updates updates, Factors factors, St
   norms_.clear();
   if (update_.size() == 0) return evaluate(false);
   const double step = system_.configuration().step();
-  const bool always_fresh = factors == Factors::Fresh;
+  bool makes_new = factors == Factors::Fresh;  // factors, in each iteration
   Progress progress;
-  bool factorise = factor_reuse_.begin(factorised_step_ == step && system_.tangent_holds()) || always_fresh;
+  bool factorise = makes_new || factor_reuse_.begin(factorised_step_ == step && system_.tangent_holds());
+  progress.started_with_kept = !factorise;
+  made_kept_updates_ = false;
   for (; progress.iteration < settings_.max_iterations; ++progress.iteration) {
     if (const Reason failure = evaluate(factorise); failure != Reason::None) return failure;
     if (progress.since_revision > 0 && system_.revise_friction()) {
@@ -79,18 +97,21 @@ StepResult::Reason NewtonIteration::iterate(Updates updates, Factors factors, St
     }
     ++result.iterations;
     result.factorisations += factorise;
+    progress.kept_before = progress.with_kept;
     progress.with_kept = !factorise;
+    made_kept_updates_ |= progress.with_kept;
     if (const Reason failure = find_update(updates, progress); failure != Reason::None) return failure;
     if (factorise) factorised_step_ = step;
     if (diverges(progress)) return Reason::NoConvergence;
-    const bool compares = progress.since_revision > 0 && progress.norm > kStagnation;
-    factorise =
-        factor_reuse_.renew(progress.iteration, progress.with_kept, compares, progress.contraction) || always_fresh;
+    factorise = makes_new || renews_factors(progress);
     if (is_led_astray(progress)) return Reason::NoConvergence;
-    if (stalls(progress)) {
-      update_ *= 0.5;
-      progress.fraction *= 0.5;
+    if (is_useless(progress)) {
+      norms_.pop_back();
+      progress.with_kept = false;
+      factorise = makes_new = true;
+      continue;
     }
+    damp(progress);
     ++progress.since_revision;
     const bool ends = has_converged(progress, factors);
     if (factorise && !progress.with_kept && !ends) system_.carry_strains(progress.fraction);
@@ -132,24 +153,38 @@ bool NewtonIteration::diverges(const Progress& progress) const {
   return progress.norm > kDivergence * std::max(norms_.front(), kSmallestFirstUpdate);
 }
 
-/// Kept factors that make updates grow so lead astray; full Newton begins anew. Round-off may grow as it likes.
+/// Kept factors that make updates grow so lead astray; the solve begins anew. Round-off may grow as it likes.
 bool NewtonIteration::is_led_astray(const Progress& progress) const {
-  return progress.with_kept && progress.since_revision > 0 && progress.contraction > kAstray &&
+  const double limit = progress.iteration == 1 ? kUseless : kAstray;
+  return progress.with_kept && progress.kept_before && progress.since_revision > 0 && progress.contraction > limit &&
          progress.norm > kStagnation;
 }
 
+bool NewtonIteration::is_useless(const Progress& progress) const {
+  return progress.with_kept && !progress.kept_before && progress.since_revision > 0 &&
+         progress.contraction > kUseless && progress.norm > kStagnation;
+}
+
 /// A steep law (friction near sticking, the touch of a stop) makes full updates jump to and fro; statics has none.
-bool NewtonIteration::stalls(const Progress& progress) const {
-  return system_.configuration().step() != 0 && progress.since_revision >= kPatience && progress.contraction > kStalled;
+void NewtonIteration::damp(Progress& progress) {
+  if (system_.configuration().step() == 0) return;
+  // What an update has left out is there again in the next one.
+  const double limit = 1 - progress.damping + progress.damping * kStalled;
+  if (progress.since_revision >= kPatience && progress.contraction > limit) {
+    progress.damping = std::max(0.5 * progress.damping, kStrongestDamping);
+    progress.done_well = 0;
+  } else if (progress.damping < 1 && ++progress.done_well == kDoneWell) {
+    progress.damping *= 2;
+    progress.done_well = 0;
+  }
+  update_ *= progress.damping;
+  progress.fraction *= progress.damping;
 }
 
 /// The second update of a solve is what the first one left. Without factors that are kept nothing is learned, either:
 /// then a step follows from the state alone, and a restored one continues bit for bit.
 void NewtonIteration::learn(Progress& progress) {
-  if (progress.iteration == 0) {
-    progress.started_with_kept = progress.with_kept;
-    progress.first_residual = system_.residual().norm();
-  }
+  if (progress.iteration == 0) progress.first_residual = system_.residual().norm();
   if (!settings_.reuse_factorisation) return;
   if (progress.iteration == 0) {
     ++starts_[progress.with_kept].age;
@@ -157,6 +192,24 @@ void NewtonIteration::learn(Progress& progress) {
     const double ratio = progress.first_residual > 0 ? system_.residual().norm() / progress.first_residual : 0.0;
     starts_[progress.started_with_kept] = {norms_.front(), progress.contraction, ratio, 0, progress.since_revision > 0};
   }
+  KeptContraction& kept = kept_contractions_[progress.started_with_kept];
+  if (progress.iteration == 0) {
+    ++kept.age;
+  } else if (progress.iteration == 2 && progress.with_kept && progress.kept_before && progress.since_revision > 1) {
+    kept = {std::min(progress.contraction, 1.0), 0, true};
+  }
+}
+
+/// By how much kept factors contract shows in the ratio of updates. Not in that of the first one they make behind new
+/// ones, which is what these have left, nor in round-off.
+bool NewtonIteration::renews_factors(const Progress& progress) const {
+  UpdateOutlook update;
+  update.norm = progress.norm;
+  update.is_by_new = !progress.with_kept;
+  update.target = target();
+  const bool is_first = progress.since_revision == 0 || !progress.kept_before;
+  if (progress.with_kept && !is_first && progress.norm > kStagnation) update.contraction = progress.contraction;
+  return factor_reuse_.renew(progress.iteration + 1, update);
 }
 
 /// After an evaluation at what a first update has led to. The residual tells what no earlier solve could know: that a
@@ -169,19 +222,35 @@ bool NewtonIteration::is_as_expected(const Progress& progress) const {
   return system_.residual().norm() <= expected;
 }
 
-/// By the rate of the last two updates, or of the first two of an earlier solve: new factors square the error, kept
-/// ones contract it.
+/// Norm of what an update leaves: what it left out, at least.
 double NewtonIteration::remainder_after(const Progress& progress) const {
+  return progress.norm * std::max(contraction_after(progress), 1 - progress.fraction);
+}
+
+/// Of a whole update, by the last two or by what an earlier solve has shown.
+double NewtonIteration::contraction_after(const Progress& progress) const {
   if (progress.iteration == 0) {
     const FirstUpdate& start = starts_[progress.with_kept];
-    if (!start.is_known || start.age > kTrust) return progress.norm;
+    if (!start.is_known || start.age > kTrust) return 1.0;
     const double growth = std::max(1.0, progress.norm / start.norm);  // new factors: of the contraction, too
-    return progress.norm * std::min(1.0, kCaution * growth * start.contraction);
+    return std::min(1.0, kCaution * growth * start.contraction);
   }
-  const double rate = std::min(progress.contraction, 1.0);
-  // Symmetric middle functions are not in the tangent: they leave linear convergence with new factors, too.
+  const double shown = std::min(progress.contraction, 1.0);
+  if (progress.with_kept && progress.iteration == 1) {
+    // The first update takes away the error of the guess, which is smooth, best of all: kept factors are slower from
+    // there.
+    const KeptContraction& kept = kept_contractions_[progress.started_with_kept];
+    const bool is_known = kept.is_known && kept.age <= kTrustInContraction;
+    return is_known ? std::max(shown, kExpectedShare * kept.contraction) : 1.0;
+  }
+  // New factors square the error, kept ones contract it. Symmetric middle functions are not in the tangent: they leave
+  // linear convergence with new factors, too.
   const bool squares = !progress.with_kept && system_.configuration().scheme().mid_functions == MidFunctions::Explicit;
-  return progress.norm * (squares ? rate * rate : rate);
+  return squares ? shown * shown : shown;
+}
+
+double NewtonIteration::target() const {
+  return std::max(settings_.tolerance * settings_.tolerance, kRoundOff);
 }
 
 /// Where factors may be kept, convergence is to round-off, also when a solve has begun anew without them.
@@ -190,7 +259,7 @@ bool NewtonIteration::has_converged(const Progress& progress, Factors factors) c
                                    progress.iteration + 1 < settings_.max_iterations;
   if (factors == Factors::Fresh && !may_have_begun_anew) return progress.norm <= settings_.tolerance;
   const bool stagnates = progress.norm <= kStagnation && progress.contraction > kStalled && progress.since_revision > 1;
-  return stagnates || remainder_after(progress) <= std::max(settings_.tolerance * settings_.tolerance, kRoundOff);
+  return stagnates || remainder_after(progress) <= target();
 }
 
 }  // namespace flexarm

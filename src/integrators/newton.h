@@ -28,6 +28,8 @@ class NewtonIteration {
   /// Leaves the system evaluated at the solution. Counts iterations and factorisations in `result`, and says there why
   /// it failed.
   bool solve(Updates updates, Factors factors, StepResult& result);
+  /// In the last solve: an update by kept factors.
+  bool made_kept_updates() const { return made_kept_updates_; }
   /// Factors of another step are worth nothing any more.
   void forget_factors();
   /// Update norms of the last solve.
@@ -42,8 +44,11 @@ class NewtonIteration {
     int iteration = 0;               // of the solve
     int since_revision = 0;          // updates of the same equations before this one
     bool with_kept = false;          // factors
+    bool kept_before = false;        // of the update before this one
     double norm = 0;                 // of the update
     double fraction = 1;             // of the solution that it is
+    double damping = 1;              // fraction of an update that is made
+    int done_well = 0;               // updates in a row with this damping
     double contraction = 1;          // its ratio to the one before; 1 where there is none
     bool started_with_kept = false;  // factors of the solve's first update
     double first_residual = 0;       // norm before it
@@ -56,15 +61,25 @@ class NewtonIteration {
     int age = 0;                // solves since, that did without a second update
     bool is_known = false;
   };
+  /// By what kept factors contracted the third update of a solve, which is what the second one left.
+  struct KeptContraction {
+    double contraction = 1;
+    int age = 0;  // solves since that started alike
+    bool is_known = false;
+  };
 
   Reason iterate(Updates updates, Factors factors, StepResult& result);
   Reason evaluate(bool with_tangent);
   Reason find_update(Updates updates, Progress& progress);
   bool diverges(const Progress& progress) const;
   bool is_led_astray(const Progress& progress) const;
-  bool stalls(const Progress& progress) const;
+  bool is_useless(const Progress& progress) const;
+  void damp(Progress& progress);
   bool has_converged(const Progress& progress, Factors factors) const;
   double remainder_after(const Progress& progress) const;
+  double contraction_after(const Progress& progress) const;
+  bool renews_factors(const Progress& progress) const;
+  double target() const;
   void learn(Progress& progress);
   bool is_as_expected(const Progress& progress) const;
   void enter(StepPhase phase) {
@@ -75,9 +90,11 @@ class NewtonIteration {
   const StepSettings& settings_;
   FactorReuse factor_reuse_;
   double factorised_step_ = 0;  // for which the factors hold; 0: none
+  bool made_kept_updates_ = false;
   Eigen::VectorXd update_;
   std::vector<double> norms_;
-  std::array<FirstUpdate, 2> starts_;  // with fresh and with kept factors
+  std::array<FirstUpdate, 2> starts_;                 // with fresh and with kept factors
+  std::array<KeptContraction, 2> kept_contractions_;  // of solves that start so
   StepObserver* observer_ = nullptr;
 };
 

@@ -122,13 +122,15 @@ bool Stepper::simple_step(State& state, double step, StepResult& result) {
   };
   const Attempt attempts[] = {
       {Guess::Extrapolated, settings_.reuse_factorisation ? Factors::MayBeKept : Factors::Fresh},
+      {Guess::Extrapolated, Factors::Fresh},
       {Guess::Repeated, Factors::Fresh},
       {Guess::Unchanged, Factors::Fresh}};
   result.failure.guesses = 0;
   for (const Attempt& attempt : attempts) {
-    const bool is_the_same = !settings_.reuse_factorisation && state.history.order == 0;
-    if (attempt.guess == Guess::Repeated && is_the_same) continue;
-    ++result.failure.guesses;
+    const bool is_again = &attempt == &attempts[1];
+    if (is_again && !newton_.made_kept_updates()) continue;
+    if (attempt.guess == Guess::Repeated && state.history.order == 0) continue;  // it is the extrapolated one
+    if (!is_again) ++result.failure.guesses;
     enter(StepPhase::Begin);
     system_.begin(state, step, attempt.guess);
     if (!newton_.solve(NewtonIteration::Updates::Limited, attempt.factors, result)) continue;

@@ -1,63 +1,145 @@
 // When Newton's method makes new factors.
 #include "integrators/factor_reuse.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 namespace flexarm {
 namespace {
 
-/// A solve whose kept factors contract by `rate`, new ones by `rate` squared; iterations with new factors.
-int solve(FactorReuse& reuse, double rate, int iterations = 5) {
-  int made = 0;
+constexpr double kGuess = 1e-5, kTarget = 1e-15;
+
+/// How a system answers: by what factors of an earlier solve contract, and those of this one's first iteration.
+struct Contractions {
+  double old, own;
+};
+
+struct Solve {
+  int iterations = 0, factorisations = 0;
+  double cost(double cost_of_factors) const { return iterations + (cost_of_factors - 1) * factorisations; }
+};
+
+/// A solve from a guess with the error kGuess: new factors square it, and contract by its root from then on.
+Solve solve(FactorReuse& reuse, const Contractions& contractions) {
+  Solve solve;
+  double error = kGuess, rate = contractions.old;
   bool factorise = reuse.begin(true);
-  for (int i = 0; i < iterations; ++i) {
-    made += factorise;
-    factorise = reuse.renew(i, !factorise, i > 0, factorise ? rate * rate : rate);
+  for (double last = 0; error > kTarget && solve.iterations < 50; ++solve.iterations) {
+    const double update = error;
+    if (factorise) {
+      ++solve.factorisations;
+      rate = solve.iterations == 0 ? contractions.own : error;
+      error *= error;
+    } else {
+      error *= rate;
+    }
+    const UpdateOutlook outlook{update, last > 0 && !factorise ? update / last : 0.0, factorise, kTarget};
+    last = factorise ? 0 : update;
+    factorise = reuse.renew(solve.iterations + 1, outlook);
   }
-  return made;
+  reuse.end(solve.iterations, solve.factorisations, error <= kTarget);
+  return solve;
+}
+
+double mean_cost(FactorReuse& reuse, double cost_of_factors, const Contractions& contractions, int solves) {
+  double cost = 0;
+  for (int k = 0; k < solves; ++k) cost += solve(reuse, contractions).cost(cost_of_factors);
+  return cost / solves;
 }
 
 TEST(FactorReuse, FirstSolveMakesFactors) {
   FactorReuse reuse(2);
   EXPECT_TRUE(reuse.begin(false));
+  reuse.end(3, 1, true);
+  EXPECT_FALSE(reuse.begin(true)) << "factors that hold are tried soon";
+  reuse.end(2, 0, true);
   reuse.reset();
-  EXPECT_FALSE(reuse.begin(true)) << "factors that hold are tried first";
-}
-
-TEST(FactorReuse, SlowContractionAsksForNewFactorsInTheNextSolves) {
-  FactorReuse reuse(2);
-  EXPECT_EQ(solve(reuse, 1e-6), 0);
-  EXPECT_GT(solve(reuse, 0.1), 0);
   EXPECT_TRUE(reuse.begin(true));
 }
 
-TEST(FactorReuse, FastContractionGoesBackToKeptOnes) {
-  FactorReuse reuse(2);
-  for (int k = 0; k < 3; ++k) solve(reuse, 0.1);
-  for (int k = 0; k < 4; ++k) solve(reuse, 1e-9);
-  EXPECT_EQ(solve(reuse, 1e-9), 0);
+// Old factors that contract well are kept; those that do not, and own ones that do not, are not.
+TEST(FactorReuse, FindsTheCheapestPlan) {
+  struct Case {
+    const char* what;
+    Contractions contractions;
+    double cost;  // of the cheapest plan, with factors of cost 3
+  };
+  for (const Case& c : {Case{"old factors do", {1e-4, 1e-4}, 3}, Case{"new ones once", {0.5, 1e-4}, 3 + 2},
+                        Case{"new ones twice", {0.5, 0.5}, 3 + 3}}) {
+    SCOPED_TRACE(c.what);
+    FactorReuse reuse(3);
+    mean_cost(reuse, 3, c.contractions, 20);
+    // One trial in 64 of the cheapest plan's cost, and as much again for where the count begins and ends.
+    EXPECT_LE(mean_cost(reuse, 3, c.contractions, 1000), c.cost * (1 + 2.0 / 64));
+  }
+}
+
+TEST(FactorReuse, FollowsWhenAnotherPlanBecomesTheCheapest) {
+  const Contractions slow{0.5, 1e-4}, fast{1e-4, 1e-4};
+  FactorReuse reuse(3);
+  mean_cost(reuse, 3, slow, 200);
+  // Trials without new factors have cost at most four times as much: 64 x 3 solves go by before the next.
+  mean_cost(reuse, 3, fast, 2 * 64 * 3);
+  EXPECT_LE(mean_cost(reuse, 3, fast, 100), 3 * (1 + 2.0 / 64));
+  // Nobody waits where the plan that is used becomes dear.
+  mean_cost(reuse, 3, slow, 10);
+  EXPECT_LE(mean_cost(reuse, 3, slow, 300), 5 * (1 + 2.0 / 64));
 }
 
 // New factors pay at a contraction at which dear ones do not.
 TEST(FactorReuse, CheapFactorsAreMadeMoreOften) {
-  FactorReuse cheap(2), dear(5);
-  int made_cheap = 0, made_dear = 0;
-  for (int k = 0; k < 10; ++k) {
-    made_cheap += solve(cheap, 1e-2);
-    made_dear += solve(dear, 1e-2);
-  }
-  EXPECT_GT(made_cheap, made_dear);
+  const UpdateOutlook kept{1e-7, 1e-2, false, kTarget};
+  EXPECT_TRUE(FactorReuse(1.5).renew(3, kept));
+  EXPECT_FALSE(FactorReuse(5).renew(3, kept));
 }
 
-// Solves that end before any factors are kept say nothing about them: now and then kept ones are tried.
-TEST(FactorReuse, TriesKeptFactorsAfterSolvesWithout) {
+TEST(FactorReuse, NewFactorsAreNotMadeForTheLastDigits) {
+  const double rate = 0.05;
+  EXPECT_TRUE(FactorReuse(3).renew(3, {1e-6, rate, false, kTarget}));
+  EXPECT_FALSE(FactorReuse(3).renew(3, {1e-12, rate, false, kTarget}));
+  EXPECT_FALSE(FactorReuse(3).renew(3, {1e-15, rate, false, kTarget}));
+  EXPECT_TRUE(FactorReuse(3).renew(3, {1e-12, 2.0, false, kTarget})) << "kept ones make it worse";
+}
+
+// New factors are worth keeping where they were made near the solution.
+TEST(FactorReuse, GoesOnWithNewFactorsFarFromTheSolution) {
+  EXPECT_TRUE(FactorReuse(3).renew(3, {0.1, 0, true, kTarget}));
+  EXPECT_FALSE(FactorReuse(3).renew(3, {1e-5, 0, true, kTarget}));
+}
+
+// A plan that has made a solve fail has cost the next one, too, and is not taken again soon.
+TEST(FactorReuse, HeedsFailures) {
   FactorReuse reuse(2);
-  for (int k = 0; k < 3; ++k) solve(reuse, 0.1);
-  const int before = solve(reuse, 0.1, 2);
-  EXPECT_EQ(before, 2);
-  int least = before;
-  for (int k = 0; k < 20; ++k) least = std::min(least, solve(reuse, 1e-3, 2));
-  EXPECT_LT(least, before);
+  reuse.begin(false);
+  reuse.end(5, 1, true);
+  ASSERT_FALSE(reuse.begin(true)) << "a trial";
+  reuse.end(2, 0, false);
+  ASSERT_TRUE(reuse.begin(false));
+  reuse.end(5, 1, true);
+  for (int k = 0; k < 16; ++k) {
+    EXPECT_TRUE(reuse.begin(true));
+    reuse.end(5, 1, true);
+  }
+}
+
+// Where kept factors do nothing but harm, full Newton is found within as many solves as there are plans.
+TEST(FactorReuse, FindsFullNewtonWhereAllElseFails) {
+  FactorReuse reuse(2);
+  int failures = 0;
+  for (int k = 0; k < 30; ++k) {
+    int made = reuse.begin(k > 0);
+    while (made > 0 && made < 3 && reuse.renew(made, {1e-5, 0, true, kTarget})) ++made;
+    if (made == 3) {
+      reuse.end(3, 3, true);
+    } else {
+      ++failures;
+      reuse.end(made + 3, made, false);
+      reuse.end(3, 3, true);  // without a plan
+    }
+  }
+  // And as many trials, if they are made at once.
+  EXPECT_LE(failures, 6);
 }
 
 }  // namespace

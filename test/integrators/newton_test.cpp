@@ -12,7 +12,7 @@
 namespace flexarm {
 namespace {
 
-constexpr double kStep = 1e-3, kTolerance = 1e-4;
+constexpr double kStep = 1e-3, kTolerance = 1e-3;
 constexpr int kSteps = 100, kJump = 50;
 
 /// Arms that swing freely; at step kJump a torque starts.

@@ -43,7 +43,7 @@ void expect_slow_drift(Simulation& simulation, int steps, double position_error)
     std::printf("%7d steps: drift of energy %.1e, momentum %.1e, angular momentum %.1e; bound %.1e\n", until,
                 drift.energy(), drift.momentum(), drift.angular_momentum(), until * per_step);
     EXPECT_LT(largest, until * per_step);
-    rates.push_back(largest / until);
+    if (until >= 10000) rates.push_back(largest / until);  // a thousand steps are too few for a mean
   }
   const double power = 1 + std::log10(rates.back() / rates.front()) / static_cast<double>(rates.size() - 1);
   std::printf("grows as N^%.2f\n", power);

@@ -5,6 +5,7 @@
 
 #include "integrators/balance.h"
 #include "integrators/dissipative_substitute.h"
+#include "simulation/everything_scene.h"
 #include "simulation/inside.h"
 #include "support/scene_builder.h"
 
@@ -165,6 +166,19 @@ TEST(Recovery, HalvingsAreCountedAndNamed) {
   EXPECT_EQ(recoveries_text(counts), std::to_string(result.halvings) + " halvings (down to 1/" +
                                          std::to_string(1 << result.deepest_halving) + " of a step)");
   EXPECT_EQ(recoveries_text(StepCounts()), "");
+}
+
+// Laws of friction that turn round within a step's motion make Newton's updates jump to and fro; damped ones arrive.
+TEST(Recovery, NoStepIsHalvedForSteepFriction) {
+  for (const char* scheme : {"em", "em0", "em_symmetric", "m1", "std"}) {
+    SimulationOptions options;
+    options.scheme = scheme;
+    Simulation simulation(everything_scene().scene, options);
+    const Outcome out = run(simulation, 80);
+    EXPECT_TRUE(out.converged) << scheme;
+    EXPECT_EQ(out.counts.halvings, 0) << scheme;
+    std::printf("%s: %ld halvings, %ld from other guesses\n", scheme, out.counts.halvings, out.counts.other_guesses);
+  }
 }
 
 TEST(Recovery, EndsByTheClockOnTheWallAndGoesOn) {

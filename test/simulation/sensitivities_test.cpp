@@ -134,8 +134,11 @@ TEST(Sensitivities, JointThatIsHeld) {
 TEST(Sensitivities, FlexibleArm) {
   for (const std::string scheme : {"em", "edmc2", "hht2", "newmark"}) {
     SCOPED_TRACE(scheme);
-    expect_differences({with_scheme(flexible_arm("0 0 1"), scheme, 2e-3)},
-                       {{"young", 7e9}, {"payload", 0.4}, {"damping", 0.3}, {"length", 1}}, 300, 2e-3);
+    const Scene scene{with_scheme(flexible_arm("0 0 1"), scheme, 2e-3)};
+    expect_differences(scene, {{"payload", 0.4}, {"damping", 0.3}, {"length", 1}}, 300, 2e-3);
+    // Of the runs' round-off, to which the Newmark family adds that of the first accelerations, little is left only a
+    // longer way apart.
+    expect_differences(scene, {{"young", 7e9}}, 300, 4e-3);
   }
 }
 

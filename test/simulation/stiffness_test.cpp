@@ -17,15 +17,18 @@ constexpr double kMostIterations = 6;
 
 double iterations_per_step(const SceneBuilder& builder, const SimulationOptions& options, int steps) {
   Simulation simulation(builder.scene, options);
-  int iterations = 0;
+  int iterations = 0, factorisations = 0;
   for (int k = 0; k < steps; ++k) {
     const StepResult result = simulation.step();
     EXPECT_TRUE(result.converged) << to_string(result.reason) << " in step " << k;
     EXPECT_EQ(result.halvings, 0) << "in step " << k;
     iterations += result.iterations;
+    factorisations += result.factorisations;
   }
-  std::printf("%s: %.2f iterations a step\n", options.scheme->c_str(), static_cast<double>(iterations) / steps);
-  return static_cast<double>(iterations) / steps;
+  const double per_step = static_cast<double>(iterations) / steps;
+  std::printf("%s: %.2f iterations and %.2f factorisations a step\n", options.scheme->c_str(), per_step,
+              static_cast<double>(factorisations) / steps);
+  return per_step;
 }
 
 double iterations_per_step(const SceneBuilder& builder, const std::string& scheme, double step, int steps) {
