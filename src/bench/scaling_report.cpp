@@ -104,7 +104,9 @@ std::string to_markdown(const ScalingReport& report, const std::string& picture)
       "over the two upper decades; 1 is linear. Bold: above 1.05. A table of two points only, or of times below a "
       "millisecond, says little.\n"
       "- Where memory outgrows the processor's caches, and from where on the system hands out fresh pages for each "
-      "simulation, the same work takes longer, which bends the curves upwards in the middle.\n\n" +
+      "simulation, the same work takes longer, which bends the curves upwards in the middle. With "
+      "`GLIBC_TUNABLES=glibc.malloc.hugetlb=1` in the environment glibc asks for huge pages, which are handed out much "
+      "faster.\n\n" +
       target_table(report) + "\n" + slope_table(report);
   if (!picture.empty()) text += fmt::format("\n![Time per step, time to build and memory over size]({})\n", picture);
   for (const ScalingSeries& series : report.series)
