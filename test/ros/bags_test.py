@@ -75,6 +75,8 @@ class Bags(unittest.TestCase):
                 else:
                     force.send(force_command(["left_shoulder"], [0.1 * n], 0.004 if n % 3 else 0.0))
                 wait_until(lambda count=count: len(states) > count, "the step")
+                # Of two topics the recorder takes what has come in the meantime in any order: it has to keep up.
+                time.sleep(0.02)
             force.send(force_command(["nobody"], [1.0]))
             time.sleep(0.5)
             recorder.end()
