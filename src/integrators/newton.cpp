@@ -155,14 +155,16 @@ bool NewtonIteration::diverges(const Progress& progress) const {
 
 /// Kept factors that make updates grow so lead astray; the solve begins anew. Round-off may grow as it likes.
 bool NewtonIteration::is_led_astray(const Progress& progress) const {
-  const double limit = progress.iteration == 1 ? kUseless : kAstray;
-  return progress.with_kept && progress.kept_before && progress.since_revision > 0 && progress.contraction > limit &&
-         progress.norm > kStagnation;
+  return progress.kept_before && kept_leave_more_than(progress.iteration == 1 ? kUseless : kAstray, progress);
 }
 
 bool NewtonIteration::is_useless(const Progress& progress) const {
-  return progress.with_kept && !progress.kept_before && progress.since_revision > 0 &&
-         progress.contraction > kUseless && progress.norm > kStagnation;
+  return !progress.kept_before && kept_leave_more_than(kUseless, progress);
+}
+
+bool NewtonIteration::kept_leave_more_than(double share, const Progress& progress) const {
+  return progress.with_kept && progress.since_revision > 0 && progress.contraction > share &&
+         progress.norm > kStagnation;
 }
 
 /// A steep law (friction near sticking, the touch of a stop) makes full updates jump to and fro; statics has none.

@@ -47,8 +47,8 @@ class NewtonIteration {
     bool kept_before = false;        // of the update before this one
     double norm = 0;                 // of the update
     double fraction = 1;             // of the solution that it is
-    double damping = 1;              // fraction of an update that is made
-    int done_well = 0;               // updates in a row with this damping
+    double damping = 1;              // share of an update that is made at a steep law
+    int done_well = 0;               // updates in a row with this damping that did
     double contraction = 1;          // its ratio to the one before; 1 where there is none
     bool started_with_kept = false;  // factors of the solve's first update
     double first_residual = 0;       // norm before it
@@ -74,6 +74,7 @@ class NewtonIteration {
   bool diverges(const Progress& progress) const;
   bool is_led_astray(const Progress& progress) const;
   bool is_useless(const Progress& progress) const;
+  bool kept_leave_more_than(double share, const Progress& progress) const;
   void damp(Progress& progress);
   bool has_converged(const Progress& progress, Factors factors) const;
   double remainder_after(const Progress& progress) const;
