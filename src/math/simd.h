@@ -5,18 +5,19 @@
 
 namespace flexarm::simd {
 
+/// For which processors a kernel is compiled: all, those with AVX2 and fused multiply-add, and those with AVX-512.
+enum class Version { Baseline, Wide, ManyRegisters };
+
+/// The last of them that the processor at hand can run.
+Version best_version();
+/// The one that runs: the best, or before it for tests. No other thread may run kernels while it is set.
+extern Version version;
+
 // What a function template inlines is compiled for the same processor as the template, and nothing else is: no inline
 // function that other files share can come out for a processor that they do not run on. GCC only: clang's `flatten`
 // inlines one level of calls. Without optimisation nothing is inlined.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__)
-inline constexpr bool has_wide_version = true;
-inline bool is_wide() {
-  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-}
-inline bool has_many_registers() {
-  return is_wide() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-         __builtin_cpu_supports("avx512dq");
-}
+inline constexpr bool has_versions = true;
 template <class Work>
 [[gnu::target("avx2,fma"), gnu::flatten, gnu::noinline]] void run_wide(const Work& work) {
   work();
@@ -27,13 +28,7 @@ run_with_many_registers(const Work& work) {
   work();
 }
 #else
-inline constexpr bool has_wide_version = false;
-inline bool is_wide() {
-  return false;
-}
-inline bool has_many_registers() {
-  return false;
-}
+inline constexpr bool has_versions = false;
 template <class Work>
 void run_wide(const Work& work) {
   work();
@@ -52,10 +47,9 @@ template <class Work>
 /// Calls work(), a function object that may be compiled three times.
 template <class Work>
 void run(const Work& work) {
-  if constexpr (has_wide_version) {
-    static const bool many_registers = has_many_registers(), wide = is_wide();
-    if (many_registers) return run_with_many_registers(work);
-    if (wide) return run_wide(work);
+  if constexpr (has_versions) {
+    if (version == Version::ManyRegisters) return run_with_many_registers(work);
+    if (version == Version::Wide) return run_wide(work);
   }
   run_baseline(work);
 }

@@ -52,37 +52,38 @@ class Conserving {
 
   /// The strains of the nodes' configuration, and what an update adds to them to first order.
   CarriedStrains<Nodes> strains(const ElementNodes<Nodes>& nodes, const Update<Nodes>& update) const {
-    KernelData<Nodes, double> data = data_at(nodes);
+    KernelData<Nodes> data = data_at(nodes);
+    std::array<Vector6T<Pack>, Nodes> moved;
+    for (int i = 0; i < Nodes; ++i)
+      for (int lane = 0; lane < Pack::kLanes; ++lane) set_lane(moved[i], lane, update[i]);
+    packs::carry_strains<Nodes>(data.element, data.nodes, rule_, data.functions, data.begin.data(), moved,
+                                data.end.data(), data.carried);
     CarriedStrains<Nodes> carried;
-    conserving::StepPoints<Nodes, double> at;
-    conserving::set_points<Nodes, double>(data.element, data.nodes, rule_, functions_, true, data.end.data(), at);
-    conserving::set_strains<Nodes, double>(data.element, data.nodes, data.begin.data(), data.end.data(), nullptr, at);
-    conserving::carry_strains<Nodes, double>(data.element, data.nodes, at, update, data.end.data(), carried);
+    for (int k = 0; k < Nodes - 1; ++k) {
+      carried.end[k] = get_lane(data.carried.end[k], 0);
+      carried.conjugate[k] = get_lane(data.carried.conjugate[k], 0);
+    }
+    carried.has_conjugate = data.carried.has_conjugate;
     return carried;
   }
-  /// Residual, tangent and, in `of_carried`, the residual in which the strains are variables of their own.
-  ElementSystem<Nodes> evaluate(const ElementNodes<Nodes>& nodes, const CarriedStrains<Nodes>* carried,
-                                Row<Nodes>* of_carried = nullptr) const {
-    KernelData<Nodes, double> data = data_at(nodes);
-    data.carried = carried;
+  /// Residual, tangent and, in ElementSystem::carried, what makes of the residual that in which the strains are
+  /// variables of their own.
+  ElementSystem<Nodes> evaluate(const ElementNodes<Nodes>& nodes, const CarriedStrains<Nodes>* carried) const {
+    KernelData<Nodes> data = data_at(nodes);
+    if (carried) data.carry(*carried);
     data.evaluate(rule_, kStep, true);
     ElementSystem<Nodes> system;
     data.get(0, true, system);
-    for (int i = 0; i < Nodes && of_carried; ++i)
-      of_carried->template segment<6>(6 * i) = data.system.residual[i] + data.system.carried[i];
     return system;
   }
   Row<Nodes> mixed(const ElementNodes<Nodes>& nodes, const CarriedStrains<Nodes>& strains) const {
-    Row<Nodes> residual;
-    evaluate(nodes, &strains, &residual);
-    return residual;
+    const ElementSystem<Nodes> system = evaluate(nodes, &strains);
+    return system.residual + system.carried;
   }
 
  private:
-  KernelData<Nodes, double> data_at(const ElementNodes<Nodes>& nodes) const {
-    KernelData<Nodes, double> data;
-    data.set(0, {step_.element, nodes, functions_, step_.begin_points.data(), memory_.data()});
-    return data;
+  KernelData<Nodes> data_at(const ElementNodes<Nodes>& nodes) const {
+    return KernelData<Nodes>({step_.element, nodes, functions_, step_.begin_points.data(), memory_.data()});
   }
 
   const RandomStep<Nodes>& step_;

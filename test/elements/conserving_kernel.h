@@ -1,11 +1,11 @@
 #pragma once
 /// The kernel of the energy-momentum family as tests call it: elements in and systems out, lane by lane.
 
-#include "elements/conserving_beam.h"
+#include "elements/conserving_pack.h"
 #include "elements/conserving_points.h"
-#include "elements/conserving_tangent.h"
 #include "elements/random_element.h"
 #include "elements/tested_step.h"
+#include "math/lanes.h"
 #include "schemes/scheme.h"
 
 namespace flexarm::test {
@@ -31,17 +31,23 @@ struct LaneInput {
   const StrainMemory* memory;  // may be null
 };
 
-/// The same of one or several elements.
-template <int Nodes, typename S>
+/// The same of the elements of a pack, and what comes out.
+template <int Nodes>
 struct KernelData {
-  ConservingElement<Nodes, S> element;
-  BeamNodes<Nodes, S> nodes;
-  ElementFunctions<Nodes, S> functions;
-  std::array<PointKinematicsT<S>, Nodes - 1> begin, end;
-  std::array<StrainMemoryT<S>, Nodes - 1> memory, end_memory;
-  BlockSystem<Nodes, S> system;
-  const CarriedStrains<Nodes, S>* carried = nullptr;
+  ConservingElement<Nodes, Pack> element;
+  BeamNodes<Nodes, Pack> nodes;
+  ElementFunctions<Nodes, Pack> functions;
+  std::array<PointKinematicsT<Pack>, Nodes - 1> begin, end;
+  std::array<StrainMemoryT<Pack>, Nodes - 1> memory, end_memory;
+  BlockSystem<Nodes, Pack> system;
+  CarriedStrains<Nodes, Pack> carried;
+  bool is_carried = false;
 
+  KernelData() = default;
+  /// One element in all lanes: what ships runs on packs.
+  explicit KernelData(const LaneInput<Nodes>& input) {
+    for (int lane = 0; lane < Pack::kLanes; ++lane) set(lane, input);
+  }
   void set(int lane, const LaneInput<Nodes>& input) {
     set_lane(element, lane, input.element);
     for (int i = 0; i < Nodes; ++i) {
@@ -66,20 +72,26 @@ struct KernelData {
       set_lane(memory[k].delayed_rate, lane, from.delayed_rate);
     }
   }
+  /// Strains that are carried along, of all lanes.
+  void carry(const CarriedStrains<Nodes>& strains) {
+    is_carried = true;
+    carried.has_conjugate = strains.has_conjugate;
+    for (int k = 0; k < Nodes - 1; ++k)
+      for (int lane = 0; lane < Pack::kLanes; ++lane) {
+        set_lane(carried.end[k], lane, strains.end[k]);
+        set_lane(carried.conjugate[k], lane, strains.conjugate[k]);
+      }
+  }
   void evaluate(const TimeRule& rule, double step, bool with_tangent) {
-    conserving::StepPoints<Nodes, S> at;
-    conserving::EnergyMultiplier<Nodes, S> multiplier;
-    conserving::set_points<Nodes, S>(element, nodes, rule, functions, with_tangent, end.data(), at);
-    conserving::set_strains<Nodes, S>(element, nodes, begin.data(), end.data(), carried, at);
-    conserving::set_forces<Nodes, S>(element, nodes, rule, begin.data(), end.data(), memory.data(), step, with_tangent,
-                                     carried != nullptr, end_memory.data(), at, multiplier, system);
-    if (with_tangent) conserving::add_tangent<Nodes, S>(element, nodes, rule, at, multiplier, system);
+    packs::conserving_beam<Nodes>(element, nodes, rule, functions, begin.data(), memory.data(), step, with_tangent,
+                                  is_carried ? &carried : nullptr, end.data(), end_memory.data(), system);
   }
   void get(int lane, bool with_tangent, ElementSystem<Nodes>& out) const {
     out.set_zero();
     out.dissipated = get_lane(system.dissipated, lane);
     for (int i = 0; i < Nodes; ++i) {
       out.residual.template segment<6>(6 * i) = get_lane(system.residual[i], lane);
+      if (is_carried) out.carried.template segment<6>(6 * i) = get_lane(system.carried[i], lane);
       for (int j = 0; j < Nodes && with_tangent; ++j)
         out.tangent.template block<6, 6>(6 * i, 6 * j) = get_lane(system.tangent[i][j], lane);
     }
@@ -94,15 +106,14 @@ struct KernelData {
   }
 };
 
-/// One element, as a pack of copies: what ships runs on packs.
+/// One element by the kernel.
 template <bool WithMultiplier, int Nodes>
 void conserving_beam(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, TimeRule rule,
                      const ElementFunctions<Nodes>& functions, const PointKinematics* begin, const StrainMemory* memory,
                      double step, bool with_tangent, PointKinematics* end, StrainMemory* end_memory,
                      ElementSystem<Nodes>& system) {
   rule.correction = WithMultiplier ? EnergyCorrection::Multiplier : EnergyCorrection::None;
-  KernelData<Nodes, Pack> data;
-  for (int lane = 0; lane < Pack::kLanes; ++lane) data.set(lane, {element, nodes, functions, begin, memory});
+  KernelData<Nodes> data({element, nodes, functions, begin, memory});
   data.evaluate(rule, step, with_tangent);
   data.get(0, with_tangent, system);
   data.get_end(0, end, end_memory);

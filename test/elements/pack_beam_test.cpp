@@ -1,4 +1,4 @@
-// Kernels of the energy-momentum family on packs: every lane has what its element has alone.
+// Kernels of the energy-momentum family on packs: every lane has what its element has in all of them.
 #include <limits>
 #include <memory>
 
@@ -62,7 +62,7 @@ class Lanes {
     return {step.element, step.nodes, functions_[lane], step.begin_points.data(), memory_[lane].data()};
   }
   /// Lane l of the pack is element (l + shift) % 4.
-  void fill(int shift, KernelData<Nodes, Pack>& data) const {
+  void fill(int shift, KernelData<Nodes>& data) const {
     for (int lane = 0; lane < Pack::kLanes; ++lane) data.set(lane, input((lane + shift) % Pack::kLanes));
   }
   TimeRule rule() const { return options_.rule(); }
@@ -94,8 +94,7 @@ struct Output {
   std::array<PointKinematics, Nodes - 1> points;
   std::array<StrainMemory, Nodes - 1> memory;
 
-  template <typename S>
-  Output(const KernelData<Nodes, S>& data, int lane) {
+  Output(const KernelData<Nodes>& data, int lane) {
     data.get(lane, true, system);
     data.get_end(lane, points.data(), memory.data());
   }
@@ -107,23 +106,20 @@ struct Output {
   }
 };
 
-enum class Version { Baseline, Wide, ManyRegisters };
+/// Kernels are compiled for several processors; until its end they run as this one would run them.
+class As {
+ public:
+  explicit As(simd::Version version) { simd::version = version; }
+  ~As() { simd::version = simd::best_version(); }
+  As(const As&) = delete;
+  As& operator=(const As&) = delete;
+};
 
-template <int Nodes>
-void evaluate_as(KernelData<Nodes, Pack>& data, const TimeRule& rule, Version version) {
-  const auto work = [&] { data.evaluate(rule, kStep, true); };
-  if (version == Version::Baseline)
-    simd::run_baseline(work);
-  else if (version == Version::Wide)
-    simd::run_wide(work);
-  else
-    simd::run_with_many_registers(work);
-}
-
-std::vector<Version> versions() {
-  std::vector<Version> out = {Version::Baseline};
-  if (simd::is_wide()) out.push_back(Version::Wide);
-  if (simd::has_many_registers()) out.push_back(Version::ManyRegisters);
+/// Those that the processor at hand can run.
+std::vector<simd::Version> versions() {
+  std::vector<simd::Version> out;
+  for (const simd::Version version : {simd::Version::Baseline, simd::Version::Wide, simd::Version::ManyRegisters})
+    if (version <= simd::best_version()) out.push_back(version);
   return out;
 }
 
@@ -135,13 +131,16 @@ TYPED_TEST(PackBeam, LanesAreSingleElements) {
   constexpr int N = TypeParam::value;
   for (const PackOptions& options : kPackOptions) {
     const Lanes<N> lanes(options);
-    for (const Version version : versions()) {
-      KernelData<N, Pack> pack;
+    for (const simd::Version version : versions()) {
+      KernelData<N> pack;
       lanes.fill(0, pack);
-      evaluate_as(pack, lanes.rule(), version);
+      {
+        const As processor(version);
+        pack.evaluate(lanes.rule(), kStep, true);
+      }
       for (int lane = 0; lane < Pack::kLanes; ++lane) {
-        KernelData<N, double> single;
-        single.set(0, lanes.input(lane));
+        const As processor(simd::Version::Baseline);
+        KernelData<N> single(lanes.input(lane));
         single.evaluate(lanes.rule(), kStep, true);
         const Output<N> expected(single, 0), actual(pack, lane);
         // The multiplier divides an absolute round-off by the square of the increments, then multiplies by them; its
@@ -177,14 +176,15 @@ TYPED_TEST(PackBeam, LanesDoNotFeelEachOther) {
   constexpr int N = TypeParam::value;
   for (const PackOptions& options : kPackOptions) {
     const Lanes<N> lanes(options);
-    for (const Version version : versions()) {
-      KernelData<N, Pack> pack, shifted;
+    for (const simd::Version version : versions()) {
+      const As processor(version);
+      KernelData<N> pack, shifted;
       lanes.fill(0, pack);
-      evaluate_as(pack, lanes.rule(), version);
+      pack.evaluate(lanes.rule(), kStep, true);
       lanes.fill(1, shifted);
       shifted.nodes.end[0][0].set(3, std::numeric_limits<double>::quiet_NaN());
       shifted.nodes.orientation[0].w().set(3, std::numeric_limits<double>::quiet_NaN());
-      evaluate_as(shifted, lanes.rule(), version);
+      shifted.evaluate(lanes.rule(), kStep, true);
       for (int lane = 1; lane < Pack::kLanes; ++lane)
         EXPECT_TRUE(Output<N>(pack, lane) == Output<N>(shifted, lane - 1)) << "lane " << lane;
     }

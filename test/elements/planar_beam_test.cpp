@@ -46,7 +46,6 @@ struct PlanarStep : RandomPlanarStep<Nodes> {
 
   /// By the kernel of three dimensions: {f_1, f_2, phi} and blocks of the nodes.
   ElementSystem<Nodes> in_three_dimensions(bool with_tangent) {
-    KernelData<Nodes, double> data;
     std::array<Quaternion, Nodes> begin_orientation;
     std::array<Vector3, Nodes> turns;
     ElementNodes<Nodes> nodes;
@@ -66,19 +65,17 @@ struct PlanarStep : RandomPlanarStep<Nodes> {
     if (options.is_corrected) stretch_mid_functions<Nodes, double>(turns, functions);
     std::array<flexarm::PointKinematics, Nodes - 1> points;
     element_points<Nodes, double>(constants, nodes.begin, begin_orientation, points.data());
-    data.set(0, {element, nodes, functions, points.data(), memory.data()});
-    flexarm::CarriedStrains<Nodes> carried;
+    KernelData<Nodes> data({element, nodes, functions, points.data(), memory.data()});
     if (is_carried) {
+      flexarm::CarriedStrains<Nodes> carried;
       for (int k = 0; k < Nodes - 1; ++k)
         carried.end[k] = basis * carried_end, carried.conjugate[k] = basis * carried_s;
       carried.has_conjugate = true;
-      data.carried = &carried;
+      data.carry(carried);
     }
     data.evaluate(rule, kStep, with_tangent);
     ElementSystem<Nodes> out;
     data.get(0, with_tangent, out);
-    if (is_carried)
-      for (int i = 0; i < Nodes; ++i) out.carried.template segment<6>(6 * i) = data.system.carried[i];
     data.get_end(0, end_points.data(), end_memory.data());
     return out;
   }
