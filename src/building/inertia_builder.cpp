@@ -60,7 +60,17 @@ void add_elements(const ScenePlan& plan, int link, Model& model) {
   }
 }
 
+/// For all elements at once: growing by doubling costs a large scene twice the memory.
+template <int Nodes>
+void reserve_elements(const ScenePlan& plan, std::vector<BeamElement<Nodes>>& elements) {
+  std::size_t count = 0;
+  for (const auto& link : plan.meshes)
+    if (link && link->mesh.order + 1 == Nodes) count += link->mesh.elements.size();
+  elements.reserve(count);
+}
+
 void add_beams(const ScenePlan& plan, Model& model) {
+  for_each_group(model.beams, [&](auto& group) { reserve_elements(plan, group.elements); });
   for (const int link : links_root_to_leaf(plan))
     if (plan.meshes[link])
       for_each_group(model.beams, [&](const auto& group) {

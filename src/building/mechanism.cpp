@@ -25,6 +25,14 @@ double Mechanism::extent() const {
   return extent > 0 ? extent : 1.0;
 }
 
+void Mechanism::reserve_nodes(std::size_t count) {
+  count += model.nodes.size();
+  model.nodes.reserve(count);
+  model.inertias.reserve(count);
+  node_parents.reserve(count);
+  slave_joint.reserve(count);
+}
+
 int Mechanism::add_node(const Pose& pose, int parent) {
   NodePose node;
   node.position = pose.position;

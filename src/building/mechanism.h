@@ -30,6 +30,8 @@ struct Mechanism {
   /// Size of the mechanism as it starts; 1 where that is nothing [m].
   double extent() const;
 
+  /// Makes room for so many more.
+  void reserve_nodes(std::size_t count);
   int add_node(const Pose& pose, int parent);
   /// Adds an elementary joint with its slave node; returns the node.
   int add_map(JointMap map, const Released& released);

@@ -34,6 +34,11 @@ class TreeBuilder {
     model_.origin = plan_.origin;
     model_.floats = plan_.floats;
     model_.initial_origin = plan_.start_origin;
+    // Those of beams; joints, which are few beside them, may add as many as they like.
+    std::size_t count = 0;
+    for (const std::optional<LinkMesh>& link : plan_.meshes)
+      if (link) count += link->mesh.nodes.size();
+    tree_.reserve_nodes(count + 2 * plan_.tree.joints.size());
     place_link(plan_.tree.root, {-1, Pose{Vector3::Zero() - plan_.origin, Quaternion::Identity()}});
     for (const scene::JointDescription* joint : plan_.tree.joints)
       tree_.tree_joints.push_back(joint->kind == scene::JointKind::Slide ? add_slide(*joint) : add_joint(*joint));

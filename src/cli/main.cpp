@@ -1,6 +1,8 @@
 #include <cstdio>
 #include <new>
 
+#include <malloc.h>
+
 #include <fmt/format.h>
 
 #include "building/model_builder.h"
@@ -49,9 +51,17 @@ int run(int argc, char** argv) {
   }
 }
 
+/// What a simulation gives back stays with the process, for the next one: the system takes longer to hand out fresh
+/// memory than building a large model takes.
+void keep_memory() {
+  mallopt(M_MMAP_MAX, 0);
+  mallopt(M_TRIM_THRESHOLD, -1);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  keep_memory();
   flexarm::cli::ignore_signals_of_output();
   const int status = run(argc, argv);
   if (std::fflush(stdout) == 0) return status;
