@@ -1,5 +1,6 @@
-/// Gives every number in scenes every hostile value, one at a time, each in a process of its own that has 30 s and
-/// 2 GiB: sweep [--every N] [--from FIRST] SCENE... Prints what must not be; the exit status is 1 if there is any.
+/// Gives every number in scenes every hostile value, one at a time, each with 30 s and 2 GiB, in processes that try
+/// some and that a case may end: sweep [--every N] [--from FIRST] SCENE... Prints what must not be; the exit status is
+/// 1 if there is any.
 ///
 /// `--every N`: every N-th case only, from the first or FIRST on.
 #include <algorithm>
@@ -25,6 +26,8 @@ namespace {
 
 // Three steps, each of which may be halved 500 times: the slowest scene that ends takes 75000 iterations, or 8 s.
 constexpr rlim_t kSeconds = 30, kBytes = rlim_t{2} << 30;
+/// Cases that a process tries: making one takes as long as trying a scene.
+constexpr std::size_t kTogether = 32;
 constexpr const char* kValues[] = {"0",     "-0",  "1e-320", "1e-30", "1e30", "1e300",      "-1e300",
                                    "nan",   "inf", "-1",     "1e6",   "7",    "2147483648", "99999999999999999999",
                                    "1e-300"};
@@ -59,34 +62,69 @@ std::vector<Place> numbers_in(const std::string& text) {
   return places;
 }
 
-/// What a process of its own makes of a scene, in words; empty if nothing is wrong. `end` gets how it ended.
-std::string tried_apart(const std::string& text, const std::string& name, std::string& end) {
-  int ends[2];
-  if (pipe(ends) != 0) return "no pipe";
-  const pid_t child = fork();
-  if (child == 0) {
-    const rlimit seconds{kSeconds, kSeconds + 1}, bytes{kBytes, kBytes};
-    setrlimit(RLIMIT_CPU, &seconds);
-    setrlimit(RLIMIT_AS, &bytes);
-    const Trial trial = try_scene(text, name);
+/// A scene with one number changed.
+struct Case {
+  long number;
+  std::string text, name, words;  ///< words: which number it is, and what takes its place
+};
+/// How the trial of a case ended, and what is wrong with it, in words; empty if nothing is.
+struct Outcome {
+  std::string end, wrong;
+};
+
+/// So much time and memory from now on.
+void set_limits() {
+  rusage used;
+  getrusage(RUSAGE_SELF, &used);
+  const rlim_t end = static_cast<rlim_t>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) + 1 + kSeconds;
+  const rlimit seconds{end, end + 1}, bytes{kBytes, kBytes};
+  setrlimit(RLIMIT_CPU, &seconds);
+  setrlimit(RLIMIT_AS, &bytes);
+}
+
+/// Tries cases from `first` on in this process, and writes two lines on each: how it ended, and what is wrong.
+[[noreturn]] void try_and_tell(const std::vector<Case>& cases, std::size_t first, int file) {
+  for (std::size_t i = first; i < cases.size(); ++i) {
+    set_limits();
+    const Trial trial = try_scene(cases[i].text, cases[i].name);
     const char* const kEnds[] = {"refused", "ran", "failed"};
-    const std::string report = std::string(kEnds[static_cast<int>(trial.end)]) + "\n" + trial.wrong;
-    const bool is_sent = write(ends[1], report.data(), report.size()) == static_cast<ssize_t>(report.size());
-    _exit(is_sent ? 0 : 1);
+    std::string wrong = trial.wrong;
+    std::replace(wrong.begin(), wrong.end(), '\n', ' ');
+    const std::string report = std::string(kEnds[static_cast<int>(trial.end)]) + "\n" + wrong + "\n";
+    if (write(file, report.data(), report.size()) != static_cast<ssize_t>(report.size())) _exit(1);
   }
-  close(ends[1]);
-  std::string report;
+  _exit(0);
+}
+
+/// All of `file` until it is closed.
+std::string read_all(int file) {
+  std::string text;
   char part[4096];
-  for (ssize_t size; (size = read(ends[0], part, sizeof part)) > 0;)
-    report.append(part, static_cast<std::size_t>(size));
+  for (ssize_t size; (size = read(file, part, sizeof part)) > 0;) text.append(part, static_cast<std::size_t>(size));
+  return text;
+}
+
+/// Outcomes of the cases from `first` on that a process of its own comes to: of all, unless one ends the process, which
+/// is the last then.
+std::vector<Outcome> tried_apart(const std::vector<Case>& cases, std::size_t first) {
+  int ends[2];
+  if (pipe(ends) != 0) return {{"killed", "no pipe"}};
+  const pid_t child = fork();
+  if (child == 0) try_and_tell(cases, first, ends[1]);
+  close(ends[1]);
+  std::istringstream reports(read_all(ends[0]));
   close(ends[0]);
   int status = 0;
   waitpid(child, &status, 0);
-  end = "killed";
-  if (WIFSIGNALED(status)) return fmt::format("{} (signal {})", strsignal(WTERMSIG(status)), WTERMSIG(status));
-  const std::size_t line = report.find('\n');
-  end = report.substr(0, line);
-  return line == std::string::npos ? "no report" : report.substr(line + 1);
+  std::vector<Outcome> outcomes;
+  for (Outcome outcome; std::getline(reports, outcome.end) && std::getline(reports, outcome.wrong);)
+    outcomes.push_back(outcome);
+  if (first + outcomes.size() < cases.size()) {
+    const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+    outcomes.push_back(
+        {"killed", signal ? fmt::format("{} (signal {})", strsignal(signal), signal) : std::string("no report")});
+  }
+  return outcomes;
 }
 
 class Sweep {
@@ -99,7 +137,8 @@ class Sweep {
     const std::string text = stream.str(), name = path.substr(path.rfind('/') + 1);
     for (const Place& place : numbers_in(text))
       for (const char* value : kValues)
-        if (is_next()) attempt(text, name, place, value);
+        if (is_next()) add(text, name, place, value);
+    attempt();
   }
   int report() const {
     fmt::print("{} of {} cases:", tried_, count_);
@@ -114,20 +153,31 @@ class Sweep {
     next_ += every_;
     return true;
   }
-  void attempt(const std::string& text, const std::string& name, const Place& place, const char* value) {
-    std::string changed = text, end;
+  void add(const std::string& text, const std::string& name, const Place& place, const char* value) {
+    std::string changed = text;
     changed.replace(place.begin, place.size, value);
-    const std::string wrong = tried_apart(changed, name, end);
-    ++tried_;
-    ++ends_[end];
-    if (wrong.empty()) return;
-    ++wrong_;
     const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(place.begin), '\n');
-    fmt::print("{}:{}: {} {} -> {} (case {}): {}\n", name, line, place.attribute, text.substr(place.begin, place.size),
-               value, count_ - 1, wrong);
+    cases_.push_back(
+        {count_ - 1, changed, name,
+         fmt::format("{}:{}: {} {} -> {}", name, line, place.attribute, text.substr(place.begin, place.size), value)});
+    if (cases_.size() == kTogether) attempt();
+  }
+  void attempt() {
+    for (std::size_t done = 0; done < cases_.size();) {
+      for (const Outcome& outcome : tried_apart(cases_, done)) tell(cases_[done++], outcome);
+    }
+    cases_.clear();
+  }
+  void tell(const Case& tried, const Outcome& outcome) {
+    ++tried_;
+    ++ends_[outcome.end];
+    if (outcome.wrong.empty()) return;
+    ++wrong_;
+    fmt::print("{} (case {}): {}\n", tried.words, tried.number, outcome.wrong);
     std::fflush(stdout);
   }
 
+  std::vector<Case> cases_;
   long every_, next_, count_ = 0, tried_ = 0, wrong_ = 0;
   std::map<std::string, long> ends_;
 };
