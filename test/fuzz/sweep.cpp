@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -72,14 +73,19 @@ struct Outcome {
   std::string end, wrong;
 };
 
-/// So much time and memory from now on.
+void set_soft_limit(int what, rlim_t value) {
+  rlimit limit;
+  getrlimit(what, &limit);
+  limit.rlim_cur = std::min(value, limit.rlim_max);
+  setrlimit(what, &limit);
+}
+
+/// So much time and memory from now on. The hard limits stay: only root can raise them again for the next case.
 void set_limits() {
-  rusage used;
-  getrusage(RUSAGE_SELF, &used);
-  const rlim_t end = static_cast<rlim_t>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) + 1 + kSeconds;
-  const rlimit seconds{end, end + 1}, bytes{kBytes, kBytes};
-  setrlimit(RLIMIT_CPU, &seconds);
-  setrlimit(RLIMIT_AS, &bytes);
+  timespec used;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
+  set_soft_limit(RLIMIT_CPU, static_cast<rlim_t>(used.tv_sec) + 1 + kSeconds);
+  set_soft_limit(RLIMIT_AS, kBytes);
 }
 
 /// Tries cases from `first` on in this process, and writes two lines on each: how it ended, and what is wrong.
