@@ -4,9 +4,9 @@
 /// Momenta are conserved for any stress N_a, M_a and any test functions with sum I_t = 1, if the arm r'_* suits the
 /// rule of the velocities.
 ///
-/// One source for one element (S = double) and for four of them side by side (S = Pack). A step goes by stages, which
-/// are compiled each by itself: set_points() (conserving_points.h), set_strains() and set_forces() here, add_tangent()
-/// (conserving_tangent.h).
+/// Templates on their numbers; those of four elements side by side (S = Pack) are what runs (conserving_pack.h). A step
+/// goes by stages, which are compiled each by itself: set_points() (conserving_points.h), set_strains() and set_forces()
+/// here, add_tangent() (conserving_tangent.h).
 
 #include <cassert>
 
