@@ -5,8 +5,8 @@
 /// rule of the velocities.
 ///
 /// Templates on their numbers; those of four elements side by side (S = Pack) are what runs (conserving_pack.h). A step
-/// goes by stages, which are compiled each by itself: set_points() (conserving_points.h), set_strains() and set_forces()
-/// here, add_tangent() (conserving_tangent.h).
+/// goes by stages, which are compiled each by itself: set_points() (conserving_points.h), set_strains() and
+/// set_forces() here, add_tangent() (conserving_tangent.h).
 
 #include <cassert>
 
