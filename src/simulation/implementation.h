@@ -18,6 +18,7 @@
 #include "model/line_release.h"
 #include "model/room_for_wrenches.h"
 #include "simulation/joint_state.h"
+#include "simulation/loop_velocities.h"
 #include "simulation/observables.h"
 #include "simulation/published_motion.h"
 #include "simulation/sensors.h"
@@ -162,8 +163,10 @@ struct Simulation::Implementation {
   State state_of_other(const Implementation& from) {
     fit_to_state(from.state);
     const bool is_same = from.scheme.name == scheme.name;
-    State state = is_same ? from.state : with_joint_state(model, stepper->degrees_of_freedom(), from.state, {});
-    if (is_same && from.settings.step == settings.step) return state;
+    if (is_same && from.settings.step == settings.step) return from.state;
+    const DegreesOfFreedom& dof = stepper->degrees_of_freedom();
+    const State closed = with_closed_loops(model, dof, from.state);
+    State state = is_same ? closed : with_joint_state(model, dof, closed, {});
     state.halving_level = state.good_steps = 0;
     state.drives = from.state.drives;
     state.transmitted = from.state.transmitted;
@@ -171,11 +174,11 @@ struct Simulation::Implementation {
     if (is_same) return state;
     // Not as joints' rates have it: schemes may let slaves move a little beside them.
     for (std::size_t i = 0; i < state.nodes.size(); ++i) {
-      const NodeState& node = from.state.nodes[i];
+      const NodeState& node = closed.nodes[i];
       state.nodes[i] = {node.position, node.orientation, node.velocity, node.angular_velocity};
     }
     state.released = from.state.released;
-    if (!scheme.is_incremental() && !from.scheme.is_incremental()) state.mass_points = from.state.mass_points;
+    if (!scheme.is_incremental() && !from.scheme.is_incremental()) state.mass_points = closed.mass_points;
     if (initial->total_rotations.empty()) state.total_rotations.clear();
     stepper->initialise(state);
     return state;

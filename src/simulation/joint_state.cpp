@@ -11,6 +11,7 @@
 #include "joints/joint_kinematics.h"
 #include "math/so3.h"
 #include "model/carried_origin.h"
+#include "simulation/loop_velocities.h"
 #include "simulation/observables.h"
 
 namespace flexarm {
@@ -174,30 +175,35 @@ class Follower {
   Motion& after_;
 };
 
-/// @throws std::invalid_argument where a loop of rigid links opens.
-void check_closures(const Model& model, const Motion& motion) {
-  double fastest = 0;
-  for (const Vector6& velocity : motion.velocities)
-    fastest = std::max({fastest, velocity.head<3>().norm(), model.length_scale * velocity.tail<3>().norm()});
-  const auto check = [&](const LoopClosure& closure, const ClosureConstraint& constraint) {
-    const auto pose = [&](int node) { return node < 0 ? kWorld : motion.poses[node]; };
-    const auto velocity = [&](int node) { return node < 0 ? Vector6(Vector6::Zero()) : motion.velocities[node]; };
-    const ClosurePoses poses{pose(closure.parent), pose(closure.child)};
-    const double unit = constraint.kind == ClosureConstraint::Kind::Gap ? model.length_scale : 1.0;
-    const double value = closure_value(closure, constraint, poses);
-    if (std::abs(value) > kClosed * unit)
-      throw std::invalid_argument(
-          fmt::format("the loop that joint '{}' closes opens, by {:.3g} {}: give the positions of all its joints",
-                      closure.name, value, constraint.kind == ClosureConstraint::Kind::Gap ? "m" : "rad"));
-    const ClosureRows rows = closure_rows(closure, constraint, poses);
-    const double rate = rows.parent.dot(velocity(closure.parent)) + rows.child.dot(velocity(closure.child));
-    if (std::abs(rate) > kStaysClosed * unit * fastest / model.length_scale)
-      throw std::invalid_argument("the velocities open the loop that joint '" + closure.name +
-                                  "' closes: give those of all its joints");
-  };
+/// A scheme's own velocities open loops a little, and let slaves move a little beside their joints (joints.md 3.2): not
+/// the fault of who sets others.
+void close_velocities(const Model& model, const DegreesOfFreedom& dof, const State& state, Motion& motion) {
+  const VelocityChange change = closing_change(model, dof, state, motion.velocities);
+  for (std::size_t i = 0; i < change.nodes.size(); ++i) motion.velocities[i] += change.nodes[i];
+  for (std::size_t j = 0; j < change.rates.size(); ++j) motion.rates[j] += change.rates[j];
+}
+
+/// @throws std::invalid_argument where a loop of rigid links is open.
+void check_positions(const Model& model, const Motion& motion) {
   for (const LoopClosure& closure : model.closures)
     for (const auto* constraints : {&closure.constraints, &closure.implied})
-      for (const ClosureConstraint& constraint : *constraints) check(closure, constraint);
+      for (const ClosureConstraint& constraint : *constraints) {
+        const bool is_gap = constraint.kind == ClosureConstraint::Kind::Gap;
+        const NodePose& parent = closure.parent < 0 ? kWorld : motion.poses[closure.parent];
+        const double value = closure_value(closure, constraint, {parent, motion.poses[closure.child]});
+        if (std::abs(value) > kClosed * (is_gap ? model.length_scale : 1.0))
+          throw std::invalid_argument(
+              fmt::format("the loop that joint '{}' closes opens, by {:.3g} {}: give the positions of all its joints",
+                          closure.name, value, is_gap ? "m" : "rad"));
+      }
+}
+
+/// @throws std::invalid_argument where one opens.
+void check_velocities(const Model& model, const Motion& motion) {
+  const LoopOpening opening = opening_of(model, motion.poses, motion.velocities);
+  if (opening.rate > kStaysClosed * opening.fastest)
+    throw std::invalid_argument("the velocities open the loop that joint '" + model.closures[opening.closure].name +
+                                "' closes: give those of all its joints");
 }
 
 /// Rotors and controllers go with their coordinates: twists of gears and memories stay.
@@ -228,10 +234,16 @@ ActuatorState carried(const Model& model, const Actuator& actuator, ActuatorStat
 State with_joint_state(const Model& model, const DegreesOfFreedom& dof, const State& state,
                        const std::vector<CoordinateState>& coordinates) {
   const Motion before = motion_of(model, state);
-  Motion after = before;
-  set_coordinates(model, dof, state, coordinates, after);
-  Follower(model, dof, before, after).follow();
-  check_closures(model, after);
+  Motion closed = before;
+  Follower(model, dof, before, closed).follow();
+  close_velocities(model, dof, state, closed);
+  Motion after = closed;
+  if (!coordinates.empty()) {
+    set_coordinates(model, dof, state, coordinates, after);
+    Follower(model, dof, closed, after).follow();
+  }
+  check_positions(model, after);
+  if (!coordinates.empty()) check_velocities(model, after);
 
   // As if the mechanism had been built there.
   Model placed = model;
