@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "flexarm/accuracy/accurate_run.h"
+#include "math/pi.h"
 #include "reference/dynamics_runs.h"
 #include "reference/ode.h"
 #include "schemes/scheme.h"
@@ -176,6 +177,30 @@ TEST(LoopVelocities, ThatAreClosedStayToTheBit) {
   const State& state = state_of(simulation);
   const State closed = with_closed_loops(model_of(simulation), DegreesOfFreedom(model_of(simulation)), state);
   for (std::size_t i = 0; i < state.nodes.size(); ++i) EXPECT_EQ(closed.nodes[i].velocity, state.nodes[i].velocity);
+}
+
+// A flat parallelogram: its constraint along the bars says nothing of velocities there, and nearly nothing close by, so
+// that no velocity can be asked to close what opens along them.
+TEST(LoopVelocities, StayWithinReasonAtDeadPoints) {
+  SceneBuilder b;
+  b.body("crank", 1, {0.1, 0, 0.1}, 1e-2 * Matrix3::Identity());
+  b.body("coupler", 0.5, {0.25, 0, 0}, 1e-2 * Matrix3::Identity());
+  b.body("rocker", 0.5, {0, 0, -0.1}, 1e-2 * Matrix3::Identity());
+  b.joint("crank", JointKind::Continuous, "world", "crank", {0, 0, 0}, kAcross);
+  b.joint("knee", JointKind::Continuous, "crank", "coupler", {0, 0, 0.2}, kAcross);
+  b.joint("hip", JointKind::Continuous, "coupler", "rocker", {0.6, 0, 0}, kAcross);
+  close_loop(b, "foot", JointKind::Continuous, "world", "rocker", {0, 0, -0.2}, kAcross);
+  for (const double off : {0.0, 1e-9, 1e-6, 1e-4, 1e-2}) {
+    Simulation simulation(b.scene);
+    const double angle = 0.5 * kPi - off;
+    simulation.set_joint_state({{0, angle, 1.0}, {1, -angle, -1.0}, {2, angle, 1.0}});
+    State state = state_of(simulation);
+    constexpr double kOpens = 1e-4;
+    state.nodes.back().velocity += kOpens * Vector3(1, 0, 1);
+    const State closed = with_closed_loops(model_of(simulation), DegreesOfFreedom(model_of(simulation)), state);
+    for (std::size_t i = 0; i < state.nodes.size(); ++i)
+      EXPECT_LT((closed.nodes[i].velocity - state.nodes[i].velocity).norm(), 500 * kOpens) << off;
+  }
 }
 
 /// How far velocities open the loop after a number of steps to the same time, halved from one to the next.
