@@ -197,12 +197,16 @@ TreeAtStart follow_mimics(const ScenePlan& plan, MassiveTree tree) {
   MimicChains chains(tree.tree_joints);
   std::unordered_set<std::string> prescribed;
   for (const scene::PrescribedMotion& motion : plan.scene.motions) prescribed.insert(motion.coordinate);
+  std::unordered_set<std::string> fixed;
+  for (const scene::JointDescription& joint : plan.scene.joints)
+    if (joint.kind == scene::JointKind::Fixed) fixed.insert(joint.name);
   for (const JointChain& chain : tree.tree_joints) {
     if (!chain.joint->mimic) continue;
     const std::string& joint = chain.joint->name;
     const std::string where = at(chain.joint->location, "<mimic> of joint '" + joint + "'");
-    Coordinate& coordinate = model.coordinates[names.index(joint, where)];
     const scene::Mimic mimic = chains.resolved(joint, where);
+    if (fixed.count(mimic.joint) > 0 && prescribed.count(joint) > 0) continue;  // its motion says where it is held
+    Coordinate& coordinate = model.coordinates[names.index(joint, where)];
     if (prescribed.count(coordinate.name) > 0)
       throw ModelError(where + "the motion of the joint is prescribed as well");
     coordinate.mimicked = names.index(mimic.joint, where);

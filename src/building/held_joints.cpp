@@ -22,7 +22,7 @@ class HeldJointFinder {
       for (const scene::JointDescription& joint : scene.joints)
         if (drive.axis && joint.name == drive.coordinate) touched_[links[joint.parent]] = true;
     for (const scene::JointDescription& joint : scene.joints)
-      if (joint.mimic) unsuitable_.insert({joint.name, joint.mimic->joint});
+      if (joint.mimic && !constant_motion(joint.name)) unsuitable_.insert({joint.name, joint.mimic->joint});
     for (const scene::SpringDescription& spring : scene.springs) unsuitable_.insert(spring.coordinate);
     for (const scene::JointEffort& effort : scene.efforts) unsuitable_.insert(effort.coordinate);
   }

@@ -1,7 +1,5 @@
 #include "messages/sensor_messages.h"
 
-#include <cctype>
-
 #include "flexarm/scene/scene_description.h"
 #include "messages/conversions.h"
 
@@ -74,12 +72,6 @@ SensorMessage sensor_message(const Simulation& simulation, std::size_t index, co
       },
       message);
   return message;
-}
-
-std::string sensor_topic(std::string name) {
-  for (char& c : name)
-    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
-  return "sensors/" + name;
 }
 
 }  // namespace flexarm::messages

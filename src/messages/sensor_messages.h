@@ -25,7 +25,4 @@ using SensorMessage =
 SensorMessage sensor_message(const Simulation& simulation, std::size_t sensor, const ros::Time& stamp,
                              const std::string& frame_prefix);
 
-/// The topic of a sensor of that name, "sensors/NAME"; other characters than letters, digits and _ become _.
-std::string sensor_topic(std::string name);
-
 }  // namespace flexarm::messages

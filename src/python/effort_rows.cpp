@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "simulation/command_refusal.h"
+
 namespace flexarm::python {
 namespace {
 
@@ -18,9 +20,9 @@ std::vector<std::size_t> commanded_joints(const Simulation& simulation, const st
   }
   for (const std::size_t joint : indices)
     if (!simulation.is_commandable(joint))
-      throw std::invalid_argument(
-          fmt::format("joints: expected some that take efforts, of [{}], got '{}', which is prescribed or a follower",
-                      fmt::join(effort_joints(simulation), ", "), simulation.coordinate_names()[joint]));
+      throw std::invalid_argument(fmt::format("joints: expected some that take efforts, of [{}], but {}",
+                                              fmt::join(effort_joints(simulation), ", "),
+                                              refusal_of_commands(simulation, joint)));
   return indices;
 }
 

@@ -8,6 +8,7 @@
 
 #include "flexarm/scene/scene_description.h"
 #include "messages/sensor_messages.h"
+#include "scene/scene_checks.h"
 
 namespace flexarm::recording {
 namespace {
@@ -81,7 +82,7 @@ void BagWriter::write_samples(const Simulation& simulation) {
     const double sampled = simulation.sample(i).time;
     if (sampled == sampled_[i]) continue;
     sampled_[i] = sampled;
-    const std::string topic = "/" + messages::sensor_topic(simulation.scene().sensors[i].name);
+    const std::string topic = "/" + scene::sensor_topic(simulation.scene().sensors[i].name);
     std::visit([&](const auto& message) { bag_.write(topic, stamp, message); },
                messages::sensor_message(simulation, i, stamp, ""));
   }

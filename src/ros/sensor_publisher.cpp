@@ -7,6 +7,7 @@
 #include "advertise.h"
 #include "flexarm/scene/scene_description.h"
 #include "messages/sensor_messages.h"
+#include "scene/scene_checks.h"
 
 namespace flexarm::node {
 SensorPublisher::SensorPublisher(ros::NodeHandle& node, const Simulation& simulation, const RunState& run,
@@ -33,7 +34,7 @@ void SensorPublisher::adopt_scene() {
     std::visit(
         [&](const auto& message) {
           using Message = std::decay_t<decltype(message)>;
-          topic.publisher = advertise<Message>(node_, messages::sensor_topic(name), 100, run_, [this, name] {
+          topic.publisher = advertise<Message>(node_, scene::sensor_topic(name), 100, run_, [this, name] {
             const Topic& topic = topics_.at(name);
             return std::get<Message>(messages::sensor_message(simulation_, topic.sensor, topic.stamp, frame_prefix_));
           });

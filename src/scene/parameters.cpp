@@ -151,7 +151,7 @@ bool Expansion::expand_attributes(const WritableElement& target, std::string_vie
 
 void Expansion::expand(const WritableElement& target) {
   const std::string tag = target.element.tag();
-  if (std::find(std::begin(kForeign), std::end(kForeign), tag) != std::end(kForeign)) return;
+  if (is_of_xacro(tag) || std::find(std::begin(kForeign), std::end(kForeign), tag) != std::end(kForeign)) return;
   expand_attributes(target);
   const char* name = target.xml.Attribute("name");
   const XmlElement owner = name                  ? target.element.with_name(name)

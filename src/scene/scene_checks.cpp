@@ -1,10 +1,12 @@
 #include "scene/scene_checks.h"
 
 #include <algorithm>
+#include <cctype>
 #include <map>
 #include <optional>
 
 #include "scene/flexible_link.h"
+#include "scene/mimic_chain.h"
 
 namespace flexarm::scene {
 namespace {
@@ -191,9 +193,24 @@ class ReferenceCheck {
   void check_sensors() const {
     check_unique(scene_.sensors, "sensor", findings_);
     for (const Sensor& sensor : scene_.sensors) check_sensor(sensor);
+    check_topics();
   }
 
  private:
+  /// Records sensors of different names whose messages come on one topic.
+  void check_topics() const {
+    std::map<std::string, const Sensor*> topics;
+    for (const Sensor& sensor : scene_.sensors) {
+      const auto [first, is_new] = topics.emplace(sensor_topic(sensor.name), &sensor);
+      const Sensor& other = *first->second;
+      if (!is_new && other.name != sensor.name)
+        findings_.warning(sensor.location.line, element_of("sensor", sensor.name),
+                          "shares the topic '" + first->first + "' with sensor " + quoted(other.name) + " (" +
+                              line_text(other.location) +
+                              "): in topics and bags, characters other than letters, digits and _ become _");
+    }
+  }
+
   void check_sensor(const Sensor& sensor) const {
     const std::string element = element_of("sensor", sensor.name);
     check_link(sensor.link, sensor.location, element.c_str());
@@ -248,7 +265,7 @@ class ReferenceCheck {
     if (unreadable_.count(target) > 0 || unreadable_.count(joint.name) > 0) return;
     if (coordinate_suffixes(joint).size() != 1)
       findings_.error(joint.location.line, element, "only a joint with one coordinate can mimic");
-    if (coordinate_suffixes(*found->second).size() != 1)
+    if (found->second->kind != JointKind::Fixed && coordinate_suffixes(*found->second).size() != 1)
       findings_.error(joint.location.line, element, "only a joint with one coordinate can be mimicked", quoted(target));
   }
 
@@ -290,8 +307,10 @@ class ReferenceCheck {
       return;
     }
     if (found->second->mimic)
-      findings_.error(location.line, element, "a joint that mimics another one has no coordinate of its own",
-                      quoted(name));
+      findings_.error(
+          location.line, element,
+          "a joint that mimics another one, " + quoted(found->second->mimic->joint) + ", has no coordinate of its own",
+          quoted(name));
     if (!used.insert(name).second)
       findings_.error(location.line, element, "the coordinate has an entry of this kind already", quoted(name));
   }
@@ -334,12 +353,19 @@ class ReferenceCheck {
 
 }  // namespace
 
+std::string sensor_topic(std::string name) {
+  for (char& c : name)
+    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+  return "sensors/" + name;
+}
+
 void check_references(const SceneDescription& scene, const std::set<std::string>& unreadable, Findings& findings) {
   const ReferenceCheck check(scene, unreadable, findings);
   check.check_mimics();
   check.check_simulation();
   check.check_springs();
   check.check_sensors();
+  if (findings.error_count() == 0) check_followers(scene, findings);
 }
 
 }  // namespace flexarm::scene

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <urdf_model/model.h>
 
+#include "math/parse_number.h"
 #include "scene/urdfdom.h"
 
 namespace flexarm::scene {
@@ -31,11 +32,17 @@ constexpr StandardAttribute kInertialAttributes[] = {
 };
 
 constexpr StandardAttribute kJointAttributes[] = {
-    {"origin", "xyz", 3, false, kModerate},          {"origin", "rpy", 3, false, kModerate},
-    {"limit", "lower", 1, false, kAnyNumber},        {"limit", "upper", 1, false, kAnyNumber},
-    {"limit", "effort", 1, false, kNonNegative},     {"limit", "velocity", 1, false, kNonNegative},
-    {"dynamics", "damping", 1, false, kNonNegative}, {"dynamics", "friction", 1, false, kNonNegative},
-    {"mimic", "multiplier", 1, false, kAnyNumber},   {"mimic", "offset", 1, false, kAnyNumber},
+    {"origin", "xyz", 3, false, kModerate},
+    {"origin", "rpy", 3, false, kModerate},
+};
+constexpr StandardAttribute kMovableAttributes[] = {
+    {"limit", "effort", 1, false, kAnyNumber},        {"dynamics", "damping", 1, false, kNonNegative},
+    {"dynamics", "friction", 1, false, kNonNegative}, {"mimic", "multiplier", 1, false, kAnyNumber},
+    {"mimic", "offset", 1, false, kAnyNumber},
+};
+constexpr StandardAttribute kRangeAttributes[] = {
+    {"limit", "lower", 1, false, kAnyNumber},
+    {"limit", "upper", 1, false, kAnyNumber},
 };
 
 template <std::size_t Count>
@@ -54,7 +61,7 @@ bool judge_alone(const XmlElement& element, const std::string& elements) {
   return errors.empty();
 }
 
-/// Reads <origin> or <child_origin>.
+/// Reads xyz and rpy of <origin>, <child_origin> or the like.
 Pose read_pose(const XmlElement& origin) {
   const Vector3 xyz = origin.vector("xyz", Vector3::Zero()), rpy = origin.vector("rpy", Vector3::Zero());
   urdf::Rotation rotation;
@@ -132,11 +139,8 @@ bool uses_axis(JointKind kind) {
 
 void read_axes(const XmlElement& joint, JointDescription& description) {
   const std::optional<XmlElement> axis = joint.child("axis"), axis2 = joint.child("axis2");
-  if (axis && uses_axis(description.kind)) {
-    description.axis = axis->direction("xyz").value_or(description.axis);
-  } else if (axis) {
-    axis->vector("xyz");  // exporters give fixed joints the axis 0 0 0
-  }
+  // What has none may have any: exporters give fixed joints the axis 0 0 0.
+  if (axis && uses_axis(description.kind)) description.axis = axis->direction("xyz").value_or(description.axis);
   const bool is_coupled_slide = description.slide && has_dependent_travel(description.slide->rotation);
   if (joint.child("couple") || is_coupled_slide) {
     if (!axis && !is_coupled_slide)
@@ -161,18 +165,29 @@ void read_axes(const XmlElement& joint, JointDescription& description) {
     axis2->attribute_error("xyz", "the axes of a universal joint must not be parallel");
 }
 
+/// A number >= 0; 0 where it is missing or below 0, which is a warning: SDF's way to say that there is no limit.
+double read_unlimited(const XmlElement& limit, const char* attribute) {
+  const tinyxml2::XMLAttribute* found = limit.xml().FindAttribute(attribute);
+  std::string_view text = found ? found->Value() : "";
+  const double number = parse_number(next_word(text)).value_or(0);
+  if (!(number < 0)) return number;
+  limit.warning(fmt::format("{} below 0 is read as no limit", attribute), limit.findings().got(*found));
+  return 0;
+}
+
 void read_limits(const XmlElement& joint, JointDescription& description) {
   const std::optional<XmlElement> limit = joint.child("limit");
-  if (!limit) return;
-  description.effort_limit = limit->number("effort", kNonNegative, 0);
-  const double lower = limit->number("lower", kAnyNumber, 0), upper = limit->number("upper", kAnyNumber, 0);
-  if (has_dependent_travel(description.kind) && lower == upper) return;  // given for effort only
+  if (!limit || description.kind == JointKind::Fixed) return;
+  description.effort_limit = read_unlimited(*limit, "effort");
+  const double velocity = read_unlimited(*limit, "velocity");
   if (description.kind != JointKind::Revolute && description.kind != JointKind::Prismatic &&
       !has_dependent_travel(description.kind))
     return;
+  const double lower = limit->number("lower", kAnyNumber, 0), upper = limit->number("upper", kAnyNumber, 0);
+  if (has_dependent_travel(description.kind) && lower == upper) return;  // given for effort only
   if (lower > upper) limit->error("lower must be <= upper", fmt::format("lower '{}', upper '{}'", lower, upper));
   if (lower == upper) limit->warning("lower and upper are equal: the joint cannot move");
-  description.limits = JointLimits{lower, upper, limit->number("velocity", kNonNegative, 0), std::nullopt};
+  description.limits = JointLimits{lower, upper, velocity, std::nullopt};
   if (limit->has("restitution")) description.limits->restitution = limit->number("restitution", kRestitution);
 }
 
@@ -186,12 +201,22 @@ std::optional<Mimic> read_mimic(const XmlElement& mimic, JointKind kind) {
                mimic.number("offset", kAnyNumber, 0)};
 }
 
+bool is_fixed(const XmlElement& joint) {
+  return joint.has("type") && std::string_view(joint.xml().Attribute("type")) == "fixed";
+}
+
+/// What has no effect is not judged: of a fixed joint axis, limits, dynamics and mimic, of one without stops their
+/// range.
 void check_joint_structure(const XmlElement& joint) {
-  joint.expect_at_most_one({"origin", "parent", "child", "axis", "axis2", "limit", "dynamics", "mimic", "release",
-                            "couple", "friction", "child_origin", "safety_controller", "calibration"});
+  joint.expect_at_most_one({"origin", "parent", "child", "axis2", "release", "couple", "friction", "child_origin"});
   check_attributes(joint, kJointAttributes);
+  if (is_fixed(joint)) return;
+  joint.expect_at_most_one({"axis", "limit", "dynamics", "mimic", "safety_controller", "calibration"});
+  check_attributes(joint, kMovableAttributes);
   const std::string type = joint.xml().Attribute("type") ? joint.xml().Attribute("type") : "";
-  if ((type == "revolute" || type == "prismatic") && !joint.child("limit"))
+  const bool has_range = type == "revolute" || type == "prismatic";
+  if (has_range || joint.child("couple")) check_attributes(joint, kRangeAttributes);
+  if (has_range && !joint.child("limit"))
     joint.error("a " + type + " joint needs <limit effort=\"...\" velocity=\"...\" lower=\"...\" upper=\"...\"/>");
 }
 
@@ -258,28 +283,65 @@ JointDescription read_joint(const XmlElement& unnamed) {
     if (const std::optional<XmlElement> friction = joint.child("friction")) read_friction(*friction, description);
   }
   const std::optional<XmlElement> mimic = joint.child("mimic");
-  if (mimic && !mimic->has("joint")) mimic->error("attribute 'joint' is missing");
+  if (mimic && !mimic->has("joint") && !is_fixed(joint)) mimic->error("attribute 'joint' is missing");
   if (joint.findings().error_count() > errors) return description;
 
   judge_alone(joint, "<link name=\"parent\"/><link name=\"child\"/>" + printed_joint(joint));
   description.origin = read_origin(joint);
-  description.damping = checked_number(joint, "dynamics", "damping");
-  description.friction = checked_number(joint, "dynamics", "friction");
+  if (description.kind != JointKind::Fixed) {
+    description.damping = checked_number(joint, "dynamics", "damping");
+    description.friction = checked_number(joint, "dynamics", "friction");
+  }
   if (mimic) description.mimic = read_mimic(*mimic, description.kind);
   read_limits(joint, description);
   return description;
 }
 
+namespace {
+
+/// One side of a loop joint in the form of Drake and Isaac Sim: the link, and the place of the joint in it.
+Pose read_side(const XmlElement& joint, const char* tag, std::string& link) {
+  const std::optional<XmlElement> side = joint.child(tag);
+  if (!side) {
+    joint.error("<" + std::string(tag) + " link=\"...\" xyz=\"...\" rpy=\"...\"/> is missing");
+    return Pose();
+  }
+  side->expect_only({"link", "xyz", "rpy"});
+  link = side->name("link").value_or("");
+  return read_pose(*side);
+}
+
+/// Reads a <loop_joint> with <link1> and <link2>.
+JointDescription read_foreign_loop_joint(const XmlElement& joint) {
+  JointDescription description;
+  joint.expect_only({"name", "type"}, {"link1", "link2", "axis"});
+  joint.expect_at_most_one({"link1", "link2", "axis"});
+  description.origin = read_side(joint, "link1", description.parent);
+  description.child_origin = read_side(joint, "link2", description.child);
+  description.kind = read_choice(joint, "type", kTypes, JointKind::Spherical);
+  read_axes(joint, description);
+  const std::string type = joint.has("type") ? joint.text("type").value_or("") : "spherical";
+  joint.warning("<link1> and <link2>, the form of Drake and Isaac Sim, are read as a loop joint of type " +
+                quoted(type) + " with <parent> and <origin>, <child> and <child_origin>");
+  return description;
+}
+
+}  // namespace
+
 JointDescription read_loop_joint(const XmlElement& unnamed) {
   const XmlElement joint = unnamed.with_name(unnamed.text("name").value_or(""));
   const std::size_t errors = joint.findings().error_count();
-  for (const char* tag : {"slide", "mimic"})
-    if (const std::optional<XmlElement> child = joint.child(tag))
-      child->error("a <loop_joint> cannot have a <" + std::string(tag) + ">");
-  joint.expect_only({"name", "type"}, {"origin", "parent", "child", "axis", "axis2", "limit", "dynamics", "mimic",
-                                       "release", "couple", "slide", "friction", "child_origin"});
   JointDescription description;
-  if (joint.findings().error_count() == errors) description = read_joint(unnamed);
+  if (joint.child("link1") || joint.child("link2")) {
+    description = read_foreign_loop_joint(joint);
+  } else {
+    for (const char* tag : {"slide", "mimic"})
+      if (const std::optional<XmlElement> child = joint.child(tag))
+        child->error("a <loop_joint> cannot have a <" + std::string(tag) + ">");
+    joint.expect_only({"name", "type"}, {"origin", "parent", "child", "axis", "axis2", "limit", "dynamics", "mimic",
+                                         "release", "couple", "slide", "friction", "child_origin"});
+    if (joint.findings().error_count() == errors) description = read_joint(unnamed);
+  }
   description.name = unnamed.text("name").value_or("");
   description.location = unnamed.location();
   if (const std::optional<XmlElement> origin = joint.child("child_origin")) {

@@ -8,11 +8,13 @@
 #include "scene/extension_reader.h"
 #include "scene/inertia_checks.h"
 #include "scene/limits.h"
+#include "scene/mimic_chain.h"
 #include "scene/parameters.h"
 #include "scene/scene_checks.h"
 #include "scene/sensor_reader.h"
 #include "scene/spring_reader.h"
 #include "scene/standard_reader.h"
+#include "scene/strangers.h"
 #include "scene/urdfdom.h"
 #include "scene/xacro.h"
 #include "scene/xml_document.h"
@@ -60,6 +62,8 @@ class SceneReader {
     check_places(robot);
     robot.expect_at_most_one({"simulation"});
     for (const XmlElement& child : robot.children()) read_child(child);
+    warn_of_strangers(robot);
+    warn_of_gazebo_loops(robot, scene_.links);
     check_size(robot, "links", scene_.links.size(), kMostLinks);
     check_size(robot, "joints", scene_.joints.size(), kMostJoints);
     check_size(robot, "loop joints", scene_.loop_joints.size(), kMostJoints);
@@ -75,6 +79,7 @@ class SceneReader {
     check_inertias(scene_, findings_);
     settle_positions(scene_, start_, unreadable_, findings_);
     check_references(scene_, unreadable_, findings_);
+    if (findings_.error_count() == 0) hold_followers_of_fixed_joints(scene_);
     return std::move(scene_);
   }
 
@@ -168,8 +173,8 @@ std::optional<SceneDescription> read_scene(const std::string& text, const ReadOp
   if (findings.error_count() > 0) return std::nullopt;
 
   // Each part has been judged alone; now the whole, as other programs read it.
-  const std::vector<std::string> errors = errors_of_urdfdom(printed(*root));
-  if (!errors.empty()) robot.warning("programs that use urdfdom refuse this file", quoted(errors.front()));
+  const std::optional<std::string> refusal = refusal_of_urdfdom(printed(*root));
+  if (refusal) robot.warning("programs that use urdfdom refuse this file", quoted(*refusal));
   urdf = text.find("${") == std::string::npos ? text : text_without_parameters(document);
   return scene;
 }

@@ -93,6 +93,11 @@ std::vector<std::string> errors_of_urdfdom(std::string document) {
   return parsed(std::move(document)).errors;
 }
 
+std::optional<std::string> refusal_of_urdfdom(std::string document) {
+  const Parsed robot = parsed(std::move(document));
+  return robot.model ? std::nullopt : std::optional(robot.errors.front());
+}
+
 std::optional<VisualDescription> visual_of_urdfdom(const tinyxml2::XMLElement& visual) {
   const Parsed robot = parsed("<robot name=\"robot\"><link name=\"link\">" + printed(visual) + "</link></robot>");
   const urdf::LinkConstSharedPtr link = robot.model ? robot.model->getLink("link") : nullptr;

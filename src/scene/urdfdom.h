@@ -17,6 +17,9 @@ namespace flexarm::scene {
 /// handler.
 std::vector<std::string> errors_of_urdfdom(std::string document);
 
+/// The first of these errors, if urdfdom gives no model for the document; nothing if it does, whatever it logs.
+std::optional<std::string> refusal_of_urdfdom(std::string document);
+
 /// What a <visual> of a link is, of which urdfdom has nothing to complain; nothing where its shape has no extent.
 std::optional<VisualDescription> visual_of_urdfdom(const tinyxml2::XMLElement& visual);
 

@@ -94,6 +94,22 @@ const tinyxml2::XMLElement* find_too_deep(const tinyxml2::XMLElement* root) {
   return nullptr;
 }
 
+/// XML has its declaration at the very beginning; licences are put before it all the same.
+void tell_parse_error(const std::string& text, const tinyxml2::XMLDocument& document, Findings& findings) {
+  const int line = document.ErrorLineNum();
+  const std::string name = tinyxml2::XMLDocument::ErrorIDToName(document.ErrorID());
+  if (document.ErrorID() == tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED)
+    return findings.error(line, "file", "elements may be nested " + std::to_string(kDeepestNesting) + " deep");
+  std::size_t late = kEnd;  // a declaration behind the first tag or comment
+  if (document.ErrorID() == tinyxml2::XML_ERROR_PARSING_DECLARATION) late = text.find("<?", text.find('<') + 1);
+  while (late != kEnd && line_of(text, late) < line) late = text.find("<?", late + 1);
+  if (late != kEnd && line_of(text, late) == line)
+    return findings.error(line, "file",
+                          "a declaration <?...?> must come first, before comments and elements: move it to line 1",
+                          quoted(text.substr(late, text.find('\n', late) - late)));
+  findings.error(line, "file", "must be well-formed XML", name);
+}
+
 }  // namespace
 
 bool parse_xml(const std::string& text, tinyxml2::XMLDocument& document, Findings& findings) {
@@ -117,13 +133,14 @@ bool parse_xml(const std::string& text, tinyxml2::XMLDocument& document, Finding
     return false;
   }
   if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
-    if (document.ErrorID() == tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED) {
-      findings.error(document.ErrorLineNum(), "file",
-                     "elements may be nested " + std::to_string(kDeepestNesting) + " deep");
-    } else {
-      findings.error(document.ErrorLineNum(), "file", "must be well-formed XML",
-                     std::string(tinyxml2::XMLDocument::ErrorIDToName(document.ErrorID())));
-    }
+    tell_parse_error(text, document, findings);
+    return false;
+  }
+  const tinyxml2::XMLElement* root = document.RootElement();
+  if (const tinyxml2::XMLElement* second = root ? root->NextSiblingElement() : nullptr) {
+    findings.error(second->GetLineNum(), "<" + std::string(second->Name()) + ">",
+                   "a file has one outermost element, and <" + std::string(root->Name()) + "> of line " +
+                       std::to_string(root->GetLineNum()) + " has ended before this one");
     return false;
   }
   if (const tinyxml2::XMLElement* deep = find_too_deep(document.RootElement())) {

@@ -11,6 +11,7 @@
 #include "analysis/statics.h"
 #include "math/so3.h"
 #include "model/carried_origin.h"
+#include "simulation/command_refusal.h"
 #include "simulation/failure_text.h"
 #include "simulation/implementation.h"
 #include "simulation/joint_state.h"
@@ -20,6 +21,16 @@
 #include "simulation/wrenches.h"
 
 namespace flexarm {
+namespace {
+
+/// Says of a coordinate without a servo why the scene cannot give it one; what is left is said where a servo is looked
+/// up.
+void require_own_servo(const Simulation& simulation, std::size_t index) {
+  if (!simulation.has_servo(index) && !simulation.is_commandable(index))
+    throw std::invalid_argument(refusal_of_commands(simulation, index));
+}
+
+}  // namespace
 
 Simulation::Simulation(scene::SceneDescription scene, const SimulationOptions& options)
     : implementation_(std::make_unique<Implementation>(std::move(scene), options)) {}
@@ -150,8 +161,7 @@ double Simulation::effort(std::size_t index) const {
 
 void Simulation::command_effort(std::size_t index, double effort) {
   if (!std::isfinite(effort)) throw std::invalid_argument("a commanded effort must be finite");
-  if (!is_commandable(index))
-    throw std::invalid_argument("joint coordinate '" + coordinate_names()[index] + "' cannot be commanded");
+  if (!is_commandable(index)) throw std::invalid_argument(refusal_of_commands(*this, index));
   implementation_->state.commands[index] = effort;
 }
 
@@ -161,6 +171,7 @@ void Simulation::release_command(std::size_t index) {
 
 void Simulation::command_set_point(std::size_t index, double set_point, double rate, double acceleration) {
   Implementation& s = *implementation_;
+  require_own_servo(*this, index);
   flexarm::command_set_point(servo_of(s.model, index, s.state), set_point, rate, acceleration,
                              s.state.time + s.settings.step);
 }
@@ -180,6 +191,7 @@ void Simulation::switch_servo(std::size_t index, bool on) {
 }
 
 void Simulation::switch_mode(std::size_t index, ServoMode mode) {
+  require_own_servo(*this, index);
   servo_of(implementation_->model, index);
   flexarm::switch_mode(implementation_->model, index, mode, position(index), velocity(index), implementation_->state);
 }

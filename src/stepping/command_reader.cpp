@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include "simulation/command_refusal.h"
+
 namespace flexarm::node {
 namespace {
 
@@ -80,9 +82,8 @@ std::string CommandReader::read(Commanded quantity, const std::vector<std::strin
 }
 
 std::string CommandReader::find_fault(Commanded quantity, std::size_t coordinate) const {
-  const std::string& name = shown_.coordinate_names()[coordinate];
-  if (quantity == Commanded::SetPoint) return shown_.has_servo(coordinate) ? "" : "'" + name + "' has no servo";
-  return shown_.is_commandable(coordinate) ? "" : "the motion of '" + name + "' is prescribed";
+  return quantity == Commanded::SetPoint ? refusal_of_set_points(shown_, coordinate)
+                                         : refusal_of_commands(shown_, coordinate);
 }
 
 std::string read_trajectory_joints(const Simulation& shown, const std::vector<std::string>& names,
@@ -90,7 +91,7 @@ std::string read_trajectory_joints(const Simulation& shown, const std::vector<st
   for (const std::string& name : names) {
     const std::optional<std::size_t> joint = shown.find_coordinate(name);
     if (!joint) return "there is no joint coordinate '" + name + "'";
-    if (!shown.has_servo(*joint)) return "'" + name + "' has no servo";
+    if (const std::string refusal = refusal_of_set_points(shown, *joint); !refusal.empty()) return refusal;
     if (shown.servo_mode(*joint) != ServoMode::Position) return "the servo of '" + name + "' is not in mode 'position'";
     joints.push_back(*joint);
   }

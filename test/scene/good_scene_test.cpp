@@ -67,7 +67,7 @@ TEST(GoodScene, JointDefaultsMimicAndRelease) {
 
   const JointDescription& finger = joint(scene, "finger");
   ASSERT_TRUE(finger.mimic);
-  EXPECT_EQ(finger.mimic->joint, "elbow");
+  EXPECT_EQ(finger.mimic->joint, "shoulder");
   EXPECT_EQ(finger.mimic->multiplier, -2);
   EXPECT_EQ(finger.mimic->offset, 0.5);
 

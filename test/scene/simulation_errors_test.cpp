@@ -75,7 +75,8 @@ TEST(SimulationErrors, InitialConditions) {
   expect_entry_error(R"(<initial joint="wrist" position="1"/>)",
                      "joint must be one of 'wrist/1', 'wrist/2', got 'wrist'");
   expect_entry_error(R"(<initial joint="shoulder" position="1"/>)", "the coordinate has an entry of this kind already");
-  expect_entry_error(R"(<initial joint="finger" position="1"/>)", "a joint that mimics another one has no coordinate");
+  expect_entry_error(R"(<initial joint="finger" position="1"/>)",
+                     "a joint that mimics another one, 'shoulder', has no coordinate");
   expect_entry_error(R"(<initial joint="wrist/2" position="1"/>)", "the coordinate's <motion> prescribes it already");
   expect_entry_error(R"(<initial link="leg" linear="1 0 0"/>)", "link must be a link of the scene, got 'leg'");
   expect_entry_error(R"(<initial link="forearm" linear="1 0 0"/>)", "the link has an initial velocity already");
@@ -101,7 +102,8 @@ TEST(SimulationErrors, Loads) {
 TEST(SimulationErrors, MotionsAndEfforts) {
   expect_entry_error(R"(<motion joint="wrist/1"/>)", "<motion> of simulation: attribute 'position' is missing");
   expect_entry_error(R"(<motion position="t"/>)", "attribute 'joint' is missing");
-  expect_entry_error(R"(<motion joint="finger" position="t"/>)", "a joint that mimics another one has no coordinate");
+  expect_entry_error(R"(<motion joint="finger" position="t"/>)",
+                     "a joint that mimics another one, 'shoulder', has no coordinate");
   expect_entry_error(R"(<motion joint="wrist/2" position="t"/>)", "the coordinate has an entry of this kind already");
   expect_entry_error(R"(<motion joint="wrist/3" position="t"/>)", "joint must be the name of a joint's coordinate");
   expect_entry_error(R"(<effort joint="shoulder"/>)", "<effort> of simulation: attribute 'history' is missing");

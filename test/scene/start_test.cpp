@@ -47,7 +47,9 @@ TEST(Start, OnALimitOrWithoutStopsIsNone) {
   std::string mimicking = leg("");
   const std::string limit = R"(<limit lower="-2.5")";
   mimicking.replace(mimicking.find(limit), limit.size(), R"(<mimic joint="hip"/>)" + limit);
-  expect_silent(read(mimicking));
+  const ReadResult follower = read(mimicking);  // of its own limits only
+  EXPECT_EQ(follower.diagnostics.size(), 1u) << to_text(follower.diagnostics);
+  expect_warning(follower, 5, "its own limits are not kept, since it follows 'hip' alone");
 }
 
 TEST(Start, VelocityLeavesASliderAtItsStart) {
@@ -93,7 +95,8 @@ TEST(Start, ClampErrors) {
     expect_one_error(good_scene_with("  </simulation>", entry + "</simulation>"), 68, fragment);
   };
   expect(R"(<initial joint="wrist/1" position="clamp"/>)", "only for a joint with lower and upper limits");
-  expect(R"(<initial joint="finger" position="clamp"/>)", "a joint that mimics another one has no coordinate");
+  expect(R"(<initial joint="finger" position="clamp"/>)",
+         "a joint that mimics another one, 'shoulder', has no coordinate");
   expect(R"(<initial joint="knee" position="clamp"/>)", "joint must be the name of a joint's coordinate, got 'knee'");
   expect_one_error(good_scene_with("<simulation>", R"(<simulation start="here">)"), 58,
                    "start must be one of given, clamp, got 'here'");

@@ -1,0 +1,15 @@
+#pragma once
+/// Elements of a scene that are not read here: of other programs, or written wrongly.
+
+#include "scene/xml_element.h"
+
+namespace flexarm::scene {
+
+/// Records, as warnings, children of <robot> that neither flexarm nor, as far as is known, another program uses, each
+/// name once, with the name that is probably meant. Elements with a namespace ("drake:...") are left alone.
+void warn_of_strangers(const XmlElement& robot);
+
+/// Records, as warnings, joints inside <gazebo> between two links of the scene: they close loops for Gazebo alone.
+void warn_of_gazebo_loops(const XmlElement& robot, const std::vector<LinkDescription>& links);
+
+}  // namespace flexarm::scene

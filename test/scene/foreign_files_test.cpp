@@ -1,0 +1,192 @@
+/// What files of other programs have that is not flexarm's: it is read with a warning wherever nothing is left open.
+
+#include <vector>
+
+#include "scene/scene_text.h"
+
+namespace flexarm::scene {
+namespace {
+
+/// The world, and under it the bodies a and b, as the scene has them by `joints`, each line from line 2.
+std::string scene_of(const std::string& more) {
+  std::string text = R"(<robot name="r"><link name="world"/>)";
+  for (const std::string name : {"a", "b"})
+    text +=
+        "<link name=\"" + name +
+        R"("><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>)";
+  return text + "\n" + more + "</robot>\n";
+}
+
+std::string joint(const std::string& name, const std::string& child, const std::string& type, const std::string& more) {
+  return "<joint name=\"" + name + "\" type=\"" + type + "\"><parent link=\"world\"/><child link=\"" + child + "\"/>" +
+         more + "</joint>\n";
+}
+
+const std::string kFree = joint("i", "a", "continuous", "") + joint("j", "b", "continuous", "");
+
+std::string limit(double lower, double upper) {
+  return "<limit lower=\"" + std::to_string(lower) + "\" upper=\"" + std::to_string(upper) +
+         R"(" effort="1" velocity="1"/>)";
+}
+
+/// All that is said, which is as many warnings.
+std::vector<std::string> said(const ReadResult& result) {
+  EXPECT_TRUE(result.scene) << to_text(result.diagnostics);
+  std::vector<std::string> texts;
+  for (const Diagnostic& finding : result.diagnostics) texts.push_back(finding.text());
+  return texts;
+}
+
+using Texts = std::vector<std::string>;
+
+}  // namespace
+
+TEST(ForeignFiles, LimitsBelowZeroAreNone) {
+  const ReadResult result =
+      read(scene_of(joint("i", "a", "revolute", R"(<limit lower="-1" upper="1" effort="-1" velocity="-1"/>)") +
+                    joint("j", "b", "continuous", R"(<limit effort="-1" velocity="2"/>)")));
+  EXPECT_EQ(said(result),
+            (Texts{"scene.urdf:2: warning: <limit> of joint 'i': effort below 0 is read as no limit, got '-1'",
+                   "scene.urdf:2: warning: <limit> of joint 'i': velocity below 0 is read as no limit, got '-1'",
+                   "scene.urdf:3: warning: <limit> of joint 'j': effort below 0 is read as no limit, got '-1'"}));
+  EXPECT_EQ(result.scene->joints[0].effort_limit, 0);
+  EXPECT_EQ(result.scene->joints[0].limits->velocity, 0);
+  EXPECT_EQ(result.scene->joints[0].limits->lower, -1);
+}
+
+TEST(ForeignFiles, WhatHasNoEffectIsNotJudged) {
+  const std::string end = joint("j", "b", "continuous", "");
+  EXPECT_EQ(said(read(scene_of(joint("i", "a", "fixed", R"(<axis xzy="0 0 1"/><axis xyz="2"/>)") + end))), Texts());
+  EXPECT_EQ(said(read(scene_of(joint("i", "a", "floating", R"(<axis xyz="0 0 z"/>)") + end))), Texts());
+  for (const std::string& more :
+       {R"(<limit lower="1" upper="x" effort="none" velocity="2"/>)", R"(<dynamics damping="-1" friction="?"/>)"}) {
+    const ReadResult result = read(scene_of(joint("i", "a", "fixed", more) + end));
+    ASSERT_TRUE(result.scene) << to_text(result.diagnostics);
+    EXPECT_EQ(result.scene->joints[0].effort_limit, 0);
+    EXPECT_EQ(result.scene->joints[0].damping, 0);
+  }
+  EXPECT_EQ(
+      said(read(scene_of(joint("i", "a", "fixed", "<mimic/>") + end))).front(),
+      "scene.urdf:2: warning: <mimic> of joint 'i': is ignored: a fixed joint has no coordinate that could follow "
+      "another");
+}
+
+TEST(ForeignFiles, FollowersOfFixedJointsAreHeld) {
+  const ReadResult result = read(scene_of(
+      joint("drive", "a", "fixed", "") +
+      joint("right", "b", "revolute", limit(-1, 1) + R"(<mimic joint="drive" multiplier="2" offset="0.3"/>)")));
+  EXPECT_EQ(said(result),
+            (Texts{"scene.urdf:3: warning: <joint> 'right': is held at 0.3, since the joint that it mimics "
+                   "is fixed, got 'drive'"}));
+  ASSERT_EQ(result.scene->motions.size(), 1u);
+  EXPECT_EQ(result.scene->motions[0].coordinate, "right");
+  EXPECT_EQ(result.scene->motions[0].position.constant(), 0.3);
+}
+
+TEST(ForeignFiles, FollowersOfTheirsAreHeldAsWell) {
+  const ReadResult result =
+      read(R"(<robot name="r"><link name="world"/><link name="a"/><link name="b"/><link name="c"/>)" +
+           joint("i", "a", "continuous", R"(<mimic joint="j" multiplier="-2" offset="1"/>)") +
+           joint("j", "b", "continuous", R"(<mimic joint="k" multiplier="7" offset="0.25"/>)") +
+           joint("k", "c", "fixed", "") + "</robot>");
+  ASSERT_TRUE(result.scene) << to_text(result.diagnostics);
+  ASSERT_EQ(result.scene->motions.size(), 2u);
+  EXPECT_EQ(result.scene->motions[0].position.constant(), 0.5);  // 1 - 2 * 0.25
+  EXPECT_EQ(result.scene->motions[1].position.constant(), 0.25);
+}
+
+TEST(ForeignFiles, LimitsThatAMimicDoesNotKeepAreTold) {
+  const auto gripper = [](const std::string& master, const std::string& follower, const std::string& law) {
+    return said(read(scene_of(joint("left", "a", "prismatic", master) +
+                              joint("right", "b", "prismatic", follower + "<mimic joint=\"left\" " + law + "/>"))));
+  };
+  EXPECT_EQ(
+      gripper(limit(-1, 1), limit(-0.02, 0.02), "multiplier=\"-1\""),
+      (Texts{"scene.urdf:3: warning: <joint> 'right': its own limits are not kept, since it follows 'left' alone, "
+             "which lets it go from -1 to 1, got '-0.02' to '0.02'"}));
+  EXPECT_EQ(gripper(limit(0, 0.02), limit(-0.02, 0), "multiplier=\"-1\""), Texts());
+  EXPECT_EQ(gripper(limit(0, 0.02), limit(0, 0.05), "multiplier=\"2\" offset=\"0.01\""), Texts());  // 0.01 to 0.05
+  EXPECT_EQ(gripper(limit(0, 0.02), limit(0, 0.05), "multiplier=\"2\" offset=\"0.02\"").size(), 1u);
+  EXPECT_EQ(gripper(limit(0, 1.571), limit(0, 1.57), "").size(), 0u);  // rounded
+  const std::string hinge = joint("left", "a", "continuous", "");
+  EXPECT_EQ(
+      said(read(scene_of(hinge + joint("right", "b", "revolute", limit(-1, 1) + "<mimic joint=\"left\"/>")))),
+      (Texts{"scene.urdf:3: warning: <joint> 'right': its own limits are not kept, since it follows 'left' alone, "
+             "which has no limits, got '-1' to '1'"}));
+}
+
+TEST(ForeignFiles, LoopsOfTwoLinksAreRead) {
+  const auto loop = [](const std::string& type, const std::string& more = "") {
+    return read(
+        scene_of(kFree + "<loop_joint name=\"close\"" + type +
+                 R"(><link1 link="a" xyz="0.2 0 0" rpy="0 0 1.5707963267948966"/><link2 link="b" xyz="0 0.1 0"/>)" +
+                 more + "</loop_joint>"));
+  };
+  const ReadResult ball = loop(R"( type="spherical")");
+  EXPECT_EQ(said(ball),
+            (Texts{"scene.urdf:4: warning: <loop_joint> 'close': <link1> and <link2>, the form of Drake and "
+                   "Isaac Sim, are read as a loop joint of type 'spherical' with <parent> and <origin>, "
+                   "<child> and <child_origin>"}));
+  ASSERT_EQ(ball.scene->loop_joints.size(), 1u);
+  const JointDescription& joint = ball.scene->loop_joints[0];
+  EXPECT_EQ(joint.name, "close");
+  EXPECT_EQ(joint.kind, JointKind::Spherical);
+  EXPECT_EQ(joint.parent, "a");
+  EXPECT_EQ(joint.child, "b");
+  EXPECT_EQ(joint.origin.position, Vector3(0.2, 0, 0));
+  EXPECT_LT((joint.origin.orientation * Vector3::UnitX() - Vector3::UnitY()).norm(), 1e-15);
+  EXPECT_EQ(joint.child_origin.position, Vector3(0, 0.1, 0));
+  EXPECT_EQ(loop("").scene->loop_joints[0].kind, JointKind::Spherical);
+  const ReadResult hinge = loop(R"( type="continuous")", R"(<axis xyz="0 0 2"/>)");
+  EXPECT_EQ(hinge.scene->loop_joints[0].kind, JointKind::Continuous);
+  EXPECT_EQ(hinge.scene->loop_joints[0].axis, Vector3::UnitZ());
+}
+
+TEST(ForeignFiles, LoopsInsideGazeboAreTold) {
+  const auto inside = [](const std::string& parent, const std::string& child) {
+    return said(read(scene_of(kFree + "<gazebo><joint name=\"x\" type=\"revolute\"><parent>" + parent +
+                              "</parent><child>" + child + "</child></joint></gazebo>")));
+  };
+  const Texts told{
+      "scene.urdf:4: warning: <joint> 'x': closes a loop in Gazebo alone, between the links 'a' and 'b': a "
+      "<loop_joint> of <robot>, which Gazebo overlooks, closes it here"};
+  EXPECT_EQ(inside("a", "b"), told);
+  EXPECT_EQ(inside("r::a", " r::b "), told);
+  EXPECT_EQ(inside("a", "wheel"), Texts());  // to a link that only Gazebo has
+}
+
+TEST(ForeignFiles, StrangersAreToldOnceWithTheNearestName) {
+  const auto said_of = [](const std::string& element) { return said(read(scene_of(kFree + element))); };
+  const auto told = [](const std::string& tag, const std::string& words) {
+    return Texts{"scene.urdf:4: warning: <" + tag + "> of robot 'r': has no effect" + words};
+  };
+  const std::string unknown = ": no program is known that uses it here";
+  EXPECT_EQ(said_of("<contact/><contact/>"), told("contact", " here: it belongs into <link>"));
+  EXPECT_EQ(said_of("<senser name=\"s\"/>"), told("senser", unknown + "; is <sensor> meant?"));
+  EXPECT_EQ(said_of("<spring_ joint=\"i\"/>"), told("spring_", unknown + "; is <spring> meant?"));
+  EXPECT_EQ(said_of("<Simulation/>"), told("Simulation", unknown + "; is <simulation> meant?"));
+  EXPECT_EQ(said_of("<create/>"), told("create", unknown));
+  EXPECT_EQ(said_of("<axis/>"), told("axis", " here: it belongs into <joint>"));
+  EXPECT_EQ(said_of("<gazebo/><transmission/><material name=\"m\"/><mujoco/><ros2_control/><group/><drake:x/>").size(),
+            1u);  // urdfdom wants to know the material's color
+}
+
+TEST(ForeignFiles, UrdfdomRefusesOnlyWhatItRefuses) {
+  const ReadResult result = read(good_scene_with(R"(<box size="1 1 1"/>)", R"(<bocks/>)"));
+  EXPECT_EQ(said(result),
+            (Texts{"scene.urdf:19: warning: <visual> of link 'upper': programs that use urdfdom cannot read "
+                   "it, got 'Unknown geometry type 'bocks''"}));
+}
+
+TEST(ForeignFiles, SensorsThatShareATopicAreTold) {
+  const auto sensor = [](const std::string& name) {
+    return "<sensor name=\"" + name + "\" kind=\"imu\" link=\"a\"/>\n";
+  };
+  EXPECT_EQ(
+      said(read(scene_of(kFree + sensor("a b") + sensor("a-b")))),
+      (Texts{"scene.urdf:5: warning: <sensor> 'a-b': shares the topic 'sensors/a_b' with sensor 'a b' (line 4): in "
+             "topics and bags, characters other than letters, digits and _ become _"}));
+  EXPECT_EQ(said(read(scene_of(kFree + sensor("a_b") + sensor("ab")))), Texts());
+}
+
+}  // namespace flexarm::scene

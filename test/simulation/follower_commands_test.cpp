@@ -1,0 +1,92 @@
+// Joints that mimic others: where those of fixed joints are held, and what is said of commands to them.
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "flexarm/scene/urdf_reader.h"
+#include "flexarm/simulation/simulation.h"
+#include "simulation/command_refusal.h"
+
+namespace flexarm::test {
+namespace {
+
+/// Two fingers on hinges about y, the right one of which follows the left by 0.3.
+Simulation gripper(const std::string& type, const std::string& more = "") {
+  const std::string inertial =
+      R"(<inertial><origin xyz="0.1 0 0"/><mass value="1"/><inertia ixx="1e-3" ixy="0" ixz="0" iyy="1e-2" iyz="0" izz="1e-2"/></inertial>)";
+  const std::string text =
+      R"(<robot name="r"><link name="world"/>
+  <joint name="left" type=")" +
+      type + R"("><parent link="world"/><child link="lf"/><axis xyz="0 1 0"/></joint> <link name="lf">)" + inertial +
+      R"(</link>
+  <joint name="right" type="continuous"><parent link="world"/><child link="rf"/><axis xyz="0 1 0"/>
+    <mimic joint="left" offset="0.3"/></joint> <link name="rf">)" +
+      inertial + "</link>" + more + "</robot>";
+  scene::ReadResult result = scene::read_scene_text(text, "gripper.urdf");
+  if (!result.scene) throw std::runtime_error(scene::to_text(result.diagnostics));
+  return Simulation(*result.scene);
+}
+
+std::string refused(const std::function<void()>& command) {
+  try {
+    command();
+    return "";
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+}
+
+}  // namespace
+
+TEST(FollowerOfAFixedJoint, IsHeldAtItsOffset) {
+  Simulation simulation = gripper("fixed");
+  EXPECT_EQ(simulation.degrees_of_freedom(), 0);
+  const std::size_t right = *simulation.find_coordinate("right");
+  for (int n = 0; n < 10; ++n) ASSERT_TRUE(simulation.step().converged);
+  EXPECT_EQ(simulation.position(right), 0.3);
+  EXPECT_EQ(simulation.velocity(right), 0);
+  // Against gravity, about y: what holds it is m g times the arm of its centre of mass; y turns x towards -z.
+  EXPECT_NEAR(simulation.effort(right), -9.81 * 0.1 * std::cos(0.3), 1e-12);
+}
+
+// A master that is a motion of its own, beside it and as one of a chain, gives the same.
+TEST(FollowerOfAFixedJoint, MayLeadOthers) {
+  Simulation simulation =
+      gripper("fixed",
+              R"(<joint name="third" type="continuous"><parent link="rf"/><child link="tf"/><axis xyz="0 1 0"/>
+           <mimic joint="right" multiplier="-2" offset="1"/></joint>
+         <link name="tf"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>)");
+  ASSERT_TRUE(simulation.step().converged);
+  EXPECT_EQ(simulation.position(*simulation.find_coordinate("right")), 0.3);
+  EXPECT_EQ(simulation.position(*simulation.find_coordinate("third")), 0.4);
+}
+
+TEST(FollowerCommands, NameTheJointThatIsFollowed) {
+  Simulation simulation = gripper("continuous");
+  const std::size_t left = *simulation.find_coordinate("left"), right = *simulation.find_coordinate("right");
+  const std::string told = "'right' mimics 'left' and takes no commands of its own: command that one";
+  EXPECT_EQ(refused([&] { simulation.command_effort(right, 1); }), told);
+  EXPECT_EQ(refused([&] { simulation.command_set_point(right, 1); }), told);
+  EXPECT_EQ(refused([&] { simulation.switch_mode(right, ServoMode::Effort); }), told);
+  EXPECT_EQ(refusal_of_commands(simulation, right), told);
+  EXPECT_EQ(refusal_of_set_points(simulation, right), told);
+  EXPECT_EQ(refusal_of_commands(simulation, left), "");
+  EXPECT_EQ(refusal_of_set_points(simulation, left), "'left' has no servo");
+  EXPECT_EQ(refused([&] { simulation.command_effort(left, 1); }), "");
+}
+
+TEST(FollowerCommands, ToThoseOfFixedJointsSayThatTheyAreHeld) {
+  Simulation simulation = gripper("fixed");
+  const std::size_t right = *simulation.find_coordinate("right");
+  const std::string told = "'right' mimics 'left' and is held, since a fixed joint leads it";
+  EXPECT_EQ(refused([&] { simulation.command_effort(right, 1); }), told);
+  EXPECT_EQ(refused([&] { simulation.command_set_point(right, 1); }), told);
+}
+
+TEST(FollowerCommands, ToPrescribedJointsSaySo) {
+  Simulation simulation = gripper("continuous", R"(<simulation><motion joint="left" position="t"/></simulation>)");
+  const std::size_t left = *simulation.find_coordinate("left");
+  EXPECT_EQ(refused([&] { simulation.command_effort(left, 1); }), "the motion of 'left' is prescribed");
+}
+
+}  // namespace flexarm::test
