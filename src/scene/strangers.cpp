@@ -135,15 +135,22 @@ void warn_of_strangers(const XmlElement& robot) {
   }
 }
 
-void warn_of_gazebo_loops(const XmlElement& robot, const std::vector<LinkDescription>& links) {
+void warn_of_gazebo_loops(const XmlElement& robot, const SceneDescription& scene) {
   std::set<std::string> names;
-  for (const LinkDescription& link : links) names.insert(link.name);
+  for (const LinkDescription& link : scene.links) names.insert(link.name);
+  const auto are_joined = [&](const std::string& one, const std::string& other) {
+    const auto joins = [&](const JointDescription& joint) {
+      return (joint.parent == one && joint.child == other) || (joint.parent == other && joint.child == one);
+    };
+    return std::any_of(scene.joints.begin(), scene.joints.end(), joins) ||
+           std::any_of(scene.loop_joints.begin(), scene.loop_joints.end(), joins);
+  };
   for (const XmlElement& gazebo : robot.children()) {
     if (gazebo.tag() != "gazebo") continue;
     for (const XmlElement& joint : gazebo.children()) {
       if (joint.tag() != "joint") continue;
       const std::string parent = link_in(joint, "parent"), child = link_in(joint, "child");
-      if (names.count(parent) == 0 || names.count(child) == 0) continue;
+      if (names.count(parent) == 0 || names.count(child) == 0 || are_joined(parent, child)) continue;
       joint.with_name(joint.has("name") ? joint.text("name").value_or("") : "")
           .warning("closes a loop in Gazebo alone, between the links " + quoted(parent) + " and " + quoted(child) +
                    ": a <loop_joint> of <robot>, which Gazebo overlooks, closes it here");

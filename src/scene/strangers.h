@@ -9,7 +9,8 @@ namespace flexarm::scene {
 /// name once, with the name that is probably meant. Elements with a namespace ("drake:...") are left alone.
 void warn_of_strangers(const XmlElement& robot);
 
-/// Records, as warnings, joints inside <gazebo> between two links of the scene: they close loops for Gazebo alone.
-void warn_of_gazebo_loops(const XmlElement& robot, const std::vector<LinkDescription>& links);
+/// Records, as warnings, joints inside <gazebo> between two links that no joint of the scene joins: they close loops
+/// for Gazebo alone.
+void warn_of_gazebo_loops(const XmlElement& robot, const SceneDescription& scene);
 
 }  // namespace flexarm::scene

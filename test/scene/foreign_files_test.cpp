@@ -152,6 +152,7 @@ TEST(ForeignFiles, LoopsInsideGazeboAreTold) {
       "<loop_joint> of <robot>, which Gazebo overlooks, closes it here"};
   EXPECT_EQ(inside("a", "b"), told);
   EXPECT_EQ(inside("r::a", " r::b "), told);
+  EXPECT_EQ(inside("world", "b"), Texts());  // joint j again
   EXPECT_EQ(inside("a", "wheel"), Texts());  // to a link that only Gazebo has
 }
 
