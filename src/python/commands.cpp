@@ -121,8 +121,9 @@ Off, its motor gives no effort, commanded ones included; on again, it has no mem
             Simulation& simulation = guarded.use();
             simulation.switch_mode(joint_index(simulation, joint), mode_of(mode));
           },
-          R"(Lets a joint's servo control 'effort', 'velocity' or 'position', from the next step on, without a bump.
+          R"(Lets a joint's servo control 'effort', 'velocity' or 'position', from the next step on, and its effort goes on.
 
+Its set point is the position, velocity or effort of now; without a `ki` to go on by, the one that gives the same effort.
 Raises ValueError if the scene has no gains of that mode for it.)",
           py::arg("joint"), py::arg("mode"))
       .def(

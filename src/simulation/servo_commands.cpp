@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
 #include "integrators/step_histories.h"
+#include "joints/servo_step.h"
 
 namespace flexarm {
 namespace {
@@ -19,10 +21,52 @@ double other_efforts(const Model& model, const Servo& servo, const Coordinate& c
   return applied_effort(coordinate, command, value(coordinate.effort)) + value(servo.feedforward);
 }
 
-/// The integral with which the servo gives that effort where it has no error; 0 where nothing integrates.
-double integral_for(const ServoLaw& law, double effort) {
-  const double gain = law.mode == ServoMode::Velocity ? law.proportional : law.integral;
-  return gain > 0 ? effort / gain : 0.0;
+/// What a servo measures [rad or m; over s], and the rate against which its derivative acts.
+struct Measured {
+  double position = 0, velocity = 0, rate = 0;
+};
+
+Measured measured(const Servo& servo, const Actuator& actuator, const ActuatorState& own, const State& state,
+                  double position, double velocity) {
+  Measured out{position, velocity, velocity};
+  if (!servo.on_link) {
+    out.position = own.angle;
+    out.velocity = own.rate;
+    if (const std::optional<Gyroscope>& gyroscope = actuator.gyroscope)
+      out.velocity -= gyroscope->axis.dot(state.nodes[gyroscope->node].angular_velocity) / gyroscope->ratio;
+    out.rate = out.velocity;
+  }
+  if (servo.sample_time == 0) return out;
+  const double ahead = std::max(own.servo.samples * servo.sample_time - state.time, 0.0);
+  out.rate = (out.position + ahead * out.velocity - own.servo.measured) / servo.sample_time;
+  return out;
+}
+
+/// What the servo gives at the end of the step [N m or N]; of a sampled one the newest output, even if it is delayed.
+double given_effort(const Model& model, const Servo& servo, const Coordinate& coordinate, std::size_t index,
+                    double step, const State& state) {
+  const ServoState& own = state.actuators[coordinate.actuator].servo;
+  if (own.off > 0) return 0;
+  const double given =
+      state.efforts[index] - other_efforts(model, servo, coordinate, state.commands[index], state.time);
+  if (servo.sample_time == 0) return given;
+  return given + own.outputs.front() - held_output(servo, own, state.time - step, step);
+}
+
+/// Lets the law begin with this effort: by its integral, or by its set point where nothing integrates.
+void take_over(const ServoLaw& law, double given, const Measured& now, double time, ServoState& state) {
+  const bool is_velocity = law.mode == ServoMode::Velocity;
+  const double set_rate = is_velocity ? now.velocity : 0;
+  const double left = given + law.derivative * (now.rate - set_rate);
+  const double integral = is_velocity ? law.proportional : law.integral;
+  const double other = is_velocity ? law.derivative : law.proportional;
+  double set_point = is_velocity ? now.velocity : now.position;
+  state.integral = 0;
+  if (integral > 0)
+    state.integral = left / integral;
+  else if (other > 0)
+    set_point += left / other;
+  command_set_point(state, set_point, 0, 0, time);
 }
 
 }  // namespace
@@ -77,7 +121,7 @@ void release_set_point(const Model& model, std::size_t coordinate, State& state)
 }
 
 void switch_mode(const Model& model, std::size_t coordinate, ServoMode mode, double position, double velocity,
-                 State& state) {
+                 double step, State& state) {
   const Servo& servo = servo_of(model, coordinate);
   const auto law =
       std::find_if(servo.laws.begin(), servo.laws.end(), [&](const ServoLaw& one) { return one.mode == mode; });
@@ -89,17 +133,19 @@ void switch_mode(const Model& model, std::size_t coordinate, ServoMode mode, dou
   if (&law_of(servo, own) == &*law) return;
   const Coordinate& place = model.coordinates[coordinate];
   const ActuatorState& actuator = state.actuators[place.actuator];
-  const double given = own.off > 0 ? 0.0
-                                   : state.efforts[coordinate] -
-                                         other_efforts(model, servo, place, state.commands[coordinate], state.time);
+  const bool is_on = own.off == 0;
+  const double given = given_effort(model, servo, place, coordinate, step, state);
+  Measured now = measured(servo, model.actuators[place.actuator], actuator, state, position, velocity);
+  if (!is_on) now.rate = mode == ServoMode::Velocity ? now.velocity : 0;  // there is nothing to go on from
   own.law = static_cast<double>(law - servo.laws.begin());
-  own.integral = integral_for(*law, given);
-  own.average = 0;
-  const double set_point = mode == ServoMode::Effort     ? given
-                           : mode == ServoMode::Velocity ? velocity
-                           : servo.on_link               ? position
-                                                         : actuator.angle;
-  command_set_point(own, set_point, 0, 0, state.time);
+  // The error's increments, as if the new law had been in force before.
+  own.average = mode == ServoMode::Position && is_on ? -step * now.velocity : 0;
+  if (mode == ServoMode::Effort) {
+    own.integral = 0;
+    command_set_point(own, given, 0, 0, state.time);
+  } else {
+    take_over(*law, given, now, state.time, own);
+  }
 }
 
 }  // namespace flexarm

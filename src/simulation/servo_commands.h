@@ -22,8 +22,8 @@ void command_set_point(ServoState& servo, double set_point, double rate, double 
 double set_point(const Servo& servo, const Model& model, const ServoState& state, double time);
 /// As Simulation::release_set_point().
 void release_set_point(const Model& model, std::size_t coordinate, State& state);
-/// As Simulation::switch_mode(). `position`, `velocity`: of the coordinate.
+/// As Simulation::switch_mode(). `position`, `velocity`: of the coordinate; `step`: of the simulation [s].
 void switch_mode(const Model& model, std::size_t coordinate, ServoMode mode, double position, double velocity,
-                 State& state);
+                 double step, State& state);
 
 }  // namespace flexarm

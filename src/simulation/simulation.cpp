@@ -192,8 +192,9 @@ void Simulation::switch_servo(std::size_t index, bool on) {
 
 void Simulation::switch_mode(std::size_t index, ServoMode mode) {
   require_own_servo(*this, index);
-  servo_of(implementation_->model, index);
-  flexarm::switch_mode(implementation_->model, index, mode, position(index), velocity(index), implementation_->state);
+  Implementation& s = *implementation_;
+  servo_of(s.model, index);
+  flexarm::switch_mode(s.model, index, mode, position(index), velocity(index), s.settings.step, s.state);
 }
 
 ServoMode Simulation::servo_mode(std::size_t index) const {

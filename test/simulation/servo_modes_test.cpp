@@ -66,6 +66,158 @@ TEST(ServoModes, SwitchingIsNoBump) {
       }
 }
 
+/// The block while its servo lets it go at 1 m/s, until that is steady.
+SceneBuilder sliding_block(double position_ki) {
+  SceneBuilder b = block_on_rail();
+  b.scene.servos.clear();
+  scene::ServoDescription& servo = b.servo("rail", 120, 0, 2200);
+  servo.mode = Mode::Velocity;
+  servo.set_point = TimeFunction(1.0);
+  servo.other_modes.push_back({Mode::Position, 2200, 120, position_ki, 0});
+  return b;
+}
+
+/// What follows where kp, kd and ki put the roots of block and servo at -10, -20 and -30/s, the block comes at 1 m/s
+/// and the integral begins with kd v: 2 x'' + 120 x' + 2200 x + 12000 (int x dt) = 120.
+struct Braking {
+  static double position(double t) {
+    return 0.25 * std::exp(-10 * t) - 0.4 * std::exp(-20 * t) + 0.15 * std::exp(-30 * t);
+  }
+  static double velocity(double t) {
+    return -2.5 * std::exp(-10 * t) + 8 * std::exp(-20 * t) - 4.5 * std::exp(-30 * t);
+  }
+  static double acceleration(double t) {
+    return 25 * std::exp(-10 * t) - 160 * std::exp(-20 * t) + 135 * std::exp(-30 * t);
+  }
+};
+
+/// Largest error of the motor's effort over 0.3 s of braking.
+double error_of_braking(const std::string& scheme, double step, bool is_sampled) {
+  SceneBuilder b = sliding_block(12000);
+  b.scene.integrator.scheme = scheme;
+  b.scene.integrator.step = step;
+  b.scene.servos[0].sample_time = is_sampled ? step : 0;
+  Simulation simulation(b.scene);
+  for (int i = std::lround(2 / step); i > 0; --i) EXPECT_TRUE(simulation.step().converged);
+  EXPECT_NEAR(simulation.velocity(0), 1, 1e-6);
+  const double start = simulation.position(0);
+  simulation.switch_mode(0, Mode::Position);
+  EXPECT_EQ(simulation.set_point(0), start);
+  double largest = 0;
+  for (int i = 1; i * step < 0.3; ++i) {
+    EXPECT_TRUE(simulation.step().converged);
+    const double t = i * step;
+    const double mean = (Braking::velocity(t) - Braking::velocity(t - step)) / step;  // over the step
+    const double effort = kMass * (scheme == "em" ? mean : Braking::acceleration(t)) - kLoad;
+    if (i == 1 && is_sampled) {
+      EXPECT_NEAR(simulation.effort(0), -kLoad, 1e-5) << "the first sample";
+    }
+    largest = std::max(largest, std::abs(simulation.effort(0) - effort));
+  }
+  EXPECT_NEAR(simulation.position(0) - start, Braking::position(0.3), 1e-3);
+  return largest;
+}
+
+// The effort is that of the linear equation, without a bump of kd v = 120 N: second order in the step, first with
+// samples.
+TEST(ServoModes, SwitchingToPositionWhileItMovesIsNoBump) {
+  for (const char* scheme : {"em", "newmark"}) {
+    const double coarse = error_of_braking(scheme, 1e-3, false), fine = error_of_braking(scheme, 5e-4, false);
+    EXPECT_LT(coarse, 120 * 0.03 * 0.03) << scheme << ": (30/s h)^2 of kd v";
+    EXPECT_LT(fine, coarse / 3.5) << scheme;
+    const double sampled = error_of_braking(scheme, 1e-3, true);
+    EXPECT_LT(sampled, 120 * 2 * 0.03) << scheme << ": held for a step, rates of the step before";
+    EXPECT_LT(error_of_braking(scheme, 5e-4, true), sampled / 1.8) << scheme;
+  }
+}
+
+/// Modes and gains of a servo that is switched while it moves, and the largest rate of its effort with them.
+double rate_of_effort(const scene::ServoDescription& servo, Mode mode, double velocity, double acceleration) {
+  if (mode == Mode::Effort) return 0;
+  if (mode == Mode::Position)
+    return servo.kp * std::abs(velocity) + servo.kd * std::abs(acceleration) + servo.ki * 0.01;  // errors below 1 cm
+  return servo.other_modes[0].kp * std::abs(acceleration) + servo.other_modes[0].ki * 0.01;
+}
+
+// From each mode to each other one, of a block that is accelerated: over the step in which it is switched the effort
+// changes by what both laws make of the motion, which the step's length is a factor of.
+TEST(ServoModes, NoPairOfModesHasABumpInMotion) {
+  const double coarse = 1e-3;
+  for (const char* scheme : {"em", "newmark"})
+    for (const bool has_integral : {true, false})
+      for (const double sample_time : {0.0, 0.002})
+        for (const double delay : {0.0, 0.003})
+          for (const bool is_elastic : {false, true}) {
+            if (delay > 0 && sample_time == 0) continue;
+            SceneBuilder b = block_on_rail();
+            b.scene.integrator.scheme = scheme;
+            b.scene.integrator.step = coarse;
+            scene::ServoDescription& servo = b.scene.servos[0];
+            servo.set_point = TimeFunction::parse("0.5*t^2");
+            servo.sample_time = sample_time;
+            servo.delay = delay;
+            if (!has_integral) servo.ki = servo.other_modes[0].ki = 0;
+            if (is_elastic) {
+              scene::DriveDescription& drive = b.drive("rail", 1, 0.3);
+              drive.stiffness = 1e4;
+              drive.damping = 40;
+            }
+            Simulation simulation(b.scene);
+            run(simulation, 1.5);
+            Mode before = Mode::Position;
+            for (const Mode mode :
+                 {Mode::Velocity, Mode::Effort, Mode::Position, Mode::Effort, Mode::Velocity, Mode::Position}) {
+              const double effort = simulation.effort(0), velocity = simulation.velocity(0);
+              const double acceleration = (std::abs(effort) + kLoad) / kMass;
+              const double held = std::max(sample_time, coarse) + delay;
+              const double bound = 1.5 * held *
+                                   (rate_of_effort(servo, before, velocity, acceleration) +
+                                    rate_of_effort(servo, mode, velocity, acceleration));
+              simulation.switch_mode(0, mode);
+              for (int i = 0; i * coarse < 0.5 * held; ++i) {
+                ASSERT_TRUE(simulation.step().converged);
+                EXPECT_NEAR(simulation.effort(0), effort, bound + 1e-6)
+                    << scheme << has_integral << sample_time << delay << is_elastic << to_string(before) << " to "
+                    << to_string(mode);
+              }
+              run(simulation, 0.05);
+              before = mode;
+            }
+          }
+}
+
+// Where nothing integrates the set point takes over what the motor gave: what rests stays where it is.
+TEST(ServoModes, SwitchingWithoutAnIntegralMovesTheSetPoint) {
+  SceneBuilder b = block_on_rail();
+  b.scene.servos[0].ki = b.scene.servos[0].other_modes[0].ki = 0;
+  Simulation simulation(b.scene);
+  run(simulation, 8);
+  const double rest = 0.25 + kLoad / 800;
+  EXPECT_NEAR(simulation.position(0), rest, kRest);
+  for (const Mode mode : {Mode::Velocity, Mode::Position, Mode::Effort, Mode::Position}) {
+    simulation.switch_mode(0, mode);
+    const double expected = mode == Mode::Velocity ? -kLoad / 60 : mode == Mode::Effort ? -kLoad : 0.25;
+    EXPECT_NEAR(simulation.set_point(0), expected, 1e-4 * kLoad) << to_string(mode);
+    run(simulation, 0.5);
+    EXPECT_NEAR(simulation.effort(0), -kLoad, 1e-4) << to_string(mode);
+    EXPECT_NEAR(simulation.position(0), rest, 1e-6) << to_string(mode);
+  }
+}
+
+// A servo that is off gives nothing that could be taken over.
+TEST(ServoModes, SwitchedOffItTakesOverNothing) {
+  for (const double ki : {0.0, 12000.0}) {
+    Simulation simulation(sliding_block(ki).scene);
+    run(simulation, 1);
+    simulation.switch_servo(0, false);
+    run(simulation, 0.1);
+    const double position = simulation.position(0);
+    simulation.switch_mode(0, Mode::Position);
+    EXPECT_EQ(simulation.set_point(0), position);
+    EXPECT_EQ(state_of(simulation).actuators[0].servo.integral, 0);
+  }
+}
+
 // What is commanded beyond the joint's limit acts as the limit does.
 TEST(ServoModes, SwitchingIsNoBumpBesideACommandThatIsCut) {
   SceneBuilder b = block_on_rail();

@@ -138,7 +138,7 @@ class Simulation {
   void switch_servo(std::size_t coordinate, bool on);
   bool has_servo(std::size_t coordinate) const;
   /// Lets the coordinate's servo control something else, from the next step on, without a bump: its set point is the
-  /// position, velocity or effort of now, and its integral, if it has one, gives what the motor has given.
+  /// position, velocity or effort of now, its integral goes on from that effort; without one the set point is off it.
   /// @throws std::invalid_argument if the coordinate has no servo, or that no gains of this mode (`<gains>`).
   void switch_mode(std::size_t coordinate, ServoMode mode);
   /// @throws std::invalid_argument if the coordinate has no servo.
