@@ -88,6 +88,13 @@ void check(const SimulateArguments& arguments) {
     throw InputError("flexarm: --checkpoint-every: a run with an accuracy has states to keep at its end only");
 }
 
+/// By what errors are divided; of points that hardly move it is not their way.
+std::string scale_text(const AccurateRun& run) {
+  const double way = run.motion.largest_displacement();
+  if (way >= run.scale) return fmt::format("{:.3g} m", run.scale);
+  return fmt::format("{:.3g} m (a millionth of the mechanism's size: points move by {:.2g} m)", run.scale, way);
+}
+
 }  // namespace
 
 std::optional<double> wanted_accuracy(const SimulateArguments& arguments, const Simulation& simulation) {
@@ -111,17 +118,17 @@ Run run_accurately(SimulateArguments arguments, double accuracy, Simulation& sim
   }
   output.close(simulation);
   run.last = result.last;
+  run.scheme = result.scheme();
   run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const bool are_steps_good = result.end == AccurateRun::End::Met;
   run.is_accurate = are_steps_good && meshes.is_met;
   if (!are_steps_good && result.end != AccurateRun::End::Failed)
     fmt::print(stderr, "flexarm: {}\n", shortcoming(result, accuracy, meshes.error));
   else if (run.is_accurate && !arguments.quiet)
-    fmt::print(
-        report_stream(arguments),
-        "accuracy {:g} asked for, error {:.2g} estimated, of {:.3g} m; {} steps of {}; {} tries, {} steps in all\n",
-        accuracy, result.estimate() + meshes.error, result.scale, result.tries.back().steps, result.scheme(),
-        result.tries.size(), result.steps);
+    fmt::print(report_stream(arguments),
+               "accuracy {:g} asked for, error {:.2g} estimated, of {}; {} steps of {}; {} tries, {} steps in all\n",
+               accuracy, result.estimate() + meshes.error, scale_text(result), result.tries.back().steps,
+               result.scheme(), result.tries.size(), result.steps);
   return run;
 }
 

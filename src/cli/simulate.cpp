@@ -142,7 +142,7 @@ void print_summary(const SimulateArguments& arguments, const Simulation& simulat
   fmt::print(report_stream(arguments),
              "t = {:.6g} s after {} steps ({}, {:.2f} iterations per step, {}), {:.3g} s of computing, {:.3g} times "
              "real time\n",
-             simulation.time(), counts.steps, simulation.scheme(),
+             simulation.time(), counts.steps, run.scheme.empty() ? simulation.scheme() : run.scheme,
              counts.steps > 0 ? static_cast<double>(counts.iterations) / static_cast<double>(counts.steps) : 0.0,
              recoveries.empty() ? "no halvings" : recoveries, run.seconds,
              run.seconds > 0 ? (simulation.time() - begin) / run.seconds : 0.0);
@@ -191,7 +191,8 @@ void add_simulate(CLI::App& app, int& status) {
   command->add_option("--step", arguments->options.step, "time step [s]")->check(check_positive);
   command
       ->add_option("--accuracy", arguments->accuracy,
-                   "error of probes, of the way that they move: steps are chosen for it (the scene's)")
+                   "error of probes, of the way that they move, or a millionth of the mechanism's size if that is "
+                   "more: steps are chosen for it (the scene's)")
       ->check(check_part);
   command->add_option("--interval", arguments->interval, "time between rows of the output with an accuracy [s]")
       ->check(check_positive);

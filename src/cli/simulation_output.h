@@ -35,6 +35,7 @@ struct Run {
   RunSummary summary;
   double seconds = 0;       ///< of the wall clock
   bool is_accurate = true;  ///< false where an accuracy was asked for and not met
+  std::string scheme = {};  ///< that ran, where it is not the simulation's own
 };
 
 /// Where what happened is told: not among the results.

@@ -76,7 +76,7 @@ accuracy: of the positions of probes (without any, of tips), in (0, 1): the root
   relative to `scale`, is estimated to be at most that. It is the error of time integration; meshes are what they are.
 intervals: of equal length, at whose ends points are judged and rows recorded.
 record: patterns of columns, as in run().
-scale: of errors [m]; None: how far the points move.
+scale: of errors [m]; None: how far the points move, a millionth of the mechanism's size at least.
 frame: the link in whose frame points are judged; '': the world.
 most_tries, most_steps: after which it gives up.
 

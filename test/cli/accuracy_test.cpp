@@ -1,5 +1,6 @@
 // `flexarm simulate --accuracy`, and estimates of errors.
 #include <cmath>
+#include <regex>
 
 #include <gtest/gtest.h>
 
@@ -35,6 +36,35 @@ TEST(SimulateAccuracy, WritesTheRowsOfTheRunThatMetIt) {
   // The last row's estimate is that of its own time, not of the whole.
   EXPECT_GT(columns["solver/error_estimate"][10], 0);
   EXPECT_LT(columns["solver/error_estimate"][10], 1e-3 * way);
+}
+
+// Where the scene leaves the scheme open another one than its own may have run: both lines of the report name that.
+TEST(SimulateAccuracy, NamesTheSchemeThatRan) {
+  const Outcome outcome =
+      shell("flexarm simulate " + example("rigid_double_pendulum") + " --until 1 --scheme auto --accuracy 1e-6");
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  std::smatch found;
+  ASSERT_TRUE(std::regex_search(outcome.output, found, std::regex(R"((\d+) steps of (\w+);)"))) << outcome.output;
+  EXPECT_EQ(found[2], "em4");
+  expect_contains(outcome.output, "after " + found[1].str() + " steps (" + found[2].str() + ", ");
+}
+
+// What turns freely by 1e-8 rad of a rod of one metre: errors are relative to more than that, which is said.
+TEST(SimulateAccuracy, SaysWhereErrorsAreNotRelativeToTheWay) {
+  const auto run = [](const std::string& velocity) {
+    return shell("flexarm simulate --until 1 --accuracy 1e-3 " + scene_file(R"(<robot name="r"> <link name="world"/>
+      <link name="rod"> <inertial> <origin xyz="0.5 0 0"/> <mass value="1"/>
+        <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
+      <joint name="hinge" type="continuous"> <parent link="world"/> <child link="rod"/> <axis xyz="0 1 0"/> </joint>
+      <simulation> <gravity xyz="0 0 0"/> <initial joint="hinge" velocity=")" +
+                                                                            velocity + R"("/>
+        <probe name="tip" link="rod" at="1 0 0"/> </simulation> </robot>)"));
+  };
+  const Outcome rest = run("1e-8"), motion = run("1e-2");
+  EXPECT_EQ(rest.status, 0) << rest.errors;
+  expect_contains(rest.output, " m (a millionth of the mechanism's size: points move by 1e-08 m); ");
+  EXPECT_EQ(motion.status, 0) << motion.errors;
+  expect_contains(motion.output, ", of 0.01 m; ");
 }
 
 TEST(SimulateAccuracy, SaysWhatWasReachedWhereItIsNotMet) {

@@ -15,7 +15,7 @@ struct AccuracyRequest {
   double accuracy;                   ///< motion_error() at most, in (0, 1)
   double until;                      ///< [s]
   int intervals = 100;               ///< of equal length, between times at which points are judged
-  std::optional<double> scale = {};  ///< of errors [m]; none: how far the points move
+  std::optional<double> scale = {};  ///< of errors [m]; none: points' way, 1e-6 of the size at least
   std::string frame = {};            ///< in which points are judged, see JudgedPoints
   int most_tries = 24;
   double most_steps = 1e8;  ///< of all tries
