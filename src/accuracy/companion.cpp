@@ -1,10 +1,12 @@
 #include "flexarm/accuracy/companion.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "accuracy/corners.h"
 #include "flexarm/accuracy/trajectory.h"
 #include "flexarm/scene/scene_description.h"
 #include "schemes/scheme.h"
@@ -36,12 +38,78 @@ void take_means(const Commands& first, Commands& second) {
   }
 }
 
+/// What steps over corners may have done to positions, which both simulations may have done alike. Where the
+/// acceleration of a point jumps by da, a step that takes it for the one of a side, or by a sample in its middle, is
+/// off by da h/2 in the velocity at most, and that goes on; a velocity that jumps by dv, as in a hit, does so h/2 too
+/// early or too late at most.
+class CornerDoubt {
+ public:
+  CornerDoubt(const Simulation& simulation, const JudgedPoints& points) : corners_(simulation), points_(points) {
+    for (std::vector<Vector3>& positions : past_) positions.resize(points.size());
+    begin(simulation);
+  }
+
+  /// The simulation has been put elsewhere.
+  void begin(const Simulation& simulation) {
+    restart();
+    known_ = 0;
+    passed_ = 0;
+    if (!corners_.may_come()) return;
+    corners_.begin(simulation);
+    add_points(simulation);
+  }
+  /// What was before does not count.
+  void restart() { position_ = velocity_ = 0; }
+  void follow(const Simulation& simulation);
+  /// [m]; NaN: there was a corner so early that nothing is known of the motion before.
+  double amount() const { return position_; }
+
+ private:
+  void add_points(const Simulation& simulation) {
+    std::rotate(past_.begin(), past_.end() - 1, past_.end());
+    points_.positions(simulation, past_[0]);
+    known_ = std::min(known_ + 1, past_.size());
+  }
+
+  Corners corners_;
+  const JudgedPoints& points_;
+  std::array<std::vector<Vector3>, 6> past_;  // positions after the last steps, newest first
+  std::size_t known_ = 0;                     // of these
+  unsigned passed_ = 0;                       // bit k: there was a corner within the step k steps ago
+  double position_ = 0, velocity_ = 0;        // [m, m/s]
+};
+
+void CornerDoubt::follow(const Simulation& simulation) {
+  if (!corners_.may_come()) return;
+  const double h = simulation.step_size();
+  position_ += h * velocity_;
+  add_points(simulation);
+  passed_ = (passed_ << 1) | (corners_.passed(simulation) ? 1u : 0u);
+  if ((passed_ & 4u) == 0) return;  // two steps after a corner the motion behind it is known
+  if (known_ < past_.size()) {
+    position_ = kUnknown;
+    return;
+  }
+  double acceleration = 0, velocity = 0;  // by which they jump
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const auto x = [&](std::size_t k) -> const Vector3& { return past_[k][i]; };
+    const Vector3 after = x(0) - 2 * x(1) + x(2), before = x(3) - 2 * x(4) + x(5);
+    acceleration = std::max(acceleration, (after - before).norm() / (h * h));
+    // But for what both accelerations make of the time between.
+    velocity = std::max(velocity, (x(0) - x(1) - x(3) + x(4) - 1.5 * (after + before)).norm() / h);
+  }
+  constexpr double kStepsSince = 2.5;  // from the middle of the corner's
+  velocity_ += 0.5 * h * acceleration;
+  position_ += 0.5 * h * (velocity + kStepsSince * h * acceleration);
+}
+
 }  // namespace
 
 struct Companion::Implementation {
   Implementation(const Simulation& simulation, double window)
       : companion(simulation.copy()),
         points(simulation),
+        doubt(simulation, points),
         window(window),
         share(1 / (std::pow(2, make_scheme(simulation.scene().integrator).order) - 1)) {
     companion.set_step_size(2 * simulation.step_size());
@@ -53,6 +121,7 @@ struct Companion::Implementation {
 
   Simulation companion;
   JudgedPoints points;
+  CornerDoubt doubt;
   double window, share;   // share: of a difference, by which the simulation is in error
   double begin_time = 0;  // of the window [s]
   double last_time = 0;   // of the simulation, after the last step [s]
@@ -74,6 +143,7 @@ void Companion::Implementation::begin(const Simulation& simulation) {
   begin_time = last_time = simulation.time();
   is_half = false;
   largest = 0;
+  doubt.restart();
 }
 
 bool Companion::Implementation::step(const Simulation& simulation) {
@@ -108,21 +178,24 @@ double Companion::Implementation::follow(const Simulation& simulation) {
   const bool goes_on = std::abs(simulation.time() - last_time - step) < 0.5 * step && companion.step_size() == 2 * step;
   if (!goes_on) {
     begin(simulation);
+    doubt.begin(simulation);
     return largest_before = kUnknown;
   }
   last_time = simulation.time();
+  doubt.follow(simulation);
   is_half = !is_half;
   if (is_half) {
     take_commands(simulation, first);
   } else if (!this->step(simulation)) {
     begin(simulation);
   } else {
-    largest = std::max(largest, share * distance(simulation));
+    largest = std::max(largest, share * distance(simulation) + doubt.amount());
     if (simulation.time() - begin_time > window - step) {
       largest_before = largest;
       begin(simulation);
     }
   }
+  if (std::isnan(doubt.amount())) return kUnknown;
   return simulation.time() - begin_time > 1.5 * step || !std::isnan(largest_before) ? std::fmax(largest, largest_before)
                                                                                     : kUnknown;
 }
@@ -139,6 +212,7 @@ double Companion::follow(const Simulation& simulation) {
 
 void Companion::begin(const Simulation& simulation) {
   implementation_->begin(simulation);
+  implementation_->doubt.begin(simulation);
   implementation_->largest_before = kUnknown;
 }
 

@@ -23,7 +23,9 @@ class Companion {
   Companion& operator=(Companion&&) noexcept;
 
   /// After each step of the simulation, before it is commanded anew. Returns the largest estimate of the error of a
-  /// position since the window began, or in the one before if that is larger [m]; NaN before the second step.
+  /// position since the window began, or in the one before if that is larger [m]; NaN before the second step. Where
+  /// forces jump within steps (stops, dry friction, play, limits, functions of time) both simulations may err alike:
+  /// what that may come to is in it, two steps later; NaN where it is not known, as it was within the first three.
   double follow(const Simulation& simulation);
   /// The simulation has been put elsewhere: starts again from there.
   void begin(const Simulation& simulation);
