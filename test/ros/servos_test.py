@@ -139,7 +139,10 @@ class Servos(unittest.TestCase):
         self.wait_for_effort("lift", lambda effort: effort > 0)
         self.run_for(0.9)
         self.assertAlmostEqual(self.arm.joint("lift").velocity, 0.1, delta=SETTLED_RATE)
+        before = self.arm.joint("lift").effort
         self.assertTrue(self.arm.switch_mode(names=["lift"], modes=["position"]).success)
+        self.run_for(STEP)  # in which the effort changes by kp times the way, and not by kd times 0.1 m/s
+        self.assertAlmostEqual(self.arm.joint("lift").effort, before, delta=2 * 400 * 0.1 * STEP)
         self.run_for(1.5)  # longer than the timeout of the velocity
         held = self.arm.joint("lift").position
         self.assertGreater(held, START + 0.08)
