@@ -12,12 +12,4 @@ Eigenpairs dense_eigenpairs(const Eigen::MatrixXd& matrix) {
   return {solver.eigenvalues(), hessenberg.basis * solver.eigenvectors()};
 }
 
-Eigenpairs balanced_eigenpairs(const Eigen::MatrixXd& matrix) {
-  const Balanced balanced = flexarm::balanced(matrix);
-  Eigenpairs pairs = dense_eigenpairs(balanced.matrix);
-  pairs.vectors = balanced.scales.asDiagonal() * pairs.vectors;
-  pairs.vectors.colwise().normalize();
-  return pairs;
-}
-
 }  // namespace flexarm

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -14,6 +15,7 @@
 #include "simulation/inside.h"
 #include "simulation/linear_names.h"
 #include "simulation/linear_ports.h"
+#include "simulation/linear_scaling.h"
 
 namespace flexarm {
 namespace {
@@ -22,8 +24,10 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Kind = LinearPort::Kind;
 
-/// Imaginary parts below this part of the largest pole are round-off.
+/// Imaginary parts below this part of a pole are round-off.
 constexpr double kReal = 1e-12;
+/// Of the largest pole: sizes that round-off leaves something of, and such as are found with nearly all digits.
+constexpr double kLeastKnown = 1e-12, kAlike = 1e-5;
 
 Reference reference_of(LinearisedAbout about) {
   if (about == LinearisedAbout::Steady) return Reference::Steady;
@@ -195,6 +199,45 @@ void set_states(const std::vector<int>& places, const LinearDynamics& dynamics, 
   out.drift << dynamics.rates()(places), dynamics.accelerations()(places);
 }
 
+/// The parts of two sets of eigenpairs whose values are at least, and below, a size; empty if they do not add up.
+std::optional<Eigenpairs> joined(const Eigenpairs& fast, const Eigenpairs& slow, double size) {
+  const auto places = [&](const Eigenpairs& pairs, bool are_slow) {
+    std::vector<Eigen::Index> found;
+    for (Eigen::Index i = 0; i < pairs.values.size(); ++i)
+      if ((std::abs(pairs.values[i]) < size) == are_slow) found.push_back(i);
+    return found;
+  };
+  const std::vector<Eigen::Index> first = places(slow, true), last = places(fast, false);
+  if (first.size() + last.size() != static_cast<std::size_t>(fast.values.size())) return std::nullopt;
+  Eigenpairs out;
+  out.values.resize(fast.values.size());
+  out.values << slow.values(first), fast.values(last);
+  out.vectors.resize(fast.vectors.rows(), fast.vectors.cols());
+  out.vectors << slow.vectors(Eigen::all, first), fast.vectors(Eigen::all, last);
+  return out;
+}
+
+/// Eigenvalues are found to a part of the largest one. Where the slow ones are much smaller they are found once more,
+/// as the large ones of (a - shift)^-1.
+Eigenpairs eigenpairs_of_all_sizes(const MatrixXd& a) {
+  Eigenpairs fast = dense_eigenpairs(a);
+  const VectorXd sizes = fast.values.cwiseAbs();
+  const double largest = sizes.maxCoeff(), least_known = kLeastKnown * largest;
+  double shift = largest;
+  for (const double size : sizes)
+    if (size > least_known) shift = std::min(shift, size);
+  if (!(shift < kAlike * largest)) return fast;
+  const MatrixXd identity = MatrixXd::Identity(a.rows(), a.cols());
+  const MatrixXd inverse = square_solution(a - shift * identity, identity);
+  if (!inverse.allFinite()) return fast;
+  Eigenpairs slow = dense_eigenpairs(inverse);
+  slow.values = (shift + slow.values.array().inverse()).matrix();
+  const double middle = std::sqrt(shift * largest);
+  for (const double size : {middle, 2 * middle, 0.5 * middle, 8 * middle, 0.125 * middle})
+    if (std::optional<Eigenpairs> both = joined(fast, slow, size)) return *std::move(both);
+  return fast;
+}
+
 }  // namespace
 
 LinearModel linearise(const Simulation& simulation, const LinearRequest& request) {
@@ -239,11 +282,12 @@ double Pole::damping_ratio() const {
 std::vector<Pole> poles(const LinearModel& model) {
   std::vector<Pole> out;
   if (model.a.rows() == 0) return out;
-  const Eigenpairs pairs = balanced_eigenpairs(model.a);
-  const double largest = pairs.values.cwiseAbs().maxCoeff();
+  const ScaledStates scaled = scaled_states(model);
+  const Eigenpairs pairs = eigenpairs_of_all_sizes(scaled.a);
+  const Eigen::MatrixXcd modes = scaled.basis * pairs.vectors;
   for (Eigen::Index i = 0; i < pairs.values.size(); ++i) {
-    Pole pole{pairs.values[i], 0, pairs.vectors.col(i)};
-    if (pole.value.imag() < -kReal * largest) continue;
+    Pole pole{pairs.values[i], 0, modes.col(i)};
+    if (pole.value.imag() < -kReal * std::abs(pole.value)) continue;
     Eigen::Index state = 0;
     pole.mode.head(model.positions).cwiseAbs().maxCoeff(&state);
     pole.state = static_cast<int>(state);

@@ -8,10 +8,10 @@
 #include <fmt/format.h>
 
 #include "math/gramians.h"
-#include "math/hessenberg.h"
 #include "math/invariant_subspace.h"
 #include "math/least_squares.h"
 #include "math/singular_values.h"
+#include "simulation/linear_scaling.h"
 
 namespace flexarm {
 namespace {
@@ -20,9 +20,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Poles that decay more slowly than this part of the largest do not: round-off splits a double pole at 0, as every
-/// free motion has one, by as much.
+/// Poles that decay more slowly than this part of the largest do not where nothing better is known: round-off splits a
+/// double pole at 0, as every free motion has one, by as much. And with a smaller damping ratio none does.
 const double kDecaying = std::sqrt(std::numeric_limits<double>::epsilon());
+constexpr double kDamped = 1e-6;
 
 /// The states x = basis z of what has other poles than the rest, z = projection x.
 struct Part {
@@ -33,10 +34,18 @@ struct Parts {
   Part kept, decaying;
 };
 
-Parts parts_of(const MatrixXd& a, double slowest) {
-  const auto decays = [&](std::complex<double> pole) { return pole.real() < -slowest; };
+/// `zero`: see ScaledStates; `slowest`: no decay that is faster is doubted [1/s].
+Parts parts_of(const MatrixXd& a, double zero, double slowest) {
+  const auto decays = [&](std::complex<double> pole) {
+    return pole.real() < -std::min(slowest, std::max(zero, kDamped * std::abs(pole)));
+  };
   Parts parts;
   parts.kept.basis = invariant_subspace(a, [&](std::complex<double> pole) { return !decays(pole); });
+  if (parts.kept.basis.cols() == 0) {  // other coordinates than the scaled ones would cost digits
+    parts.kept.projection = MatrixXd(0, a.rows());
+    parts.decaying.basis = parts.decaying.projection = MatrixXd::Identity(a.rows(), a.cols());
+    return parts;
+  }
   parts.decaying.basis = invariant_subspace(a, decays);
   MatrixXd both(a.rows(), a.cols());
   both << parts.kept.basis, parts.decaying.basis;
@@ -78,16 +87,15 @@ Part truncated(const Part& part, const BalancedPart& balanced, Index order) {
 }  // namespace
 
 ReducedModel reduced(const LinearModel& model, int order) {
-  const Balanced balanced = flexarm::balanced(model.a);
-  const MatrixXd b = balanced.scales.cwiseInverse().asDiagonal() * model.b, c = model.c * balanced.scales.asDiagonal();
+  const ScaledStates scaled = scaled_states(model);
   double largest = 0;
   for (const Pole& pole : poles(model)) largest = std::max(largest, std::abs(pole.value));
-  const auto [kept, decaying] = parts_of(balanced.matrix, kDecaying * largest);
+  const auto [kept, decaying] = parts_of(scaled.a, scaled.zero, kDecaying * largest);
   if (order < kept.basis.cols() || order > model.a.rows())
     throw std::invalid_argument(
         fmt::format("a reduced model has {} to {} states, {} of them of poles that do not decay; got {}",
                     kept.basis.cols(), model.a.rows(), kept.basis.cols(), order));
-  const BalancedPart rest = balance(decaying, balanced.matrix, b, c);
+  const BalancedPart rest = balance(decaying, scaled.a, scaled.b, scaled.c);
   const Index more = std::min<Index>(order - kept.basis.cols(), rest.seen);
   const Part best = truncated(decaying, rest, more);
 
@@ -95,10 +103,10 @@ ReducedModel reduced(const LinearModel& model, int order) {
   basis << kept.basis, best.basis;
   projection << kept.projection, best.projection;
   ReducedModel out{model, rest.hankel.values, static_cast<int>(kept.basis.cols())};
-  out.model.a = projection * balanced.matrix * basis;
-  out.model.b = projection * b;
-  out.model.c = c * basis;
-  out.model.drift = projection * (balanced.scales.cwiseInverse().asDiagonal() * model.drift);
+  out.model.a = projection * scaled.a * basis;
+  out.model.b = projection * scaled.b;
+  out.model.c = scaled.c * basis;
+  out.model.drift = projection * (scaled.inverse * model.drift);
   out.model.positions = static_cast<int>(basis.cols());
   out.model.states.clear();
   for (Index i = 0; i < basis.cols(); ++i) out.model.states.push_back(fmt::format("reduced:{}", i));

@@ -7,6 +7,7 @@
 #include "math/hessenberg.h"
 #include "math/matrix_exponential.h"
 #include "math/pi.h"
+#include "simulation/linear_scaling.h"
 
 namespace flexarm {
 
@@ -15,12 +16,10 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 
 FrequencyResponse frequency_response(const LinearModel& model, const std::vector<double>& frequencies) {
-  const Balanced balanced = flexarm::balanced(model.a);
-  const Hessenberg form = hessenberg(balanced.matrix);
-  const MatrixXcd inputs =
-      (form.basis.transpose() * balanced.scales.cwiseInverse().asDiagonal() * model.b).cast<Complex>();
-  const MatrixXcd outputs = (model.c * balanced.scales.asDiagonal() * form.basis).cast<Complex>(),
-                  direct = model.d.cast<Complex>();
+  const ScaledStates scaled = scaled_states(model);
+  const Hessenberg form = hessenberg(scaled.a);
+  const MatrixXcd inputs = (form.basis.transpose() * scaled.b).cast<Complex>();
+  const MatrixXcd outputs = (scaled.c * form.basis).cast<Complex>(), direct = model.d.cast<Complex>();
   FrequencyResponse response{frequencies, {}};
   for (const double frequency : frequencies) {
     const MatrixXcd states = shifted_solution(form.reduced, {0, 2 * kPi * frequency}, inputs);
@@ -34,19 +33,20 @@ StepResponse step_response(const LinearModel& model, double until, int intervals
   if (!(until > 0)) throw std::invalid_argument(fmt::format("until: expected a time > 0, got {}", until));
   if (intervals < 1) throw std::invalid_argument(fmt::format("intervals: expected a number >= 1, got {}", intervals));
   // Constant inputs are states that stay: exp([a b; 0 0] t) has what they make of the others.
-  const Eigen::Index count = model.a.rows(), inputs = model.b.cols();
+  const ScaledStates scaled = scaled_states(model);
+  const Eigen::Index count = scaled.a.rows(), inputs = scaled.b.cols();
   const double interval = until / intervals;
   MatrixXd rates = MatrixXd::Zero(count + inputs, count + inputs);
-  rates.topRows(count) << model.a * interval, model.b * interval;
-  const MatrixXd advance = matrix_exponential(rates).topRows(count);
+  rates.topRows(count) << scaled.a * interval, scaled.b * interval;
+  const MatrixXd change = matrix_exponential_less_identity(rates).topRows(count);
   StepResponse response;
   MatrixXd states = MatrixXd::Zero(count, inputs);
   for (int n = 0; n <= intervals; ++n) {
-    if (n > 0) states = (advance.leftCols(count) * states + advance.rightCols(inputs)).eval();
+    if (n > 0) states += (change.leftCols(count) * states + change.rightCols(inputs)).eval();
     if (!states.allFinite())
       throw std::runtime_error(fmt::format("the response grows beyond all numbers in {} s", until));
     response.times.push_back(n == intervals ? until : n * interval);
-    response.outputs.push_back(model.c * states + model.d);
+    response.outputs.push_back(scaled.c * states + model.d);
   }
   return response;
 }

@@ -1,0 +1,156 @@
+#include "simulation/linear_scaling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+#include "math/dense_eigenpairs.h"
+#include "math/hessenberg.h"
+#include "math/least_squares.h"
+
+namespace flexarm {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kRoundOff = std::numeric_limits<double>::epsilon();
+/// A stiffness that is not above so many times the round-off of its terms is none.
+constexpr double kAboveRoundOff = 100;
+
+/// Positions y = shapes q, and q = coordinates y.
+struct Shapes {
+  MatrixXd shapes, coordinates;
+};
+
+/// Of the positions that have accelerations of their own: places among coordinates; empty: not all are coordinates.
+std::vector<Index> places_of(const LinearModel& model, const std::vector<Index>& states) {
+  std::vector<Index> places;
+  for (const Index state : states) {
+    const auto found =
+        std::find(model.coordinates.begin(), model.coordinates.end(), model.states[static_cast<std::size_t>(state)]);
+    if (found == model.coordinates.end()) return {};
+    places.push_back(found - model.coordinates.begin());
+  }
+  return places;
+}
+
+/// Vectors of no length but 1 in the norm of the mass, the stiffest first; none if it is not positive.
+std::optional<Shapes> modes_of(const MatrixXd& mass, const MatrixXd& stiffness) {
+  if (!(mass.diagonal().minCoeff() > 0)) return std::nullopt;
+  // Translations and rotations of thin beams have masses of very different sizes.
+  const VectorXd scales =
+      mass.diagonal().unaryExpr([](double m) { return std::exp2(std::round(-0.5 * std::log2(m))); });
+  const MatrixXd m = scales.asDiagonal() * mass * scales.asDiagonal();
+  const MatrixXd k = scales.asDiagonal() * (0.5 * (stiffness + stiffness.transpose())) * scales.asDiagonal();
+  const SymmetricEigenpairs masses = symmetric_eigenpairs(m);
+  if (!(masses.values[0] > kRoundOff)) return std::nullopt;
+  const MatrixXd whitening = masses.vectors * masses.values.cwiseSqrt().cwiseInverse().asDiagonal();
+  MatrixXd shapes = whitening * symmetric_eigenpairs(whitening.transpose() * k * whitening).vectors;
+  MatrixXd modal = shapes.transpose() * k * shapes;
+  // Soft modes are mixed by the round-off of the stiff ones; the stiffness itself knows them better.
+  diagonalise(modal, shapes);
+  std::vector<Index> order(static_cast<std::size_t>(modal.rows()));
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(),
+            [&](Index a, Index b) { return std::abs(modal(a, a)) > std::abs(modal(b, b)); });
+  shapes = MatrixXd(shapes(Eigen::all, order));
+  const MatrixXd projection = shapes.transpose() * m;
+  return Shapes{scales.asDiagonal() * shapes,
+                square_solution(projection * shapes, projection) * scales.cwiseInverse().asDiagonal()};
+}
+
+/// x = {y, y'}, as inputs change y'' alone.
+bool is_of_second_order(const LinearModel& model) {
+  const Index count = model.positions;
+  return 2 * count == model.a.rows() && model.mass.rows() == static_cast<Index>(model.coordinates.size()) &&
+         model.a.topLeftCorner(count, count).isZero(0) && model.b.topRows(count).isZero(0) &&
+         model.a.topRightCorner(count, count) == MatrixXd::Identity(count, count);
+}
+
+/// Of all positions; those without an acceleration of their own, which an input drives, come last as they are.
+std::optional<Shapes> shapes_of(const LinearModel& model) {
+  const Index count = model.positions;
+  if (count == 0 || !is_of_second_order(model)) return std::nullopt;
+  std::vector<Index> own, driven;
+  for (Index i = 0; i < count; ++i) (model.a.row(count + i).isZero(0) ? driven : own).push_back(i);
+  const std::vector<Index> places = places_of(model, own);
+  if (places.empty()) return std::nullopt;
+  const std::optional<Shapes> modes = modes_of(model.mass(places, places), model.stiffness(places, places));
+  if (!modes) return std::nullopt;
+  Shapes out{MatrixXd::Zero(count, count), MatrixXd::Zero(count, count)};
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    out.shapes.row(own[i]).head(modes->shapes.cols()) = modes->shapes.row(static_cast<Index>(i));
+    out.coordinates.col(own[i]).head(modes->shapes.cols()) = modes->coordinates.col(static_cast<Index>(i));
+  }
+  for (std::size_t i = 0; i < driven.size(); ++i) {
+    const Index last = modes->shapes.cols() + static_cast<Index>(i);
+    out.shapes(driven[i], last) = out.coordinates(last, driven[i]) = 1;
+  }
+  return out;
+}
+
+/// Of each mode position and rate beside each other. Terms of slow modes cancel, which more digits than those of the
+/// matrices are spent on, so that nothing is lost of these.
+ScaledStates by_modes(const LinearModel& model, const Shapes& modes) {
+  using Long = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
+  const Index count = model.positions;
+  const Long shapes = modes.shapes.cast<long double>();
+  Long coordinates = modes.coordinates.cast<long double>();
+  coordinates = (coordinates * (2 * Long::Identity(count, count) - shapes * coordinates)).eval();  // Newton's method
+  const auto in_modes = [&](const auto& rows) -> MatrixXd {
+    const Long seen = rows.template cast<long double>() * shapes;
+    return (coordinates * seen).template cast<double>();
+  };
+  const auto stiffness = model.a.bottomLeftCorner(count, count);
+  const MatrixXd by_place = in_modes(stiffness), by_rate = in_modes(model.a.bottomRightCorner(count, count));
+  const MatrixXd inverse = coordinates.cast<double>();
+  const MatrixXd inputs = (coordinates * model.b.bottomRows(count).cast<long double>()).cast<double>();
+  ScaledStates out;
+  out.a = out.basis = out.inverse = MatrixXd::Zero(2 * count, 2 * count);
+  out.b = MatrixXd::Zero(2 * count, model.b.cols());
+  for (Index i = 0; i < count; ++i) {
+    for (Index half = 0; half < 2; ++half) {
+      out.basis.col(2 * i + half).segment(half * count, count) = modes.shapes.col(i);
+      out.inverse.row(2 * i + half).segment(half * count, count) = inverse.row(i);
+    }
+    out.a(2 * i, 2 * i + 1) = 1;
+    for (Index j = 0; j < count; ++j) {
+      out.a(2 * i + 1, 2 * j) = by_place(i, j);
+      out.a(2 * i + 1, 2 * j + 1) = by_rate(i, j);
+    }
+    out.b.row(2 * i + 1) = inputs.row(i);
+  }
+  const VectorXd round_off =
+      kRoundOff * (inverse.cwiseAbs() * stiffness.cwiseAbs() * modes.shapes.cwiseAbs()).diagonal();
+  for (Index i = 0; i < count; ++i)
+    if (std::abs(by_place(i, i)) <= kAboveRoundOff * round_off[i])
+      out.zero = std::max(out.zero, std::sqrt(kAboveRoundOff * round_off[i]));
+  return out;
+}
+
+}  // namespace
+
+ScaledStates scaled_states(const LinearModel& model) {
+  ScaledStates out;
+  if (const std::optional<Shapes> modes = shapes_of(model)) {
+    out = by_modes(model, *modes);
+  } else {
+    out.a = model.a;
+    out.b = model.b;
+    out.basis = out.inverse = MatrixXd::Identity(model.a.rows(), model.a.cols());
+    out.zero = std::numeric_limits<double>::infinity();
+  }
+  Balanced balanced = flexarm::balanced(std::move(out.a));
+  out.a = std::move(balanced.matrix);
+  out.basis = out.basis * balanced.scales.asDiagonal();
+  out.inverse = balanced.scales.cwiseInverse().asDiagonal() * out.inverse;
+  out.b = balanced.scales.cwiseInverse().asDiagonal() * out.b;
+  out.c = model.c * out.basis;
+  return out;
+}
+
+}  // namespace flexarm

@@ -1,0 +1,20 @@
+#pragma once
+/// Linear models in states of which stiff and soft motions are told apart. (docs/notes/linearisation.md)
+
+#include "flexarm/simulation/linear_model.h"
+
+namespace flexarm {
+
+/// x = basis z,  z' = a z + b u,  v = c z + d u, where `a` is graded: its large entries come first, and none is large
+/// but beside a motion that is stiff itself.
+struct ScaledStates {
+  Eigen::MatrixXd a, b, c;
+  Eigen::MatrixXd basis, inverse;
+  /// Poles that are smaller are 0 but for round-off [1/s]; infinite where nothing is known of that.
+  double zero = 0;
+};
+/// By the modes of mass and stiffness, which need not be those of the model itself: whatever they are, it is the same
+/// model. One that has no such matrices for its states, as a smaller one, is balanced alone.
+ScaledStates scaled_states(const LinearModel& model);
+
+}  // namespace flexarm
