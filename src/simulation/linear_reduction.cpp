@@ -37,7 +37,8 @@ struct Parts {
 /// `zero`: see ScaledStates; `slowest`: no decay that is faster is doubted [1/s].
 Parts parts_of(const MatrixXd& a, double zero, double slowest) {
   const auto decays = [&](std::complex<double> pole) {
-    return pole.real() < -std::min(slowest, std::max(zero, kDamped * std::abs(pole)));
+    const double size = std::abs(pole);
+    return pole.real() < -slowest || (size > zero && pole.real() < -kDamped * size);
   };
   Parts parts;
   parts.kept.basis = invariant_subspace(a, [&](std::complex<double> pole) { return !decays(pole); });

@@ -128,7 +128,7 @@ ScaledStates by_modes(const LinearModel& model, const Shapes& modes) {
       kRoundOff * (inverse.cwiseAbs() * stiffness.cwiseAbs() * modes.shapes.cwiseAbs()).diagonal();
   for (Index i = 0; i < count; ++i)
     if (std::abs(by_place(i, i)) <= kAboveRoundOff * round_off[i])
-      out.zero = std::max(out.zero, std::sqrt(kAboveRoundOff * round_off[i]));
+      out.zero = std::max({out.zero, std::sqrt(kAboveRoundOff * round_off[i]), std::numeric_limits<double>::min()});
   return out;
 }
 
@@ -146,6 +146,8 @@ ScaledStates scaled_states(const LinearModel& model) {
   }
   Balanced balanced = flexarm::balanced(std::move(out.a));
   out.a = std::move(balanced.matrix);
+  // A double pole is split by the root of what eigenvalue solvers leave.
+  if (out.zero > 0) out.zero = std::max(out.zero, std::sqrt(kAboveRoundOff * kRoundOff * out.a.norm()));
   out.basis = out.basis * balanced.scales.asDiagonal();
   out.inverse = balanced.scales.cwiseInverse().asDiagonal() * out.inverse;
   out.b = balanced.scales.cwiseInverse().asDiagonal() * out.b;

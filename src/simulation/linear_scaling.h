@@ -10,7 +10,7 @@ namespace flexarm {
 struct ScaledStates {
   Eigen::MatrixXd a, b, c;
   Eigen::MatrixXd basis, inverse;
-  /// Poles that are smaller are 0 but for round-off [1/s]; infinite where nothing is known of that.
+  /// Poles that are smaller are 0 but for round-off [1/s]; 0: there are none, infinite: nothing is known of that.
   double zero = 0;
 };
 /// By the modes of mass and stiffness, which need not be those of the model itself: whatever they are, it is the same
