@@ -90,8 +90,13 @@ Part truncated(const Part& part, const BalancedPart& balanced, Index order) {
 ReducedModel reduced(const LinearModel& model, int order) {
   const ScaledStates scaled = scaled_states(model);
   double largest = 0;
-  for (const Pole& pole : poles(model)) largest = std::max(largest, std::abs(pole.value));
-  const auto [kept, decaying] = parts_of(scaled.a, scaled.zero, kDecaying * largest);
+  bool all_decay = true;
+  for (const Pole& pole : poles(model)) {
+    largest = std::max(largest, std::abs(pole.value));
+    all_decay = all_decay && std::abs(pole.value) > scaled.zero && pole.damping_ratio() > kDamped;
+  }
+  const auto [kept, decaying] =
+      parts_of(scaled.a, all_decay ? scaled.zero : std::numeric_limits<double>::infinity(), kDecaying * largest);
   if (order < kept.basis.cols() || order > model.a.rows())
     throw std::invalid_argument(
         fmt::format("a reduced model has {} to {} states, {} of them of poles that do not decay; got {}",
