@@ -1,7 +1,9 @@
 #include "analysis/statics.h"
 
 #include <limits>
+#include <optional>
 
+#include "analysis/descent.h"
 #include "analysis/settling.h"
 #include "analysis/stability.h"
 
@@ -20,6 +22,16 @@ constexpr double kServosComeNearer = 0.9;
 /// The same of updates whose tangent leaves out terms of the elements' own error.
 constexpr double kShorter = 0.5;
 
+bool depends_on_path(const Scheme& scheme) {
+  return scheme.interpolation == Interpolation::Incremental || scheme.interpolation == Interpolation::Iterative;
+}
+
+Scheme with_local_strains(Scheme scheme) {
+  scheme.interpolation = Interpolation::Local;
+  scheme.cayley_interpolation = false;
+  return scheme;
+}
+
 class EquilibriumSearch {
  public:
   EquilibriumSearch(const Model& model, const Scheme& scheme, const StepSettings& settings, const State& state)
@@ -29,6 +41,7 @@ class EquilibriumSearch {
                     const State& state)
       : model_(model),
         scheme_(scheme),
+        statics_(statics),
         settings_(settings),
         state_(state),
         system_(model, statics),
@@ -38,6 +51,85 @@ class EquilibriumSearch {
   const State& state() const { return state_; }
   const StaticResult& result() const { return result_; }
   const std::vector<double>& update_norms() const { return newton_.update_norms(); }
+
+  /// Down the potential where there is one and joints are not held firmly; else after the loads.
+  bool find(int load_steps, Equilibrium wanted) {
+    if (wanted == Equilibrium::UnderTheLoads || !JointPotentials::exist(model_, state_))
+      return follow_loads(load_steps, wanted);
+    const State start = state_;
+    descent_.emplace(model_, statics_of(with_local_strains(scheme_)), settings_);
+    const bool is_rigid = descent_->is_rigid();
+    JointHold hold;
+    const bool can_be_judged = descent_->judge(state_, hold);
+    if (can_be_judged && !is_rigid && hold.is_firm()) {
+      if (follow_loads(load_steps, wanted) && descent_->judge(state_, hold) && hold.is_firm()) return true;
+      state_ = start;
+      result_ = {};
+    }
+    if (can_be_judged && descend(load_steps)) {
+      if (descent_->judge(state_, hold) && hold.free.empty()) result_.loose_link.clear();
+      return true;
+    }
+    if (can_be_judged && is_rigid) return false;
+    state_ = start;
+    result_ = {};
+    return follow_loads(load_steps, wanted);
+  }
+
+  /// From an equilibrium, to round-off: as long as updates become shorter.
+  bool sharpen() {
+    JointHold hold;
+    if (JointPotentials::exist(model_, state_)) {
+      descent_.emplace(model_, statics_, settings_);
+      if (descent_->judge(state_, hold) && !(hold.is_firm() && !descent_->is_rigid())) {
+        is_descending_ = true;
+        return let_servos_integrate() && descent_->sharpen(state_) && stand();
+      }
+    }
+    return sharpen_by_newton();
+  }
+
+  /// What the scheme remembers of forces is that of the equilibrium.
+  void renew_forces() {
+    if (!state_.forces.empty()) state_.forces = system_.nodal_forces(state_);
+  }
+
+ private:
+  bool follow_loads(int load_steps, Equilibrium wanted) {
+    is_descending_ = false;
+    return increase_loads(load_steps) && (depends_on_path(scheme_) ? settle_without_path(wanted) : settle_for(wanted));
+  }
+
+  /// The state is one of the search's own system.
+  bool stand() {
+    system_.begin_equilibrium(state_, 1);
+    if (!system_.evaluate(false)) return false;
+    system_.accept(state_);
+    return true;
+  }
+
+  bool descend(int load_steps) {
+    is_descending_ = true;
+    if (!descent_->find(state_, load_steps, result_)) return false;
+    name_fall();
+    if (!let_servos_integrate()) return false;
+    // Beams may buckle about joints that stand.
+    for (int fall = 0;; ++fall) {
+      const Stability stability = judge_stability(model_, scheme_, state_);
+      result_.loose_link = stability.loose_link;
+      if (stability.is_stable() || descent_->is_rigid()) break;
+      if (result_.falling_link.empty()) result_.falling_link = stability.motion.link;
+      if (fall == kMostFalls || !leave(stability.motion) || !solve(1) || !let_servos_integrate()) return false;
+    }
+    if (!depends_on_path(scheme_)) return stand();
+    system_.forget_path(state_);
+    return stand() && Descent(model_, statics_, settings_).rest(state_, result_) && stand();
+  }
+
+  void name_fall() {
+    const State* left = descent_->left();
+    if (left && result_.falling_link.empty()) result_.falling_link = judge_stability(model_, scheme_, *left).motion.link;
+  }
 
   bool increase_loads(int load_steps) {
     for (int step = 1; step <= load_steps; ++step) {
@@ -50,9 +142,7 @@ class EquilibriumSearch {
   /// Where strains depend on the way, a mechanism may go round and round, and what it falls to is no matter of the way:
   /// it falls with local interpolation, and its strains begin anew there.
   bool settle_without_path(Equilibrium wanted) {
-    Scheme local = scheme_;
-    local.interpolation = Interpolation::Local;
-    local.cayley_interpolation = false;
+    const Scheme local = with_local_strains(scheme_);
     EquilibriumSearch search(model_, local, settings_, state_);
     const bool is_found = search.settle_for(wanted);
     const bool falls = is_found && wanted == Equilibrium::Stable && !search.result_.falling_link.empty();
@@ -78,8 +168,7 @@ class EquilibriumSearch {
     return false;
   }
 
-  /// From an equilibrium, to round-off: as long as updates become shorter.
-  bool sharpen() {
+  bool sharpen_by_newton() {
     for (double last = std::numeric_limits<double>::infinity();;) {
       if (!let_servos_integrate() || !solve(1)) return false;
       const double way = newton_.update_norms().front();
@@ -88,12 +177,6 @@ class EquilibriumSearch {
     }
   }
 
-  /// What the scheme remembers of forces is that of the equilibrium.
-  void renew_forces() {
-    if (!state_.forces.empty()) state_.forces = system_.nodal_forces(state_);
-  }
-
- private:
   /// A servo that integrates is at rest where it has no error.
   bool let_servos_integrate() {
     for (double error = std::numeric_limits<double>::infinity();;) {
@@ -111,6 +194,7 @@ class EquilibriumSearch {
 
   /// Full updates first: a beam that rolls up by several turns needs large rotations at once, and takes them well.
   bool solve(double factor) {
+    if (is_descending_) return descent_->find(state_, 1, result_);
     using Updates = NewtonIteration::Updates;
     for (const Updates updates : {Updates::Full, Updates::Limited}) {
       system_.begin_equilibrium(state_, factor);
@@ -136,11 +220,14 @@ class EquilibriumSearch {
 
   const Model& model_;
   const Scheme& scheme_;
+  const Scheme statics_;
   const StepSettings& settings_;
   State state_;
   StepSystem system_;
   NewtonIteration newton_;
   Settling settling_;
+  std::optional<Descent> descent_;
+  bool is_descending_ = false;
   StaticResult result_;
 };
 
@@ -149,10 +236,7 @@ class EquilibriumSearch {
 StaticResult solve_static(const Model& model, const Scheme& scheme, const StepSettings& settings, int load_steps,
                           Equilibrium wanted, State& state, std::vector<double>* update_norms) {
   EquilibriumSearch search(model, scheme, settings, state);
-  const bool depends_on_path =
-      scheme.interpolation == Interpolation::Incremental || scheme.interpolation == Interpolation::Iterative;
-  const bool is_found = search.increase_loads(load_steps) &&
-                        (depends_on_path ? search.settle_without_path(wanted) : search.settle_for(wanted));
+  const bool is_found = search.find(load_steps, wanted);
   if (is_found) search.renew_forces();
   if (update_norms) *update_norms = search.update_norms();
   StaticResult result = search.result();

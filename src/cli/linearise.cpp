@@ -50,7 +50,7 @@ void go_to_reference(const LineariseArguments& arguments, Simulation& simulation
   }
   const StaticResult result = simulation.solve_static(kLoadSteps, arguments.wanted);
   if (result.converged)
-    warn_of_instability(result, arguments.wanted);
+    warn_of_instability(simulation, result, arguments.wanted);
   else
     fmt::print(stderr, "flexarm: {}; the model is that of the initial configuration\n",
                lack_of_equilibrium(simulation, result));

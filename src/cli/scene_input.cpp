@@ -5,6 +5,7 @@
 #include "cli/commands.h"
 #include "flexarm/scene/scene_description.h"
 #include "math/parse_number.h"
+#include "schemes/scheme.h"
 #include "simulation/inside.h"
 
 namespace flexarm::cli {
@@ -104,7 +105,7 @@ std::string check_tolerance(const std::string& text) {
 std::vector<Mode> modes_about_equilibrium(Simulation& simulation, int count, Equilibrium wanted) {
   const StaticResult result = simulation.solve_static(kLoadSteps, wanted);
   if (result.converged) {
-    warn_of_instability(result, wanted);
+    warn_of_instability(simulation, result, wanted);
     return simulation.natural_modes(count);
   }
   const std::vector<Mode> modes =
@@ -114,12 +115,14 @@ std::vector<Mode> modes_about_equilibrium(Simulation& simulation, int count, Equ
   return modes;
 }
 
-void warn_of_instability(const StaticResult& result, Equilibrium wanted) {
+void warn_of_instability(const Simulation& simulation, const StaticResult& result, Equilibrium wanted) {
+  const double contact_time = make_scheme(simulation.scene().integrator).contact_time;
   const char* consequence =
       wanted == Equilibrium::Stable
           ? "falls from it; this is where it comes to rest (--unstable: the one that it falls from)"
           : "would fall from it";
-  for (const std::string& doubt : doubts_about_equilibrium(result, consequence))
+  for (const std::string& doubt : 
+           doubts_about_equilibrium(model_of(simulation), contact_time, state_of(simulation), result, consequence))
     fmt::print(stderr, "flexarm: warning: {}\n", doubt);
 }
 

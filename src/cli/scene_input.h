@@ -42,7 +42,7 @@ std::string check_tolerance(const std::string& text);
 /// command.
 void add_equilibrium(CLI::App& command, Equilibrium& wanted);
 /// On the standard error output: that the loads lead to an unstable equilibrium, and which one was taken.
-void warn_of_instability(const StaticResult& result, Equilibrium wanted);
+void warn_of_instability(const Simulation& simulation, const StaticResult& result, Equilibrium wanted);
 
 /// Goes to the equilibrium if there is one that can be found; the `count` first modes about it. A mechanism that can
 /// move freely has none, which is said on the standard error output; then those about the initial configuration, as

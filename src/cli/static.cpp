@@ -44,7 +44,7 @@ int solve(const StaticArguments& arguments) {
     fmt::print(stderr, "flexarm: {}\n", lack_of_equilibrium(simulation, result));
     return kFailed;
   }
-  warn_of_instability(result, arguments.wanted);
+  warn_of_instability(simulation, result, arguments.wanted);
   if (!is_standard_output(arguments.output)) print_equilibrium(simulation);
   if (arguments.output.empty()) return kDone;
   CsvWriter output(arguments.output, ResultColumns(simulation, ResultColumns::Solver::Without));

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/descent.h"
 #include "simulation/inside.h"
 
 namespace flexarm {
@@ -12,6 +13,8 @@ namespace {
 /// Of the largest motion of a node; a joint that moves less is not named.
 constexpr double kMoves = 1e-3;
 constexpr std::size_t kMostNames = 6;
+/// What a coordinate may be off by that is told [rad or m].
+constexpr double kWeak = 1e-6;
 
 /// Names of the joints that move in some free motion.
 std::vector<std::string> unheld_joints(const scene::SceneDescription& scene, const Model& model,
@@ -72,16 +75,29 @@ std::string lack_of_equilibrium(const Simulation& simulation, const StepResult& 
   return lack_of_equilibrium(simulation.scene(), model_of(simulation), result, modes);
 }
 
-std::vector<std::string> doubts_about_equilibrium(const StaticResult& result, const std::string& consequence) {
+std::vector<std::string> doubts_about_equilibrium(const Model& model, double contact_time, const State& equilibrium,
+                                                  const StaticResult& result, const std::string& consequence) {
   std::vector<std::string> doubts;
   if (!result.falling_link.empty())
     doubts.push_back(fmt::format("the equilibrium to which the loads lead is not stable: link '{}' {}",
                                  result.falling_link, consequence));
-  if (!result.loose_link.empty())
+  const JointHold hold = joint_hold(model, contact_time, equilibrium);
+  std::vector<std::string> free;
+  for (const std::size_t coordinate : hold.free) free.push_back(model.coordinates[coordinate].name);
+  if (!free.empty())
+    doubts.push_back(fmt::format("nothing holds {}: {} where the start has {}, but may stand elsewhere as well (a "
+                                 "<motion> would hold {})",
+                                 listed(free), free.size() == 1 ? "it stands" : "they stand",
+                                 free.size() == 1 ? "it" : "them", free.size() == 1 ? "it" : "them"));
+  else if (!result.loose_link.empty())
     doubts.push_back(
         fmt::format("nothing holds link '{}' where it stands: it may stand elsewhere as well (a <motion> of its joint "
                     "would hold it)",
                     result.loose_link));
+  if (hold.weakness > kWeak)
+    doubts.push_back(fmt::format("joint '{}' is held so weakly that round-off may move it by {:.1g} {}",
+                                 model.coordinates[hold.weakest].name, hold.weakness,
+                                 is_rotation(model, model.coordinates[hold.weakest]) ? "rad" : "m"));
   return doubts;
 }
 

@@ -8,6 +8,7 @@
 #include "flexarm/scene/scene_description.h"
 #include "flexarm/simulation/simulation.h"
 #include "model/model.h"
+#include "model/state.h"
 
 namespace flexarm {
 
@@ -24,8 +25,9 @@ std::string lack_of_equilibrium(const scene::SceneDescription& scene, const Mode
 /// The same of a simulation, which is as before solve_static(): looks for these modes where that is quick.
 std::string lack_of_equilibrium(const Simulation& simulation, const StepResult& result);
 
-/// That an equilibrium is not stable, or not the only one; empty if neither. `consequence`: what becomes of the link
-/// that falls.
-std::vector<std::string> doubts_about_equilibrium(const StaticResult& result, const std::string& consequence);
+/// That an equilibrium is not stable, or not the only one, or known to a few digits; empty if none of these.
+/// `consequence`: what becomes of the link that falls.
+std::vector<std::string> doubts_about_equilibrium(const Model& model, double contact_time, const State& equilibrium,
+                                                  const StaticResult& result, const std::string& consequence);
 
 }  // namespace flexarm

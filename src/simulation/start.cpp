@@ -89,7 +89,7 @@ void start_in_equilibrium(const scene::SceneDescription& scene, const Model& mod
     throw ModelError(error.text());
   }
   for (const std::string& doubt :
-       doubts_about_equilibrium(result, "falls from it; the start is where it comes to rest"))
+       doubts_about_equilibrium(model, scheme.contact_time, state, result, "falls from it; the start is where it comes to rest"))
     warnings.push_back(warning({scene.file}, "start in equilibrium", doubt));
 }
 

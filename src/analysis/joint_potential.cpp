@@ -1,0 +1,224 @@
+#include "analysis/joint_potential.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "analysis/linearised_motion.h"
+#include "joints/joint_map.h"
+#include "joints/joint_stop.h"
+#include "math/least_squares.h"
+
+namespace flexarm {
+namespace {
+
+/// Matrices of more coordinates would be large.
+constexpr std::size_t kMostAxes = 300;
+/// Larger turns in an update are shortened where the whole update has led nowhere [rad].
+constexpr double kLargestTurn = 1;
+
+bool is_unknown(const DegreesOfFreedom& dof, const Coordinate& coordinate) {
+  return dof.equation[dof.scalar_of(coordinate)] >= 0;
+}
+
+}  // namespace
+
+bool JointPotentials::exist(const Model& model, const State& state) {
+  if (model.coordinates.size() > kMostAxes || is_circulatory(model, state)) return false;
+  if (std::any_of(model.closures.begin(), model.closures.end(),
+                  [](const LoopClosure& closure) { return !closure.constraints.empty(); }))
+    return false;
+  const DegreesOfFreedom dof(model);
+  return std::any_of(model.coordinates.begin(), model.coordinates.end(),
+                     [&](const Coordinate& coordinate) { return is_unknown(dof, coordinate); });
+}
+
+JointPotentials::JointPotentials(const Model& model, const Scheme& scheme, const StepSettings& settings)
+    : model_(model),
+      scheme_(scheme),
+      settings_(settings),
+      system_(model, scheme_, BackendChoice::Matrix) {
+  const DegreesOfFreedom& dof = system_.degrees_of_freedom();
+  std::vector<std::size_t> axis_of(model.coordinates.size(), model.coordinates.size());
+  for (std::size_t c = 0; c < model.coordinates.size(); ++c) {
+    const Coordinate& coordinate = model.coordinates[c];
+    if (!is_unknown(dof, coordinate)) continue;
+    axis_of[c] = axes_.size();
+    axes_.push_back({dof.equation[dof.scalar_of(coordinate)], c,
+                     is_rotation(model, coordinate) ? 1.0 : 1 / model.length_scale});
+  }
+  for (std::size_t c = 0; c < model.coordinates.size(); ++c) {
+    const Coordinate& coordinate = model.coordinates[c];
+    const bool follows = coordinate.mimicked >= 0;
+    if (!coordinate.limit || coordinate.is_angle || coordinate.motion >= 0 || (follows && coordinate.mimic.profile))
+      continue;
+    const std::size_t axis = axis_of[follows ? coordinate.mimicked : c];
+    if (axis == model.coordinates.size() || (follows && coordinate.mimic.multiplier == 0)) continue;
+    add_bounds(axis, coordinate, follows ? coordinate.mimic.multiplier : 1, follows ? coordinate.mimic.offset : 0);
+  }
+}
+
+void JointPotentials::add_bounds(std::size_t axis, const Coordinate& coordinate, double multiplier, double offset) {
+  const LimitStop& limit = *coordinate.limit;
+  const double stiffness = stop_penalty(coordinate, scheme_.contact_time).stiffness * multiplier * multiplier;
+  const double size = std::abs(multiplier), sign = multiplier > 0 ? 1 : -1;
+  if (std::isfinite(limit.lower))
+    bounds_.push_back({axis, (limit.lower - offset) / multiplier, -sign, stiffness, limit.give_below / size});
+  if (std::isfinite(limit.upper))
+    bounds_.push_back({axis, (limit.upper - offset) / multiplier, sign, stiffness, limit.give_above / size});
+}
+
+double JointPotentials::position(const State& state, std::size_t axis) const {
+  const Coordinate& coordinate = model_.coordinates[axes_[axis].coordinate];
+  return coordinate.is_angle ? 0.0 : state.released[coordinate.joint].displacement[coordinate.component];
+}
+
+bool JointPotentials::find_reference(const State& state) {
+  reference_ = work_of_forces(model_, state);
+  system_.begin_equilibrium(state, 1);
+  if (!system_.evaluate(false)) return false;
+  if (reference_ == 0) reference_ = system_.scales().largest_moment(system_.residual());
+  return std::isfinite(reference_);
+}
+
+/// Rows of the coordinates are those of a unit matrix.
+void JointPotentials::hold_joints() {
+  for (const Axis& axis : axes_) {
+    const Coordinate& coordinate = model_.coordinates[axis.coordinate];
+    system_.tangent().hold_row(coordinate.joint, coordinate.component, coordinate.component,
+                               ReleasedVector::Ones(1));
+  }
+}
+
+bool JointPotentials::look(JointPotential& at) {
+  system_.begin_equilibrium(at.state, 1);
+  if (!system_.evaluate(true)) return false;
+  const auto size = static_cast<Eigen::Index>(axes_.size());
+  const Eigen::Index unknowns = tangent().unknowns();
+  const Eigen::SparseMatrix<double> whole =
+      Matrix(unknowns, unknowns, static_cast<Eigen::Index>(tangent().values().size()), tangent().column_starts().data(),
+             tangent().row_indices().data(), tangent().values().data());
+  at.motions = Eigen::MatrixXd::Zero(unknowns, size);
+  for (Eigen::Index i = 0; i < size; ++i) at.motions(axes_[i].equation, i) = 1 / axes_[i].scale;
+  at.correction = Eigen::VectorXd::Zero(unknowns);
+  if (!is_rigid()) {
+    Eigen::MatrixXd right(unknowns, size + 1);
+    right << -(whole * at.motions), system_.residual();
+    for (Eigen::Index i = 0; i < size; ++i) right.row(axes_[i].equation).setZero();
+    hold_joints();
+    if (!system_.tangent().factorise()) return false;
+    for (Eigen::Index i = 0; i <= size; ++i) {
+      Eigen::VectorXd column = right.col(i);
+      if (!system_.tangent().solve(column)) return false;
+      if (i < size)
+        at.motions.col(i) += column;
+      else
+        at.correction = column;
+    }
+  }
+  const Eigen::MatrixXd forces = whole * at.motions;
+  const Eigen::VectorXd left = system_.residual() - whole * at.correction;
+  at.force.resize(size);
+  at.curvature.resize(size, size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    at.force[i] = left[axes_[i].equation] / axes_[i].scale;
+    at.curvature.row(i) = forces.row(axes_[i].equation) / axes_[i].scale;
+  }
+  at.curvature = (0.5 * (at.curvature + at.curvature.transpose())).eval();
+  return at.curvature.allFinite() && at.force.allFinite();
+}
+
+Eigen::VectorXd JointPotentials::step(const JointPotential& from, const Eigen::VectorXd& ways) const {
+  return from.motions * ways - from.correction;
+}
+
+bool JointPotentials::place(const JointPotential& from, const Eigen::VectorXd& step, State& to) {
+  to = from.state;
+  system_.begin_equilibrium(from.state, 1);
+  system_.update(step);
+  if (!system_.evaluate(false)) return false;
+  system_.accept(to);
+  return true;
+}
+
+bool JointPotentials::move(const JointPotential& from, const Eigen::VectorXd& ways, State& to, StepResult& result) {
+  if (!place(from, step(from, ways), to)) return false;
+  return is_rigid() || rest(to, 1, result);
+}
+
+bool JointPotentials::rest(State& state, double factor, StepResult& result) {
+  if (is_rigid()) return true;
+  return rest(state, factor, std::numeric_limits<double>::infinity(), result) ||
+         rest(state, factor, kLargestTurn, result);
+}
+
+bool JointPotentials::rest(State& state, double factor, double largest_rotation, StepResult& result) {
+  system_.begin_equilibrium(state, factor);
+  for (int i = 0; i < settings_.max_iterations; ++i) {
+    ++result.iterations;
+    result.reason = StepResult::Reason::NotFinite;
+    if (!system_.evaluate(true)) return false;
+    hold_joints();
+    Eigen::VectorXd update = -system_.residual();
+    for (const Axis& axis : axes_) update[axis.equation] = 0;
+    result.reason = StepResult::Reason::SingularTangent;
+    ++result.factorisations;
+    if (!system_.tangent().factorise_and_solve(update)) return false;
+    const double rotation = system_.scales().largest_rotation(update);
+    if (rotation > largest_rotation) update *= largest_rotation / rotation;
+    const double norm = system_.scales().norm(update, 0);
+    result.reason = StepResult::Reason::NoConvergence;
+    if (!std::isfinite(norm)) return false;
+    system_.update(update);
+    if (norm > settings_.tolerance) continue;
+    if (!system_.evaluate(false)) return false;
+    system_.accept(state);
+    return true;
+  }
+  return false;
+}
+
+double JointPotentials::shift(const JointPotential& from, const Eigen::VectorXd& ways, State& to) {
+  const Eigen::VectorXd newton = step(from, ways);
+  const double norm = system_.scales().norm(newton, 0);
+  return std::isfinite(norm) && place(from, newton, to) ? norm : std::numeric_limits<double>::infinity();
+}
+
+Eigen::VectorXd JointPotentials::ways(const State& from, const State& to) const {
+  Eigen::VectorXd ways(static_cast<Eigen::Index>(axes_.size()));
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const Coordinate& coordinate = model_.coordinates[axes_[i].coordinate];
+    const ReleasedVector way = released_increment(model_.joints[coordinate.joint], from.released[coordinate.joint],
+                                                  to.released[coordinate.joint]);
+    ways[static_cast<Eigen::Index>(i)] = axes_[i].scale * way[coordinate.component];
+  }
+  return ways;
+}
+
+double JointPotentials::round_off_of_loads(const Eigen::VectorXd& motion) const {
+  return kStiffnessRoundOff * reference_ * motion.norm();
+}
+
+/// Terms of weight and loads; of springs and stops of coordinates; of beams.
+Eigen::VectorXd JointPotentials::round_off(const JointPotential& at, const Eigen::MatrixXd& motions) const {
+  Eigen::VectorXd round_off(motions.cols());
+  std::optional<LinearisedMotion> beams;
+  if (!is_rigid() && motions.cols() > 0) beams.emplace(model_, at.state, scheme_.contact_time);
+  for (Eigen::Index m = 0; m < motions.cols(); ++m) {
+    const Eigen::VectorXd motion = motions.col(m);
+    round_off[m] = round_off_of_loads(motion);
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      const double place = std::max(1.0, std::abs(axes_[i].scale * position(at.state, i)));
+      round_off[m] += kStiffnessRoundOff * std::abs(at.curvature(k, k)) * place * motion[k] * motion[k];
+    }
+    if (!beams) continue;
+    Eigen::VectorXcd all = Eigen::VectorXcd::Zero(beams->unknowns());
+    all.head(at.motions.rows()) = (at.motions * motion).cast<std::complex<double>>();
+    round_off[m] += beams->round_off(beams->expand(all).node_motion);
+  }
+  return round_off;
+}
+
+}  // namespace flexarm
