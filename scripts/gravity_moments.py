@@ -51,7 +51,8 @@ class Joint:
 
 class Robot:
     def __init__(self, path):
-        root = xml.etree.ElementTree.parse(path).getroot()
+        with open(path, encoding="utf-8", errors="replace") as file:
+            root = xml.etree.ElementTree.fromstring(file.read().strip())
         joints = [element for element in root.findall("joint") if element.find("parent") is not None]
         self.joints = {joint.name: joint for joint in map(Joint, joints)}
         self.masses = {}
@@ -115,13 +116,14 @@ def moments(path, positions):
     return {name: tuple(values) for name, values in result.items()}
 
 
-def left_over(path, positions):
-    """What gravity leaves beside the largest moment of all, where no stop carries it; and the joint."""
+def left_over(path, positions, held=()):
+    """What gravity leaves beside the largest moment of all, where no stop carries it and nothing holds the joint; and
+    the joint."""
     joints = moments(path, positions)
     largest = max((values[1] for values in joints.values()), default=0.0)
     worst, name = 0.0, ""
     for joint, (moment, _, position, lower, upper) in joints.items():
         is_stopped = (position <= lower and moment <= 0) or (position >= upper and moment >= 0)
-        if largest > 0 and not is_stopped and abs(moment) / largest > worst:
+        if largest > 0 and not is_stopped and joint not in held and abs(moment) / largest > worst:
             worst, name = abs(moment) / largest, joint
     return worst, name

@@ -22,6 +22,8 @@ constexpr int kMostSteps = 500;
 constexpr int kBisections = 100;
 /// Of the depth that a stop gives way, what a step into it may take; and how far a step out of it goes beyond it.
 constexpr double kPartOfGive = 0.1, kBeyond = 1e-12;
+/// Ways that are no more than a step into a stop.
+constexpr double kTiny = 1e-10;
 /// Share of a coordinate in a motion that counts.
 constexpr double kTakesPart = 1e-3;
 /// Curvatures beside those that weight and loads make, from which on round-off does not matter.
@@ -208,7 +210,9 @@ bool Descent::find(State& state, int load_steps, StepResult& result) {
                           (ways.dot(at.curvature * ways) - ways.dot(next.curvature * ways)) / 12;
       const double noise = potentials_.round_off_of_loads(ways);
       share = step.promise > 0 ? fall / step.promise : -1;
-      is_taken = share > kTaken || (std::abs(fall) <= noise && next.force.norm() < at.force.norm());
+      // At the corner of a stop the model knows one side alone.
+      const bool is_tiny = ways.norm() <= kTiny;
+      is_taken = share > kTaken || (std::abs(fall) <= noise && (is_tiny || next.force.norm() < at.force.norm()));
     }
     if (is_taken) std::swap(at, next);
     if (share < kPoor) radius = kShrinks * std::min(radius, std::max(step.length, kSmallestRadius));

@@ -5,11 +5,15 @@
 #include <stdexcept>
 
 #include <Spectra/GenEigsSolver.h>
+#include <fmt/format.h>
 
 #include "math/dense_eigenpairs.h"
 
 namespace flexarm {
 namespace {
+
+/// Dense matrices of more rows would take minutes.
+constexpr Eigen::Index kMostRows = 1000;
 
 Eigenpairs all_pairs(const LinearOperation& operation) {
   const Eigen::Index n = operation.rows();
@@ -21,7 +25,7 @@ Eigenpairs all_pairs(const LinearOperation& operation) {
   return dense_eigenpairs(dense);
 }
 
-Eigenpairs iterated_pairs(const LinearOperation& operation, int count, Crowded crowded) {
+Eigenpairs arnoldi_pairs(const LinearOperation& operation, int count, Crowded crowded) {
   Spectra::GenEigsSolver<const LinearOperation> solver(
       operation, count, std::min<Eigen::Index>(operation.rows(), std::max(2 * count + 20, 40)));
   solver.init();
@@ -30,6 +34,18 @@ Eigenpairs iterated_pairs(const LinearOperation& operation, int count, Crowded c
   if (values.size() == 0 || (values.size() < count && crowded == Crowded::Fail))
     throw std::runtime_error("the eigenvalue iteration did not converge");
   return {values, solver.eigenvectors()};
+}
+
+/// Where the iteration breaks down, all of them, if that takes seconds.
+Eigenpairs iterated_pairs(const LinearOperation& operation, int count, Crowded crowded) {
+  try {
+    return arnoldi_pairs(operation, count, crowded);
+  } catch (const std::runtime_error&) {
+    if (operation.rows() <= kMostRows) return all_pairs(operation);
+    throw std::runtime_error(fmt::format(
+        "the {} softest of {} eigenvalues are not found: Arnoldi's iteration does not converge", count,
+        operation.rows()));
+  }
 }
 
 }  // namespace

@@ -1,15 +1,49 @@
 #include "math/dense_eigenpairs.h"
 
+#include <stdexcept>
+
 #include <Spectra/LinAlg/UpperHessenbergEigen.h>
+#include <fmt/format.h>
 
 #include "math/hessenberg.h"
 
 namespace flexarm {
+namespace {
+
+/// By the real QR iteration. False if it does not converge.
+bool find_pairs(const Eigen::MatrixXd& matrix, Eigenpairs& pairs) {
+  const Hessenberg hessenberg = flexarm::hessenberg(matrix);
+  try {
+    Spectra::UpperHessenbergEigen<double> solver(hessenberg.reduced);
+    pairs = {solver.eigenvalues(), hessenberg.basis * solver.eigenvectors()};
+  } catch (const std::runtime_error&) {
+    return false;
+  }
+  return pairs.values.allFinite() && pairs.vectors.allFinite();
+}
+
+/// The same in coordinates whose scales make rows and columns alike.
+bool find_balanced_pairs(const Eigen::MatrixXd& matrix, Eigenpairs& pairs) {
+  const Balanced balanced = flexarm::balanced(matrix);
+  if (!find_pairs(balanced.matrix, pairs)) return false;
+  pairs.vectors = balanced.scales.asDiagonal() * pairs.vectors;
+  pairs.vectors.colwise().normalize();
+  return true;
+}
+
+void require_finite(const Eigen::MatrixXd& matrix) {
+  if (matrix.allFinite()) return;
+  throw std::runtime_error(fmt::format(
+      "the eigenvalues of a matrix of {} rows are not found: not all of its entries are finite", matrix.rows()));
+}
+
+}  // namespace
 
 Eigenpairs dense_eigenpairs(const Eigen::MatrixXd& matrix) {
-  const Hessenberg hessenberg = flexarm::hessenberg(matrix);
-  Spectra::UpperHessenbergEigen<double> solver(hessenberg.reduced);
-  return {solver.eigenvalues(), hessenberg.basis * solver.eigenvectors()};
+  require_finite(matrix);
+  Eigenpairs pairs;
+  if (find_pairs(matrix, pairs) || find_balanced_pairs(matrix, pairs)) return pairs;
+  return complex_eigenpairs(matrix);
 }
 
 }  // namespace flexarm
