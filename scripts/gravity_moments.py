@@ -64,6 +64,10 @@ class Robot:
         children = {joint.child for joint in self.joints.values()}
         self.roots = [link.get("name") for link in root.findall("link") if link.get("name") not in children]
 
+    def depth(self, joint):
+        """How many others stand between a joint and the one that it follows in the end."""
+        return 0 if joint.master not in self.joints else 1 + self.depth(self.joints[joint.master])
+
     def outboard(self, link):
         links = [link]
         for joint in self.joints.values():
@@ -109,10 +113,19 @@ def moments(path, positions):
             moment += mass * GRAVITY @ (axis if joint.kind == "prismatic" else np.cross(axis, arm))
             largest += mass * np.linalg.norm(GRAVITY) * (1 if joint.kind == "prismatic" else np.linalg.norm(arm))
         result[joint.name] = [moment, largest, positions.get(joint.name, 0.0), joint.lower, joint.upper]
-    for joint in robot.joints.values():
+    # Followers of followers first.
+    for joint in sorted(robot.joints.values(), key=robot.depth, reverse=True):
         if joint.master in result and joint.name in result:
-            result[joint.master][0] += joint.multiplier * result[joint.name][0]
-            result[joint.master][1] += abs(joint.multiplier) * result.pop(joint.name)[1]
+            moment, largest, position, lower, upper = result.pop(joint.name)
+            master = result[joint.master]
+            master[0] += joint.multiplier * moment
+            master[1] += abs(joint.multiplier) * largest
+            # A stop of the follower is one of its master.
+            sign = 1 if joint.multiplier > 0 else -1
+            if position <= lower:
+                master[3 if sign > 0 else 4] = master[2]
+            if position >= upper:
+                master[4 if sign > 0 else 3] = master[2]
     return {name: tuple(values) for name, values in result.items()}
 
 

@@ -51,16 +51,16 @@ bool Descent::begin(const State& state) {
 }
 
 /// Of the coordinates that are not fixed, where the fixed ones have gone by `ways`.
-Descent::Modes Descent::modes(const JointPotential& at, const std::vector<bool>& is_fixed, const Eigen::VectorXd& ways) {
+Descent::Modes Descent::modes(const JointPotential& at, const std::vector<bool>& is_fixed,
+                              const Eigen::VectorXd& ways) {
   std::vector<Eigen::Index> open;
   for (std::size_t i = 0; i < is_fixed.size(); ++i)
     if (!is_fixed[i]) open.push_back(static_cast<Eigen::Index>(i));
   const auto size = static_cast<Eigen::Index>(open.size());
   const Eigen::VectorXd force = at.force + at.curvature * ways;
   Eigen::MatrixXd curvature = columns_and_rows(at.curvature, open);
-  const Eigen::VectorXd scale = curvature.diagonal().unaryExpr([&](double value) {
-    return 1 / std::sqrt(std::max(1.0, std::abs(value) / potentials_.reference()));
-  });
+  const Eigen::VectorXd scale = curvature.diagonal().unaryExpr(
+      [&](double value) { return 1 / std::sqrt(std::max(1.0, std::abs(value) / potentials_.reference())); });
   curvature = (scale.asDiagonal() * curvature * scale.asDiagonal()).eval();
   const SymmetricEigenpairs pairs = symmetric_eigenpairs(curvature);
   Modes modes;
@@ -69,9 +69,8 @@ Descent::Modes Descent::modes(const JointPotential& at, const std::vector<bool>&
   for (Eigen::Index i = 0; i < size; ++i) modes.motions.row(open[i]) = scale[i] * pairs.vectors.row(i);
   modes.force = modes.motions.transpose() * force;
   // Only that of soft motions matters.
-  const auto soft = std::count_if(modes.curvature.data(), modes.curvature.data() + size, [&](double curvature) {
-    return curvature < kSoft * potentials_.reference();
-  });
+  const auto soft = std::count_if(modes.curvature.data(), modes.curvature.data() + size,
+                                  [&](double curvature) { return curvature < kSoft * potentials_.reference(); });
   modes.round_off.resize(size);
   modes.round_off.head(soft) = potentials_.round_off(at, modes.motions.leftCols(soft));
   for (Eigen::Index i = soft; i < size; ++i) modes.round_off[i] = potentials_.round_off_of_loads(modes.motions.col(i));

@@ -10,10 +10,10 @@ namespace flexarm {
 
 /// How an equilibrium is held in its joint coordinates.
 struct JointHold {
-  std::vector<std::size_t> free;    ///< coordinates that nothing holds: neither force nor curvature is above round-off
-  std::size_t weakest = 0;          ///< the coordinate that round-off of forces may move farthest
-  double weakness = 0;              ///< by so much, of those that are held [rad or m]
-  double least = 0;                 ///< curvature of those that are held, beside what weight and loads make
+  std::vector<std::size_t> free;  ///< coordinates that nothing holds: neither force nor curvature is above round-off
+  std::size_t weakest = 0;        ///< the coordinate that round-off of forces may move farthest
+  double weakness = 0;            ///< by so much, of those that are held [rad or m]
+  double least = 0;               ///< curvature of those that are held, beside what weight and loads make
 
   /// No motion is so soft that Newton's method might lose its way in it.
   bool is_firm() const;
@@ -31,8 +31,8 @@ class Descent {
   /// See JointPotentials; exist() must be true.
   Descent(const Model& model, const Scheme& scheme, const StepSettings& settings);
 
-  /// To a minimum, from `state`; beams first come to rest while loads grow in `load_steps` steps. False if there is none
-  /// on the way down; `result` says why, and `state` is where it was given up.
+  /// To a minimum, from `state`; beams first come to rest while loads grow in `load_steps` steps. False if there is
+  /// none on the way down; `result` says why, and `state` is where it was given up.
   bool find(State& state, int load_steps, StepResult& result);
   /// Beams come to rest about joints that stay where they are, under all loads.
   bool rest(State& state, StepResult& result);

@@ -35,18 +35,15 @@ bool JointPotentials::exist(const Model& model, const State& state) {
 }
 
 JointPotentials::JointPotentials(const Model& model, const Scheme& scheme, const StepSettings& settings)
-    : model_(model),
-      scheme_(scheme),
-      settings_(settings),
-      system_(model, scheme_, BackendChoice::Matrix) {
+    : model_(model), scheme_(scheme), settings_(settings), system_(model, scheme_, BackendChoice::Matrix) {
   const DegreesOfFreedom& dof = system_.degrees_of_freedom();
   std::vector<std::size_t> axis_of(model.coordinates.size(), model.coordinates.size());
   for (std::size_t c = 0; c < model.coordinates.size(); ++c) {
     const Coordinate& coordinate = model.coordinates[c];
     if (!is_unknown(dof, coordinate)) continue;
     axis_of[c] = axes_.size();
-    axes_.push_back({dof.equation[dof.scalar_of(coordinate)], c,
-                     is_rotation(model, coordinate) ? 1.0 : 1 / model.length_scale});
+    axes_.push_back(
+        {dof.equation[dof.scalar_of(coordinate)], c, is_rotation(model, coordinate) ? 1.0 : 1 / model.length_scale});
   }
   for (std::size_t c = 0; c < model.coordinates.size(); ++c) {
     const Coordinate& coordinate = model.coordinates[c];
@@ -86,8 +83,7 @@ bool JointPotentials::find_reference(const State& state) {
 void JointPotentials::hold_joints() {
   for (const Axis& axis : axes_) {
     const Coordinate& coordinate = model_.coordinates[axis.coordinate];
-    system_.tangent().hold_row(coordinate.joint, coordinate.component, coordinate.component,
-                               ReleasedVector::Ones(1));
+    system_.tangent().hold_row(coordinate.joint, coordinate.component, coordinate.component, ReleasedVector::Ones(1));
   }
 }
 

@@ -42,9 +42,9 @@ Eigenpairs iterated_pairs(const LinearOperation& operation, int count, Crowded c
     return arnoldi_pairs(operation, count, crowded);
   } catch (const std::runtime_error&) {
     if (operation.rows() <= kMostRows) return all_pairs(operation);
-    throw std::runtime_error(fmt::format(
-        "the {} softest of {} eigenvalues are not found: Arnoldi's iteration does not converge", count,
-        operation.rows()));
+    throw std::runtime_error(
+        fmt::format("the {} softest of {} eigenvalues are not found: Arnoldi's iteration does not converge", count,
+                    operation.rows()));
   }
 }
 

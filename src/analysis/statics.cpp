@@ -128,7 +128,8 @@ class EquilibriumSearch {
 
   void name_fall() {
     const State* left = descent_->left();
-    if (left && result_.falling_link.empty()) result_.falling_link = judge_stability(model_, scheme_, *left).motion.link;
+    if (left && result_.falling_link.empty())
+      result_.falling_link = judge_stability(model_, scheme_, *left).motion.link;
   }
 
   bool increase_loads(int load_steps) {

@@ -121,8 +121,8 @@ void warn_of_instability(const Simulation& simulation, const StaticResult& resul
       wanted == Equilibrium::Stable
           ? "falls from it; this is where it comes to rest (--unstable: the one that it falls from)"
           : "would fall from it";
-  for (const std::string& doubt : 
-           doubts_about_equilibrium(model_of(simulation), contact_time, state_of(simulation), result, consequence))
+  for (const std::string& doubt :
+       doubts_about_equilibrium(model_of(simulation), contact_time, state_of(simulation), result, consequence))
     fmt::print(stderr, "flexarm: warning: {}\n", doubt);
 }
 

@@ -1,7 +1,7 @@
 #include <stdexcept>
 
-#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
+#include <Eigen/Eigenvalues>
 
 #include "math/dense_eigenpairs.h"
 

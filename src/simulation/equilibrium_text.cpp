@@ -85,10 +85,11 @@ std::vector<std::string> doubts_about_equilibrium(const Model& model, double con
   std::vector<std::string> free;
   for (const std::size_t coordinate : hold.free) free.push_back(model.coordinates[coordinate].name);
   if (!free.empty())
-    doubts.push_back(fmt::format("nothing holds {}: {} where the start has {}, but may stand elsewhere as well (a "
-                                 "<motion> would hold {})",
-                                 listed(free), free.size() == 1 ? "it stands" : "they stand",
-                                 free.size() == 1 ? "it" : "them", free.size() == 1 ? "it" : "them"));
+    doubts.push_back(
+        fmt::format("nothing holds {}: {} where the start has {}, but may stand elsewhere as well (a "
+                    "<motion> would hold {})",
+                    listed(free), free.size() == 1 ? "it stands" : "they stand", free.size() == 1 ? "it" : "them",
+                    free.size() == 1 ? "it" : "them"));
   else if (!result.loose_link.empty())
     doubts.push_back(
         fmt::format("nothing holds link '{}' where it stands: it may stand elsewhere as well (a <motion> of its joint "

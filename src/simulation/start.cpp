@@ -88,8 +88,8 @@ void start_in_equilibrium(const scene::SceneDescription& scene, const Model& mod
                                   "the simulation is to start in its equilibrium: " + lack};
     throw ModelError(error.text());
   }
-  for (const std::string& doubt :
-       doubts_about_equilibrium(model, scheme.contact_time, state, result, "falls from it; the start is where it comes to rest"))
+  for (const std::string& doubt : doubts_about_equilibrium(model, scheme.contact_time, state, result,
+                                                           "falls from it; the start is where it comes to rest"))
     warnings.push_back(warning({scene.file}, "start in equilibrium", doubt));
 }
 

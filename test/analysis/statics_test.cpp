@@ -7,7 +7,9 @@
 #include <set>
 #include <string>
 
+#include "analysis/descent.h"
 #include "analysis/flexible_dead_point.h"
+#include "analysis/linearised_motion.h"
 #include "analysis/stability.h"
 #include "building/model_builder.h"
 #include "math/pi.h"
@@ -276,6 +278,113 @@ TEST(Statics, WhatMayStandElsewhereIsTold) {
   ASSERT_TRUE(result.converged) << to_string(result.reason);
   EXPECT_EQ(result.loose_link, "beam");
   EXPECT_EQ(result.falling_link, "");
+}
+
+/// A pan axis that is turned from the vertical by `tilt`, a lift and an elbow across it; 0.1 kg each, 0.1 m long. With a
+/// beam in place of the upper arm if `is_flexible`.
+SceneBuilder pan_lift_elbow(double tilt, bool is_flexible) {
+  SceneBuilder b;
+  b.scene.gravity = {0, 0, -9.81};
+  const Matrix3 inertia = 1e-4 * Matrix3::Identity();
+  b.body("bracket", 0.1, {0, 0, 0}, inertia);
+  b.body("column", 0.1, {0, 0.02, 0}, inertia);
+  if (is_flexible)
+    b.beam("upper", {{0, 0.1, 0}}, section(1e6, 5e5, 50, 50, 1, 1e-4, 5e-5), 3, 2);
+  else
+    b.body("upper", 0.1, {0, 0.05, 0}, inertia);
+  b.body("fore", 0.1, {0, 0.05, 0}, inertia);
+  b.joint("mount", JointKind::Fixed, "world", "bracket", {0, 0, 0.1}).origin.orientation =
+      Quaternion(Eigen::AngleAxisd(kPi / 2 - tilt, Vector3::UnitX()));
+  b.joint("pan", JointKind::Continuous, "bracket", "column", {0, 0, 0}, {0, 1, 0});
+  b.joint("lift", JointKind::Continuous, "column", "upper", {0, 0.05, 0}, {0, 0, 1});
+  b.joint("elbow", JointKind::Continuous, "upper", "fore", {0, 0.1, 0}, {0, 0, 1});
+  return b;
+}
+
+JointHold hold_of(const Simulation& simulation) {
+  return joint_hold(model_of(simulation), 0.01, state_of(simulation));
+}
+
+// The lowest place of all: column, upper arm and forearm in the plane in which the pan axis leans, the arms straight
+// down. The forearm's end is then 0.2 m below the lift.
+TEST(Statics, ArmsUnderATiltedPanAxisHang) {
+  for (const double tilt : {7.963267948966e-4, 0.01, 1e-5, 1e-7})
+    for (const bool is_flexible : {false, true}) {
+      if (is_flexible && tilt < 1e-4) continue;  // below what round-off of the beam lets see
+      Simulation simulation(pan_lift_elbow(tilt, is_flexible).scene);
+      const StaticResult result = simulation.solve_static(10);
+      ASSERT_TRUE(result.converged) << tilt << ": " << to_string(result.reason);
+      const std::size_t fore = simulation.link_names().size() - 1;
+      const Pose end = simulation.link_pose(fore);
+      const Vector3 lift(0, 0.05 * std::sin(tilt), 0.1 + 0.05 * std::cos(tilt));
+      // What the beam gives way is m g L / EA.
+      const double stretch = is_flexible ? 2 * 0.2 * 9.81 * 0.1 / 1e6 : 0;
+      EXPECT_LT((end.position - (lift - Vector3(0, 0, 0.1))).norm(), kTolerance + stretch) << tilt << is_flexible;
+      EXPECT_LT((end.orientation * Vector3::UnitY() + Vector3::UnitZ()).norm(), 4 * kTolerance) << tilt << is_flexible;
+      EXPECT_TRUE(hold_of(simulation).free.empty()) << tilt << is_flexible;
+      EXPECT_FALSE(diverges(simulation));
+    }
+}
+
+// Gravity has no moment about a vertical axis: it stays where it starts, and is named.
+TEST(Statics, NeutralJointsStayWhereTheyStart) {
+  for (const bool is_flexible : {false, true})
+    for (const double start : {0.0, 0.7}) {
+      SceneBuilder b = pan_lift_elbow(0, is_flexible);
+      b.scene.initial_joints.push_back({"pan", start, 0, {}});
+      b.scene.initial_joints.push_back({"lift", 2.5, 0, {}});
+      Simulation simulation(b.scene);
+      const StaticResult result = simulation.solve_static(10);
+      ASSERT_TRUE(result.converged) << to_string(result.reason);
+      EXPECT_NEAR(simulation.position(0), start, 1e-9) << is_flexible;
+      EXPECT_NEAR(std::abs(simulation.position(1)), kPi, kTolerance) << is_flexible;
+      EXPECT_EQ(hold_of(simulation).free, std::vector<std::size_t>{0}) << is_flexible;
+    }
+}
+
+// Both stops of a joint at one place hold it there, though it stands upright.
+TEST(Statics, JointsWithoutTravelAreHeld) {
+  SceneBuilder b = pendulum(2, {-9.81, 0, 0});
+  for (scene::JointDescription& joint : b.scene.joints) {
+    joint.kind = JointKind::Revolute;
+    joint.limits = scene::JointLimits{0, 0};
+  }
+  Simulation simulation(b.scene);
+  const StaticResult result = simulation.solve_static(10);
+  ASSERT_TRUE(result.converged) << to_string(result.reason);
+  EXPECT_NEAR(simulation.position(0), 0, 1e-3);
+}
+
+// By differences of the force, whose own error is the third derivative, h^2 of what weight does, and round-off over h.
+TEST(JointPotentials, CurvatureIsTheDerivativeOfTheForce) {
+  for (const bool is_flexible : {false, true}) {
+    SceneBuilder b = pan_lift_elbow(0.3, is_flexible);
+    b.scene.initial_joints.push_back({"pan", 0.4, 0, {}});
+    b.scene.initial_joints.push_back({"lift", 1.5, 0, {}});
+    b.scene.initial_joints.push_back({"elbow", -0.8, 0, {}});
+    const Simulation simulation(b.scene);
+    StepSettings settings;
+    settings.tolerance = 1e-12;
+    JointPotentials potentials(model_of(simulation), exact_equilibrium(0.01), settings);
+    StepResult result;
+    JointPotential at;
+    at.state = state_of(simulation);
+    ASSERT_TRUE(potentials.find_reference(at.state));
+    ASSERT_TRUE(potentials.rest(at.state, 1, result));
+    ASSERT_TRUE(potentials.look(at));
+    constexpr double kStep = 1e-4;
+    for (int i = 0; i < 3; ++i) {
+      JointPotential ahead, behind;
+      ASSERT_TRUE(potentials.move(at, kStep * Eigen::Vector3d::Unit(i), ahead.state, result));
+      ASSERT_TRUE(potentials.move(at, -kStep * Eigen::Vector3d::Unit(i), behind.state, result));
+      ASSERT_TRUE(potentials.look(ahead) && potentials.look(behind));
+      EXPECT_NEAR(potentials.ways(at.state, ahead.state)[i], kStep, 1e-12);
+      const Eigen::Vector3d difference = (ahead.force - behind.force) / (2 * kStep);
+      // Elements test by other functions than they vary by: their own error.
+      const double own = is_flexible ? 1e-4 : 0;
+      EXPECT_LT((difference - at.curvature.col(i)).norm(), potentials.reference() * (kStep * kStep + own + 1e-10));
+    }
+  }
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ def rest(path):
             return None, run.stderr
         with open(table, newline="", encoding="utf-8") as file:
             row = next(csv.DictReader(file))
-    return {name.split("/")[1]: float(value) for name, value in row.items()
+    return {name[len("joint/"):-len("/position")]: float(value) for name, value in row.items()
             if name.startswith("joint/") and name.endswith("/position")}, run.stderr
 
 

@@ -2,6 +2,7 @@
 """scripts/survey over a folder of scenes: `survey_test.py PROGRAM`."""
 
 import csv
+import math
 import os
 import subprocess
 import sys
@@ -95,6 +96,38 @@ class Survey(unittest.TestCase):
         run = subprocess.run([program, "/no/such/folder"], capture_output=True, text=True, check=False)
         self.assertEqual(run.returncode, 2)
         self.assertIn("is no directory", run.stderr)
+
+
+class Equilibria(unittest.TestCase):
+    def test_are_found_and_checked(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for name in ("good.urdf", "massless.urdf"):
+                with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
+                    file.write(SCENES[name])
+            tables = os.path.join(folder, "table")
+            run = subprocess.run([os.path.join(ROOT, "scripts", "survey"), folder, "--equilibria", "--program", PROGRAM,
+                                  "--output", tables], capture_output=True, text=True, check=False)
+            self.assertEqual(run.returncode, 0, run.stderr)
+            self.assertIn("2 files: 1 equilibria, 0 with moments left above 1e-06, 0 unchecked, 0 without, 1 refused",
+                          run.stdout)
+            with open(tables + ".csv", newline="", encoding="utf-8") as file:
+                rows = {row["file"]: row for row in csv.DictReader(file)}
+            self.assertLess(float(rows["good.urdf"]["moment"]), 1e-6)
+
+    def test_moments_are_those_of_a_pendulum(self):
+        sys.path.insert(0, os.path.join(ROOT, "scripts"))
+        from gravity_moments import left_over, moments
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "pendulum.urdf")
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(SCENES["good.urdf"])
+            # 1 kg, 1 m along x, about y: m g l cos(angle).
+            moment, largest, *_ = moments(path, {"hinge": 0.3})["hinge"]
+            self.assertAlmostEqual(moment, 9.81 * math.cos(0.3), places=12)
+            self.assertAlmostEqual(largest, 9.81, places=12)
+            self.assertAlmostEqual(left_over(path, {"hinge": math.pi / 2})[0], 0, places=12)
+            self.assertGreater(left_over(path, {"hinge": math.pi / 2 + 1e-3})[0], 9e-4)
+            self.assertEqual(left_over(path, {"hinge": 0.3}, ["hinge"])[0], 0)
 
 
 if __name__ == "__main__":

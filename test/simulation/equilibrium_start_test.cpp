@@ -149,5 +149,29 @@ TEST(EquilibriumStarts, TellWhatIsDoubtful) {
   EXPECT_TRUE(Simulation(b.scene).start_warnings().empty());
 }
 
+// Gravity has no moment about the vertical yaw axis.
+TEST(EquilibriumStarts, LeaveNeutralJointsWhereTheyAre) {
+  for (const bool is_flexible : {false, true}) {
+    SceneBuilder b;
+    b.scene.gravity = {0, 0, -9.81};
+    b.body("column", 0.7, {0, 0, 0.1}, 5e-4 * Matrix3::Identity());
+    if (is_flexible)
+      b.beam("upper", {{0.05, 0, 0.35}}, section(1e7, 4e6, 150, 200, 1, 1e-3, 5e-4), 3, 2);
+    else
+      b.body("upper", 0.7, {0.0136, 0, 0.23}, 2e-3 * Matrix3::Identity());
+    b.body("fore", 0.43, {0.15, 0, 0.03}, 3e-4 * Matrix3::Identity());
+    b.joint("yaw", JointKind::Continuous, "world", "column", {0, 0, 0}, {0, 0, 1});
+    b.joint("shoulder", JointKind::Continuous, "column", "upper", {0, 0, 0.14}, {0, 1, 0});
+    b.joint("elbow", JointKind::Continuous, "upper", "fore", {0.05, 0, 0.35}, {0, 1, 0});
+    b.scene.initial_joints.push_back({"shoulder", 2.5, 0, {}});
+    b.scene.starts_in_equilibrium = true;
+    Simulation simulation(b.scene);
+    EXPECT_NEAR(simulation.position(0), 0, 1e-9) << is_flexible;
+    ASSERT_EQ(simulation.start_warnings().size(), 1u);
+    EXPECT_NE(simulation.start_warnings()[0].text().find("nothing holds joint 'yaw'"), std::string::npos)
+        << simulation.start_warnings()[0].text();
+  }
+}
+
 }  // namespace
 }  // namespace flexarm
