@@ -17,7 +17,7 @@ constexpr double kSmallestRadius = 1e-14;
 /// Shares of the promised fall of the potential: below which a step is taken back, the radius shrinks, or grows.
 constexpr double kTaken = 1e-3, kPoor = 0.25, kGood = 0.7;
 constexpr double kShrinks = 0.25, kGrows = 2;
-constexpr int kMostSteps = 500;
+constexpr int kMostSteps = 200;
 /// A second look at the same radius ends a search by bisection.
 constexpr int kBisections = 100;
 /// Of the depth that a stop gives way, what a step into it may take; and how far a step out of it goes beyond it.
@@ -194,7 +194,14 @@ bool Descent::find(State& state, int load_steps, StepResult& result) {
       bool is_minimum = true;
       for (Eigen::Index i = 0; i < whole.curvature.size(); ++i)
         is_minimum = is_minimum && whole.curvature[i] >= -whole.round_off[i];
-      if (is_minimum) return true;
+      if (is_minimum) {
+        // What round-off hides in the worst case is often still to be seen.
+        bool is_sharp = true;
+        for (Eigen::Index i = 0; i < whole.curvature.size(); ++i)
+          is_sharp = is_sharp && (whole.curvature[i] <= whole.round_off[i] || whole.way(i) <= tolerance_);
+        if (!is_sharp) sharpen(state);
+        return true;
+      }
       if (!has_left_) left_ = at.state;
       has_left_ = true;
     }
