@@ -150,7 +150,10 @@ int linearise_scene(LineariseArguments arguments) {
   if (arguments.is_steady) arguments.request.about = LinearisedAbout::Steady;
   const LinearModel model = model_of(simulation, arguments);
   LinearResponses responses = responses_of(model, arguments.responses);
-  if (sensitivities) responses.derivatives = derivatives_of(*sensitivities, model, arguments.derivatives);
+  if (sensitivities) {
+    responses.derivatives = derivatives_of(*sensitivities, model, arguments.derivatives);
+    warn_of_events(*sensitivities);
+  }
   write_model(arguments.output, simulation.scene().name, model, responses);
   draw_picture(arguments.responses.picture, simulation.scene().name, model, responses);
   if (is_standard_output(arguments.output)) return kDone;

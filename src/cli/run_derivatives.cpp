@@ -8,6 +8,12 @@
 #include "cli/commands.h"
 
 namespace flexarm::cli {
+namespace {
+
+/// Of doubtful events.
+constexpr int kMostWarnings = 10;
+
+}  // namespace
 
 void add_derivatives(CLI::App& command, DerivativeOptions& options, CLI::Option* time) {
   command
@@ -55,6 +61,19 @@ RunDerivatives derivatives_of(const Sensitivities& sensitivities, const LinearMo
   run.initial_states.assign(sensitivities.directions().begin() + count, sensitivities.directions().end());
   run.transition = states.rightCols(states.cols() - count);
   return run;
+}
+
+void warn_of_events(const Sensitivities& sensitivities) {
+  int hidden = 0, shown = 0;
+  for (const RunEvent& event : sensitivities.events()) {
+    if (event.doubt.empty()) continue;
+    if (++shown > kMostWarnings)
+      ++hidden;
+    else
+      fmt::print(stderr, "flexarm: warning: sensitivities behind t = {:.9g} s are doubtful: '{}' {}: {}\n", event.time,
+                 event.joint, event.what, event.doubt);
+  }
+  if (hidden > 0) fmt::print(stderr, "flexarm: warning: and {} more such events\n", hidden);
 }
 
 void print_derivatives(const RunDerivatives& run, const LinearModel& model, int count) {

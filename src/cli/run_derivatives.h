@@ -30,6 +30,9 @@ std::unique_ptr<Sensitivities> sensitivities_of(Simulation& simulation, const Sc
 RunDerivatives derivatives_of(const Sensitivities& sensitivities, const LinearModel& model,
                               const DerivativeOptions& options);
 
+/// What stops and dry friction did on the way, as far as it makes derivatives doubtful: warnings.
+void warn_of_events(const Sensitivities& sensitivities);
+
 /// A row for each output and the first `count` states, a column for each parameter.
 void print_derivatives(const RunDerivatives& run, const LinearModel& model, int count);
 

@@ -84,6 +84,14 @@ void DryFrictionStep::begin() {
     if (std::abs(rate * step) <= kAtRest * scale_of(model_, coordinate)) rate = 0;
     carrier.law.begin((1 - gamma) * step * rate, rate);
   }
+  const EventModes* held = configuration_.held_modes();
+  for (std::size_t c = 0; held && c < carriers_.size(); ++c) {
+    StickSlip& law = carriers_[c].law;
+    if (held->friction[c] == StickSlip::HeldLow)
+      law.take_rest();
+    else
+      law.take_branch(held->friction[c]);
+  }
 }
 
 void DryFrictionStep::begin_evaluation() {
@@ -196,10 +204,12 @@ bool DryFrictionStep::tangent_holds() const {
 }
 
 void DryFrictionStep::stick_as(const DryFrictionStep& other) {
-  for (std::size_t c = 0; c < carriers_.size(); ++c) carriers_[c].law.take_branch(other.carriers_[c].law);
+  if (configuration_.held_modes()) return;
+  for (std::size_t c = 0; c < carriers_.size(); ++c) carriers_[c].law.take_branch(other.carriers_[c].law.branch());
 }
 
 bool DryFrictionStep::revise() {
+  if (configuration_.held_modes()) return false;
   bool revised = false;
   for (FrictionCarrier& carrier : carriers_) {
     if (model_.coordinates[carrier.coordinate].motion >= 0) continue;

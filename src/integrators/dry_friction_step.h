@@ -48,6 +48,8 @@ class DryFrictionStep {
   /// True where a coordinate comes to rest in the step, or begins to move.
   bool switches() const;
   void accept(State& state) const;
+  /// As they are after the last evaluation.
+  const std::vector<FrictionCarrier>& carriers() const { return carriers_; }
 
   /// By which efforts on coordinates are multiplied in their rows.
   double effort_weight() const { return interpolation_ ? interpolation_->effort_weight() : 1.0; }

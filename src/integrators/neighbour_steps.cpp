@@ -23,17 +23,13 @@ constexpr long kTogether = 8;
 /// Updates of a neighbour with factors of the very step.
 constexpr int kFewestUpdates = 2;
 
-/// A coordinate that is beyond its stop at the end of one step and not at that of the other; null: none.
-const Coordinate* touches_alone(const StepConfiguration& a, const StepConfiguration& b) {
-  const auto side = [](const StepConfiguration& configuration, std::size_t i) {
-    const Coordinate& coordinate = configuration.model().coordinates[i];
-    const double position = configuration.released()[coordinate.joint].displacement[coordinate.component % 3];
-    return (position > coordinate.limit->upper) - (position < coordinate.limit->lower);
-  };
-  const std::vector<Coordinate>& coordinates = a.model().coordinates;
-  for (std::size_t i = 0; i < coordinates.size(); ++i)
-    if (coordinates[i].limit && side(a, i) != side(b, i)) return &coordinates[i];
-  return nullptr;
+/// Pieces of a sub-step between its events; twice as many show what these are off by.
+constexpr int kPieces = 4;
+
+/// What has happened where a law goes from one stage to another.
+const char* story(const Corner& corner, const Crossing& crossing) {
+  if (!corner.is_friction) return crossing.to == EventMarch::kIn ? "touches its stop" : "leaves its stop";
+  return crossing.to == 0 ? "sticks" : crossing.from == 0 ? "slips" : "turns back";
 }
 
 /// Nobody has told the run anything since, and its positions are about the same origin.
@@ -79,6 +75,10 @@ NeighbourSteps::NeighbourSteps(const Model& model, const Scheme& scheme)
   if (scheme.interpolation == Interpolation::Iterative)
     refuse("with interpolation=\"iterative\" they depend on Newton's iterates");
   for (IncrementHistory* history : {&made_, &guess_}) history->push(0, system_.degrees_of_freedom().unknowns);
+  if (scheme.is_composition) return;  // some of its sub-steps run backwards
+  march_ = std::make_unique<EventMarch>(model, scheme);
+  if (!march_->has_corners()) march_.reset();
+  if (march_) system_.hold_modes(&march_->modes());
 }
 
 void NeighbourSteps::measure(Direction& direction, const State& state) {
@@ -159,13 +159,17 @@ void NeighbourSteps::begin_step() {
     neighbour.state.drives.begin();
     neighbour.state.transmitted.begin();
   });
+  ahead_.drives.begin();
+  ahead_.transmitted.begin();
 }
 
 void NeighbourSteps::end_step(double duration) {
-  for_each_neighbour([&](Neighbour& neighbour) {
-    neighbour.state.drives.end(duration);
-    neighbour.state.transmitted.end(duration);
-  });
+  const auto end = [&](State& state) {
+    state.drives.end(duration);
+    state.transmitted.end(duration);
+  };
+  for_each_neighbour([&](Neighbour& neighbour) { end(neighbour.state); });
+  if (is_ahead_) end(ahead_);
 }
 
 void NeighbourSteps::keep() {
@@ -181,17 +185,32 @@ void NeighbourSteps::take_back() {
   for_each_neighbour([&](Neighbour& neighbour) { neighbour.state = kept_[i++]; });
 }
 
+void NeighbourSteps::put_beside(Direction& direction, const State& state, double step) {
+  const double way = direction.has_free_difference ? distance(direction, state, step) : 0;
+  if (way > 0) direction.difference *= kDistance / way;
+  place(direction, state);
+}
+
 void NeighbourSteps::follow(const State& state, const StepSystem& solved) {
   if (!lost_.empty() || directions_.empty()) return;
   const double step = solved.configuration().step();
+  settle(state);
+  note_motors(state);
   for (Direction& direction : directions_) {
     if (followed_ % kTogether != 0 && obey_the_same(direction, state)) continue;
     measure(direction, state);
-    const double way = direction.has_free_difference ? distance(direction, state, step) : 0;
-    if (way > 0) direction.difference *= kDistance / way;
-    place(direction, state);
+    put_beside(direction, state, step);
   }
+  if (march_ && followed_ == 0) march_->restart(state);
   ++followed_;
+  if (march_ && march_->is_wanted(state, solved)) return go_over_events(state, step);
+  if (!march_) note_stops(state, solved);
+  follow_piece(state, solved);
+}
+
+void NeighbourSteps::follow_piece(const State& state, const StepSystem& solved) {
+  if (!lost_.empty()) return;
+  const double step = solved.configuration().step();
   solved.remember_increments(made_);
   const int count = static_cast<int>(directions_.size()) * 2;
   const bool are_worn = updates_ > kFewestUpdates * count + system_.tangent().cost_of_factors();
@@ -204,6 +223,107 @@ void NeighbourSteps::follow(const State& state, const StepSystem& solved) {
   });
 }
 
+// ---------------------------------------------------------------- events
+
+/// The derivative of a flow over events is not that of the steps, which go over them: neighbours go in pieces that end
+/// there, beside the run that does the same, by two numbers of pieces.
+void NeighbourSteps::go_over_events(const State& state, double step) {
+  std::size_t i = 0;
+  kept_.resize(2 * directions_.size());
+  for_each_neighbour([&](Neighbour& neighbour) { kept_[i++] = neighbour.state; });
+  stages_ = march_->stages();
+  corrections_.resize(directions_.size());
+  for (const bool is_fine : {false, true}) {
+    i = 0;
+    for_each_neighbour([&](Neighbour& neighbour) { neighbour.state = kept_[i++]; });
+    march_->set_stages(stages_);
+    notes_events_ = is_fine;
+    ahead_ = state;
+    const std::string why = march_->go(ahead_, step, is_fine ? 2 * kPieces : kPieces, *this);
+    if (!why.empty()) lose(fmt::format("before t = {:.9g} s {}", state.time + step, why));
+    if (!lost_.empty()) return;
+    i = 0;
+    for_each_neighbour([&](Neighbour& neighbour) {
+      (neighbour.system ? *neighbour.system : system_).remember_step(kept_[i++], step, neighbour.state);
+      neighbour.state.time = ahead_.time;
+    });
+    system_.remember_step(state, step, ahead_);
+    for (std::size_t k = 0; k < directions_.size(); ++k) {
+      measure(directions_[k], ahead_);
+      if (!is_fine) corrections_[k] = directions_[k].derivative;
+    }
+  }
+  for (std::size_t k = 0; k < directions_.size(); ++k)
+    for (std::size_t n = 0; n < corrections_[k].size(); ++n)
+      corrections_[k][n] = (directions_[k].derivative[n] - corrections_[k][n]) / 3;
+  factorised_step_ = 0;
+  is_ahead_ = true;
+}
+
+void NeighbourSteps::settle(const State& state) {
+  if (!is_ahead_ || !lost_.empty()) return;
+  is_ahead_ = false;
+  for (std::size_t k = 0; k < directions_.size(); ++k) {
+    measure(directions_[k], ahead_);
+    for (std::size_t n = 0; n < corrections_[k].size(); ++n) directions_[k].derivative[n] += corrections_[k][n];
+    put_beside(directions_[k], state, state.history.steps[0]);
+  }
+}
+
+void NeighbourSteps::cross(const Crossing& crossing) {
+  const bool has_slope = crossing.jumps && crossing.slope < 0;
+  if (has_slope) for_each_neighbour([&](Neighbour& neighbour) { jump(neighbour, crossing); });
+  const Corner& corner = march_->corner(crossing.corner);
+  if (corner.is_friction)
+    for_each_neighbour(
+        [&](Neighbour& neighbour) { neighbour.state.rests[corner.coordinate] = crossing.to == 0 ? 1 : 0; });
+  if (notes_events_)
+    events_.push_back(
+        {crossing.time, model_.coordinates[corner.coordinate].name, story(corner, crossing), crossing.doubt});
+}
+
+/// It comes to the event earlier or later than the run by dt, and has other rates in the meantime.
+void NeighbourSteps::jump(Neighbour& neighbour, const Crossing& crossing) {
+  const Model& model = neighbour.system ? neighbour.system->configuration().model() : model_;
+  const double guard = march_->guard(crossing.corner, crossing.from, model, neighbour.state);
+  const double way = -(guard - crossing.guard) / crossing.slope;
+  std::size_t i = 0;
+  for_each_number(neighbour.state, [&](const char*, double& number) {
+    if (const double change = way * (*crossing.jump)[i++]; change != 0) number += change;
+  });
+  for (NodeState& node : neighbour.state.nodes) node.orientation.normalize();
+  for (Released& released : neighbour.state.released) released.rotation.normalize();
+}
+
+/// Steps that run backwards have no march.
+void NeighbourSteps::note_stops(const State& state, const StepSystem& solved) {
+  for (const Coordinate& coordinate : model_.coordinates) {
+    if (!coordinate.limit) continue;
+    const auto side = [&](const std::vector<Released>& released) {
+      const double position = released[coordinate.joint].displacement[coordinate.component % 3];
+      return (position > coordinate.limit->upper) - (position < coordinate.limit->lower);
+    };
+    const int end = side(solved.configuration().released());
+    if (side(state.released) != end)
+      events_.push_back({state.time, coordinate.name, end == 0 ? "leaves its stop" : "touches its stop",
+                         "some sub-steps of the scheme run backwards: the derivative is that of the steps, which go "
+                         "over it"});
+  }
+}
+
+/// Friction within motors has no march: its events are those of the steps.
+void NeighbourSteps::note_motors(const State& state) {
+  motor_rests_.resize(state.actuators.size(), -1);
+  for (std::size_t i = 0; i < state.actuators.size(); ++i) {
+    const double rest = state.actuators[i].rest;
+    if (motor_rests_[i] >= 0 && rest != motor_rests_[i])
+      events_.push_back({state.time, model_.coordinates[model_.actuators[i].coordinate].name,
+                         rest > 0 ? "its motor sticks" : "its motor slips",
+                         "friction within a motor: the derivative is that of the steps, which go over it"});
+    motor_rests_[i] = rest;
+  }
+}
+
 bool NeighbourSteps::make_factors(const State& state, const StepSystem& solved) {
   system_.begin_beside(solved, state, made_);
   factorised_step_ = 0;
@@ -214,6 +334,7 @@ bool NeighbourSteps::make_factors(const State& state, const StepSystem& solved) 
 
 std::string NeighbourSteps::advance(Neighbour& neighbour, const State& state, const StepSystem& solved) {
   StepSystem& system = neighbour.system ? *neighbour.system : system_;
+  if (march_) system.hold_modes(&march_->modes());
   const double step = solved.configuration().step();
   guess_ = made_;
   guess_.steps[0] = step;
@@ -227,8 +348,6 @@ std::string NeighbourSteps::advance(Neighbour& neighbour, const State& state, co
     system.begin_beside(solved, neighbour.state, made_);
   }
   if (system.revise_friction()) return "friction sticks or slips within the difference of neighbours";
-  if (const Coordinate* stopped = touches_alone(solved.configuration(), system.configuration()))
-    return fmt::format("joint coordinate '{}' touches its stop within the difference of neighbours", stopped->name);
   system.accept(neighbour.state);
   return "";
 }

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "flexarm/model/run_event.h"
+#include "integrators/event_march.h"
 #include "integrators/step_follower.h"
 #include "integrators/step_system.h"
 
@@ -30,8 +32,9 @@ struct Direction {
 /// Takes neighbours along with a run. The derivative of a step's solution is what the equations of the neighbours come
 /// to beside it, whose own Newton's method it is, with the factors of the run's tangent. Every few sub-steps
 /// they are put anew to the state of the run, +- difference times the derivative: so they stay as close however long
-/// the run is. Allocates nothing once they have been put back for the first time.
-class NeighbourSteps : public StepFollower {
+/// the run is. Sub-steps with events of stops and dry friction they go in pieces, with the time of the event as it
+/// changes (EventMarch). Allocates nothing once they have been put back for the first time, but for the list of events.
+class NeighbourSteps : public StepFollower, private MarchFollower {
  public:
   /// Of a run of that model and scheme; the model must outlive this.
   /// @throws ModelError if the scheme has no derivatives.
@@ -44,6 +47,10 @@ class NeighbourSteps : public StepFollower {
   void lose(const std::string& why) {
     if (lost_.empty()) lost_ = why;
   }
+  /// In the order in which they came.
+  const std::vector<RunEvent>& events() const { return events_; }
+  /// To be called before neighbours are looked at: the run has come to `state`.
+  void settle(const State& state);
 
   /// Direction::derivative from what the neighbours and the run, in `state`, have come to.
   void measure(Direction& direction, const State& state);
@@ -63,6 +70,13 @@ class NeighbourSteps : public StepFollower {
   void follow(const State& state, const StepSystem& solved) override;
 
  private:
+  void follow_piece(const State& state, const StepSystem& solved) override;
+  void cross(const Crossing& crossing) override;
+  void go_over_events(const State& state, double step);
+  void jump(Neighbour& neighbour, const Crossing& crossing);
+  void note_motors(const State& state);
+  void note_stops(const State& state, const StepSystem& solved);
+  void put_beside(Direction& direction, const State& state, double step);
   void place_slaves(Neighbour& neighbour);
   bool make_factors(const State& state, const StepSystem& solved);
   /// Why it does not go along, or nothing.
@@ -87,6 +101,15 @@ class NeighbourSteps : public StepFollower {
   std::vector<NodePose> poses_;  // scratch
   std::vector<double> numbers_;  // scratch
   std::vector<State> kept_;      // at the beginning of a step that may be taken back
+  // ---- events
+  std::unique_ptr<EventMarch> march_;  // null where there are none
+  State ahead_;                        // the run once more, in pieces
+  bool is_ahead_ = false;              // neighbours are beside ahead_
+  bool notes_events_ = false;
+  std::vector<std::vector<double>> corrections_;  // per direction, of the derivative that shows in pieces
+  std::vector<int> stages_;                       // at the beginning of the sub-step
+  std::vector<double> motor_rests_;
+  std::vector<RunEvent> events_;
 };
 
 }  // namespace flexarm

@@ -143,6 +143,12 @@ void StepConfiguration::set_slaves() {
   set_increments(begin_, end_, increments_);
 }
 
+void StepConfiguration::set_end(const State& state) {
+  for (std::size_t i = 0; i < state.nodes.size(); ++i) end_[i] = node_pose(state.nodes[i]);
+  std::copy(state.released.begin(), state.released.end(), released_.begin());
+  set_increments(begin_, end_, increments_);
+}
+
 void StepConfiguration::set_inverse_tangents() {
   for (std::size_t i = 0; i < increments_.size(); ++i) inverse_tangents_[i] = cayley::inverse_tangent(increments_[i]);
 }
@@ -275,6 +281,7 @@ CoordinateStep StepConfiguration::coordinate_step(std::size_t index, double incr
   step.increment = increment;
   step.step = step_;
   step.at_end = !scheme_.is_incremental();
+  if (modes_) step.below = modes_->stops[index][0], step.above = modes_->stops[index][1];
   if (step.at_end) step.gamma = scheme_.gamma, step.begin_rate = keeps_begin_rates_ ? begin_rates_[j][k] : 0.0;
   return step;
 }

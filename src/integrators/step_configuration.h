@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "integrators/event_modes.h"
 #include "integrators/free_nodes.h"
 #include "integrators/step_motion.h"
 #include "joints/joint_forces.h"
@@ -40,6 +41,11 @@ class StepConfiguration {
   void set_slaves();
   /// inverse_tangents of all nodes.
   void set_inverse_tangents();
+  /// The trial end becomes the configuration of a state.
+  void set_end(const State& state);
+  /// Null: stops hold as their penetration says. Else it must outlive the steps.
+  void hold_modes(const EventModes* modes) { modes_ = modes; }
+  const EventModes* held_modes() const { return modes_; }
   /// Writes the increments of the step as the newest of the history.
   void remember_increments(IncrementHistory& history) const;
 
@@ -113,6 +119,7 @@ class StepConfiguration {
   std::vector<Matrix3> inverse_tangents_;
   int off_line_joint_ = -1;
   bool keeps_begin_rates_ = false;
+  const EventModes* modes_ = nullptr;
   std::vector<Vector6> begin_velocities_;  // per node, spatial
   std::vector<ReleasedVector> begin_rates_;
 };

@@ -83,6 +83,14 @@ void StepSystem::remember_increments(IncrementHistory& history) const {
   loops_.remember(history);
 }
 
+void StepSystem::remember_step(const State& begin, double step, State& end) {
+  if (end.history.holds_for(dof_.unknowns)) loops_.extrapolate(end.history);
+  configuration_.begin(begin, step);
+  configuration_.set_end(end);
+  end.history = begin.history;
+  remember_increments(end.history);
+}
+
 void StepSystem::begin_equilibrium(const State& state, double load_factor, double drag) {
   histories_.factor = load_factor;
   drag_.strength = drag;

@@ -51,6 +51,12 @@ class StepSystem {
   /// Starts the step that `other`, of a like model and the same scheme, has solved, from another state, which must
   /// outlive it: by the newest increments and multipliers of `guess`, and with the same coordinates sticking.
   void begin_beside(const StepSystem& other, const State& state, const IncrementHistory& guess);
+  /// From the next step on branches of stops and of dry friction are those; null: as each step finds them. Else it must
+  /// outlive the steps.
+  void hold_modes(const EventModes* modes) { configuration_.hold_modes(modes); }
+  const DryFrictionStep& friction() const { return friction_; }
+  /// As if one step of that length had led from one state to another one, whose newest multipliers it keeps.
+  void remember_step(const State& begin, double step, State& end);
   /// Writes the increments of the step, and the multipliers, as the newest of the history.
   void remember_increments(IncrementHistory& history) const;
   /// Starts the search for an equilibrium, of a scheme made by statics_of(), from `state`: gravity and loads scaled by

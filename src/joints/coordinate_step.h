@@ -3,6 +3,14 @@
 
 namespace flexarm {
 
+/// Which law of one side of a stop holds over a step. Runs have it by the penetration; derivatives of runs hold the law
+/// that the run has, also a little beside the place where it ends.
+enum class StopContact : char {
+  ByDepth,  ///< pushes where it is penetrated, and does not pull
+  Off,      ///< does nothing
+  On        ///< spring and damper act, whatever their sign
+};
+
 /// Change of a coordinate over a step, and how its rate is formed:
 /// rate = (increment / step - (1 - gamma) begin_rate) / gamma; gamma = 1 gives the mean rate of conserving schemes.
 struct CoordinateStep {
@@ -11,6 +19,7 @@ struct CoordinateStep {
   double step = 0;            ///< [s]; 0: statics (no damping, no friction)
   double gamma = 1, begin_rate = 0;
   bool at_end = false;  ///< efforts are those at the end of the step; else means over it, whose work is exact
+  StopContact below = StopContact::ByDepth, above = StopContact::ByDepth;
 };
 
 /// The rate that damping and smooth friction feel. Not in statics.

@@ -28,7 +28,12 @@ class StickSlip {
   bool revise(double increment, double effort, double capacity, double slack);
 
   Branch branch() const { return branch_; }
-  void take_branch(const StickSlip& other) { branch_ = other.branch_; }
+  void take_branch(Branch branch) { branch_ = branch; }
+  /// It comes to rest, however much that takes.
+  void take_rest() {
+    low_ = high_ = rest_increment_;
+    branch_ = HeldLow;
+  }
   /// Of the effort against the increment where the branch gives it, per capacity.
   int direction() const { return branch_ == SlipForth ? 1 : branch_ == SlipBack ? -1 : 0; }
   /// True where the branch gives the increment instead.

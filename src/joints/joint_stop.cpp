@@ -28,6 +28,8 @@ constexpr double kTiny = 1e-6;
 /// One side of a stop: how deep it is penetrated [m or rad], < 0 outside.
 struct Penetration {
   double depth, give;
+  bool is_held = false;  // the law of the inside goes on outside
+  bool is_felt() const { return depth > 0 || is_held; }
 };
 
 struct Hardened {
@@ -44,7 +46,7 @@ double room(double s) {
 }
 
 Hardened hardened(const Penetration& p) {
-  if (p.depth <= 0) return {};
+  if (!p.is_felt()) return {};
   const double s = share(p), a = room(s);
   return {p.depth / (a * a), (1 + 3 * s * s) / (a * a * a), 12 * s * (1 + s * s) / (a * a * a * a) / p.give};
 }
@@ -53,7 +55,7 @@ Hardened hardened(const Penetration& p) {
 Hardened quotient(const Penetration& begin, const Penetration& end) {
   const double change = end.depth - begin.depth;
   const Hardened x0 = hardened(begin), x1 = hardened(end);
-  if (begin.depth <= 0 || end.depth <= 0) {
+  if (!begin.is_felt() || !end.is_felt()) {
     const double value = (x1.value - x0.value) / change;
     return {value, (x1.slope - value) / change, 0};
   }
@@ -66,8 +68,9 @@ Hardened quotient(const Penetration& begin, const Penetration& end) {
 /// Against the penetration, and its derivative with respect to the one at the end.
 struct Push {
   double elastic = 0, elastic_slope = 0, viscous = 0, viscous_slope = 0;
+  bool may_pull = false;
 
-  bool pulls() const { return elastic + viscous < 0; }
+  bool pulls() const { return !may_pull && elastic + viscous < 0; }
   double value() const { return pulls() ? 0 : elastic + viscous; }
   double slope() const { return pulls() ? 0 : elastic_slope + viscous_slope; }
 };
@@ -79,7 +82,7 @@ Push mean_push(const StopPenalty& penalty, const Penetration& begin, const Penet
   const Hardened x1 = hardened(end), rise = quotient(begin, end);
   const double k = penalty.stiffness, mean = 0.5 * (x0 + x1.value), change = rise.value * (end.depth - begin.depth);
   return {k * rise.value * mean, k * (rise.slope * mean + 0.5 * rise.value * x1.slope), penalty.damping * change / step,
-          penalty.damping * x1.slope / step};
+          penalty.damping * x1.slope / step, end.is_held};
 }
 
 /// At an instant. The damper takes hold within the first step of a hit, since the rate jumps at touch.
@@ -89,18 +92,31 @@ Push push_at(const StopPenalty& penalty, double frequency, const Penetration& at
   const bool takes_hold = ramp * x.value < rate;
   const double felt = takes_hold ? ramp * x.value : rate, felt_slope = takes_hold ? ramp * x.slope : rate_slope;
   return {k * x.slope * x.value, k * (x.slope * x.slope + x.curvature * x.value), c * x.slope * felt,
-          c * (x.curvature * felt + x.slope * felt_slope)};
+          c * (x.curvature * felt + x.slope * felt_slope), at.is_held};
 }
 
 /// Of both sides, each with the sign of what it does to the coordinate.
 struct Side {
   double sign;
   Penetration begin, end;
+  bool is_off = false;
 };
 
 std::array<Side, 2> sides(const LimitStop& limit, double begin, double end) {
   return {Side{1, {limit.lower - begin, limit.give_below}, {limit.lower - end, limit.give_below}},
           Side{-1, {begin - limit.upper, limit.give_above}, {end - limit.upper, limit.give_above}}};
+}
+
+/// With the laws that the step holds.
+std::array<Side, 2> held_sides(const LimitStop& limit, const CoordinateStep& change) {
+  std::array<Side, 2> both = sides(limit, change.begin, change.end);
+  const auto hold = [](Side& side, StopContact contact) {
+    side.begin.is_held = side.end.is_held = contact == StopContact::On;
+    side.is_off = contact == StopContact::Off;
+  };
+  hold(both[0], change.below);
+  hold(both[1], change.above);
+  return both;
 }
 
 /// Of the oscillator that an undamped stop makes of its coordinate [rad/s].
@@ -129,7 +145,7 @@ PassiveEffort mean_effort(const StopPenalty& penalty, const Side& side, double s
 /// Against the penetration.
 PassiveEffort one_side(const LimitStop& limit, const StopPenalty& penalty, const Side& side,
                        const CoordinateStep& change) {
-  if (side.begin.depth <= 0 && side.end.depth <= 0) return {};
+  if (side.is_off || (!side.begin.is_felt() && !side.end.is_felt())) return {};
   if (change.step == 0) {
     const Push push = push_at(penalty, 0, side.end, 0, 0);
     return {push.elastic, push.elastic_slope, 0};
@@ -150,13 +166,23 @@ StopPenalty stop_penalty(const Coordinate& coordinate, double contact_time) {
 
 PassiveEffort stop_effort(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change) {
   PassiveEffort out;
-  for (const Side& side : sides(limit, change.begin, change.end)) {
+  for (const Side& side : held_sides(limit, change)) {
     const PassiveEffort push = one_side(limit, penalty, side, change);
     out.effort += side.sign * push.effort;
     out.slope -= push.slope;
     out.dissipated += push.dissipated;
   }
   return out;
+}
+
+StopReach stop_reach(const LimitStop& limit, const StopPenalty& penalty, bool is_above, double position, double rate,
+                     bool at_end) {
+  Side side = sides(limit, position, position)[is_above];
+  side.end.is_held = true;
+  const double inward = -side.sign * rate, x = hardened(side.end).value;
+  const double ramp = frequency(limit, penalty) / kRampAngle;
+  const double viscous = at_end ? penalty.end_damping * std::min(inward, ramp * x) : penalty.damping * inward;
+  return {side.end.depth, inward, penalty.stiffness * x + viscous};
 }
 
 double stop_energy(const LimitStop& limit, const StopPenalty& penalty, double position) {

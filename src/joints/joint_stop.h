@@ -23,6 +23,14 @@ StopPenalty stop_penalty(const Coordinate& coordinate, double contact_time);
 
 /// Of both stops.
 PassiveEffort stop_effort(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change);
+/// One side of a stop at an instant: the penetration, < 0 outside, its rate, and the push per dx/dp, < 0 where the stop
+/// would have to pull. Inside and outside by the law of the inside, which is smooth there.
+struct StopReach {
+  double depth, rate, push;
+};
+/// `rate` of the coordinate; `at_end`: as CoordinateStep has it.
+StopReach stop_reach(const LimitStop& limit, const StopPenalty& penalty, bool is_above, double position, double rate,
+                     bool at_end);
 /// Elastic energy at `position` [J].
 double stop_energy(const LimitStop& limit, const StopPenalty& penalty, double position);
 /// Slope of the effort against the rate, at rest at `position` [N s/m or N m s/rad].

@@ -102,8 +102,8 @@ constexpr const char* kClass =
     R"(Derivatives of the run of a simulation, which goes on with the same bits as without them.
 
 Columns of all arrays are the directions: parameters in the order asked for, then states at the start. They are NaN once
-`lost` says why there are none: where a stop is touched or friction sticks in one of two runs that are as close as can be,
-a slider leaves its line, a step fails. docs/notes/sensitivities.md)";
+`lost` says why there are none: where a slider leaves its line, a step fails. At stops and dry friction they have the time
+of the event as it changes; `events` tells where that is doubtful. docs/notes/sensitivities.md)";
 
 constexpr const char* kMake = R"(Sensitivities of the run that begins now, of a simulation that is at its start.
 
@@ -126,6 +126,16 @@ first; per unit of the parameter or the state. None if nothing is recorded. Rais
 }  // namespace
 
 void bind_sensitivities(py::module_& module, SimulationClass& simulation) {
+  py::class_<RunEvent> event(module, "RunEvent", "A stop that is touched or left, dry friction that sticks or slips.");
+  event.attr("__module__") = "flexarm";
+  event.def_readonly("time", &RunEvent::time, "[s]")
+      .def_readonly("joint", &RunEvent::joint, "name of the coordinate")
+      .def_readonly("what", &RunEvent::what, "has happened: 'touches its stop', 'sticks', ...")
+      .def_readonly("doubt", &RunEvent::doubt, "why derivatives behind it are not to be trusted; empty: they are")
+      .def("__repr__", [](const RunEvent& own) {
+        return fmt::format("<flexarm.RunEvent: t = {:.9g} s, '{}' {}{}>", own.time, own.joint, own.what,
+                           own.doubt.empty() ? "" : ", doubtful");
+      });
   py::class_<GuardedSensitivities> type(module, "Sensitivities", kClass);
   type.attr("__module__") = "flexarm";
   type.def_property_readonly(
@@ -135,6 +145,9 @@ void bind_sensitivities(py::module_& module, SimulationClass& simulation) {
       .def_property_readonly(
           "lost", [](GuardedSensitivities& own) { return own.look().lost(); },
           "Why there are no derivatives any more; empty: there are.")
+      .def_property_readonly(
+          "events", [](GuardedSensitivities& own) { return own.look().events(); },
+          "What stops and dry friction have done in the run so far: a list of RunEvent.")
       .def("step", &step_with_derivatives,
            "Simulation.step() with all derivatives. Returns a StepResult; raises StepError if it fails.")
       .def("run", &run_with_derivatives, kRun, py::arg("steps"), py::arg("efforts") = py::none(),

@@ -80,6 +80,7 @@ class Sensitivities::Implementation {
     time = simulation.time();
     count = state.steps;
     if (!steps.lost().empty()) return result;
+    steps.settle(state);
     take_samples(false);
     for (std::size_t i = 0; i < parameters.size(); ++i) parameters[i]->come_closer(steps, steps.directions()[i], state);
     return result;
@@ -147,6 +148,10 @@ const std::vector<std::string>& Sensitivities::directions() const {
 }
 const std::string& Sensitivities::lost() const {
   return implementation_->steps.lost();
+}
+
+const std::vector<RunEvent>& Sensitivities::events() const {
+  return implementation_->steps.events();
 }
 
 MatrixXd Sensitivities::of(const std::function<VectorXd(const Simulation&)>& observable) const {

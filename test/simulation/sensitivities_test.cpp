@@ -309,34 +309,5 @@ TEST(Sensitivities, FrequencyAfterThousandPeriods) {
   EXPECT_NEAR(sensitivities.positions()(0, 0), by_rate / (2 * rate), 1e-6 * 0.5 * steps * step / (2 * rate));
 }
 
-// Where run and neighbours touch it in the same step, the steps have a derivative: also after the rod has come back.
-TEST(Sensitivities, RunThatHitsAStop) {
-  const Scene scene{rod_with_stop(0.3, "0 0 -9.81", "scheme=\"em\" step=\"0.005\" tolerance=\"1e-10\"")};
-  expect_differences(scene, {{"speed", 0.7}}, 60, 1e-5);
-  Simulation simulation = scene.simulation();
-  double largest = 0;
-  for (int i = 0; i < 60; ++i) {
-    simulation.step();
-    largest = std::max(largest, simulation.position(0));
-  }
-  EXPECT_GT(largest, 0.3);
-  EXPECT_LT(simulation.position(0), 0.3);
-}
-
-// Friction takes as much speed in each step, and what is left in the last one, over which the rod goes at half of it.
-TEST(Sensitivities, RunThatFrictionBringsToRest) {
-  const double speed = 0.72, step = 0.01;
-  const Scene scene{braked_rod(speed)};
-  Simulation simulation = scene.simulation();
-  Sensitivities sensitivities(simulation, scene.request({"speed"}));
-  while (simulation.time() < speed / kBraking + 0.1) ASSERT_TRUE(sensitivities.step().converged);
-  ASSERT_EQ(sensitivities.lost(), "");
-  const double expected = (std::floor(speed / (kBraking * step)) + 0.5) * step;
-  // It turns by 2 atan(half the angle) in a step.
-  const double largest_half = 0.5 * speed * step;
-  EXPECT_NEAR(sensitivities.positions()(0, 0), expected, expected * largest_half * largest_half);
-  EXPECT_NEAR(sensitivities.velocities()(0, 0), 0, 1e-6);
-}
-
 }  // namespace
 }  // namespace flexarm::test

@@ -90,18 +90,4 @@ inline std::string rod_with_stop(double upper, const std::string& gravity, const
                      upper, gravity, integrator);
 }
 
-/// By which Coulomb's friction slows the rod down [rad/s^2].
-constexpr double kBraking = 2 / (2 * 0.8 * 0.8 + 0.02);
-/// A rod that friction brings to rest, in steps of 0.01 s of `em`.
-inline std::string braked_rod(double speed) {
-  return fmt::format(R"(<robot name="braked_rod"> <parameter name="speed" value="{:.17g}"/> <link name="world"/>
-    <joint name="hinge" type="continuous"> <parent link="world"/> <child link="rod"/> <axis xyz="0 0 1"/>
-      <dynamics friction="2"/> <friction law="coulomb"/> </joint>
-    <link name="rod"> <inertial> <origin xyz="0.8 0 0"/> <mass value="2"/>
-      <inertia ixx="0.01" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
-    <simulation> <initial joint="hinge" velocity="${{speed}}"/>
-      <integrator scheme="em" step="0.01" tolerance="1e-10"/> </simulation> </robot>)",
-                     speed);
-}
-
 }  // namespace flexarm::test

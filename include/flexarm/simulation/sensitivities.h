@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "flexarm/model/run_event.h"
 #include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/simulation.h"
 
@@ -28,8 +29,9 @@ struct SensitivityRequest {
 /// Derivatives of the run of a simulation, per unit of parameters and of states at the start. Directions are the
 /// columns of all matrices: parameters in the order asked for, then states.
 ///
-/// They are those of the steps as they are taken, to about 1e-6 of the largest; the simulation goes on with the same
-/// bits as without them. The scheme 'em_scaled' and iterative interpolation have none.
+/// They are those of the steps as they are taken, to about 1e-6 of the largest, but at stops and dry friction: there
+/// they are those of the motion, whose events lie within steps. The simulation goes on with the same bits as without
+/// them. The scheme 'em_scaled' and iterative interpolation have none.
 class Sensitivities {
  public:
   /// Of a simulation at its start, which must outlive this and stay where it is: copies go without.
@@ -48,9 +50,11 @@ class Sensitivities {
   /// Names: those of parameters, then states.
   const std::vector<std::string>& directions() const;
   /// Why there are no derivatives any more, matrices being NaN; empty: there are. A step has failed, or was done by
-  /// another scheme; a slider has left its line; a difference as small as can be is on both sides of an event: of a
-  /// stop that is touched, of friction that sticks.
+  /// another scheme; a slider has left its line; stops and friction change more often in a step than can be followed.
   const std::string& lost() const;
+  /// What the run has come over: stops that were touched or left, dry friction that sticks or slips. Derivatives have
+  /// the time of each event as it changes, but for those with a doubt: behind one of these they are not to be trusted.
+  const std::vector<RunEvent>& events() const;
 
   /// Of joint positions [rad or m] and Simulation::velocity() [rad/s or m/s]: coordinates x directions.
   Eigen::MatrixXd positions() const;

@@ -18,6 +18,7 @@ _HOMES = {
     "read_scene_text": "_flexarm",
     "tune": "_flexarm",
     "LinearModel": "_flexarm",
+    "RunEvent": "_flexarm",
     "Scene": "_flexarm",
     "Sensitivities": "_flexarm",
     "Simulation": "_flexarm",

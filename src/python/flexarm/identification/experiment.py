@@ -166,7 +166,7 @@ class Experiment:
             return None
         first = run.row(self._record)
         rows = run.run(self.steps, self._efforts, self._joints, record=self._record, every=self._sampling.every)
-        if run.lost:
+        if run.lost or any(event.doubt for event in run.events):
             return None
         rows = numpy.concatenate([first[None], rows])[:, self._order]
         return numpy.column_stack([self._sampling.look(rows[:, :, i]) for i in range(rows.shape[2])])

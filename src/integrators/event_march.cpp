@@ -1,0 +1,394 @@
+#include "integrators/event_march.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "joints/joint_kinematics.h"
+#include "joints/joint_stop.h"
+#include "model/state_numbers.h"
+
+namespace flexarm {
+namespace {
+
+/// Parts of a sub-step that are not gone any more: they change a state by less than round-off of its velocities.
+constexpr double kNothing = 1e-9;
+/// Events within one sub-step, after which they have no order that could be followed.
+constexpr int kMostEvents = 12;
+/// Evaluations for the place of an event.
+constexpr int kMostTries = 60;
+/// Share of the push of a stop that its damper has in what rests on it.
+constexpr double kQuiet = 1e-3;
+/// Part of a piece over which rates on both sides of an event are compared: their error is of its third order, their
+/// round-off over its square.
+constexpr double kGlance = 0.25;
+/// Events that are closer than this part of a sub-step may come in the other order.
+constexpr double kSameInstant = 1e-2;
+
+StepSettings settings_of_march() {
+  StepSettings settings;
+  settings.tolerance = 1e-9;
+  settings.max_iterations = 40;
+  settings.reuse_factorisation = false;
+  return settings;
+}
+
+}  // namespace
+
+EventMarch::EventMarch(const Model& model, const Scheme& scheme)
+    : model_(model),
+      at_end_(!scheme.is_incremental()),
+      contact_time_(scheme.contact_time),
+      settings_(settings_of_march()),
+      system_(model, scheme),
+      newton_(system_, settings_),
+      poses_(model.nodes.size()),
+      velocities_(model.nodes.size()) {
+  for (std::size_t i = 0; i < model.coordinates.size(); ++i) {
+    if (!model.coordinates[i].limit) continue;
+    const StopPenalty penalty = stop_penalty(model.coordinates[i], contact_time_);
+    for (int side = 0; side < 2; ++side)
+      corners_.push_back({false, static_cast<int>(i), side, at_end_ ? penalty.end_damping : penalty.damping});
+  }
+  const std::vector<FrictionCarrier>& carriers = system_.friction().carriers();
+  for (std::size_t c = 0; c < carriers.size(); ++c)
+    if (model.coordinates[carriers[c].coordinate].motion < 0)
+      corners_.push_back({true, carriers[c].coordinate, static_cast<int>(c), 0});
+  modes_.stops.assign(model.coordinates.size(), {StopContact::Off, StopContact::Off});
+  modes_.friction.assign(carriers.size(), StickSlip::HeldLow);
+  holds_.resize(carriers.size());
+  stages_.assign(corners_.size(), 0);
+  system_.hold_modes(&modes_);
+}
+
+// ---------------------------------------------------------------- stages
+
+void EventMarch::set_stage(std::size_t index, int stage) {
+  const Corner& corner = corners_[index];
+  stages_[index] = stage;
+  if (corner.is_friction)
+    modes_.friction[corner.place] = stage > 0   ? StickSlip::SlipForth
+                                    : stage < 0 ? StickSlip::SlipBack
+                                                : StickSlip::HeldLow;
+  else
+    modes_.stops[corner.coordinate][corner.place] = stage == kIn ? StopContact::On : StopContact::Off;
+}
+
+void EventMarch::set_stages(const std::vector<int>& stages) {
+  for (std::size_t i = 0; i < stages.size(); ++i) set_stage(i, stages[i]);
+}
+
+void EventMarch::restart(const State& state) {
+  for (std::size_t i = 0; i < corners_.size(); ++i) {
+    const Corner& corner = corners_[i];
+    if (corner.is_friction) {
+      const double now = state.rests[corner.coordinate] > 0 ? 0 : rate(model_, state, corner.coordinate);
+      set_stage(i, (now > 0) - (now < 0));
+    } else {
+      const StopReach now = reach(corner, model_, state);
+      set_stage(i, now.depth <= 0 ? kOut : now.push > 0 ? kIn : kReleased);
+    }
+  }
+}
+
+double EventMarch::rate(const Model& model, const State& state, int index) {
+  const Coordinate& coordinate = model.coordinates[index];
+  for (std::size_t i = 0; i < poses_.size(); ++i) {
+    poses_[i] = node_pose(state.nodes[i]);
+    velocities_[i] = spatial_velocity(state.nodes[i]);
+  }
+  return released_rates(model, coordinate.joint, poses_, state.released[coordinate.joint],
+                        velocities_)[coordinate.component];
+}
+
+StopReach EventMarch::reach(const Corner& corner, const Model& model, const State& state) {
+  const Coordinate& coordinate = model.coordinates[corner.coordinate];
+  return stop_reach(*coordinate.limit, stop_penalty(coordinate, contact_time_), corner.place == 1,
+                    state.released[coordinate.joint].displacement[coordinate.component % 3],
+                    rate(model, state, corner.coordinate), at_end_);
+}
+
+double EventMarch::guard(std::size_t index, int stage, const Model& model, const State& state) {
+  const Corner& corner = corners_[index];
+  if (corner.is_friction) return stage * rate(model, state, corner.coordinate);
+  const StopReach now = reach(corner, model, state);
+  if (stage == kOut) return -now.depth;
+  if (stage == kIn) return now.push;
+  return now.depth > 0 ? -now.push : 1.0;
+}
+
+double EventMarch::guard_now(std::size_t index, const State& state) {
+  const Corner& corner = corners_[index];
+  if (!corner.is_friction || stages_[index] != 0) return guard(index, stages_[index], model_, state);
+  const Hold& hold = holds_[corner.place];
+  // What a conserving scheme has is the mean of a piece, half of it before its end.
+  const double end = at_end_ || hold.pieces < 2 ? hold.reaction : 1.5 * hold.reaction - 0.5 * hold.before;
+  return hold.capacity - std::abs(end);
+}
+
+std::size_t EventMarch::violated(const State& state) {
+  for (std::size_t i = 0; i < corners_.size(); ++i)
+    if (guard_now(i, state) < 0) return i;
+  return kNone;
+}
+
+bool EventMarch::is_wanted(const State& state, const StepSystem& solved) {
+  const StepConfiguration& configuration = solved.configuration();
+  for (std::size_t i = 0; i < corners_.size(); ++i) {
+    const Corner& corner = corners_[i];
+    if (corner.is_friction) {
+      const StickSlip& law = solved.friction().carriers()[corner.place].law;
+      const bool goes_on = stages_[i] == 0 ? law.is_held() && law.held_increment() == 0
+                                           : law.branch() == modes_.friction[corner.place];
+      if (!goes_on) return true;
+      continue;
+    }
+    const Coordinate& coordinate = model_.coordinates[corner.coordinate];
+    const double end = configuration.released()[coordinate.joint].displacement[coordinate.component % 3];
+    const double begin = state.released[coordinate.joint].displacement[coordinate.component % 3];
+    const LimitStop& limit = *coordinate.limit;
+    const bool is_deep = corner.place == 0 ? std::min(begin, end) < limit.lower : std::max(begin, end) > limit.upper;
+    if (!is_deep && stages_[i] == kOut) continue;
+    if (stages_[i] != kIn) return true;
+    const StopPenalty penalty = stop_penalty(coordinate, contact_time_);
+    const double mean = (end - begin) / configuration.step();
+    const auto is_quiet = [&](double position, double speed) {
+      const StopReach now = stop_reach(limit, penalty, corner.place == 1, position, speed, at_end_);
+      return now.depth > 0 && std::abs(corner.damping * now.rate) <= kQuiet * now.push;
+    };
+    if (!is_quiet(begin, rate(model_, state, corner.coordinate)) || !is_quiet(end, mean)) return true;
+  }
+  return false;
+}
+
+// ---------------------------------------------------------------- pieces
+
+bool EventMarch::solve(const State& state, double step) {
+  StepResult result;
+  for (const Guess guess : {Guess::Extrapolated, Guess::Unchanged}) {
+    system_.invalidate();
+    system_.begin(state, step, guess);
+    if (newton_.solve(NewtonIteration::Updates::Limited, NewtonIteration::Factors::Fresh, result)) {
+      note_holds();
+      return true;
+    }
+  }
+  return false;
+}
+
+void EventMarch::note_holds() {
+  const std::vector<FrictionCarrier>& carriers = system_.friction().carriers();
+  for (std::size_t c = 0; c < carriers.size(); ++c) {
+    Hold& hold = holds_[c];
+    hold = {carriers[c].reaction, carriers[c].capacity, hold.reaction, hold.pieces + 1};
+  }
+}
+
+bool EventMarch::advance(State& state, double step) {
+  if (!solve(state, step)) return false;
+  system_.accept(state);
+  return true;
+}
+
+bool EventMarch::run(State& state, double length, int pieces, std::size_t& left, int& piece) {
+  left = kNone;
+  for (Hold& hold : holds_) hold.pieces = 0;
+  for (piece = 0; piece < pieces; ++piece) {
+    if (!advance(state, length / pieces)) return false;
+    left = violated(state);
+    if (left != kNone) return true;
+  }
+  return true;
+}
+
+bool EventMarch::guard_after(const State& start, double length, int pieces, std::size_t corner, double& guard) {
+  other_ = start;
+  for (Hold& hold : holds_) hold.pieces = 0;
+  for (int k = 0; k < pieces; ++k)
+    if (!advance(other_, length / pieces)) return false;
+  guard = guard_now(corner, other_);
+  return true;
+}
+
+/// By the secant method that keeps a bracket (Illinois).
+bool EventMarch::locate(const State& start, double begin, double end, int pieces, std::size_t corner, double& length) {
+  double at_begin, at_end;
+  const bool is_stuck = corners_[corner].is_friction && stages_[corner] == 0;
+  if (begin == 0 && !is_stuck) {
+    at_begin = guard(corner, stages_[corner], model_, start);
+  } else if (!guard_after(start, begin == 0 ? 1e-2 * end : begin, pieces, corner, at_begin)) {
+    return false;
+  }
+  length = begin;
+  if (at_begin <= 0) return true;
+  if (!guard_after(start, end, pieces, corner, at_end)) return false;
+  length = end;
+  if (at_end >= 0) return true;
+  const double whole = end;
+  int kept = 0;  // which end of the bracket stayed last
+  for (int tries = 0; tries < kMostTries; ++tries) {
+    const double last = length;
+    length = end - at_end * (end - begin) / (at_end - at_begin);
+    if (std::abs(length - last) <= kNothing * whole) return true;
+    double now;
+    if (!guard_after(start, length, pieces, corner, now)) return false;
+    if (now == 0) return true;
+    if (now < 0) {
+      end = length, at_end = now;
+      if (kept < 0) at_begin *= 0.5;
+      kept = -1;
+    } else {
+      begin = length, at_begin = now;
+      if (kept > 0) at_end *= 0.5;
+      kept = 1;
+    }
+  }
+  return true;
+}
+
+/// The first event within `left` [s] of `start`: its corner, or kNone, and after how long it comes.
+bool EventMarch::find_next(const State& start, double left, int pieces, std::size_t& corner, double& length) {
+  trial_ = start;
+  int piece = 0;
+  length = left;
+  if (!run(trial_, left, pieces, corner, piece)) return false;
+  if (corner == kNone) return true;
+  double begin = piece * left / pieces, end = (piece + 1) * left / pieces;
+  for (std::size_t tries = 0; tries <= corners_.size(); ++tries) {
+    if (!locate(start, begin, end, pieces, corner, length)) return false;
+    if (length <= kNothing * left) return true;
+    // Another one may come before.
+    double now;
+    if (!guard_after(start, length, pieces, corner, now)) return false;
+    std::size_t other = kNone;
+    for (std::size_t i = 0; i < corners_.size() && other == kNone; ++i)
+      if (i != corner && guard_now(i, other_) < 0) other = i;
+    if (other == kNone) return true;
+    corner = other, begin = 0, end = length;
+  }
+  return true;
+}
+
+bool EventMarch::march(State& state, double length, int pieces, MarchFollower& follower) {
+  for (Hold& hold : holds_) hold.pieces = 0;
+  for (int k = 0; k < pieces; ++k) {
+    if (!solve(state, length / pieces)) return false;
+    follower.follow_piece(state, system_);
+    system_.accept(state);
+    for (std::size_t i = 0; i < corners_.size(); ++i)
+      if (!corners_[i].is_friction && stages_[i] == kReleased && reach(corners_[i], model_, state).depth <= 0)
+        set_stage(i, kOut);
+  }
+  return true;
+}
+
+std::string EventMarch::go(State& state, double length, int pieces, MarchFollower& follower) {
+  const double begin = state.time;
+  double left = length;
+  last_jump_ = kNone;
+  for (int events = 0; left > kNothing * length; ++events) {
+    if (events > kMostEvents)
+      return "stops are touched or friction sticks more often in a step than can be followed";
+    std::size_t corner;
+    double way;
+    if (!find_next(state, left, pieces, corner, way)) return "its events are not found: a piece of the step fails";
+    if (way > kNothing * length) {
+      if (!march(state, way, pieces, follower)) return "its events are not found: a piece of the step fails";
+      left -= way;
+    }
+    if (corner == kNone) break;
+    if (!cross(state, corner, length, length / pieces, follower))
+      return "rates on both sides of an event are not found";
+  }
+  state.time = begin + length;
+  return "";
+}
+
+// ---------------------------------------------------------------- events
+
+int EventMarch::next_stage(std::size_t index, State& state, double step) {
+  const Corner& corner = corners_[index];
+  if (!corner.is_friction) return stages_[index] == kIn ? kReleased : kIn;
+  const auto slip = [&] { return holds_[corner.place].reaction > 0 ? 1 : -1; };
+  if (stages_[index] == 0) {
+    state.rests[corner.coordinate] = 0;
+    return slip();
+  }
+  // It sticks if it can, from rest.
+  set_stage(index, 0);
+  state.rests[corner.coordinate] = 1;
+  other_ = state;
+  const Hold& hold = holds_[corner.place];
+  if (!advance(other_, step) || std::abs(hold.reaction) <= hold.capacity) return 0;
+  return slip();
+}
+
+bool EventMarch::find_jump(const State& state, const EventModes& before, double step, Crossing& crossing) {
+  const EventModes after = modes_;
+  const auto differences = [&](double glance, std::vector<double>& out, double& slope) {
+    trial_ = other_ = state;
+    modes_ = before;
+    const bool is_done = advance(trial_, glance);
+    modes_ = after;
+    if (!is_done || !advance(other_, glance)) return false;
+    slope = (guard(crossing.corner, crossing.from, model_, trial_) - crossing.guard) / glance;
+    out.clear();
+    for_each_number(trial_, [&](const char*, double number) { out.push_back(number); });
+    std::size_t i = 0;
+    for_each_number(other_, [&](const char*, double number) {
+      out[i] = (out[i] - number) / glance;
+      ++i;
+    });
+    return true;
+  };
+  std::array<double, 3> slope{};
+  if (!differences(step, first_, slope[0]) || !differences(step / 2, second_, slope[1]) ||
+      !differences(step / 4, third_, slope[2]))
+    return false;
+  const auto limit = [](double one, double half, double quarter) {
+    return (4 * (2 * quarter - half) - (2 * half - one)) / 3;
+  };
+  jump_.resize(first_.size());
+  for (std::size_t i = 0; i < jump_.size(); ++i) {
+    // What is not integrated over time, as forces, jumps itself; neighbours find it anew.
+    const bool is_rate = std::abs(first_[i] - second_[i]) <= 0.5 * std::abs(first_[i]);
+    jump_[i] = is_rate && std::isfinite(first_[i]) ? limit(first_[i], second_[i], third_[i]) : 0.0;
+  }
+  crossing.slope = limit(slope[0], slope[1], slope[2]);
+  crossing.jump = &jump_;
+  return true;
+}
+
+bool EventMarch::cross(State& state, std::size_t index, double step, double piece, MarchFollower& follower) {
+  Crossing crossing;
+  crossing.time = state.time;
+  crossing.corner = index;
+  crossing.from = stages_[index];
+  crossing.jumps = corners_[index].is_friction ? crossing.from != 0 : crossing.from == kOut;
+  if (crossing.jumps) crossing.guard = guard(index, crossing.from, model_, state);
+  before_ = modes_;
+  crossing.to = next_stage(index, state, kGlance * piece);
+  set_stage(index, crossing.to);
+  if (crossing.jumps) {
+    if (!find_jump(state, before_, kGlance * piece, crossing)) return false;
+    // What a step that comes does to the rate must not undo it.
+    trial_ = state;
+    std::swap(modes_, before_);
+    const bool is_done = advance(trial_, step);
+    std::swap(modes_, before_);
+    const double mean = is_done ? (guard(index, crossing.from, model_, trial_) - crossing.guard) / step : 0;
+    if (crossing.slope >= 0 || std::abs(mean - crossing.slope) > std::abs(crossing.slope))
+      crossing.doubt = "it is grazed: it comes slower than what a step changes of its rate";
+    else if (last_jump_ != kNone && last_jump_ != index && state.time - last_jump_time_ <= kSameInstant * step)
+      crossing.doubt = fmt::format("it comes at the same instant as that of '{}', perhaps before it",
+                                   model_.coordinates[corners_[last_jump_].coordinate].name);
+    last_jump_ = index;
+    last_jump_time_ = state.time;
+  }
+  follower.cross(crossing);
+  return true;
+}
+
+}  // namespace flexarm
