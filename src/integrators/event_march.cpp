@@ -163,6 +163,16 @@ bool EventMarch::is_wanted(const State& state, const StepSystem& solved) {
   return false;
 }
 
+bool EventMarch::is_hit(const State& state, const std::vector<int>* stages) {
+  for (std::size_t i = 0; i < corners_.size(); ++i) {
+    if (corners_[i].is_friction || (stages && (*stages)[i] != kIn)) continue;
+    const StopReach now = reach(corners_[i], model_, state);
+    if (!stages && (now.depth <= 0 || now.push <= 0)) continue;
+    if (std::abs(corners_[i].damping * now.rate) > kQuiet * now.push) return true;
+  }
+  return false;
+}
+
 // ---------------------------------------------------------------- pieces
 
 bool EventMarch::solve(const State& state, double step) {

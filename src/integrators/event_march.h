@@ -55,6 +55,8 @@ class EventMarch {
   /// True where a step that was solved from `state` is to be gone in pieces: an event is in it, or a hit, in which what
   /// steps are off by would be divided by how long it lasts.
   bool is_wanted(const State& state, const StepSystem& solved);
+  /// True where something swings on a stop in that state, at these stages or, null, at those that the state shows.
+  bool is_hit(const State& state, const std::vector<int>* stages);
   /// Goes from `state` over `length` [s], by `pieces` equal ones between events. Why it does not come there, or nothing.
   std::string go(State& state, double length, int pieces, MarchFollower& follower);
   /// Of a like model's state: > 0 in the stage, 0 where it ends. Of friction that sticks there is none.

@@ -25,6 +25,8 @@ constexpr int kFewestUpdates = 2;
 
 /// Pieces of a sub-step between its events; twice as many show what these are off by.
 constexpr int kPieces = 4;
+/// After so many contact times what is still on its stop swings no more.
+constexpr double kLongestHit = 6;
 
 /// What has happened where a law goes from one stage to another.
 const char* story(const Corner& corner, const Crossing& crossing) {
@@ -79,6 +81,7 @@ NeighbourSteps::NeighbourSteps(const Model& model, const Scheme& scheme)
   march_ = std::make_unique<EventMarch>(model, scheme);
   if (!march_->has_corners()) march_.reset();
   if (march_) system_.hold_modes(&march_->modes());
+  longest_hit_ = kLongestHit * scheme.contact_time;
 }
 
 void NeighbourSteps::measure(Direction& direction, const State& state) {
@@ -159,8 +162,14 @@ void NeighbourSteps::begin_step() {
     neighbour.state.drives.begin();
     neighbour.state.transmitted.begin();
   });
-  ahead_.drives.begin();
-  ahead_.transmitted.begin();
+  for (Way& way : ways_) {
+    const auto begin = [](State& state) {
+      state.drives.begin();
+      state.transmitted.begin();
+    };
+    begin(way.ahead);
+    for (State& state : way.neighbours) begin(state);
+  }
 }
 
 void NeighbourSteps::end_step(double duration) {
@@ -169,7 +178,11 @@ void NeighbourSteps::end_step(double duration) {
     state.transmitted.end(duration);
   };
   for_each_neighbour([&](Neighbour& neighbour) { end(neighbour.state); });
-  if (is_ahead_) end(ahead_);
+  if (!is_ahead_) return;
+  for (Way& way : ways_) {
+    end(way.ahead);
+    for (State& state : way.neighbours) end(state);
+  }
 }
 
 void NeighbourSteps::keep() {
@@ -196,6 +209,8 @@ void NeighbourSteps::follow(const State& state, const StepSystem& solved) {
   const double step = solved.configuration().step();
   settle(state);
   note_motors(state);
+  if (is_in_hit_ && ways_[0].ahead.origin == state.origin) return go_over_events(state, step);
+  is_in_hit_ = false;
   for (Direction& direction : directions_) {
     if (followed_ % kTogether != 0 && obey_the_same(direction, state)) continue;
     measure(direction, state);
@@ -225,49 +240,95 @@ void NeighbourSteps::follow_piece(const State& state, const StepSystem& solved) 
 
 // ---------------------------------------------------------------- events
 
+void NeighbourSteps::start_ways(const State& state) {
+  hit_begin_ = state.time;
+  for (Way& way : ways_) {
+    way.ahead = state;
+    way.neighbours.resize(2 * directions_.size());
+    std::size_t i = 0;
+    for_each_neighbour([&](Neighbour& neighbour) { way.neighbours[i++] = neighbour.state; });
+    way.stages = march_->stages();
+  }
+}
+
+/// What the run has been told in the meantime, and what its sensors have measured.
+void NeighbourSteps::obey(Way& way, const State& state) {
+  const auto take = [&](State& own, const State& measured) {
+    own.commands = state.commands;
+    own.wrenches = state.wrenches;
+    own.samples = measured.samples;
+    for (std::size_t i = 0; i < own.actuators.size(); ++i)
+      static_cast<ServoCommand&>(own.actuators[i].servo) = state.actuators[i].servo;
+  };
+  take(way.ahead, state);
+  std::size_t i = 0;
+  for_each_neighbour([&](Neighbour& neighbour) { take(way.neighbours[i++], neighbour.state); });
+}
+
 /// The derivative of a flow over events is not that of the steps, which go over them: neighbours go in pieces that end
 /// there, beside the run that does the same, by two numbers of pieces.
 void NeighbourSteps::go_over_events(const State& state, double step) {
-  std::size_t i = 0;
-  kept_.resize(2 * directions_.size());
-  for_each_neighbour([&](Neighbour& neighbour) { kept_[i++] = neighbour.state; });
-  stages_ = march_->stages();
-  corrections_.resize(directions_.size());
+  if (is_in_hit_)
+    for (Way& way : ways_) obey(way, state);
+  else
+    start_ways(state);
   for (const bool is_fine : {false, true}) {
-    i = 0;
-    for_each_neighbour([&](Neighbour& neighbour) { neighbour.state = kept_[i++]; });
-    march_->set_stages(stages_);
     notes_events_ = is_fine;
-    ahead_ = state;
-    const std::string why = march_->go(ahead_, step, is_fine ? 2 * kPieces : kPieces, *this);
-    if (!why.empty()) lose(fmt::format("before t = {:.9g} s {}", state.time + step, why));
+    go_on(ways_[is_fine], step, is_fine ? 2 * kPieces : kPieces);
     if (!lost_.empty()) return;
-    i = 0;
-    for_each_neighbour([&](Neighbour& neighbour) {
-      (neighbour.system ? *neighbour.system : system_).remember_step(kept_[i++], step, neighbour.state);
-      neighbour.state.time = ahead_.time;
-    });
-    system_.remember_step(state, step, ahead_);
-    for (std::size_t k = 0; k < directions_.size(); ++k) {
-      measure(directions_[k], ahead_);
-      if (!is_fine) corrections_[k] = directions_[k].derivative;
-    }
   }
-  for (std::size_t k = 0; k < directions_.size(); ++k)
-    for (std::size_t n = 0; n < corrections_[k].size(); ++n)
-      corrections_[k][n] = (directions_[k].derivative[n] - corrections_[k][n]) / 3;
   factorised_step_ = 0;
   is_ahead_ = true;
+}
+
+void NeighbourSteps::go_on(Way& way, double step, int pieces) {
+  std::size_t i = 0;
+  for_each_neighbour([&](Neighbour& neighbour) { neighbour.state = way.neighbours[i++]; });
+  march_->set_stages(way.stages);
+  begin_ = way.ahead;
+  const std::string why = march_->go(way.ahead, step, pieces, *this);
+  if (!why.empty()) lose(fmt::format("before t = {:.9g} s {}", begin_.time + step, why));
+  if (!lost_.empty()) return;
+  i = 0;
+  for_each_neighbour([&](Neighbour& neighbour) {
+    neighbour.state.time = way.ahead.time;
+    (neighbour.system ? *neighbour.system : system_).remember_step(way.neighbours[i], step, neighbour.state);
+    way.neighbours[i++] = neighbour.state;
+  });
+  system_.remember_step(begin_, step, way.ahead);
+  way.stages = march_->stages();
+}
+
+/// Until run and ways are out of it: within it, derivatives would be those of another phase of it.
+bool NeighbourSteps::hit_goes_on(const State& state) {
+  if (state.time - hit_begin_ > longest_hit_) return false;
+  return march_->is_hit(state, nullptr) || march_->is_hit(ways_[0].ahead, &ways_[0].stages) ||
+         march_->is_hit(ways_[1].ahead, &ways_[1].stages);
 }
 
 void NeighbourSteps::settle(const State& state) {
   if (!is_ahead_ || !lost_.empty()) return;
   is_ahead_ = false;
-  for (std::size_t k = 0; k < directions_.size(); ++k) {
-    measure(directions_[k], ahead_);
-    for (std::size_t n = 0; n < corrections_[k].size(); ++n) directions_[k].derivative[n] += corrections_[k][n];
-    put_beside(directions_[k], state, state.history.steps[0]);
+  is_in_hit_ = hit_goes_on(state);
+  coarse_.resize(directions_.size());
+  for (const bool is_fine : {false, true}) {
+    std::size_t i = 0;
+    for_each_neighbour([&](Neighbour& neighbour) { neighbour.state = ways_[is_fine].neighbours[i++]; });
+    for (std::size_t k = 0; k < directions_.size(); ++k) {
+      std::vector<double>& derivative = directions_[k].derivative;
+      measure(directions_[k], ways_[is_fine].ahead);
+      if (is_fine)
+        for (std::size_t n = 0; n < derivative.size(); ++n)
+          derivative[n] = (4 * derivative[n] - coarse_[k][n]) / 3;
+      else
+        coarse_[k] = derivative;
+    }
   }
+  for (Direction& direction : directions_)
+    if (is_in_hit_)
+      place(direction, state);
+    else
+      put_beside(direction, state, state.history.steps[0]);
 }
 
 void NeighbourSteps::cross(const Crossing& crossing) {

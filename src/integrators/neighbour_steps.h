@@ -2,6 +2,7 @@
 /// Neighbours of a run: their steps are solved with factors of the run's own tangent, and tell how the run changes with
 /// its parameters and with its start. (docs/notes/sensitivities.md)
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -51,6 +52,8 @@ class NeighbourSteps : public StepFollower, private MarchFollower {
   const std::vector<RunEvent>& events() const { return events_; }
   /// To be called before neighbours are looked at: the run has come to `state`.
   void settle(const State& state);
+  /// True in a hit, which has a course of its own: models of neighbours must stay.
+  bool is_in_hit() const { return is_in_hit_; }
 
   /// Direction::derivative from what the neighbours and the run, in `state`, have come to.
   void measure(Direction& direction, const State& state);
@@ -72,7 +75,17 @@ class NeighbourSteps : public StepFollower, private MarchFollower {
  private:
   void follow_piece(const State& state, const StepSystem& solved) override;
   void cross(const Crossing& crossing) override;
+  /// The run once more over events and hits, by one number of pieces, and its neighbours in their order.
+  struct Way {
+    State ahead;
+    std::vector<State> neighbours;
+    std::vector<int> stages;
+  };
   void go_over_events(const State& state, double step);
+  void go_on(Way& way, double step, int pieces);
+  void start_ways(const State& state);
+  void obey(Way& way, const State& state);
+  bool hit_goes_on(const State& state);
   void jump(Neighbour& neighbour, const Crossing& crossing);
   void note_motors(const State& state);
   void note_stops(const State& state, const StepSystem& solved);
@@ -103,11 +116,14 @@ class NeighbourSteps : public StepFollower, private MarchFollower {
   std::vector<State> kept_;      // at the beginning of a step that may be taken back
   // ---- events
   std::unique_ptr<EventMarch> march_;  // null where there are none
-  State ahead_;                        // the run once more, in pieces
-  bool is_ahead_ = false;              // neighbours are beside ahead_
+  std::array<Way, 2> ways_;            // by pieces and by twice as many
+  State begin_;                        // of a sub-step of a way
+  bool is_ahead_ = false;              // neighbours are beside ways
+  bool is_in_hit_ = false;             // ways go on
+  double hit_begin_ = 0;               // [s]
+  double longest_hit_ = 0;             // [s]
   bool notes_events_ = false;
-  std::vector<std::vector<double>> corrections_;  // per direction, of the derivative that shows in pieces
-  std::vector<int> stages_;                       // at the beginning of the sub-step
+  std::vector<std::vector<double>> coarse_;  // derivatives by the first way, per direction
   std::vector<double> motor_rests_;
   std::vector<RunEvent> events_;
 };

@@ -82,7 +82,8 @@ class Sensitivities::Implementation {
     if (!steps.lost().empty()) return result;
     steps.settle(state);
     take_samples(false);
-    for (std::size_t i = 0; i < parameters.size(); ++i) parameters[i]->come_closer(steps, steps.directions()[i], state);
+    for (std::size_t i = 0; i < parameters.size() && !steps.is_in_hit(); ++i)
+      parameters[i]->come_closer(steps, steps.directions()[i], state);
     return result;
   }
 
