@@ -140,8 +140,8 @@ bool EventMarch::is_wanted(const State& state, const StepSystem& solved) {
     const Corner& corner = corners_[i];
     if (corner.is_friction) {
       const StickSlip& law = solved.friction().carriers()[corner.place].law;
-      const bool goes_on = stages_[i] == 0 ? law.is_held() && law.held_increment() == 0
-                                           : law.branch() == modes_.friction[corner.place];
+      const bool goes_on =
+          stages_[i] == 0 ? law.is_held() && law.held_increment() == 0 : law.branch() == modes_.friction[corner.place];
       if (!goes_on) return true;
       continue;
     }
@@ -299,8 +299,7 @@ std::string EventMarch::go(State& state, double length, int pieces, MarchFollowe
   double left = length;
   last_jump_ = kNone;
   for (int events = 0; left > kNothing * length; ++events) {
-    if (events > kMostEvents)
-      return "stops are touched or friction sticks more often in a step than can be followed";
+    if (events > kMostEvents) return "stops are touched or friction sticks more often in a step than can be followed";
     std::size_t corner;
     double way;
     if (!find_next(state, left, pieces, corner, way)) return "its events are not found: a piece of the step fails";
@@ -367,8 +366,29 @@ bool EventMarch::find_jump(const State& state, const EventModes& before, double 
     jump_[i] = is_rate && std::isfinite(first_[i]) ? limit(first_[i], second_[i], third_[i]) : 0.0;
   }
   crossing.slope = limit(slope[0], slope[1], slope[2]);
+  if (corners_[crossing.corner].is_friction && !find_rate_slope(state, before, step, crossing)) return false;
   crossing.jump = &jump_;
   return true;
+}
+
+/// Velocities of conserving schemes have a remainder that changes its sign in each step: steps of one parity have the
+/// same.
+bool EventMarch::find_rate_slope(const State& state, const EventModes& before, double step, Crossing& crossing) {
+  const EventModes after = modes_;
+  std::array<double, 2> slope{};
+  modes_ = before;
+  bool is_done = true;
+  for (int half = 0; half < 2 && is_done; ++half) {
+    const double part = half == 0 ? step : step / 2;
+    trial_ = state;
+    is_done = advance(trial_, part);
+    const double first = guard(crossing.corner, crossing.from, model_, trial_);
+    is_done = is_done && advance(trial_, part) && advance(trial_, part);
+    slope[half] = (guard(crossing.corner, crossing.from, model_, trial_) - first) / (2 * part);
+  }
+  modes_ = after;
+  crossing.slope = 2 * slope[1] - slope[0];
+  return is_done;
 }
 
 bool EventMarch::cross(State& state, std::size_t index, double step, double piece, MarchFollower& follower) {
@@ -394,6 +414,8 @@ bool EventMarch::cross(State& state, std::size_t index, double step, double piec
     else if (last_jump_ != kNone && last_jump_ != index && state.time - last_jump_time_ <= kSameInstant * step)
       crossing.doubt = fmt::format("it comes at the same instant as that of '{}', perhaps before it",
                                    model_.coordinates[corners_[last_jump_].coordinate].name);
+    if (crossing.doubt.empty() && at_end_)
+      crossing.doubt = "schemes of the Newmark family remember accelerations of before";
     last_jump_ = index;
     last_jump_time_ = state.time;
   }

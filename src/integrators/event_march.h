@@ -13,20 +13,20 @@ namespace flexarm {
 /// A law with a corner: one side of a stop, or dry friction. What it does has stages, in each of which it is smooth.
 struct Corner {
   bool is_friction = false;
-  int coordinate = -1;     ///< of the stop, or that carries the friction
-  int place = 0;           ///< of a stop 0 below, 1 above; of friction its carrier
-  double damping = 0;      ///< of a stop's damper
+  int coordinate = -1;  ///< of the stop, or that carries the friction
+  int place = 0;        ///< of a stop 0 below, 1 above; of friction its carrier
+  double damping = 0;   ///< of a stop's damper
 };
 
 /// Where equations change: s+ = s- + jump dt, with dt = -(guard - guard of the run) / slope of a neighbour.
 struct Crossing {
-  double time = 0;          ///< [s]
+  double time = 0;  ///< [s]
   std::size_t corner = 0;
-  int from = 0, to = 0;     ///< stages
-  bool jumps = false;       ///< else derivatives are continuous
-  double guard = 0, slope = 0;       ///< of the run: it vanishes at the event, and its rate
+  int from = 0, to = 0;                       ///< stages
+  bool jumps = false;                         ///< else derivatives are continuous
+  double guard = 0, slope = 0;                ///< of the run: it vanishes at the event, and its rate
   const std::vector<double>* jump = nullptr;  ///< of the rates of a state's numbers (model/state_numbers.h)
-  std::string doubt;        ///< why the derivative of its time is not to be trusted; empty: it is
+  std::string doubt;                          ///< why the derivative of its time is not to be trusted; empty: it is
 };
 
 /// Sees what the march does.
@@ -57,7 +57,8 @@ class EventMarch {
   bool is_wanted(const State& state, const StepSystem& solved);
   /// True where something swings on a stop in that state, at these stages or, null, at those that the state shows.
   bool is_hit(const State& state, const std::vector<int>* stages);
-  /// Goes from `state` over `length` [s], by `pieces` equal ones between events. Why it does not come there, or nothing.
+  /// Goes from `state` over `length` [s], by `pieces` equal ones between events. Why it does not come there, or
+  /// nothing.
   std::string go(State& state, double length, int pieces, MarchFollower& follower);
   /// Of a like model's state: > 0 in the stage, 0 where it ends. Of friction that sticks there is none.
   double guard(std::size_t corner, int stage, const Model& model, const State& state);
@@ -88,6 +89,7 @@ class EventMarch {
   bool march(State& state, double length, int pieces, MarchFollower& follower);
   int next_stage(std::size_t corner, State& state, double step);
   bool find_jump(const State& state, const EventModes& before, double step, Crossing& crossing);
+  bool find_rate_slope(const State& state, const EventModes& before, double step, Crossing& crossing);
   bool cross(State& state, std::size_t corner, double step, double piece, MarchFollower& follower);
 
   const Model& model_;

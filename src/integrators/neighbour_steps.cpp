@@ -318,8 +318,7 @@ void NeighbourSteps::settle(const State& state) {
       std::vector<double>& derivative = directions_[k].derivative;
       measure(directions_[k], ways_[is_fine].ahead);
       if (is_fine)
-        for (std::size_t n = 0; n < derivative.size(); ++n)
-          derivative[n] = (4 * derivative[n] - coarse_[k][n]) / 3;
+        for (std::size_t n = 0; n < derivative.size(); ++n) derivative[n] = (4 * derivative[n] - coarse_[k][n]) / 3;
       else
         coarse_[k] = derivative;
     }
