@@ -214,7 +214,9 @@ TEST(SensitivityEvents, StopsOfOtherSchemes) {
     EXPECT_EQ(found.lost, "") << scheme;
     const bool is_told = std::string(scheme) == "newmark";
     EXPECT_EQ(found.is_doubtful(), is_told) << scheme;
-    if (!is_told) EXPECT_NEAR(found.velocity, -hit(0.497239).restitution, 0.016) << scheme;
+    if (!is_told) {
+      EXPECT_NEAR(found.velocity, -hit(0.497239).restitution, 0.016) << scheme;
+    }
   }
 }
 
