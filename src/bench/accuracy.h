@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "bench/outside_references.h"
 #include "flexarm/scene/scene_description.h"
 
 namespace flexarm::bench {
@@ -14,8 +15,12 @@ namespace flexarm::bench {
 struct AccuracyCase {
   std::string group, name;  ///< "speed", "demo_arm"
   scene::SceneDescription scene;
-  std::string commands;  ///< file of efforts; empty: none
-  double until;          ///< [s]
+  std::string commands;                    ///< file of efforts; empty: none
+  double until;                            ///< [s]
+  bool is_cornered = false;                ///< jumps, kinks, stops, dry friction, play, limits
+  int intervals = 100;                     ///< between the times at which it is judged
+  std::optional<JudgedMotion> truth = {};  ///< of somebody else than flexarm; empty: finer runs judge
+  double truth_error = 0;                  ///< of that, relative
 };
 
 /// One scene run for one accuracy.
@@ -45,6 +50,7 @@ struct AccuracyOutcome {
 struct AccuracyMeasurement {
   std::string group, name;
   double until = 0;
+  bool is_cornered = false, is_outside = false;  ///< of the scene; its reference is not flexarm's
   std::vector<AccuracyOutcome> outcomes;
 };
 
@@ -52,6 +58,7 @@ struct AccuracyMeasurement {
 struct AccuracyScope {
   bool quick = false;                              ///< three scenes, one accuracy
   std::optional<std::pair<int, int>> random_arms;  ///< none but these: the first one, and how many
+  std::string only;                                ///< scenes with this in "GROUP: NAME"; empty: all
 };
 
 struct AccuracyReport {
@@ -63,18 +70,22 @@ struct AccuracyReport {
   std::vector<const AccuracyOutcome*> judged() const;
 };
 
-/// Scenes of the speed report, of config/ and random arms. `folder`: of configuration.
+/// Those of `references`, a folder that scripts/outside_references has written (empty: none), scenes of the speed
+/// report, of config/ and random arms. `folder`: of configuration.
 /// @throws std::runtime_error if one cannot be read.
-std::vector<AccuracyCase> accuracy_cases(const std::string& folder, const AccuracyScope& scope);
+std::vector<AccuracyCase> accuracy_cases(const std::string& folder, const std::string& references,
+                                         const AccuracyScope& scope);
 
-/// `folder`: of configuration.
-AccuracyReport measure_accuracy(const std::string& folder, const AccuracyScope& scope,
+AccuracyReport measure_accuracy(const std::vector<AccuracyCase>& cases, const AccuracyScope& scope,
                                 const std::function<void(double, const std::string&)>& progress);
+
+/// Two lines, of smooth scenes and of those with corners: share of runs that keep their word, worst ratio, median cost.
+std::string accuracy_summary(const AccuracyReport& report);
 
 /// The tables. `picture`: file name of the picture next to them; empty if there is none.
 std::string to_markdown(const AccuracyReport& report, const std::string& picture);
-/// Columns group, scene, until, asked, met, estimate, error, reference_error, seconds, all_seconds, iterations,
-/// fixed_seconds, fixed_iterations, fixed, shortcoming.
+/// Columns group, scene, corners, reference, until, asked, met, estimate, error, reference_error, seconds, all_seconds,
+/// iterations, fixed_seconds, fixed_iterations, fixed, shortcoming.
 std::string accuracy_to_csv(const AccuracyReport& report);
 
 }  // namespace flexarm::bench

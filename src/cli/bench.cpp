@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <map>
 
+#include <unistd.h>
+
 #include <fmt/format.h>
 
 #include "bench/accuracy.h"
@@ -25,6 +27,7 @@ namespace fs = std::filesystem;
 
 struct BenchArguments {
   std::string output = "docs/reports", scenes;
+  std::string only, references;  ///< of the accuracy report
   std::vector<std::string> problems;
   std::vector<std::string> cases, groups;  ///< of the hard ones
   std::vector<int> random_arms;            ///< of the accuracy report: the first one, and how many
@@ -145,16 +148,57 @@ int measure_speed(const BenchArguments& arguments) {
       bench::runs_to_csv);
 }
 
+/// Of the accuracy report: the named folder, or one that is written for this time alone.
+class References {
+ public:
+  References(const BenchArguments& arguments, const std::string& only) : folder_(arguments.references) {
+    if (!folder_.empty()) return;
+    folder_ = (fs::temp_directory_path() / fmt::format("flexarm_references_{}", getpid())).string();
+    is_own_ = true;
+    if (!run_script("outside_references", {"--output", folder_, "--only", only}))
+      throw std::runtime_error("the references were not made: see above; they need python3-scipy");
+  }
+  ~References() {
+    std::error_code error;
+    if (is_own_) fs::remove_all(folder_, error);
+  }
+  References(const References&) = delete;
+  References& operator=(const References&) = delete;
+
+  const std::string& folder() const { return folder_; }
+
+ private:
+  std::string folder_;
+  bool is_own_ = false;
+};
+
+/// That shows in short that references are read.
+constexpr const char* kQuickReference = "jump at sqrt(0.1)";
+
 int measure_accuracy(const BenchArguments& arguments) {
   const std::string scenes = scene_folder(arguments, "").string();
-  bench::AccuracyScope scope{arguments.quick, {}};
+  bench::AccuracyScope scope{arguments.quick, {}, arguments.only};
   if (!arguments.random_arms.empty()) {
     scope.random_arms = {arguments.random_arms[0], arguments.random_arms[1]};
     if (scope.random_arms->second < 1) throw std::runtime_error("--random-arms: expected at least one arm, got '0'");
   }
+  std::vector<bench::AccuracyCase> cases;
+  if (scope.random_arms) {
+    cases = bench::accuracy_cases(scenes, "", scope);
+  } else {
+    const References references(arguments, scope.quick ? kQuickReference : scope.only);
+    cases = bench::accuracy_cases(scenes, references.folder(), scope);
+  }
+  if (cases.empty())
+    throw std::runtime_error(fmt::format("--only: there is no scene with '{}' in its name", scope.only));
   return write_report(
       arguments, "accuracy", "accuracy",
-      [&](const auto& progress) { return bench::measure_accuracy(scenes, scope, progress); }, bench::accuracy_to_csv);
+      [&](const auto& progress) {
+        const bench::AccuracyReport report = bench::measure_accuracy(cases, scope, progress);
+        fmt::print("{}", bench::accuracy_summary(report));
+        return report;
+      },
+      bench::accuracy_to_csv);
 }
 
 bool is_in(const std::vector<std::string>& names, const std::string& name) {
@@ -242,6 +286,9 @@ void add_bench(CLI::App& app, int& status) {
   accuracy->add_option("--output", arguments->output, "folder for the report")->capture_default_str();
   accuracy->add_option("--scenes", arguments->scenes,
                        "folder of the scenes (default: config, which comes with flexarm)");
+  accuracy->add_option("--only", arguments->only, "only scenes with this in \"GROUP: NAME\"");
+  accuracy->add_option("--references", arguments->references,
+                       "folder that scripts/outside_references has written (default: one is made, used and removed)");
   accuracy
       ->add_option("--random-arms", arguments->random_arms,
                    "only these: number of the first one, and how many (the report has 0 to 19)")

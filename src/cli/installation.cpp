@@ -45,11 +45,16 @@ std::optional<std::string> own_script(const std::string& name) {
   return first_of({program_folder() / name, fs::path(FLEXARM_SOURCE_DIR) / "scripts" / name});
 }
 
-bool draw(const std::string& script, const std::string& data, const std::string& picture) {
+bool run_script(const std::string& script, const std::vector<std::string>& arguments) {
   const std::optional<std::string> path = own_script(script);
   if (!path) return false;
-  const std::string command = "/usr/bin/python3 " + quoted(*path) + " " + quoted(data) + " " + quoted(picture);
+  std::string command = "/usr/bin/python3 " + quoted(*path);
+  for (const std::string& argument : arguments) command += " " + quoted(argument);
   return std::system(command.c_str()) == 0;
+}
+
+bool draw(const std::string& script, const std::string& data, const std::string& picture) {
+  return run_script(script, {data, picture});
 }
 
 }  // namespace flexarm::cli

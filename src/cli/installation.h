@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace flexarm::cli {
 
@@ -14,6 +15,9 @@ std::optional<std::string> python_folder();
 
 /// A script that comes with flexarm; empty: it is not installed.
 std::optional<std::string> own_script(const std::string& name);
+
+/// Runs a script that comes with flexarm by Python; false if it is not there, or fails.
+bool run_script(const std::string& script, const std::vector<std::string>& arguments);
 
 /// Runs a script that draws `picture` of the file `data`; false if this machine cannot.
 bool draw(const std::string& script, const std::string& data, const std::string& picture);

@@ -1,0 +1,128 @@
+#include "bench/best_fixed.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "accuracy/processor_time.h"
+#include "accuracy/tuning.h"
+#include "flexarm/model/model_error.h"
+#include "flexarm/simulation/simulation.h"
+
+namespace flexarm::bench {
+namespace {
+
+constexpr double kTolerances[] = {1e-3, 1e-2, 1e-4, 1e-6};
+/// Steps in an interval; each is tried until one is good enough.
+constexpr int kSteps[] = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512};
+/// Where no run is good enough yet, one may take this long; and so much longer than the best one [s].
+constexpr double kPatience = 0.4, kMorePatience = 3;
+/// Of the steps of the shifted grid, the first one in an interval.
+constexpr double kShift = 0.37;
+
+/// With the meshes, the scheme and the tolerance, but the scene's own step: on it depend equations.
+Simulation made_with(const scene::SceneDescription& scene, RunSettings settings) {
+  settings.step = scene.integrator.step;
+  return Simulation(with_settings(scene, settings));
+}
+
+}  // namespace
+
+FixedRuns::FixedRuns(const scene::SceneDescription& scene, const JudgedTimes& times, const JudgedMotion& truth,
+                     double seconds, std::function<void()> go_on)
+    : scene_(scene), times_(times), truth_(truth), seconds_(seconds), go_on_(std::move(go_on)) {}
+
+FixedRuns::Run FixedRuns::made(const RunSettings& settings, double most_seconds) const {
+  Run run;
+  run.settings = settings;
+  run.error = std::numeric_limits<double>::infinity();
+  try {
+    Simulation simulation = made_with(scene_, settings);
+    simulation.set_step_size(settings.step);
+    const JudgedPoints judged(simulation);
+    JudgedMotion motion(judged.size());
+    motion.add(judged.positions(simulation));
+    const long count = std::lround(times_.interval / settings.step);
+    const double begin = processor_seconds();
+    for (int interval = 0; interval < times_.intervals; ++interval) {
+      for (long i = 0; i < count; ++i) {
+        const StepResult result = simulation.step();
+        run.iterations += result.iterations;
+        if (!result.converged) return run;
+      }
+      motion.add(judged.positions(simulation));
+      run.seconds = processor_seconds() - begin;
+      run.is_given_up = run.seconds > most_seconds;
+      if (run.is_given_up) return run;
+    }
+    run.error = motion_error(motion, truth_, truth_.largest_displacement());
+  } catch (const ModelError&) {
+    // A scheme that does not take the scene.
+  } catch (const std::invalid_argument&) {
+    // A step that does not divide the times of samples.
+  }
+  return run;
+}
+
+const FixedRuns::Run& FixedRuns::run(const RunSettings& settings, double most_seconds) {
+  auto found = runs_.find(settings);
+  // One that was given up may come to its end with more patience.
+  if (found == runs_.end() || (found->second.is_given_up && found->second.seconds < 0.5 * most_seconds)) {
+    go_on_();
+    found = runs_.insert_or_assign(settings, made(settings, most_seconds)).first;
+    seconds_ -= found->second.seconds;
+  }
+  return found->second;
+}
+
+const FixedRuns::Run* FixedRuns::best(double error) {
+  const Run* best = nullptr;
+  for (const std::string& scheme : schemes_alike(scene_.integrator, false))
+    for (const double tolerance : kTolerances) {
+      const Run* coarser = nullptr;  // that is good
+      for (const int steps : kSteps) {
+        if (seconds_ < 0) return best;
+        RunSettings settings = settings_of(scene_);
+        settings.scheme = scheme;
+        settings.step = times_.interval / steps;
+        settings.tolerance = tolerance;
+        const Run& next = run(settings, best ? kMorePatience * best->seconds : kPatience);
+        const bool good = next.error <= error;
+        const bool is_no_luck = coarser && good;
+        if (is_no_luck && (!best || coarser->seconds < best->seconds)) best = coarser;
+        if (is_no_luck || next.is_given_up) break;
+        coarser = good ? &next : nullptr;
+      }
+    }
+  return best;
+}
+
+std::optional<JudgedMotion> shifted_motion(const scene::SceneDescription& scene, const RunSettings& settings,
+                                           const JudgedTimes& times,
+                                           const std::function<StepCommand(const Simulation&)>& commands,
+                                           double most_seconds) {
+  Simulation simulation = made_with(scene, settings);
+  const double begin = processor_seconds(), step = 0.5 * settings.step;
+  const StepCommand command = commands ? commands(simulation) : StepCommand();
+  const JudgedPoints judged(simulation);
+  JudgedMotion motion(judged.size());
+  motion.add(judged.positions(simulation));
+  const long count = std::lround(times.interval / step);
+  try {
+    for (int interval = 0; interval < times.intervals; ++interval) {
+      for (long i = 0; i <= count; ++i) {
+        simulation.set_step_size(step * (i == 0 ? kShift : i == count ? 1 - kShift : 1.0));
+        if (command) command(simulation);
+        if (!simulation.step().converged) return std::nullopt;
+      }
+      if (processor_seconds() - begin > most_seconds) return std::nullopt;
+      motion.add(judged.positions(simulation));
+    }
+  } catch (const std::invalid_argument&) {  // servos are sampled at ends of steps
+    return std::nullopt;
+  }
+  return motion;
+}
+
+}  // namespace flexarm::bench
