@@ -22,7 +22,7 @@ from scenes import all_scenes
 
 INTERVALS = 100
 BAD = 1e-9  # of how far points come: a reference whose two runs differ by more is refused
-COLUMNS = ["file", "group", "name", "cornered", "until", "intervals", "disagreement", "events"]
+COLUMNS = ["file", "group", "name", "cornered", "until", "intervals", "disagreement", "events", "reference"]
 
 
 class BadReference(RuntimeError):
@@ -61,16 +61,19 @@ def file_name(scene):
 
 def write(folder, scene):
     """A line of the index."""
-    times, points, gap, events = reference(scene.text, scene.until)
     stem = file_name(scene)
     with open(os.path.join(folder, stem + ".urdf"), "w", encoding="utf-8") as file:
         file.write(scene.text)
+    line = [stem, scene.group, scene.name, int(scene.is_cornered), scene.until, INTERVALS]
+    if not scene.is_rigid:
+        return line + [0, 0, "finer"]
+    times, points, gap, events = reference(scene.text, scene.until)
     with open(os.path.join(folder, stem + ".csv"), "w", encoding="utf-8") as file:
         count = points.shape[1]
         file.write("time" + "".join(f",{axis}{i}" for i in range(count) for axis in "xyz") + "\n")
         for time, row in zip(times, points.reshape(len(times), -1)):
             file.write(",".join(f"{value:.17g}" for value in (time, *row)) + "\n")
-    return [stem, scene.group, scene.name, int(scene.is_cornered), scene.until, INTERVALS, f"{gap:.3g}", events]
+    return line + [f"{gap:.3g}", events, "outside"]
 
 
 def generate(folder, only, jobs):
@@ -82,7 +85,6 @@ def generate(folder, only, jobs):
         for scene, result in waiting:
             try:
                 rows.append(result.result())
-                print(*rows[-1][1:3], *rows[-1][6:], file=sys.stderr)
             except (Refused, RuntimeError, ValueError, ArithmeticError) as error:
                 failures += 1
                 print(f"outside_references: {scene.group}: {scene.name}: {error}", file=sys.stderr)

@@ -7,7 +7,7 @@ import math
 import random
 from collections import namedtuple
 
-Scene = namedtuple("Scene", "group name is_cornered until text")
+Scene = namedtuple("Scene", "group name is_cornered until text is_rigid")
 
 
 def link(name, mass=1.0, centre=(0, 0), inertia=0.05):
@@ -302,9 +302,30 @@ def smooth(rng):
         '<spring from="world" from_at="0.4 0.2 0" to="a" to_at="0 -0.5 0" stiffness="30" rest_length="0.6"/>\n'))
 
 
+def flexible(rng):
+    """Beams have no reference here: finer runs judge them."""
+    r = rng.uniform
+
+    def arm(simulation, inner="", kind="continuous", rest="", gravity=9.81):
+        beam = ('<link name="a"><beam elements="4" order="2"><centerline><line to="1 0 0"/></centerline><circle radius="0.01"/>'
+                '<material young="70e9" poisson="0.33" density="2700"/><damping stiffness_proportional="1e-3"/></beam></link>\n')
+        return scene(beam + joint("h", kind, "world", "a", inner=inner) + rest, simulation + probe("a", "1 0 0"), gravity)
+
+    yield "jump", 1.0, arm(effort("h", jump(rng, 4, 1)), gravity=0.0)
+    yield "stop", 0.8, arm("", limit(-r(0.4, 0.6), 1.0), "revolute")
+    yield "Coulomb", 1.0, arm(effort("h", f"3*sin({r(8, 10)!r}*t)"), coulomb(0.8), gravity=0.0)
+    yield "play", 0.5, arm(effort("h", f"2*sin({r(8, 10)!r}*t)"), gravity=0.0, rest=(
+        '<drive joint="h" gear="60" rotor_inertia="3e-5" stiffness="2000" damping="1" backlash="0.03"/>\n'))
+    yield "servo that is cut", 1.0, arm("", gravity=0.0, rest=(
+        f'<servo joint="h" mode="position" kp="40" kd="5" set_point="{r(0.9, 1.2)!r}" effort_limit="3"/>\n'))
+    yield "clamped, jump", 0.3, arm('<load link="a" at="1 0 0" force="0 20 0" history="t &lt; 0.07071 ? 1 : -1"/>\n',
+                                    "", "fixed", gravity=0.0)
+
+
 def all_scenes():
     found = []
-    for seed, group in enumerate((forces, stops, frictions, drives, servos, loops, motions, couplings, smooth)):
+    groups = (forces, stops, frictions, drives, servos, loops, motions, couplings, smooth, flexible)
+    for seed, group in enumerate(groups):
         for name, until, text in group(random.Random(20261126 + seed)):
-            found.append(Scene(group.__name__, name, group is not smooth, until, text))
+            found.append(Scene(group.__name__, name, group is not smooth, until, text, group is not flexible))
     return found

@@ -29,9 +29,14 @@ Simulation made_with(const scene::SceneDescription& scene, RunSettings settings)
 
 }  // namespace
 
-FixedRuns::FixedRuns(const scene::SceneDescription& scene, const JudgedTimes& times, const JudgedMotion& truth,
-                     double seconds, std::function<void()> go_on)
-    : scene_(scene), times_(times), truth_(truth), seconds_(seconds), go_on_(std::move(go_on)) {}
+FixedRuns::FixedRuns(const scene::SceneDescription& scene, const JudgedTimes& times, Commands commands,
+                     JudgedMotion truth, double seconds, std::function<void()> go_on)
+    : scene_(scene),
+      times_(times),
+      commands_(std::move(commands)),
+      truth_(std::move(truth)),
+      seconds_(seconds),
+      go_on_(std::move(go_on)) {}
 
 FixedRuns::Run FixedRuns::made(const RunSettings& settings, double most_seconds) const {
   Run run;
@@ -40,6 +45,7 @@ FixedRuns::Run FixedRuns::made(const RunSettings& settings, double most_seconds)
   try {
     Simulation simulation = made_with(scene_, settings);
     simulation.set_step_size(settings.step);
+    const StepCommand command = commands_ ? commands_(simulation) : StepCommand();
     const JudgedPoints judged(simulation);
     JudgedMotion motion(judged.size());
     motion.add(judged.positions(simulation));
@@ -47,6 +53,7 @@ FixedRuns::Run FixedRuns::made(const RunSettings& settings, double most_seconds)
     const double begin = processor_seconds();
     for (int interval = 0; interval < times_.intervals; ++interval) {
       for (long i = 0; i < count; ++i) {
+        if (command) command(simulation);
         const StepResult result = simulation.step();
         run.iterations += result.iterations;
         if (!result.converged) return run;
@@ -99,11 +106,9 @@ const FixedRuns::Run* FixedRuns::best(double error) {
 }
 
 std::optional<JudgedMotion> shifted_motion(const scene::SceneDescription& scene, const RunSettings& settings,
-                                           const JudgedTimes& times,
-                                           const std::function<StepCommand(const Simulation&)>& commands,
-                                           double most_seconds) {
+                                           const JudgedTimes& times, const Commands& commands, double most_seconds) {
   Simulation simulation = made_with(scene, settings);
-  const double begin = processor_seconds(), step = 0.5 * settings.step;
+  const double begin = processor_seconds(), step = settings.step;
   const StepCommand command = commands ? commands(simulation) : StepCommand();
   const JudgedPoints judged(simulation);
   JudgedMotion motion(judged.size());

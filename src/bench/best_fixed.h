@@ -10,6 +10,9 @@
 
 namespace flexarm::bench {
 
+/// What commands a simulation before each step; empty: nothing does.
+using Commands = std::function<StepCommand(const Simulation&)>;
+
 /// Runs of one scene with fixed steps, each made once, judged by its true motion. All solve the scene's own equations:
 /// what depends on its step, as the stiffness of stops, is that of the scene.
 class FixedRuns {
@@ -23,8 +26,8 @@ class FixedRuns {
   };
 
   /// `seconds`: of the processor, for all runs of the search. `go_on()` is called before each.
-  FixedRuns(const scene::SceneDescription& scene, const JudgedTimes& times, const JudgedMotion& truth, double seconds,
-            std::function<void()> go_on);
+  FixedRuns(const scene::SceneDescription& scene, const JudgedTimes& times, Commands commands, JudgedMotion truth,
+            double seconds, std::function<void()> go_on);
 
   /// Of the schemes that conserve what the scene's does, with steps of 1, 1/2, 1/3, ... of the intervals and four
   /// tolerances of Newton's method, the run that takes least time of those whose error is at most `error`, and that of
@@ -40,18 +43,17 @@ class FixedRuns {
 
   const scene::SceneDescription& scene_;
   JudgedTimes times_;
-  const JudgedMotion& truth_;
+  Commands commands_;
+  JudgedMotion truth_;
   double seconds_;
   std::function<void()> go_on_;
   std::map<RunSettings, Run> runs_;
 };
 
-/// The motion with these settings, with half their step and a grid of steps that no run has which divides an interval
-/// equally: in each the first step is 0.37, the last 0.63 of the others. Empty: servos are sampled, it takes more than
-/// `most_seconds` of the processor, or a step fails.
+/// The motion with these settings on a grid of steps that no run has which divides an interval equally: in each the
+/// first step is 0.37, the last 0.63 of the others. Empty: servos are sampled, it takes more than `most_seconds` of the
+/// processor, or a step fails.
 std::optional<JudgedMotion> shifted_motion(const scene::SceneDescription& scene, const RunSettings& settings,
-                                           const JudgedTimes& times,
-                                           const std::function<StepCommand(const Simulation&)>& commands,
-                                           double most_seconds);
+                                           const JudgedTimes& times, const Commands& commands, double most_seconds);
 
 }  // namespace flexarm::bench

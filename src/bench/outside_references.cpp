@@ -122,6 +122,10 @@ OutsideReference read_reference(const Table& index, std::size_t row) {
   out.until = number("until");
   out.intervals = static_cast<int>(number("intervals"));
   out.disagreement = number("disagreement");
+  const std::string& kind = index.rows[row][column("reference")];
+  if (kind != "outside" && kind != "finer")
+    refuse(index.file, row + 2, fmt::format("reference: expected 'outside' or 'finer', got '{}'", kind));
+  out.is_there = kind == "outside";
   if (!(out.until > 0) || out.intervals < 1 || out.intervals > 1000000)
     refuse(index.file, row + 2, "expected an end time > 0 and an interval at least");
   if (!(out.disagreement >= 0 && out.disagreement <= kLargestDisagreement))
@@ -145,8 +149,10 @@ std::vector<OutsideReference> read_outside_references(const std::string& folder,
     scene::ReadResult read = scene::read_scene_file(stem + ".urdf");
     if (!read.scene) throw std::runtime_error(scene::to_text(read.diagnostics));
     reference.scene = std::move(*read.scene);
-    reference.motion = read_motion(stem + ".csv", reference.until, reference.intervals);
-    require_start(reference, stem + ".csv");
+    if (reference.is_there) {
+      reference.motion = read_motion(stem + ".csv", reference.until, reference.intervals);
+      require_start(reference, stem + ".csv");
+    }
     found.push_back(std::move(reference));
   }
   return found;

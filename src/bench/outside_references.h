@@ -16,6 +16,7 @@ struct OutsideReference {
   int intervals = 0;        ///< of equal length, between the times of `motion`
   double disagreement = 0;  ///< of two runs of the reference, relative to how far its points come
   scene::SceneDescription scene;
+  bool is_there = true;  ///< else finer runs have to judge, and there is no motion
   JudgedMotion motion;
 };
 
