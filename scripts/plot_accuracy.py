@@ -32,9 +32,12 @@ def main(data, picture):
     figure, (errors, costs) = pyplot.subplots(1, 2, figsize=(11, 4.8))
     for group in sorted({row["group"] for row in rows}):
         chosen = [row for row in rows if row["group"] == group]
-        errors.plot(spread(chosen), [row["error"] for row in chosen], "o", markersize=4, alpha=0.7, label=group)
+        # Of a group that has scenes of both kinds, most decide on the mark.
+        cornered = sum(row["corners"] == "cornered" for row in chosen) > len(chosen) / 2
+        mark = "^" if cornered else "o"
+        errors.plot(spread(chosen), [row["error"] for row in chosen], mark, markersize=4, alpha=0.7, label=group)
         priced = [row for row in chosen if row["fixed_seconds"] and float(row["fixed_seconds"]) > 0]
-        costs.plot(spread(priced), [float(row["seconds"]) / float(row["fixed_seconds"]) for row in priced], "o",
+        costs.plot(spread(priced), [float(row["seconds"]) / float(row["fixed_seconds"]) for row in priced], mark,
                    markersize=4, alpha=0.7, label=group)
     if rows:
         above = sum(row["error"] > row["asked"] for row in rows)
@@ -45,7 +48,8 @@ def main(data, picture):
             axes.set_xlim(*ends)
             axes.set_xscale("log")
             axes.set_yscale("log")
-        errors.set_title(f"above what was asked for: {above} of {len(rows)}, {100 * above / len(rows):.1f} %")
+        errors.set_title(f"above what was asked for: {above} of {len(rows)}, {100 * above / len(rows):.1f} %"
+                         " (triangles: with corners)")
     costs.set_yticks([0.5, 1, 1.5, 2, 3, 5])
     costs.yaxis.set_major_formatter("{x:g}")
     costs.minorticks_off()

@@ -69,6 +69,7 @@ Summary summary_of(const AccuracyReport& report, bool is_cornered) {
 }
 
 std::string target_line(const std::string& name, const Summary& all) {
+  if (all.judged == 0) return fmt::format("{}: none of {} runs is judged.\n", name, all.runs);
   const bool is_accurate = all.above <= kShareAbove * all.judged && all.worst <= kLargestRatio;
   const bool is_cheap = !(median(all.costs) > kLargestCost);
   return fmt::format(
@@ -76,9 +77,9 @@ std::string target_line(const std::string& name, const Summary& all) {
       "(target: 3): {}; "
       "cost over the best fixed choice {} in the median of {} (target: {:g}): {}; {} of {} runs say that they do not "
       "keep it.\n",
-      name, all.judged > 0 ? 100 - 100.0 * all.above / all.judged : 0.0, all.judged, all.worst,
-      is_accurate ? "met" : "missed", number(median(all.costs), "{:.2f}"), all.costs.size(), kLargestCost,
-      is_cheap ? "met" : "missed", all.runs - all.met, all.runs);
+      name, 100 - 100.0 * all.above / all.judged, all.judged, all.worst, is_accurate ? "met" : "missed",
+      number(median(all.costs), "{:.2f}"), all.costs.size(), kLargestCost, is_cheap ? "met" : "missed",
+      all.runs - all.met, all.runs);
 }
 
 std::string summary_table(const AccuracyReport& report) {

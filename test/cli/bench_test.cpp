@@ -111,12 +111,30 @@ TEST(Bench, AccuracyReport) {
   const Outcome outcome = shell("flexarm bench accuracy --quick --output '" + folder + "'");
   EXPECT_EQ(outcome.status, 0) << outcome.errors;
   const std::string report = read_file(folder + "/accuracy.md");
-  for (const char* line :
-       {"\n| all | 3 | 3 | 3 | 0 |", "\n| speed: six_joint_arm | 0.01 |", "\n| random: arm 1, 2 joints |"})
+  for (const char* line : {"\n| **smooth** | 3 | 3 | 3 | 0 |", "\n| **cornered** | 1 | 1 | 1 |",
+                           "\nCornered: true error", "\n| forces: jump at sqrt(0.1) | cornered | 0.01 |",
+                           "\n| speed: six_joint_arm | smooth | 0.01 |", "\n| random: arm 1, 2 joints |"})
     EXPECT_NE(report.find(line), std::string::npos) << line;
+  // The two lines of the summary, and the report's name.
+  EXPECT_EQ(outcome.output.find("Cornered: true error at most what was asked in "), 0u) << outcome.output;
+  expect_contains(outcome.output, "\nSmooth: true error at most what was asked in 100.0 % of 3 judged runs");
   const std::string data = read_file(folder + "/accuracy.csv");
-  EXPECT_EQ(data.substr(0, data.find("until")), "group,scene,");
+  EXPECT_EQ(data.substr(0, data.find("until")), "group,scene,corners,reference,");
   EXPECT_EQ(report.find("accuracy.png") != std::string::npos, std::filesystem::exists(folder + "/accuracy.png"));
+
+  // References that are not good are refused, and so is a name that no scene has.
+  const std::string command = "flexarm bench accuracy --quick --output '" + folder + "' ";
+  std::filesystem::create_directories(folder + "/references");
+  std::ofstream(folder + "/references/index.csv") << "file,group,name,cornered,until,intervals,disagreement,events,"
+                                                     "reference\nfall,forces,fall,1,1,4,1e-6,0,outside\n";
+  const Outcome refused = shell(command + "--references '" + folder + "/references'");
+  EXPECT_EQ(refused.status, 1);
+  expect_contains(refused.errors, "index.csv:2: the reference of 'fall' is not good");
+  std::ofstream(folder + "/references/index.csv")
+      << "file,group,name,cornered,until,intervals,disagreement,events,reference\n";
+  const Outcome nothing = shell(command + "--only nowhere --references '" + folder + "/references'");
+  EXPECT_EQ(nothing.status, 1);
+  expect_contains(nothing.errors, "there is no scene with 'nowhere' in its name");
 }
 
 TEST(Bench, AccuracyOfOtherRandomArms) {
