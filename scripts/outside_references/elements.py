@@ -1,5 +1,5 @@
-"""Forces on the coordinates of a mechanism: the laws of docs/scene_format.md, docs/theory/joints.md, docs/notes/stops.md
-and docs/notes/drives.md in continuous time.
+"""Forces on the coordinates of a mechanism: the laws of docs/scene_format.md, docs/theory/joints.md,
+docs/notes/stops.md and docs/notes/drives.md in continuous time.
 
 Each element is smooth between zeros of its switches. It is told the sign that each switch has in the present piece, so
 that it is smooth beyond the end of the piece, too.

@@ -205,7 +205,8 @@ class Motion:
             solution = [force[0] / mass[0][0]]
         else:
             k = len(rows)
-            matrix = [row + [other[i] for other in rows] for i, row in enumerate(mass)] + [row + [0.0] * k for row in rows]
+            matrix = [row + [other[i] for other in rows] for i, row in enumerate(mass)]
+            matrix += [row + [0.0] * k for row in rows]
             solution = np.linalg.solve(matrix, force + right).tolist()
         rates[:n], rates[n:2 * n] = s.y[n:2 * n], solution[:n]
         held = solution[len(solution) - len(sticking):]
@@ -243,8 +244,8 @@ class Motion:
             self._stick_or_slip(friction, t, y)
 
     def _stick_or_slip(self, friction, t, y):
-        """At rest it slides on in a direction in which it is accelerated in spite of the friction there, else it sticks.
-        (At a dead point of a loop nothing could hold it, and none is asked to.)"""
+        """At rest it slides on in a direction in which it is accelerated in spite of the friction there, else it
+        sticks. (At a dead point of a loop nothing could hold it, and none is asked to.)"""
         if Snapshot(self, t, y).v[friction.j] != 0:
             return
         row = len(self.free) + self.free.index(friction.j)

@@ -12,7 +12,8 @@ Scene = namedtuple("Scene", "group name is_cornered until text is_rigid")
 
 def link(name, mass=1.0, centre=(0, 0), inertia=0.05):
     return (f'<link name="{name}"><inertial><origin xyz="{centre[0]!r} {centre[1]!r} 0"/><mass value="{mass!r}"/>'
-            f'<inertia ixx="{inertia!r}" iyy="{inertia!r}" izz="{inertia!r}" ixy="0" ixz="0" iyz="0"/></inertial></link>\n')
+            f'<inertia ixx="{inertia!r}" iyy="{inertia!r}" izz="{inertia!r}" ixy="0" ixz="0" iyz="0"/>'
+            '</inertial></link>\n')
 
 
 def joint(name, kind, parent, child, at=(0, 0), axis="0 0 1", inner=""):
@@ -85,7 +86,8 @@ def crank(simulation, inner=("", "", ""), angle=0.7, gravity=9.81):
     start = (initial("a", angle) + initial("b", rod - angle)
              + initial("s", 0.2 * math.cos(angle) + 0.5 * math.cos(rod)))
     return scene(link("crank", 1.0, (0.1, 0.0), 0.01) + joint("a", "continuous", "world", "crank", inner=inner[0])
-                 + link("rod", 0.8, (0.25, 0.0), 0.02) + joint("b", "continuous", "crank", "rod", (0.2, 0), inner=inner[1])
+                 + link("rod", 0.8, (0.25, 0.0), 0.02)
+                 + joint("b", "continuous", "crank", "rod", (0.2, 0), inner=inner[1])
                  + link("slider", 1.5, (0, 0), 0.001)
                  + joint("s", "prismatic", "world", "slider", axis="1 0 0", inner=inner[2])
                  + '<loop_joint name="pin" type="continuous"><parent link="rod"/><child link="slider"/>'
@@ -245,7 +247,8 @@ def servos(rng):
     yield "cut at a stop", 2.0, pendulum("", limit(-1.0, 0.55, 0.3), servo.format(
         f'mode="position" kp="50" kd="4" set_point="{r(0.7, 0.8)!r}" effort_limit="8"'), "revolute")
     yield "effort limit of the joint", 2.0, pendulum(
-        effort("h", f"5*sin({r(4, 5)!r}*t)"), '<limit lower="-100" upper="100" effort="3" velocity="0"/>', kind="revolute")
+        effort("h", f"5*sin({r(4, 5)!r}*t)"), '<limit lower="-100" upper="100" effort="3" velocity="0"/>',
+        kind="revolute")
 
 
 def loops(rng):
@@ -255,7 +258,8 @@ def loops(rng):
     yield "crank, Coulomb at the slide", 1.5, crank("", ("", "", coulomb(2.0)))
     yield "crank, stop of the slide", 1.2, crank("", ("", "", limit(0.5, 0.69, 0.3)), r(0.6, 0.8))
     yield "crank, servo that is cut", 1.5, crank("", angle=0.7).replace(
-        "<simulation>", f'<servo joint="a" mode="velocity" kp="3" set_point="{r(3, 4)!r}" effort_limit="5"/>\n<simulation>')
+        "<simulation>", f'<servo joint="a" mode="velocity" kp="3" set_point="{r(3, 4)!r}" effort_limit="5"/>\n'
+        '<simulation>')
     yield "four-bar, jump", 1.5, four_bar(effort("a", jump(rng, 4, 1.5)))
     yield "four-bar, table", 1.5, four_bar(effort("a", table(rng, 1.5, 9, 4)))
     yield "four-bar, Coulomb", 1.5, four_bar("", coulomb(0.4))
@@ -296,7 +300,8 @@ def smooth(rng):
     yield "four-bar", 1.5, four_bar("", '<dynamics damping="0.1"/>')
     yield "elastic gear", 1.0, hinge(effort("h", f"2*sin({r(5, 7)!r}*t)"), rest=(
         '<drive joint="h" gear="60" rotor_inertia="3e-5" stiffness="2000" damping="1"/>\n'))
-    yield "servo", 2.0, pendulum("", rest='<servo joint="h" mode="position" kp="60" kd="6" ki="20" set_point="0.5*sin(3*t)"/>\n')
+    yield "servo", 2.0, pendulum("", rest='<servo joint="h" mode="position" kp="60" kd="6" ki="20" '
+                                      'set_point="0.5*sin(3*t)"/>\n')
     yield "cart that is driven", 2.0, carried_pendulum(motion("s", f"0.2*(1 - cos({r(4, 5)!r}*t))"))
     yield "point spring", 2.0, pendulum(initial("h", 0.7), rest=(
         '<spring from="world" from_at="0.4 0.2 0" to="a" to_at="0 -0.5 0" stiffness="30" rest_length="0.6"/>\n'))
@@ -307,9 +312,12 @@ def flexible(rng):
     r = rng.uniform
 
     def arm(simulation, inner="", kind="continuous", rest="", gravity=9.81):
-        beam = ('<link name="a"><beam elements="4" order="2"><centerline><line to="1 0 0"/></centerline><circle radius="0.01"/>'
-                '<material young="70e9" poisson="0.33" density="2700"/><damping stiffness_proportional="1e-3"/></beam></link>\n')
-        return scene(beam + joint("h", kind, "world", "a", inner=inner) + rest, simulation + probe("a", "1 0 0"), gravity)
+        beam = ('<link name="a"><beam elements="4" order="2"><centerline><line to="1 0 0"/></centerline>'
+                '<circle radius="0.01"/>'
+                '<material young="70e9" poisson="0.33" density="2700"/>'
+                '<damping stiffness_proportional="1e-3"/></beam></link>\n')
+        return scene(beam + joint("h", kind, "world", "a", inner=inner) + rest,
+                     simulation + probe("a", "1 0 0"), gravity)
 
     yield "jump", 1.0, arm(effort("h", jump(rng, 4, 1)), gravity=0.0)
     yield "stop", 0.8, arm("", limit(-r(0.4, 0.6), 1.0), "revolute")

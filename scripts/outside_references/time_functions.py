@@ -220,7 +220,7 @@ def read(text):
 
 
 def corners(function, until, samples=20000):
-    """Times inside (0, until) where a function is not smooth: points of tables, zeros of its switches (by bisection)."""
+    """Times inside (0, until) where a function is not smooth: points of tables, zeros of its switches."""
     found = [t for t in getattr(function, "times", []) if 0 < t < until]
     grid = np.linspace(0, until, samples + 1)
     for switch in function.switches:

@@ -36,7 +36,8 @@ class TimeFunctions(unittest.TestCase):
     def test_derivatives(self):
         """Against differences, away from corners."""
         gap = 1e-4
-        for text in ("2*sin(3*t) - t^2/(1 + t)", "exp(-t)*cos(_pi*t)", "sqrt(1 + t)*tanh(t)", "max(t, 0.2)^3", "abs(t - 2)",
+        for text in ("2*sin(3*t) - t^2/(1 + t)", "exp(-t)*cos(_pi*t)", "sqrt(1 + t)*tanh(t)", "max(t, 0.2)^3",
+                     "abs(t - 2)",
                      "0:0:1 1:0.5:-0.3 2:0:0", "0:0 2:1"):
             function = time_functions.read(text)
             for t in (0.31, 0.77, 1.3):
@@ -91,7 +92,8 @@ class ClosedForms(unittest.TestCase):
         """(I + m p^2) u'' = effort - m g p."""
         times, points = run(scenes.screw(scenes.effort("u", "1.5")), 1.0)
         u = 0.5 * times ** 2 * (1.5 - 1.2 * 9.81 * 0.05) / (0.02 + 1.2 * 0.05 ** 2)
-        np.testing.assert_allclose(points[:, 0], np.column_stack([0.1 * np.cos(u), 0.1 * np.sin(u), 0.05 * u]), atol=CLOSE)
+        np.testing.assert_allclose(points[:, 0], np.column_stack([0.1 * np.cos(u), 0.1 * np.sin(u), 0.05 * u]),
+                                   atol=CLOSE)
 
     def test_elastic_gear(self):
         """A constant effort on the rotor: the mean motion, and a vibration of the gear at k (1/I + 1/J)."""
@@ -164,7 +166,8 @@ class OtherEquations(unittest.TestCase):
 
         def inertia(a):
             rate = -0.4 * cmath.cos(a) / cmath.cos(rod(a))
-            x, y = -0.2 * cmath.sin(a) - 0.25 * rate * cmath.sin(rod(a)), 0.2 * cmath.cos(a) + 0.25 * rate * cmath.cos(rod(a))
+            x = -0.2 * cmath.sin(a) - 0.25 * rate * cmath.sin(rod(a))
+            y = 0.2 * cmath.cos(a) + 0.25 * rate * cmath.cos(rod(a))
             slide = -0.2 * cmath.sin(a) - 0.5 * rate * cmath.sin(rod(a))
             return 0.01 + 0.01 + 0.8 * (x * x + y * y) + 0.02 * rate ** 2 + 1.5 * slide ** 2
 
@@ -196,7 +199,8 @@ class Program(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             done = self.script("--output", folder, "--only", "jump at sqrt")
             self.assertEqual(done.returncode, 0, done.stderr)
-            self.assertEqual(sorted(os.listdir(folder)), ["forces_jump_at_sqrt_0.1_.csv", "forces_jump_at_sqrt_0.1_.urdf",
+            self.assertEqual(sorted(os.listdir(folder)), ["forces_jump_at_sqrt_0.1_.csv",
+                                                          "forces_jump_at_sqrt_0.1_.urdf",
                                                           "index.csv"])
 
     def test_refuses_what_it_does_not_know(self):
