@@ -1,8 +1,8 @@
 #include "flexarm/accuracy/accurate_run.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <stdexcept>
 
@@ -21,18 +21,9 @@ constexpr const char* kDefault = "em";
 constexpr const char* kHigherOrder = "em4";
 /// It is thought of where the other's error is known: below this estimate.
 constexpr double kKnown = 0.1;
-
-/// The multiple of which all numbers of steps must be, so that servos are sampled at ends of steps; 0: there is none.
-int multiple_for_samples(const Model& model, double interval) {
-  int multiple = 1;
-  for (const Actuator& actuator : model.actuators) {
-    const double sample_time = actuator.servo ? actuator.servo->sample_time : 0;
-    if (sample_time == 0) continue;
-    if (!hits_samples(sample_time, interval)) return 0;
-    multiple = std::lcm(multiple, static_cast<int>(std::lround(interval / sample_time)));
-  }
-  return multiple;
-}
+/// Corners nearer than this to another end of a step, of an interval, need no step of their own: what acts enters by
+/// its mean.
+constexpr double kShortestCell = 1e-6;
 
 /// Empty: the scene says which scheme it wants, or the other one does not take the scene.
 std::optional<Simulation> of_higher_order(const Simulation& simulation) {
@@ -73,7 +64,7 @@ class TriesOfARun {
 
  private:
   static TryPlan plan_of(const Simulation& simulation, const AccuracyRequest& request, RunWatcher& watcher) {
-    TryPlan plan{request, watcher, JudgedPoints(simulation, request.frame), simulation.time(), request.intervals};
+    TryPlan plan{request, watcher, JudgedPoints(simulation, request.frame), simulation.time(), {}};
     const auto require = [](bool ok, const char* what) {
       if (!ok) throw std::invalid_argument(what);
     };
@@ -82,16 +73,22 @@ class TriesOfARun {
     require(request.intervals >= 1, "there must be an interval at least");
     require(!request.scale || *request.scale > 0, "the scale of errors must be > 0");
     require(plan.points.size() > 0, "nothing moves by which a run could be judged");
-    // Fewer and longer ones, where that lets samples be at their ends.
-    while (plan.intervals > 0 && (plan.multiple = multiple_for_samples(model_of(simulation), plan.interval())) == 0)
-      --plan.intervals;
-    require(plan.intervals > 0, "the whole time is no multiple of the sample times of the servos");
+    plan.cells = {plan.begin};
+    const std::vector<double> corners = known_corners(simulation, plan.begin, request.until);
+    auto corner = corners.begin();
+    const double shortest = kShortestCell * plan.interval();
+    for (int i = 1; i <= request.intervals; ++i) {
+      const double end = plan.judged_time(i);
+      for (; corner != corners.end() && *corner < end - shortest; ++corner)
+        if (*corner > plan.cells.back() + shortest) plan.cells.push_back(*corner);
+      plan.cells.push_back(end);
+    }
     return plan;
   }
 
   bool may_try(double steps) {
     const bool has_tries = static_cast<int>(run_.tries.size()) < plan_.request.most_tries;
-    const bool has_steps = static_cast<double>(run_.steps) + plan_.total(steps) <= plan_.request.most_steps;
+    const bool has_steps = static_cast<double>(run_.steps) + steps <= plan_.request.most_steps;
     if (!has_tries) run_.end = AccurateRun::End::OutOfTries;
     if (!has_steps) run_.end = AccurateRun::End::OutOfSteps;
     return has_tries && has_steps;
@@ -108,9 +105,8 @@ class TriesOfARun {
   /// simulation's scheme may find good enough, and with two.
   double iterations_of_other() const {
     if (other_ && other_->judged() >= 2) return other_->predicted_iterations();
-    const double step = plan_.total(plan_.multiple);
-    if (other_ && other_->judged() == 1) return 2 * step * other_->iterations_per_step();
-    return (own_.limit_may_judge() ? 1 : 3) * step * kCompositionSteps * own_.iterations_per_step();
+    if (other_ && other_->judged() == 1) return 2 * other_->iterations();
+    return (own_.limit_may_judge() ? 1 : 3) * own_.fewest_steps() * kCompositionSteps * own_.iterations_per_step();
   }
 
   bool make_other() {

@@ -28,19 +28,16 @@ constexpr double kSurprise = 2;
 /// or a motion that the first tries are far too coarse for.
 constexpr double kRoundOffBelow = 1e-6;
 constexpr int kMostStagnations = 4;
+/// Steps in a cell at most: far above what a run may have.
+constexpr double kMostInCell = 1e9;
 /// Tries in turn, each with more steps, in which a step fails or that are astray: it has another reason than its
 /// length.
 constexpr int kMostFailures = 8;
 /// Newton's method leaves the square of its tolerance in every solve. Over the step's length that is an error of the
-/// velocity, which goes on to the end: with signs of their own, all together this share of what is asked for. And
-/// between which bounds a tolerance may be.
-constexpr double kRemainderShare = 0.1, kLeastTolerance = 1e-13, kMostTolerance = 1e-3;
+/// velocity, which goes on to the end: with signs of their own, all together this share of what is asked for.
+constexpr double kRemainderShare = 0.1;
 /// Points that move less, of the model's length, are at rest: what they do is round-off, or what a start leaves.
 constexpr double kAtRest = 1e-6;
-/// Events are found to a part of what is asked for of the whole time, which bounds what they do to the error.
-constexpr double kEventShare = 1.0 / 8;
-constexpr int kMostEventHalvings = 10;
-
 /// A scheme of higher order than this shows what it has in its own tries: at first it is taken for one of this order.
 constexpr double kCommonOrder = 2;
 
@@ -68,77 +65,75 @@ SchemeTries::SchemeTries(Simulation& simulation, const TryPlan& plan)
       start_(simulation.snapshot()),
       order_(make_scheme(simulation.scene().integrator).order),
       solves_(make_scheme(simulation.scene().integrator).solves_per_step()),
-      next_(plan.multiple),
-      before_(plan.points.size()) {}
+      stepping_(simulation, plan.cells),
+      before_(plan.points.size()),
+      earlier_(plan.points.size()) {}
 
 double SchemeTries::predicted_iterations() const {
   const double growth = std::pow(estimate_ / (kAim * plan_.request.accuracy), 1.0 / order_);
-  return iterations_before_ * plan_.total(steps_before_) * std::max(growth, kLeastGrowth);
+  return iterations_before_ * std::max(growth, kLeastGrowth);
 }
 
 bool SchemeTries::limit_may_judge() const {
-  const double ratio = static_cast<double>(steps_before_) / steps_earlier_;
+  const double ratio = planned_before_ / planned_earlier_;
   return std::pow(ratio * estimate_, 2) / 2 <= kEnough * plan_.request.accuracy / 2;
 }
 
 void SchemeTries::set_steps() {
-  const double accuracy = plan_.request.accuracy;
-  const double step = plan_.interval() / steps_;
-  const double finest = kEventShare * accuracy * (plan_.request.until - plan_.begin);
-  const int halvings = step > finest ? static_cast<int>(std::ceil(std::log2(step / finest))) : 0;
-  simulation_.set_step_size(step, std::min(halvings, kMostEventHalvings));
-  const double remainder = kRemainderShare * accuracy / std::pow(plan_.total(steps_) * solves_, 1.5);
-  simulation_.set_tolerance(std::clamp(std::sqrt(remainder), kLeastTolerance, kMostTolerance));
-}
-
-bool SchemeTries::run_interval(AccurateRun& run) {
-  for (int n = 0; n < steps_; ++n) {
-    plan_.watcher.before_step(simulation_);
-    run.last = simulation_.step();
-    ++run.steps;
-    iterations_per_step_ += run.last.iterations / plan_.total(steps_);
-    recoveries_ += run.last.other_guesses + run.last.halvings;
-    run.end = AccurateRun::End::Interrupted;
-    if (!plan_.watcher.after_step(simulation_, run.last)) return false;
-    run.end = AccurateRun::End::Failed;
-    if (!run.last.converged) return false;
-  }
-  return true;
+  planned_ = stepping_.planned(steps_);
+  const double remainder = kRemainderShare * plan_.request.accuracy / std::pow(planned_ * solves_, 1.5);
+  stepping_.set(steps_, std::sqrt(remainder));
 }
 
 /// `difference`: between the last try and the one before, relative.
 double SchemeTries::supposed_order(double difference) const {
   if (order_ <= kCommonOrder) return order_;
   if (std::isnan(difference_)) return kCommonOrder;
-  const double seen =
-      std::log(difference_ / difference) / std::log(static_cast<double>(steps_before_) / steps_earlier_);
+  const double seen = std::log(difference_ / difference) / std::log(planned_before_ / planned_earlier_);
   return std::clamp(seen, 1.0, static_cast<double>(order_));
 }
 
-/// The error of a try over its difference to the one before.
-double SchemeTries::share(double order) const {
-  return 1 / (std::pow(static_cast<double>(steps_) / steps_before_, order) - 1);
+/// The error of a try over its difference to one with so many steps.
+double SchemeTries::share(double order, double planned) const {
+  return 1 / (std::pow(planned_ / planned, order) - 1);
 }
 
 bool SchemeTries::attempt(AccurateRun& run) {
   simulation_.restore(start_);
-  steps_ = static_cast<int>(next_);
+  steps_ = next_;
   set_steps();
-  iterations_per_step_ = 0;
-  recoveries_ = 0;
   run.steps_per_interval = steps_;
   run.interval = plan_.interval();
-  run.tries.push_back({simulation_.scheme(), static_cast<long>(plan_.total(steps_)), kUnknown});
+  run.tries.push_back({simulation_.scheme(), std::lround(planned_), kUnknown});
   plan_.watcher.begin(simulation_, run.tries.back().steps, expected_);
   run.motion = JudgedMotion(plan_.points.size());
-  for (int i = 0; i <= plan_.intervals; ++i) {
-    if (i > 0 && !run_interval(run)) return false;
+  const long steps = run.steps;
+  for (int i = 0; i <= plan_.request.intervals; ++i) {
+    if (i > 0 && !stepping_.advance_to(plan_.judged_time(i), plan_.watcher, run)) return false;
     const std::vector<Vector3> positions = plan_.points.positions(simulation_);
     run.motion.add(positions);
     const JudgedMotion* other = compared();
     plan_.watcher.after_interval(simulation_, other ? compared_share() * distance(positions, *other, i) : kUnknown);
   }
+  run.tries.back().steps = run.steps - steps;
   return true;
+}
+
+/// By the differences to the last two tries, of which the larger estimate counts: that tries agree by luck with one
+/// that has other steps is rare, and with both more so.
+double SchemeTries::estimate_of(const JudgedMotion& motion, double scale) {
+  const double difference = motion_error(motion, before_, scale);
+  const double order = supposed_order(difference);
+  double share = this->share(order, planned_before_);
+  // Much more than the run before has in error itself: half of the order is assumed.
+  if (kSurprise * estimate_ / (1 + share) < difference) share = 1 / (std::sqrt(1 + 1 / share) - 1);
+  double estimate = difference * share;
+  // In another way, or where the tries before have not fallen by any order.
+  if (difference > kSaturated || stagnations_ > 0) estimate = std::max(estimate, difference);
+  if (judged_ > 2)
+    estimate = std::max(estimate, motion_error(motion, earlier_, scale) * this->share(order, planned_earlier_));
+  difference_ = difference;
+  return estimate;
 }
 
 bool SchemeTries::judge(AccurateRun& run) {
@@ -148,23 +143,17 @@ bool SchemeTries::judge(AccurateRun& run) {
   const double last = estimate_;
   const bool is_compared = judged_++ > 0;
   if (is_compared) {
-    const double difference = motion_error(run.motion, before_, run.scale);
-    double share = this->share(supposed_order(difference));
-    // Much more than the run before has in error itself: half of the order is assumed.
-    if (kSurprise * last / (1 + share) < difference) share = 1 / (std::sqrt(1 + 1 / share) - 1);
-    estimate_ = difference * share;
-    if (difference > kSaturated) estimate_ = std::max(estimate_, difference);
-    run.tries.back().estimate = estimate_;
-    difference_ = difference;
-    limit_ = extrapolated(run.motion, before_, this->share(order_));
+    run.tries.back().estimate = estimate_ = estimate_of(run.motion, run.scale);
+    limit_ = extrapolated(run.motion, before_, share(order_, planned_before_));
   } else if (other_limit_) {
     run.tries.back().estimate = motion_error(run.motion, *other_limit_, run.scale);
   }
+  earlier_ = std::move(before_);
   before_ = run.motion;
-  steps_earlier_ = steps_before_;
-  steps_before_ = steps_;
-  iterations_before_ = iterations_per_step_;
-  if (run.estimate() <= kEnough * plan_.request.accuracy) {
+  planned_earlier_ = planned_before_;
+  planned_before_ = planned_;
+  iterations_before_ = static_cast<double>(stepping_.iterations);
+  if (run.estimate() <= kEnough * plan_.request.accuracy && is_confirmed()) {
     run.end = AccurateRun::End::Met;
     return true;
   }
@@ -185,8 +174,10 @@ bool SchemeTries::go_on(bool failed) {
   else if (!failed && !std::isnan(estimate_))
     growth = std::clamp(std::pow(estimate_ / (kAim * plan_.request.accuracy), 1.0 / order_), kLeastGrowth,
                         most_growth(estimate_));
-  next_ = plan_.multiple * std::ceil(growth * steps_ / plan_.multiple);
-  expected_ = estimate_ * std::pow(steps_before_ / next_, order_);
+  next_ = static_cast<int>(std::min(std::ceil(growth * steps_), kMostInCell));
+  // Steps that are nested in those of the try before may be wrong in the same places.
+  if (steps_ > 1 && next_ % steps_ == 0) ++next_;
+  expected_ = estimate_ * std::pow(planned_before_ / stepping_.planned(next_), order_);
   return failures_ <= kMostFailures;
 }
 

@@ -2,7 +2,9 @@
 /// Runs of one scheme with more and more steps, and what their differences say about their errors.
 
 #include <limits>
+#include <vector>
 
+#include "accuracy/located_steps.h"
 #include "flexarm/accuracy/accurate_run.h"
 
 namespace flexarm {
@@ -12,12 +14,11 @@ struct TryPlan {
   const AccuracyRequest& request;
   RunWatcher& watcher;
   JudgedPoints points;
-  double begin;      ///< [s]
-  int intervals;     ///< in which all have the same number of steps, ...
-  int multiple = 1;  ///< ... which is one of this
+  double begin;               ///< [s]
+  std::vector<double> cells;  ///< ends of the cells of LocatedSteps: judged times, and corners that are known [s]
 
-  double interval() const { return (request.until - begin) / intervals; }  ///< [s]
-  double total(double steps) const { return steps * intervals; }
+  double interval() const { return (request.until - begin) / request.intervals; }  ///< [s]
+  double judged_time(int i) const { return i == request.intervals ? request.until : begin + i * interval(); }
 };
 
 class SchemeTries {
@@ -31,11 +32,13 @@ class SchemeTries {
     simulation_.restore(start_);
     return simulation_;
   }
-  /// In an interval: what the next try has.
-  double next_steps() const { return next_; }
+  /// What the next try has, in all.
+  double next_steps() const { return stepping_.planned(next_); }
+  double fewest_steps() const { return stepping_.planned(1); }
   double estimate() const { return estimate_; }  ///< of the last try that was judged, relative; NaN: there is none
   /// Of the last try that was judged.
-  double iterations_per_step() const { return iterations_before_; }
+  double iterations() const { return iterations_before_; }
+  double iterations_per_step() const { return iterations_before_ / planned_before_; }
   /// Iterations of a try that has the error which is asked for; NaN: unknown.
   double predicted_iterations() const;
   int judged() const { return judged_; }
@@ -60,29 +63,35 @@ class SchemeTries {
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
   void set_steps();
-  bool run_interval(AccurateRun& run);
   /// Steps had to be saved, and Newton's method has more to do than in the longer ones of the try before: whatever is
   /// solved there, it is not where the error has an expansion in the step.
-  bool is_astray() const { return recoveries_ > 0 && iterations_per_step_ > iterations_before_; }
+  bool is_astray() const {
+    const double iterations = static_cast<double>(stepping_.iterations);
+    return stepping_.recoveries > 0 && iterations / planned_ > iterations_per_step();
+  }
+  /// By another try whose steps are not nested in those of the last one: only the first two are so.
+  bool is_confirmed() const { return judged_ > 2 || other_limit_; }
   /// To what the next try is compared, and the part of the difference that is its error; null: to nothing.
   const JudgedMotion* compared() const { return judged_ > 0 ? &before_ : other_limit_; }
-  double compared_share() const { return judged_ > 0 ? share(order_) : 1; }
+  double compared_share() const { return judged_ > 0 ? share(order_, planned_before_) : 1; }
   double supposed_order(double difference) const;
-  double share(double order) const;
+  double share(double order, double planned) const;
+  double estimate_of(const JudgedMotion& motion, double scale);
 
   Simulation& simulation_;
   const TryPlan& plan_;
   Snapshot start_;
   int order_, solves_;  // of a step
-  int steps_ = 0;       // of the last try, in an interval
-  int recoveries_ = 0;  // of its steps: other guesses and halvings
-  double next_, expected_ = kUnknown, iterations_per_step_ = kUnknown;
+  LocatedSteps stepping_;
+  int steps_ = 0, next_ = 1;  // in the longest cell, of the last and the next try
+  double planned_ = 0;        // steps of the last try
+  double expected_ = kUnknown;
   int failures_ = 0, stagnations_ = 0, judged_ = 0;
   const JudgedMotion* other_limit_ = nullptr;
   JudgedMotion limit_;
   // Of the last try that was judged, and of the one before that.
-  JudgedMotion before_;
-  int steps_before_ = 0, steps_earlier_ = 0;
+  JudgedMotion before_, earlier_;
+  double planned_before_ = kUnknown, planned_earlier_ = kUnknown;
   double estimate_ = kUnknown, difference_ = kUnknown, iterations_before_ = kUnknown;
 };
 

@@ -5,6 +5,7 @@
 
 #include "integrators/hht_interpolation.h"
 #include "integrators/step_configuration.h"
+#include "integrators/step_events.h"
 #include "integrators/step_histories.h"
 #include "joints/motor_step.h"
 #include "joints/servo_step.h"
@@ -31,6 +32,8 @@ class Actuators {
   void add_work(double& work) const;
   /// Writes rotors and the efforts of motors.
   void accept(State& state) const;
+  /// Notes when gears come out of their play or into it, and when dry friction stops rotors or turns its direction.
+  void note_events(FirstEvent& first);
   /// In an equilibrium: lets integrals of servos take over what their errors ask for. The largest of those errors
   /// [rad or m].
   double hand_to_integrals(State& state) const;

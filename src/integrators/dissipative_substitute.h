@@ -15,7 +15,7 @@ class DissipativeSubstitute {
   DissipativeSubstitute(const Model& model, const Scheme& scheme, const StepSettings& settings);
 
   /// See Stepper.
-  void set_step(double step) { stepper_.set_step(step, 0); }
+  void set_step(double step) { stepper_.set_step(step); }
   void set_tolerance(double tolerance) { stepper_.set_tolerance(tolerance); }
   /// A step may come that fails: the state at its beginning.
   void keep(const State& state) { begin_ = state; }

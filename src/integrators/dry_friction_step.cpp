@@ -16,6 +16,9 @@ constexpr double kAtRest = 1e-12;
 constexpr double kSlack = 1e-10, kLooseSlack = 1e-6;
 /// Revisions in a solve after which only one coordinate is revised at a time, and after which slack is loose.
 constexpr int kRevisionsAtOnce = 4, kTightRevisions = 10;
+/// What a deceleration may foresee too late, over the time until a coordinate stops; and of that time, what a step
+/// takes in which it still slides.
+constexpr double kMostForeseen = 1.1, kShortOfStop = 0.98;
 
 Contact contact_of(const JointMap& joint) {
   if (joint.kind == JointMapKind::Slide || joint.rotation.isZero(0)) return Contact::Travel;
@@ -74,15 +77,11 @@ double DryFrictionStep::travel_per_carrier(int coordinate) const {
 void DryFrictionStep::begin() {
   revisions_ = 0;
   const Scheme& scheme = configuration_.scheme();
-  const double step = configuration_.step();
   const double gamma = scheme.is_incremental() ? (scheme.backward_velocity ? 1.0 : 0.5) : scheme.gamma;
+  const double share = (1 - gamma) * configuration_.step();
   for (FrictionCarrier& carrier : carriers_) {
-    const Coordinate& coordinate = model_.coordinates[carrier.coordinate];
-    double rate = configuration_.state().rests[carrier.coordinate] > 0
-                      ? 0.0
-                      : configuration_.begin_rates(coordinate.joint)[coordinate.component];
-    if (std::abs(rate * step) <= kAtRest * scale_of(model_, coordinate)) rate = 0;
-    carrier.law.begin((1 - gamma) * step * rate, rate);
+    const double rate = rate_at_begin(carrier);
+    carrier.law.begin(share * rate, rate);
   }
   const EventModes* held = configuration_.held_modes();
   for (std::size_t c = 0; held && c < carriers_.size(); ++c) {
@@ -92,6 +91,14 @@ void DryFrictionStep::begin() {
     else
       law.take_branch(held->friction[c]);
   }
+}
+
+/// 0 where it rests.
+double DryFrictionStep::rate_at_begin(const FrictionCarrier& carrier) const {
+  const Coordinate& coordinate = model_.coordinates[carrier.coordinate];
+  if (configuration_.state().rests[carrier.coordinate] > 0) return 0;
+  const double rate = configuration_.begin_rates(coordinate.joint)[coordinate.component];
+  return std::abs(rate * configuration_.step()) <= kAtRest * scale_of(model_, coordinate) ? 0 : rate;
 }
 
 void DryFrictionStep::begin_evaluation() {
@@ -244,9 +251,34 @@ void DryFrictionStep::place_held() {
   }
 }
 
-bool DryFrictionStep::switches() const {
+/// `rate`: at the beginning. In a step in which friction stops a coordinate, or turns it round, its rate at the end is
+/// not that of sliding: when it stops follows from the mean rate over the last step, which lies half of it back.
+double DryFrictionStep::fraction_of_stop(const FrictionCarrier& carrier, double rate) const {
+  const DegreesOfFreedom& dof = configuration_.degrees_of_freedom();
+  const Coordinate& coordinate = model_.coordinates[carrier.coordinate];
+  const int equation = dof.equation[dof.first[dof.variable_of_joint(coordinate.joint)] + coordinate.component];
+  const IncrementHistory& history = configuration_.state().history;
+  if (equation < 0 || history.count == 0 || !history.holds_for(dof.unknowns)) return kUnknownStop;
+  const double mean = history.increments[0][equation] / history.steps[0];
+  const double deceleration = (mean - rate) / (0.5 * history.steps[0]);
+  const double fraction = rate / (deceleration * configuration_.step());
+  if (!(fraction > 0 && fraction <= kMostForeseen)) return kUnknownStop;
+  return kShortOfStop * std::min(fraction, 1.0);
+}
+
+void DryFrictionStep::note_events(FirstEvent& first) const {
+  for (const FrictionCarrier& carrier : carriers_) {
+    const Coordinate& coordinate = model_.coordinates[carrier.coordinate];
+    const double rate = rate_at_begin(carrier);
+    if (coordinate.motion >= 0 || rate == 0) continue;
+    if (carrier.law.is_stopped() || rate * configuration_.end_rate(coordinate) <= 0)
+      first.note_stop(fraction_of_stop(carrier, rate));
+  }
+}
+
+bool DryFrictionStep::breaks_away() const {
   return std::any_of(carriers_.begin(), carriers_.end(), [&](const FrictionCarrier& carrier) {
-    return carrier.law.is_stopped() != (configuration_.state().rests[carrier.coordinate] > 0);
+    return !carrier.law.is_stopped() && configuration_.state().rests[carrier.coordinate] > 0;
   });
 }
 

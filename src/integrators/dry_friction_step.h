@@ -15,6 +15,7 @@
 #include "integrators/friction_carrier.h"
 #include "integrators/hht_interpolation.h"
 #include "integrators/step_configuration.h"
+#include "integrators/step_events.h"
 #include "solver/reduced_residual.h"
 
 namespace flexarm {
@@ -45,8 +46,10 @@ class DryFrictionStep {
   bool tangent_holds() const;
   /// After an update: coordinates that are held get the last digits of what it has brought about.
   void place_held();
-  /// True where a coordinate comes to rest in the step, or begins to move.
-  bool switches() const;
+  /// Notes when friction stops coordinates, as foreseen by their last decelerations, or turns its direction.
+  void note_events(FirstEvent& first) const;
+  /// True where a coordinate that rested begins to move in the step.
+  bool breaks_away() const;
   void accept(State& state) const;
   /// As they are after the last evaluation.
   const std::vector<FrictionCarrier>& carriers() const { return carriers_; }
@@ -56,6 +59,8 @@ class DryFrictionStep {
 
  private:
   void find_carriers();
+  double rate_at_begin(const FrictionCarrier& carrier) const;
+  double fraction_of_stop(const FrictionCarrier& carrier, double rate) const;
   double direction(int coordinate) const;
   double travel_per_carrier(int coordinate) const;
   /// The force on the joint presses, and friction grows with it.

@@ -251,8 +251,11 @@ double NewtonIteration::contraction_after(const Progress& progress) const {
   return squares ? shown * shown : shown;
 }
 
+/// What a solve leaves is an error of the velocity, over the length of the step: sub-steps leave as much less.
 double NewtonIteration::target() const {
-  return std::max(settings_.tolerance * settings_.tolerance, kRoundOff);
+  const double step = std::abs(system_.configuration().step());
+  const double part = step > 0 ? std::min(step / settings_.step, 1.0) : 1.0;
+  return std::max(part * settings_.tolerance * settings_.tolerance, kRoundOff);
 }
 
 /// Where factors may be kept, convergence is to round-off, also when a solve has begun anew without them.

@@ -10,6 +10,8 @@ namespace {
 
 /// Newton updates of a step in which smooth friction may stop at rate zero.
 constexpr int kMostStoppedUpdates = 3;
+/// Change of the direction of friction over a step that is resolved.
+constexpr double kLargestTurn = 0.5;
 
 }  // namespace
 
@@ -46,6 +48,17 @@ void SmoothReversals::after_update() {
     configuration_.released(coordinate.joint).displacement[coordinate.component] =
         step.begin + (1 - step.gamma) * step.step * step.begin_rate;
   }
+}
+
+bool SmoothReversals::turn_too_fast(double refinement) {
+  if (coordinates_.empty()) return false;
+  configuration_.find_begin_rates();
+  return std::any_of(coordinates_.begin(), coordinates_.end(), [&](int index) {
+    const Coordinate& coordinate = configuration_.model().coordinates[index];
+    const double begin = configuration_.begin_rates(coordinate.joint)[coordinate.component];
+    const double end = configuration_.end_rate(coordinate);
+    return refinement * std::abs(std::tanh(end / kFrictionSpeed) - std::tanh(begin / kFrictionSpeed)) > kLargestTurn;
+  });
 }
 
 }  // namespace flexarm

@@ -18,6 +18,9 @@ class SmoothReversals {
   void begin() { updates_ = 0; }
   void before_update();
   void after_update();
+  /// True where so long a step goes through much of a reversal: the direction of friction, tanh, changes by more than a
+  /// half of the refinement's inverse.
+  bool turn_too_fast(double refinement);
 
  private:
   double rate(int coordinate) const;

@@ -183,12 +183,16 @@ bool StepConfiguration::is_on_line(const JointMap& joint, int j) const {
   return line.overshoot(to) <= largest_overshoot(joint) && pieces <= SlideLine::kMostPieces;
 }
 
-bool StepConfiguration::leaves_line() const {
+void StepConfiguration::note_events(FirstEvent& first) const {
   for (std::size_t j = 0; j < model_.joints.size(); ++j) {
     const JointMap& joint = model_.joints[j];
-    if (joint.leaving >= 0 && model_.slide_lines[joint.line].overshoot(released_[j].displacement[0]) > 0) return true;
+    if (joint.leaving < 0) continue;
+    const SlideLine& line = model_.slide_lines[joint.line];
+    const double from = state_->released[j].displacement[0], to = released_[j].displacement[0];
+    const double start = to - from;  // at even speed
+    if (from >= line.begin()) first.note(crossing(from, to, line.begin(), start));
+    if (from <= line.end()) first.note(crossing(-from, -to, -line.end(), -start));
   }
-  return false;
 }
 
 bool StepConfiguration::is_driven_off_line() const {
@@ -243,6 +247,12 @@ MimicMap StepConfiguration::mimic_map(int coordinate) const {
 
 ReleasedVector StepConfiguration::increment_of(int joint) const {
   return released_increment(model_.joints[joint], state_->released[joint], released_[joint]);
+}
+
+double StepConfiguration::end_rate(const Coordinate& coordinate) const {
+  const double gamma = scheme_.is_incremental() ? 1 / scheme_.velocity_factor() : scheme_.gamma;
+  const double begin = begin_rates_[coordinate.joint][coordinate.component];
+  return (increment_of(coordinate) / step_ - (1 - gamma) * begin) / gamma;
 }
 
 double StepConfiguration::increment_of(const Coordinate& coordinate) const {

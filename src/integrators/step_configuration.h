@@ -5,6 +5,7 @@
 
 #include "integrators/event_modes.h"
 #include "integrators/free_nodes.h"
+#include "integrators/step_events.h"
 #include "integrators/step_motion.h"
 #include "joints/joint_forces.h"
 #include "joints/joint_map.h"
@@ -78,8 +79,8 @@ class StepConfiguration {
   int off_line_joint() const { return off_line_joint_; }  ///< the first of those, -1: none
   /// True where a motion has driven it there, which no shorter step mends.
   bool is_driven_off_line() const;
-  /// True where a slider that may leave its line comes to its end in the step.
-  bool leaves_line() const;
+  /// Notes when sliders that may leave their lines come to their ends.
+  void note_events(FirstEvent& first) const;
 
   // ---- joints over the step
   bool has_incremental_joints() const { return scheme_.is_incremental(); }
@@ -95,6 +96,8 @@ class StepConfiguration {
   /// Released rates of a joint at the beginning; where they are kept, or found in this step.
   const ReleasedVector& begin_rates(int joint) const { return begin_rates_[joint]; }
   void find_begin_rates();
+  /// Of one of them at the end, as the scheme makes it of the increment; where begin_rates() are known.
+  double end_rate(const Coordinate& coordinate) const;
   /// Finds begin_rates() in every step, as the Newmark family does in any case.
   void keep_begin_rates() { keeps_begin_rates_ = !scheme_.is_static; }
 

@@ -5,15 +5,30 @@
 
 namespace flexarm {
 
+/// How steps look for events, at which the equations change: friction stops a coordinate or turns its direction, a stop
+/// is touched, the play of a gear begins or ends, a slider comes to its end. (docs/notes/accuracy.md 4)
+struct EventSearch {
+  /// A step within which an event happens farther than this from both of its ends is not done: it ends as
+  /// StepResult::Reason::EventWithin, and Stepper::event() says when [s]. 0: steps go over events.
+  double tolerance = 0;
+  /// Friction may stop what slides within this time from the beginning of a step [s].
+  double slide = 0;
+  /// By how much finer than usual hits on stops are resolved, and reversals of smooth friction at all; >= 1.
+  double refinement = 1;
+
+  bool is_on() const { return tolerance > 0; }
+  bool operator==(const EventSearch& other) const {
+    return tolerance == other.tolerance && slide == other.slide && refinement == other.refinement;
+  }
+};
+
 /// Settings of Newton's method and of the step control.
 struct StepSettings {
   double step = 1e-3;       ///< [s]
   double tolerance = 1e-8;  ///< on the largest update: displacements over the model's length scale, rotations in rad
   int max_iterations = 20;
   int max_halvings = 14;  ///< but where a stop is hit, see finest_halving()
-  /// Halvings of a step within which friction sticks or slips anew, a stop is touched or left, or a slider comes to its
-  /// end, within max_halvings. 0: steps go over such events.
-  int event_halvings = 0;
+  EventSearch events;
   /// Keep the factors of the tangent while the iteration contracts well (modified Newton). The result agrees with that
   /// of full Newton to far below the tolerance; off: quadratic convergence, and a restored state continues bit for bit.
   bool reuse_factorisation = true;

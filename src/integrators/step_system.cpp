@@ -148,6 +148,13 @@ bool StepSystem::evaluate(bool with_tangent) {
   return residual_.allFinite();
 }
 
+void StepSystem::note_events(FirstEvent& first) {
+  friction_.note_events(first);
+  contacts_.note_events(first);
+  actuators_.note_events(first);
+  configuration_.note_events(first);
+}
+
 void StepSystem::carry_strains(double fraction) {
   const double* solution = tangent().expanded_solution();
   if (!solution) return;

@@ -99,10 +99,15 @@ class StepSystem {
   /// See LoopMultipliers.
   LoopMultipliers::Opening largest_opening() const { return loops_.largest_opening(); }
   /// See StopContacts.
-  bool hits_too_fast() { return contacts_.hits_too_fast(); }
-  /// True where the equations change within the step: friction sticks or slips anew, a stop is touched or left, a
-  /// slider comes to the end of its line. The order of the scheme is lost in such a step.
-  bool has_event() const { return friction_.switches() || contacts_.switches() || configuration_.leaves_line(); }
+  bool hits_too_fast(double refinement) { return contacts_.hits_too_fast(refinement); }
+  /// See SmoothReversals.
+  bool turn_too_fast(double refinement) { return reversals_.turn_too_fast(refinement); }
+  /// Notes when forces jump in the step, with which the order of the scheme is lost: friction stops a coordinate or
+  /// turns its direction, a stop is touched, a gear comes out of its play or into it, a slider comes to the end of its
+  /// line.
+  void note_events(FirstEvent& first);
+  /// True where forces have a kink within the step: friction lets a coordinate go, a stop is left.
+  bool has_kink() const { return friction_.breaks_away() || contacts_.leaves(); }
   bool may_hit_a_stop() { return contacts_.may_hit(); }
   /// Internal less external forces on all nodes in the configuration of `state`, before joints fold them; of a scheme
   /// made by statics_of().

@@ -22,8 +22,11 @@ const double kOuterPart = 1 / (4 - std::cbrt(4.0));
 const double kComposition[kCompositionSteps] = {kOuterPart, kOuterPart, 1 - 4 * kOuterPart, kOuterPart, kOuterPart};
 /// A step that has been halved so often, and doubled again as often, does not come forward: it is given up.
 constexpr int kMostHalvings = 500;
-/// Converged sub-steps after which the step is doubled again.
-constexpr int kGoodStepsToDouble = 2;
+/// Converged sub-steps after which the step is doubled again; where events are looked for, it is short because it has
+/// to be, and doubled in vain too often.
+constexpr int kGoodStepsToDouble = 2, kGoodStepsToDoubleAtEvents = 6;
+/// Halvings of a step in which forces have a kink: it makes an error as the square of the step's length.
+constexpr int kKinkHalvings = 3;
 
 /// Of the time by the clock on the wall that a step may take.
 class Deadline {
@@ -64,9 +67,9 @@ void Stepper::invalidate() {
   newton_.forget_factors();
 }
 
-void Stepper::set_step(double step, int event_halvings) {
+void Stepper::set_step(double step, const EventSearch& events) {
   settings_.step = step;
-  settings_.event_halvings = event_halvings;
+  settings_.events = events;
   newton_.forget_factors();
   if (substitute_) substitute_->set_step(step);
 }
@@ -105,13 +108,35 @@ bool Stepper::sub_step(State& state, double step, StepResult& result) {
   return true;
 }
 
-StepResult::Reason Stepper::flaw_of_solution(StepResult& result) const {
+StepResult::Reason Stepper::flaw_of_solution(const State& state, double step, StepResult& result) {
   const StepConfiguration::LargestIncrement largest = system_.configuration().largest_increment();
   if (largest.size > kLargestStepRotation || system_.configuration().aliased_coordinate() >= 0)
     return StepResult::Reason::RotationTooLarge;
   if (largest.size > result.largest_rotation)
     result.largest_rotation = largest.size, result.turning_node = largest.node;
-  return system_.largest_opening().size > kOpenLoop ? StepResult::Reason::OpenLoop : StepResult::Reason::None;
+  if (system_.largest_opening().size > kOpenLoop) return StepResult::Reason::OpenLoop;
+  const double refinement = settings_.events.refinement;
+  const bool may_halve =
+      state.halving_level < finest_halving(settings_) && result.halvings < refinement * kMostHalvings;
+  if (may_halve && system_.hits_too_fast(refinement)) return StepResult::Reason::HitTooFast;
+  return settings_.events.is_on() ? flaw_by_events(state, step, result) : StepResult::Reason::None;
+}
+
+StepResult::Reason Stepper::flaw_by_events(const State& state, double step, const StepResult& result) {
+  const EventSearch& events = settings_.events;
+  const int halvings_left = settings_.max_halvings - state.halving_level;
+  const bool may_halve = halvings_left > 0 && result.halvings < events.refinement * kMostHalvings / 2;
+  if (may_halve && system_.turn_too_fast(events.refinement)) return StepResult::Reason::HitTooFast;
+  const double done = state.time - begin_;
+  FirstEvent first{std::max((events.tolerance - done) / step, 0.0), events.slide / std::abs(step)};
+  system_.note_events(first);
+  const double event = done + first.fraction * step;
+  if (std::isfinite(event) && event < settings_.step - events.tolerance) {
+    event_ = event;
+    return StepResult::Reason::EventWithin;
+  }
+  if (may_halve && state.halving_level < kKinkHalvings && system_.has_kink()) return StepResult::Reason::HitTooFast;
+  return StepResult::Reason::None;
 }
 
 bool Stepper::simple_step(State& state, double step, StepResult& result) {
@@ -134,14 +159,7 @@ bool Stepper::simple_step(State& state, double step, StepResult& result) {
     enter(StepPhase::Begin);
     system_.begin(state, step, attempt.guess);
     if (!newton_.solve(NewtonIteration::Updates::Limited, attempt.factors, result)) continue;
-    result.reason = flaw_of_solution(result);
-    const bool may_halve = state.halving_level < finest_halving(settings_) && result.halvings < kMostHalvings;
-    if (result.reason == StepResult::Reason::None && may_halve && system_.hits_too_fast())
-      result.reason = StepResult::Reason::HitTooFast;
-    const int event_level = std::min(settings_.event_halvings, settings_.max_halvings);
-    const bool may_find = state.halving_level < event_level && result.halvings < kMostHalvings / 2;
-    if (result.reason == StepResult::Reason::None && may_find && system_.has_event())
-      result.reason = StepResult::Reason::EventWithin;
+    result.reason = flaw_of_solution(state, step, result);
     if (result.reason != StepResult::Reason::None) return false;
     if (follower_) follower_->follow(state, system_);
     enter(StepPhase::Accept);
@@ -158,14 +176,16 @@ StepResult Stepper::advance(State& state) {
   if (!substitute_) return advance_by_scheme(state);
   substitute_->keep(state);
   StepResult result = advance_by_scheme(state);
-  if (!result.converged && substitute_->advance(state, result)) invalidate();
+  const bool has_failed = !result.converged && result.reason != StepResult::Reason::EventWithin;
+  if (has_failed && substitute_->advance(state, result)) invalidate();
   return result;
 }
 
 StepResult Stepper::advance_by_scheme(State& state) {
   StepResult result;
   const Deadline deadline(settings_.recovery_wall_time);
-  const double begin = state.time;
+  begin_ = state.time;
+  const int good_steps = settings_.events.is_on() ? kGoodStepsToDoubleAtEvents : kGoodStepsToDouble;
   const int finest = finest_halving(settings_);
   long done = 0;  // in units of step / 2^finest
   const long whole = 1L << finest;
@@ -178,10 +198,11 @@ StepResult Stepper::advance_by_scheme(State& state) {
     const bool is_done = sub_step(state, std::ldexp(settings_.step, -level), result);
     const bool is_late = level > 0 && deadline.has_passed();
     result.deepest_halving = std::max(result.deepest_halving, level);
+    if (!is_done && result.reason == StepResult::Reason::EventWithin) return result;
     if (!is_done) {
       state.good_steps = 0;
       const bool may_halve = level < (system_.may_hit_a_stop() ? finest : settings_.max_halvings);
-      if (!may_halve || result.halvings >= kMostHalvings) return give_up(false, result);
+      if (!may_halve || result.halvings >= settings_.events.refinement * kMostHalvings) return give_up(false, result);
       ++state.halving_level;
       ++result.halvings;
       if (is_late) return give_up(true, result);  // who goes on does so with a shorter step
@@ -191,12 +212,12 @@ StepResult Stepper::advance_by_scheme(State& state) {
     if (is_late && done < whole) return give_up(is_late, result);
     state.good_steps = std::min(state.good_steps, std::numeric_limits<int>::max() - 1) + 1;
     // Doubling must keep sub-steps on the grid of the longer ones.
-    if (state.good_steps >= kGoodStepsToDouble && level > 0 && done % (whole >> (level - 1)) == 0) {
+    if (state.good_steps >= good_steps && level > 0 && done % (whole >> (level - 1)) == 0) {
       --state.halving_level;
       state.good_steps = 0;
     }
   }
-  state.time = begin + settings_.step;
+  state.time = begin_ + settings_.step;
   state.drives.end(settings_.step);
   state.transmitted.end(settings_.step);
   if (follower_) follower_->end_step(settings_.step);
@@ -222,6 +243,7 @@ void Stepper::initialise_accelerations(State& state) {
   const double h = 1e-2 * settings_.step;
   StepSettings settings = settings_;
   settings.step = h;
+  settings.events = {};
   Scheme scheme = *find_scheme("m1");
   scheme.contact_time = scheme_.contact_time;
   scheme.heeds_slide_schemes = false;  // they were chosen for another scheme

@@ -25,11 +25,13 @@ class Stepper {
   /// One step of settings.step, in sub-steps of step / 2^k where Newton or a hit on a stop needs them. On failure the
   /// state is that after the last good sub-step, or the step is done otherwise, see OnFailure.
   StepResult advance(State& state);
+  /// Of a step that ended as Reason::EventWithin: when the event happens, from its beginning [s].
+  double event() const { return event_; }
   /// Adds to an initial state what the scheme keeps there; accelerations (Newmark family) come from a short
   /// momentum-conserving step.
   void initialise(State& state);
   /// The length of whole steps from now on [s]; what the scheme was made with for another one stays.
-  void set_step(double step, int event_halvings);
+  void set_step(double step, const EventSearch& events = {});
   /// Of Newton's method, see StepSettings.
   void set_tolerance(double tolerance);
   /// The state was changed by somebody else: forget what was kept from the last step.
@@ -52,8 +54,10 @@ class Stepper {
   /// A step of a composed scheme is several simple ones; on failure the state is untouched.
   bool sub_step(State& state, double step, StepResult& result);
   bool simple_step(State& state, double step, StepResult& result);
-  /// Why a solution is not to be accepted. Notes the largest rotation.
-  StepResult::Reason flaw_of_solution(StepResult& result) const;
+  /// Why a solution is not to be accepted. Notes the largest rotation, and when an event happens.
+  StepResult::Reason flaw_of_solution(const State& state, double step, StepResult& result);
+  /// Of a solution that would be good enough for a longer step control.
+  StepResult::Reason flaw_by_events(const State& state, double step, const StepResult& result);
   void enter(StepPhase phase) {
     if (observer_) observer_->enter(phase);
   }
@@ -66,6 +70,7 @@ class Stepper {
   std::optional<VelocityScaling> scaling_;
   std::unique_ptr<DissipativeSubstitute> substitute_;  // where it is allowed
   State before_;                                       // of a step that may have to be taken back
+  double begin_ = 0, event_ = 0;                       // of the whole step; from there on [s]
   StepObserver* observer_ = nullptr;
   StepFollower* follower_ = nullptr;
 };

@@ -25,6 +25,11 @@ double StopContacts::position(const Coordinate& coordinate) const {
   return configuration_.released()[coordinate.joint].displacement[coordinate.component];
 }
 
+double StopContacts::begin_position(const Stopped& stopped) const {
+  const Coordinate& limited = coordinate(stopped);
+  return position(limited) - configuration_.increment_of(limited);
+}
+
 /// Where they have been found.
 double StopContacts::begin_rate(const Stopped& stopped) const {
   const Coordinate& limited = coordinate(stopped);
@@ -48,23 +53,34 @@ void StopContacts::after_update() {
   }
 }
 
-bool StopContacts::hits_too_fast() {
+bool StopContacts::hits_too_fast(double refinement) {
   for (const Stopped& stopped : stopped_) {
     const Coordinate& limited = coordinate(stopped);
     const double increment = configuration_.increment_of(limited);
     const CoordinateStep change = configuration_.coordinate_step(stopped.index, increment);
-    if (!is_coarse(*limited.limit, stopped.penalty, change)) continue;
+    if (!is_coarse(*limited.limit, stopped.penalty, change, refinement)) continue;
     configuration_.find_begin_rates();
-    if (swings(*limited.limit, stopped.penalty, change, begin_rate(stopped))) return true;
+    if (swings(*limited.limit, stopped.penalty, change, begin_rate(stopped), refinement)) return true;
   }
   return false;
 }
 
-bool StopContacts::switches() const {
+void StopContacts::note_events(FirstEvent& first) {
+  if (!stopped_.empty()) configuration_.find_begin_rates();
+  for (const Stopped& stopped : stopped_) {
+    const LimitStop& limit = *coordinate(stopped).limit;
+    const double begin = begin_position(stopped), end = position(coordinate(stopped));
+    const double start = configuration_.step() * begin_rate(stopped);
+    if (begin >= limit.lower) first.note(crossing(begin, end, limit.lower, start));
+    if (begin <= limit.upper) first.note(crossing(-begin, -end, -limit.upper, -start));
+  }
+}
+
+bool StopContacts::leaves() const {
   return std::any_of(stopped_.begin(), stopped_.end(), [&](const Stopped& stopped) {
     const LimitStop& limit = *coordinate(stopped).limit;
-    const double end = position(coordinate(stopped)), begin = end - configuration_.increment_of(coordinate(stopped));
-    return (begin < limit.lower) != (end < limit.lower) || (begin > limit.upper) != (end > limit.upper);
+    const double begin = begin_position(stopped), end = position(coordinate(stopped));
+    return (begin < limit.lower && end >= limit.lower) || (begin > limit.upper && end <= limit.upper);
   });
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "integrators/step_configuration.h"
+#include "integrators/step_events.h"
 
 namespace flexarm {
 
@@ -15,10 +16,13 @@ class StopContacts {
 
   void before_update();
   void after_update();
-  /// True where the restitution of a hit would be lost in so long a step.
-  bool hits_too_fast();
-  /// True where a coordinate comes to its stop in the step, or leaves it.
-  bool switches() const;
+  /// True where the restitution of a hit would be lost in so long a step; or, with a refinement above 1, in steps that
+  /// much longer.
+  bool hits_too_fast(double refinement);
+  /// Notes when coordinates touch their stops.
+  void note_events(FirstEvent& first);
+  /// True where a coordinate leaves its stop in the step.
+  bool leaves() const;
   /// True where the step is long for a hit that it is in or may come to, whatever its trial end.
   bool may_hit();
 
@@ -31,6 +35,7 @@ class StopContacts {
   };
   const Coordinate& coordinate(const Stopped& stopped) const;
   double position(const Coordinate& coordinate) const;
+  double begin_position(const Stopped& stopped) const;
   double begin_rate(const Stopped& stopped) const;
 
   StepConfiguration& configuration_;

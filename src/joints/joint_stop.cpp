@@ -209,8 +209,8 @@ double admissible_part(const LimitStop& limit, double from, double to) {
   return std::max(part, 0.0);
 }
 
-bool is_coarse(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change) {
-  const double angle = frequency(limit, penalty) * std::abs(change.step);
+bool is_coarse(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change, double refinement) {
+  const double angle = refinement * frequency(limit, penalty) * std::abs(change.step);
   for (const Side& side : sides(limit, change.begin, change.end)) {
     if (side.begin.depth <= 0 && side.end.depth <= 0) continue;
     const double steepest = std::max(hardened(side.begin).slope, hardened(side.end).slope);
@@ -221,13 +221,14 @@ bool is_coarse(const LimitStop& limit, const StopPenalty& penalty, const Coordin
   return false;
 }
 
-bool swings(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change, double begin_rate) {
+bool swings(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change, double begin_rate,
+            double refinement) {
   const double scale = frequency(limit, penalty), end_rate = 2 * change.increment / change.step - begin_rate;
   for (const Side& side : sides(limit, change.begin, change.end)) {
     if (side.begin.depth <= 0 && side.end.depth <= 0) continue;
     const double x0 = scale * hardened(side.begin).value, x1 = scale * hardened(side.end).value;
     const double largest = std::max(std::hypot(x0, begin_rate), std::hypot(x1, end_rate));
-    if (std::hypot(x1 - x0, end_rate - begin_rate) > kSwing * largest) return true;
+    if (refinement * std::hypot(x1 - x0, end_rate - begin_rate) > kSwing * largest) return true;
   }
   return false;
 }

@@ -39,12 +39,14 @@ double stop_damping(const LimitStop& limit, const StopPenalty& penalty, double p
 /// How much of an update from one position to another a stop allows, 1 where it is far: half the way from the first one
 /// to where it gives way no further.
 double admissible_part(const LimitStop& limit, double from, double to);
-/// True if a whole hit would take fewer than five such steps (eight, where efforts are those at the end): much of its
-/// restitution is lost.
-bool is_coarse(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change);
-/// True if the step goes through a part of a hit worth mentioning, false if the coordinate rests on its stop.
+/// True if a whole hit would take fewer than five times `refinement` such steps (eight, where efforts are those at the
+/// end): much of its restitution is lost.
+bool is_coarse(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change, double refinement = 1);
+/// True if the step goes through a part of a hit worth mentioning, which is the smaller the larger `refinement` is;
+/// false if the coordinate rests on its stop.
 /// `begin_rate` of the coordinate; the mean rate of the step is that of both ends.
-bool swings(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change, double begin_rate);
+bool swings(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change, double begin_rate,
+            double refinement = 1);
 /// True if, from the beginning of the step alone, the coordinate may come to its stop in it and go through much of what
 /// the stop still gives way.
 bool is_long_for_a_hit(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change,

@@ -184,6 +184,14 @@ struct Simulation::Implementation {
     return state;
   }
 
+  void set_step(double step, const EventSearch& events) {
+    if (step == settings.step && events == settings.events) return;
+    settings.step = step;
+    settings.events = events;
+    stepper->set_step(step, events);
+    state.halving_level = state.good_steps = 0;
+  }
+
   void restore(const State& other) {
     const std::string flaw = state_flaw(built ? *built : model, *initial, finest_halving(settings), other);
     if (!flaw.empty()) throw std::invalid_argument("not a state of this scene: " + flaw);

@@ -64,6 +64,13 @@ void restore(Simulation& simulation, const State& state) {
   Inside::of(simulation).restore(state);
 }
 
+void set_step(Simulation& simulation, double step, const EventSearch& events) {
+  Inside::of(simulation).set_step(step, events);
+}
+double event_of(const Simulation& simulation) {
+  return Inside::of(simulation).stepper->event();
+}
+
 void take_commands(const Simulation& simulation, Commands& commands) {
   const State& state = Inside::of(simulation).state;
   commands.efforts = state.commands;

@@ -7,6 +7,7 @@
 #include "building/rigid_lines.h"
 #include "flexarm/scene/scene_description.h"
 #include "flexarm/simulation/simulation.h"
+#include "integrators/step_settings.h"
 #include "model/model.h"
 #include "model/state.h"
 
@@ -43,6 +44,11 @@ State start_at(const Simulation& simulation, const MechanismMotion& motion);
 /// Replaces the state by any that the simulator could have come to, as one read from a file.
 /// @throws std::invalid_argument if it is not one of this simulation's; which is as before then
 void restore(Simulation& simulation, const State& state);
+
+/// The length of the next steps [s], whatever servos sample, and how they look for events.
+void set_step(Simulation& simulation, double step, const EventSearch& events);
+/// Of a step that ended as StepResult::Reason::EventWithin: when the event happens, from its beginning [s].
+double event_of(const Simulation& simulation);
 
 /// What a simulation is told from outside; to servos by actuators.
 struct Commands {

@@ -99,16 +99,11 @@ double Simulation::time() const {
 double Simulation::step_size() const {
   return implementation_->settings.step;
 }
-void Simulation::set_step_size(double step, int event_halvings) {
-  Implementation& s = *implementation_;
+void Simulation::set_step_size(double step) {
   if (!(step > 0 && step <= kLongestStep))
     throw std::invalid_argument(fmt::format("a step of {:g} s: expected > 0 and at most {:g} s", step, kLongestStep));
-  require_hit_samples(s.model, step);
-  if (step == s.settings.step && event_halvings == s.settings.event_halvings) return;
-  s.settings.step = step;
-  s.settings.event_halvings = event_halvings;
-  s.stepper->set_step(step, event_halvings);
-  s.state.halving_level = s.state.good_steps = 0;
+  require_hit_samples(implementation_->model, step);
+  implementation_->set_step(step, {});
 }
 
 double Simulation::tolerance() const {

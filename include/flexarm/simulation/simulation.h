@@ -89,10 +89,9 @@ class Simulation {
   double step_size() const;  ///< [s]
   /// The length of steps from the next one on, [s]; the motion goes on from where it is, with all that the scheme
   /// conserves. What a scheme was made with for the scene's step, as its numerical dissipation, stays. Snapshots do not
-  /// have it. `event_halvings`: how often a step is halved at most, within max_halvings, in which friction sticks or
-  /// slips anew, a stop is touched or left, or a slider comes to the end of its line.
+  /// have it.
   /// @throws std::invalid_argument if it is not > 0 and at most 1e9, or does not divide the sample time of a servo.
-  void set_step_size(double step, int event_halvings = 0);
+  void set_step_size(double step);
   double tolerance() const;  ///< of Newton's method, see IntegratorDescription
   /// From the next step on.
   /// @throws std::invalid_argument if it is not > 0 and at most kLargestTolerance.

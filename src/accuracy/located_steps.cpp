@@ -1,0 +1,149 @@
+#include "accuracy/located_steps.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "simulation/inside.h"
+
+namespace flexarm {
+namespace {
+
+/// Of the longest step, to which events are found. A force that jumps so far from where it does makes an error of the
+/// velocity of that part of what a whole step would.
+constexpr double kFound = 1e-8;
+/// The same of stops by friction, which leave no error of the velocity.
+constexpr double kSlide = 1e-3;
+/// Of the last correction, by which a step that is taken anew is longer than to where the event is expected: so it ends
+/// behind it, and shows where it is better than one that ends before.
+constexpr double kBeyond = 2e-3;
+/// Times that a step is taken anew, to end at an event.
+constexpr int kMostLocations = 10;
+/// Hits on stops are resolved by so many times as many steps as there are in a cell.
+constexpr double kRefinement = 2;
+/// Of a step, by which sums of steps may miss times.
+constexpr double kRoundOff = 1e-9;
+/// What tolerances of Newton's method may be.
+constexpr double kLeastTolerance = 1e-13, kMostTolerance = 1e-3;
+
+void add_corners(const TimeFunction& function, double begin, double end, std::vector<double>& times) {
+  const std::vector<double> corners = function.corners(begin, end);
+  times.insert(times.end(), corners.begin(), corners.end());
+}
+
+/// Samples that are due behind `begin`, and ends of commands to set points.
+void add_times_of_servo(const Actuator& actuator, const ActuatorState& state, double begin, double end,
+                        std::vector<double>& times) {
+  if (!actuator.servo) return;
+  if (!std::isnan(state.servo.set_point)) times.push_back(state.servo.set_time);
+  const double period = actuator.servo->sample_time;
+  if (period == 0) return;
+  for (double n = std::ceil(begin / period); n * period < end; ++n) times.push_back(n * period);
+  const double lag = std::fmod(actuator.servo->delay, period);
+  if (lag == 0) return;
+  for (double n = std::ceil((begin - lag) / period); n * period + lag < end; ++n) times.push_back(n * period + lag);
+}
+
+/// Whether there is anything at which forces may jump where no one foresees it.
+bool may_have_events(const Model& model) {
+  const bool by_joints = std::any_of(model.coordinates.begin(), model.coordinates.end(), [](const Coordinate& c) {
+    return c.limit || c.friction > 0 || c.friction_coefficient > 0;
+  });
+  const bool by_drives = std::any_of(model.actuators.begin(), model.actuators.end(), [](const Actuator& a) {
+    return a.drive.friction > 0 || (a.drive.gear && a.drive.gear->backlash > 0);
+  });
+  const bool by_slides =
+      std::any_of(model.joints.begin(), model.joints.end(), [](const JointMap& joint) { return joint.leaving >= 0; });
+  return by_joints || by_drives || by_slides;
+}
+
+}  // namespace
+
+std::vector<double> known_corners(const Simulation& simulation, double begin, double end) {
+  const Model& model = model_of(simulation);
+  const State& state = state_of(simulation);
+  std::vector<double> times;
+  for (const TimeFunction& history : model.histories) add_corners(history, begin, end, times);
+  for (std::size_t i = 0; i < model.actuators.size(); ++i)
+    add_times_of_servo(model.actuators[i], state.actuators[i], begin, end, times);
+  std::sort(times.begin(), times.end());
+  times.erase(std::remove_if(times.begin(), times.end(), [&](double time) { return time <= begin || time >= end; }),
+              times.end());
+  return times;
+}
+
+LocatedSteps::LocatedSteps(Simulation& simulation, std::vector<double> cells)
+    : simulation_(simulation), cells_(std::move(cells)), has_events_(may_have_events(model_of(simulation))) {
+  for (std::size_t i = 1; i < cells_.size(); ++i) longest_ = std::max(longest_, cells_[i] - cells_[i - 1]);
+}
+
+double LocatedSteps::steps_of(double length, double steps) const {
+  return std::max(1.0, std::ceil(steps * (std::sqrt(length / longest_) - kRoundOff)));
+}
+
+double LocatedSteps::planned(double steps) const {
+  double sum = 0;
+  for (std::size_t i = 1; i < cells_.size(); ++i) sum += steps_of(cells_[i] - cells_[i - 1], steps);
+  return sum;
+}
+
+void LocatedSteps::set(int steps, double tolerance) {
+  steps_ = steps;
+  tolerance_ = tolerance;
+  iterations = recoveries = 0;
+  next_ = 1;
+}
+
+StepResult LocatedSteps::step(double length, double tolerance, RunWatcher& watcher) {
+  // Divisions of cells of one length differ by round-off; a step that stays as it is keeps what it has learned.
+  const bool stays = std::abs(length - simulation_.step_size()) <= kRoundOff * length;
+  EventSearch events;
+  if (has_events_) events = {tolerance, kSlide * step(), std::max(1.0, kRefinement * steps_)};
+  flexarm::set_step(simulation_, stays ? simulation_.step_size() : length, events);
+  // What a solve leaves is an error of the velocity, over the length of the step.
+  simulation_.set_tolerance(
+      std::clamp(tolerance_ * std::sqrt(std::min(1.0, length / step())), kLeastTolerance, kMostTolerance));
+  watcher.before_step(simulation_);
+  const StepResult result = simulation_.step();
+  iterations += result.iterations;
+  recoveries += result.other_guesses + (has_events_ ? 0 : result.halvings);
+  return result;
+}
+
+/// A step that ends at the first event, if there is one.
+StepResult LocatedSteps::located_step(double length, RunWatcher& watcher) {
+  const double tolerance = kFound * step();
+  if (has_events_) simulation_.snapshot(before_);
+  const double whole = length;
+  StepResult result = this->step(length, tolerance, watcher);
+  for (int n = 1; result.reason == StepResult::Reason::EventWithin && !result.converged; ++n) {
+    const double correction = length - event_of(simulation_);
+    length -= (1 - kBeyond) * correction;
+    simulation_.restore(before_);
+    // What is not found soon is stepped over.
+    const bool is_found = n < kMostLocations;
+    result = this->step(is_found ? length : whole, is_found ? tolerance : whole, watcher);
+  }
+  return result;
+}
+
+bool LocatedSteps::advance_through_cell(double end, RunWatcher& watcher, AccurateRun& run) {
+  const double longest = (end - simulation_.time()) / steps_of(cells_[next_] - cells_[next_ - 1], steps_);
+  double rest;
+  while ((rest = end - simulation_.time()) > kRoundOff * longest) {
+    run.last = located_step(rest / std::ceil(rest / longest - kRoundOff), watcher);
+    ++run.steps;
+    run.end = AccurateRun::End::Interrupted;
+    if (!watcher.after_step(simulation_, run.last)) return false;
+    run.end = AccurateRun::End::Failed;
+    if (!run.last.converged) return false;
+  }
+  return true;
+}
+
+bool LocatedSteps::advance_to(double time, RunWatcher& watcher, AccurateRun& run) {
+  for (; next_ < cells_.size() && cells_[next_] <= time; ++next_)
+    if (!advance_through_cell(cells_[next_], watcher, run)) return false;
+  return true;
+}
+
+}  // namespace flexarm
