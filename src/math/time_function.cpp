@@ -10,9 +10,11 @@
 
 #include <fmt/format.h>
 
+#include "math/adaptive_mean.h"
 #include "math/cubic_spline.h"
 #include "math/expression.h"
 #include "math/parse_number.h"
+#include "math/traced_expression.h"
 
 namespace flexarm {
 namespace {
@@ -59,6 +61,44 @@ class Expression {
   mutable double t_ = 0;
   mu::Parser parser_;
 };
+
+/// Mean of what is a polynomial between its points and constant outside. `of_piece(a, b)`: that of one piece.
+template <class Piecewise, class OfPiece>
+double mean_by_pieces(const Piecewise& function, double begin, double end, const OfPiece& of_piece) {
+  auto next = std::upper_bound(function.times.begin(), function.times.end(), begin);
+  if (next == function.times.end() || *next >= end) return of_piece(begin, end);
+  double sum = 0, from = begin;
+  for (; from < end; ++next) {
+    const double to = next == function.times.end() ? end : std::min(*next, end);
+    sum += (to - from) / (end - begin) * of_piece(from, to);
+    from = to;
+    if (next == function.times.end()) break;
+  }
+  return sum;
+}
+
+double mean(const Table& table, double begin, double end) {
+  return mean_by_pieces(table, begin, end, [&](double a, double b) { return table(0.5 * (a + b)); });
+}
+double mean(const CubicSpline& spline, double begin, double end) {
+  return mean_by_pieces(spline, begin, end,
+                        [&](double a, double b) { return (spline(a) + 4 * spline(0.5 * (a + b)) + spline(b)) / 6; });
+}
+
+/// Slopes in front of and behind a point of a table; zero outside.
+bool bends(const Table& table, std::size_t i) {
+  const auto &t = table.times, &v = table.values;
+  const bool is_first = i == 0, is_last = i + 1 == t.size();
+  const double before = is_first ? 0 : (v[i] - v[i - 1]) / (t[i] - t[i - 1]);
+  const double after = is_last ? 0 : (v[i + 1] - v[i]) / (t[i + 1] - t[i]);
+  // Points on a line are rounded, their times as well.
+  double shortest = std::numeric_limits<double>::infinity();
+  if (!is_first) shortest = std::min(shortest, t[i] - t[i - 1]);
+  if (!is_last) shortest = std::min(shortest, t[i + 1] - t[i]);
+  const double round_off = 8 * std::numeric_limits<double>::epsilon() / shortest *
+                           (std::abs(v[i]) + std::abs(t[i]) * std::max(std::abs(before), std::abs(after)));
+  return std::abs(after - before) > round_off;
+}
 
 using Function = std::variant<double, Table, CubicSpline, Expression>;
 
@@ -191,6 +231,33 @@ double TimeFunction::derivative(double t) const {
   // Around the start the function may not exist for negative times: second-order forward difference.
   if (t >= 0 && t < step) return (-3 * (*this)(t) + 4 * (*this)(t + step) - (*this)(t + 2 * step)) / (2 * step);
   return ((*this)(t + step) - (*this)(t - step)) / (2 * step);
+}
+
+double TimeFunction::mean(double begin, double end) const {
+  const Function& function = implementation_->function;
+  if (const double* constant = std::get_if<double>(&function)) return *constant;
+  if (begin == end) return (*this)(begin);
+  if (begin > end) std::swap(begin, end);
+  if (const Table* table = std::get_if<Table>(&function)) return flexarm::mean(*table, begin, end);
+  if (const CubicSpline* spline = std::get_if<CubicSpline>(&function)) return flexarm::mean(*spline, begin, end);
+  return adaptive_mean(std::get<Expression>(function), begin, end);
+}
+
+std::vector<double> TimeFunction::corners(double begin, double end) const {
+  const Function& function = implementation_->function;
+  std::vector<double> out;
+  const auto add = [&](double t, bool is_corner) {
+    if (is_corner && t > begin && t < end && out.size() < kMostCorners) out.push_back(t);
+  };
+  if (const Table* table = std::get_if<Table>(&function)) {
+    for (std::size_t i = 0; i < table->times.size(); ++i) add(table->times[i], bends(*table, i));
+  } else if (const CubicSpline* spline = std::get_if<CubicSpline>(&function)) {
+    add(spline->times.front(), spline->rates.front() != 0);
+    add(spline->times.back(), spline->rates.back() != 0);
+  } else if (std::holds_alternative<Expression>(function) && !constant()) {
+    return expression_corners(implementation_->text, begin, end);
+  }
+  return out;
 }
 
 std::optional<double> TimeFunction::constant() const {

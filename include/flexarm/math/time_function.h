@@ -36,6 +36,15 @@ class TimeFunction {
   /// Exact of a spline; else a central difference with a step of cbrt(machine epsilon) * max(1, |t|), one-sided
   /// (forward) at t = 0.
   double derivative(double t) const;
+  /// Mean value over [begin, end], in either order; of one instant the value. Exact of constants, tables and splines;
+  /// of expressions to about 1e-13 of the largest value, jumps and kinks included, with five values where it is smooth
+  /// over the interval and at most some 4,000. May be non-finite where a value is. Does not allocate.
+  double mean(double begin, double end) const;
+  /// Increasing times within (begin, end), at most 10,000, at which the function or its derivative jumps, to round-off.
+  /// Of an expression those that its abs, sign, rint, min, max and comparisons have, and others that are apart by more
+  /// than a ten thousandth of the interval. For use before a run: it evaluates an expression some 10,000 to a million
+  /// times.
+  std::vector<double> corners(double begin, double end) const;
   /// The value of a function in which there is no t; none of another one, which may have the same value all the time.
   std::optional<double> constant() const;
   /// Text from which the function was made, or could have been.
