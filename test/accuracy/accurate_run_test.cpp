@@ -1,5 +1,6 @@
 #include "flexarm/accuracy/accurate_run.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <stdexcept>
@@ -275,66 +276,36 @@ TEST(AccurateRun, IsInterrupted) {
   EXPECT_EQ(run.end, AccurateRun::End::Interrupted);
 }
 
-/// A servo that measures every 10 ms is measured at ends of steps only.
+/// When steps of the last try have ended.
+struct EndsOfSteps : RunWatcher {
+  std::vector<double> times;
+  void begin(const Simulation&, long, double) override { times.clear(); }
+  bool after_step(const Simulation& simulation, const StepResult&) override {
+    times.push_back(simulation.time());
+    return true;
+  }
+  bool has(double time) const {
+    return std::any_of(times.begin(), times.end(), [time](double end) { return std::abs(end - time) < 1e-12; });
+  }
+};
+
+/// A servo that measures every 10 ms is measured at ends of steps, whatever intervals are.
 TEST(AccurateRun, HitsSamples) {
   SceneBuilder b = falling_arm();
   scene::ServoDescription& servo = b.servo("shoulder", 5, 0.2);
   servo.sample_time = 0.01;
   b.scene.integrator.step = 0.01;
-  RunWatcher nobody;
-  Simulation simulation(b.scene);
-  AccuracyRequest request{1e-3, 1.3};
-  request.most_steps = 1e5;
-  const AccurateRun run = run_to_accuracy(simulation, request, nobody);
-  EXPECT_EQ(run.end, AccurateRun::End::Met) << tries_of(run);
-  EXPECT_TRUE(hits_samples(run.interval / run.steps_per_interval, 0.01));
-  EXPECT_THROW(run_to_accuracy(simulation, {1e-3, simulation.time() + 0.0123}, nobody), std::invalid_argument);
-  EXPECT_THROW(simulation.set_step_size(0.007), std::invalid_argument);
-}
-
-// ---------------------------------------------------------------- events
-
-/// A block that slides to rest by friction: exact.
-TEST(Events, SlidingEndsWhereItDoes) {
-  SceneBuilder b;
-  b.body("block", 2, Vector3::Zero(), Matrix3::Identity());
-  scene::JointDescription& rail =
-      b.joint("rail", scene::JointKind::Prismatic, "world", "block", Vector3::Zero(), Vector3::UnitX());
-  rail.friction = 4;
-  rail.friction_law.law = scene::FrictionDescription::Law::Coulomb;
-  b.scene.initial_joints.push_back({"rail", 0, 1.313, {}});
-  constexpr double kRest = 1.313 * 1.313 / 2 / 2;  // deceleration 2 m/s^2, until 0.6565 s: inside a step
-  const auto error = [&](int event_halvings) {
+  for (const double until : {1.3, 0.9123}) {
+    EndsOfSteps ends;
     Simulation simulation(b.scene);
-    simulation.set_step_size(0.01, event_halvings);
-    for (int n = 0; n < 100; ++n) EXPECT_TRUE(simulation.step().converged);
-    EXPECT_NEAR(simulation.velocity(0), 0, 1e-12);
-    return std::abs(simulation.position(0) - kRest);
-  };
-  // The step of length h in which it comes to rest from v has the way v h / 2 for v^2 / (2 a): a h^2 / 8 too much at
-  // most.
-  for (const int halvings : {0, 3, 6})
-    EXPECT_LE(error(halvings), 2.0 / 8 * std::pow(0.01 / (1 << halvings), 2)) << halvings;
-}
-
-/// A ball on a stop: when it is hit is found to the length of the shortest step.
-TEST(Events, HitsAreResolved) {
-  SceneBuilder b;
-  b.body("ball", 1, Vector3::Zero(), Matrix3::Identity());
-  scene::JointDescription& rail =
-      b.joint("rail", scene::JointKind::Prismatic, "world", "ball", Vector3::Zero(), Vector3::UnitZ());
-  rail.limits = scene::JointLimits{-1, 1};
-  b.scene.gravity = {0, 0, -9.81};
-  Simulation simulation(b.scene);
-  simulation.set_step_size(0.02, 6);
-  bool has_halved = false;
-  for (int n = 0; n < 30; ++n) {
-    const StepResult result = simulation.step();
-    ASSERT_TRUE(result.converged);
-    has_halved = has_halved || result.deepest_halving >= 6;
+    AccuracyRequest request{1e-3, until};
+    request.most_steps = 1e5;
+    const AccurateRun run = run_to_accuracy(simulation, request, ends);
+    EXPECT_EQ(run.end, AccurateRun::End::Met) << tries_of(run);
+    EXPECT_NEAR(simulation.time(), until, 1e-12);
+    for (int n = 1; n < until / 0.01; ++n) ASSERT_TRUE(ends.has(n * 0.01)) << n;
+    EXPECT_THROW(simulation.set_step_size(0.007), std::invalid_argument);
   }
-  EXPECT_TRUE(has_halved);
-  simulation.set_step_size(0.02);
 }
 
 // ---------------------------------------------------------------- the companion

@@ -1,0 +1,185 @@
+/// Runs to an accuracy over jumps, stops, friction and play, against closed forms and motions that are not flexarm's.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "flexarm/accuracy/accurate_run.h"
+#include "flexarm/scene/urdf_reader.h"
+#include "support/scene_builder.h"
+
+namespace flexarm::test {
+namespace {
+
+scene::SceneDescription read(const std::string& text) {
+  scene::ReadResult result = scene::read_scene_text(text, "case");
+  EXPECT_TRUE(result.scene.has_value());
+  return std::move(*result.scene);
+}
+
+/// A link on a hinge about `axis`, its centre of mass at `centre`, with `inertia` about it; probed at `probe`.
+std::string hinge(const std::string& axis, const std::string& centre, const std::string& inertia,
+                  const std::string& of_joint, const std::string& others, const std::string& simulation) {
+  return "<robot name='case'><link name='world'/><link name='a'><inertial><origin xyz='" + centre +
+         "'/><mass value='1'/><inertia ixx='" + inertia + "' iyy='" + inertia + "' izz='" + inertia +
+         "' ixy='0' ixz='0' iyz='0'/></inertial></link><joint name='h' type='" +
+         (of_joint.find("limit") == std::string::npos ? "continuous" : "revolute") +
+         "'><parent link='world'/><child link='a'/><axis xyz='" + axis + "'/>" + of_joint + "</joint>" + others +
+         "<simulation>" + simulation + "</simulation></robot>";
+}
+
+/// The error of a run of ten intervals, and of its steps, over what was asked for.
+struct Outcome {
+  double error, estimate;
+  long steps;
+};
+Outcome outcome(const scene::SceneDescription& scene, double until, double accuracy, const Trajectory& truth) {
+  Simulation simulation(scene);
+  RunWatcher nobody;
+  const AccurateRun run = run_to_accuracy(simulation, {accuracy, until, static_cast<int>(truth.size()) - 1}, nobody);
+  EXPECT_EQ(run.end, AccurateRun::End::Met) << to_string(run.end) << ", " << accuracy;
+  EXPECT_NEAR(simulation.time(), until, 1e-12);
+  return {trajectory_distance(run.motion.points[0], truth) / run.scale, run.estimate(), run.steps};
+}
+
+/// Times of steps are sums.
+constexpr double kRoundOff = 1e-10;
+
+/// A body that a constant torque turns: equal steps are exact between jumps, and so is the run.
+TEST(Corners, JumpsOfLoadsAreEndsOfSteps) {
+  for (const double jump : {0.3125, 1 / M_PI, std::sqrt(0.5)}) {
+    const std::string time = std::to_string(jump);
+    const double at = std::stod(time);
+    const scene::SceneDescription scene = read(hinge("0 0 1", "0 0 0", "1", "", "",
+                                                     "<gravity xyz='0 0 0'/><effort joint='h' history='t &lt; " + time +
+                                                         " ? 3 : -3'/><probe name='p' link='a' at='1 0 0'/>"));
+    Trajectory truth;
+    for (int i = 0; i <= 10; ++i) {
+      const double t = 0.1 * i, behind = std::max(t - at, 0.0), angle = 1.5 * t * t - 3 * behind * behind;
+      truth.emplace_back(std::cos(angle), std::sin(angle), 0);
+    }
+    for (const double accuracy : {1e-3, 1e-5}) {
+      const Outcome run = outcome(scene, 1, accuracy, truth);
+      // A hinge turns by 2 atan(h w / 2) in a step, which is of third order in it: that is left of the error.
+      EXPECT_LE(run.error, accuracy) << jump;
+      EXPECT_LE(run.steps, 1000) << "a few tries of some tens of steps";
+    }
+  }
+}
+
+/// A block slides to rest within a step, is thrown back, and so on: known exactly.
+TEST(Corners, StopsByFrictionAreFound) {
+  SceneBuilder b;
+  b.body("block", 2, Vector3::Zero(), Matrix3::Identity());
+  scene::JointDescription& rail =
+      b.joint("rail", scene::JointKind::Prismatic, "world", "block", Vector3::Zero(), Vector3::UnitX());
+  rail.friction = 4;
+  rail.friction_law.law = scene::FrictionDescription::Law::Coulomb;
+  b.scene.initial_joints.push_back({"rail", 0, 1.313, {}});
+  b.probe("block", "block", {0, 0, 0});
+  Trajectory truth;
+  for (int i = 0; i <= 10; ++i) {
+    const double t = std::min(0.1 * i, 1.313 / 2);  // deceleration 2 m/s^2, until 0.6565 s
+    truth.emplace_back(1.313 * t - t * t, 0, 0);
+  }
+  // Between events mid-point steps are exact; a stop is left within a thousandth of a step of 0.1 s at most.
+  EXPECT_LE(outcome(b.scene, 1, 1e-3, truth).error * 0.43, 1e-3 * 0.1 * 0.1 * 2);
+}
+
+struct Case {
+  std::string name;
+  scene::SceneDescription scene;
+  double until;
+  std::vector<double> accuracies;
+  Trajectory truth;
+};
+
+/// Tips at a tenth of `until` each by scipy: scripts/outside_references, DOP853 with 1e-12 and events located.
+std::vector<Case> cases() {
+  const std::string down = "<gravity xyz='0 0 -9.81'/>", weightless = "<gravity xyz='0 0 0'/>";
+  std::vector<Case> out;
+  out.push_back({"a pendulum falls on its stop",
+                 read(hinge("0 -1 0", "0.5 0 0", "0.05", "<limit lower='-0.4' upper='1.6' effort='0' velocity='0'/>",
+                            "", down + "<initial joint='h' position='1'/><probe name='tip' link='a' at='1 0 0'/>")),
+                 3,
+                 {1e-3, 1e-4, 1e-5},
+                 {{0.540302306, 0, 0.841470985},
+                  {0.845992745, 0, 0.533194407},
+                  {0.955764062, 0, -0.294134422},
+                  {0.921001559, 0, -0.389558889},
+                  {0.921001569, 0, -0.389558866},
+                  {0.921001569, 0, -0.389558866},
+                  {0.921001569, 0, -0.389558866},
+                  {0.921001569, 0, -0.389558866},
+                  {0.921001569, 0, -0.389558866},
+                  {0.921001569, 0, -0.389558866},
+                  {0.921001569, 0, -0.389558866}}});
+  out.push_back({"Coulomb friction, pushed to and fro",
+                 read(hinge("0 -1 0", "0 0 -0.5", "0.05", "<dynamics friction='0.5'/><friction law='coulomb'/>", "",
+                            down + "<initial joint='h' position='1.2'/><effort joint='h' history='1.5*sin(6*t)'/>"
+                                   "<probe name='tip' link='a' at='0 0 -1'/>")),
+                 4,
+                 {1e-3, 1e-4, 1e-5},
+                 {{0.932039086, 0, -0.362357754},
+                  {0.435272853, 0, -0.900298586},
+                  {-0.629468379, 0, -0.777026100},
+                  {-0.645018533, 0, -0.764166927},
+                  {0.689815379, 0, -0.723985319},
+                  {0.559304041, 0, -0.828962599},
+                  {-0.653092504, 0, -0.757278140},
+                  {-0.207687866, 0, -0.978195149},
+                  {0.185848976, 0, -0.982578322},
+                  {0.187809460, 0, -0.982205481},
+                  {-0.025137446, 0, -0.999684004}}});
+  out.push_back({"smooth friction, pushed to and fro",
+                 read(hinge("0 -1 0", "0 0 -0.5", "0.05", "<dynamics friction='0.7'/>", "",
+                            down + "<initial joint='h' position='1'/><effort joint='h' history='2*sin(2.5*t)'/>"
+                                   "<probe name='tip' link='a' at='0 0 -1'/>")),
+                 4,
+                 {1e-3, 1e-4, 1e-5},
+                 {{0.841470985, 0, -0.540302306},
+                  {0.355482404, 0, -0.934682973},
+                  {-0.036395120, 0, -0.999337478},
+                  {0.243522116, 0, -0.969895344},
+                  {0.064776998, 0, -0.997899765},
+                  {-0.520694786, 0, -0.853742900},
+                  {-0.567590028, 0, -0.823311339},
+                  {0.110939261, 0, -0.993827188},
+                  {0.731097079, 0, -0.682273450},
+                  {0.590026389, 0, -0.807383961},
+                  {-0.182044175, 0, -0.983290353}}});
+  out.push_back(
+      {"a gear with play",
+       read(hinge("0 0 1", "0 0 0", "0.35", "",
+                  "<drive joint='h' gear='60' rotor_inertia='3e-05' stiffness='2000' damping='1' "
+                  "backlash='0.05'/>",
+                  weightless + "<effort joint='h' history='2*sin(6*t)'/><probe name='tip' link='a' at='1 0 0'/>")),
+       4,
+       {1e-2, 1e-3},
+       {{1, 0, 0},
+        {0.979241943, 0.202694884, 0},
+        {0.760771536, 0.649019776, 0},
+        {0.716047809, 0.698051241, 0},
+        {0.377225381, 0.926121489, 0},
+        {0.045044459, 0.998984983, 0},
+        {-0.056110989, 0.998424537, 0},
+        {-0.546746989, 0.837297874, 0},
+        {-0.659532320, 0.751676206, 0},
+        {-0.842251329, 0.539085058, 0},
+        {-0.992947660, 0.118553553, 0}}});
+  return out;
+}
+
+TEST(Corners, ErrorsAreWhatIsAskedFor) {
+  for (const Case& one : cases())
+    for (const double accuracy : one.accuracies) {
+      const Outcome run = outcome(one.scene, one.until, accuracy, one.truth);
+      EXPECT_LE(run.error, accuracy + kRoundOff) << one.name << " to " << accuracy << ", said " << run.estimate;
+    }
+}
+
+}  // namespace
+}  // namespace flexarm::test
