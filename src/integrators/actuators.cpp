@@ -95,7 +95,8 @@ void Actuators::begin() {
     part.rotor = rotor_step(actuator, state);
     part.demand = {};
     if (coordinate.motion < 0)
-      part.demand.constant = histories_.effort(coordinate, configuration_.state().commands[actuator.coordinate]);
+      part.demand.constant =
+          histories_.effort(model, actuator.coordinate, configuration_.state().commands[actuator.coordinate]).acting;
     if (actuator.servo && coordinate.motion < 0) ask(actuator, state, part);
     if (state.servo.off > 0) part.demand = {0, 0, 0, 0};  // it goes on measuring
     part.action = {};
@@ -108,19 +109,27 @@ double Actuators::rate_of_command(const ServoState& state, double time) const {
 }
 
 SetPoint Actuators::commanded_set_point(const ServoState& state) const {
-  if (configuration_.scheme().is_static) return {state.set_point, state.set_point, 0};
+  if (configuration_.scheme().is_static) return {state.set_point, state.set_point};
   const double begin = configuration_.state().time, end = begin + configuration_.step();
-  return {state.set_point_at(begin), state.set_point_at(end), rate_of_command(state, end)};
+  SetPoint out(state.set_point_at(begin), state.set_point_at(end));
+  out.rate_at_end = rate_of_command(state, end);
+  return out;
 }
 
 SetPoint Actuators::set_point(const Servo& servo, const ServoState& state) const {
   if (!std::isnan(state.set_point)) return commanded_set_point(state);
-  if (servo.set_point < 0) return {servo.start, servo.start, 0};
+  if (servo.set_point < 0) return {servo.start, servo.start};
   const TimeFunction& history = configuration_.model().histories[servo.set_point];
   const Scheme& scheme = configuration_.scheme();
   const double begin = scheme.is_static ? 0 : configuration_.state().time, end = begin + configuration_.step();
   const bool needs_rate = !scheme.is_static && !scheme.is_incremental();
-  return {history(begin), history(end), needs_rate ? history.derivative(end) : 0};
+  SetPoint out(history(begin), history(end));
+  if (needs_rate) out.rate_at_end = history.derivative(end);
+  if (!scheme.is_static) {
+    out.mean = histories_.of_servo(servo.set_point).mean;
+    out.acting = histories_.of_servo(servo.set_point).acting;
+  }
+  return out;
 }
 
 ServoInput Actuators::servo_input(const Actuator& actuator, const Part& part, const ActuatorState& state) const {
@@ -149,7 +158,7 @@ ServoInput Actuators::servo_input(const Actuator& actuator, const Part& part, co
     }
   }
   input.set_point = set_point(servo, state.servo);
-  if (servo.feedforward >= 0) input.feedforward = histories_.factor * histories_.at_point[servo.feedforward];
+  if (servo.feedforward >= 0) input.feedforward = histories_.factor * histories_.of_servo(servo.feedforward).acting;
   // Sub-steps of a composition cancel each other's errors if all take the same rule.
   if (scheme.is_incremental() && !scheme.is_composition && !scheme.is_static)
     input.relaxation = std::min(scheme.contact_time / kContactSteps, configuration_.step());
@@ -169,6 +178,8 @@ void Actuators::ask(const Actuator& actuator, const ActuatorState& state, Part& 
     const double set_rate = history ? ((*history)(time) - (*history)(time - period)) / period
                                     : rate_of_command(state.servo, time - 0.5 * period);
     part.servo = state.servo;
+    // What is sampled is the value at the beginning.
+    if (servo.feedforward >= 0) part.input.feedforward = configuration_.model().histories[servo.feedforward](time);
     sample(servo, part.input, set_rate, part.servo);
     part.demand.constant += held_output(servo, part.servo, time, configuration_.step());
     return;

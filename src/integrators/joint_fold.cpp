@@ -41,7 +41,7 @@ void JointFold::add_efforts(int j, Balance& balance) {
     const std::size_t index = model.first_coordinate[j] + k;
     const Coordinate& coordinate = model.coordinates[index];
     if (has_motor(coordinate)) continue;
-    applied_[index] = histories_.effort(coordinate, configuration_.state().commands[index]);
+    applied_[index] = histories_.effort(model, index, configuration_.state().commands[index]).acting;
     residual[k] -= friction_.effort_weight() * applied_[index];
   }
   if (is_resisted_[j]) add_resistance(j, balance);
@@ -131,22 +131,34 @@ void JointFold::find_drives(const ReducedResidual& residual, HeldEfforts& held, 
 
 void JointFold::add_work(double& work) const {
   const Model& model = configuration_.model();
-  const State& state = configuration_.state();
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
     const ReleasedVector change = configuration_.increment_of(static_cast<int>(j));
     for (int k = 0; k < change.size(); ++k) {
       const std::size_t index = model.first_coordinate[j] + k;
       if (has_motor(model.coordinates[index])) continue;
-      const double effort =
-          configuration_.scheme().is_incremental() ? applied_[index] : 0.5 * (applied_[index] + state.efforts[index]);
+      const double effort = configuration_.scheme().is_incremental() ? applied_[index] : effort_of_step(index);
       work += effort * change[k];
     }
   }
 }
 
+double JointFold::effort_of_step(std::size_t index) const {
+  const State& state = configuration_.state();
+  const Coordinate& coordinate = configuration_.model().coordinates[index];
+  if (coordinate.effort >= 0 && coordinate.motion < 0 && std::isnan(state.commands[index]))
+    return histories_.effort(configuration_.model(), index, state.commands[index]).mean;
+  return 0.5 * (applied_[index] + state.efforts[index]);
+}
+
 void JointFold::accept(State& state) const {
   std::copy(configuration_.released().begin(), configuration_.released().end(), state.released.begin());
   std::copy(applied_.begin(), applied_.end(), state.efforts.begin());
+  if (configuration_.scheme().is_incremental()) return;
+  // What acts in the balance makes up for jumps within the step; the effort at its end is another one.
+  const std::vector<Coordinate>& coordinates = configuration_.model().coordinates;
+  for (std::size_t i = 0; i < coordinates.size(); ++i)
+    if (coordinates[i].effort >= 0 && coordinates[i].motion < 0 && !has_motor(coordinates[i]))
+      state.efforts[i] = histories_.effort(configuration_.model(), i, state.commands[i]).at_end;
 }
 
 }  // namespace flexarm

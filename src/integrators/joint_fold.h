@@ -29,6 +29,8 @@ class JointFold {
   const std::vector<double>& efforts() const { return applied_; }
 
  private:
+  /// Where efforts are those at ends: the mean over the step, for work.
+  double effort_of_step(std::size_t coordinate) const;
   Vector6 force_on_slave(int joint, const Balance& balance) const;
   template <class Maps>
   void fold(int joint, Maps& maps, Balance& balance);

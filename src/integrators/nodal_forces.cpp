@@ -65,9 +65,8 @@ void NodalForces::add_pull(const NodalLoad& load, Balance& balance) const {
 
 template <class Visit>
 void NodalForces::for_each_load(const Visit& visit) const {
-  for (const NodalLoad& load : configuration_.model().loads)
-    visit(load, histories_.at_point[load.history], histories_.at_beginning[load.history]);
-  for (const NodalLoad& wrench : configuration_.state().wrenches) visit(wrench, 1.0, 1.0);
+  for (const NodalLoad& load : configuration_.model().loads) visit(load, histories_.of_load(load.history));
+  for (const NodalLoad& wrench : configuration_.state().wrenches) visit(wrench, StepForce{1.0, 1.0, 1.0});
 }
 
 void NodalForces::evaluate(Balance& balance) const {
@@ -78,9 +77,9 @@ void NodalForces::evaluate(Balance& balance) const {
   const std::vector<NodePose>&begin = configuration_.begin(), &end = configuration_.end();
   const LoadPoint point = scheme.is_incremental() ? LoadPoint::Mean : LoadPoint::End;
   const std::vector<NodePose>& loaded = interpolation_ ? interpolation_->configuration() : end;
-  for_each_load([&](const NodalLoad& load, double value, double) {
-    const LoadAction action =
-        load_action(load, histories_.factor * value, begin[load.node].rotation, loaded[load.node].rotation, point);
+  for_each_load([&](const NodalLoad& load, const StepForce& value) {
+    const LoadAction action = load_action(load, histories_.factor * value.acting, begin[load.node].rotation,
+                                          loaded[load.node].rotation, point);
     add(load.node, -action.wrench, -action.derivative, true, balance.tangent != nullptr, balance);
   });
   for (const NodalLoad& wrench : configuration_.state().wrenches)
@@ -91,13 +90,10 @@ Vector6 NodalForces::loads_on(const std::vector<bool>& links) const {
   const std::vector<NodePose>&begin = configuration_.begin(), &end = configuration_.end();
   const LoadPoint point = configuration_.scheme().is_incremental() ? LoadPoint::Mean : LoadPoint::End;
   const auto is_on = [&](const NodalLoad& load) { return load.link >= 0 && links[load.link]; };
-  // Where the configuration is interpolated in time, so are the values of histories: from there to the end.
-  const TimeRule& rule = configuration_.scheme();
-  const double beyond = rule.hht == HhtForm::Kinematics ? 1 / (1 + rule.alpha) - 1 : 0;
   Vector6 wrench = Vector6::Zero();
-  for_each_load([&](const NodalLoad& load, double value, double at_beginning) {
+  for_each_load([&](const NodalLoad& load, const StepForce& value) {
     if (!is_on(load)) return;
-    const double now = histories_.factor * (value + beyond * (value - at_beginning));
+    const double now = histories_.factor * value.at_end;
     wrench += load_action(load, now, begin[load.node].rotation, end[load.node].rotation, point).wrench;
   });
   for (const NodalLoad& load : configuration_.state().wrenches)
@@ -106,16 +102,16 @@ Vector6 NodalForces::loads_on(const std::vector<bool>& links) const {
 }
 
 void NodalForces::add_work(double& work) const {
-  for_each_load([&](const NodalLoad& load, double value, double value_at_beginning) {
+  for_each_load([&](const NodalLoad& load, const StepForce& value) {
     const NodePose &begin = configuration_.begin()[load.node], &end = configuration_.end()[load.node];
     Vector6 wrench, increment;
     increment << end.position - begin.position, configuration_.increments()[load.node];
     if (configuration_.scheme().is_incremental()) {
-      wrench = load_action(load, value, begin.rotation, end.rotation, LoadPoint::Mean).wrench;
-    } else {  // trapezoidal rule
+      wrench = load_action(load, value.mean, begin.rotation, end.rotation, LoadPoint::Mean).wrench;
+    } else {  // the mean force in the mean of both directions
       increment.tail<3>() = cayley::to_rotation_vector(configuration_.increments()[load.node]);
-      wrench = 0.5 * (load_action(load, value, begin.rotation, end.rotation, LoadPoint::End).wrench +
-                      load_action(load, value_at_beginning, end.rotation, begin.rotation, LoadPoint::End).wrench);
+      wrench = 0.5 * (load_action(load, value.mean, begin.rotation, end.rotation, LoadPoint::End).wrench +
+                      load_action(load, value.mean, end.rotation, begin.rotation, LoadPoint::End).wrench);
     }
     work += wrench.dot(increment);
   });

@@ -19,7 +19,7 @@ class NodalForces {
   Vector6 loads_on(const std::vector<bool>& links) const;
 
  private:
-  /// visit(load, its value where the scheme evaluates forces, its value at the beginning)
+  /// visit(load, its history's StepForce)
   template <class Visit>
   void for_each_load(const Visit& visit) const;
   void add_weight(int node, Balance& balance) const;

@@ -1,8 +1,9 @@
 #pragma once
-/// Values of the scene's functions of time over a step.
+/// The scene's functions of time over a step.
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "integrators/step_configuration.h"
@@ -15,29 +16,33 @@ inline double applied_effort(const Coordinate& coordinate, double commanded, dou
   return limit > 0 ? std::clamp(effort, -limit, limit) : effort;
 }
 
-/// Loads and efforts follow histories, times a factor by which statics lets them grow.
-struct StepHistories {
-  explicit StepHistories(const Model& model) : at_point(model.histories.size()), at_beginning(model.histories.size()) {}
+/// A function of time in a step.
+struct StepForce {
+  double acting = 0;  ///< in the balance: its mean, or in the Newmark family what makes the impulses of all steps exact
+  double mean = 0;    ///< over the step
+  double at_end = 0;  ///< value at the end; where forces are means the mean again
+};
 
-  void begin(const StepConfiguration& configuration) {
-    const Scheme& scheme = configuration.scheme();
-    const double time = configuration.state().time;
-    double point = scheme.hht == HhtForm::Kinematics ? 1 + scheme.alpha : 1;
-    if (scheme.is_incremental()) point = 0.5;
-    for (std::size_t i = 0; i < at_point.size(); ++i) {
-      const TimeFunction& history = configuration.model().histories[i];
-      at_point[i] = history(scheme.is_static ? 0.0 : time + point * configuration.step());
-      if (!scheme.is_incremental() && !scheme.is_static) at_beginning[i] = history(time);
-    }
-  }
+/// Loads and efforts follow histories, times a factor by which statics lets them grow; they enter a step by their
+/// integrals (theory.md, "Forces that change within a step").
+class StepHistories {
+ public:
+  explicit StepHistories(const Model& model);
 
-  double effort(const Coordinate& coordinate, double commanded) const {
-    return factor * applied_effort(coordinate, commanded, coordinate.effort < 0 ? 0.0 : at_point[coordinate.effort]);
-  }
+  void begin(const StepConfiguration& configuration);
+  /// Of loads; in statics at time 0.
+  const StepForce& of_load(int history) const { return loads_[history]; }
+  /// Of what controllers take.
+  const StepForce& of_servo(int history) const { return servos_[history]; }
+  /// Of a coordinate's effort, cut at its limit at each instant.
+  StepForce effort(const Model& model, std::size_t coordinate, double commanded) const;
 
-  std::vector<double> at_point;      ///< where in the step the scheme evaluates forces; at time 0 in statics
-  std::vector<double> at_beginning;  ///< for the work of the Newmark family
   double factor = 1;
+
+ private:
+  std::vector<StepForce> loads_, servos_;                      // per history
+  std::vector<StepForce> efforts_;                             // per coordinate
+  std::vector<int> load_histories_, servo_histories_, moved_;  // no constants; moved_: coordinates
 };
 
 }  // namespace flexarm

@@ -7,7 +7,7 @@
 
 namespace flexarm {
 
-/// The strains of a step, those at its beginning too, are measured from one prestrain: the mean of both ends where
+/// The strains of a step, those at its beginning too, are measured from one prestrain: its mean over the step where
 /// forces are means over the step, else that of the instant at which the scheme evaluates forces. So elements see a
 /// constant, and their energy's change by it is work (docs/notes/beam.md 3.6).
 class StepPrestrains {
@@ -21,14 +21,17 @@ class StepPrestrains {
   const Vector6& of_step(int prestrain) const { return of_step_[prestrain + 1]; }
   /// True if one of them changes over the step.
   bool do_work() const { return do_work_; }
-  /// Work at a stiffness point while its prestrain changes: minus the elastic stress's, at the mean of both ends [J].
-  /// `begin`, `end`: strains as measured in this step.
+  /// Work at a stiffness point while its prestrain changes: minus the elastic stress's, at the mean of both ends, plus
+  /// what the mean prestrain of the step is above that of its ends does on the strain's increment [J]. `begin`, `end`:
+  /// strains as measured in this step.
   template <int Nodes>
   double work(const BeamElement<Nodes>& element, int point, const Vector6& begin, const Vector6& end) const {
     const int i = element.prestrain + 1;
     const Vector6 elastic = begin + (0.5 / reach_) * (end - begin) + (of_step_[i] - mean_[i]);
     const auto& constants = element.stiffness_points[point];
-    return -constants.weight * change_[i].dot(constants.stiffness * elastic);
+    const Vector6 by_strain = surplus_[i] / reach_;
+    return constants.weight *
+           ((end - begin).dot(constants.stiffness * by_strain) - change_[i].dot(constants.stiffness * elastic));
   }
 
  private:
@@ -36,7 +39,7 @@ class StepPrestrains {
   double reach_ = 1;  // where in the step strains at its "end" are
   bool do_work_ = false;
   // Per prestrain, after the zero of beams that have none.
-  std::vector<Vector6> of_step_, mean_, change_;
+  std::vector<Vector6> of_step_, mean_, change_, surplus_;
 };
 
 }  // namespace flexarm

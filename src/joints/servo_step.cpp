@@ -20,7 +20,7 @@ double error_at_begin(const ServoLaw& law, const ServoState& state, const ServoI
 /// Of the error over the step, but for what is measured.
 double set_increment(const ServoLaw& law, const ServoInput& input) {
   const SetPoint& s = input.set_point;
-  return law.mode == ServoMode::Velocity ? 0.5 * input.measured.step * (s.begin + s.end) : s.end - s.begin;
+  return law.mode == ServoMode::Velocity ? input.measured.step * s.mean : s.end - s.begin;
 }
 
 /// The proportional effort for an increment s of the error, per gain: offset + slope s.
@@ -66,7 +66,7 @@ ServoDemand servo_demand(const ServoLaw& law, const ServoState& state, const Ser
   const SetPoint& set = input.set_point;
   if (law.mode == ServoMode::Effort) {
     const bool is_mean = h != 0 && !input.measured.at_end;
-    return {input.feedforward + (is_mean ? 0.5 * (set.begin + set.end) : set.end), 0};
+    return {input.feedforward + (is_mean ? set.mean : h == 0 ? set.end : set.acting), 0};
   }
   const double error = error_at_begin(law, state, input);
   Term sum{input.feedforward, 0};  // in terms of the error's increment

@@ -17,8 +17,13 @@ namespace flexarm {
 
 /// Over a step, of the set point.
 struct SetPoint {
+  SetPoint() = default;
+  SetPoint(double at_begin, double at_end, double rate = 0)
+      : begin(at_begin), end(at_end), rate_at_end(rate), mean(0.5 * (at_begin + at_end)), acting(at_end) {}
   double begin = 0, end = 0;
   double rate_at_end = 0;
+  double mean = 0;    ///< over the step
+  double acting = 0;  ///< of an effort, where efforts are those at the end: see StepForce
 };
 
 struct ServoInput {

@@ -50,6 +50,7 @@ double adaptive_mean(const Function& f, double begin, double end) {
     double error =
         share * std::abs(kFrom4[0] * p.f_from + kFrom4[1] * left + kFrom4[2] * right + kFrom4[3] * p.f_to - test);
     const auto [low, high] = std::minmax({p.f_from, p.f_to, left, right, test});
+    if (low == high) mean = low;  // without round-off
     largest = std::max({largest, std::abs(low), std::abs(high)});
     // Times are rounded: where a function changes so much its values are not known any better.
     const double tolerance = kTolerance * largest + 4 * resolution / width * (high - low);

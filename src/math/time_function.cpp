@@ -85,6 +85,17 @@ double mean(const CubicSpline& spline, double begin, double end) {
                         [&](double a, double b) { return (spline(a) + 4 * spline(0.5 * (a + b)) + spline(b)) / 6; });
 }
 
+/// Mean of a line from `a` to `b` that is cut at both limits.
+double mean_of_cut_line(double a, double b, double limit) {
+  if (std::max(std::abs(a), std::abs(b)) <= limit) return 0.5 * (a + b);
+  if (std::min(a, b) >= limit) return limit;
+  if (std::max(a, b) <= -limit) return -limit;
+  const auto integral = [limit](double x) {  // of the cut from 0 on
+    return std::abs(x) <= limit ? 0.5 * x * x : limit * (std::abs(x) - 0.5 * limit);
+  };
+  return (integral(b) - integral(a)) / (b - a);
+}
+
 /// Slopes in front of and behind a point of a table; zero outside.
 bool bends(const Table& table, std::size_t i) {
   const auto &t = table.times, &v = table.values;
@@ -241,6 +252,23 @@ double TimeFunction::mean(double begin, double end) const {
   if (const Table* table = std::get_if<Table>(&function)) return flexarm::mean(*table, begin, end);
   if (const CubicSpline* spline = std::get_if<CubicSpline>(&function)) return flexarm::mean(*spline, begin, end);
   return adaptive_mean(std::get<Expression>(function), begin, end);
+}
+
+double TimeFunction::mean_within(double limit, double begin, double end) const {
+  const Function& function = implementation_->function;
+  const auto cut = [limit](double value) { return std::clamp(value, -limit, limit); };
+  if (const double* constant = std::get_if<double>(&function)) return cut(*constant);
+  if (begin == end) return cut((*this)(begin));
+  if (begin > end) std::swap(begin, end);
+  if (const Table* table = std::get_if<Table>(&function))
+    return mean_by_pieces(*table, begin, end,
+                          [&](double a, double b) { return mean_of_cut_line((*table)(a), (*table)(b), limit); });
+  if (const CubicSpline* spline = std::get_if<CubicSpline>(&function)) {
+    const auto value = [&](double t) { return cut((*spline)(t)); };
+    return mean_by_pieces(*spline, begin, end, [&](double a, double b) { return adaptive_mean(value, a, b); });
+  }
+  const Expression& expression = std::get<Expression>(function);
+  return adaptive_mean([&](double t) { return cut(expression(t)); }, begin, end);
 }
 
 std::vector<double> TimeFunction::corners(double begin, double end) const {

@@ -18,5 +18,7 @@ struct Prestrain {
 
 /// {Gamma, K} about the mass centroid [-, 1/m] of Model::prestrains at a time [s]; zero where `index` is negative.
 Vector6 prestrain_at(const Model& model, int index, double time);
+/// Its mean over a time.
+Vector6 mean_prestrain(const Model& model, int index, double begin, double end);
 
 }  // namespace flexarm

@@ -40,6 +40,8 @@ class TimeFunction {
   /// of expressions to about 1e-13 of the largest value, jumps and kinks included, with five values where it is smooth
   /// over the interval and at most some 4,000. May be non-finite where a value is. Does not allocate.
   double mean(double begin, double end) const;
+  /// The same of what is left of the function between -limit and limit (> 0) at each instant.
+  double mean_within(double limit, double begin, double end) const;
   /// Increasing times within (begin, end), at most 10,000, at which the function or its derivative jumps, to round-off.
   /// Of an expression those that its abs, sign, rint, min, max and comparisons have, and others that are apart by more
   /// than a ten thousandth of the interval. For use before a run: it evaluates an expression some 10,000 to a million
