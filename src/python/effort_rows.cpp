@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "simulation/command_refusal.h"
+#include "flexarm/simulation/command_refusal.h"
 
 namespace flexarm::python {
 namespace {

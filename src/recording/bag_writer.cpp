@@ -7,8 +7,8 @@
 #include <ros/message_traits.h>
 
 #include "flexarm/scene/scene_description.h"
+#include "flexarm/scene/sensor_topic.h"
 #include "messages/sensor_messages.h"
-#include "scene/scene_checks.h"
 
 namespace flexarm::recording {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "advertise.h"
 #include "flexarm/scene/scene_description.h"
+#include "flexarm/scene/sensor_topic.h"
 #include "messages/sensor_messages.h"
-#include "scene/scene_checks.h"
 
 namespace flexarm::node {
 SensorPublisher::SensorPublisher(ros::NodeHandle& node, const Simulation& simulation, const RunState& run,

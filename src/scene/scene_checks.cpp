@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 
+#include "flexarm/scene/sensor_topic.h"
 #include "scene/flexible_link.h"
 #include "scene/mimic_chain.h"
 

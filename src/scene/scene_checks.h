@@ -15,7 +15,4 @@ void check_tree(SceneDescription& scene, Findings& findings);
 /// Checks mimicking joints and the names in <simulation>. Coordinates of `unreadable` joints are not judged.
 void check_references(const SceneDescription& scene, const std::set<std::string>& unreadable, Findings& findings);
 
-/// The topic of a sensor of that name, "sensors/NAME"; other characters than letters, digits and _ become _.
-std::string sensor_topic(std::string name);
-
 }  // namespace flexarm::scene

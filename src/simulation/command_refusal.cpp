@@ -1,4 +1,4 @@
-#include "simulation/command_refusal.h"
+#include "flexarm/simulation/command_refusal.h"
 
 #include <algorithm>
 

@@ -9,9 +9,9 @@
 
 #include "analysis/modes.h"
 #include "analysis/statics.h"
+#include "flexarm/simulation/command_refusal.h"
 #include "math/so3.h"
 #include "model/carried_origin.h"
-#include "simulation/command_refusal.h"
 #include "simulation/failure_text.h"
 #include "simulation/implementation.h"
 #include "simulation/joint_state.h"

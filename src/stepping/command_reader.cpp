@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "simulation/command_refusal.h"
+#include "flexarm/simulation/command_refusal.h"
 
 namespace flexarm::node {
 namespace {

@@ -280,8 +280,8 @@ TEST(Statics, WhatMayStandElsewhereIsTold) {
   EXPECT_EQ(result.falling_link, "");
 }
 
-/// A pan axis that is turned from the vertical by `tilt`, a lift and an elbow across it; 0.1 kg each, 0.1 m long. With a
-/// beam in place of the upper arm if `is_flexible`.
+/// A pan axis that is turned from the vertical by `tilt`, a lift and an elbow across it; 0.1 kg each, 0.1 m long. With
+/// a beam in place of the upper arm if `is_flexible`.
 SceneBuilder pan_lift_elbow(double tilt, bool is_flexible) {
   SceneBuilder b;
   b.scene.gravity = {0, 0, -9.81};

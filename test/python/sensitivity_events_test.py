@@ -8,7 +8,8 @@ from scipy.integrate import solve_ivp
 
 import flexarm
 
-ARM = """<robot name="p"> <parameter name="angle" value="1"/> <parameter name="fc" value="{friction}"/> <link name="world"/>
+ARM = """<robot name="p"> <parameter name="angle" value="1"/> <parameter name="fc" value="{friction}"/>
+  <link name="world"/>
   <link name="a"> <inertial> <origin xyz="0.5 0 0"/> <mass value="1.0"/>
     <inertia ixx="0.05" iyy="0.05" izz="0.05" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
   <joint name="h" type="{kind}"> <parent link="world"/> <child link="a"/> <axis xyz="0 -1 0"/> {joint} </joint>

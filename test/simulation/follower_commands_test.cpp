@@ -5,7 +5,7 @@
 
 #include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/simulation.h"
-#include "simulation/command_refusal.h"
+#include "flexarm/simulation/command_refusal.h"
 
 namespace flexarm::test {
 namespace {
