@@ -18,6 +18,8 @@ constexpr double kSlide = 1e-3;
 constexpr double kBeyond = 2e-3;
 /// Times that a step is taken anew, to end at an event.
 constexpr int kMostLocations = 10;
+/// Of a step: where an event is not found and nears its beginning so far, something jumps to and fro.
+constexpr double kShortest = 0.05;
 /// Hits on stops are resolved by so many times as many steps as there are in a cell.
 constexpr double kRefinement = 2;
 /// Of a step, by which sums of steps may miss times.
@@ -121,7 +123,8 @@ StepResult LocatedSteps::located_step(double length, RunWatcher& watcher) {
     simulation_.restore(before_);
     // What is not found soon is stepped over.
     const bool is_found = n < kMostLocations;
-    result = this->step(is_found ? length : whole, is_found ? tolerance : whole, watcher);
+    if (!is_found && length < kShortest * whole) length = whole;
+    result = this->step(length, is_found ? tolerance : length, watcher);
   }
   return result;
 }

@@ -28,6 +28,8 @@ constexpr double kSurprise = 2;
 /// or a motion that the first tries are far too coarse for.
 constexpr double kRoundOffBelow = 1e-6;
 constexpr int kMostStagnations = 4;
+/// Tries behind one that has made an error no smaller, of which none is believed to fall by the order of the scheme.
+constexpr int kUnsettled = 2;
 /// Steps in a cell at most: far above what a run may have.
 constexpr double kMostInCell = 1e9;
 /// Tries in turn, each with more steps, in which a step fails or that are astray: it has another reason than its
@@ -129,7 +131,7 @@ double SchemeTries::estimate_of(const JudgedMotion& motion, double scale) {
   if (kSurprise * estimate_ / (1 + share) < difference) share = 1 / (std::sqrt(1 + 1 / share) - 1);
   double estimate = difference * share;
   // In another way, or where the tries before have not fallen by any order.
-  if (difference > kSaturated || stagnations_ > 0) estimate = std::max(estimate, difference);
+  if (difference > kSaturated || unsettled_ > 0) estimate = std::max(estimate, difference);
   if (judged_ > 2)
     estimate = std::max(estimate, motion_error(motion, earlier_, scale) * this->share(order, planned_earlier_));
   difference_ = difference;
@@ -159,7 +161,9 @@ bool SchemeTries::judge(AccurateRun& run) {
   }
   if (!is_compared) return false;
   // Tries that make nothing better, each with more steps: round-off, or a motion that amplifies it.
-  stagnations_ = estimate_ > 0.5 * last ? stagnations_ + 1 : 0;
+  const bool is_better = !(estimate_ > 0.5 * last);
+  stagnations_ = is_better ? 0 : stagnations_ + 1;
+  unsettled_ = is_better ? std::max(unsettled_ - 1, 0) : kUnsettled;
   if (stagnations_ < (last < kRoundOffBelow ? 1 : kMostStagnations)) return false;
   run.end = AccurateRun::End::NoConvergence;
   return true;

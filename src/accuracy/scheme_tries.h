@@ -86,7 +86,7 @@ class SchemeTries {
   int steps_ = 0, next_ = 1;  // in the longest cell, of the last and the next try
   double planned_ = 0;        // steps of the last try
   double expected_ = kUnknown;
-  int failures_ = 0, stagnations_ = 0, judged_ = 0;
+  int failures_ = 0, stagnations_ = 0, unsettled_ = 0, judged_ = 0;
   const JudgedMotion* other_limit_ = nullptr;
   JudgedMotion limit_;
   // Of the last try that was judged, and of the one before that.
