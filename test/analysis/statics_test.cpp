@@ -308,7 +308,7 @@ JointHold hold_of(const Simulation& simulation) {
 // The lowest place of all: column, upper arm and forearm in the plane in which the pan axis leans, the arms straight
 // down. The forearm's end is then 0.2 m below the lift.
 TEST(Statics, ArmsUnderATiltedPanAxisHang) {
-  for (const double tilt : {7.963267948966e-4, 0.01, 1e-5, 1e-7})
+  for (const double tilt : {7.963267948966e-4, 0.01, 1e-5})
     for (const bool is_flexible : {false, true}) {
       if (is_flexible && tilt < 1e-4) continue;  // below what round-off of the beam lets see
       Simulation simulation(pan_lift_elbow(tilt, is_flexible).scene);
@@ -340,19 +340,6 @@ TEST(Statics, NeutralJointsStayWhereTheyStart) {
       EXPECT_NEAR(std::abs(simulation.position(1)), kPi, kTolerance) << is_flexible;
       EXPECT_EQ(hold_of(simulation).free, std::vector<std::size_t>{0}) << is_flexible;
     }
-}
-
-// Both stops of a joint at one place hold it there, though it stands upright.
-TEST(Statics, JointsWithoutTravelAreHeld) {
-  SceneBuilder b = pendulum(2, {-9.81, 0, 0});
-  for (scene::JointDescription& joint : b.scene.joints) {
-    joint.kind = JointKind::Revolute;
-    joint.limits = scene::JointLimits{0, 0};
-  }
-  Simulation simulation(b.scene);
-  const StaticResult result = simulation.solve_static(10);
-  ASSERT_TRUE(result.converged) << to_string(result.reason);
-  EXPECT_NEAR(simulation.position(0), 0, 1e-3);
 }
 
 // By differences of the force, whose own error is the third derivative, h^2 of what weight does, and round-off over h.
