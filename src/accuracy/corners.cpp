@@ -17,7 +17,7 @@ constexpr double kAtLimit = 1e-6;
 /// at its vertex has 7/16, a straight line 1/4.
 constexpr double kJump = 0.9;
 /// Of a function's values.
-constexpr double kRoundOff = 1e-9;
+constexpr double kRoundOffOfSums = 1e-9;
 
 int side(double value, double lower, double upper) {
   return value < lower ? -1 : value > upper ? 1 : 0;
@@ -79,7 +79,7 @@ bool Corners::jumped(const Simulation& simulation) const {
       largest = std::max(largest, std::abs(after));
       before = after;
     }
-    if (sum > kRoundOff * largest && *std::max_element(changes.begin(), changes.end()) > kJump * sum) return true;
+    if (sum > kRoundOffOfSums * largest && *std::max_element(changes.begin(), changes.end()) > kJump * sum) return true;
   }
   return false;
 }

@@ -23,7 +23,7 @@ constexpr double kShortest = 0.05;
 /// Hits on stops are resolved by so many times as many steps as there are in a cell.
 constexpr double kRefinement = 2;
 /// Of a step, by which sums of steps may miss times.
-constexpr double kRoundOff = 1e-9;
+constexpr double kMissedTime = 1e-9;
 /// What tolerances of Newton's method may be.
 constexpr double kLeastTolerance = 1e-13, kMostTolerance = 1e-3;
 
@@ -79,7 +79,7 @@ LocatedSteps::LocatedSteps(Simulation& simulation, std::vector<double> cells)
 }
 
 double LocatedSteps::steps_of(double length, double steps) const {
-  return std::max(1.0, std::ceil(steps * (std::sqrt(length / longest_) - kRoundOff)));
+  return std::max(1.0, std::ceil(steps * (std::sqrt(length / longest_) - kMissedTime)));
 }
 
 double LocatedSteps::planned(double steps) const {
@@ -97,7 +97,7 @@ void LocatedSteps::set(int steps, double tolerance) {
 
 StepResult LocatedSteps::step(double length, double tolerance, RunWatcher& watcher) {
   // Divisions of cells of one length differ by round-off; a step that stays as it is keeps what it has learned.
-  const bool stays = std::abs(length - simulation_.step_size()) <= kRoundOff * length;
+  const bool stays = std::abs(length - simulation_.step_size()) <= kMissedTime * length;
   EventSearch events;
   if (has_events_) events = {tolerance, kSlide * step(), std::max(1.0, kRefinement * steps_)};
   flexarm::set_step(simulation_, stays ? simulation_.step_size() : length, events);
@@ -132,8 +132,8 @@ StepResult LocatedSteps::located_step(double length, RunWatcher& watcher) {
 bool LocatedSteps::advance_through_cell(double end, RunWatcher& watcher, AccurateRun& run) {
   const double longest = (end - simulation_.time()) / steps_of(cells_[next_] - cells_[next_ - 1], steps_);
   double rest;
-  while ((rest = end - simulation_.time()) > kRoundOff * longest) {
-    run.last = located_step(rest / std::ceil(rest / longest - kRoundOff), watcher);
+  while ((rest = end - simulation_.time()) > kMissedTime * longest) {
+    run.last = located_step(rest / std::ceil(rest / longest - kMissedTime), watcher);
     ++run.steps;
     run.end = AccurateRun::End::Interrupted;
     if (!watcher.after_step(simulation_, run.last)) return false;
