@@ -116,13 +116,11 @@ std::vector<Mode> modes_about_equilibrium(Simulation& simulation, int count, Equ
 }
 
 void warn_of_instability(const Simulation& simulation, const StaticResult& result, Equilibrium wanted) {
-  const double contact_time = make_scheme(simulation.scene().integrator).contact_time;
   const char* consequence =
       wanted == Equilibrium::Stable
           ? "falls from it; this is where it comes to rest (--unstable: the one that it falls from)"
           : "would fall from it";
-  for (const std::string& doubt :
-       doubts_about_equilibrium(model_of(simulation), contact_time, state_of(simulation), result, consequence))
+  for (const std::string& doubt : doubts_about_equilibrium(simulation, result, consequence))
     fmt::print(stderr, "flexarm: warning: {}\n", doubt);
 }
 

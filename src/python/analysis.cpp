@@ -41,7 +41,9 @@ void solve_static(GuardedSimulation& guarded, int load_steps, bool stable) {
   const char* consequence =
       stable ? "falls from it; this is where it comes to rest (stable=False: the one that it falls from)"
              : "would fall from it";
-  for (const std::string& doubt : doubts_about_equilibrium(result, consequence)) warn(doubt);
+  const std::vector<std::string> doubts = guarded.work(
+      [&](const Simulation& simulation) { return doubts_about_equilibrium(simulation, result, consequence); });
+  for (const std::string& doubt : doubts) warn(doubt);
 }
 
 }  // namespace

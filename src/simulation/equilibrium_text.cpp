@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "analysis/descent.h"
+#include "schemes/scheme.h"
 #include "simulation/inside.h"
 
 namespace flexarm {
@@ -100,6 +101,12 @@ std::vector<std::string> doubts_about_equilibrium(const Model& model, double con
                                  model.coordinates[hold.weakest].name, hold.weakness,
                                  is_rotation(model, model.coordinates[hold.weakest]) ? "rad" : "m"));
   return doubts;
+}
+
+std::vector<std::string> doubts_about_equilibrium(const Simulation& simulation, const StaticResult& result,
+                                                  const std::string& consequence) {
+  const double contact_time = make_scheme(simulation.scene().integrator).contact_time;
+  return doubts_about_equilibrium(model_of(simulation), contact_time, state_of(simulation), result, consequence);
 }
 
 }  // namespace flexarm

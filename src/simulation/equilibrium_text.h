@@ -29,5 +29,8 @@ std::string lack_of_equilibrium(const Simulation& simulation, const StepResult& 
 /// `consequence`: what becomes of the link that falls.
 std::vector<std::string> doubts_about_equilibrium(const Model& model, double contact_time, const State& equilibrium,
                                                   const StaticResult& result, const std::string& consequence);
+/// The same of a simulation, which is in that equilibrium.
+std::vector<std::string> doubts_about_equilibrium(const Simulation& simulation, const StaticResult& result,
+                                                  const std::string& consequence);
 
 }  // namespace flexarm
