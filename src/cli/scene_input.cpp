@@ -5,7 +5,6 @@
 #include "cli/commands.h"
 #include "flexarm/scene/scene_description.h"
 #include "math/parse_number.h"
-#include "schemes/scheme.h"
 #include "simulation/inside.h"
 
 namespace flexarm::cli {

@@ -17,12 +17,13 @@ std::string scene_of(const std::string& more) {
   return text + "\n" + more + "</robot>\n";
 }
 
-std::string joint(const std::string& name, const std::string& child, const std::string& type, const std::string& more) {
+std::string joint_to(const std::string& name, const std::string& child, const std::string& type,
+                     const std::string& more) {
   return "<joint name=\"" + name + "\" type=\"" + type + "\"><parent link=\"world\"/><child link=\"" + child + "\"/>" +
          more + "</joint>\n";
 }
 
-const std::string kFree = joint("i", "a", "continuous", "") + joint("j", "b", "continuous", "");
+const std::string kFree = joint_to("i", "a", "continuous", "") + joint_to("j", "b", "continuous", "");
 
 std::string limit(double lower, double upper) {
   return "<limit lower=\"" + std::to_string(lower) + "\" upper=\"" + std::to_string(upper) +
@@ -43,8 +44,8 @@ using Texts = std::vector<std::string>;
 
 TEST(ForeignFiles, LimitsBelowZeroAreNone) {
   const ReadResult result =
-      read(scene_of(joint("i", "a", "revolute", R"(<limit lower="-1" upper="1" effort="-1" velocity="-1"/>)") +
-                    joint("j", "b", "continuous", R"(<limit effort="-1" velocity="2"/>)")));
+      read(scene_of(joint_to("i", "a", "revolute", R"(<limit lower="-1" upper="1" effort="-1" velocity="-1"/>)") +
+                    joint_to("j", "b", "continuous", R"(<limit effort="-1" velocity="2"/>)")));
   EXPECT_EQ(said(result),
             (Texts{"scene.urdf:2: warning: <limit> of joint 'i': effort below 0 is read as no limit, got '-1'",
                    "scene.urdf:2: warning: <limit> of joint 'i': velocity below 0 is read as no limit, got '-1'",
@@ -55,23 +56,23 @@ TEST(ForeignFiles, LimitsBelowZeroAreNone) {
 }
 
 TEST(ForeignFiles, WhatHasNoEffectIsNotJudged) {
-  const std::string end = joint("j", "b", "continuous", "");
-  EXPECT_EQ(said(read(scene_of(joint("i", "a", "fixed", R"(<axis xzy="0 0 1"/><axis xyz="2"/>)") + end))), Texts());
-  EXPECT_EQ(said(read(scene_of(joint("i", "a", "floating", R"(<axis xyz="0 0 z"/>)") + end))), Texts());
+  const std::string end = joint_to("j", "b", "continuous", "");
+  EXPECT_EQ(said(read(scene_of(joint_to("i", "a", "fixed", R"(<axis xzy="0 0 1"/><axis xyz="2"/>)") + end))), Texts());
+  EXPECT_EQ(said(read(scene_of(joint_to("i", "a", "floating", R"(<axis xyz="0 0 z"/>)") + end))), Texts());
   for (const std::string& more :
        {R"(<limit lower="1" upper="x" effort="none" velocity="2"/>)", R"(<dynamics damping="-1" friction="?"/>)"}) {
-    const ReadResult result = read(scene_of(joint("i", "a", "fixed", more) + end));
+    const ReadResult result = read(scene_of(joint_to("i", "a", "fixed", more) + end));
     ASSERT_TRUE(result.scene) << to_text(result.diagnostics);
     EXPECT_EQ(result.scene->joints[0].effort_limit, 0);
     EXPECT_EQ(result.scene->joints[0].damping, 0);
   }
-  expect_warning(read(scene_of(joint("i", "a", "fixed", "<mimic/>") + end)), 2, "<mimic> of joint 'i': is ignored");
+  expect_warning(read(scene_of(joint_to("i", "a", "fixed", "<mimic/>") + end)), 2, "<mimic> of joint 'i': is ignored");
 }
 
 TEST(ForeignFiles, FollowersOfFixedJointsAreHeld) {
   const ReadResult result = read(scene_of(
-      joint("drive", "a", "fixed", "") +
-      joint("right", "b", "revolute", limit(-1, 1) + R"(<mimic joint="drive" multiplier="2" offset="0.3"/>)")));
+      joint_to("drive", "a", "fixed", "") +
+      joint_to("right", "b", "revolute", limit(-1, 1) + R"(<mimic joint="drive" multiplier="2" offset="0.3"/>)")));
   EXPECT_EQ(said(result),
             (Texts{"scene.urdf:3: warning: <joint> 'right': is held at 0.3, since the joint that it mimics "
                    "is fixed, got 'drive'"}));
@@ -83,9 +84,9 @@ TEST(ForeignFiles, FollowersOfFixedJointsAreHeld) {
 TEST(ForeignFiles, FollowersOfTheirsAreHeldAsWell) {
   const ReadResult result =
       read(R"(<robot name="r"><link name="world"/><link name="a"/><link name="b"/><link name="c"/>)" +
-           joint("i", "a", "continuous", R"(<mimic joint="j" multiplier="-2" offset="1"/>)") +
-           joint("j", "b", "continuous", R"(<mimic joint="k" multiplier="7" offset="0.25"/>)") +
-           joint("k", "c", "fixed", "") + "</robot>");
+           joint_to("i", "a", "continuous", R"(<mimic joint="j" multiplier="-2" offset="1"/>)") +
+           joint_to("j", "b", "continuous", R"(<mimic joint="k" multiplier="7" offset="0.25"/>)") +
+           joint_to("k", "c", "fixed", "") + "</robot>");
   ASSERT_TRUE(result.scene) << to_text(result.diagnostics);
   ASSERT_EQ(result.scene->motions.size(), 2u);
   EXPECT_EQ(result.scene->motions[0].position.constant(), 0.5);  // 1 - 2 * 0.25
@@ -94,8 +95,8 @@ TEST(ForeignFiles, FollowersOfTheirsAreHeldAsWell) {
 
 TEST(ForeignFiles, LimitsThatAMimicDoesNotKeepAreTold) {
   const auto gripper = [](const std::string& master, const std::string& follower, const std::string& law) {
-    return said(read(scene_of(joint("left", "a", "prismatic", master) +
-                              joint("right", "b", "prismatic", follower + "<mimic joint=\"left\" " + law + "/>"))));
+    return said(read(scene_of(joint_to("left", "a", "prismatic", master) +
+                              joint_to("right", "b", "prismatic", follower + "<mimic joint=\"left\" " + law + "/>"))));
   };
   EXPECT_EQ(
       gripper(limit(-1, 1), limit(-0.02, 0.02), "multiplier=\"-1\""),
@@ -105,9 +106,9 @@ TEST(ForeignFiles, LimitsThatAMimicDoesNotKeepAreTold) {
   EXPECT_EQ(gripper(limit(0, 0.02), limit(0, 0.05), "multiplier=\"2\" offset=\"0.01\""), Texts());  // 0.01 to 0.05
   EXPECT_EQ(gripper(limit(0, 0.02), limit(0, 0.05), "multiplier=\"2\" offset=\"0.02\"").size(), 1u);
   EXPECT_EQ(gripper(limit(0, 1.571), limit(0, 1.57), "").size(), 0u);  // rounded
-  const std::string hinge = joint("left", "a", "continuous", "");
+  const std::string hinge = joint_to("left", "a", "continuous", "");
   EXPECT_EQ(
-      said(read(scene_of(hinge + joint("right", "b", "revolute", limit(-1, 1) + "<mimic joint=\"left\"/>")))),
+      said(read(scene_of(hinge + joint_to("right", "b", "revolute", limit(-1, 1) + "<mimic joint=\"left\"/>")))),
       (Texts{"scene.urdf:3: warning: <joint> 'right': its own limits are not kept, since it follows 'left' alone, "
              "which has no limits, got '-1' to '1'"}));
 }
