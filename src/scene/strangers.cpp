@@ -47,7 +47,10 @@ constexpr std::string_view kOfOthers[] = {"ros2_control",
                                           "tendon",
                                           "muscle",
                                           "version"};
-/// Names that belong into another element, ours too (see urdf_reader.cpp).
+/// Ours, whose place elsewhere is an error (see urdf_reader.cpp).
+constexpr std::string_view kPlaced[] = {"beam",         "release",  "axis2", "slide", "couple",
+                                        "child_origin", "friction", "root",  "hub"};
+/// Names that belong into another element.
 struct Home {
   std::string_view tag, parent;
 };
@@ -108,7 +111,9 @@ std::string_view nearest(std::string_view tag) {
 
 /// Empty: it is known.
 std::string advice_for(std::string_view tag) {
-  if (tag.find(':') != std::string_view::npos || contains(kOwn, tag) || contains(kOfOthers, tag)) return {};
+  if (tag.find(':') != std::string_view::npos || contains(kOwn, tag) || contains(kPlaced, tag) ||
+      contains(kOfOthers, tag))
+    return {};
   const auto home = std::find_if(std::begin(kHomes), std::end(kHomes), [&](const Home& it) { return it.tag == tag; });
   if (home != std::end(kHomes)) return "has no effect here: it belongs into <" + std::string(home->parent) + ">";
   const std::string_view meant = nearest(tag);

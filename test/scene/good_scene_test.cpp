@@ -382,7 +382,7 @@ TEST(GoodScene, LoadOnAPartOfALine) {
 
 TEST(GoodScene, RestitutionOfStops) {
   const ReadResult result =
-      read(good_scene_with("upper=\"1\" effort=\"0\"", "upper=\"1\" restitution=\"0.6\" effort=\"0\""));
+      read(good_scene_with("upper=\"3\" effort=\"0\"", "upper=\"3\" restitution=\"0.6\" effort=\"0\""));
   ASSERT_TRUE(result.scene) << to_text(result.diagnostics);
   EXPECT_EQ(joint(*result.scene, "finger").limits->restitution, 0.6);
   EXPECT_FALSE(joint(*result.scene, "shoulder").limits->restitution);

@@ -1,11 +1,13 @@
 // Joints that mimic others: where those of fixed joints are held, and what is said of commands to them.
 #include <gtest/gtest.h>
+#include <cmath>
+#include <stdexcept>
 
 #include <functional>
 
 #include "flexarm/scene/urdf_reader.h"
-#include "flexarm/simulation/simulation.h"
 #include "flexarm/simulation/command_refusal.h"
+#include "flexarm/simulation/simulation.h"
 
 namespace flexarm::test {
 namespace {
