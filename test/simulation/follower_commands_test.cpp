@@ -1,9 +1,9 @@
 // Joints that mimic others: where those of fixed joints are held, and what is said of commands to them.
-#include <gtest/gtest.h>
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 
-#include <functional>
+#include <gtest/gtest.h>
 
 #include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/command_refusal.h"
