@@ -134,7 +134,7 @@ double fastest(const Simulation& s) {
   return out;
 }
 
-LoopOpening opening(const Simulation& s) {
+LoopOpening opening_of_velocities(const Simulation& s) {
   std::vector<NodePose> poses;
   std::vector<Vector6> velocities;
   for (const NodeState& node : state_of(s).nodes) {
@@ -208,7 +208,7 @@ double opening_after(const std::string& scheme, int steps) {
   SceneBuilder b = slider_crank();
   Simulation simulation(b.scene, options(scheme, 0.5 / steps, 1e-12));
   run(simulation, steps);
-  return opening(simulation).rate / opening(simulation).fastest;
+  return opening_of_velocities(simulation).rate / opening_of_velocities(simulation).fastest;
 }
 
 // joints.md 3.2: the rule of velocities, not the constraint, leaves them open, by the second power of the step, that of
@@ -233,7 +233,7 @@ void expect_goes_on(const SceneBuilder& b, const std::string& before, const std:
   for (std::size_t i = 0; i < from.coordinate_names().size(); ++i)
     EXPECT_EQ(to.position(i), from.position(i)) << from.coordinate_names()[i];
   if (!is_same) {
-    EXPECT_LT(opening(to).rate, 1e-12 * opening(to).fastest);
+    EXPECT_LT(opening_of_velocities(to).rate, 1e-12 * opening_of_velocities(to).fastest);
   }
   const double energy = from.energies().kinetic;
   EXPECT_NEAR(energy_account(to), energy_account(from), 1e-12 * (1 + energy));
@@ -294,14 +294,15 @@ TEST(LoopVelocities, LeftOpenDoNoHarmToOtherSteps) {
 TEST(LoopVelocities, JointsOfAMovingLoopCanBeSet) {
   Simulation simulation(slider_crank().scene, options("em", 0.01));
   run(simulation, 25);
-  ASSERT_GT(opening(simulation).rate, 2e-6 * opening(simulation).fastest) << "more than those may who set them";
+  ASSERT_GT(opening_of_velocities(simulation).rate, 2e-6 * opening_of_velocities(simulation).fastest)
+      << "more than those may who set them";
   const double books = energy_account(simulation);
   // All as it is: but for what opens the loop nothing changes.
   std::vector<double> places;
   for (std::size_t i = 0; i < 3; ++i) places.push_back(simulation.position(i));
   ASSERT_NO_THROW(simulation.set_joint_state({{0, places[0], {}}, {1, places[1], {}}, {2, places[2], {}}}));
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(simulation.position(i), places[i], 1e-15);
-  EXPECT_LT(opening(simulation).rate, 1e-12 * opening(simulation).fastest);
+  EXPECT_LT(opening_of_velocities(simulation).rate, 1e-12 * opening_of_velocities(simulation).fastest);
   // Velocities that close it, and one that does not.
   const SliderCrank s(simulation.position(0));
   const double rate = 2.5;
