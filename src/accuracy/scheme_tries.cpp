@@ -27,7 +27,7 @@ constexpr double kSurprise = 2;
 /// Tries in turn that make an error no smaller, after which it is given up: small ones are round-off, large ones chaos,
 /// or a motion that the first tries are far too coarse for.
 constexpr double kRoundOffBelow = 1e-6;
-constexpr int kMostStagnations = 4;
+constexpr int kMostStagnations = 6;
 /// Tries behind one that has made an error no smaller, of which none is believed to fall by the order of the scheme.
 constexpr int kUnsettled = 2;
 /// Steps in a cell at most: far above what a run may have.

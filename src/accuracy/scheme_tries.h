@@ -69,8 +69,9 @@ class SchemeTries {
     const double iterations = static_cast<double>(stepping_.iterations);
     return stepping_.recoveries > 0 && iterations / planned_ > iterations_per_step();
   }
-  /// By another try whose steps are not nested in those of the last one: only the first two are so.
-  bool is_confirmed() const { return judged_ > 2 || other_limit_; }
+  /// By another try whose steps are not nested in those of the last one: only the first two are so. Of the first one by
+  /// the limit of another scheme.
+  bool is_confirmed() const { return judged_ > 2 || (judged_ == 1 && other_limit_); }
   /// To what the next try is compared, and the part of the difference that is its error; null: to nothing.
   const JudgedMotion* compared() const { return judged_ > 0 ? &before_ : other_limit_; }
   double compared_share() const { return judged_ > 0 ? share(order_, planned_before_) : 1; }
