@@ -1,7 +1,5 @@
 #include "integrators/step_prestrains.h"
 
-#include <algorithm>
-
 namespace flexarm {
 
 StepPrestrains::StepPrestrains(const StepConfiguration& configuration)
@@ -29,13 +27,13 @@ bool StepPrestrains::begin(double factor) {
       const Vector6 begin = at(time), end = at(time + step);
       change_[i] = end - begin;
       mean_[i] = 0.5 * (begin + end);
-      const Vector6 over_step = mean_prestrain(model, static_cast<int>(i) - 1, time, time + step);
-      // Forces that are those at instants make up for jumps within the step as StepHistories has it.
-      const double earlier = time + (reach_ - 1) * step, share = reach_ == 1 ? 0.5 : scheme.gamma;
-      const Vector6 point = reach_ == 1 ? end : at(time + reach_ * step);
-      const Vector6 last = reach_ == 1 ? begin : at(time >= 0 ? std::max(earlier, 0.0) : earlier);
-      surplus_[i] = over_step - (scheme.is_incremental() ? mean_[i] : Vector6((1 - share) * last + share * point));
-      of_step_[i] = scheme.is_incremental() ? over_step : Vector6(point + surplus_[i]);
+      surplus_[i] = Vector6::Zero();
+      if (scheme.is_incremental()) {
+        of_step_[i] = mean_prestrain(model, static_cast<int>(i) - 1, time, time + step);
+        surplus_[i] = of_step_[i] - mean_[i];
+      } else {
+        of_step_[i] = reach_ == 1 ? end : at(time + reach_ * step);
+      }
     }
     do_work_ = do_work_ || change_[i] != Vector6::Zero() || surplus_[i] != Vector6::Zero();
     are_others = are_others || of_step_[i] != before;

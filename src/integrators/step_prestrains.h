@@ -29,9 +29,8 @@ class StepPrestrains {
     const int i = element.prestrain + 1;
     const Vector6 elastic = begin + (0.5 / reach_) * (end - begin) + (of_step_[i] - mean_[i]);
     const auto& constants = element.stiffness_points[point];
-    const Vector6 by_strain = surplus_[i] / reach_;
     return constants.weight *
-           ((end - begin).dot(constants.stiffness * by_strain) - change_[i].dot(constants.stiffness * elastic));
+           ((end - begin).dot(constants.stiffness * surplus_[i]) - change_[i].dot(constants.stiffness * elastic));
   }
 
  private:

@@ -96,7 +96,7 @@ TEST(Jump, LeavesTheErrorThatTheoryTells) {
     for (const int steps : {10, 13, 50}) {
       const double h = 1.0 / steps, theta = kJump / h - std::floor(kJump / h);
       // From +3 to -3: the scheme has the later impulse of the jump too early.
-      const double error = -0.5 * h * h * theta * (1 - theta) * -6 / kBlockMass;
+      const double error = 0.5 * h * h * theta * (1 - theta) * -6 / kBlockMass;
       EXPECT_NEAR(position_at_1(b, scheme, steps) - position_after_a_jump(kBlockMass), error, 1e-11)
           << scheme << " " << steps;
     }

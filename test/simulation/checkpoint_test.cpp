@@ -128,8 +128,10 @@ TEST_P(Checkpoint, ContinuesToRoundOffWithKeptFactors) {
   SimulationOptions options;
   options.scheme = GetParam();
   SceneBuilder builder = everything_scene();
-  // Near rest the Newmark family rings on the steep law of friction, and blows up what differs by round-off.
-  if (!find_scheme(GetParam())->is_incremental())
+  // Near rest the Newmark family rings on the steep law of friction, and blows up what differs by round-off. So does
+  // the part of a composed step that goes back: friction drives there.
+  const Scheme scheme = *find_scheme(GetParam());
+  if (!scheme.is_incremental() || scheme.is_composition)
     for (auto* joints : {&builder.scene.joints, &builder.scene.loop_joints})
       for (scene::JointDescription& joint : *joints) joint.friction = 0, joint.friction_law = {};
   Simulation simulation(builder.scene, options);
