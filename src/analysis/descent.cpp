@@ -44,7 +44,7 @@ Eigen::MatrixXd columns_and_rows(const Eigen::MatrixXd& matrix, const std::vecto
 }  // namespace
 
 Descent::Descent(const Model& model, const Scheme& scheme, const StepSettings& settings)
-    : model_(model), potentials_(model, scheme, settings), tolerance_(settings.tolerance) {}
+    : potentials_(model, scheme, settings), tolerance_(settings.tolerance) {}
 
 bool Descent::begin(const State& state) {
   return potentials_.find_reference(state) && potentials_.reference() > 0;

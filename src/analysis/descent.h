@@ -69,7 +69,6 @@ class Descent {
   bool stop_at_bound(const JointPotential& at, std::vector<bool>& is_fixed, Eigen::VectorXd& ways) const;
   static bool rests(const Modes& modes, double tolerance);
 
-  const Model& model_;
   JointPotentials potentials_;
   double tolerance_;
   State left_;
