@@ -142,7 +142,7 @@ TEST(Bench, AccuracyOfOtherRandomArms) {
   const Outcome outcome = shell("flexarm bench accuracy --quick --random-arms 34 2 --output '" + folder + "'");
   EXPECT_EQ(outcome.status, 0) << outcome.errors;
   const std::string report = read_file(folder + "/accuracy.md");
-  for (const char* line : {"Random arms 34 to 35,", "\n| all | 2 | 2 |", "\n| random: arm 34, 7 joints |",
+  for (const char* line : {"Random arms 34 to 35,", "\n| **smooth** | 2 | 2 |", "\n| random: arm 34, 7 joints |",
                            "\n| random: arm 35, 1 joints |"})
     EXPECT_NE(report.find(line), std::string::npos) << line;
   for (const char* arms : {"-1 2", "3", "3 x", "3 0"})
