@@ -210,7 +210,7 @@ TEST(ReducedModel, KeepsFreeMotions) {
 
 // ---------------------------------------------------------------- very thin beams
 
-constexpr double kYoung = 70e9, kPoisson = 0.3, kDensity = 2700, kDamping = 1e-4;  // dampers of strains [s]
+constexpr double kYoung = 70e9, kDensity = 2700, kDamping = 1e-4;  // dampers of strains [s]
 
 /// Of one metre, clamped; shear is stiffer than bending by the square of the length over the thickness.
 LinearModel thin_beam(const std::string& section, const std::string& axis) {
