@@ -52,7 +52,7 @@ struct AccurateRun {
 
   End end = End::OutOfTries;
   double scale = 0;            ///< of errors [m]
-  int steps_per_interval = 0;  ///< of the last try
+  int steps_per_interval = 0;  ///< of the last try, but for those that end at corners
   double interval = 0;         ///< [s]
   std::vector<Try> tries;
   long steps = 0;   ///< of all tries

@@ -31,7 +31,7 @@ struct StepResult {
     DeadPoint,
     OutOfTime,
     HitTooFast,
-    EventWithin  ///< never of a step that fails: shorter ones follow
+    EventWithin  ///< only within runs to an accuracy: the step is to end at the event
   };
 
   /// A part of the mechanism; what is not known is -1.
