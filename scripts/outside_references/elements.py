@@ -49,12 +49,14 @@ class Passive(Element):
 def restitution_of(ratio):
     """Of a linear oscillator with that damping ratio that is let go at x = 0, v = 1 and leaves when its force vanishes.
 
-    With frequency 1, x = exp(-z t) sin(w t)/w, and x + 2 z v = 0 at the first tan(w t) = 2 z w / (2 z^2 - 1)."""
-    if ratio >= 1:
-        raise Refused("an overdamped stop")
-    w = math.sqrt(1 - ratio ** 2)
-    t = math.atan2(2 * ratio * w, 2 * ratio ** 2 - 1) / w
-    return -math.exp(-ratio * t) * (math.cos(w * t) - ratio * math.sin(w * t) / w)
+    With frequency 1, x = exp(-z t) sin(w t)/w, and x + 2 z v = 0 at the first tan(w t) = 2 z w / (2 z^2 - 1); with
+    z > 1 the same of the hyperbolic functions."""
+    w = max(math.sqrt(abs(1 - ratio ** 2)), 1e-6)
+    if ratio < 1:
+        t = math.atan2(2 * ratio * w, 2 * ratio ** 2 - 1) / w
+        return -math.exp(-ratio * t) * (math.cos(w * t) - ratio * math.sin(w * t) / w)
+    t = math.atanh(2 * ratio * w / (2 * ratio ** 2 - 1)) / w
+    return -math.exp(-ratio * t) * (math.cosh(w * t) - ratio * math.sinh(w * t) / w)
 
 
 class Stop(Element):
@@ -68,7 +70,7 @@ class Stop(Element):
         self.depth = max(depth, 4 * (lower - start), 4 * (start - upper))
         frequency = math.pi / (10 * step)
         self.stiffness = inertia * frequency ** 2
-        low, high = 0.0, 0.9999
+        low, high = 0.0, 10.0
         for _ in range(60):
             ratio = 0.5 * (low + high)
             low, high = (ratio, high) if restitution_of(ratio) > restitution else (low, ratio)
