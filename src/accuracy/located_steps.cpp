@@ -105,7 +105,7 @@ StepResult LocatedSteps::step(double length, double tolerance, RunWatcher& watch
   simulation_.set_tolerance(
       std::clamp(tolerance_ * std::sqrt(std::min(1.0, length / step())), kLeastTolerance, kMostTolerance));
   watcher.before_step(simulation_);
-  const StepResult result = simulation_.step();
+  StepResult result = simulation_.step();
   iterations += result.iterations;
   recoveries += result.other_guesses + (has_events_ ? 0 : result.halvings);
   return result;
