@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <set>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -77,8 +78,12 @@ void start_in_equilibrium(const scene::SceneDescription& scene, const Model& mod
   if (!result.converged) {
     const int coordinates = static_cast<int>(model.coordinates.size());
     const bool is_quick = are_modes_quick(DegreesOfFreedom(model).unknowns, coordinates);
-    const std::vector<Mode> modes =
-        is_quick ? natural_modes(model, state, 1 + coordinates, scheme.contact_time) : std::vector<Mode>();
+    std::vector<Mode> modes;
+    // What has no equilibrium may have no modes either, where numbers are out of all bounds.
+    try {
+      if (is_quick) modes = natural_modes(model, state, 1 + coordinates, scheme.contact_time);
+    } catch (const std::runtime_error&) {
+    }
     const std::string lack = lack_of_equilibrium(scene, model, result, modes);
     const scene::Diagnostic error{scene::Diagnostic::Severity::Error,
                                   scene.file,
