@@ -45,13 +45,23 @@ void add_times_of_servo(const Actuator& actuator, const ActuatorState& state, do
   for (double n = std::ceil((begin - lag) / period); n * period + lag < end; ++n) times.push_back(n * period + lag);
 }
 
+/// Of an actuator's motor.
+double effort_limit(const Model& model, const Actuator& actuator) {
+  double limit = actuator.drive.effort_limit;
+  if (!actuator.servo) return limit;
+  const double of_coordinate = model.coordinates[actuator.coordinate].effort_limit;
+  if (of_coordinate > 0) limit = std::min(limit, of_coordinate);
+  return std::min(limit, actuator.servo->effort_limit);
+}
+
 /// Whether there is anything at which forces may jump where no one foresees it.
 bool may_have_events(const Model& model) {
   const bool by_joints = std::any_of(model.coordinates.begin(), model.coordinates.end(), [](const Coordinate& c) {
     return c.limit || c.friction > 0 || c.friction_coefficient > 0;
   });
-  const bool by_drives = std::any_of(model.actuators.begin(), model.actuators.end(), [](const Actuator& a) {
-    return a.drive.friction > 0 || (a.drive.gear && a.drive.gear->backlash > 0);
+  const bool by_drives = std::any_of(model.actuators.begin(), model.actuators.end(), [&](const Actuator& a) {
+    return a.drive.friction > 0 || a.drive.loss > 0 || (a.drive.gear && a.drive.gear->backlash > 0) ||
+           effort_limit(model, a) < Drive::kInfinity;
   });
   const bool by_slides =
       std::any_of(model.joints.begin(), model.joints.end(), [](const JointMap& joint) { return joint.leaving >= 0; });

@@ -311,28 +311,6 @@ void Actuators::accept(State& state) const {
   }
 }
 
-void Actuators::note_events(FirstEvent& first) {
-  if (!parts_.empty()) configuration_.find_begin_rates();
-  for (std::size_t i = 0; i < parts_.size(); ++i) {
-    const Actuator& actuator = configuration_.model().actuators[i];
-    if (!actuator.drive.gear) continue;
-    const Part& part = parts_[i];
-    const ActuatorState& state = configuration_.state().actuators[i];
-    if (const double play = 0.5 * actuator.drive.gear->backlash; play > 0) {
-      const Coordinate& coordinate = configuration_.model().coordinates[actuator.coordinate];
-      const double twist = state.angle - configuration_.coordinate_step(actuator.coordinate, 0).begin;
-      const double end = twist + part.action.increment - part.link;
-      const double link_rate = configuration_.begin_rates(coordinate.joint)[coordinate.component];
-      const double start = configuration_.step() * (state.rate - link_rate);
-      first.note(crossing(twist, end, play, start));
-      first.note(crossing(twist, end, -play, start));
-    }
-    if (!actuator.drive.sticks || part.rotor.rests) continue;
-    const double end_rate = part.rotor.rate_offset + part.rotor.rate_slope * part.action.increment;
-    if (part.action.is_stopped || state.rate * end_rate <= 0) first.note_stop(kUnknownStop);
-  }
-}
-
 double Actuators::hand_to_integrals(State& state) const {
   const Model& model = configuration_.model();
   double largest = 0;

@@ -32,8 +32,11 @@ class Actuators {
   void add_work(double& work) const;
   /// Writes rotors and the efforts of motors.
   void accept(State& state) const;
-  /// Notes when gears come out of their play or into it, and when dry friction stops rotors or turns its direction.
+  /// Notes when gears come out of their play or into it, when dry friction stops rotors or turns its direction, and
+  /// when motors come to their limits or leave them.
   void note_events(FirstEvent& first);
+  /// The same of smooth friction as SmoothReversals::turn_too_fast().
+  bool turn_too_fast(double refinement) const;
   /// In an equilibrium: lets integrals of servos take over what their errors ask for. The largest of those errors
   /// [rad or m].
   double hand_to_integrals(State& state) const;
@@ -74,6 +77,11 @@ class Actuators {
   double rate_of_command(const ServoState& state, double time) const;
   /// Adds what the servo asks for.
   void ask(const Actuator& actuator, const ActuatorState& state, Part& part) const;
+  void note_play(std::size_t index, FirstEvent& first);
+  void note_limits(std::size_t index, FirstEvent& first) const;
+  /// What the motor is asked for.
+  double demand_at(std::size_t index, int end) const;
+  void set_point_at(const Servo& servo, const ServoState& state, int end, ServoInstant& at) const;
   PassiveEffort spring_effort(const JointSpring& spring, const CoordinateStep& link) const;
 
   StepConfiguration& configuration_;

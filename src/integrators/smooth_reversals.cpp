@@ -10,8 +10,6 @@ namespace {
 
 /// Newton updates of a step in which smooth friction may stop at rate zero.
 constexpr int kMostStoppedUpdates = 3;
-/// Change of the direction of friction over a step that is resolved.
-constexpr double kLargestTurn = 0.5;
 
 }  // namespace
 
@@ -57,7 +55,7 @@ bool SmoothReversals::turn_too_fast(double refinement) {
     const Coordinate& coordinate = configuration_.model().coordinates[index];
     const double begin = configuration_.begin_rates(coordinate.joint)[coordinate.component];
     const double end = configuration_.end_rate(coordinate);
-    return refinement * std::abs(std::tanh(end / kFrictionSpeed) - std::tanh(begin / kFrictionSpeed)) > kLargestTurn;
+    return is_coarse_turn(begin, end, refinement);
   });
 }
 

@@ -18,8 +18,7 @@ class SmoothReversals {
   void begin() { updates_ = 0; }
   void before_update();
   void after_update();
-  /// True where so long a step goes through much of a reversal: the direction of friction, tanh, changes by more than a
-  /// half of the refinement's inverse.
+  /// True where so long a step goes through much of a reversal.
   bool turn_too_fast(double refinement);
 
  private:

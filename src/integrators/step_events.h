@@ -38,6 +38,10 @@ struct FirstEvent {
   void note_stop(double event) {
     if (event > stop_behind) note(event);
   }
+  /// Where a force has a kink, which makes an error as the square of how far the end of a step is from it.
+  void note_kink(double event) {
+    if (event < 1 - stop_behind) note_stop(event);
+  }
 };
 
 }  // namespace flexarm

@@ -101,13 +101,15 @@ class StepSystem {
   /// See StopContacts.
   bool hits_too_fast(double refinement) { return contacts_.hits_too_fast(refinement); }
   /// See SmoothReversals.
-  bool turn_too_fast(double refinement) { return reversals_.turn_too_fast(refinement); }
+  bool turn_too_fast(double refinement) {
+    return reversals_.turn_too_fast(refinement) || actuators_.turn_too_fast(refinement);
+  }
   /// Notes when forces jump in the step, with which the order of the scheme is lost: friction stops a coordinate or
   /// turns its direction, a stop is touched, a gear comes out of its play or into it, a slider comes to the end of its
   /// line.
   void note_events(FirstEvent& first);
-  /// True where forces have a kink within the step: friction lets a coordinate go, a stop is left.
-  bool has_kink() const { return friction_.breaks_away() || contacts_.leaves(); }
+  /// True where forces have a kink within the step of which no one knows when: friction lets a coordinate go.
+  bool has_kink() const { return friction_.breaks_away(); }
   bool may_hit_a_stop() { return contacts_.may_hit(); }
   /// Internal less external forces on all nodes in the configuration of `state`, before joints fold them; of a scheme
   /// made by statics_of().

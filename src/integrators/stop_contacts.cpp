@@ -73,15 +73,19 @@ void StopContacts::note_events(FirstEvent& first) {
     const double start = configuration_.step() * begin_rate(stopped);
     if (begin >= limit.lower) first.note(crossing(begin, end, limit.lower, start));
     if (begin <= limit.upper) first.note(crossing(-begin, -end, -limit.upper, -start));
+    if (begin < limit.lower || begin > limit.upper) note_leaving(stopped, begin > limit.upper, first);
   }
 }
 
-bool StopContacts::leaves() const {
-  return std::any_of(stopped_.begin(), stopped_.end(), [&](const Stopped& stopped) {
-    const LimitStop& limit = *coordinate(stopped).limit;
-    const double begin = begin_position(stopped), end = position(coordinate(stopped));
-    return (begin < limit.lower && end >= limit.lower) || (begin > limit.upper && end <= limit.upper);
-  });
+void StopContacts::note_leaving(const Stopped& stopped, bool is_above, FirstEvent& first) const {
+  const Coordinate& limited = coordinate(stopped);
+  const bool at_end = configuration_.coordinate_step(stopped.index, 0).at_end;
+  const auto push = [&](double position, double rate) {
+    return stop_reach(*limited.limit, stopped.penalty, is_above, position, rate, at_end).push;
+  };
+  const double before = push(begin_position(stopped), begin_rate(stopped));
+  const double after = push(position(limited), configuration_.end_rate(limited));
+  first.note_kink(crossing(before, after, 0, after - before));
 }
 
 bool StopContacts::may_hit() {

@@ -19,10 +19,8 @@ class StopContacts {
   /// True where the restitution of a hit would be lost in so long a step; or, with a refinement above 1, in steps that
   /// much longer.
   bool hits_too_fast(double refinement);
-  /// Notes when coordinates touch their stops.
+  /// Notes when coordinates touch their stops, and when these push no more or begin to.
   void note_events(FirstEvent& first);
-  /// True where a coordinate leaves its stop in the step.
-  bool leaves() const;
   /// True where the step is long for a hit that it is in or may come to, whatever its trial end.
   bool may_hit();
 
@@ -37,6 +35,7 @@ class StopContacts {
   double position(const Coordinate& coordinate) const;
   double begin_position(const Stopped& stopped) const;
   double begin_rate(const Stopped& stopped) const;
+  void note_leaving(const Stopped& stopped, bool is_above, FirstEvent& first) const;
 
   StepConfiguration& configuration_;
   std::vector<Stopped> stopped_;

@@ -10,6 +10,12 @@ SmoothDirection smooth_direction(const CoordinateStep& change) {
   return {t, (1 - t * t) / kFrictionSpeed * rate_slope(change)};
 }
 
+bool is_coarse_turn(double begin_rate, double end_rate, double refinement) {
+  constexpr double kLargestTurn = 0.5;
+  return refinement * std::abs(std::tanh(end_rate / kFrictionSpeed) - std::tanh(begin_rate / kFrictionSpeed)) >
+         kLargestTurn;
+}
+
 PassiveEffort passive_effort(const Coordinate& coordinate, const StopPenalty& penalty, const CoordinateStep& change) {
   PassiveEffort out;
   const double friction = coordinate.sticks ? 0 : coordinate.friction;

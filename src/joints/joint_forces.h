@@ -16,6 +16,8 @@ struct SmoothDirection {
 };
 /// Zero in statics.
 SmoothDirection smooth_direction(const CoordinateStep& change);
+/// True where between these rates the direction changes by more than a half of the refinement's inverse.
+bool is_coarse_turn(double begin_rate, double end_rate, double refinement);
 
 /// True where passive_effort() may be more than nothing.
 inline bool resists(const Coordinate& coordinate) {

@@ -169,6 +169,10 @@ MotorAction sticking_action(const RotorBalance& balance, const RotorStep& rotor,
 
 }  // namespace
 
+MotorRange motor_range(const Drive& drive, double limit, double rate) {
+  return {-available(drive, limit, -rate).value, available(drive, limit, rate).value};
+}
+
 MotorAction motor_action(const Drive& drive, const MotorDemand& demand, const RotorStep& rotor,
                          const CoordinateStep& link, double guess) {
   if (!drive.gear) return rigid_action(drive, demand, rotor, link);

@@ -34,6 +34,13 @@ struct MotorAction {
   bool is_stopped = false;                           ///< dry friction holds the rotor at rest at the end
 };
 
+/// What a motor can give at an instant: efforts between `lowest` and `highest`.
+struct MotorRange {
+  double lowest, highest;
+};
+/// Up to `limit`, at the rate of its rotor.
+MotorRange motor_range(const Drive& drive, double limit, double rate);
+
 /// `link`: step of the coordinate; `guess`: of the rotor's increment.
 MotorAction motor_action(const Drive& drive, const MotorDemand& demand, const RotorStep& rotor,
                          const CoordinateStep& link, double guess);

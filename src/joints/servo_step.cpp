@@ -99,18 +99,32 @@ ServoDemand servo_demand(const ServoLaw& law, const ServoState& state, const Ser
   return out;
 }
 
+double integral_at_end(const ServoLaw& law, const ServoInput& input, double increment, double excess,
+                       const ServoState& state) {
+  const double h = input.measured.step;
+  const double error = error_at_begin(law, state, input), s = set_increment(law, input) - increment;
+  const bool is_velocity = law.mode == ServoMode::Velocity;
+  const double integral = state.integral + (is_velocity ? s : h * (error + 0.5 * s));
+  const double gain = is_velocity ? law.proportional : law.integral;
+  if (law.tracking_time <= 0 || gain <= 0) return integral;
+  // The effort that would be asked for follows the one that is given.
+  const double lag = integral_share(input) * h / law.tracking_time;
+  return integral + h * excess / (gain * law.tracking_time * (1 + lag));
+}
+
+double servo_effort(const ServoLaw& law, const ServoInstant& at) {
+  if (law.mode == ServoMode::Effort) return at.feedforward + at.set_point;
+  const bool is_velocity = law.mode == ServoMode::Velocity;
+  const double error = is_velocity ? at.integral : at.set_point - at.measured;
+  const double error_rate = (is_velocity ? at.set_point : at.set_rate) - at.rate;
+  return at.feedforward + law.proportional * error + law.derivative * error_rate + law.integral * at.integral;
+}
+
 void advance(const ServoLaw& law, const ServoInput& input, double increment, double excess, ServoState& state) {
   const double h = input.measured.step;
   if (h == 0) return;
-  const double error = error_at_begin(law, state, input), s = set_increment(law, input) - increment;
-  const bool is_velocity = law.mode == ServoMode::Velocity;
-  state.integral += is_velocity ? s : h * (error + 0.5 * s);
-  const double gain = is_velocity ? law.proportional : law.integral;
-  if (law.tracking_time > 0 && gain > 0) {
-    // The effort that would be asked for follows the one that is given.
-    const double lag = integral_share(input) * h / law.tracking_time;
-    state.integral += h * excess / (gain * law.tracking_time * (1 + lag));
-  }
+  const double s = set_increment(law, input) - increment;
+  state.integral = integral_at_end(law, input, increment, excess, state);
   if (input.relaxation == 0) return;
   const NumericalDissipation d = numerical_dissipation(2, kStiffRemainder, input.relaxation);
   state.average += d.forgetting * (s - state.average);

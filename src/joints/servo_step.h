@@ -47,6 +47,19 @@ ServoDemand servo_demand(const ServoLaw& law, const ServoState& state, const Ser
 /// gave less what was asked of it.
 void advance(const ServoLaw& law, const ServoInput& input, double increment, double excess, ServoState& state);
 
+/// The integral alone of that memory.
+double integral_at_end(const ServoLaw& law, const ServoInput& input, double increment, double excess,
+                       const ServoState& state);
+
+/// What the laws of controllers take at an instant.
+struct ServoInstant {
+  double set_point = 0, set_rate = 0;
+  double measured = 0, rate = 0;  ///< of what is measured
+  double integral = 0, feedforward = 0;
+};
+/// What a continuous controller asks for at an instant [N m or N].
+double servo_effort(const ServoLaw& law, const ServoInstant& at);
+
 /// Its memory where it has been at rest for ever, with that position and output.
 void settle(double measured, double output, ServoState& state);
 /// Lets the integral take over what is in proportion to the error; returns that error, in absolute value, or 0 where

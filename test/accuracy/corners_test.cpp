@@ -90,6 +90,73 @@ TEST(Corners, StopsByFrictionAreFound) {
   EXPECT_LE(outcome(b.scene, 1, 1e-3, truth).error * truth.back().x(), 2.0 / 2000 * 0.01 * 0.01);
 }
 
+/// A body of inertia 1, and a servo that turns it to the angle 1 with efforts that are cut at `limit`: in closed form
+/// between the instants at which what is asked for comes to the limit, which are found by bisection.
+class CutServo {
+ public:
+  static constexpr double proportional = 100, derivative = 2, limit = 10;
+  double angle = 0;
+
+  void advance(double time) {
+    constexpr int kParts = 1000;  // in which the limit is met once at most
+    for (int i = 0; i < kParts; ++i) {
+      double rest = time / kParts;
+      CutServo end = after(rest);
+      if (end.side() != side_) {
+        double low = 0, high = rest;
+        while (high - low > 1e-16) {
+          const double middle = 0.5 * (low + high);
+          (after(middle).side() == side_ ? low : high) = middle;
+        }
+        *this = after(high);
+        side_ = end.side();
+        rest -= high;
+        end = after(rest);
+      }
+      *this = end;
+    }
+  }
+
+ private:
+  int side() const {
+    const double asked = proportional * (1 - angle) - derivative * rate_;
+    return asked > limit ? 1 : asked < -limit ? -1 : 0;
+  }
+  CutServo after(double t) const {
+    CutServo out = *this;
+    if (side_ != 0) {
+      out.angle += t * (rate_ + 0.5 * t * side_ * limit);
+      out.rate_ += t * side_ * limit;
+      return out;
+    }
+    const double decay = derivative / 2, frequency = std::sqrt(proportional - decay * decay), error = angle - 1;
+    const double c = std::cos(frequency * t), s = std::sin(frequency * t), sine = (rate_ + decay * error) / frequency;
+    const double part = std::exp(-decay * t);
+    out.angle = 1 + part * (error * c + sine * s);
+    out.rate_ = part * ((sine * frequency - decay * error) * c - (error * frequency + decay * sine) * s);
+    return out;
+  }
+
+  double rate_ = 0;
+  int side_ = 1;
+};
+
+TEST(Corners, LimitsOfMotorsAreFound) {
+  const scene::SceneDescription scene = read(hinge(
+      "0 0 1", "0 0 0", "1", "", "<servo joint='h' mode='position' kp='100' kd='2' set_point='1' effort_limit='10'/>",
+      "<gravity xyz='0 0 0'/><probe name='p' link='a' at='1 0 0'/>"));
+  Trajectory truth;
+  CutServo servo;
+  for (int i = 0; i <= 10; ++i) {
+    truth.emplace_back(std::cos(servo.angle), std::sin(servo.angle), 0);
+    servo.advance(0.2);
+  }
+  for (const double accuracy : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
+    const Outcome run = outcome(scene, 2, accuracy, truth);
+    EXPECT_LE(run.error, accuracy) << "said " << run.estimate;
+  }
+}
+
 struct Case {
   std::string name;
   scene::SceneDescription scene;

@@ -6,6 +6,7 @@
 #include "joints/coordinate_steps.h"
 #include "joints/elasticity.h"
 #include "joints/joint_forces.h"
+#include "joints/servo_step.h"
 
 namespace flexarm {
 namespace {
@@ -169,6 +170,49 @@ TEST(MotorAction, InStatics) {
   // A spring between rotor and ground, in series with the gear.
   action = motor_action(drive, {0, -100, 0}, rotor, link, 0);
   EXPECT_NEAR(action.slope, -1 / (1 / 300.0 + 1 / 100.0), 1e-9);
+}
+
+TEST(MotorRange, IsTheTorqueSpeedLine) {
+  Drive drive;
+  drive.effort_limit = 4, drive.velocity_limit = 2;
+  const MotorRange still = motor_range(drive, Drive::kInfinity, 0), turning = motor_range(drive, 3.5, 1);
+  EXPECT_EQ(still.lowest, -4);
+  EXPECT_EQ(still.highest, 4);
+  EXPECT_EQ(turning.lowest, -3.5) << "cut by the controller: what brakes does not lose effort";
+  EXPECT_EQ(turning.highest, 2);
+}
+
+/// What a controller asks for in the mean over a step is what it asks for at an instant, but for the step's length.
+TEST(ServoEffort, IsTheLimitOfShortSteps) {
+  for (const ServoMode mode : {ServoMode::Position, ServoMode::Velocity, ServoMode::Effort}) {
+    const ServoLaw law{mode, 30, 4, 7, 0.05};
+    ServoState state;
+    state.integral = 0.3;
+    const ServoInstant at{0.8, 0.6, 0.5, -0.2, state.integral, 1.5};
+    for (const double h : {1e-3, 1e-5}) {
+      ServoInput input;
+      input.measured = step_between(at.measured, at.measured, h);
+      input.begin_rate = at.rate;
+      input.set_point = SetPoint(at.set_point, at.set_point + (mode == ServoMode::Position ? h * at.set_rate : 0));
+      input.feedforward = at.feedforward;
+      const double increment = h * at.rate;
+      const ServoDemand mean = servo_demand(law, state, input);
+      const double effort = servo_effort(law, at);
+      // Errors and integrals change by less than 1 per second, by half of which the means differ.
+      EXPECT_NEAR(mean.constant + mean.slope * increment, effort, 0.5 * h * (law.proportional + law.integral));
+      ServoState after = state;
+      advance(law, input, increment, -2, after);
+      EXPECT_EQ(integral_at_end(law, input, increment, -2, state), after.integral);
+    }
+  }
+}
+
+TEST(SmoothDirection, IsResolvedByTheRefinement) {
+  EXPECT_FALSE(is_coarse_turn(0.1, 0.2, 1000)) << "does not turn";
+  EXPECT_TRUE(is_coarse_turn(-0.1, 0.1, 1));
+  const double part = 0.1 * kFrictionSpeed;  // of the direction as well, nearly
+  EXPECT_FALSE(is_coarse_turn(0, part, 4));
+  EXPECT_TRUE(is_coarse_turn(0, part, 6));
 }
 
 }  // namespace
