@@ -28,14 +28,16 @@ double counted_increment(const TimeRule& rule, const JointMap& joint, const Coor
 template <int Size>
 Eigen::Matrix<double, Size, 1> LastSteps::rate_at_end(const MeanRates<Size>& mean) const {
   using Rate = Eigen::Matrix<double, Size, 1>;
-  const auto& [h0, h1, h2] = length;
+  const auto& [h0, h1, h2, h3] = length;
   // From the mean of the newest step to its end, by the change of the mean since the step before, and the same by the
-  // change before that.
+  // changes before that.
   const Rate last = h0 / (h0 + h1) * (mean[0] - mean[1]);
   if (count < 3) return mean[0] + last;
   const Rate before = h0 / (h1 + h2) * (mean[1] - mean[2]);
-  if (belong_to_smooth_motion(last, before)) return mean[0] + last + (h0 + h1) / (h0 + h1 + h2) * (last - before);
-  return mean[0] + agreed_part(last, before);
+  const Rate earlier = count < 4 ? before : Rate(h0 / (h2 + h3) * (mean[2] - mean[3]));
+  if (belong_to_smooth_motion(last, before) && belong_to_smooth_motion(before, earlier))
+    return mean[0] + last + (h0 + h1) / (h0 + h1 + h2) * (last - before);
+  return mean[0];
 }
 template Eigen::Matrix<double, 1, 1> LastSteps::rate_at_end<1>(const MeanRates<1>&) const;
 template Eigen::Matrix<double, 3, 1> LastSteps::rate_at_end<3>(const MeanRates<3>&) const;

@@ -15,15 +15,16 @@ namespace flexarm {
 
 /// Lengths of the last steps, newest first: what turns mean rates of these steps into the rate at the end.
 struct LastSteps {
-  static constexpr int kMost = 3;
+  static constexpr int kMost = 4;
   int count = 2;                       ///< at least two
   std::array<double, kMost> length{};  ///< [s]; parts of a composed step may be negative
 
   /// Mean rates of a quantity of Size 1 or 3 in these steps: increments over lengths, newest first.
   template <int Size>
   using MeanRates = std::array<Eigen::Matrix<double, Size, 1>, kMost>;
-  /// The rate at the end of the newest step: of third order where the motion is smooth over three steps; else of
-  /// second, without overshoot; the mean of the newest step after a jump. Invariant under rotations.
+  /// The rate at the end of the newest step: of third order where the motion is smooth over four steps, else the mean
+  /// of the newest step, which is of second order where the rate has an extremum. Invariant under rotations. Right
+  /// behind the start, where fewer steps are known, three are asked or two.
   template <int Size>
   Eigen::Matrix<double, Size, 1> rate_at_end(const MeanRates<Size>& mean) const;
 };

@@ -18,12 +18,12 @@ using Rate = Eigen::Matrix<double, 1, 1>;
 
 /// Of a scalar position x(t), over steps of these lengths that end at `end`.
 template <class Position>
-double rate(const Position& x, double end, const std::array<double, 3>& lengths, int count = 3) {
+double rate(const Position& x, double end, const std::array<double, 4>& lengths, int count = 4) {
   LastSteps steps;
   steps.count = count;
   steps.length = lengths;
   LastSteps::MeanRates<1> mean;
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < 4; ++k) {
     mean[k][0] = (x(end) - x(end - lengths[k])) / lengths[k];
     end -= lengths[k];
   }
@@ -38,32 +38,41 @@ double cubic_rate(double t) {
 }
 
 TEST(RateAtEnd, IsExactForCubicsOverAnySteps) {
-  for (const std::array<double, 3>& lengths : {std::array<double, 3>{0.1, 0.1, 0.1}, {0.1, 0.2, 0.05}, {0.2, 0.1, 0.1}})
-    EXPECT_NEAR(rate(cubic, 2, lengths), cubic_rate(2), kRoundOff * cubic(2) / 0.05);
+  for (const std::array<double, 4>& lengths :
+       {std::array<double, 4>{0.1, 0.1, 0.1, 0.1}, {0.1, 0.2, 0.05, 0.1}, {0.2, 0.1, 0.1, 0.05}})
+    for (const int count : {3, 4})
+      EXPECT_NEAR(rate(cubic, 2, lengths, count), cubic_rate(2), kRoundOff * cubic(2) / 0.05);
   // As the parts of a composed step: the third one ran backwards.
-  EXPECT_NEAR(rate(cubic, 2, {0.0414, 0.0414, -0.0658}), cubic_rate(2), 4 * kRoundOff * cubic(2) / 0.0171);
+  EXPECT_NEAR(rate(cubic, 2, {0.0414, 0.0414, -0.0658, 0.0414}), cubic_rate(2), 4 * kRoundOff * cubic(2) / 0.0171);
 }
 
 TEST(RateAtEnd, IsExactForParabolasAfterTwoSteps) {
   const auto parabola = [](double t) { return 1 + t * (2 + 3 * t); };
-  EXPECT_NEAR(rate(parabola, 2, {0.1, 0.2, 0.1}, 2), 14, kRoundOff * parabola(2) / 0.1);
+  EXPECT_NEAR(rate(parabola, 2, {0.1, 0.2, 0.1, 0.1}, 2), 14, kRoundOff * parabola(2) / 0.1);
 }
 
 TEST(RateAtEnd, IsTheMeanAfterAJump) {
   // A body at rest that is thrown: nothing but the last mean is known.
   const auto thrown = [](double t) { return t < 0 ? 0 : 2 * t; };
-  EXPECT_NEAR(rate(thrown, 0.1, {0.1, 0.1, 0.1}), 2, kRoundOff * 2);
+  EXPECT_NEAR(rate(thrown, 0.1, {0.1, 0.1, 0.1, 0.1}), 2, kRoundOff * 2);
   // One that comes to a steady motion, and one that stays at rest: no change, whatever was before.
   LastSteps steps;
-  steps.count = 3;
-  steps.length = {0.5, 0.5, 0.5};
-  for (const double speed : {2.0, 0.0}) EXPECT_EQ(steps.rate_at_end<1>({Rate(speed), Rate(speed), Rate(1)})[0], speed);
+  steps.length = {0.5, 0.5, 0.5, 0.5};
+  for (const int count : {3, 4})
+    for (const double speed : {2.0, 0.0}) {
+      steps.count = count;
+      EXPECT_EQ(steps.rate_at_end<1>({Rate(speed), Rate(speed), Rate(1), Rate(1)})[0], speed);
+    }
+  // A force that jumps in the last step but one: half of what it does to the mean is in each of both steps. That is
+  // no acceleration that goes on.
+  EXPECT_EQ(steps.rate_at_end<1>({Rate(1.5), Rate(0.5), Rate(0), Rate(0)})[0], 1.5);
 }
 
 /// What rings with amplitude 1 in the mean rates rings no more in the result.
 TEST(RateAtEnd, DoesNotAmplifyWhatRings) {
   const auto ringing = [](double t) { return 0.05 * std::cos(kPi * t / 0.1); };  // mean rates +-1
-  for (const double end : {1.0, 1.1}) EXPECT_NEAR(std::abs(rate(ringing, end, {0.1, 0.1, 0.1})), 1, kRoundOff / 0.1);
+  for (const double end : {1.0, 1.1})
+    EXPECT_NEAR(std::abs(rate(ringing, end, {0.1, 0.1, 0.1, 0.1})), 1, kRoundOff / 0.1);
 }
 
 /// Of third order where the motion is smooth, of second order around extrema of the velocity.
@@ -71,8 +80,8 @@ TEST(RateAtEnd, Order) {
   const auto worst = [](double step, double from, double to) {
     double error = 0;
     for (double t = from; t < to; t += 0.37 * step)
-      error =
-          std::max(error, std::abs(rate([](double s) { return std::sin(s); }, t, {step, step, step}) - std::cos(t)));
+      error = std::max(error,
+                       std::abs(rate([](double s) { return std::sin(s); }, t, {step, step, step, step}) - std::cos(t)));
     return error;
   };
   EXPECT_NEAR(std::log2(worst(0.02, 0.5, 2.5) / worst(0.01, 0.5, 2.5)), 3, 0.1);
@@ -82,13 +91,14 @@ TEST(RateAtEnd, Order) {
 TEST(RateAtEnd, TurnsWithTheAxes) {
   const Matrix3 turn = so3::exp(Vector3(0.3, -1.1, 0.7));
   LastSteps steps;
-  steps.count = 3;
-  steps.length = {0.1, 0.2, 0.1};
-  LastSteps::MeanRates<3> smooth{Vector3(1, 2, 3), Vector3(1.1, 1.5, 2.4), Vector3(1.2, 1.1, 2.0)},
-      rough{Vector3(1, 2, 3), Vector3(0.4, 3, -1), Vector3(0.1, 3.5, 1)};
+  steps.count = 4;
+  steps.length = {0.1, 0.2, 0.1, 0.1};
+  LastSteps::MeanRates<3> smooth{Vector3(1, 2, 3), Vector3(1.1, 1.5, 2.4), Vector3(1.2, 1.1, 2.0),
+                                 Vector3(1.3, 0.8, 1.7)},
+      rough{Vector3(1, 2, 3), Vector3(0.4, 3, -1), Vector3(0.1, 3.5, 1), Vector3(0, 3, 0)};
   for (const LastSteps::MeanRates<3>& mean : {smooth, rough}) {
     LastSteps::MeanRates<3> turned;
-    for (int k = 0; k < 3; ++k) turned[k] = turn * mean[k];
+    for (int k = 0; k < 4; ++k) turned[k] = turn * mean[k];
     EXPECT_LT((steps.rate_at_end<3>(turned) - turn * steps.rate_at_end<3>(mean)).norm(), kRoundOff * 10);
   }
 }
