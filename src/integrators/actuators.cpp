@@ -94,11 +94,14 @@ void Actuators::begin() {
     const ActuatorState& state = configuration_.state().actuators[i];
     part.rotor = rotor_step(actuator, state);
     part.demand = {};
-    if (coordinate.motion < 0)
-      part.demand.constant =
-          histories_.effort(model, actuator.coordinate, configuration_.state().commands[actuator.coordinate]).acting;
+    if (coordinate.motion < 0) {
+      const StepForce effort =
+          histories_.effort(model, actuator.coordinate, configuration_.state().commands[actuator.coordinate]);
+      part.demand.constant = effort.acting;
+      part.demand.surplus = effort.acting - effort.at_end;
+    }
     if (actuator.servo && coordinate.motion < 0) ask(actuator, state, part);
-    if (state.servo.off > 0) part.demand = {0, 0, 0, 0};  // it goes on measuring
+    if (state.servo.off > 0) part.demand = {0, 0, 0, 0, 0};  // it goes on measuring
     part.action = {};
     part.action.increment = configuration_.step() * state.rate;
   }
@@ -122,13 +125,15 @@ SetPoint Actuators::set_point(const Servo& servo, const ServoState& state) const
   const TimeFunction& history = configuration_.model().histories[servo.set_point];
   const Scheme& scheme = configuration_.scheme();
   const double begin = scheme.is_static ? 0 : configuration_.state().time, end = begin + configuration_.step();
-  const bool needs_rate = !scheme.is_static && !scheme.is_incremental();
   SetPoint out(history(begin), history(end));
-  if (needs_rate) out.rate_at_end = history.derivative(end);
-  if (!scheme.is_static) {
-    out.mean = histories_.of_servo(servo.set_point).mean;
-    out.acting = histories_.of_servo(servo.set_point).acting;
-  }
+  if (scheme.is_static) return out;
+  out.mean = histories_.of_servo(servo.set_point).mean;
+  out.acting = histories_.of_servo(servo.set_point).acting;
+  if (scheme.is_incremental() || law_of(servo, state).mode != ServoMode::Position) return out;
+  // A jump of the set point is an impulse of its rate.
+  out.rate_at_end = history.derivative(end);
+  const double mean_rate = (out.end - out.begin) / configuration_.step();
+  out.acting_rate = out.rate_at_end + mean_rate - 0.5 * (history.derivative(begin) + out.rate_at_end);
   return out;
 }
 
@@ -184,8 +189,14 @@ void Actuators::ask(const Actuator& actuator, const ActuatorState& state, Part& 
     part.demand.constant += held_output(servo, part.servo, time, configuration_.step());
     return;
   }
-  const ServoDemand asked = servo_demand(law_of(servo, state.servo), state.servo, part.input);
+  const ServoLaw& law = law_of(servo, state.servo);
+  const ServoDemand asked = servo_demand(law, state.servo, part.input);
   part.demand.constant += asked.constant;
+  part.demand.surplus += servo_surplus(law, part.input);
+  if (servo.feedforward >= 0) {
+    const StepForce& feedforward = histories_.of_servo(servo.feedforward);
+    part.demand.surplus += histories_.factor * (feedforward.acting - feedforward.at_end);
+  }
   (servo.on_link ? part.demand.by_link : part.demand.by_rotor) += asked.slope;
 }
 
@@ -271,9 +282,13 @@ void Actuators::add_work(double& work) const {
     const MotorAction& action = parts_[i].action;
     const int coordinate = model.actuators[i].coordinate;
     if (model.coordinates[coordinate].motion >= 0) continue;  // whose work is the motion's
-    const double before = state.efforts[coordinate];
-    work +=
-        (configuration_.scheme().is_incremental() ? action.motor : 0.5 * (action.motor + before)) * action.increment;
+    double mean = action.motor;
+    if (!configuration_.scheme().is_incremental()) {
+      // That of both ends, and what made it the mean over the step; nothing is known of the start.
+      const double begin = state.history.count > 0 ? state.efforts[coordinate] : action.motor_at_end;
+      mean += 0.5 * (begin - action.motor_at_end);
+    }
+    work += mean * action.increment;
   }
 }
 
@@ -307,7 +322,7 @@ void Actuators::accept(State& state) const {
     }
     own.rest = action.is_stopped ? 1 : 0;
     const int coordinate = actuator.coordinate;
-    if (model.coordinates[coordinate].motion < 0) state.efforts[coordinate] = action.motor;
+    if (model.coordinates[coordinate].motion < 0) state.efforts[coordinate] = action.motor_at_end;
   }
 }
 

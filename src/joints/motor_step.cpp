@@ -33,6 +33,12 @@ MotorEffort motor_effort(const Drive& drive, const MotorDemand& demand, const Co
   return {asked, demand.by_rotor, demand.by_link};
 }
 
+/// What the motor gives without what makes up for the rest of the step.
+double effort_at_end(const Drive& drive, MotorDemand demand, const CoordinateStep& rotor, double link) {
+  demand.constant -= demand.surplus;
+  return motor_effort(drive, demand, rotor, link).value;
+}
+
 CoordinateStep with_increment(CoordinateStep change, double increment) {
   change.increment = increment;
   change.end = change.begin + increment;
@@ -54,7 +60,8 @@ MotorAction rigid_action(const Drive& drive, const MotorDemand& demand, const Ro
   out.increment = u;
   out.follows = 1;
   out.effort_by_load = -1 / part;
-  out.motor = motor.value;
+  out.motor = out.motor_at_end = motor.value;
+  if (demand.surplus != 0) out.motor_at_end = effort_at_end(drive, demand, with_increment(rotor.change, u), u);
   out.demand = demand.at(u, u);
   out.dissipated = (net - out.effort) * u;
   return out;
@@ -124,7 +131,9 @@ class RotorBalance {
     out.effort_by_load = t.gear.slope * yields;
     out.increment_by_load = -yields;
     out.increment = u;
-    out.motor = t.motor.value;
+    out.motor = out.motor_at_end = t.motor.value;
+    if (demand_.surplus != 0)
+      out.motor_at_end = effort_at_end(drive_, demand_, with_increment(rotor_.change, u), link_.increment);
     out.demand = demand_.at(u, link_.increment);
     out.dissipated = t.gear.dissipated;
     if (!is_static()) out.dissipated += (slides ? t.capacity * direction.value : -t.without_friction) * u;

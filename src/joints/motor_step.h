@@ -12,6 +12,7 @@ namespace flexarm {
 /// What a motor is asked for over a step: a function of the increments of its rotor and of the coordinate.
 struct MotorDemand {
   double constant = 0, by_rotor = 0, by_link = 0;
+  double surplus = 0;               ///< of the constant, above what is asked at the end: see StepForce
   double limit = Drive::kInfinity;  ///< at which it is cut, whatever the motor could give
   double at(double rotor, double link) const { return constant + by_rotor * rotor + by_link * link; }
 };
@@ -30,6 +31,7 @@ struct MotorAction {
   double follows = 0;            ///< derivative of that with respect to the coordinate's increment
   double effort_by_load = 0, increment_by_load = 0;  ///< of both, with respect to an effort against the rotor
   double motor = 0, demand = 0;                      ///< the motor's effort, and what was asked of it
+  double motor_at_end = 0;                           ///< the motor's effort without the demand's surplus
   double dissipated = 0;                             ///< [J]
   bool is_stopped = false;                           ///< dry friction holds the rotor at rest at the end
 };

@@ -55,6 +55,11 @@ Term derivative_term(const ServoState& state, const ServoInput& input) {
   return {0.25 * 2 * relaxation * follows * state.delayed_rate, 0.75 / h + 0.25 * follows};
 }
 
+/// Of the set point, where efforts are those at the end.
+double acting_rate(const ServoLaw& law, const SetPoint& set) {
+  return law.mode == ServoMode::Velocity ? set.acting : set.acting_rate;
+}
+
 double integral_share(const ServoInput& input) {
   return input.measured.at_end ? 1.0 : 0.5;
 }
@@ -84,8 +89,7 @@ ServoDemand servo_demand(const ServoLaw& law, const ServoState& state, const Ser
     return out;
   }
   if (input.measured.at_end) {  // the rate at the end
-    const double set_rate = law.mode == ServoMode::Velocity ? set.end : set.rate_at_end;
-    out.constant += law.derivative * (set_rate - input.rate_offset);
+    out.constant += law.derivative * (acting_rate(law, set) - input.rate_offset);
     out.slope -= law.derivative * input.rate_slope;
     return out;
   }
@@ -97,6 +101,13 @@ ServoDemand servo_demand(const ServoLaw& law, const ServoState& state, const Ser
   out.constant += resisting * input.begin_rate;
   out.slope -= resisting / h;
   return out;
+}
+
+double servo_surplus(const ServoLaw& law, const ServoInput& input) {
+  const SetPoint& set = input.set_point;
+  if (!input.measured.at_end || input.measured.step == 0) return 0;
+  if (law.mode == ServoMode::Effort) return set.acting - set.end;
+  return law.derivative * (acting_rate(law, set) - (law.mode == ServoMode::Velocity ? set.end : set.rate_at_end));
 }
 
 double integral_at_end(const ServoLaw& law, const ServoInput& input, double increment, double excess,

@@ -19,11 +19,16 @@ namespace flexarm {
 struct SetPoint {
   SetPoint() = default;
   SetPoint(double at_begin, double at_end, double rate = 0)
-      : begin(at_begin), end(at_end), rate_at_end(rate), mean(0.5 * (at_begin + at_end)), acting(at_end) {}
+      : begin(at_begin),
+        end(at_end),
+        rate_at_end(rate),
+        mean(0.5 * (at_begin + at_end)),
+        acting(at_end),
+        acting_rate(rate) {}
   double begin = 0, end = 0;
   double rate_at_end = 0;
-  double mean = 0;    ///< over the step
-  double acting = 0;  ///< of an effort, where efforts are those at the end: see StepForce
+  double mean = 0;                     ///< over the step
+  double acting = 0, acting_rate = 0;  ///< where efforts are those at the end: see StepForce
 };
 
 struct ServoInput {
@@ -43,6 +48,9 @@ struct ServoDemand {
 };
 
 ServoDemand servo_demand(const ServoLaw& law, const ServoState& state, const ServoInput& input);
+/// How far the constant is above what is asked for at the end of the step, as MotorDemand::surplus; but for
+/// feedforward.
+double servo_surplus(const ServoLaw& law, const ServoInput& input);
 /// Its memory at the end of the step, in which what is measured moved by `increment`, and `excess` is what the motor
 /// gave less what was asked of it.
 void advance(const ServoLaw& law, const ServoInput& input, double increment, double excess, ServoState& state);
