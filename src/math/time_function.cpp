@@ -1,6 +1,7 @@
 #include "flexarm/math/time_function.h"
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <iterator>
 #include <limits>
@@ -43,14 +44,24 @@ class Expression {
   explicit Expression(std::string text) : text_(std::move(text)) {
     parser_.DefineVar("t", &t_);
     compile_expression(parser_, text_, kExpected);
+    has_branches_ = text_.find_first_of("<>=!?&|") != std::string::npos;
+    for (const char* corner : {"abs", "sign", "rint", "min", "max"})
+      has_branches_ = has_branches_ || text_.find(corner) != std::string::npos;
   }
   Expression(const Expression& other) : Expression(other.text_) {}
   Expression& operator=(const Expression&) = delete;
 
+  /// The end of a step is the beginning of the next: what is asked once more is not evaluated again.
   double operator()(double time) const {
+    for (const Known& known : known_)
+      if (known.time == time) return known.value;
     t_ = time;
-    return parser_.Eval();
+    const double value = parser_.Eval();
+    known_[next_] = {time, value};
+    next_ = (next_ + 1) % known_.size();
+    return value;
   }
+  bool has_branches() const { return has_branches_; }
   /// Looking for variables writes to the parser: the expression must be a copy of one that is in use.
   std::optional<double> constant() {
     return parser_.GetUsedVar().empty() ? std::optional(parser_.Eval()) : std::nullopt;
@@ -58,7 +69,13 @@ class Expression {
 
  private:
   std::string text_;
+  struct Known {
+    double time = std::numeric_limits<double>::quiet_NaN(), value = 0;
+  };
   mutable double t_ = 0;
+  mutable std::array<Known, 4> known_;  // since a mean over a step takes the value at its end second
+  mutable std::size_t next_ = 0;
+  bool has_branches_ = false;
   mu::Parser parser_;
 };
 
@@ -251,7 +268,8 @@ double TimeFunction::mean(double begin, double end) const {
   if (begin > end) std::swap(begin, end);
   if (const Table* table = std::get_if<Table>(&function)) return flexarm::mean(*table, begin, end);
   if (const CubicSpline* spline = std::get_if<CubicSpline>(&function)) return flexarm::mean(*spline, begin, end);
-  return adaptive_mean(std::get<Expression>(function), begin, end);
+  const Expression& expression = std::get<Expression>(function);
+  return mean_of_what_may_be_smooth(expression, begin, end, !expression.has_branches());
 }
 
 double TimeFunction::mean_within(double limit, double begin, double end) const {
@@ -268,7 +286,7 @@ double TimeFunction::mean_within(double limit, double begin, double end) const {
     return mean_by_pieces(*spline, begin, end, [&](double a, double b) { return adaptive_mean(value, a, b); });
   }
   const Expression& expression = std::get<Expression>(function);
-  return adaptive_mean([&](double t) { return cut(expression(t)); }, begin, end);
+  return mean_of_what_may_be_smooth([&](double t) { return cut(expression(t)); }, begin, end, false);
 }
 
 std::vector<double> TimeFunction::corners(double begin, double end) const {

@@ -79,6 +79,45 @@ TEST(TimeFunctionMean, OfTheOutsideIsTheEnd) {
   EXPECT_NEAR(TimeFunction::parse("0:0 1:1").mean(-1, 3), 2.5 / 4, 4 * kEpsilon);
 }
 
+/// Mean from `begin` to `end` of what is left of a function between -limit and limit, times end - begin.
+struct CutCase {
+  std::string text;
+  double limit, begin, end, integral;
+};
+
+TEST(TimeFunctionMean, WithinALimitIsThatOfWhatIsCutAtEachInstant) {
+  const double jump = std::sqrt(0.1), third = 1.0 / 3;
+  for (const CutCase& c :
+       {CutCase{"7", 3, 0, 2, 6}, CutCase{"-7", 3, 0, 2, -6}, CutCase{"7", 8, 0, 2, 14},
+        CutCase{"0:0 1:4", 2, 0, 1, 1.5}, CutCase{"0:0 1:4", 5, 0, 1, 2},
+        // From -1.5 on: -1 up to 1/3, through 0 up to 2/3, then 1.
+        CutCase{"0:-3 1:3", 1, 0.25, 1, -(third - 0.25) + third}, CutCase{"0:-3 1:3", 1, 0, 1, 0},
+        // A triangle to 4 and back, then -5: its top is cut from 1/2 to 3/2.
+        CutCase{"0:0 1:4 2:0 3:-5", 2, 0, 2, 0.5 + 2 + 0.5}, CutCase{"0:0 1:4 2:0 3:-5", 2, 2, 4, -0.4 - 0.6 * 2 - 2},
+        CutCase{"t < sqrt(0.1) ? 30 : -3", 3, 0, 1, 3 * jump - 3 * (1 - jump)},
+        // 5 sin t is above 2.5 from pi/6 to 5 pi/6.
+        CutCase{"5*sin(t)", 2.5, 0, M_PI, 10 * (1 - std::cos(M_PI / 6)) + 2.5 * 2 * M_PI / 3},
+        CutCase{"5*sin(t)", 2.5, 0, 2 * M_PI, 0},
+        // t^3
+        CutCase{"0:0:0 1:1:3 2:8:12", 1, 0, 2, 0.25 + 1}}) {
+    const TimeFunction function = TimeFunction::parse(c.text);
+    const double mean = c.integral / (c.end - c.begin), tolerance = c.limit * (2e-13 + 32 * kEpsilon);
+    EXPECT_NEAR(function.mean_within(c.limit, c.begin, c.end), mean, tolerance) << c.text << " within " << c.limit;
+    EXPECT_EQ(function.mean_within(c.limit, c.end, c.begin), function.mean_within(c.limit, c.begin, c.end)) << c.text;
+    EXPECT_EQ(function.mean_within(c.limit, 0.7, 0.7), std::clamp(function(0.7), -c.limit, c.limit)) << c.text;
+  }
+}
+
+TEST(TimeFunctionMean, WithinALimitThatIsNotMetIsTheMean) {
+  for (const Case& example : cases()) {
+    const TimeFunction function = TimeFunction::parse(example.text);
+    const double limit = 1.01 * example.largest, tolerance = example.largest * 4e-13;
+    for (const double begin : {0.0, 0.3124, 0.83})
+      EXPECT_NEAR(function.mean_within(limit, begin, begin + 0.05), function.mean(begin, begin + 0.05), tolerance)
+          << example.text << " from " << begin;
+  }
+}
+
 TEST(TimeFunctionMean, LeavesJumpsAtItsEndsOutside) {
   const TimeFunction step = TimeFunction::parse("t < 0.3 ? 3 : -3");
   EXPECT_EQ(step.mean(0.299, 0.3), 3);
@@ -102,6 +141,30 @@ TEST(TimeFunctionMean, IsCheapWhereTheFunctionIsSmooth) {
   for (const double t : {0.0, 0.3, 10.0, 1000.0}) {
     EXPECT_LE(values_of([](double time) { return std::sin(time); }, t, t + 1e-3), 5) << t;
     EXPECT_LE(values_of([](double time) { return 50 * std::sin(6.3 * time) + time; }, t, t + 1e-3), 8) << t;
+  }
+}
+
+TEST(TimeFunctionMean, IsCheaperWhereItMayBeSmooth) {
+  const auto values = [](const std::function<double(double)>& function, double begin, bool is_smooth) {
+    int count = 0;
+    mean_of_what_may_be_smooth([&](double t) { return ++count, function(t); }, begin, begin + 1e-3, is_smooth);
+    return count;
+  };
+  for (const double t : {0.0, 0.3, 10.0, 1000.0}) {
+    EXPECT_EQ(values([](double time) { return std::cos(2 * time); }, t, true), 4) << t;
+    EXPECT_LE(values([](double time) { return std::sin(20 * time); }, t, true), 6) << t;
+    EXPECT_EQ(values([](double time) { return 50 * std::sin(6.3 * time) + time; }, t, false), 5) << t;
+    EXPECT_EQ(values([](double) { return 7.0; }, t, false), 5) << t;
+  }
+}
+
+// One that is wider than a third of the interval, wherever it is.
+TEST(TimeFunctionMean, MissesNoPulseBetweenItsValues) {
+  for (double begin = 0; begin < 0.63; begin += 0.01) {
+    const double end = begin + 0.36;
+    const TimeFunction pulse =
+        TimeFunction::parse("t > " + std::to_string(begin) + " && t < " + std::to_string(end) + " ? 2 : 0");
+    EXPECT_NEAR(pulse.mean(0, 1), 2 * 0.36, 1e-12) << begin;
   }
 }
 
