@@ -115,7 +115,7 @@ SetPoint Actuators::commanded_set_point(const ServoState& state) const {
   if (configuration_.scheme().is_static) return {state.set_point, state.set_point};
   const double begin = configuration_.state().time, end = begin + configuration_.step();
   SetPoint out(state.set_point_at(begin), state.set_point_at(end));
-  out.rate_at_end = rate_of_command(state, end);
+  out.rate_at_end = out.acting_rate = rate_of_command(state, end);
   return out;
 }
 
@@ -284,9 +284,8 @@ void Actuators::add_work(double& work) const {
     if (model.coordinates[coordinate].motion >= 0) continue;  // whose work is the motion's
     double mean = action.motor;
     if (!configuration_.scheme().is_incremental()) {
-      // That of both ends, and what made it the mean over the step; nothing is known of the start.
-      const double begin = state.history.count > 0 ? state.efforts[coordinate] : action.motor_at_end;
-      mean += 0.5 * (begin - action.motor_at_end);
+      // That of both ends, and what made it the mean over the step.
+      mean += 0.5 * (state.efforts[coordinate] - action.motor_at_end);
     }
     work += mean * action.increment;
   }

@@ -257,8 +257,12 @@ void Stepper::initialise_accelerations(State& state) {
   for (std::size_t i = 0; i < state.mass_points.size(); ++i)
     state.mass_points[i].angular_acceleration =
         (moved.mass_points[i].angular_velocity - state.mass_points[i].angular_velocity) / h;
-  for (std::size_t i = 0; i < state.actuators.size(); ++i)
+  for (std::size_t i = 0; i < state.actuators.size(); ++i) {
     state.actuators[i].acceleration = (moved.actuators[i].rate - state.actuators[i].rate) / h;
+    // The first step's work has the motor's effort at both ends, that at the start being what made these accelerations.
+    const int coordinate = model_.actuators[i].coordinate;
+    if (model_.coordinates[coordinate].motion < 0) state.efforts[coordinate] = moved.efforts[coordinate];
+  }
 }
 
 }  // namespace flexarm
