@@ -114,7 +114,7 @@ efforts: commanded before each of them, shape (steps, joints), or (joints,): the
   C-contiguous array of float64 it is read where it is. The last ones stay commanded.
 joints: of the columns of `efforts`, by names or indices; None: all of effort_joints.
 record: patterns of the columns to be recorded, as `flexarm simulate --columns` takes them (["joint/elbow/[pv]*", "energy/total"]);
-  the time is always the first one. []: all. None: nothing is recorded.
+  the time is always the first one, the others are in their order. []: all. None: nothing is recorded.
 every: a row is recorded after every so many steps.
 out: for the results, in place of a new array: C-contiguous, of float64.
 

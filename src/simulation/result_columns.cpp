@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <numeric>
 #include <stdexcept>
 
 #include <fnmatch.h>
@@ -91,9 +92,10 @@ class ResultColumns::Selection {
     Group group{values, index, {}};
     for (std::size_t k = 0; k < names.size(); ++k) {
       const std::string name = prefix + names[k].name;
-      if (!is_wanted(name, by_request)) continue;
-      result_.columns_.push_back({name, names[k].unit});
-      group.taken.push_back(k);
+      const int rank = rank_of(name, by_request);
+      if (rank == kUnwanted) continue;
+      group.taken.push_back({k, found_.size()});
+      found_.push_back({{name, names[k].unit}, rank});
     }
     if (!group.taken.empty()) result_.groups_.push_back(group);
   }
@@ -105,19 +107,43 @@ class ResultColumns::Selection {
                                   patterns_[static_cast<std::size_t>(odd - is_fitted_.begin())] + "'");
   }
 
+  /// Puts columns in the order in which they were asked for.
+  void put_in_order() {
+    std::vector<std::size_t> order(found_.size()), places(found_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [this](std::size_t a, std::size_t b) { return found_[a].rank < found_[b].rank; });
+    for (std::size_t place = 0; place < order.size(); ++place) {
+      places[order[place]] = place;
+      result_.columns_.push_back(found_[order[place]].column);
+    }
+    for (Group& group : result_.groups_)
+      for (Taken& taken : group.taken) taken.column = places[taken.column];
+    result_.row_.resize(order.size());
+  }
+
  private:
-  bool is_wanted(const std::string& name, bool by_request) {
-    bool is_wanted = name == "time" || (patterns_.empty() && !by_request);
+  static constexpr int kFirst = -1, kUnwanted = -2;
+  struct Found {
+    ResultColumn column;
+    int rank;
+  };
+
+  /// The first pattern that asks for it.
+  int rank_of(const std::string& name, bool by_request) {
+    int rank = name == "time" || (patterns_.empty() && !by_request) ? kFirst : kUnwanted;
     for (std::size_t i = 0; i < patterns_.size(); ++i) {
       if (fnmatch(patterns_[i].c_str(), name.c_str(), 0) != 0) continue;
-      is_wanted = is_fitted_[i] = true;
+      is_fitted_[i] = true;
+      if (rank == kUnwanted) rank = static_cast<int>(i);
     }
-    return is_wanted;
+    return rank;
   }
 
   ResultColumns& result_;
   const std::vector<std::string>& patterns_;
   std::vector<bool> is_fitted_;
+  std::vector<Found> found_;
 };
 
 ResultColumns::ResultColumns(const Simulation& simulation, Solver solver, const std::vector<std::string>& patterns) {
@@ -163,14 +189,14 @@ ResultColumns::ResultColumns(const Simulation& simulation, Solver solver, const 
     if (solver == Solver::WithEstimate) selection.add("solver/", {{"error_estimate", "m"}}, estimate_values);
   }
   selection.require_all_fitted();
+  selection.put_in_order();
 }
 
 const std::vector<double>& ResultColumns::row(const Simulation& simulation, const StepCounts& counts) {
-  row_.clear();
   for (const Group& group : groups_) {
     values_.clear();
     group.values(simulation, counts, group.index, values_);
-    for (const std::size_t k : group.taken) row_.push_back(values_[k]);
+    for (const Taken& taken : group.taken) row_[taken.column] = values_[taken.value];
   }
   return row_;
 }

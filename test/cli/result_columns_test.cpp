@@ -1,5 +1,7 @@
 #include "flexarm/simulation/result_columns.h"
 
+#include <algorithm>
+
 #include "cli/program.h"
 #include "flexarm/scene/urdf_reader.h"
 #include "simulation/everything_scene.h"
@@ -31,6 +33,33 @@ TEST(ResultColumns, AreThoseThatFit) {
             (std::vector<std::string>{"time", "joint/hinge/position", "joint/hinge/velocity", "joint/hinge/effort",
                                       "energy/total"}));
   EXPECT_EQ(names(simulation, {"probe/tip/[av]z"}), (std::vector<std::string>{"time", "probe/tip/vz", "probe/tip/az"}));
+}
+
+TEST(ResultColumns, AreInTheOrderInWhichTheyAreAskedFor) {
+  const Simulation simulation = everything();
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(names(simulation, {"probe/tip/z", "energy/total", "probe/tip/x", "joint/hinge/position"}),
+            (Names{"time", "probe/tip/z", "energy/total", "probe/tip/x", "joint/hinge/position"}));
+  EXPECT_EQ(names(simulation, {"momentum/y", "time", "energy/total"}), (Names{"time", "momentum/y", "energy/total"}));
+  // Those of one pattern are as they are without any; a column comes once.
+  EXPECT_EQ(names(simulation, {"momentum/z", "momentum/[xz]", "m*/[xy]"}),
+            (Names{"time", "momentum/z", "momentum/x", "momentum/y"}));
+  Names all = names(simulation, {"*"});
+  EXPECT_EQ(names(simulation, {"*", "energy/total"}), all);
+  all.erase(std::find(all.begin(), all.end(), "energy/total"));
+  all.insert(all.begin() + 1, "energy/total");
+  EXPECT_EQ(names(simulation, {"energy/total", "*"}), all) << "the time is first";
+}
+
+TEST(ResultColumns, HaveTheirValuesInAnyOrder) {
+  Simulation simulation = everything();
+  for (int n = 0; n < 3; ++n) simulation.step();
+  ResultColumns columns(simulation, Solver::With, {"energy/work", "probe/tip/z", "energy/kinetic", "probe/tip/x"});
+  const Vector3 tip = simulation.probe_pose(0).position;
+  const Energies energies = simulation.energies();
+  const std::vector<double> expected = {simulation.time(), energies.work, tip.z(), energies.kinetic, tip.x()};
+  EXPECT_EQ(columns.row(simulation, {}), expected);
+  EXPECT_EQ(columns.row(simulation, {}), expected) << "again";
 }
 
 TEST(ResultColumns, HaveTheValuesOfAllColumns) {

@@ -14,9 +14,9 @@ def height(observation, action, simulation):
 def test_steps_are_runs_of_the_simulation(pendulum):
     environment = flexarm.Environment(pendulum, height, steps=5, duration=0.02)
     observation, info = environment.reset(seed=1)
-    assert environment.observation_names == ["joint/shoulder/position", "joint/shoulder/velocity",
-                                             "joint/elbow/position", "joint/elbow/velocity"]
-    assert environment.observation_units == ["rad", "rad/s", "rad", "rad/s"]
+    assert environment.observation_names == ["joint/shoulder/position", "joint/elbow/position",
+                                             "joint/shoulder/velocity", "joint/elbow/velocity"]
+    assert environment.observation_units == ["rad", "rad", "rad/s", "rad/s"]
     assert environment.action_joints == ["shoulder", "elbow"]
     assert observation.shape == (4,) and info == {}
     over = []

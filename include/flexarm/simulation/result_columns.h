@@ -14,7 +14,8 @@ struct ResultColumn {
   std::string name, unit;
 };
 
-/// Which results of a simulation are put out. In this order, SI units, world axes, quaternions x y z w:
+/// Which results of a simulation are put out. SI units, world axes, quaternions x y z w; where nothing is asked for, in
+/// this order:
 ///   time
 ///   joint/NAME/position|velocity|effort      for every released coordinate
 ///   frame/LINK/x|y|z|qx|qy|qz|qw             for every link
@@ -30,8 +31,9 @@ class ResultColumns {
  public:
   enum class Solver { Without, With, WithEstimate };
 
-  /// Those whose names fit one of the `patterns`, as a shell's wildcards do ("joint/*", "*/f[xyz]"), and the time; all
-  /// where there are none. What no column needs is not computed.
+  /// The time, and behind it those whose names fit one of the `patterns`, as a shell's wildcards do ("joint/*",
+  /// "*/f[xyz]"); all where there are none. They are in the order of the patterns, each once, with the first one that
+  /// it fits; those of one pattern are as above. What no column needs is not computed.
   /// @throws std::invalid_argument naming a pattern that no column fits.
   ResultColumns(const Simulation& simulation, Solver solver, const std::vector<std::string>& patterns = {});
 
@@ -42,11 +44,15 @@ class ResultColumns {
  private:
   using Values = void (*)(const Simulation& simulation, const StepCounts& counts, std::size_t index,
                           std::vector<double>& values);
+  /// One of a group's values, and the column that it fills.
+  struct Taken {
+    std::size_t value, column;
+  };
   /// What is computed together.
   struct Group {
     Values values;
-    std::size_t index;               // of the joint, link, probe or sensor
-    std::vector<std::size_t> taken;  // of its values
+    std::size_t index;  // of the joint, link, probe or sensor
+    std::vector<Taken> taken;
   };
   class Selection;
 
