@@ -76,7 +76,7 @@ class JointPotentials {
 
  private:
   using Matrix = Eigen::Map<const Eigen::SparseMatrix<double>>;
-  const SparseTangent& tangent() const { return static_cast<const SparseTangent&>(system_.tangent()); }
+  const SparseTangent& tangent() const { return system_.tangent().matrix(); }
   void hold_joints();
   bool rest(State& state, double factor, double largest_rotation, StepResult& result);
   Eigen::VectorXd step(const JointPotential& from, const Eigen::VectorXd& ways) const;

@@ -223,7 +223,7 @@ void LinearDynamics::put_loads(const Eigen::VectorXd& force) {
 void LinearDynamics::balance(const Eigen::VectorXd& efforts) {
   const auto evaluate = [&] {
     if (!system_.evaluate(true)) throw std::runtime_error("the stiffness is not finite");
-    const auto& tangent = static_cast<const SparseTangent&>(system_.tangent());
+    const SparseTangent& tangent = system_.tangent().matrix();
     tangent_ = Eigen::Map<const Eigen::SparseMatrix<double>>(
         tangent.unknowns(), tangent.unknowns(), static_cast<Eigen::Index>(tangent.values().size()),
         tangent.column_starts().data(), tangent.row_indices().data(), tangent.values().data());

@@ -33,7 +33,7 @@ LinearisedMotion::LinearisedMotion(const Model& model, const State& state, doubl
       contact_time_(contact_time),
       system_(model, exact_equilibrium(contact_time), BackendChoice::Matrix),
       dof_(system_.degrees_of_freedom()),
-      stiffness_(static_cast<const SparseTangent&>(system_.tangent())),
+      stiffness_(system_.tangent().matrix()),
       damping_(model, dof_),
       mass_(model, dof_) {
   system_.begin_equilibrium(state, 1.0);

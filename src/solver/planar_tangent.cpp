@@ -1,10 +1,20 @@
 #include "solver/planar_tangent.h"
 
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 
 #include "solver/tree_blocks.h"
 
 namespace flexarm {
+namespace {
+
+[[noreturn]] void refuse(const char* what) {
+  throw std::logic_error(std::string("elimination in a plane has no place for ") + what);
+}
+
+}  // namespace
+
 bool PlanarTangent::suits(const Model& model, const DegreesOfFreedom& dof) {
   if (!model.closures.empty() || !model.slide_lines.empty() || !dof.mimics.empty()) return false;
   const TreeOrder order(model, dof);
@@ -57,6 +67,19 @@ void PlanarTangent::add_to_node(int node, const Matrix6& block) {
 void PlanarTangent::hold_row(int joint, int component, int first, const ReleasedVector& coefficients) {
   const PlanarJointFront& front = joints_[joint];
   flexarm::hold_row(maps_[joint], diagonal_block(front.variable()), front.has_master(), component, first, coefficients);
+}
+
+void PlanarTangent::add_closure(int, int, double, const ClosureMaps&) {
+  refuse("loops");
+}
+void PlanarTangent::add_coupling(int, const Eigen::Matrix<double, 12, 12>&) {
+  refuse("springs between points");
+}
+SlideMaps& PlanarTangent::slide_maps(int) {
+  refuse("sliders");
+}
+void PlanarTangent::fold_mimics(const std::vector<MimicMap>& maps) {
+  if (!maps.empty()) refuse("coordinates that follow others");
 }
 
 // ---------------------------------------------------------------- factors

@@ -35,10 +35,12 @@ class PlanarTangent : public TangentBackend {
   double cost_of_factors() const override { return 2.2; }
 
   // ---- of what does not suit
-  void add_closure(int, int, double, const ClosureMaps&) override {}
-  void add_coupling(int, const Eigen::Matrix<double, 12, 12>&) override {}
-  SlideMaps& slide_maps(int) override { return no_slide_; }
-  void fold_mimics(const std::vector<MimicMap>&) override {}
+  /// @throws std::logic_error as all of them do: what was left out without a word would make steps wrong
+  void add_closure(int closure, int index, double multiplier, const ClosureMaps& maps) override;
+  void add_coupling(int closure, const Eigen::Matrix<double, 12, 12>& blocks) override;
+  SlideMaps& slide_maps(int joint) override;
+  /// None, that is.
+  void fold_mimics(const std::vector<MimicMap>& maps) override;
 
  private:
   Eigen::Map<Vector3> node(int i) { return Eigen::Map<Vector3>(values_.data() + 4 * static_cast<std::size_t>(i)); }
@@ -57,7 +59,6 @@ class PlanarTangent : public TangentBackend {
   std::vector<double> values_, scalars_;                // four per node; per scalar: right-hand side, solution
   std::vector<double> expanded_;
   int singular_variable_ = -1;
-  SlideMaps no_slide_;
 };
 
 }  // namespace flexarm

@@ -38,6 +38,7 @@ class SparseTangent : public TangentBackend {
   bool factorise() override;
   bool solve(Eigen::VectorXd& b) override;
   const double* expanded_solution() override { return nullptr; }
+  const SparseTangent& matrix() const override { return *this; }
   double cost_of_factors() const override;
 
   // ---- reduced matrix, compressed columns

@@ -1,5 +1,6 @@
 #pragma once
-/// What becomes of the tangent of a step: a sparse matrix, or fronts along the tree. Nothing else knows which one runs.
+/// What becomes of the tangent of a step: a sparse matrix, or fronts along the tree. Nothing else knows which one runs;
+/// who needs the matrix itself asks for it (BackendChoice::Matrix, TangentBackend::matrix()).
 
 #include <memory>
 #include <vector>
@@ -12,6 +13,7 @@
 namespace flexarm {
 
 class InteriorCondensation;
+class SparseTangent;
 
 /// Of a coordinate that follows another one: the factors of its row and of its column, the derivative of the former,
 /// and that derivative times the row, see ReducedResidual::fold_mimics.
@@ -79,6 +81,10 @@ class TangentBackend {
 
   /// An iteration with new factors costs about so much more than one with kept ones, see FactorReuse.
   virtual double cost_of_factors() const = 0;
+
+  /// The backend of BackendChoice::Matrix itself, which has the tangent as a matrix after finish().
+  /// @throws std::logic_error if this one never makes a matrix
+  virtual const SparseTangent& matrix() const;
 
  protected:
   std::vector<double*> diagonal_blocks_, element_blocks_;

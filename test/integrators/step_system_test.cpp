@@ -2,8 +2,10 @@
 #include "analysis/statics.h"
 #include "integrators/balance.h"
 #include "integrators/scheme_step.h"
+#include "integrators/step_plane.h"
 #include "integrators/stepper.h"
 #include "joints/joint_forces.h"
+#include "solver/planar_tangent.h"
 
 namespace flexarm {
 namespace {
@@ -127,6 +129,31 @@ TEST(SparseTangent, PatternIsSymmetric) {
     for (int p = matrix.column_starts()[column]; p < matrix.column_starts()[column + 1]; ++p)
       entry(matrix.row_indices()[p], column) = 1;
   EXPECT_EQ(entry, Eigen::MatrixXi(entry.transpose()));
+}
+
+TEST(TangentBackend, HasTheMatrixThatWasAskedFor) {
+  const Model model = build_model(every_joint_scene(false));
+  const StepSystem with(model, schemes().front(), BackendChoice::Matrix), without(model, schemes().front());
+  EXPECT_EQ(&with.tangent().matrix(), &with.tangent());
+  EXPECT_THROW(without.tangent().matrix(), std::logic_error) << "fronts along the tree";
+}
+
+TEST(PlanarTangent, RefusesWhatItCannotEliminate) {
+  SceneBuilder builder;
+  builder.body("rotor", 1, Vector3(0.1, 0, 0), Matrix3::Identity());
+  builder.joint("hinge", scene::JointKind::Continuous, "world", "rotor", Vector3::Zero(), Vector3::UnitZ());
+  builder.scene.gravity.setZero();
+  const Model model = build_model(builder.scene);
+  const DegreesOfFreedom dof(model);
+  const PlaneSearch search = find_step_plane(model, *find_scheme("em"));
+  ASSERT_TRUE(search.plane) << search.reason;
+  PlanarTangent tangent(model, dof, *search.plane);
+  EXPECT_THROW(tangent.add_closure(0, 0, 1, ClosureMaps()), std::logic_error);
+  EXPECT_THROW(tangent.add_coupling(0, Eigen::Matrix<double, 12, 12>::Zero()), std::logic_error);
+  EXPECT_THROW(tangent.slide_maps(0), std::logic_error);
+  EXPECT_THROW(tangent.fold_mimics({MimicMap{1, 1, 0}}), std::logic_error);
+  EXPECT_NO_THROW(tangent.fold_mimics({}));
+  EXPECT_THROW(tangent.matrix(), std::logic_error);
 }
 
 TEST(DegreesOfFreedom, DependentScalarsHaveNoEquation) {
