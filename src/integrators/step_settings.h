@@ -1,6 +1,8 @@
 #pragma once
 /// What is asked of a step.
 
+#include <cstdint>
+
 #include "flexarm/schemes/integrator_description.h"
 
 namespace flexarm {
@@ -43,6 +45,11 @@ struct StepSettings {
 inline int finest_halving(const StepSettings& settings) {
   constexpr int kFinestAtStops = 40;
   return settings.max_halvings > 0 ? kFinestAtStops : 0;
+}
+
+/// The shortest sub-steps in a step that may be halved so often, up to 62 times: they count how far it has come.
+constexpr std::int64_t parts_of_step(int halvings) {
+  return std::int64_t{1} << halvings;  // a long has 32 bits on some systems
 }
 
 }  // namespace flexarm

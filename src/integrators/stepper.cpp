@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "integrators/dissipative_substitute.h"
@@ -187,8 +188,8 @@ StepResult Stepper::advance_by_scheme(State& state) {
   begin_ = state.time;
   const int good_steps = settings_.events.is_on() ? kGoodStepsToDoubleAtEvents : kGoodStepsToDouble;
   const int finest = finest_halving(settings_);
-  long done = 0;  // in units of step / 2^finest
-  const long whole = 1L << finest;
+  std::int64_t done = 0;  // in units of step / 2^finest
+  const std::int64_t whole = parts_of_step(finest);
   state.halving_level = std::clamp(state.halving_level, 0, finest);
   state.drives.begin();
   state.transmitted.begin();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include <fmt/format.h>
 
@@ -68,7 +69,8 @@ void StepCounts::add(const StepResult& result) {
 std::string recoveries_text(const StepCounts& counts) {
   std::vector<std::string> texts;
   if (counts.deepest_halving > 0)
-    texts.push_back(fmt::format("{} halvings (down to 1/{} of a step)", counts.halvings, 1L << counts.deepest_halving));
+    texts.push_back(fmt::format("{} halvings (down to 1/{} of a step)", counts.halvings,
+                                std::int64_t{1} << counts.deepest_halving));
   if (counts.other_guesses > 0) texts.push_back(fmt::format("{} sub-steps from another guess", counts.other_guesses));
   if (counts.dissipated_steps > 0) texts.push_back(fmt::format("{} steps by edmc2", counts.dissipated_steps));
   return fmt::format("{}", fmt::join(texts, ", "));

@@ -4,6 +4,7 @@
 #include <semaphore.h>
 
 #include <chrono>
+#include <cstdint>
 #include <ctime>
 
 namespace flexarm::node {
@@ -24,8 +25,10 @@ class Semaphore {
   /// Waits until then at most.
   void take_until(std::chrono::steady_clock::time_point time) {
     const auto since_boot = std::chrono::duration_cast<std::chrono::nanoseconds>(time.time_since_epoch()).count();
-    constexpr long kSecond = 1000000000;
-    const timespec until{since_boot / kSecond, since_boot % kSecond};
+    constexpr std::int64_t kSecond = 1000000000;
+    timespec until{};
+    until.tv_sec = static_cast<std::time_t>(since_boot / kSecond);
+    until.tv_nsec = static_cast<long>(since_boot % kSecond);
     sem_clockwait(&semaphore_, CLOCK_MONOTONIC, &until);
   }
 

@@ -236,6 +236,14 @@ TEST(Stepper, HalvesAndReportsWhatItCannotDo) {
   EXPECT_STRNE(to_string(result.reason), "none");
 }
 
+TEST(Stepper, CountsTheShortestSubStepsOnSystemsOf32BitsToo) {
+  static_assert(std::is_same_v<decltype(parts_of_step(0)), std::int64_t>, "a long has 32 bits there");
+  StepSettings settings;
+  EXPECT_EQ(static_cast<double>(parts_of_step(finest_halving(settings))), std::ldexp(1.0, 40));
+  settings.max_halvings = 0;
+  EXPECT_EQ(parts_of_step(finest_halving(settings)), 1);
+}
+
 TEST(Stepper, TurnsOfMoreThanNinetyDegreesAreSplit) {
   SceneBuilder builder;
   builder.body("rotor", 1, Vector3::Zero(), Matrix3::Identity());

@@ -166,6 +166,9 @@ TEST(Recovery, HalvingsAreCountedAndNamed) {
   EXPECT_EQ(recoveries_text(counts), std::to_string(result.halvings) + " halvings (down to 1/" +
                                          std::to_string(1 << result.deepest_halving) + " of a step)");
   EXPECT_EQ(recoveries_text(StepCounts()), "");
+  counts = {};
+  counts.deepest_halving = 40;  // as at a stop
+  EXPECT_EQ(recoveries_text(counts), "0 halvings (down to 1/1099511627776 of a step)");
 }
 
 // Laws of friction that turn round within a step's motion make Newton's updates jump to and fro; damped ones arrive.
