@@ -36,14 +36,14 @@ DissipativeSubstitute::DissipativeSubstitute(const Model& model, const Scheme& s
   trial_.wrenches.reserve(kRoomForWrenches);
 }
 
-bool DissipativeSubstitute::advance(State& state, StepResult& result) {
+bool DissipativeSubstitute::advance(State& state, const Deadline& deadline, StepResult& result) {
   trial_ = begin_;
   trial_.halving_level = 0;
   stepper_.invalidate();
   if (begin_.strain_memory.empty()) trial_.strain_memory = initial_strain_memory(model_, begin_);
   const double memory_at_beginning =
       energies(model_, dissipative_, trial_).strain - energies(model_, scheme_, begin_).strain;
-  const StepResult made = stepper_.advance(trial_);
+  const StepResult made = stepper_.advance(trial_, deadline);
   result.iterations += made.iterations;
   result.factorisations += made.factorisations;
   result.halvings += made.halvings;

@@ -19,8 +19,9 @@ class DissipativeSubstitute {
   void set_tolerance(double tolerance) { stepper_.set_tolerance(tolerance); }
   /// A step may come that fails: the state at its beginning.
   void keep(const State& state) { begin_ = state; }
-  /// Does the step from the state that was kept. On failure `state` is left alone. The effort is added to `result`.
-  bool advance(State& state, StepResult& result);
+  /// Does the step from the state that was kept, in what is left of its time. On failure `state` is left alone. The
+  /// effort is added to `result`.
+  bool advance(State& state, const Deadline& deadline, StepResult& result);
 
  private:
   const Model& model_;

@@ -36,7 +36,8 @@ struct StepSettings {
   bool reuse_factorisation = true;
   OnFailure on_failure = OnFailure::Stop;
   /// By the clock on the wall [s], after which a step that has been halved is given up, however far it has come; 0:
-  /// never. What one Newton iteration takes comes on top.
+  /// never. What one Newton iteration takes comes on top. A step that another scheme does again (OnFailure::Dissipate)
+  /// has what is left of it.
   double recovery_wall_time = 0;
 };
 

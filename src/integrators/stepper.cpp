@@ -1,7 +1,6 @@
 #include "integrators/stepper.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -28,22 +27,6 @@ constexpr int kMostHalvings = 500;
 constexpr int kGoodStepsToDouble = 2, kGoodStepsToDoubleAtEvents = 6;
 /// Halvings of a step in which forces have a kink: it makes an error as the square of the step's length.
 constexpr int kKinkHalvings = 3;
-
-/// Of the time by the clock on the wall that a step may take.
-class Deadline {
- public:
-  explicit Deadline(double seconds) : seconds_(seconds) {
-    if (seconds_ > 0) begin_ = Clock::now();
-  }
-  bool has_passed() const {
-    return seconds_ > 0 && std::chrono::duration<double>(Clock::now() - begin_).count() > seconds_;
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  double seconds_;
-  Clock::time_point begin_;
-};
 
 }  // namespace
 
@@ -173,18 +156,24 @@ bool Stepper::simple_step(State& state, double step, StepResult& result) {
 }
 
 StepResult Stepper::advance(State& state) {
+  return advance(state, Deadline(settings_.recovery_wall_time));
+}
+
+StepResult Stepper::advance(State& state, const Deadline& deadline) {
+  using Reason = StepResult::Reason;
   const FlushSubnormals flush;
-  if (!substitute_) return advance_by_scheme(state);
+  if (!substitute_) return advance_by_scheme(state, deadline);
   substitute_->keep(state);
-  StepResult result = advance_by_scheme(state);
-  const bool has_failed = !result.converged && result.reason != StepResult::Reason::EventWithin;
-  if (has_failed && substitute_->advance(state, result)) invalidate();
+  StepResult result = advance_by_scheme(state, deadline);
+  // What was cut for lack of time has come as far as it could; there is none left to do it again.
+  const bool may_be_done_again =
+      !result.converged && result.reason != Reason::EventWithin && result.reason != Reason::OutOfTime;
+  if (may_be_done_again && substitute_->advance(state, deadline, result)) invalidate();
   return result;
 }
 
-StepResult Stepper::advance_by_scheme(State& state) {
+StepResult Stepper::advance_by_scheme(State& state, const Deadline& deadline) {
   StepResult result;
-  const Deadline deadline(settings_.recovery_wall_time);
   begin_ = state.time;
   const int good_steps = settings_.events.is_on() ? kGoodStepsToDoubleAtEvents : kGoodStepsToDouble;
   const int finest = finest_halving(settings_);

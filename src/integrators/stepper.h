@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "flexarm/model/results.h"
+#include "integrators/deadline.h"
 #include "integrators/newton.h"
 #include "integrators/step_follower.h"
 #include "integrators/step_settings.h"
@@ -25,6 +26,8 @@ class Stepper {
   /// One step of settings.step, in sub-steps of step / 2^k where Newton or a hit on a stop needs them. On failure the
   /// state is that after the last good sub-step, or the step is done otherwise, see OnFailure.
   StepResult advance(State& state);
+  /// The same as a part of something whose time runs already.
+  StepResult advance(State& state, const Deadline& deadline);
   /// Of a step that ended as Reason::EventWithin: when the event happens, from its beginning [s].
   double event() const { return event_; }
   /// Adds to an initial state what the scheme keeps there; accelerations (Newmark family) come from a short
@@ -47,7 +50,7 @@ class Stepper {
   void accompany(StepFollower* follower) { follower_ = follower; }
 
  private:
-  StepResult advance_by_scheme(State& state);
+  StepResult advance_by_scheme(State& state, const Deadline& deadline);
   /// What has come to nothing by now: where, and why.
   StepResult give_up(bool is_late, StepResult result);
   void initialise_accelerations(State& state);

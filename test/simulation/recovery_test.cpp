@@ -108,7 +108,7 @@ TEST(Recovery, AccountAndMomentaAreExactOverTheChangeOfSchemes) {
           result = stepper.advance(state);
         } else {
           substitute.keep(state);
-          EXPECT_TRUE(substitute.advance(state, result) && result.is_dissipated);
+          EXPECT_TRUE(substitute.advance(state, Deadline(0), result) && result.is_dissipated);
           stepper.invalidate();
         }
         ASSERT_TRUE(result.converged) << name;
@@ -182,6 +182,33 @@ TEST(Recovery, NoStepIsHalvedForSteepFriction) {
     EXPECT_EQ(out.counts.halvings, 0) << scheme;
     std::printf("%s: %ld halvings, %ld from other guesses\n", scheme, out.counts.halvings, out.counts.other_guesses);
   }
+}
+
+TEST(Recovery, WhatTheClockOnTheWallHasCutIsNotDoneAgain) {
+  scene::SceneDescription scene = fast_rotor();
+  scene.integrator.on_failure = OnFailure::Dissipate;
+  SimulationOptions options;
+  options.recovery_wall_time = 1e-9;
+  Simulation simulation(scene, options);
+  const StepResult result = simulation.step();
+  EXPECT_EQ(result.reason, Reason::OutOfTime);
+  EXPECT_FALSE(result.failure.tried_dissipation);
+  EXPECT_FALSE(result.is_dissipated);
+}
+
+TEST(Recovery, TheSubstituteHasWhatIsLeftOfTheTime) {
+  const Simulation simulation(fast_rotor());
+  StepSettings settings;
+  settings.step = simulation.step_size();
+  settings.recovery_wall_time = 3600;
+  DissipativeSubstitute substitute(model_of(simulation), make_scheme(simulation.scene().integrator), settings);
+  State state = state_of(simulation);
+  substitute.keep(state);
+  StepResult result;
+  EXPECT_FALSE(substitute.advance(state, Deadline(1e-9), result)) << "an hour of its own";
+  EXPECT_EQ(state.time, 0);
+  EXPECT_TRUE(substitute.advance(state, Deadline(3600), result));
+  EXPECT_EQ(state.time, settings.step);
 }
 
 TEST(Recovery, EndsByTheClockOnTheWallAndGoesOn) {

@@ -1,0 +1,26 @@
+#pragma once
+/// Until when a step has time.
+
+#include <chrono>
+
+namespace flexarm {
+
+/// Of the time by the clock on the wall that a step may take, by whatever schemes it is tried: it begins when this is
+/// made.
+class Deadline {
+ public:
+  /// @param seconds  after which it has passed [s]; 0: it never does
+  explicit Deadline(double seconds) : seconds_(seconds) {
+    if (seconds_ > 0) begin_ = Clock::now();
+  }
+  bool has_passed() const {
+    return seconds_ > 0 && std::chrono::duration<double>(Clock::now() - begin_).count() > seconds_;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  double seconds_;
+  Clock::time_point begin_;
+};
+
+}  // namespace flexarm
