@@ -223,12 +223,15 @@ StepResult Stepper::give_up(bool is_late, StepResult result) {
   return result;
 }
 
-void Stepper::initialise(State& state) {
-  if (!scheme_.is_incremental()) initialise_accelerations(state);
+StepResult Stepper::initialise(State& state) {
+  StepResult found;
+  found.converged = true;
+  if (!scheme_.is_incremental()) found = initialise_accelerations(state);
   system_.initialise(state);
+  return found;
 }
 
-void Stepper::initialise_accelerations(State& state) {
+StepResult Stepper::initialise_accelerations(State& state) {
   // A centred difference over a step h has a truncation error of order h and a round-off of order epsilon / h^2.
   const double h = 1e-2 * settings_.step;
   StepSettings settings = settings_;
@@ -239,7 +242,8 @@ void Stepper::initialise_accelerations(State& state) {
   scheme.heeds_slide_schemes = false;  // they were chosen for another scheme
   Stepper momentum(model_, scheme, settings);
   State moved = state;
-  if (!momentum.advance(moved).converged) return;
+  StepResult result = momentum.advance(moved);
+  if (!result.converged) return result;
   for (std::size_t i = 0; i < state.nodes.size(); ++i) {
     state.nodes[i].acceleration = (moved.nodes[i].velocity - state.nodes[i].velocity) / h;
     state.nodes[i].angular_acceleration = (moved.nodes[i].angular_velocity - state.nodes[i].angular_velocity) / h;
@@ -253,6 +257,7 @@ void Stepper::initialise_accelerations(State& state) {
     const int coordinate = model_.actuators[i].coordinate;
     if (model_.coordinates[coordinate].motion < 0) state.efforts[coordinate] = moved.efforts[coordinate];
   }
+  return result;
 }
 
 }  // namespace flexarm

@@ -31,8 +31,8 @@ class Stepper {
   /// Of a step that ended as Reason::EventWithin: when the event happens, from its beginning [s].
   double event() const { return event_; }
   /// Adds to an initial state what the scheme keeps there; accelerations (Newmark family) come from a short
-  /// momentum-conserving step.
-  void initialise(State& state);
+  /// momentum-conserving step. @returns what that step came to; where it has failed, accelerations are zero
+  StepResult initialise(State& state);
   /// The length of whole steps from now on [s]; what the scheme was made with for another one stays.
   void set_step(double step, const EventSearch& events = {});
   /// Of Newton's method, see StepSettings.
@@ -53,7 +53,7 @@ class Stepper {
   StepResult advance_by_scheme(State& state, const Deadline& deadline);
   /// What has come to nothing by now: where, and why.
   StepResult give_up(bool is_late, StepResult result);
-  void initialise_accelerations(State& state);
+  StepResult initialise_accelerations(State& state);
   /// A step of a composed scheme is several simple ones; on failure the state is untouched.
   bool sub_step(State& state, double step, StepResult& result);
   bool simple_step(State& state, double step, StepResult& result);

@@ -17,6 +17,7 @@
 #include "model/carried_origin.h"
 #include "model/line_release.h"
 #include "model/room_for_wrenches.h"
+#include "simulation/failure_text.h"
 #include "simulation/joint_state.h"
 #include "simulation/loop_velocities.h"
 #include "simulation/observables.h"
@@ -63,8 +64,11 @@ struct Simulation::Implementation {
     }
     for (const LinkFrame& link : model.links) link_names.push_back(link.name);
     make_room();
-    stepper->initialise(state);
-    if (scene.starts_in_equilibrium) start_in_equilibrium(scene, model, scheme, settings, state, start_warnings);
+    const StepResult found = stepper->initialise(state);
+    if (scene.starts_in_equilibrium)
+      start_in_equilibrium(scene, model, scheme, settings, state, start_warnings);
+    else if (!found.converged)
+      start_warnings.push_back(unknown_accelerations(scene, failure_text(model, settings, found)));
     published.velocities(view());  // their memory is there from the start
     take_samples(true);
     initial = std::make_shared<const State>(state);
@@ -180,8 +184,16 @@ struct Simulation::Implementation {
     state.released = from.state.released;
     if (!scheme.is_incremental() && !from.scheme.is_incremental()) state.mass_points = closed.mass_points;
     if (initial->total_rotations.empty()) state.total_rotations.clear();
-    stepper->initialise(state);
+    begin(state);
     return state;
+  }
+
+  /// Adds to a state at which a motion begins what the scheme keeps there.
+  /// @throws std::invalid_argument where that cannot be found
+  void begin(State& state) {
+    const StepResult found = stepper->initialise(state);
+    if (!found.converged)
+      throw std::invalid_argument("its accelerations cannot be found: " + failure_text(model, settings, found));
   }
 
   void set_step(double step, const EventSearch& events) {

@@ -210,7 +210,7 @@ bool Simulation::is_commandable(std::size_t index) const {
 void Simulation::set_joint_state(const std::vector<CoordinateState>& coordinates) {
   Implementation& s = *implementation_;
   State moved = with_joint_state(s.model, s.stepper->degrees_of_freedom(), s.state, coordinates);
-  s.stepper->initialise(moved);
+  s.begin(moved);
   moved.work += flexarm::energies(s.model, s.scheme, moved).total() - s.published_energies().total();
   s.set_state(moved);
 }

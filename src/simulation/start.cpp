@@ -66,6 +66,16 @@ scene::Diagnostics held_joints(const scene::SceneDescription& scene, const Model
   return findings;
 }
 
+scene::Diagnostic unknown_accelerations(const scene::SceneDescription& scene, const std::string& failure) {
+  scene::SourceLocation place = scene.integrator_location;
+  if (place.line <= 0) place = {scene.file};
+  return warning(
+      place, "start",
+      "begins with accelerations of zero, which is a wrong beginning for the scheme: those of the scene cannot "
+      "be found: " +
+          failure);
+}
+
 void start_in_equilibrium(const scene::SceneDescription& scene, const Model& model, const Scheme& scheme,
                           const StepSettings& settings, State& state, scene::Diagnostics& warnings) {
   require_rest(scene);

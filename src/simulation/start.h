@@ -1,6 +1,8 @@
 #pragma once
 /// How a simulation starts.
 
+#include <string>
+
 #include "flexarm/scene/diagnostic.h"
 #include "flexarm/scene/scene_description.h"
 #include "integrators/step_settings.h"
@@ -12,6 +14,9 @@ namespace flexarm {
 
 /// A warning for each joint coordinate that massless="lock" holds where it starts, in the scene's order.
 scene::Diagnostics held_joints(const scene::SceneDescription& scene, const Model& model);
+
+/// A warning that a motion begins with accelerations of zero, since its own cannot be found. `failure`: why, in words.
+scene::Diagnostic unknown_accelerations(const scene::SceneDescription& scene, const std::string& failure);
 
 /// Brings `state` to the equilibrium of the scene, at rest; adds what is doubtful about it to `warnings`.
 /// @throws ModelError where there is none, naming joints that nothing holds, or where the scene gives a velocity.

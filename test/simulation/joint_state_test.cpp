@@ -210,5 +210,37 @@ TEST(JointState, LoopsStayClosedOrAreRefused) {
   }
 }
 
+/// In 1 % of a step, from which the Newmark family takes the accelerations of a start, it turns by 1e-5 s times the
+/// speed: at 1e6 rad/s by more than a step can do, and nothing is halved here.
+scene::SceneDescription rotor_at(double speed) {
+  SceneBuilder b;
+  b.body("rotor", 1, {0.1, 0, 0}, Matrix3::Identity());
+  b.joint("shaft", JointKind::Continuous, "world", "rotor", {0, 0, 0}, {0, 0, 1});
+  b.scene.initial_joints.push_back({"shaft", 0, speed, {}});
+  b.scene.integrator.scheme = "newmark";
+  b.scene.integrator.step = 1e-3;
+  b.scene.integrator.max_halvings = 0;
+  return b.scene;
+}
+
+TEST(Start, WarnsWhereAccelerationsCannotBeFound) {
+  EXPECT_TRUE(Simulation(rotor_at(1)).start_warnings().empty());
+  const Simulation racing(rotor_at(1e6));
+  ASSERT_EQ(racing.start_warnings().size(), 1u);
+  const std::string text = racing.start_warnings()[0].text();
+  EXPECT_NE(text.find("warning: start: begins with accelerations of zero"), std::string::npos) << text;
+  EXPECT_NE(text.find("cannot be found: "), std::string::npos) << "the reason: " << text;
+}
+
+TEST(JointState, IsRefusedWhereAccelerationsCannotBeFound) {
+  Simulation simulation(rotor_at(1));
+  ASSERT_TRUE(simulation.step().converged);
+  const double position = simulation.position(0), velocity = simulation.velocity(0);
+  EXPECT_THROW(simulation.set_joint_state({{0, std::nullopt, 1e6}}), std::invalid_argument);
+  EXPECT_EQ(simulation.position(0), position);
+  EXPECT_EQ(simulation.velocity(0), velocity);
+  EXPECT_TRUE(simulation.step().converged);
+}
+
 }  // namespace
 }  // namespace flexarm::test

@@ -101,8 +101,8 @@ class Simulation {
   /// Puts joint coordinates elsewhere at once, or gives them other velocities; what hangs on them is moved with them as
   /// it is, with its strains, twists of gears and their rates, its own joints' positions and velocities. Time, commands
   /// and memories of servos stay. What that changes of the energy counts as work, so that the account goes on.
-  /// @throws std::invalid_argument if a number is not finite, a position beyond its joint's limits, a coordinate named
-  /// twice, prescribed or a follower of another one, or if a loop does not stay closed; nothing has changed then.
+  /// @throws std::invalid_argument if a number is not finite, a position beyond its limits, a coordinate named twice,
+  /// prescribed or a follower, a loop opens, or accelerations cannot be found (Newmark); nothing has changed then.
   void set_joint_state(const std::vector<CoordinateState>& coordinates);
 
   // ---- released coordinates: one per scalar joint, several for the others ("wrist/rx")
