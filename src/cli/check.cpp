@@ -77,7 +77,7 @@ void print_parameters(const Simulation& simulation) {
 }
 
 void print_plane(const Simulation& simulation) {
-  const PlaneSearch search = find_step_plane(model_of(simulation), make_scheme(simulation.scene().integrator));
+  const PlaneSearch search = find_step_plane(model_of(simulation), scheme_of(simulation));
   if (!search.plane) return fmt::print("steps are three-dimensional: {}\n", search.reason);
   const Vector3& normal = search.plane->normal;
   fmt::print("steps are taken in the plane with the normal {:.6g} {:.6g} {:.6g}\n", normal.x(), normal.y(), normal.z());
@@ -170,7 +170,7 @@ std::string loop_joint_of(const scene::SceneDescription& scene, const std::strin
 
 void print_dead_point(const Simulation& simulation) {
   if (simulation.scene().loop_joints.empty()) return;
-  const double contact_time = make_scheme(simulation.scene().integrator).contact_time;
+  const double contact_time = scheme_of(simulation).contact_time;
   const std::string link = link_at_dead_point(model_of(simulation), state_of(simulation), contact_time);
   if (link.empty()) return;
   fmt::print(

@@ -33,7 +33,7 @@ std::string checksum_line(const std::string& text) {
 /// What must agree for a state to fit a simulation, one thing per line.
 std::string identity(const Simulation& simulation) {
   const State& state = state_of(simulation);
-  return scene_identity(simulation.scene()) +
+  return scene_identity(simulation.scene(), scheme_of(simulation)) +
          fmt::format("nodes {} joints {} mass_points {} coordinates {}\n", state.nodes.size() - state.left_lines.size(),
                      state.released.size(), state.mass_points.size(), state.commands.size());
 }

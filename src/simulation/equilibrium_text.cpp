@@ -105,7 +105,7 @@ std::vector<std::string> doubts_about_equilibrium(const Model& model, double con
 
 std::vector<std::string> doubts_about_equilibrium(const Simulation& simulation, const StaticResult& result,
                                                   const std::string& consequence) {
-  const double contact_time = make_scheme(simulation.scene().integrator).contact_time;
+  const double contact_time = scheme_of(simulation).contact_time;
   return doubts_about_equilibrium(model_of(simulation), contact_time, state_of(simulation), result, consequence);
 }
 

@@ -32,6 +32,7 @@ namespace flexarm {
 struct Simulation::Implementation {
   scene::SceneDescription scene;
   Scheme scheme;
+  IntegratorDescription first_integrator;  ///< by which that was made, and the initial state found
   StepSettings settings;
   std::vector<std::optional<RigidLine>> rigid_lines;  ///< per link
   Model model;
@@ -52,6 +53,7 @@ struct Simulation::Implementation {
   Implementation(scene::SceneDescription description, const SimulationOptions& options)
       : scene(with_options(std::move(description), options)),
         scheme(made_for_integrator(scene, [&] { return make_scheme(scene.integrator); })),
+        first_integrator(scene.integrator),
         settings(settings_of(scene, options)),
         model(build_model(scene, &rigid_lines)),
         stepper(made_for_integrator(scene, [&] { return std::make_unique<Stepper>(model, scheme, settings); })),
@@ -77,6 +79,7 @@ struct Simulation::Implementation {
   Implementation(const Implementation& other)
       : scene(other.scene),
         scheme(other.scheme),
+        first_integrator(other.first_integrator),
         settings(other.settings),
         rigid_lines(other.rigid_lines),
         model(other.model),

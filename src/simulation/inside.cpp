@@ -15,6 +15,12 @@ const Model& model_of(const Simulation& simulation) {
 const State& state_of(const Simulation& simulation) {
   return Inside::of(simulation).state;
 }
+const Scheme& scheme_of(const Simulation& simulation) {
+  return Inside::of(simulation).scheme;
+}
+const IntegratorDescription& first_integrator_of(const Simulation& simulation) {
+  return Inside::of(simulation).first_integrator;
+}
 const std::vector<std::optional<RigidLine>>& rigid_lines_of(const Simulation& simulation) {
   return Inside::of(simulation).rigid_lines;
 }

@@ -10,6 +10,7 @@
 #include "integrators/step_settings.h"
 #include "model/model.h"
 #include "model/state.h"
+#include "schemes/scheme.h"
 
 namespace flexarm {
 
@@ -18,6 +19,11 @@ struct MechanismMotion;
 
 const Model& model_of(const Simulation& simulation);
 const State& state_of(const Simulation& simulation);
+/// The scheme in use. What of it depends on the step is as it was made at the beginning, see
+/// Simulation::set_step_size(); make_scheme(simulation.scene().integrator) may be another one.
+const Scheme& scheme_of(const Simulation& simulation);
+/// By which that was made, and the initial state found.
+const IntegratorDescription& first_integrator_of(const Simulation& simulation);
 /// Per link; empty for those that have no beam, or one with elements.
 const std::vector<std::optional<RigidLine>>& rigid_lines_of(const Simulation& simulation);
 /// What of the present state somebody has asked for: it is made then, and kept until the state changes.

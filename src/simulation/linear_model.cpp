@@ -245,8 +245,8 @@ LinearModel linearise(const Simulation& simulation, const LinearRequest& request
   if (!model.held.empty()) return linearise(with_joints_freed(simulation), request);  // driven ones belong to y
   const std::vector<LinearPort> inputs = input_ports(simulation, request.inputs);
   const std::vector<LinearPort> outputs = output_ports(simulation, request.outputs);
-  const LinearDynamics dynamics(model, state_of(simulation), make_scheme(simulation.scene().integrator),
-                                reference_of(request.about), published_rates(simulation));
+  const LinearDynamics dynamics(model, state_of(simulation), scheme_of(simulation), reference_of(request.about),
+                                published_rates(simulation));
   LinearModel out = equations(simulation, dynamics);
   out.inputs = names_of(inputs);
   out.outputs = names_of(outputs);

@@ -45,7 +45,7 @@ KnownRates published_rates(const Simulation& simulation) {
   const Model& model = model_of(simulation);
   OutputVelocities velocities;
   const DegreesOfFreedom dof(model);
-  const Scheme scheme = make_scheme(simulation.scene().integrator);
+  const Scheme scheme = scheme_of(simulation);
   velocities.update_rates(model, dof, scheme, state_of(simulation));
   velocities.update_nodes(model, dof, scheme, state_of(simulation));
   KnownRates rates;

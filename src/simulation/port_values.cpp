@@ -35,7 +35,7 @@ class PointValues {
         state_(state_of(simulation)),
         velocities_(published_rates(simulation).nodes),
         reference_(reference) {
-    past_.update({model_, dof_, scheme_ = make_scheme(simulation.scene().integrator), state_});
+    past_.update({model_, dof_, scheme_ = scheme_of(simulation), state_});
   }
 
   double value(const LinearPort& port) const {

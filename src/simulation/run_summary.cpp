@@ -36,7 +36,7 @@ double energy_of_rest(const Simulation& simulation) {
 }  // namespace
 
 RunSummary::RunSummary(const Simulation& simulation)
-    : conserves_energy_(make_scheme(simulation.scene().integrator).conserves_energy),
+    : conserves_energy_(scheme_of(simulation).conserves_energy),
       start_(simulation.energies()),
       energy_scale_(energy_of_rest(simulation)) {
   look(simulation);

@@ -163,12 +163,11 @@ class SceneFingerprint {
   Fingerprint bytes_;
 };
 
-std::string integrator_line(const IntegratorDescription& integrator) {
-  const Scheme scheme = make_scheme(integrator);
+std::string integrator_line(double step, const Scheme& scheme) {
   const NumericalDissipation& d = scheme.dissipation;
   return fmt::format(
       "scheme {}, step {} s, beta {}, gamma {}, alpha {}, dissipation {} {} {}, interpolation {}, weak form {}",
-      scheme.name, integrator.step, scheme.beta, scheme.gamma, scheme.alpha, d.stiffness, d.forgetting, d.inertance,
+      scheme.name, step, scheme.beta, scheme.gamma, scheme.alpha, d.stiffness, d.forgetting, d.inertance,
       static_cast<int>(scheme.interpolation), static_cast<int>(scheme.weak_form));
 }
 
@@ -181,12 +180,12 @@ std::string named_lines(const char* kind, const Parts& parts) {
 
 }  // namespace
 
-std::string scene_identity(const scene::SceneDescription& scene) {
+std::string scene_identity(const scene::SceneDescription& scene, const Scheme& scheme) {
   const auto& [name, file, root, links, joints, loop_joints, springs, drives, servos, gravity, integrator,
                integrator_location, initial_joints, initial_links, loads, distributed_loads, motions, efforts, probes,
                sensors, point_springs, lock_massless, starts_in_equilibrium, equilibrium_location,
                parameters] = scene;  // which count by the numbers that are made of them
-  return integrator_line(integrator) + "\n" + named_lines("link", links) + named_lines("joint", joints) +
+  return integrator_line(integrator.step, scheme) + "\n" + named_lines("link", links) + named_lines("joint", joints) +
          named_lines("loop_joint", loop_joints) +
          fmt::format("spring {}\ndrive {}\nservo {}\n", SceneFingerprint::of(springs), SceneFingerprint::of(drives),
                      SceneFingerprint::of(servos)) +
@@ -197,6 +196,10 @@ std::string scene_identity(const scene::SceneDescription& scene) {
                      SceneFingerprint::of(motions), SceneFingerprint::of(efforts)) +
          (starts_in_equilibrium ? "initial equilibrium\n" : "") + named_lines("sensor", sensors) +
          (point_springs.empty() ? "" : fmt::format("springs {}\n", SceneFingerprint::of(point_springs)));
+}
+
+std::string scene_identity(const scene::SceneDescription& scene) {
+  return scene_identity(scene, make_scheme(scene.integrator));
 }
 
 }  // namespace flexarm

@@ -47,7 +47,7 @@ bool is_at_start(const Simulation& simulation) {
 class Sensitivities::Implementation {
  public:
   Implementation(Simulation& own, SensitivityRequest wanted)
-      : simulation(own), request(std::move(wanted)), steps(model_of(own), make_scheme(own.scene().integrator)) {
+      : simulation(own), request(std::move(wanted)), steps(model_of(own), scheme_of(own)) {
     if (!is_at_start(own))
       throw std::invalid_argument("derivatives are those of a whole run: the simulation has moved, reset() it first");
     for (const std::string& name : request.parameters) {

@@ -85,13 +85,13 @@ ParameterDirection::Attempt ParameterDirection::attempt(double value) const {
   try {
     scene::ReadResult result = request_.read(name_, value);
     if (!result.scene) return {std::nullopt, scene::to_text(result.diagnostics)};
-    const scene::SceneDescription& own = simulation_.scene();
+    const IntegratorDescription& own = first_integrator_of(simulation_);
     IntegratorDescription& integrator = result.scene->integrator;
     if (!is_the_same(integrator, integrator_)) return {std::nullopt, "it changes the <integrator>"};
-    integrator.scheme = own.integrator.scheme;
-    integrator.step = own.integrator.step;
-    integrator.on_failure = own.integrator.on_failure;
-    integrator.tolerance = own.integrator.tolerance;
+    integrator.scheme = own.scheme;
+    integrator.step = own.step;
+    integrator.on_failure = own.on_failure;
+    integrator.tolerance = own.tolerance;
     Attempt out{Simulation(std::move(*result.scene)), ""};
     if (!is_alike(simulation_, *out.simulation))
       return {std::nullopt, "it changes the numbers of nodes, joints or unknowns"};
@@ -128,7 +128,7 @@ void ParameterDirection::set_neighbours(Direction& direction) {
   direction.neighbours.clear();
   for (const auto& [offset, weight] : rule_) {
     Simulation& look = looks_.emplace_back(built(value_ + offset * direction.difference));
-    const Scheme scheme = make_scheme(look.scene().integrator);
+    const Scheme scheme = scheme_of(look);
     direction.neighbours.push_back(
         {offset, weight, std::make_unique<StepSystem>(model_of(look), scheme), initial_state_of(look)});
   }

@@ -33,7 +33,9 @@ StepSettings settings_of(const scene::SceneDescription& scene, const SimulationO
 scene::SceneDescription with_options(scene::SceneDescription scene, const SimulationOptions& options) {
   if (options.scheme) scene.integrator = with_scheme(scene.integrator, *options.scheme);
   if (options.on_failure) scene.integrator.on_failure = *options.on_failure;
-  scene.integrator.step = settings_of(scene, options).step;
+  const StepSettings settings = settings_of(scene, options);
+  scene.integrator.step = settings.step;
+  scene.integrator.tolerance = settings.tolerance;
   return scene;
 }
 

@@ -104,6 +104,7 @@ void Simulation::set_step_size(double step) {
     throw std::invalid_argument(fmt::format("a step of {:g} s: expected > 0 and at most {:g} s", step, kLongestStep));
   require_hit_samples(implementation_->model, step);
   implementation_->set_step(step, {});
+  implementation_->scene.integrator.step = step;
 }
 
 double Simulation::tolerance() const {
@@ -115,6 +116,7 @@ void Simulation::set_tolerance(double tolerance) {
     throw std::invalid_argument(
         fmt::format("a tolerance of {:g}: expected > 0 and at most {:g}", tolerance, kLargestTolerance));
   implementation_->settings.tolerance = tolerance;
+  implementation_->scene.integrator.tolerance = tolerance;
   implementation_->stepper->set_tolerance(tolerance);
 }
 

@@ -55,6 +55,33 @@ TEST_P(Checkpoint, ResetReproducesTheRun) {
   }
 }
 
+// In steps of another length, which the scheme was not made for.
+TEST_P(Checkpoint, CarriesTheStepInUse) {
+  const auto halved = [this] {
+    Simulation simulation = this->simulation();
+    simulation.set_step_size(simulation.step_size() / 2);
+    return simulation;
+  };
+  Simulation original = halved(), resumed = halved(), whole = simulation();
+  EXPECT_EQ(original.scene().integrator.step, original.step_size());
+  run(original, 20);
+  write_checkpoint(original, path_);
+  EXPECT_THROW(read_checkpoint(whole, path_), std::runtime_error) << "it has other steps";
+  read_checkpoint(resumed, path_);
+  run(original, 20);
+  run(resumed, 20);
+  EXPECT_TRUE(same_bits(state_of(original), state_of(resumed)));
+  SimulationOptions made_for_it;
+  made_for_it.scheme = GetParam();
+  made_for_it.step = original.step_size();
+  Simulation other(everything_scene().scene, made_for_it);
+  if (scheme_of(other).dissipation.inertance == scheme_of(original).dissipation.inertance) {
+    EXPECT_NO_THROW(read_checkpoint(other, path_));
+  } else {
+    EXPECT_THROW(read_checkpoint(other, path_), std::runtime_error) << "its dissipation is another one";
+  }
+}
+
 TEST_P(Checkpoint, SnapshotContinuesBitForBit) {
   Simulation simulation = this->simulation();
   run(simulation, 40);

@@ -152,6 +152,21 @@ TEST(Sensitivities, Loop) {
     expect_differences({with_scheme(kLoop, scheme, 2e-3)}, {{"mass", 0.6}}, 300, 1e-2);
 }
 
+TEST(Sensitivities, StepsAndToleranceOfARunThatWereChanged) {
+  const Scene scene{with_scheme(kPendulum, "newmark", 5e-3)};
+  const auto start = [&](double payload) {
+    Simulation simulation = scene.simulation({{"payload", payload}});
+    simulation.set_step_size(2e-3);
+    simulation.set_tolerance(1e-11);
+    return simulation;
+  };
+  Simulation simulation = start(2);
+  Sensitivities sensitivities(simulation, scene.request({"payload"}));
+  constexpr int kSteps = 40;
+  for (int i = 0; i < kSteps; ++i) ASSERT_TRUE(sensitivities.step().converged);
+  EXPECT_LT(deviation(sensitivities.of(observed).col(0), difference_of_runs(start, 2, 2e-2, kSteps)), 1e-6);
+}
+
 TEST(Sensitivities, ParameterAtTheEndOfItsRange) {
   std::string scene = kPendulum;
   const std::string value = "name=\"damping\" value=\"0.5\"";

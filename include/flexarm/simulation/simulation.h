@@ -87,9 +87,9 @@ class Simulation {
 
   double time() const;       ///< [s]
   double step_size() const;  ///< [s]
-  /// The length of steps from the next one on, [s]; the motion goes on from where it is, with all that the scheme
-  /// conserves. What a scheme was made with for the scene's step, as its numerical dissipation, stays. Snapshots do not
-  /// have it.
+  /// The length of steps from the next one on, [s], of scene(), too; the motion goes on from where it is, with all that
+  /// the scheme conserves. What a scheme was made with for another step, as its numerical dissipation, stays. Snapshots
+  /// do not have it.
   /// @throws std::invalid_argument if it is not > 0 and at most 1e9, or does not divide the sample time of a servo.
   void set_step_size(double step);
   double tolerance() const;  ///< of Newton's method, see IntegratorDescription
