@@ -15,20 +15,6 @@ using End = TrajectoryAction::End;
 constexpr int kQueueSize = 10;
 constexpr double kFeedbackPeriod = 0.05;  ///< simulated [s]
 
-/// Per name of the trajectory. @returns why they cannot be used, or nothing
-std::string read_tolerances(const std::vector<flexarm::JointTolerance>& given, const std::vector<std::string>& names,
-                            std::vector<node::JointTolerance>& tolerances) {
-  tolerances.assign(names.size(), {});
-  for (const flexarm::JointTolerance& tolerance : given) {
-    const auto name = std::find(names.begin(), names.end(), tolerance.name);
-    if (name == names.end()) return "a tolerance is of '" + tolerance.name + "', which the trajectory does not name";
-    if (!std::isfinite(tolerance.position) || !std::isfinite(tolerance.velocity))
-      return "a tolerance of '" + tolerance.name + "' is not finite";
-    tolerances[name - names.begin()] = {tolerance.position, tolerance.velocity};
-  }
-  return {};
-}
-
 trajectory_msgs::JointTrajectoryPoint message_of(const std::vector<JointPoint>& points) {
   trajectory_msgs::JointTrajectoryPoint message;
   for (const JointPoint& point : points) {
@@ -89,7 +75,7 @@ void Trajectories::publish_feedback(double now, const std::vector<JointPoint>& d
   next_feedback_ = now + kFeedbackPeriod;
   FollowJointTrajectoryFeedback feedback;
   feedback.header.stamp = ros::Time::now();
-  feedback.joint_names = action_.goal().trajectory.joint_names;
+  feedback.joint_names = names_of(goal_.joints);
   std::vector<JointPoint> error;
   for (std::size_t k = 0; k < desired.size(); ++k)
     error.push_back({desired[k].position - actual[k].position, desired[k].velocity - actual[k].velocity});
@@ -110,13 +96,16 @@ void Trajectories::receive(const trajectory_msgs::JointTrajectory& message) {
 Trajectories::Result Trajectories::follow_goal(const FollowJointTrajectoryGoal& message) {
   TrajectoryGoal goal;
   const std::vector<std::string>& names = message.trajectory.joint_names;
-  Fault fault{Result::INVALID_GOAL, read_tolerances(message.path_tolerance, names, goal.path)};
-  if (fault.is_none()) fault.text = read_tolerances(message.goal_tolerance, names, goal.at_end);
+  Fault fault{Result::INVALID_GOAL, fault_of_tolerances(message.path_tolerance, names)};
+  if (fault.is_none()) fault.text = fault_of_tolerances(message.goal_tolerance, names);
   if (fault.is_none()) fault = follow(message.trajectory, goal.joints);
   Result result;
   result.error_code = fault.code;
   result.error_string = fault.text;
   if (!fault.is_none()) return result;
+  const std::vector<std::string> joints = names_of(goal.joints);
+  goal.path = tolerances_of(message.path_tolerance, joints);
+  goal.at_end = tolerances_of(message.goal_tolerance, joints);
   for (const std::size_t joint : goal.joints) goal.end = std::max(goal.end, followed_.end(joint));
   goal.patience = std::max(message.goal_time_tolerance.toSec(), 0.0);
   goal_ = std::move(goal);
@@ -149,6 +138,12 @@ Trajectories::Fault Trajectories::follow(const trajectory_msgs::JointTrajectory&
     follower.follow(trajectory, now, set_points);
   });
   return fault;
+}
+
+std::vector<std::string> Trajectories::names_of(const std::vector<std::size_t>& joints) const {
+  std::vector<std::string> names;
+  for (const std::size_t joint : joints) names.push_back(shown_.coordinate_names()[joint]);
+  return names;
 }
 
 std::vector<std::size_t> Trajectories::moving_joints() const {

@@ -56,6 +56,7 @@ class Trajectories {
   Result follow_goal(const FollowJointTrajectoryGoal& message);
   /// Follows it, or says why not. Its joints, or those that stop, are in `joints`.
   Fault follow(const trajectory_msgs::JointTrajectory& message, std::vector<std::size_t>& joints);
+  std::vector<std::string> names_of(const std::vector<std::size_t>& joints) const;
   std::vector<std::size_t> moving_joints() const;
   void stop(const std::vector<std::size_t>& joints);
   /// Changes what is followed, between two steps.

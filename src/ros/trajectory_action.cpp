@@ -64,10 +64,6 @@ bool TrajectoryAction::is_underway() const {
   return server_->underway.has_value();
 }
 
-const FollowJointTrajectoryGoal& TrajectoryAction::goal() const {
-  return *server_->underway->getGoal();  // whose owner is the handle
-}
-
 void TrajectoryAction::publish_feedback(const FollowJointTrajectoryFeedback& feedback) {
   server_->underway->publishFeedback(feedback);
 }

@@ -29,8 +29,6 @@ class TrajectoryAction {
   TrajectoryAction& operator=(const TrajectoryAction&) = delete;
 
   bool is_underway() const;
-  /// Of the goal under way.
-  const FollowJointTrajectoryGoal& goal() const;
   void publish_feedback(const FollowJointTrajectoryFeedback& feedback);
   /// Ends the goal that is under way, if there is one, with that code and text.
   void end(End how, int code, const std::string& text);

@@ -1,7 +1,10 @@
 #pragma once
 /// Whether joints do what a trajectory asks of them.
 
+#include <flexarm/JointTolerance.h>
+
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "stepping/trajectory_follower.h"
@@ -12,6 +15,14 @@ namespace flexarm::node {
 struct JointTolerance {
   double position = 0, velocity = 0;  ///< [rad or m; over s]
 };
+
+/// Why tolerances cannot be those of a trajectory of joints with these names, or nothing.
+std::string fault_of_tolerances(const std::vector<flexarm::JointTolerance>& given,
+                                const std::vector<std::string>& names);
+/// One for each of the `joints`, which may be others than the trajectory names: one without points stops those that
+/// move. Of who does not move none is kept.
+std::vector<JointTolerance> tolerances_of(const std::vector<flexarm::JointTolerance>& given,
+                                          const std::vector<std::string>& joints);
 
 /// What somebody wants to be told about.
 struct TrajectoryGoal {
@@ -29,6 +40,7 @@ struct TrajectoryGoal {
   double patience = 0;                       ///< how long after that joints may still be beyond their tolerances [s]
 
   /// `desired`, `actual`: of each of its joints, at `time` [s].
+  /// @throws std::invalid_argument if any of these has not as many entries as joints
   Judgement judge(double time, const std::vector<JointPoint>& desired, const std::vector<JointPoint>& actual) const;
 };
 

@@ -189,6 +189,17 @@ class Trajectories(unittest.TestCase):
         wait_until(lambda: abs(self.velocity("lift")) < 1e-5, "the stop")
         self.assertLess(self.position("lift"), 0.9)
 
+    def test_a_goal_without_points_stops_all_whatever_it_names(self):
+        self.topic.send(JointTrajectory(joint_names=["lift"], points=[smooth(2.0, 1.0)]))
+        wait_until(lambda: self.position("lift") > 0.1, "the way")
+        # Of 'turn', which does not move: it is far closer than 'lift' can be to its way while it stops.
+        self.send(["turn", "lift"], path=[("turn", 1e-9)], at_end=[("turn", 1e-9)])
+        self.wait_for_end(GoalStatus.SUCCEEDED, Result.SUCCESSFUL)
+        wait_until(lambda: abs(self.velocity("lift")) < 1e-5, "the stop")
+        self.assertLess(self.position("lift"), 0.9)
+        for feedback in self.feedback:
+            self.assertEqual(feedback.joint_names, ["lift"])
+
     def test_off_its_path_it_is_aborted(self):
         self.send(["turn", "lift"], smooth(0.5, 0.0, 0.5), path=[("lift", 1e-3)])
         self.wait_for_end(GoalStatus.ABORTED, Result.PATH_TOLERANCE_VIOLATED, "'lift' is off its path by 0.001")

@@ -1,4 +1,7 @@
 // What becomes of a goal: tolerances on the way, at its end, and for some time after that.
+#include <cmath>
+#include <stdexcept>
+
 #include <gtest/gtest.h>
 
 #include "ros/trajectory_goal.h"
@@ -41,6 +44,37 @@ TEST(TrajectoryGoal, IsReachedWithinItsTolerancesInTime) {
   EXPECT_EQ(judge(kEnd + kPatience, 0.05, 0).verdict, Verdict::NotReached);
   EXPECT_EQ(judge(kEnd + kPatience, 0, 0.06).verdict, Verdict::NotReached);
   EXPECT_EQ(judge(kEnd + kPatience, 0, 0).verdict, Verdict::Reached);
+}
+
+flexarm::JointTolerance tolerance(const std::string& joint, double position, double velocity) {
+  flexarm::JointTolerance out;
+  out.name = joint;
+  out.position = position;
+  out.velocity = velocity;
+  return out;
+}
+
+TEST(TrajectoryGoal, ToleranceIsOfTheJointThatItNames) {
+  const std::vector<flexarm::JointTolerance> given = {tolerance("elbow", 0.1, 0.2), tolerance("wrist", 0.3, 0.4)};
+  EXPECT_EQ(fault_of_tolerances(given, {"shoulder", "wrist", "elbow"}), "");
+  // Without points all joints stop that move, whatever joints are named.
+  const std::vector<JointTolerance> of_moving = tolerances_of(given, {"wrist", "shoulder"});
+  ASSERT_EQ(of_moving.size(), 2u);
+  EXPECT_EQ(of_moving[0].position, 0.3);
+  EXPECT_EQ(of_moving[0].velocity, 0.4);
+  EXPECT_EQ(of_moving[1].position, 0) << "as far as it likes";
+  EXPECT_TRUE(tolerances_of(given, {}).empty());
+}
+
+TEST(TrajectoryGoal, TolerancesOfOthersAreRefused) {
+  EXPECT_NE(fault_of_tolerances({tolerance("elbow", 0.1, 0)}, {"wrist"}).find("'elbow'"), std::string::npos);
+  EXPECT_NE(fault_of_tolerances({tolerance("elbow", NAN, 0)}, {"elbow"}).find("not finite"), std::string::npos);
+}
+
+TEST(TrajectoryGoal, WantsATolerancePerJoint) {
+  const TrajectoryGoal two_for_one{{0}, {{}, {0.1, 0}}, {{}}, kEnd, 0};
+  EXPECT_THROW(two_for_one.judge(kEnd, {{}}, {{}}), std::invalid_argument);
+  EXPECT_THROW(goal().judge(1, {{1, 2}}, {{1, 2}}), std::invalid_argument);
 }
 
 TEST(TrajectoryGoal, WithoutTolerancesItIsReachedAtItsEnd) {
