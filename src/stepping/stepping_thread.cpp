@@ -47,11 +47,11 @@ SteppingThread::SteppingThread(Simulation simulation, const Pace& pace, std::fun
       time_(simulation_.step_size()),
       reports_(report_count(simulation_)),
       commands_(kCommands),
-      notify_(std::move(notify)),
-      thread_([this] { loop(); }) {
-  halted_.take();
+      notify_(std::move(notify)) {
   make_room();
   begin_companion();
+  thread_ = std::thread([this] { loop(); });  // what throws has done so: a thread must not outlive its members
+  halted_.take();
 }
 
 SteppingThread::~SteppingThread() {

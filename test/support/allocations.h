@@ -1,5 +1,5 @@
 #pragma once
-/// How often a program allocates memory. One of its files may include this.
+/// How often a program allocates memory, and what it does where there is none. One of its files may include this.
 
 #include <atomic>
 #include <cstdlib>
@@ -8,8 +8,12 @@
 namespace {
 std::atomic<bool> g_counting{false};
 std::atomic<long> g_allocations{0};
+std::atomic<long> g_allowed{-1};  // malloc()'s, before one comes back with nothing; negative: all
 [[maybe_unused]] void count() {
   if (g_counting.load(std::memory_order_relaxed)) g_allocations.fetch_add(1, std::memory_order_relaxed);
+}
+[[maybe_unused]] bool is_refused() {
+  return g_allowed.load(std::memory_order_relaxed) >= 0 && g_allowed.fetch_sub(1, std::memory_order_relaxed) == 0;
 }
 }  // namespace
 
@@ -28,6 +32,7 @@ void* __libc_memalign(std::size_t, std::size_t);
 
 void* malloc(std::size_t size) {
   count();
+  if (is_refused()) return nullptr;
   return __libc_malloc(size);
 }
 void* calloc(std::size_t number, std::size_t size) {
@@ -67,6 +72,18 @@ long allocations_in(const Function& function) {
   function();
   g_counting = false;
   return g_allocations;
+}
+
+/// Runs `function`, for which one allocation fails, that after so many. @returns whether it came to that one
+template <class Function>
+bool without_allocation(long number, const Function& function) {
+  struct Limit {
+    explicit Limit(long number) { g_allowed = number; }
+    ~Limit() { g_allowed = -1; }
+  };
+  const Limit limit(number);
+  function();
+  return g_allowed < 0;
 }
 
 }  // namespace flexarm::test

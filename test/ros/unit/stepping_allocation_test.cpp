@@ -1,4 +1,7 @@
 // The thread that steps allocates nothing, whatever was commanded in between.
+#include <exception>
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include "stepping/stepping_thread.h"
@@ -40,6 +43,24 @@ TEST(SteppingThread, AllocatesNothingWhereWrenchesAndCommandsBeginAndEnd) {
             0);
   EXPECT_EQ(steps, 200);
   EXPECT_GT(thread.simulation().position(0), 0) << "what was asked for acts";
+}
+
+TEST(SteppingThread, ThrowsWhatKeepsItFromBeginning) {
+  if (!test::kCountsAllocations) GTEST_SKIP() << "this C library's allocator cannot be made to fail";
+  constexpr long kStride = 37;
+  int thrown = 0;
+  for (long number = 0, is_over = 0; !is_over; number += kStride) {
+    Simulation simulation = rotor();
+    const bool came_to_it = test::without_allocation(number, [&] {
+      try {
+        SteppingThread thread(std::move(simulation), {}, [] {});
+      } catch (const std::exception&) {  // that is, the program goes on
+        ++thrown;
+      }
+    });
+    is_over = !came_to_it;
+  }
+  EXPECT_GT(thrown, 10);
 }
 
 }  // namespace
