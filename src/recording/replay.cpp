@@ -25,9 +25,11 @@ using node::Command;
 using node::Commanded;
 using rosbag::MessageInstance;
 
-node::Pace lock_step() {
+/// Of the run.
+node::Pace pace_of(const ReplayOptions& options) {
   node::Pace pace;
-  pace.lock_step = true;
+  pace.lock_step = options.lock_step;
+  pace.real_time_factor = options.real_time_factor;
   return pace;
 }
 
@@ -36,7 +38,7 @@ class Replay {
  public:
   Replay(Simulation simulation, const ReplayOptions& options)
       : options_(options),
-        thread_(std::move(simulation), options.lock_step ? lock_step() : node::Pace(), [] {}),
+        thread_(std::move(simulation), pace_of(options), [] {}),
         reader_(thread_.simulation(), options.command_timeout) {
     for (const std::string& name : thread_.simulation().coordinate_names()) {
       report_.joints.push_back({name});
@@ -106,7 +108,7 @@ class Replay {
   /// the wall clock's pace begins when its state is due, one that is the clock when the clock shows the state before.
   void step_until(const std::vector<MessageInstance>& commands) {
     const double step_size = thread_.simulation().step_size();
-    period_ = has_clock_ ? step_size : step_size / options_.real_time_factor;
+    period_ = step_size / pace_of(options_).per_stamp(has_clock_);
     auto next = commands.begin();
     for (const auto& state : states_) {
       const double count = (state->header.stamp - begin_).toSec() / period_;
@@ -163,11 +165,19 @@ class Replay {
     for (const std::size_t joint : joints) set_points.push_back(simulation.set_point(joint));
     node::JointTrajectory trajectory = node::trajectory_of(message, joints);
     if (const std::string fault = follower.find_fault(trajectory); !fault.empty()) return fault;
-    const double ahead = (message.header.stamp - begin_).toSec() - static_cast<double>(steps_) * period_;
-    trajectory.start = message.header.stamp.isZero() ? now : now + ahead;
+    const double ahead = (message.header.stamp - stamp()).toSec();
+    trajectory.start = message.header.stamp.isZero() ? now : now + pace_of(options_).per_stamp(has_clock_) * ahead;
     if (node::TrajectoryFollower::is_over(trajectory, now)) return "its last point is past";
     follower.follow(trajectory, now, set_points);
     return {};
+  }
+
+  /// Of the state that the run was at: in lock step each has its own; where the node was the clock, as it made it.
+  ros::Time stamp() const {
+    const auto steps = static_cast<double>(steps_);
+    if (options_.lock_step) return states_[steps_]->header.stamp;
+    if (has_clock_) return ros::Time((std::round(begin_.toSec() / period_) + steps) * period_);
+    return begin_ + ros::Duration(steps * period_);
   }
 
   void step() {

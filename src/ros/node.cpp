@@ -366,7 +366,8 @@ void Node::show_new_state() {
 }
 
 double Node::simulated_time(const ros::Time& stamp) const {
-  return run_.simulated_time + (stamp - clock_publisher_.stamp().value_or(stamp)).toSec();
+  const double ahead = (stamp - clock_publisher_.stamp().value_or(stamp)).toSec();
+  return run_.simulated_time + pace(parameters_).per_stamp(clock_publisher_.is_clock()) * ahead;
 }
 
 void Node::apply_wrench(const AppliedWrench& wrench, const ros::Time& start, double duration) {

@@ -28,6 +28,12 @@ struct Pace {
   bool lock_step = false;        ///< each step waits for the message that commands it, whatever the wall clock says
   bool cuts_late_steps = false;  ///< one that runs out of time (SimulationOptions::recovery_wall_time) has not failed
   double error_window = 0;       ///< over which a Companion estimates the error of steps [s]; 0: none does
+
+  /// How much simulated time passes while stamps go on by a second: one, too, where nothing ties the one to the other.
+  /// `are_simulated`: they are simulated times themselves.
+  double per_stamp(bool are_simulated) const {
+    return are_simulated || lock_step || real_time_factor == 0 ? 1 : real_time_factor;
+  }
 };
 
 /// What a step came to.
