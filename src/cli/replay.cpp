@@ -70,6 +70,11 @@ void add_replay(CLI::App& app, int& status) {
   command->add_option("--command-timeout", arguments->replay.command_timeout, "of the run [s]; 0: none")
       ->capture_default_str()
       ->check(check_non_negative);
+  command
+      ->add_option("--stop-duration", arguments->replay.stop_duration,
+                   "of the run: in which joints decelerate that an empty trajectory stops [s]; 0: at once")
+      ->capture_default_str()
+      ->check(check_non_negative);
   command->add_option("--step", arguments->simulation.step, "of the run, if it was not the scene's [s]")
       ->check(check_positive);
   command->add_option("--scheme", arguments->simulation.scheme, "the same");

@@ -155,7 +155,7 @@ class Replay {
     const double now = thread_.time();
     if (message.points.empty()) {
       for (std::size_t joint = 0; joint < follower.joint_count(); ++joint)
-        if (follower.follows(joint)) follower.stop(joint, now, 0);
+        if (follower.follows(joint)) follower.stop(joint, now, options_.stop_duration);
       return {};
     }
     std::vector<std::size_t> joints;

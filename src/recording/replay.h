@@ -14,7 +14,8 @@ struct ReplayOptions {
   std::string ns;               ///< of the arm's topics, "/left" say; empty: none
   bool lock_step = false;       ///< each command has made one step; else steps were due by the stamps of states
   double real_time_factor = 1;  ///< of the run, where it was not the clock itself
-  double command_timeout = 0;   ///< as the node's parameters [s]
+  double command_timeout = 0;   ///< as the node's parameter [s]
+  double stop_duration = 0;     ///< the same [s]
 };
 
 struct JointDeviation {

@@ -93,6 +93,13 @@ class Replay(unittest.TestCase):
             self.write(steps, 0.005, (41, way(BEGIN + 40 * 0.005 + 0.05, 0.02, 0.3)), lock_step=True)
             self.assertAlmostEqual(self.largest("--lock-step"), moved, delta=OVERSHOOT)
 
+    # At 1 m/s it stands after half as many metres as it has seconds to stop.
+    def test_stops_take_as_long_as_those_of_the_run(self):
+        self.write(400, STEP, (1, way(0, 1, 1)), (101, JointTrajectory()), has_clock=True)
+        at_once, slowly = self.largest(), self.largest("--stop-duration", 0.2)
+        self.assertAlmostEqual(at_once, 0.1, delta=OVERSHOOT)
+        self.assertAlmostEqual(slowly, 0.2, delta=OVERSHOOT)
+
 
 if __name__ == "__main__":
     PROGRAM = sys.argv[1]
