@@ -3,7 +3,6 @@
 #include <ros/console.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "advertise.h"
 
@@ -11,15 +10,14 @@ namespace flexarm::node {
 namespace {
 
 constexpr std::chrono::seconds kPatience(3);
-/// By which stamps and ROS time may come apart [s]: a backlog that is made up makes less; more, that somebody has set
-/// the clock, forth or back. Stamps of who follows another clock are ahead of it by nanoseconds only.
-constexpr double kLargestError = 1, kLargestLead = 1e-3;
+/// Stamps of who follows another clock are ahead of it by nanoseconds only [s].
+constexpr double kLargestLead = 1e-3;
 
 }  // namespace
 
 ClockPublisher::ClockPublisher(ros::NodeHandle& node, const RunState& run, bool publish, double rate, double step,
                                double period)
-    : is_clock_(publish), rate_(rate), step_(step), period_(period), time_(step), schedule_(rate) {
+    : is_clock_(publish), rate_(rate), step_(step), time_(step), stamps_(period), schedule_(rate) {
   time_.advance();
   if (!is_clock_) return;
   publisher_ = advertise<rosgraph_msgs::Clock>(node, "/clock", 10, run, [this] { return make_message(); });
@@ -27,19 +25,18 @@ ClockPublisher::ClockPublisher(ros::NodeHandle& node, const RunState& run, bool 
     ROS_WARN("publishing /clock, but /use_sim_time is not set: other nodes will not follow it");
 }
 
-bool ClockPublisher::advance(std::uint64_t steps, std::uint64_t overruns, bool is_paced) {
+bool ClockPublisher::advance(std::uint64_t steps, std::uint64_t overruns, std::optional<WallTime> due) {
   ticks_ += std::max<std::uint64_t>(steps, 1);
   time_.advance(std::max<std::uint64_t>(steps, 1));
-  if (!is_clock_) return move_stamp(overruns, is_paced && !ros::Time::isSimTime());
+  if (!is_clock_) return move_stamp(overruns, ros::Time::isSimTime() ? std::nullopt : due);
   publish(false);
   return true;
 }
 
 void ClockPublisher::set_pace(double step, double period) {
   step_ = step;
-  period_ = period;
   time_.set_step(step);
-  restart();
+  stamps_.set_period(period);
 }
 
 void ClockPublisher::begin_anew() {
@@ -48,23 +45,13 @@ void ClockPublisher::begin_anew() {
   schedule_ = PublicationSchedule(rate_);
 }
 
-bool ClockPublisher::move_stamp(std::uint64_t overruns, bool is_paced) {
+bool ClockPublisher::move_stamp(std::uint64_t overruns, std::optional<WallTime> due) {
   const ros::Time now = ros::Time::now();
   if (now.isZero()) return true;
-  const ros::Time soonest = stamp_ + ros::Duration(0, 1);
-  const std::uint64_t steps = ticks_ + overruns;
-  const bool is_set_back = (stamp_ - now).toSec() > (ros::Time::isSimTime() ? kLargestLead : kLargestError);
-  if (is_paced && is_mapped_) {
-    const ros::Time due = origin_ + ros::Duration(static_cast<double>(steps - origin_steps_) * period_);
-    if (due >= soonest && std::abs((due - now).toSec()) < kLargestError) {
-      stamp_ = due;
-      return true;
-    }
-  }
-  stamp_ = origin_ = is_set_back ? now : std::max(now, soonest);
-  origin_steps_ = steps;
-  is_mapped_ = is_paced;
-  return !is_set_back;
+  std::optional<double> since_due;
+  if (due) since_due = std::chrono::duration<double>(WallTime::clock::now() - *due).count();
+  return stamps_.advance(now, ticks_ + overruns, since_due,
+                         ros::Time::isSimTime() ? kLargestLead : Stamps::kLargestError);
 }
 
 void ClockPublisher::publish_now() {
@@ -83,7 +70,7 @@ rosgraph_msgs::Clock ClockPublisher::make_message() const {
 }
 
 std::optional<ros::Time> ClockPublisher::stamp() const {
-  const ros::Time stamp = is_clock_ ? simulated_time() : stamp_;
+  const ros::Time stamp = is_clock_ ? simulated_time() : stamps_.last();
   if (stamp.isZero()) return std::nullopt;
   return stamp;
 }

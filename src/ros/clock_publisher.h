@@ -11,6 +11,7 @@
 
 #include "publication_schedule.h"
 #include "run_state.h"
+#include "stamps.h"
 #include "stepping/stepped_time.h"
 
 namespace flexarm::node {
@@ -21,6 +22,8 @@ namespace flexarm::node {
 /// follows another clock, are the present.
 class ClockPublisher {
  public:
+  using WallTime = std::chrono::steady_clock::time_point;
+
   /// @param publish  whether this node is the clock
   /// @param rate     of /clock, in simulated time [Hz]
   /// @param step     [s]
@@ -29,15 +32,16 @@ class ClockPublisher {
   ClockPublisher(const ClockPublisher&) = delete;
   ClockPublisher& operator=(const ClockPublisher&) = delete;
 
-  /// Steps were made; publishes /clock where it is due. `is_paced`: by the wall clock, which has left out `overruns`
-  /// since the beginning. @returns false if somebody has set ROS time back, and stamps with it
-  [[nodiscard]] bool advance(std::uint64_t steps, std::uint64_t overruns, bool is_paced);
+  /// Steps were made; publishes /clock where it is due. `due`: when the last one was to begin, if they keep pace with
+  /// the wall clock, which has left out `overruns` since the beginning. @returns false if somebody has set ROS time
+  /// back, and stamps with it
+  [[nodiscard]] bool advance(std::uint64_t steps, std::uint64_t overruns, std::optional<WallTime> due);
   /// Publishes /clock as it is, unless that was done already.
   void publish_now();
   /// Stamp of the current state; empty as long as ROS has no time.
   std::optional<ros::Time> stamp() const;
-  /// The simulation was resumed: the next stamp is the present.
-  void restart() { is_mapped_ = false; }
+  /// The simulation was resumed: due steps are counted from the next one on.
+  void restart() { stamps_.restart(); }
   /// Of the steps to come, as of the constructor [s].
   void set_pace(double step, double period);
   bool is_clock() const { return is_clock_; }
@@ -49,18 +53,15 @@ class ClockPublisher {
  private:
   void publish(bool force);
   rosgraph_msgs::Clock make_message() const;
-  /// The next stamp, later than the last one, or false.
-  bool move_stamp(std::uint64_t overruns, bool is_paced);
+  /// The next stamp, or false.
+  bool move_stamp(std::uint64_t overruns, std::optional<WallTime> due);
   ros::Time simulated_time() const { return ros::Time(time_.seconds()); }
 
   bool is_clock_;
-  double rate_, step_, period_;
+  double rate_, step_;
   std::uint64_t ticks_ = 1;  ///< steps
   SteppedTime time_;         ///< the same
-  // Of stamps in ROS time: the last one, and the one from which due steps are counted.
-  ros::Time stamp_, origin_;
-  std::uint64_t origin_steps_ = 0;
-  bool is_mapped_ = false;
+  Stamps stamps_;            ///< where this node is not the clock
   PublicationSchedule schedule_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   bool warned_ = false;

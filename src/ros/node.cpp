@@ -140,7 +140,7 @@ void Node::take(const StepReport& report) {
   run_.counts.add(report.result);
   run_.overruns = report.overruns;
   run_.step_times.add(report.duration);
-  if (report.is_paced) run_.lateness.add(report.lateness);
+  if (report.due) run_.lateness.add(report.lateness);
   slowness_.note(report.duration, shown_.time(), report.result);
   if (report.has_failed) return fail(report.result);
   warn_of_recoveries(report);
@@ -150,7 +150,7 @@ void Node::take(const StepReport& report) {
   run_.steps = report.steps;
   run_.simulated_time = report.time;
   command_interface_.judge_trajectories(run_.simulated_time);
-  advance_clock(made, report.overruns, report.is_paced);
+  advance_clock(made, report.overruns, report.due);
   publish(false);
 }
 
@@ -200,14 +200,14 @@ void Node::publish(bool force) {
   status_publisher_.publish(*stamp, force);
 }
 
-void Node::advance_clock(std::uint64_t steps, std::uint64_t overruns, bool is_paced) {
-  if (clock_publisher_.advance(steps, overruns, is_paced)) return;
+void Node::advance_clock(std::uint64_t steps, std::uint64_t overruns, std::optional<ClockPublisher::WallTime> due) {
+  if (clock_publisher_.advance(steps, overruns, due)) return;
   ROS_WARN("ROS time was set back, to %.9g s: stamps begin there again", clock_publisher_.stamp()->toSec());
   set_rates();
 }
 
 void Node::publish_news() {
-  advance_clock(1, run_.overruns, false);  // news need a stamp of their own
+  advance_clock(1, run_.overruns, std::nullopt);  // news need a stamp of their own
   publish(true);
 }
 

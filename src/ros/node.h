@@ -107,7 +107,7 @@ class Node {
   /// Topics begin anew with their rates, and with any stamp.
   void set_rates();
   /// Steps were made (see ClockPublisher), or something else is news.
-  void advance_clock(std::uint64_t steps, std::uint64_t overruns, bool is_paced);
+  void advance_clock(std::uint64_t steps, std::uint64_t overruns, std::optional<ClockPublisher::WallTime> due);
   void publish_news();
   /// Takes over the state of what is stepped, between two steps.
   void show();

@@ -31,8 +31,10 @@ std::size_t report_count(const Simulation& simulation) {
                     kMostReports);
 }
 
+using Seconds = std::chrono::duration<double>;
+
 double seconds(SteadyClock::duration duration) {
-  return std::chrono::duration<double>(duration).count();
+  return Seconds(duration).count();
 }
 
 }  // namespace
@@ -154,10 +156,10 @@ void SteppingThread::begin_companion() {
 }
 
 bool SteppingThread::advance() {
-  return make_step(0, false);
+  return make_step(std::nullopt);
 }
 
-bool SteppingThread::make_step(double lateness, bool is_paced) {
+bool SteppingThread::make_step(std::optional<double> lateness) {
   take_commands();
   if (pace_.lock_step && !commands_.empty()) take_message();
   follow_trajectories();
@@ -179,8 +181,9 @@ bool SteppingThread::make_step(double lateness, bool is_paced) {
   report.steps = steps_;
   report.time = time();
   report.overruns = pacer_.overruns();
-  report.is_paced = is_paced;
-  report.lateness = lateness;
+  report.due.reset();
+  if (lateness) report.due = last_look_ - std::chrono::duration_cast<SteadyClock::duration>(Seconds(*lateness));
+  report.lateness = lateness.value_or(0);
   report.duration = seconds(SteadyClock::now() - start);
   reports_.push();
   notify_();
@@ -226,7 +229,7 @@ void SteppingThread::loop() {
       if (is_over_.load()) return;
     } else if (wait_for_step()) {
       const bool is_paced = !pace_.lock_step && !pacer_.as_fast_as_possible();
-      if (!make_step(is_paced ? pacer_.lateness() : 0, is_paced))
+      if (!make_step(is_paced ? std::optional(pacer_.lateness()) : std::nullopt))
         may_run_.store(false);
       else if (is_paced)
         pacer_.step_done();
@@ -244,7 +247,7 @@ bool SteppingThread::wait_for_step() {
   }
   pacer_.elapse(seconds(now - std::exchange(last_look_, now)));
   if (pacer_.step_due()) return true;
-  const std::chrono::duration<double> rest(-pacer_.lateness());
+  const Seconds rest(-pacer_.lateness());
   wake_.take_until(now + std::min<SteadyClock::duration>(std::chrono::ceil<SteadyClock::duration>(rest), kLongestWait));
   return false;
 }

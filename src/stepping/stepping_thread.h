@@ -44,9 +44,9 @@ struct StepReport {
   std::uint64_t steps = 0;     ///< that were done since the beginning
   double time = 0;             ///< simulated, since then; a reset does not set it back [s]
   std::uint64_t overruns = 0;  ///< dropped since then
-  bool is_paced = false;       ///< it was due by the wall clock,
-  double lateness = 0;         ///< and began so much later [s]
-  double duration = 0;         ///< by the wall clock [s]
+  std::optional<std::chrono::steady_clock::time_point> due;  ///< by the wall clock, if it keeps pace with that,
+  double lateness = 0;                                       ///< and began so much later [s]
+  double duration = 0;                                       ///< by the wall clock [s]
 };
 
 /// Steps and reports while it runs; while it is halted the simulation belongs to the thread that halted it, the one
@@ -108,7 +108,8 @@ class SteppingThread {
   void loop();
   /// True once the next step may begin; else waits for a while.
   bool wait_for_step();
-  bool make_step(double lateness, bool is_paced);
+  /// `lateness`: of a step that keeps pace with the wall clock [s].
+  bool make_step(std::optional<double> lateness);
   void take_message();
   /// Reports get room for states as they are after a step, so that the thread need not allocate it.
   void make_room();

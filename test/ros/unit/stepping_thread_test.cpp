@@ -95,8 +95,30 @@ TEST(SteppingThread, KeepsPaceWithTheClock) {
   const double wall_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   EXPECT_TRUE(are_consecutive(reports.steps));
   EXPECT_GE(wall_time, 0.2);
-  EXPECT_TRUE(reports.last.is_paced);
+  ASSERT_TRUE(reports.last.due);
   EXPECT_GE(reports.last.lateness, 0);
+}
+
+TEST(SteppingThread, TellsWhenEachStepWasDue) {
+  using Seconds = std::chrono::duration<double>;
+  constexpr double kStep = 0.002;
+  SteppingThread thread(rotor(kStep), {}, [] {});
+  Reports reports(thread);
+  ASSERT_TRUE(thread.advance());
+  reports.take(1);
+  EXPECT_FALSE(reports.last.due) << "nobody has looked at the clock";
+  const auto begin = std::chrono::steady_clock::now();
+  thread.run(true);
+  reports.take(1);
+  const StepReport first = reports.last;
+  // The first one is due a step after the beginning, the others a step after each other, however late they are.
+  ASSERT_TRUE(first.due);
+  EXPECT_GE(Seconds(*first.due - begin).count(), kStep - 1e-6);
+  reports.take(50);
+  thread.halt();
+  ASSERT_TRUE(reports.last.due);
+  EXPECT_NEAR(Seconds(*reports.last.due - *first.due).count(),
+              static_cast<double>(50 + reports.last.overruns - first.overruns) * kStep, 1e-6);
 }
 
 TEST(SteppingThread, WaitsForNobodyWhereTheClockDoesNot) {
