@@ -225,6 +225,7 @@ void Node::set_pace() {
 }
 
 void Node::pause() {
+  ++pauses_;
   stepping_.halt();
   take_reports();
   if (run_.paused) return;
@@ -384,14 +385,6 @@ void Node::apply_wrench(const AppliedWrench& wrench, const ros::Time& start, dou
 void Node::clear_wrenches() {
   stepping_.between_steps([this](Simulation&) { stepping_.wrenches().clear(); });
   if (pull_handles_) pull_handles_->forget();
-}
-
-bool Node::step(std::uint32_t steps) {
-  for (std::uint32_t made = 0; made < steps && ros::ok(); ++made) {
-    if (!advance()) return false;
-  }
-  publish(true);
-  return true;
 }
 
 }  // namespace flexarm::node

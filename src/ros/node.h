@@ -43,6 +43,7 @@ class Node {
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;
 
+  /// Steps of a paused simulation that somebody makes end, too (StepService).
   void pause();
   /// After a failed step, goes on from the last good state, with what was commanded since.
   /// @returns false, and stays paused, if the step fails again; run().failure says why
@@ -74,8 +75,12 @@ class Node {
   void apply_wrench(const AppliedWrench& wrench, const ros::Time& start, double duration);
   /// Those of pulls, too.
   void clear_wrenches();
-  /// Makes steps whatever the wall clock says. @returns false if one failed; run().failure says why
-  bool step(std::uint32_t steps);
+  /// Makes a step of a paused simulation. @returns false if it failed; run().failure says why
+  bool step() { return advance(); }
+  /// Tells everybody of the state, whatever their rates.
+  void publish_state() { publish(true); }
+  /// How often pause() was called.
+  std::uint64_t pauses() const { return pauses_; }
 
   const RunState& run() const { return run_; }
   const Parameters& parameters() const { return parameters_; }
@@ -126,6 +131,7 @@ class Node {
   Simulation shown_;
   Snapshot snapshot_;  ///< scratch
   RunState run_;
+  std::uint64_t pauses_ = 0;
   SlownessWarning slowness_{run_};
   ClockPublisher clock_publisher_;
   StatePublisher state_publisher_;

@@ -4,7 +4,6 @@
 #include <flexarm/LoadState.h>
 #include <flexarm/SaveState.h>
 #include <flexarm/SetJointState.h>
-#include <flexarm/Step.h>
 #include <flexarm/SwitchMode.h>
 #include <ros/console.h>
 #include <std_srvs/Empty.h>
@@ -22,8 +21,6 @@
 
 namespace flexarm::node {
 namespace {
-
-constexpr std::uint32_t kMostSteps = 1000000;  ///< of one call: nothing else is served meanwhile
 
 bool pause(Node& simulator, std_srvs::Empty::Request&, std_srvs::Empty::Response&) {
   simulator.pause();
@@ -56,19 +53,6 @@ bool reload(Node& simulator, std_srvs::Trigger::Request&, std_srvs::Trigger::Res
     response.message = error.what();
     ROS_WARN_STREAM("~reload: the scene stays as it was: " << error.what());
   }
-  return true;
-}
-
-bool step(Node& simulator, Step::Request& request, Step::Response& response) {
-  if (!simulator.run().paused) {
-    response.message = "the simulation runs; pause it first";
-  } else if (request.steps > kMostSteps) {
-    response.message = "more than " + std::to_string(kMostSteps) + " steps at once";
-  } else {
-    response.success = simulator.step(request.steps);
-    if (!response.success) response.message = simulator.run().failure;
-  }
-  response.time = simulator.simulation().time();
   return true;
 }
 
@@ -177,17 +161,17 @@ Services::Services(ros::NodeHandle& private_node, Node& simulator) {
   add("reset", reset);
   add("reset_with_clock", reset_with_clock);
   add("reload", reload);
-  add("step", step);
   add("save_state", save_state);
   add("load_state", load_state);
   add("set_joint_state", set_joint_state);
   add("switch_mode", switch_mode);
   add("apply_wrench", apply_wrench);
   add("clear_wrenches", clear_wrenches);
+  step_service_.emplace(private_node, simulator);  // the last: who waits for it finds the others
 }
 
 std::vector<std::string> Services::names() const {
-  std::vector<std::string> names;
+  std::vector<std::string> names = {step_service_->server().getService()};
   for (const ros::ServiceServer& server : servers_) names.push_back(server.getService());
   return names;
 }

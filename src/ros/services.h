@@ -5,8 +5,11 @@
 #include <ros/node_handle.h>
 #include <ros/service_server.h>
 
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "step_service.h"
 
 namespace flexarm::node {
 
@@ -20,6 +23,7 @@ class Services {
 
  private:
   std::vector<ros::ServiceServer> servers_;
+  std::optional<StepService> step_service_;
 };
 
 }  // namespace flexarm::node

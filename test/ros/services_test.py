@@ -4,6 +4,7 @@
 import math
 import os
 import tempfile
+import threading
 import time
 import unittest
 
@@ -13,7 +14,8 @@ import rostest
 from flexarm.msg import JointForceCommand, SimulatorStatus
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
-from simulated_arm import CommandTopic, Joint, SimulatedArm, force_command, wait_until
+from simulated_arm import PATIENCE, CommandTopic, Joint, SimulatedArm, force_command, wait_until
+from std_msgs.msg import Bool
 from tf2_msgs.msg import TFMessage
 
 
@@ -124,6 +126,40 @@ class Services(ClockedArm):
         self.assertIn("pause", answer.message)
         self.pause_and_wait()
         self.assertFalse(self.arm.step(2**32 - 1).success)
+
+    def test_everybody_is_served_while_many_steps_are_made(self):
+        self.pause_and_wait()
+        force = CommandTopic("/joint_force_command", JointForceCommand)
+        stop = CommandTopic("/flexarm/emergency_stop", Bool)
+        self.addCleanup(stop.send, False)
+        answers = []
+        caller = threading.Thread(target=lambda: answers.append(self.arm.step(1000000)))
+        before = self.status()
+        caller.start()
+        wait_until(lambda: self.status().steps > before.steps, "the first steps")
+
+        def effort():
+            states = self.log.last["/joint_states"]
+            return states.effort[states.name.index("left_shoulder")]
+
+        force.send(force_command(["left_shoulder"], [0.25]))
+        wait_until(lambda: effort() == 0.25, "the command")
+        stop.send(True)
+        wait_until(lambda: effort() == 0, "the emergency stop")
+        stopped_at = self.status().time
+        wait_until(lambda: self.status().time > stopped_at, "the steps to go on")
+        self.assertEqual(answers, [])
+        self.arm.pause()
+        caller.join(PATIENCE)
+        self.assertEqual(len(answers), 1)
+        self.assertFalse(answers[0].success)
+        self.assertIn("~pause was called, after", answers[0].message)
+        self.assertGreater(answers[0].time, stopped_at)
+        stopped_at = answers[0].time
+        wait_until(lambda: self.status().time >= stopped_at, "the last of these steps")
+        steps = self.status().steps
+        self.assertTrue(self.arm.step(3).success)
+        wait_until(lambda: self.status().steps == steps + 3, "the next call")
 
     def test_reset_sets_the_state_back_and_the_clock_goes_on(self):
         wait_until(lambda: self.status().time > 0.2, "some time to pass")
