@@ -13,6 +13,8 @@ namespace {
 constexpr double kDoubtful = 0.75;
 /// Accelerations that matter to nobody [m/s^2, rad/s^2].
 constexpr double kStill = 1e-6;
+/// That are looked at.
+constexpr int kSteps = 2;
 
 /// Of the states that are positions.
 Eigen::MatrixXd mass_of_states(const LinearModel& model) {
@@ -24,17 +26,9 @@ Eigen::MatrixXd mass_of_states(const LinearModel& model) {
   return model.mass(places, places);
 }
 
-}  // namespace
-
-std::string doubt_about_instant(const Simulation& simulation, const LinearModel& model) {
-  Simulation next = simulation.copy();
-  if (!next.step().converged) return "";
-  LinearRequest request;
-  request.about = LinearisedAbout::Instant;
-  request.inputs = model.inputs;
-  request.outputs = model.outputs;
-  const LinearModel after = linearise(next, request);
-  if (after.states != model.states) return "";
+/// About `model` of `simulation`, by the step from there to `next` and the model `after` it.
+std::string doubt_about_step(const Simulation& simulation, const LinearModel& model, const Simulation& next,
+                             const LinearModel& after) {
   const Eigen::MatrixXd mass = mass_of_states(model);
   const auto size = [&](const Eigen::VectorXd& motion) { return std::sqrt(std::max(0.0, motion.dot(mass * motion))); };
   const Eigen::Index count = model.positions;
@@ -48,6 +42,28 @@ std::string doubt_about_instant(const Simulation& simulation, const LinearModel&
       "resolve "
       "what the beams do there, and the poles may be wrong; expected a shorter step of the <integrator>",
       simulation.time(), size(asked) / size(made), step);
+}
+
+}  // namespace
+
+std::string doubt_about_instant(const Simulation& simulation, const LinearModel& model) {
+  LinearRequest request;
+  request.about = LinearisedAbout::Instant;
+  request.inputs = model.inputs;
+  request.outputs = model.outputs;
+  Simulation here = simulation.copy();
+  LinearModel of_here = model;
+  // What rings may pass one step unseen.
+  for (int n = 0; n < kSteps; ++n) {
+    Simulation next = here.copy();
+    if (!next.step().converged) return "";
+    const LinearModel after = linearise(next, request);
+    if (after.states != of_here.states) return "";
+    if (std::string doubt = doubt_about_step(here, of_here, next, after); !doubt.empty()) return doubt;
+    of_here = after;
+    here = std::move(next);
+  }
+  return "";
 }
 
 }  // namespace flexarm
