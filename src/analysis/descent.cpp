@@ -47,7 +47,7 @@ Descent::Descent(const Model& model, const Scheme& scheme, const StepSettings& s
     : potentials_(model, scheme, settings), tolerance_(settings.tolerance) {}
 
 bool Descent::begin(const State& state) {
-  return potentials_.find_reference(state) && potentials_.reference() > 0;
+  return potentials_.begin(state);
 }
 
 /// Of the coordinates that are not fixed, where the fixed ones have gone by `ways`.
@@ -180,14 +180,15 @@ bool Descent::find(State& state, int load_steps, StepResult& result) {
   for (int step = 1; step <= load_steps && !potentials_.is_rigid(); ++step)
     if (!potentials_.rest(state, static_cast<double>(step) / load_steps, result)) return false;
   result.reason = StepResult::Reason::NeverRests;
-  const std::vector<bool> none(potentials_.axes().size(), false);
-  const Eigen::VectorXd still = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(none.size()));
   JointPotential at, next;
   at.state = state;
   if (!potentials_.look(at)) return false;
   double radius = kFirstRadius;
   for (int count = 0; count < kMostSteps; ++count) {
     state = at.state;
+    if (potentials_.choose_axes(state) && !potentials_.look(at)) return false;
+    const std::vector<bool> none(potentials_.axes().size(), false);
+    const Eigen::VectorXd still = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(none.size()));
     ++result.iterations;
     const Modes whole = modes(at, none, still);
     if (rests(whole, tolerance_)) {

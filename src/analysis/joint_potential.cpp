@@ -17,6 +17,10 @@ namespace {
 constexpr std::size_t kMostAxes = 300;
 /// Larger turns in an update are shortened where the whole update has led nowhere [rad].
 constexpr double kLargestTurn = 1;
+/// Of what loops are closed by, a coordinate with limits counts for so much.
+constexpr double kShareOfLimited = 0.1;
+/// Columns of constraints are independent if their pivots are larger than this part of the largest entry.
+constexpr double kIndependentColumn = 1e-6;
 
 bool is_unknown(const DegreesOfFreedom& dof, const Coordinate& coordinate) {
   return dof.equation[dof.scalar_of(coordinate)] >= 0;
@@ -26,9 +30,6 @@ bool is_unknown(const DegreesOfFreedom& dof, const Coordinate& coordinate) {
 
 bool JointPotentials::exist(const Model& model, const State& state) {
   if (model.coordinates.size() > kMostAxes || is_circulatory(model, state)) return false;
-  if (std::any_of(model.closures.begin(), model.closures.end(),
-                  [](const LoopClosure& closure) { return !closure.constraints.empty(); }))
-    return false;
   const DegreesOfFreedom dof(model);
   return std::any_of(model.coordinates.begin(), model.coordinates.end(),
                      [&](const Coordinate& coordinate) { return is_unknown(dof, coordinate); });
@@ -37,21 +38,30 @@ bool JointPotentials::exist(const Model& model, const State& state) {
 JointPotentials::JointPotentials(const Model& model, const Scheme& scheme, const StepSettings& settings)
     : model_(model), scheme_(scheme), settings_(settings), system_(model, scheme_, BackendChoice::Matrix) {
   const DegreesOfFreedom& dof = system_.degrees_of_freedom();
-  std::vector<std::size_t> axis_of(model.coordinates.size(), model.coordinates.size());
   for (std::size_t c = 0; c < model.coordinates.size(); ++c) {
     const Coordinate& coordinate = model.coordinates[c];
-    if (!is_unknown(dof, coordinate)) continue;
-    axis_of[c] = axes_.size();
-    axes_.push_back(
-        {dof.equation[dof.scalar_of(coordinate)], c, is_rotation(model, coordinate) ? 1.0 : 1 / model.length_scale});
+    if (is_unknown(dof, coordinate))
+      coordinates_.push_back(
+          {dof.equation[dof.scalar_of(coordinate)], c, is_rotation(model, coordinate) ? 1.0 : 1 / model.length_scale});
   }
-  for (std::size_t c = 0; c < model.coordinates.size(); ++c) {
-    const Coordinate& coordinate = model.coordinates[c];
+  for (int k = 0; k < static_cast<int>(model.closures.size()); ++k)
+    for (std::size_t i = 0; i < model.closures[k].constraints.size(); ++i)
+      multipliers_.push_back(dof.equation[dof.first[dof.variable_of_closure(k)] + static_cast<int>(i)]);
+  axes_ = coordinates_;
+  find_bounds();
+}
+
+void JointPotentials::find_bounds() {
+  bounds_.clear();
+  std::vector<std::size_t> axis_of(model_.coordinates.size(), model_.coordinates.size());
+  for (std::size_t i = 0; i < axes_.size(); ++i) axis_of[axes_[i].coordinate] = i;
+  for (std::size_t c = 0; c < model_.coordinates.size(); ++c) {
+    const Coordinate& coordinate = model_.coordinates[c];
     const bool follows = coordinate.mimicked >= 0;
     if (!coordinate.limit || coordinate.is_angle || coordinate.motion >= 0 || (follows && coordinate.mimic.profile))
       continue;
     const std::size_t axis = axis_of[follows ? coordinate.mimicked : c];
-    if (axis == model.coordinates.size() || (follows && coordinate.mimic.multiplier == 0)) continue;
+    if (axis == model_.coordinates.size() || (follows && coordinate.mimic.multiplier == 0)) continue;
     add_bounds(axis, coordinate, follows ? coordinate.mimic.multiplier : 1, follows ? coordinate.mimic.offset : 0);
   }
 }
@@ -71,12 +81,56 @@ double JointPotentials::position(const State& state, std::size_t axis) const {
   return coordinate.is_angle ? 0.0 : state.released[coordinate.joint].displacement[coordinate.component];
 }
 
-bool JointPotentials::find_reference(const State& state) {
+/// Numbers of the coordinates that are left when loops have taken those by which they are closed best: their columns of
+/// the constraints' derivatives are independent.
+std::vector<std::size_t> JointPotentials::independent() const {
+  const Matrix whole = tangent_matrix();
+  Eigen::MatrixXd columns(static_cast<Eigen::Index>(coordinates_.size()),
+                          static_cast<Eigen::Index>(multipliers_.size()));
+  for (std::size_t i = 0; i < coordinates_.size(); ++i) {
+    const Axis& axis = coordinates_[i];
+    // Stops are bounds of axes: coordinates that have some are the last to be taken.
+    const double share = (model_.coordinates[axis.coordinate].limit ? kShareOfLimited : 1.0) / axis.scale;
+    for (std::size_t m = 0; m < multipliers_.size(); ++m)
+      columns(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(m)) =
+          share * whole.coeff(multipliers_[m], axis.equation);
+  }
+  std::vector<bool> is_taken(coordinates_.size(), false);
+  const double largest = columns.cwiseAbs().maxCoeff();
+  for (const Eigen::Index taken : independent_rows(columns, kIndependentColumn * largest)) is_taken[taken] = true;
+  std::vector<std::size_t> left;
+  for (std::size_t i = 0; i < coordinates_.size(); ++i)
+    if (!is_taken[i]) left.push_back(i);
+  return left;
+}
+
+bool JointPotentials::choose_axes(const State& state) {
+  if (multipliers_.empty()) return false;
+  system_.begin_equilibrium(state, 1);
+  if (!system_.evaluate(true)) return false;
+  std::vector<Axis> chosen;
+  for (const std::size_t i : independent()) chosen.push_back(coordinates_[i]);
+  const auto is_same = [](const Axis& a, const Axis& b) { return a.coordinate == b.coordinate; };
+  if (std::equal(chosen.begin(), chosen.end(), axes_.begin(), axes_.end(), is_same)) return false;
+  axes_ = std::move(chosen);
+  find_bounds();
+  return true;
+}
+
+JointPotentials::Matrix JointPotentials::tangent_matrix() const {
+  const Eigen::Index unknowns = tangent().unknowns();
+  return Matrix(unknowns, unknowns, static_cast<Eigen::Index>(tangent().values().size()),
+                tangent().column_starts().data(), tangent().row_indices().data(), tangent().values().data());
+}
+
+bool JointPotentials::begin(const State& state) {
+  choose_axes(state);
+  if (axes_.empty()) return false;
   reference_ = work_of_forces(model_, state);
   system_.begin_equilibrium(state, 1);
   if (!system_.evaluate(false)) return false;
   if (reference_ == 0) reference_ = system_.scales().largest_moment(system_.residual());
-  return std::isfinite(reference_);
+  return std::isfinite(reference_) && reference_ > 0;
 }
 
 /// Rows of the coordinates are those of a unit matrix.
@@ -92,9 +146,7 @@ bool JointPotentials::look(JointPotential& at) {
   if (!system_.evaluate(true)) return false;
   const auto size = static_cast<Eigen::Index>(axes_.size());
   const Eigen::Index unknowns = tangent().unknowns();
-  const Eigen::SparseMatrix<double> whole =
-      Matrix(unknowns, unknowns, static_cast<Eigen::Index>(tangent().values().size()), tangent().column_starts().data(),
-             tangent().row_indices().data(), tangent().values().data());
+  const Eigen::SparseMatrix<double> whole = tangent_matrix();
   at.motions = Eigen::MatrixXd::Zero(unknowns, size);
   for (Eigen::Index i = 0; i < size; ++i) at.motions(axes_[i].equation, i) = 1 / axes_[i].scale;
   at.correction = Eigen::VectorXd::Zero(unknowns);

@@ -25,10 +25,12 @@ struct JointPotential {
 /// Looks at JointPotential, and moves along it. With b the unknowns of beams, q the coordinates, and K the static
 /// tangent,
 ///   curvature = K_qq - K_qb K_bb^-1 K_bq,   force = g_q - K_qb K_bb^-1 g_b.
+/// Where multipliers close loops, q are as many coordinates as loops leave, those by which the others are found best;
+/// the others and the multipliers are among b, whose solution closes the loops: these are the reduced gradient and
+/// Hessian of the constrained potential.
 class JointPotentials {
  public:
-  /// Of a potential: no load circulates, no loop is closed by multipliers, and there are a few hundred coordinates at
-  /// most that nothing prescribes.
+  /// Of a potential: no load circulates, and there are a few hundred coordinates at most that nothing prescribes.
   static bool exist(const Model& model, const State& state);
 
   /// `scheme`: made by statics_of(), with interpolation that knows no past. Both references must outlive this.
@@ -55,8 +57,10 @@ class JointPotentials {
 
   /// Largest curvature that weight and loads make, or what stands for it [J]; 0: nothing acts.
   double reference() const { return reference_; }
-  /// Chooses it.
-  bool find_reference(const State& state);
+  /// Chooses it, and the axes. False if nothing moves there, or something is not finite.
+  bool begin(const State& state);
+  /// Chooses the axes of loops anew, and their bounds. True if these are other ones.
+  bool choose_axes(const State& state);
 
   /// Fills in everything but the state, which is given. False if the tangent is not finite, or singular.
   bool look(JointPotential& at);
@@ -81,14 +85,19 @@ class JointPotentials {
   bool rest(State& state, double factor, double largest_rotation, StepResult& result);
   Eigen::VectorXd step(const JointPotential& from, const Eigen::VectorXd& ways) const;
   bool place(const JointPotential& from, const Eigen::VectorXd& step, State& to);
+  Matrix tangent_matrix() const;
+  std::vector<std::size_t> independent() const;
+  void find_bounds();
   void add_bounds(std::size_t axis, const Coordinate& coordinate, double multiplier, double offset);
 
   const Model& model_;
   const Scheme scheme_;
   const StepSettings& settings_;
   StepSystem system_;
+  std::vector<Axis> coordinates_;  // all that nothing prescribes
   std::vector<Axis> axes_;
   std::vector<Bound> bounds_;
+  std::vector<int> multipliers_;  // equations
   double reference_ = 0;
 };
 

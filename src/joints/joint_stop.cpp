@@ -107,6 +107,11 @@ std::array<Side, 2> sides(const LimitStop& limit, double begin, double end) {
           Side{-1, {begin - limit.upper, limit.give_above}, {end - limit.upper, limit.give_above}}};
 }
 
+/// Where no range is left both stops are touched, and none is penetrated: on either side one of them holds.
+bool is_pinned(const LimitStop& limit, double position) {
+  return limit.lower == limit.upper && position == limit.upper;
+}
+
 /// With the laws that the step holds.
 std::array<Side, 2> held_sides(const LimitStop& limit, const CoordinateStep& change) {
   std::array<Side, 2> both = sides(limit, change.begin, change.end);
@@ -116,6 +121,7 @@ std::array<Side, 2> held_sides(const LimitStop& limit, const CoordinateStep& cha
   };
   hold(both[0], change.below);
   hold(both[1], change.above);
+  if (change.step == 0 && is_pinned(limit, change.end)) both[1].end.is_held = true;
   return both;
 }
 
@@ -195,7 +201,7 @@ double stop_energy(const LimitStop& limit, const StopPenalty& penalty, double po
 double stop_damping(const LimitStop& limit, const StopPenalty& penalty, double position) {
   double damping = 0;
   for (const Side& side : sides(limit, position, position)) damping += penalty.damping * hardened(side.end).slope;
-  return damping;
+  return is_pinned(limit, position) ? penalty.damping : damping;
 }
 
 double admissible_part(const LimitStop& limit, double from, double to) {

@@ -13,6 +13,7 @@
 #include "analysis/stability.h"
 #include "building/model_builder.h"
 #include "math/pi.h"
+#include "reference/slider_crank.h"
 #include "simulation/inside.h"
 #include "support/loops.h"
 
@@ -356,7 +357,7 @@ TEST(JointPotentials, CurvatureIsTheDerivativeOfTheForce) {
     StepResult result;
     JointPotential at;
     at.state = state_of(simulation);
-    ASSERT_TRUE(potentials.find_reference(at.state));
+    ASSERT_TRUE(potentials.begin(at.state));
     ASSERT_TRUE(potentials.rest(at.state, 1, result));
     ASSERT_TRUE(potentials.look(at));
     constexpr double kStep = 1e-4;
@@ -372,6 +373,36 @@ TEST(JointPotentials, CurvatureIsTheDerivativeOfTheForce) {
       EXPECT_LT((difference - at.curvature.col(i)).norm(), potentials.reference() * (kStep * kStep + own + 1e-10));
     }
   }
+}
+
+// The same of the one freedom that a loop leaves: force and curvature are those under its constraints.
+TEST(JointPotentials, CurvatureOfALoopIsTheDerivativeOfTheForce) {
+  SceneBuilder b = slider_crank();
+  b.scene.gravity = {0, -9.81, 0};
+  const Simulation simulation(b.scene);
+  StepSettings settings;
+  settings.tolerance = 1e-12;
+  JointPotentials potentials(model_of(simulation), exact_equilibrium(0.01), settings);
+  StepResult result;
+  JointPotential at, ahead, behind;
+  at.state = state_of(simulation);
+  ASSERT_TRUE(potentials.begin(at.state));
+  ASSERT_EQ(potentials.axes().size(), 1U);
+  ASSERT_TRUE(potentials.rest(at.state, 1, result));
+  ASSERT_TRUE(potentials.look(at));
+  // dV/da of the crank's angle a, over what the chosen coordinate turns by with it.
+  const SliderCrank crank(kAngle);
+  const double by_angle = 9.81 * (kCrankMass * kCrankCentre * std::cos(kAngle) + kRodMass * crank.first(kRodCentre)[1]);
+  const std::size_t chosen = potentials.axes()[0].coordinate;
+  const double turn = chosen == 0 ? 1 : chosen == 1 ? crank.p1 - 1 : crank.first(kRod)[0];
+  EXPECT_NEAR(at.force[0] * potentials.axes()[0].scale, by_angle / turn, 1e-10);
+  constexpr double kStep = 1e-4;
+  const Eigen::VectorXd step = Eigen::VectorXd::Constant(1, kStep);
+  ASSERT_TRUE(potentials.move(at, step, ahead.state, result) && potentials.move(at, -step, behind.state, result));
+  ASSERT_TRUE(potentials.look(ahead) && potentials.look(behind));
+  // The third derivative is of the size of the force over the way, 0.2 of the size, squared.
+  EXPECT_NEAR((ahead.force[0] - behind.force[0]) / (2 * kStep), at.curvature(0, 0),
+              100 * potentials.reference() * kStep * kStep + 1e-8);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Equilibria of arms whose first axis is vertical but for a small tilt: `equilibria_test.py PROGRAM`.
+"""Equilibria of arms whose first axis is vertical but for a small tilt, of loops, and of joints without any range:
+`equilibria_test.py PROGRAM`.
 
 Judged from outside: by the potential and the moments that forward kinematics in numpy gives, and by scipy's minimum of
 that potential from where flexarm has come to rest.
@@ -7,6 +8,7 @@ that potential from where flexarm has come to rest.
 
 import csv
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -67,7 +69,7 @@ def rest(path):
             if name.startswith("joint/") and name.endswith("/position")}, run.stderr
 
 
-class Arms(unittest.TestCase):
+class Scenes(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
         self.addCleanup(self.folder.cleanup)
@@ -77,6 +79,8 @@ class Arms(unittest.TestCase):
         with open(self.path, "w", encoding="utf-8") as file:
             file.write(text)
 
+
+class Arms(Scenes):
     def expect_minimum(self, positions):
         """No moment is left, and no motion of joints that are not at a stop goes down, but by what round-off hides."""
         robot, names = Robot(self.path), list(positions)
@@ -109,6 +113,207 @@ class Arms(unittest.TestCase):
                     # what is left of it is left of that, not of the weight.
                     moment, largest, *_ = moments(self.path, positions)["j0"]
                     self.assertLess(abs(moment), largest * max(1e-3 * tilt, 1e-13))
+
+
+def body(name, mass, centre):
+    return ('<link name="%s"> <inertial> <origin xyz="%r %r %r"/> <mass value="%r"/>\n'
+            '  <inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/> </inertial> </link>\n'
+            % (name, *centre, mass))
+
+
+def hinge(name, parent, child, place=(0, 0, 0), axis="0 1 0", rest='type="continuous"', roll=0):
+    kind, _, limit = rest.partition(" ")
+    return ('<joint name="%s" %s> <parent link="%s"/> <child link="%s"/> <origin xyz="%r %r %r" rpy="%r 0 0"/>'
+            ' <axis xyz="%s"/> %s </joint>\n' % (name, kind, parent, child, *place, roll, axis, limit))
+
+
+def pin(name, parent, child, place, in_child):
+    return ('<loop_joint name="%s" type="continuous"> <parent link="%s"/> <child link="%s"/> <origin xyz="%r 0 %r"/>'
+            ' <child_origin xyz="%r 0 0"/> <axis xyz="0 1 0"/> </loop_joint>\n'
+            % (name, parent, child, *place, in_child))
+
+
+def meet(first, second, one, other, side):
+    """Where two bars of these lengths from two points in the x-z plane meet."""
+    way = second - first
+    length = np.hypot(*way)
+    along = (one**2 - other**2 + length**2) / (2 * length)
+    across = np.sqrt(one**2 - along**2)
+    return first + along * way / length + side * across * np.array([-way[1], way[0]]) / length
+
+
+def angle(way):
+    """About y, from x."""
+    return np.arctan2(-way[1], way[0])
+
+
+class FourBar:
+    """A crank, a coupler and a rocker in the x-z plane of a base that turns about a vertical axis, or nearly so."""
+
+    CRANK, COUPLER, ROCKER, GROUND = 0.3, 0.7, 0.5, 0.8
+
+    def __init__(self, crank, tilt=0.0, pan='type="continuous"'):
+        _, elbow, _ = self.places(crank)
+        tip = self.CRANK * np.array([np.cos(crank), -np.sin(crank)])
+        coupler, rocker = angle(elbow - tip), angle(elbow - [self.GROUND, 0])
+        self.text = '<robot name="four_bar"> <link name="world"/>\n' + body("base", 3, (0.2, 0.1, 0.1))
+        self.text += hinge("pan", "world", "base", axis="0 0 1", rest=pan, roll=tilt)
+        self.text += body("crank", 1, (0.15, 0, 0)) + body("coupler", 2, (0.35, 0, 0))
+        self.text += body("rocker", 1.5, (0.25, 0, 0))
+        self.text += hinge("a", "base", "crank") + hinge("b", "crank", "coupler", (self.CRANK, 0, 0))
+        self.text += hinge("c", "base", "rocker", (self.GROUND, 0, 0))
+        self.text += pin("pin", "coupler", "rocker", (self.COUPLER, 0), self.ROCKER)
+        self.text += "<simulation>" + "".join(
+            '<initial joint="%s" position="%r"/>' % entry
+            for entry in (("a", crank), ("b", coupler - crank), ("c", rocker))) + "</simulation> </robot>"
+
+    def places(self, crank):
+        tip = self.CRANK * np.array([np.cos(crank), -np.sin(crank)])
+        ground = np.array([self.GROUND, 0.0])
+        return tip, meet(tip, ground, self.COUPLER, self.ROCKER, 1), ground
+
+    def potential(self, pan, crank, tilt=0.0):
+        """[J]"""
+        tip, elbow, ground = self.places(crank)
+        centre = 1 * tip / 2 + 2 * (tip + elbow) / 2 + 1.5 * (elbow + ground) / 2 + 3 * np.array([0.2, 0.1])
+        along, across, up = centre[0], 3 * 0.1, centre[1]
+        return 9.81 * (np.sin(tilt) * (np.sin(pan) * along + np.cos(pan) * across) + np.cos(tilt) * up)
+
+
+class Platform:
+    """A plate in the x-z plane that hangs on three legs of two bars each."""
+
+    BARS, MASSES = (0.5, 0.55), (0.5, 0.4)
+    PIVOTS = np.array([[0.0, 0.0], [1.0, 0.0], [0.5, 0.3]])
+    CORNERS = np.array([[0.35, -0.6], [0.65, -0.6], [0.5, -0.4]])  # at the start
+    MASS, CENTRE = 2, np.array([0.22, 0.07])  # from the first corner
+
+    def __init__(self):
+        self.text = '<robot name="platform"> <link name="world"/>\n'
+        self.text += body("plate", self.MASS, (self.CENTRE[0], 0, self.CENTRE[1]))
+        self.start, loops = [], ""
+        for k, (pivot, corner) in enumerate(zip(self.PIVOTS, self.CORNERS)):
+            knee = meet(pivot, corner, *self.BARS, 1)
+            hip = angle(knee - pivot)
+            self.start += [hip, angle(corner - knee) - hip]
+            for name, mass, length in zip("ul", self.MASSES, self.BARS):
+                self.text += body(name + str(k), mass, (length / 2, 0, 0))
+            self.text += hinge("h%d" % k, "world", "u%d" % k, (pivot[0], 0, pivot[1]))
+            self.text += hinge("k%d" % k, "u%d" % k, "l%d" % k, (self.BARS[0], 0, 0))
+            if k > 0:
+                loops += pin("p%d" % k, "plate", "l%d" % k, corner - self.CORNERS[0], self.BARS[1])
+        self.text += hinge("p0", "l0", "plate", (self.BARS[1], 0, 0))
+        self.start.append(-sum(self.start[:2]))
+        self.names = ["h0", "k0", "h1", "k1", "h2", "k2", "p0"]
+        self.text += loops + "<simulation>" + "".join(
+            '<initial joint="%s" position="%r"/>' % (name, float(value)) for name, value in zip(self.names, self.start))
+        self.text += "</simulation> </robot>"
+
+    def legs(self, values):
+        """Knees and ends, shape (3, 2) each."""
+        way = lambda angles: np.stack([np.cos(angles), -np.sin(angles)], axis=1)  # noqa: E731
+        hips, knees = np.array(values[0:6:2]), np.array(values[1:6:2])
+        middle = self.PIVOTS + self.BARS[0] * way(hips)
+        return middle, middle + self.BARS[1] * way(hips + knees)
+
+    def potential(self, values):
+        """[J]"""
+        middle, ends = self.legs(values)
+        heights = self.MASSES[0] * (self.PIVOTS + middle)[:, 1] / 2 + self.MASSES[1] * (middle + ends)[:, 1] / 2
+        return 9.81 * (heights.sum() + self.MASS * (ends[0] + self.turn(values) @ self.CENTRE)[1])
+
+    def turn(self, values):
+        turned = values[0] + values[1] + values[6]
+        return np.array([[np.cos(turned), np.sin(turned)], [-np.sin(turned), np.cos(turned)]])
+
+    def gaps(self, values):
+        _, ends = self.legs(values)
+        return np.concatenate([ends[0] + self.turn(values) @ (self.CORNERS[k] - self.CORNERS[0]) - ends[k]
+                               for k in (1, 2)])
+
+
+class Loops(Scenes):
+    def rest_of(self, text):
+        self.write(text)
+        positions, said = rest(self.path)
+        self.assertIsNotNone(positions, said)
+        return positions, said
+
+    def test_four_bar_under_a_vertical_axis(self):
+        for crank in np.linspace(-3, 3, 7):
+            bars = FourBar(float(crank))
+            positions, said = self.rest_of(bars.text)
+            self.assertLess(abs(positions["pan"]), 1e-9, "nothing turns it")
+            self.assertRegex(said, "nothing holds joint 'pan'")
+            best = scipy.optimize.minimize_scalar(
+                lambda q: bars.potential(0, q), bounds=(positions["a"] - 0.5, positions["a"] + 0.5), method="bounded",
+                options={"xatol": 1e-12})
+            # What round-off hides of a minimum is the root of that of its potential.
+            self.assertAlmostEqual(best.x, positions["a"], delta=1e-6)
+
+    def test_four_bar_under_a_tilted_axis(self):
+        for tilt in (1e-6, 1e-3, 0.1):
+            bars = FourBar(0.7, tilt)
+            positions, _ = self.rest_of(bars.text)
+            start = np.array([positions["pan"], positions["a"]])
+            best = scipy.optimize.minimize(lambda q: bars.potential(*q, tilt), start, method="L-BFGS-B",
+                                           options={"ftol": 0, "gtol": 1e-12})
+            self.assertGreater(best.fun, bars.potential(*start, tilt) - 1e-12 * 9.81 * 7.5)
+            slope = [(bars.potential(*(start + way), tilt) - bars.potential(*(start - way), tilt)) / 2e-5
+                     for way in 1e-5 * np.eye(2)]
+            self.assertLess(np.abs(slope).max(), 1e-9 * 9.81 * 7.5)
+
+    def test_platform_on_three_legs(self):
+        platform = Platform()
+        self.assertLess(np.abs(platform.gaps(platform.start)).max(), 1e-12)
+        positions, _ = self.rest_of(platform.text)
+        values = np.array([positions[name] for name in platform.names])
+        self.assertLess(np.abs(platform.gaps(values)).max(), 1e-9)
+        best = scipy.optimize.minimize(platform.potential, values, method="SLSQP", options={"ftol": 1e-15},
+                                       constraints={"type": "eq", "fun": platform.gaps})
+        weight = 9.81 * (platform.MASS + 3 * sum(platform.MASSES))
+        self.assertGreater(best.fun, platform.potential(values) - 1e-9 * weight)
+        self.assertLess(platform.potential(values), platform.potential(platform.start))
+
+    def test_limits_of_an_axis_above_a_loop_are_not_touched(self):
+        pan = 'type="revolute" <limit lower="-1" upper="1" effort="0" velocity="0"/>'
+        positions, _ = self.rest_of(FourBar(0.7, 0.0, pan).text)
+        self.assertLess(abs(positions["pan"]), 1e-9)
+
+
+class WithoutRange(Scenes):
+    """lower and upper are equal: their stops hold, whatever stands upright there."""
+
+    def test_upright(self):
+        inertia, weight = 0.02 + 1 * 0.5**2, 9.81 * 0.5
+        for place in (0.0, 0.3):
+            self.write("""<robot name="up"> <link name="world"/> <link name="bar"> <inertial> <origin xyz="0 0 0.5"/>
+              <mass value="1"/> <inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
+              <joint name="a" type="revolute"> <parent link="world"/> <child link="bar"/> <axis xyz="0 1 0"/>
+              <limit lower="%r" upper="%r" effort="1" velocity="1"/> </joint>
+              <simulation> <integrator step="0.001"/> <initial joint="a" position="%r"/> </simulation> </robot>"""
+                       % (place, place, place))
+            positions, said = rest(self.path)
+            self.assertIsNotNone(positions, said)
+            self.assertNotRegex(said, "stable|nothing holds")
+            # The documented law of stops (docs/notes/stops.md 2): touched lightly they make an oscillator that swings
+            # once in twenty steps, and 1e-4 rad is what they give way at most where there is no range.
+            swing, give = np.pi / 0.01, 1e-4
+
+            def left(depth, swing=swing, give=give, place=place):
+                part = depth / give
+                push = inertia * swing**2 * depth * (1 + 3 * part**2) / (1 - part**2) ** 5
+                return push - weight * np.sin(place + depth)
+
+            depth = scipy.optimize.brentq(left, 0, 0.9 * give, xtol=1e-15)
+            self.assertAlmostEqual(positions["a"] - place, depth, delta=1e-10)
+            run = subprocess.run([PROGRAM, "modes", self.path], capture_output=True, text=True, check=False)
+            self.assertEqual(run.returncode, 0, run.stderr)
+            frequency = float(re.search(r"mode 1: (\S+) Hz", run.stdout).group(1))
+            if place == 0:
+                damping = 0.497239 * swing
+                exact = np.sqrt(swing**2 - weight / inertia - damping**2) / (2 * np.pi)
+                self.assertAlmostEqual(frequency, exact, delta=1e-6 * exact)
 
 
 if __name__ == "__main__":
