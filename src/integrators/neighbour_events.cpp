@@ -1,0 +1,165 @@
+// Events of NeighbourSteps: neighbours go over them in pieces, beside the run that does the same.
+#include <fmt/format.h>
+
+#include "integrators/neighbour_steps.h"
+#include "model/state_numbers.h"
+
+namespace flexarm {
+namespace {
+
+/// Pieces of a sub-step between its events; twice as many show what these are off by.
+constexpr int kPieces = 4;
+
+/// What has happened where a law goes from one stage to another.
+const char* story(const Corner& corner, const Crossing& crossing) {
+  if (!corner.is_friction) return crossing.to == EventMarch::kIn ? "touches its stop" : "leaves its stop";
+  return crossing.to == 0 ? "sticks" : crossing.from == 0 ? "slips" : "turns back";
+}
+
+}  // namespace
+
+void NeighbourSteps::start_ways(const State& state) {
+  hit_begin_ = state.time;
+  for (Way& way : ways_) {
+    way.ahead = state;
+    way.neighbours.resize(2 * directions_.size());
+    std::size_t i = 0;
+    for_each_neighbour([&](Neighbour& neighbour) { way.neighbours[i++] = neighbour.state; });
+    way.stages = march_->stages();
+  }
+}
+
+/// What the run has been told in the meantime, and what its sensors have measured.
+void NeighbourSteps::obey(Way& way, const State& state) {
+  const auto take = [&](State& own, const State& measured) {
+    own.commands = state.commands;
+    own.wrenches = state.wrenches;
+    own.samples = measured.samples;
+    for (std::size_t i = 0; i < own.actuators.size(); ++i)
+      static_cast<ServoCommand&>(own.actuators[i].servo) = state.actuators[i].servo;
+  };
+  take(way.ahead, state);
+  std::size_t i = 0;
+  for_each_neighbour([&](Neighbour& neighbour) { take(way.neighbours[i++], neighbour.state); });
+}
+
+/// The derivative of a flow over events is not that of the steps, which go over them: neighbours go in pieces that end
+/// there, beside the run that does the same, by two numbers of pieces.
+void NeighbourSteps::go_over_events(const State& state, double step) {
+  if (is_in_hit_)
+    for (Way& way : ways_) obey(way, state);
+  else
+    start_ways(state);
+  for (const bool is_fine : {false, true}) {
+    notes_events_ = is_fine;
+    go_on(ways_[is_fine], step, is_fine ? 2 * kPieces : kPieces);
+    if (!lost_.empty()) return;
+  }
+  factorised_step_ = 0;
+  is_ahead_ = true;
+}
+
+void NeighbourSteps::go_on(Way& way, double step, int pieces) {
+  std::size_t i = 0;
+  for_each_neighbour([&](Neighbour& neighbour) { neighbour.state = way.neighbours[i++]; });
+  march_->set_stages(way.stages);
+  begin_ = way.ahead;
+  const std::string why = march_->go(way.ahead, step, pieces, *this);
+  if (!why.empty()) lose(fmt::format("before t = {:.9g} s {}", begin_.time + step, why));
+  if (!lost_.empty()) return;
+  i = 0;
+  for_each_neighbour([&](Neighbour& neighbour) {
+    neighbour.state.time = way.ahead.time;
+    (neighbour.system ? *neighbour.system : system_).remember_step(way.neighbours[i], step, neighbour.state);
+    way.neighbours[i++] = neighbour.state;
+  });
+  system_.remember_step(begin_, step, way.ahead);
+  way.stages = march_->stages();
+}
+
+/// Until run and ways are out of it: within it, derivatives would be those of another phase of it.
+bool NeighbourSteps::hit_goes_on(const State& state) {
+  if (state.time - hit_begin_ > longest_hit_) return false;
+  return march_->is_hit(state, nullptr) || march_->is_hit(ways_[0].ahead, &ways_[0].stages) ||
+         march_->is_hit(ways_[1].ahead, &ways_[1].stages);
+}
+
+void NeighbourSteps::settle(const State& state) {
+  if (!is_ahead_ || !lost_.empty()) return;
+  is_ahead_ = false;
+  is_in_hit_ = hit_goes_on(state);
+  coarse_.resize(directions_.size());
+  for (const bool is_fine : {false, true}) {
+    std::size_t i = 0;
+    for_each_neighbour([&](Neighbour& neighbour) { neighbour.state = ways_[is_fine].neighbours[i++]; });
+    for (std::size_t k = 0; k < directions_.size(); ++k) {
+      std::vector<double>& derivative = directions_[k].derivative;
+      measure(directions_[k], ways_[is_fine].ahead);
+      if (is_fine)
+        for (std::size_t n = 0; n < derivative.size(); ++n) derivative[n] = (4 * derivative[n] - coarse_[k][n]) / 3;
+      else
+        coarse_[k] = derivative;
+    }
+  }
+  for (Direction& direction : directions_)
+    if (is_in_hit_)
+      place(direction, state);
+    else
+      put_beside(direction, state, state.history.steps[0]);
+}
+
+void NeighbourSteps::cross(const Crossing& crossing) {
+  const bool has_slope = crossing.jumps && crossing.slope < 0;
+  if (has_slope) for_each_neighbour([&](Neighbour& neighbour) { jump(neighbour, crossing); });
+  const Corner& corner = march_->corner(crossing.corner);
+  if (corner.is_friction)
+    for_each_neighbour(
+        [&](Neighbour& neighbour) { neighbour.state.rests[corner.coordinate] = crossing.to == 0 ? 1 : 0; });
+  if (notes_events_)
+    events_.push_back(
+        {crossing.time, model_.coordinates[corner.coordinate].name, story(corner, crossing), crossing.doubt});
+}
+
+/// It comes to the event earlier or later than the run by dt, and has other rates in the meantime.
+void NeighbourSteps::jump(Neighbour& neighbour, const Crossing& crossing) {
+  const Model& model = neighbour.system ? neighbour.system->configuration().model() : model_;
+  const double guard = march_->guard(crossing.corner, crossing.from, model, neighbour.state);
+  const double way = -(guard - crossing.guard) / crossing.slope;
+  std::size_t i = 0;
+  for_each_number(neighbour.state, [&](const char*, double& number) {
+    if (const double change = way * (*crossing.jump)[i++]; change != 0) number += change;
+  });
+  for (NodeState& node : neighbour.state.nodes) node.orientation.normalize();
+  for (Released& released : neighbour.state.released) released.rotation.normalize();
+}
+
+/// Steps that run backwards have no march.
+void NeighbourSteps::note_stops(const State& state, const StepSystem& solved) {
+  for (const Coordinate& coordinate : model_.coordinates) {
+    if (!coordinate.limit) continue;
+    const auto side = [&](const std::vector<Released>& released) {
+      const double position = released[coordinate.joint].displacement[coordinate.component % 3];
+      return (position > coordinate.limit->upper) - (position < coordinate.limit->lower);
+    };
+    const int end = side(solved.configuration().released());
+    if (side(state.released) != end)
+      events_.push_back({state.time, coordinate.name, end == 0 ? "leaves its stop" : "touches its stop",
+                         "some sub-steps of the scheme run backwards: the derivative is that of the steps, which go "
+                         "over it"});
+  }
+}
+
+/// Friction within motors has no march: its events are those of the steps.
+void NeighbourSteps::note_motors(const State& state) {
+  motor_rests_.resize(state.actuators.size(), -1);
+  for (std::size_t i = 0; i < state.actuators.size(); ++i) {
+    const double rest = state.actuators[i].rest;
+    if (motor_rests_[i] >= 0 && rest != motor_rests_[i])
+      events_.push_back({state.time, model_.coordinates[model_.actuators[i].coordinate].name,
+                         rest > 0 ? "its motor sticks" : "its motor slips",
+                         "friction within a motor: the derivative is that of the steps, which go over it"});
+    motor_rests_[i] = rest;
+  }
+}
+
+}  // namespace flexarm
