@@ -25,6 +25,15 @@ std::string json_list(const List& entries, const char* separator, const Text& te
   return "[" + list + "]";
 }
 
+std::string json_event(const RunEvent& event) {
+  std::string members;
+  append_member(members, "time", json_number(event.time));
+  append_member(members, "joint", json_string(event.joint));
+  append_member(members, "what", json_string(event.what));
+  append_member(members, "doubt", json_string(event.doubt));
+  return "{" + members + "}";
+}
+
 /// A matrix for each frequency.
 std::string json_gains(const std::vector<Eigen::MatrixXcd>& gains) {
   return json_list(gains, ",\n  ", [](const Eigen::MatrixXcd& matrix) {
@@ -93,6 +102,8 @@ std::string linear_model_as_json(const std::string& scene, const LinearModel& mo
     append_member(members, "initial_states", json_names(run.initial_states));
     append_member(members, "transition", json_matrix(run.transition));
   }
+  if (const RunDerivatives& run = responses.derivatives; !run.parameters.empty() || !run.initial_states.empty())
+    append_member(members, "events", json_list(run.events, ",\n  ", json_event));
   return "{" + members + "}\n";
 }
 

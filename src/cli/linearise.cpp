@@ -152,7 +152,7 @@ int linearise_scene(LineariseArguments arguments) {
   LinearResponses responses = responses_of(model, arguments.responses);
   if (sensitivities) {
     responses.derivatives = derivatives_of(*sensitivities, model, arguments.derivatives);
-    warn_of_events(*sensitivities);
+    warn_of_events(responses.derivatives);
   }
   write_model(arguments.output, simulation.scene().name, model, responses);
   draw_picture(arguments.responses.picture, simulation.scene().name, model, responses);

@@ -49,6 +49,7 @@ RunDerivatives derivatives_of(const Sensitivities& sensitivities, const LinearMo
                               const DerivativeOptions& options) {
   if (!sensitivities.lost().empty()) throw std::runtime_error("no sensitivities: " + sensitivities.lost());
   RunDerivatives run;
+  run.events = sensitivities.events();
   const Eigen::MatrixXd states = sensitivities.states();
   const Eigen::Index count = static_cast<Eigen::Index>(options.parameters.size());
   run.parameters = options.parameters;
@@ -63,9 +64,9 @@ RunDerivatives derivatives_of(const Sensitivities& sensitivities, const LinearMo
   return run;
 }
 
-void warn_of_events(const Sensitivities& sensitivities) {
+void warn_of_events(const RunDerivatives& run) {
   int hidden = 0, shown = 0;
-  for (const RunEvent& event : sensitivities.events()) {
+  for (const RunEvent& event : run.events) {
     if (event.doubt.empty()) continue;
     if (++shown > kMostWarnings)
       ++hidden;

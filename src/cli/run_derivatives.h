@@ -31,7 +31,7 @@ RunDerivatives derivatives_of(const Sensitivities& sensitivities, const LinearMo
                               const DerivativeOptions& options);
 
 /// What stops and dry friction did on the way, as far as it makes derivatives doubtful: warnings.
-void warn_of_events(const Sensitivities& sensitivities);
+void warn_of_events(const RunDerivatives& run);
 
 /// A row for each output and the first `count` states, a column for each parameter.
 void print_derivatives(const RunDerivatives& run, const LinearModel& model, int count);

@@ -65,6 +65,13 @@ Variable step_outputs(const std::vector<Eigen::MatrixXd>& matrices) {
   return {Mat_VarCreate("step_response", MAT_C_DOUBLE, MAT_T_DOUBLE, 3, size.data(), values.data(), 0), &Mat_VarFree};
 }
 
+template <class Member>
+std::vector<Member> of_events(const std::vector<RunEvent>& events, Member RunEvent::*member) {
+  std::vector<Member> values;
+  for (const RunEvent& event : events) values.push_back(event.*member);
+  return values;
+}
+
 }  // namespace
 
 void write_mat(const std::string& path, const std::string& scene, const LinearModel& model,
@@ -109,6 +116,12 @@ void write_mat(const std::string& path, const std::string& scene, const LinearMo
   if (!run.initial_states.empty()) {
     write(cells("initial_states", run.initial_states));
     write(numbers("transition", run.transition));
+  }
+  if (!run.parameters.empty() || !run.initial_states.empty()) {
+    write(numbers("event_times", of_events(run.events, &RunEvent::time)));
+    write(cells("event_joints", of_events(run.events, &RunEvent::joint)));
+    write(cells("event_kinds", of_events(run.events, &RunEvent::what)));
+    write(cells("event_doubts", of_events(run.events, &RunEvent::doubt)));
   }
   if (Mat_Close(file.release()) != 0) place.fail("cannot be written");
   place.put_in_place();

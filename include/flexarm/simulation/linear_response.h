@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "flexarm/model/run_event.h"
 #include "flexarm/simulation/linear_model.h"
 
 namespace flexarm {
@@ -36,6 +37,7 @@ struct RunDerivatives {
   Eigen::MatrixXd states, outputs;          ///< of the model's, by the parameters
   std::vector<std::string> initial_states;  ///< of a model about the start
   Eigen::MatrixXd transition;               ///< states by them
+  std::vector<RunEvent> events;             ///< that the run came over
 };
 
 /// What is written beside a model; empty: was not asked for.
