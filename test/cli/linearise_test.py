@@ -19,6 +19,13 @@ PENDULUM = """<robot name="pendulum"> {parameters} <link name="world"/>
     <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/> </inertial> </link>
   <simulation> <probe name="tip" link="bob" at="0 0 -1"/> {simulation} </simulation>
 </robot>"""
+BAR = """<robot name="bar"> <parameter name="speed" value="0.5"/> <link name="world"/>
+  <joint name="hinge" type="revolute"> <parent link="world"/> <child link="bar"/> <axis xyz="0 0 1"/>
+    <limit lower="-1" upper="0.1" effort="0" velocity="0"/> </joint>
+  <link name="bar"> <inertial> <origin xyz="0.5 0 0"/> <mass value="2"/>
+    <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/> </inertial> </link>
+  <simulation> <gravity xyz="0 0 0"/> <initial joint="hinge" velocity="${speed}"/>
+    <integrator scheme="em" step="0.001" tolerance="1e-10"/> </simulation> </robot>"""
 INERTIA, WEIGHT = 0.1 + 2 * 0.5**2, 2 * 9.81 * 0.5  # about the hinge [kg m^2], times the arm [N m]
 NAMES = ("states", "inputs", "outputs")
 MATRICES = ("A", "B", "C", "D")
@@ -99,6 +106,32 @@ class Linearise(unittest.TestCase):
         self.assertIn("derivatives with respect to parameters", result.stdout)
         numpy.testing.assert_allclose(
             scipy.io.loadmat(path)["states_by_parameters"], model["states_by_parameters"], rtol=1e-9)
+
+    def test_events_that_a_run_came_over(self):
+        """A bar that comes to its stop: what is doubtful is told, and files list all."""
+        for scheme, is_doubtful in (("em", False), ("newmark", True)):
+            command = [PROGRAM, "linearise", self.path("bar.urdf"), "--time", "0.6", "--sensitivities", "speed",
+                       "--output"]
+            with open(self.path("bar.urdf"), "w", encoding="utf-8") as file:
+                file.write(BAR.replace('"em"', '"%s"' % scheme))
+            files = {}
+            for name in ("model.json", "model.mat"):
+                files[name] = subprocess.run(command + [self.path(name)], stdout=subprocess.PIPE,
+                                             stderr=subprocess.PIPE, universal_newlines=True, check=False)
+                self.assertEqual(files[name].returncode, 0, files[name].stderr)
+            warning = "sensitivities behind t = 0.2"
+            self.assertEqual(warning in files["model.json"].stderr, is_doubtful, files["model.json"].stderr)
+            with open(self.path("model.json"), encoding="utf-8") as file:
+                events = json.load(file)["events"]
+            self.assertEqual([event["what"] for event in events], ["touches its stop", "leaves its stop"])
+            self.assertEqual({event["joint"] for event in events}, {"hinge"})
+            # It comes to the stop at 0.1 / 0.5 s.
+            self.assertAlmostEqual(events[0]["time"], 0.2, delta=1e-6)
+            self.assertEqual(bool(events[0]["doubt"]), is_doubtful)
+            matlab = scipy.io.loadmat(self.path("model.mat"))
+            self.assertEqual([event["time"] for event in events], matlab["event_times"][:, 0].tolist())
+            for name, key in (("event_joints", "joint"), ("event_kinds", "what")):
+                self.assertEqual([str(cell[0]) for cell in matlab[name][:, 0]], [event[key] for event in events])
 
     def test_sensitivities_that_there_are_not(self):
         result = self.run_program("--time", "0.5", "--sensitivities", "angle")
