@@ -234,6 +234,14 @@ bool Descent::rest(State& state, StepResult& result) {
   return begin(state) && potentials_.rest(state, 1, result);
 }
 
+bool Descent::find_multipliers(const State& equilibrium, Eigen::VectorXd& multipliers) {
+  JointPotential at;
+  at.state = equilibrium;
+  if (!begin(equilibrium) || !potentials_.look(at)) return false;
+  multipliers = at.multipliers;
+  return true;
+}
+
 bool JointHold::is_firm() const {
   return free.empty() && least > kFirm;
 }

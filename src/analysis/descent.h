@@ -42,6 +42,8 @@ class Descent {
   bool sharpen(State& state);
   /// At an equilibrium. False if it cannot be looked at.
   bool judge(const State& equilibrium, JointHold& hold);
+  /// Of an equilibrium, see JointPotential. False if they are not found.
+  bool find_multipliers(const State& equilibrium, Eigen::VectorXd& multipliers);
   /// The first unstable equilibrium that find() has left; null: it met none.
   const State* left() const { return has_left_ ? &left_ : nullptr; }
 

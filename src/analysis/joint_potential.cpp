@@ -141,9 +141,22 @@ void JointPotentials::hold_joints() {
   }
 }
 
+/// The stiffness has what they do times the second derivatives of constraints.
+bool JointPotentials::find_multipliers(JointPotential& at) {
+  at.multipliers = Eigen::VectorXd::Zero(tangent().unknowns());
+  if (multipliers_.empty()) return true;
+  Eigen::VectorXd solution = -system_.residual();
+  for (const Axis& axis : axes_) solution[axis.equation] = 0;
+  hold_joints();
+  if (!system_.tangent().factorise_and_solve(solution)) return false;
+  for (const int equation : multipliers_) at.multipliers[equation] = solution[equation];
+  system_.update(at.multipliers);
+  return system_.evaluate(true);
+}
+
 bool JointPotentials::look(JointPotential& at) {
   system_.begin_equilibrium(at.state, 1);
-  if (!system_.evaluate(true)) return false;
+  if (!system_.evaluate(true) || !find_multipliers(at)) return false;
   const auto size = static_cast<Eigen::Index>(axes_.size());
   const Eigen::Index unknowns = tangent().unknowns();
   const Eigen::SparseMatrix<double> whole = tangent_matrix();

@@ -20,6 +20,8 @@ struct JointPotential {
   Eigen::MatrixXd curvature;   ///< symmetric [J]
   Eigen::MatrixXd motions;     ///< of all unknowns, a column per coordinate, for a way of 1
   Eigen::VectorXd correction;  ///< Newton's step of beams while joints stand
+  /// Of all unknowns: multipliers of loops that balance what they are found with, others zero.
+  Eigen::VectorXd multipliers;
 };
 
 /// Looks at JointPotential, and moves along it. With b the unknowns of beams, q the coordinates, and K the static
@@ -85,6 +87,7 @@ class JointPotentials {
   bool rest(State& state, double factor, double largest_rotation, StepResult& result);
   Eigen::VectorXd step(const JointPotential& from, const Eigen::VectorXd& ways) const;
   bool place(const JointPotential& from, const Eigen::VectorXd& step, State& to);
+  bool find_multipliers(JointPotential& at);
   Matrix tangent_matrix() const;
   std::vector<std::size_t> independent() const;
   void find_bounds();

@@ -102,7 +102,10 @@ class EquilibriumSearch {
 
   /// The state is one of the search's own system.
   bool stand() {
+    Eigen::VectorXd multipliers;
+    if (!model_.closures.empty() && !descent_->find_multipliers(state_, multipliers)) return false;
     system_.begin_equilibrium(state_, 1);
+    if (multipliers.size() > 0) system_.update(multipliers);
     if (!system_.evaluate(false)) return false;
     system_.accept(state_);
     return true;
