@@ -1,7 +1,6 @@
 """`flexarm identify` with `derivatives: forward` over stops and dry friction, of motions that ODE solvers made."""
 
 import json
-import math
 
 import numpy
 import pytest
