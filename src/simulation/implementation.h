@@ -60,6 +60,8 @@ struct Simulation::Implementation {
         state(initial_state(model)),
         start_warnings(held_joints(scene, model)) {
     require_suitable_slides(scene, scheme);
+    for (scene::Diagnostic& doubt : doubts_about_scheme(scene, model, scheme))
+      start_warnings.push_back(std::move(doubt));
     for (const Coordinate& coordinate : model.coordinates) {
       coordinate_indices.emplace(coordinate.name, coordinate_names.size());
       coordinate_names.push_back(coordinate.name);

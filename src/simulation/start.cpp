@@ -1,5 +1,6 @@
 #include "simulation/start.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <stdexcept>
@@ -21,6 +22,10 @@ constexpr double kRateRoundOff = 1e-6;
 scene::Diagnostic warning(const scene::SourceLocation& place, const std::string& element, const std::string& text,
                           const std::string& got = "") {
   return {scene::Diagnostic::Severity::Warning, place.file, place.line, element, got, text};
+}
+
+scene::SourceLocation place_of_integrator(const scene::SceneDescription& scene) {
+  return scene.integrator_location.line > 0 ? scene.integrator_location : scene::SourceLocation{scene.file};
 }
 
 /// @throws ModelError naming the first initial velocity.
@@ -66,11 +71,22 @@ scene::Diagnostics held_joints(const scene::SceneDescription& scene, const Model
   return findings;
 }
 
+scene::Diagnostics doubts_about_scheme(const scene::SceneDescription& scene, const Model& model, const Scheme& scheme) {
+  const bool damps_nothing = !scheme.is_incremental() && scheme.gamma <= 0.5 && scheme.alpha == 0;
+  const bool has_joints =
+      !model.closures.empty() || std::any_of(model.joints.begin(), model.joints.end(), [](const JointMap& joint) {
+        return joint.kind != JointMapKind::Rigid && joint.kind != JointMapKind::Free;
+      });
+  if (!damps_nothing || !has_joints) return {};
+  return {warning(place_of_integrator(scene), "<integrator>",
+                  "accelerations across joints grow from step to step and spoil the motion after some hundred steps; "
+                  "take 'em', 'hht2' or gamma above 0.5",
+                  fmt::format("'{}' with gamma {:g}", scheme.name, scheme.gamma))};
+}
+
 scene::Diagnostic unknown_accelerations(const scene::SceneDescription& scene, const std::string& failure) {
-  scene::SourceLocation place = scene.integrator_location;
-  if (place.line <= 0) place = {scene.file};
   return warning(
-      place, "start",
+      place_of_integrator(scene), "start",
       "begins with accelerations of zero, which is a wrong beginning for the scheme: those of the scene cannot "
       "be found: " +
           failure);

@@ -15,6 +15,9 @@ namespace flexarm {
 /// A warning for each joint coordinate that massless="lock" holds where it starts, in the scene's order.
 scene::Diagnostics held_joints(const scene::SceneDescription& scene, const Model& model);
 
+/// A warning where the scheme does not damp what its accelerations do across joints. (docs/notes/joints.md 3.2)
+scene::Diagnostics doubts_about_scheme(const scene::SceneDescription& scene, const Model& model, const Scheme& scheme);
+
 /// A warning that a motion begins with accelerations of zero, since its own cannot be found. `failure`: why, in words.
 scene::Diagnostic unknown_accelerations(const scene::SceneDescription& scene, const std::string& failure);
 

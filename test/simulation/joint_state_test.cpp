@@ -218,6 +218,7 @@ scene::SceneDescription rotor_at(double speed) {
   b.joint("shaft", JointKind::Continuous, "world", "rotor", {0, 0, 0}, {0, 0, 1});
   b.scene.initial_joints.push_back({"shaft", 0, speed, {}});
   b.scene.integrator.scheme = "newmark";
+  b.scene.integrator.gamma = 0.6;
   b.scene.integrator.step = 1e-3;
   b.scene.integrator.max_halvings = 0;
   return b.scene;
@@ -230,6 +231,27 @@ TEST(Start, WarnsWhereAccelerationsCannotBeFound) {
   const std::string text = racing.start_warnings()[0].text();
   EXPECT_NE(text.find("warning: start: begins with accelerations of zero"), std::string::npos) << text;
   EXPECT_NE(text.find("cannot be found: "), std::string::npos) << "the reason: " << text;
+}
+
+/// Without any damping Newmark's rule has a double pendulum that turns at 3 rad/s stand still after four seconds.
+TEST(Start, WarnsOfUndampedAccelerationsAcrossJoints) {
+  scene::SceneDescription scene = rotor_at(1);
+  for (const double gamma : {0.5, 0.51}) {
+    scene.integrator.gamma = gamma;
+    const scene::Diagnostics warnings = Simulation(scene).start_warnings();
+    ASSERT_EQ(warnings.size(), gamma == 0.5) << gamma;
+    if (gamma == 0.5) EXPECT_NE(warnings[0].text().find("'newmark' with gamma 0.5"), std::string::npos);
+  }
+  for (const char* scheme : {"em", "hht2", "m1"}) {
+    scene.integrator = {};
+    scene.integrator.scheme = scheme;
+    EXPECT_TRUE(Simulation(scene).start_warnings().empty()) << scheme;
+  }
+  SceneBuilder flying;
+  flying.body("rotor", 1, {0.1, 0, 0}, Matrix3::Identity());
+  flying.joint("flight", JointKind::Floating, "world", "rotor");
+  flying.scene.integrator.scheme = "newmark";
+  EXPECT_TRUE(Simulation(flying.scene).start_warnings().empty()) << "nothing holds it";
 }
 
 TEST(JointState, IsRefusedWhereAccelerationsCannotBeFound) {
