@@ -37,8 +37,9 @@ class TimeFunction {
   /// (forward) at t = 0.
   double derivative(double t) const;
   /// Mean value over [begin, end], in either order; of one instant the value. Exact of constants, tables and splines;
-  /// of expressions to about 1e-13 of the largest value, jumps and kinks included, with five values where it is smooth
-  /// over the interval and at most some 4,000. May be non-finite where a value is. Does not allocate.
+  /// of expressions to about 1e-13 of the largest value, kinks included and jumps by more than 3e-10 of it, with at
+  /// most five values where it is smooth over the interval and some 4,000 else. May be non-finite where a value is.
+  /// Does not allocate.
   double mean(double begin, double end) const;
   /// The same of what is left of the function between -limit and limit (> 0) at each instant.
   double mean_within(double limit, double begin, double end) const;
