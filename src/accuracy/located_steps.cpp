@@ -11,7 +11,7 @@ namespace {
 /// Of the longest step, to which events are found. A force that jumps so far from where it does makes an error of the
 /// velocity of that part of what a whole step would.
 constexpr double kFound = 1e-8;
-/// The same of stops by friction, which leave no error of the velocity.
+/// The same of stops by friction, which leave no error of the velocity, and of kinks, whose error is its square.
 constexpr double kSlide = 1e-3;
 /// Of the last correction, by which a step that is taken anew is longer than to where the event is expected: so it ends
 /// behind it, and shows where it is better than one that ends before.

@@ -35,7 +35,7 @@ class Actuators {
   /// Notes when gears come out of their play or into it, when dry friction stops rotors or turns its direction, and
   /// when motors come to their limits or leave them.
   void note_events(FirstEvent& first);
-  /// The same of smooth friction as SmoothReversals::turn_too_fast().
+  /// As SmoothReversals::turn_too_fast(), of smooth friction of rotors and of losses of gears.
   bool turn_too_fast(double refinement) const;
   /// In an equilibrium: lets integrals of servos take over what their errors ask for. The largest of those errors
   /// [rad or m].

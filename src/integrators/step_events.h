@@ -26,8 +26,8 @@ inline double crossing(double begin, double end, double border, double start) {
   return std::isfinite(first) ? first : missing / (begin - end);
 }
 
-/// The first of the events in a step that happen behind a fraction of it, and of stops by friction behind another one:
-/// they leave no error of the velocity.
+/// The first of the events in a step that happen behind a fraction of it, and of stops by friction and kinks of forces
+/// behind another one: the former leave no error of the velocity, the latter a small one.
 struct FirstEvent {
   double behind = 0, stop_behind = 0;
   double fraction = kNever;  ///< kNever: there is none

@@ -8,7 +8,8 @@
 namespace flexarm {
 
 /// How steps look for events, at which the equations change: friction stops a coordinate or turns its direction, a stop
-/// is touched, the play of a gear begins or ends, a slider comes to its end. (docs/notes/accuracy.md 4)
+/// is touched or left, the play of a gear begins or ends, a slider comes to its end, a motor to its limit.
+/// (docs/notes/accuracy.md 4)
 struct EventSearch {
   /// A step within which an event happens farther than this from both of its ends is not done: it ends as
   /// StepResult::Reason::EventWithin, and Stepper::event() says when [s]. 0: steps go over events.

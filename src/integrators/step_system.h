@@ -100,13 +100,13 @@ class StepSystem {
   LoopMultipliers::Opening largest_opening() const { return loops_.largest_opening(); }
   /// See StopContacts.
   bool hits_too_fast(double refinement) { return contacts_.hits_too_fast(refinement); }
-  /// See SmoothReversals.
+  /// See SmoothReversals; of joints, rotors and losses of gears.
   bool turn_too_fast(double refinement) {
     return reversals_.turn_too_fast(refinement) || actuators_.turn_too_fast(refinement);
   }
   /// Notes when forces jump in the step, with which the order of the scheme is lost: friction stops a coordinate or
   /// turns its direction, a stop is touched, a gear comes out of its play or into it, a slider comes to the end of its
-  /// line.
+  /// line. And when they have kinks: a stop pushes no more or begins to, a motor comes to its limit or leaves it.
   void note_events(FirstEvent& first);
   /// True where forces have a kink within the step of which no one knows when: friction lets a coordinate go.
   bool has_kink() const { return friction_.breaks_away(); }
