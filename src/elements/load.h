@@ -3,6 +3,7 @@
 
 #include "model/joint.h"
 #include "model/model.h"
+#include "schemes/time_rule.h"
 
 namespace flexarm {
 
@@ -11,6 +12,11 @@ enum class LoadPoint {
   Mean,  ///< average rotation (conserving schemes): the work over the step is exact
   End    ///< rotation at the end (statics, Newmark)
 };
+
+/// Where a scheme has them.
+inline LoadPoint load_point(const TimeRule& rule) {
+  return rule.is_incremental() ? LoadPoint::Mean : LoadPoint::End;
+}
 
 /// Spatial force and moment about the node, and their derivative with respect to the node's spin at the end (6 x 3).
 struct LoadAction {

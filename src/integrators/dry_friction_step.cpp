@@ -76,9 +76,7 @@ double DryFrictionStep::travel_per_carrier(int coordinate) const {
 
 void DryFrictionStep::begin() {
   revisions_ = 0;
-  const Scheme& scheme = configuration_.scheme();
-  const double gamma = scheme.is_incremental() ? (scheme.backward_velocity ? 1.0 : 0.5) : scheme.gamma;
-  const double share = (1 - gamma) * configuration_.step();
+  const double share = (1 - configuration_.scheme().rate_gamma()) * configuration_.step();
   for (FrictionCarrier& carrier : carriers_) {
     const double rate = rate_at_begin(carrier);
     carrier.law.begin(share * rate, rate);

@@ -48,7 +48,7 @@ double HeldEfforts::effort(const HeldJoint& held, const ReducedResidual& residua
   wrench.head<3>() = -histories_.factor * held.mass * model.gravity;
   if (node >= 0) add_inertia(held, node, weight, wrench);
   // Arms from the node, as joints fold: their mean over the step, or those at its end.
-  const double end = step.scheme().is_incremental() ? step.scheme().arm_weight() : 1.0;
+  const double end = step.scheme().arm_weight();
   const auto arm_in = [&](const std::vector<NodePose>& nodes) {
     return Vector3(master_pose(model.joints[j], nodes).rotation * held.centre);
   };

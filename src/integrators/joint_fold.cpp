@@ -122,10 +122,9 @@ void JointFold::find_drives(const ReducedResidual& residual, HeldEfforts& held, 
     // A prescribed coordinate's row is the effort that drives it; that of a held one is empty.
     const int variable = configuration_.degrees_of_freedom().variable_of_joint(coordinate.joint);
     applied_[index] += residual.at(variable)[coordinate.component] / friction_.effort_weight();
-    // Over the step; the Newmark family has that at its end, and none at the start of a simulation.
-    const bool is_mean = configuration_.scheme().is_incremental() || state.history.count == 0;
-    drives.impulse[index] +=
-        configuration_.step() * (is_mean ? applied_[index] : 0.5 * (state.efforts[index] + applied_[index]));
+    const double mean =
+        configuration_.forces_are_means() ? applied_[index] : 0.5 * (state.efforts[index] + applied_[index]);
+    drives.impulse[index] += configuration_.step() * mean;
   }
 }
 

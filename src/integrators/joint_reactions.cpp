@@ -4,7 +4,6 @@ namespace flexarm {
 
 Vector6 JointReactions::transmitted(const ReducedResidual& residual, const ReactionPlace& place) const {
   const Model& model = configuration_.model();
-  const Scheme& scheme = configuration_.scheme();
   int node;
   Vector6 wrench;
   double end, weight;  // of the end of the step in arms, and of the wrench in the balance
@@ -16,7 +15,7 @@ Vector6 JointReactions::transmitted(const ReducedResidual& residual, const React
   } else {
     node = model.joints[place.joint].slave;
     wrench = residual.node(node);
-    end = scheme.is_incremental() ? scheme.arm_weight() : 1.0;
+    end = configuration_.scheme().arm_weight();
     weight = friction_.effort_weight();
   }
   const auto arm_in = [&](const std::vector<NodePose>& nodes) {
@@ -30,13 +29,11 @@ Vector6 JointReactions::transmitted(const ReducedResidual& residual, const React
 
 void JointReactions::accept(const ReducedResidual& residual, State& state) const {
   const std::vector<ReactionPlace>& places = configuration_.model().reactions;
-  // The Newmark family has forces at the ends of steps, and none at the start of a simulation.
-  const bool is_mean = configuration_.scheme().is_incremental() || state.history.count == 0;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const Vector6 now = transmitted(residual, places[i]);
     Eigen::Map<Vector6> last(state.last_transmitted.data() + 6 * i);
     Eigen::Map<Vector6>(state.transmitted.impulse.data() + 6 * i) +=
-        configuration_.step() * (is_mean ? now : Vector6(0.5 * (last + now)));
+        configuration_.step() * (configuration_.forces_are_means() ? now : Vector6(0.5 * (last + now)));
     last = now;
   }
 }

@@ -53,8 +53,7 @@ void NodalForces::add_damping(int node, Balance& balance) const {
 PullAction NodalForces::pull(const NodalLoad& load) const {
   const StepConfiguration& step = configuration_;
   return pull_action(load, load.pull.target - world_origin(step.model(), step.state()), step.begin()[load.node],
-                     step.end()[load.node], step.step(),
-                     step.scheme().is_incremental() ? LoadPoint::Mean : LoadPoint::End);
+                     step.end()[load.node], step.step(), load_point(step.scheme()));
 }
 
 void NodalForces::add_pull(const NodalLoad& load, Balance& balance) const {
@@ -75,7 +74,7 @@ void NodalForces::evaluate(Balance& balance) const {
   if (!scheme.is_static)
     for (const int node : damped_nodes_) add_damping(node, balance);
   const std::vector<NodePose>&begin = configuration_.begin(), &end = configuration_.end();
-  const LoadPoint point = scheme.is_incremental() ? LoadPoint::Mean : LoadPoint::End;
+  const LoadPoint point = load_point(scheme);
   const std::vector<NodePose>& loaded = interpolation_ ? interpolation_->configuration() : end;
   for_each_load([&](const NodalLoad& load, const StepForce& value) {
     const LoadAction action = load_action(load, histories_.factor * value.acting, begin[load.node].rotation,
@@ -88,7 +87,7 @@ void NodalForces::evaluate(Balance& balance) const {
 
 Vector6 NodalForces::loads_on(const std::vector<bool>& links) const {
   const std::vector<NodePose>&begin = configuration_.begin(), &end = configuration_.end();
-  const LoadPoint point = configuration_.scheme().is_incremental() ? LoadPoint::Mean : LoadPoint::End;
+  const LoadPoint point = load_point(configuration_.scheme());
   const auto is_on = [&](const NodalLoad& load) { return load.link >= 0 && links[load.link]; };
   Vector6 wrench = Vector6::Zero();
   for_each_load([&](const NodalLoad& load, const StepForce& value) {

@@ -250,7 +250,7 @@ ReleasedVector StepConfiguration::increment_of(int joint) const {
 }
 
 double StepConfiguration::end_rate(const Coordinate& coordinate) const {
-  const double gamma = scheme_.is_incremental() ? 1 / scheme_.velocity_factor() : scheme_.gamma;
+  const double gamma = scheme_.rate_gamma();
   const double begin = begin_rates_[coordinate.joint][coordinate.component];
   return (increment_of(coordinate) / step_ - (1 - gamma) * begin) / gamma;
 }

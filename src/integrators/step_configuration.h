@@ -82,6 +82,10 @@ class StepConfiguration {
   /// Notes when sliders that may leave their lines come to their ends.
   void note_events(FirstEvent& first) const;
 
+  /// True where what acts in the balance is its mean over the step: in the Newmark family it is that at the end, of
+  /// which there is none at the start of a simulation.
+  bool forces_are_means() const { return scheme_.is_incremental() || state_->history.count == 0; }
+
   // ---- joints over the step
   bool has_incremental_joints() const { return scheme_.is_incremental(); }
   /// Increment of the released coordinates of a joint, and of one of them.

@@ -79,8 +79,11 @@ struct TimeRule {
   bool is_incremental() const { return stress != StressRule::EndPoint; }
   /// v_1 = velocity_factor() Delta r / h - (velocity_factor() - 1) v_0 (conserving schemes).
   double velocity_factor() const { return backward_velocity ? 1 : 2; }
-  /// Weight of the end of the step in the moment arms that make angular momentum exact.
-  double arm_weight() const { return backward_velocity ? 0 : 0.5; }
+  /// Of the end of the step in moment arms: those that make angular momentum exact, or in the Newmark family those at
+  /// the end.
+  double arm_weight() const { return !is_incremental() ? 1 : backward_velocity ? 0 : 0.5; }
+  /// Of the rate at the end of a step, (increment / h - (1 - rate_gamma()) rate at the beginning) / rate_gamma().
+  double rate_gamma() const { return is_incremental() ? 1 / velocity_factor() : gamma; }
 };
 
 }  // namespace flexarm
