@@ -15,7 +15,7 @@
 namespace flexarm {
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUnknownEstimate = std::numeric_limits<double>::quiet_NaN();
 
 /// Wrenches that differ by how strong they are, not by where they act.
 bool act_alike(const std::vector<NodalLoad>& a, const std::vector<NodalLoad>& b) {
@@ -87,7 +87,7 @@ void CornerDoubt::follow(const Simulation& simulation) {
   passed_ = (passed_ << 1) | (corners_.passed(simulation) ? 1u : 0u);
   if ((passed_ & 4u) == 0) return;  // two steps after a corner the motion behind it is known
   if (known_ < past_.size()) {
-    position_ = kUnknown;
+    position_ = kUnknownEstimate;
     return;
   }
   double acceleration = 0, velocity = 0;  // by which they jump
@@ -126,7 +126,7 @@ struct Companion::Implementation {
   double begin_time = 0;  // of the window [s]
   double last_time = 0;   // of the simulation, after the last step [s]
   bool is_half = false;   // the companion is a step behind
-  double largest = 0, largest_before = kUnknown;
+  double largest = 0, largest_before = kUnknownEstimate;
   Commands first, second;  // of the steps that it does in one
   Snapshot start;
   std::vector<Vector3> positions, companion_positions;
@@ -179,7 +179,7 @@ double Companion::Implementation::follow(const Simulation& simulation) {
   if (!goes_on) {
     begin(simulation);
     doubt.begin(simulation);
-    return largest_before = kUnknown;
+    return largest_before = kUnknownEstimate;
   }
   last_time = simulation.time();
   doubt.follow(simulation);
@@ -195,9 +195,9 @@ double Companion::Implementation::follow(const Simulation& simulation) {
       begin(simulation);
     }
   }
-  if (std::isnan(doubt.amount())) return kUnknown;
+  if (std::isnan(doubt.amount())) return kUnknownEstimate;
   return simulation.time() - begin_time > 1.5 * step || !std::isnan(largest_before) ? std::fmax(largest, largest_before)
-                                                                                    : kUnknown;
+                                                                                    : kUnknownEstimate;
 }
 
 Companion::Companion(const Simulation& simulation, double window)
@@ -213,7 +213,7 @@ double Companion::follow(const Simulation& simulation) {
 void Companion::begin(const Simulation& simulation) {
   implementation_->begin(simulation);
   implementation_->doubt.begin(simulation);
-  implementation_->largest_before = kUnknown;
+  implementation_->largest_before = kUnknownEstimate;
 }
 
 }  // namespace flexarm
