@@ -7,7 +7,7 @@
 #include "analysis/linearised_motion.h"
 #include "analysis/node_ways.h"
 #include "elements/element_configuration.h"
-#include "integrators/balance.h"
+#include "integrators/energies.h"
 #include "math/general_vector.h"
 #include "model/place.h"
 

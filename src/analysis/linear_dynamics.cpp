@@ -267,7 +267,7 @@ void LinearDynamics::assemble() {
   for (std::size_t i = 0; i < motors.size(); ++i) own.force[scalar_of(i)] -= dampers[i];
   put_dampers_stress(damped_stretches(model_, dof_, pose_), rows.first);
   const StretchDamping stretched = stretch_damping(model_, dof_, maps_, pose_, columns_, spacing_);
-  const Eigen::VectorXd force = own.force + stretched.of_springs;
+  const Eigen::VectorXd force = own.force + stretched.of_elements;
   const Eigen::Index coordinates = maps_.rows() - 6 * static_cast<Eigen::Index>(dof_.node_count);
   put_loads(force);
   balance(force.tail(coordinates));

@@ -4,7 +4,6 @@
 
 #include "analysis/element_matrices.h"
 #include "analysis/linearised_motion.h"
-#include "elements/spring_action.h"
 
 namespace flexarm {
 namespace {
@@ -14,6 +13,14 @@ template <int Nodes>
 Eigen::VectorXcd motion_of(const BeamElement<Nodes>& element, const std::vector<ComplexVector6>& node_motion) {
   Eigen::VectorXcd motion(6 * Nodes);
   for (int i = 0; i < Nodes; ++i) motion.segment<6>(6 * i) = node_motion[element.nodes[i]];
+  return motion;
+}
+
+/// The same of a force element's nodes.
+Eigen::VectorXcd motion_of(const std::vector<int>& nodes, const std::vector<ComplexVector6>& node_motion) {
+  Eigen::VectorXcd motion(6 * static_cast<Eigen::Index>(nodes.size()));
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    motion.segment<6>(6 * static_cast<Eigen::Index>(i)) = node_motion[nodes[i]];
   return motion;
 }
 
@@ -37,12 +44,11 @@ double round_off(const Model& model, const State& equilibrium, const std::vector
     const Eigen::VectorXd motion = motion_of(element, node_motion).cwiseAbs();
     elastic += motion.dot(material_stiffness(element, equilibrium).cwiseAbs().lazyProduct(motion));
   });
-  for (const PointSpring& spring : model.springs) {
-    const LoopClosure& ends = model.closures[spring.closure];
-    const Vector12 gradient = spring_gradient(ends, closure_poses(ends, equilibrium)).cwiseAbs();
-    double stretch = gradient.head<6>().dot(node_motion[ends.child].cwiseAbs());
-    if (ends.parent >= 0) stretch += gradient.tail<6>().dot(node_motion[ends.parent].cwiseAbs());
-    elastic += spring.stiffness * stretch * stretch;
+  for (const auto& element : model.force_elements) {
+    const std::vector<int> nodes = nodes_of(*element, equilibrium);
+    const auto& [rows, stiffness] = element->measures(equilibrium, nodes.data());
+    const Eigen::VectorXd way = rows.cwiseAbs() * motion_of(nodes, node_motion).cwiseAbs();
+    elastic += way.dot(stiffness.cwiseAbs() * way);
   }
   // A force changes its work by a second order of rotations, times an arm.
   for (const ComplexVector6& motion : node_motion) largest_spin = std::max(largest_spin, motion.tail<3>().norm());
@@ -86,12 +92,11 @@ double LinearisedMotion::strain_energy(const std::vector<ComplexVector6>& node_m
     const Eigen::MatrixXd curvature = material_curvature(element, state_);
     energy += real.dot(curvature.lazyProduct(real)) + imaginary.dot(curvature.lazyProduct(imaginary));
   });
-  for (const PointSpring& spring : model_.springs) {
-    const LoopClosure& ends = model_.closures[spring.closure];
-    const Vector12 gradient = spring_gradient(ends, closure_poses(ends, state_));
-    std::complex<double> stretch = (gradient.head<6>().transpose() * node_motion[ends.child]).value();
-    if (ends.parent >= 0) stretch += (gradient.tail<6>().transpose() * node_motion[ends.parent]).value();
-    energy += spring.stiffness * std::norm(stretch);
+  for (const auto& element : model_.force_elements) {
+    const std::vector<int> nodes = nodes_of(*element, state_);
+    const auto& [rows, stiffness] = element->measures(state_, nodes.data());
+    const Eigen::VectorXcd way = rows * motion_of(nodes, node_motion);
+    energy += way.real().dot(stiffness * way.real()) + way.imag().dot(stiffness * way.imag());
   }
   return energy;
 }

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "analysis/element_matrices.h"
-#include "elements/spring_action.h"
+#include "integrators/force_elements.h"
 #include "joints/joint_kinematics.h"
 #include "joints/joint_stop.h"
 #include "math/least_squares.h"
@@ -40,6 +40,8 @@ LinearisedMotion::LinearisedMotion(const Model& model, const State& state, doubl
   if (!system_.evaluate(true)) throw std::runtime_error("the stiffness is not finite");
   find_multipliers();
   set_joint_maps();
+  for (SparseTangent* tangent : {&damping_, &mass_})
+    couple_force_elements(model, system_.configuration().begin(), *tangent);
   assemble_damping();
   assemble_mass();
   matrices_ = with_rotors(model, dof_, state, system_.actuators(), stiffness_, damping_, mass_);
@@ -149,10 +151,11 @@ void LinearisedMotion::assemble_damping() {
         damping_of(coordinate, stop_penalty(coordinate, contact_time_), state_.released[coordinate.joint]);
   for (const ActuatorTerms& terms : actuator_terms(model_, state_))
     diagonal(damping_, terms.joint, terms.component) += terms.damping + terms.servo_damping;
-  for (const PointSpring& spring : model_.springs) {
-    const LoopClosure& ends = model_.closures[spring.closure];
-    const Vector12 gradient = spring_gradient(ends, closure_poses(ends, state_));
-    damping_.add_coupling(spring.closure, spring.damping * gradient * gradient.transpose());
+  for (std::size_t k = 0; k < model_.force_elements.size(); ++k) {
+    const ForceElement& element = *model_.force_elements[k];
+    const Eigen::MatrixXd rows = element.measures(state_, nodes_of(element, state_).data()).rows;
+    const Eigen::MatrixXd slope = element.dampers(state_, Eigen::VectorXd::Zero(rows.rows())).slope;
+    damping_.add_coupling(static_cast<int>(k), rows.transpose() * slope * rows);
   }
   fold(damping_);
 }

@@ -2,7 +2,6 @@
 
 #include "analysis/element_matrices.h"
 #include "analysis/rotor_motion.h"
-#include "elements/spring_action.h"
 #include "joints/joint_stop.h"
 #include "math/so3.h"
 
@@ -93,8 +92,8 @@ std::vector<Stretch> damped_stretches(const Model& model, const DegreesOfFreedom
   std::vector<Stretch> stretches;
   const State state = state_at(pose);
   const auto add_stretch = [&](const std::vector<int>& nodes, Eigen::MatrixXd rows, const Eigen::MatrixXd& damping,
-                               bool is_spring) {
-    Stretch stretch{{}, std::move(rows), damping, is_spring};
+                               const ForceElement* element) {
+    Stretch stretch{{}, std::move(rows), damping, element};
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       for (int k = 0; k < 6; ++k) stretch.scalars.push_back(dof.first[nodes[i]] + k);
       auto spins = stretch.rows.middleCols<3>(6 * static_cast<Eigen::Index>(i) + 3);
@@ -109,16 +108,11 @@ std::vector<Stretch> damped_stretches(const Model& model, const DegreesOfFreedom
       add_stretch({element.nodes.begin(), element.nodes.end()}, strains[k],
                   element.stiffness_damping * element.stiffness_points[k].weight *
                       damped_stiffness(element, static_cast<int>(k)),
-                  false);
+                  nullptr);
   });
-  for (const PointSpring& spring : model.springs) {
-    if (spring.damping == 0) continue;
-    const LoopClosure& ends = model.closures[spring.closure];
-    const Vector12 gradient = spring_gradient(ends, closure_poses(ends, state));
-    std::vector<int> nodes = {ends.child};
-    if (ends.parent >= 0) nodes.push_back(ends.parent);
-    add_stretch(nodes, gradient.head(6 * static_cast<Eigen::Index>(nodes.size())).transpose(),
-                Eigen::MatrixXd::Constant(1, 1, spring.damping), true);
+  for (const auto& element : model.force_elements) {
+    const std::vector<int> nodes = nodes_of(*element, state);
+    add_stretch(nodes, element->measures(state, nodes.data()).rows, {}, element.get());
   }
   return stretches;
 }
@@ -143,16 +137,22 @@ StretchDamping stretch_damping(const Model& model, const DegreesOfFreedom& dof, 
             stretches.empty() ? 0 : spacing);
   Triplets by_rates, by_places;
   const Eigen::VectorXd speeds = maps.at(pose) * rates.first;
+  const State state = state_at(pose);
   StretchDamping out;
-  out.of_springs = Eigen::VectorXd::Zero(maps.rows());
+  out.of_elements = Eigen::VectorXd::Zero(maps.rows());
   Eigen::Index row = 0;
   for (const Stretch& part : stretches) {
-    const Eigen::MatrixXd forces = part.rows.transpose() * part.damping;
+    Eigen::MatrixXd slope = part.damping;
+    if (part.element) {
+      const DamperTensions dampers = part.element->dampers(state, part.rows * speeds(part.scalars));
+      out.of_elements(part.scalars) += part.rows.transpose() * dampers.tension;
+      slope = dampers.slope;
+    }
+    const Eigen::MatrixXd forces = part.rows.transpose() * slope;
     const Eigen::MatrixXd damping = forces * part.rows;
     add(by_rates, part.scalars, damping);
     if (spacing > 0)
       add(by_places, part.scalars, forces * moving.first.block(row, 0, part.rows.rows(), part.rows.cols()));
-    if (part.is_spring) out.of_springs(part.scalars) += damping * speeds(part.scalars);
     row += part.rows.rows();
   }
   out.by_rates = summed(by_rates, maps.rows());

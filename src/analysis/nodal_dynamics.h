@@ -21,12 +21,13 @@ struct NodalDynamics {
 NodalDynamics nodal_dynamics(const Model& model, const DegreesOfFreedom& dof, const State& state, double contact_time,
                              const CoordinateRates& rates);
 
-/// What stretches as a few rows of MotionMaps move, and has a damper: strains of a beam's point, a spring.
+/// What stretches as a few rows of MotionMaps move, and has a damper: strains of a beam's point, measures of a force
+/// element.
 struct Stretch {
-  std::vector<int> scalars;  ///< rows of MotionMaps
-  Eigen::MatrixXd rows;      ///< stretch by those
-  Eigen::MatrixXd damping;
-  bool is_spring;
+  std::vector<int> scalars;     ///< rows of MotionMaps
+  Eigen::MatrixXd rows;         ///< stretch by those
+  Eigen::MatrixXd damping;      ///< of strains
+  const ForceElement* element;  ///< whose measures these are; null: they are strains
 };
 /// Of all dampers between nodes, at a pose; in the same order at any pose.
 std::vector<Stretch> damped_stretches(const Model& model, const DegreesOfFreedom& dof, const MechanismPose& pose);
@@ -34,7 +35,7 @@ std::vector<Stretch> damped_stretches(const Model& model, const DegreesOfFreedom
 /// Forces of dampers on the rows of MotionMaps by x' and, since directions change along the motion, by x.
 struct StretchDamping {
   Eigen::SparseMatrix<double> by_rates, by_places;
-  Eigen::VectorXd of_springs;  ///< what those of springs are; those of strains are stresses of the beams
+  Eigen::VectorXd of_elements;  ///< what those of force elements are; those of strains are stresses of the beams
 };
 StretchDamping stretch_damping(const Model& model, const DegreesOfFreedom& dof, const MotionMaps& maps,
                                const MechanismPose& pose, const CoordinateRates& rates, double spacing);

@@ -14,8 +14,8 @@ class HeldJointFinder {
   HeldJointFinder(const scene::SceneDescription& scene, const LinkNames& links, const JointTree& tree)
       : scene_(scene), links_(links), tree_(tree), touched_(scene.links.size(), false) {
     for (const scene::JointDescription& loop : scene.loop_joints) mark_loop(loop);
-    for (const scene::PointSpring& spring : scene.point_springs)
-      touched_[links[spring.from]] = touched_[links[spring.to]] = true;
+    for (const auto& element : scene.force_elements)
+      for (const scene::LinkPoint& point : element->points()) touched_[links[point.link]] = true;
     for (const scene::PointLoad& load : scene.loads)
       if (may_stand_in_world(links[load.link])) touched_[links[load.link]] = true;
     for (const scene::DriveDescription& drive : scene.drives)

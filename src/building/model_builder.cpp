@@ -12,6 +12,7 @@
 #include "building/coordinate_builder.h"
 #include "building/damping_ratios.h"
 #include "building/elementary_joints.h"
+#include "building/force_element_builder.h"
 #include "building/held_joints.h"
 #include "building/inertia_builder.h"
 #include "building/initial_velocity.h"
@@ -20,7 +21,6 @@
 #include "building/mass_properties.h"
 #include "building/rigid_lines.h"
 #include "building/sensor_builder.h"
-#include "building/spring_builder.h"
 #include "building/stop_depths.h"
 #include "building/tree_builder.h"
 
@@ -58,7 +58,7 @@ BuiltModel build(const scene::SceneDescription& scene) {
   set_damping_ratios(scene, solvable.node_parents, model);
   std::vector<int> dependent = coordinates_without_own_inertia(solvable.node_parents, model);
   model.node_parents = std::move(solvable.node_parents);
-  place_springs(plan, model);
+  model.force_elements = place_force_elements(plan, model);
   return {std::move(model), std::move(massless), std::move(dependent)};
 }
 

@@ -29,10 +29,8 @@ LinkMeshes mesh_links(const scene::SceneDescription& scene, const LinkNames& lin
     attach(joint.child, joint.child_origin.position);
   }
   for (const scene::PointLoad& load : scene.loads) attach(load.link, load.at);
-  for (const scene::PointSpring& spring : scene.point_springs) {
-    attach(spring.from, spring.from_at);
-    attach(spring.to, spring.to_at);
-  }
+  for (const auto& element : scene.force_elements)
+    for (const scene::LinkPoint& point : element->points()) attach(point.link, point.at);
   for (const scene::DistributedLoad& load : scene.distributed_loads) {
     const int link = links[load.link];
     if (!meshes[link]) continue;  // said where loads are placed
@@ -82,12 +80,14 @@ bool floats(const scene::SceneDescription& scene, const JointTree& tree, const L
   const auto holds_root = [&](const scene::JointDescription& loop) {
     return loop.parent == scene.root_link || loop.child == scene.root_link;
   };
-  const auto ties_root = [&](const scene::PointSpring& spring) {
-    return spring.from == scene.root_link || spring.to == scene.root_link;
+  const auto ties_root = [&](const auto& element) {
+    const std::vector<scene::LinkPoint> points = element->points();
+    return std::any_of(points.begin(), points.end(),
+                       [&](const scene::LinkPoint& point) { return point.link == scene.root_link; });
   };
   return !on_root.empty() && !meshes[tree.root] && std::all_of(on_root.begin(), on_root.end(), is_free) &&
          std::none_of(scene.loop_joints.begin(), scene.loop_joints.end(), holds_root) &&
-         std::none_of(scene.point_springs.begin(), scene.point_springs.end(), ties_root);
+         std::none_of(scene.force_elements.begin(), scene.force_elements.end(), ties_root);
 }
 
 }  // namespace

@@ -125,6 +125,18 @@ void print_joints(const Simulation& simulation) {
                scene::coordinate_suffixes(joint).size());
 }
 
+void print_force_elements(const Simulation& simulation) {
+  const scene::ForceElementDescriptions& described = simulation.scene().force_elements;
+  const ForceElementList& elements = model_of(simulation).force_elements;
+  if (!elements.empty()) fmt::print("\n{:<24} {:<12} {:<40} {}\n", "between points", "kind", "links", "law");
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    std::vector<std::string> links;
+    for (const scene::LinkPoint& point : described[i]->points()) links.push_back(point.link);
+    fmt::print("{:<24} {:<12} {:<40} {}\n", elements[i]->name().empty() ? "-" : elements[i]->name(),
+               elements[i]->kind(), fmt::format("{}", fmt::join(links, ", ")), elements[i]->description());
+  }
+}
+
 /// Lengths in m, stiffnesses in N and N m^2, mass in kg.
 void print_beams(const Simulation& simulation) {
   bool is_first = true;
@@ -228,6 +240,7 @@ void add_check(CLI::App& app, int& status) {
     print_links(simulation);
     print_joints(simulation);
     print_beams(simulation);
+    print_force_elements(simulation);
     for (const std::string& warning : warnings_of_driven_ends(simulation))
       fmt::print(stderr, "flexarm: warning: {}\n", warning);
     print_dead_point(simulation);

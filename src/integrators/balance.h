@@ -1,22 +1,17 @@
 #pragma once
-/// Energies and momenta of a state.
+/// The balance of a step.
 
-#include "flexarm/model/results.h"
-#include "model/model.h"
-#include "model/state.h"
-#include "schemes/scheme.h"
+#include "solver/reduced_residual.h"
 
 namespace flexarm {
 
-/// Linear and angular momentum (about the world origin) [kg m/s, kg m^2/s].
-struct Momenta {
-  Vector3 linear = Vector3::Zero(), angular = Vector3::Zero();
+/// Where the parts of a step put what they contribute.
+struct Balance {
+  ReducedResidual& residual;
+  TangentBackend* tangent;  ///< null where only the residual is asked for
+  /// What carried stresses would add to the residual, for the geometric parts of the tangent; null: nothing.
+  ReducedResidual* carried = nullptr;
+  double dissipated = 0;  ///< energy that has left over the step [J]
 };
-
-/// By the scheme's own quadrature (lumped or integrated rotary inertia), so that its balance is exact. `strain`
-/// contains the elastic energy of joint stops, of springs and gears, and what numerical dissipation has stored (second
-/// order in the step); `potential` is that of gravity.
-Energies energies(const Model& model, const Scheme& scheme, const State& state);
-Momenta momenta(const Model& model, const Scheme& scheme, const State& state);
 
 }  // namespace flexarm

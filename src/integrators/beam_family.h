@@ -3,9 +3,9 @@
 
 #include <memory>
 
+#include "integrators/balance.h"
 #include "integrators/hht_interpolation.h"
 #include "integrators/step_prestrains.h"
-#include "solver/reduced_residual.h"
 
 namespace flexarm {
 

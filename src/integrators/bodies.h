@@ -3,9 +3,9 @@
 
 #include <vector>
 
+#include "integrators/balance.h"
 #include "integrators/conserving_nodes.h"
 #include "integrators/step_configuration.h"
-#include "solver/reduced_residual.h"
 
 namespace flexarm {
 

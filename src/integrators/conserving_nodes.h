@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "elements/conserving_node.h"
+#include "integrators/balance.h"
 #include "integrators/step_motion.h"
 #include "schemes/time_rule.h"
-#include "solver/reduced_residual.h"
 
 namespace flexarm {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "integrators/balance.h"
+#include "integrators/energies.h"
 #include "integrators/initial_strain_memory.h"
 #include "model/room_for_wrenches.h"
 

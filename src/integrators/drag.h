@@ -1,8 +1,8 @@
 #pragma once
 /// What slows a mechanism down on its way to an equilibrium.
 
+#include "integrators/balance.h"
 #include "integrators/step_configuration.h"
-#include "solver/reduced_residual.h"
 
 namespace flexarm {
 

@@ -12,11 +12,11 @@
 
 #include <vector>
 
+#include "integrators/balance.h"
 #include "integrators/friction_carrier.h"
 #include "integrators/hht_interpolation.h"
 #include "integrators/step_configuration.h"
 #include "integrators/step_events.h"
-#include "solver/reduced_residual.h"
 
 namespace flexarm {
 

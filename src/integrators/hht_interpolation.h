@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "elements/endpoint_beam.h"
+#include "integrators/balance.h"
 #include "integrators/step_configuration.h"
-#include "solver/reduced_residual.h"
 
 namespace flexarm {
 

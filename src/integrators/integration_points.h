@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "elements/additive_beam.h"
+#include "integrators/balance.h"
 #include "integrators/rotation_reference.h"
 #include "integrators/step_prestrains.h"
-#include "solver/reduced_residual.h"
 
 namespace flexarm {
 

@@ -4,11 +4,11 @@
 #include <vector>
 
 #include "integrators/actuators.h"
+#include "integrators/balance.h"
 #include "integrators/dry_friction_step.h"
 #include "integrators/held_efforts.h"
 #include "integrators/step_configuration.h"
 #include "integrators/step_histories.h"
-#include "solver/reduced_residual.h"
 
 namespace flexarm {
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "integrators/balance.h"
 #include "integrators/step_configuration.h"
-#include "solver/reduced_residual.h"
 
 namespace flexarm {
 

@@ -253,7 +253,7 @@ std::string NeighbourSteps::advance(Neighbour& neighbour, const State& state, co
       return "a neighbour is not found by the factors of the run: the equations change within their difference";
     system.begin_beside(solved, neighbour.state, made_);
   }
-  if (system.revise_friction()) return "friction sticks or slips within the difference of neighbours";
+  if (const char* change = system.revise()) return fmt::format("{} within the difference of neighbours", change);
   system.accept(neighbour.state);
   return "";
 }

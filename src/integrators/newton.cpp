@@ -79,55 +79,6 @@ StepResult::Reason NewtonIteration::evaluate(bool with_tangent) {
   return configuration.is_driven_off_line() ? Reason::DrivenOffTheLine : Reason::OffTheLine;
 }
 
-StepResult::Reason NewtonIteration::iterate(Updates updates, Factors factors, StepResult& result) {
-  norms_.clear();
-  if (update_.size() == 0) return evaluate(false);
-  const double step = system_.configuration().step();
-  bool makes_new = factors == Factors::Fresh;  // factors, in each iteration
-  Progress progress;
-  bool factorise = makes_new || factor_reuse_.begin(factorised_step_ == step && system_.tangent_holds());
-  progress.started_with_kept = !factorise;
-  made_kept_updates_ = false;
-  for (; progress.iteration < settings_.max_iterations; ++progress.iteration) {
-    if (const Reason failure = evaluate(factorise); failure != Reason::None) return failure;
-    if (progress.since_revision > 0 && system_.revise_friction()) {
-      progress.since_revision = 0;
-      factorise = true;
-      if (const Reason failure = evaluate(true); failure != Reason::None) return failure;
-    }
-    ++result.iterations;
-    result.factorisations += factorise;
-    progress.kept_before = progress.with_kept;
-    progress.with_kept = !factorise;
-    made_kept_updates_ |= progress.with_kept;
-    if (const Reason failure = find_update(updates, progress); failure != Reason::None) return failure;
-    if (factorise) factorised_step_ = step;
-    if (diverges(progress)) return Reason::NoConvergence;
-    factorise = makes_new || renews_factors(progress);
-    if (is_led_astray(progress)) return Reason::NoConvergence;
-    if (is_useless(progress)) {
-      norms_.pop_back();
-      progress.with_kept = false;
-      factorise = makes_new = true;
-      continue;
-    }
-    damp(progress);
-    ++progress.since_revision;
-    const bool ends = has_converged(progress, factors);
-    if (factorise && !progress.with_kept && !ends) system_.carry_strains(progress.fraction);
-    system_.update(update_);
-    if (!ends) continue;
-    if (const Reason failure = evaluate(false); failure != Reason::None) return failure;
-    if (system_.revise_friction()) {
-      progress.since_revision = 0;
-      factorise = true;
-    } else if (is_as_expected(progress)) {
-      return Reason::None;
-    }
-  }
-  return Reason::NoConvergence;
-}
-
 StepResult::Reason NewtonIteration::find_update(Updates updates, Progress& progress) {
   enter(progress.with_kept ? StepPhase::Solve : StepPhase::Factorise);
   update_ = -system_.residual();

@@ -15,7 +15,7 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme, BackendChoice b
                          ? std::make_unique<HhtInterpolation>(configuration_, beams_->total_rotations())
                          : nullptr),
       forces_(configuration_, histories_, interpolation_.get()),
-      springs_(configuration_),
+      force_elements_(configuration_),
       bodies_(configuration_),
       drag_(configuration_),
       loops_(configuration_),
@@ -36,38 +36,6 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme, BackendChoice b
   beams_->set_interpolation(interpolation_.get());
   if (beams_->evaluates_packs()) tangent_->condense_interiors();
   if (planar_) planar_->beams->set_interpolation(interpolation_.get());
-}
-
-void StepSystem::start(const State& state, double step) {
-  configuration_.begin(state, step);
-  histories_.begin(configuration_);
-  if (planar_ && planar_->choose(model_, state)) beams().invalidate();
-  if (prestrains_.begin(1)) beams_->invalidate();
-  beams().begin();
-  loops_.begin();
-  friction_.begin();
-  actuators_.begin();
-  reversals_.begin();
-}
-
-void StepSystem::move_ahead(const IncrementHistory& history, int order) {
-  contacts_.before_update();
-  configuration_.extrapolate(history, order);
-  contacts_.after_update();
-  if (history.holds_for(dof_.unknowns)) loops_.extrapolate(history);
-}
-
-void StepSystem::place_followers() {
-  configuration_.set_prescribed(configuration_.state().time + configuration_.step());
-  configuration_.set_slaves();
-}
-
-void StepSystem::begin(const State& state, double step, Guess guess) {
-  start(state, step);
-  const bool stands = guess == Guess::Extrapolated && state.history.order == IncrementHistory::kNoMotion;
-  if (guess != Guess::Unchanged && !stands)
-    move_ahead(state.history, guess == Guess::Extrapolated ? state.history.order : 0);
-  place_followers();
 }
 
 void StepSystem::begin_beside(const StepSystem& other, const State& state, const IncrementHistory& guess) {
@@ -98,54 +66,16 @@ void StepSystem::begin_equilibrium(const State& state, double load_factor, doubl
   histories_.begin(configuration_);
   prestrains_.begin(load_factor);
   beams_->begin();
+  force_elements_.begin(*tangent_);
   loops_.begin();
   actuators_.begin();
   configuration_.set_prescribed(0.0);
   configuration_.set_slaves();
 }
 
-void StepSystem::add_forces(Balance& balance) {
-  beams().add_forces(balance);
-  forces_.evaluate(balance);
-  springs_.evaluate(balance);
-}
-
 void StepSystem::invalidate() {
   beams_->invalidate();
   if (planar_) planar_->invalidate();
-}
-
-bool StepSystem::evaluate(bool with_tangent) {
-  if (configuration_.is_off_line()) return false;
-  Balance balance{rows_, with_tangent ? &tangent() : nullptr};
-  rows_.set_zero();
-  if (with_tangent) tangent().set_zero(), has_planar_tangent_ = is_planar();
-  if (with_tangent && beams().carries_strains()) {
-    carried_rows_.set_zero();
-    balance.carried = &carried_rows_;
-  }
-  if (with_tangent && scheme().stress != StressRule::Conjugate && !scheme().is_static && !is_planar())
-    configuration_.set_inverse_tangents();
-
-  if (interpolation_) interpolation_->begin_evaluation(is_planar());
-  add_forces(balance);
-  if (interpolation_) interpolation_->add_forces(balance);
-  if (scheme().is_static) {
-    drag_.evaluate(balance);
-  } else {
-    if (!is_planar()) bodies_.evaluate(balance);
-    beams().add_inertia(balance);
-  }
-  if (interpolation_) interpolation_->shift_reactions(balance);
-  loops_.evaluate(balance);
-  actuators_.evaluate(balance);
-  joints_.evaluate(balance);
-
-  if (with_tangent) tangent().finish();
-  friction_.hold(balance);
-  rows_.gather(residual_);
-  dissipated_ = balance.dissipated;
-  return residual_.allFinite();
 }
 
 void StepSystem::note_events(FirstEvent& first) {
@@ -162,42 +92,6 @@ void StepSystem::carry_strains(double fraction) {
   beams().carry_strains(nodal_update_.data());
 }
 
-void StepSystem::update(const Eigen::VectorXd& increment) {
-  reversals_.before_update();
-  contacts_.before_update();
-  configuration_.update(increment);
-  loops_.update(increment);
-  friction_.place_held();
-  reversals_.after_update();
-  contacts_.after_update();
-  configuration_.set_slaves();
-}
-
-void StepSystem::accept(State& state) {
-  if (scheme().is_static) return accept_rest(state);
-  joints_.find_drives(rows_, held_efforts_, state.drives);
-  reactions_.accept(rows_, state);
-  friction_.accept(state);
-  double work = 0;
-  forces_.add_work(work);
-  joints_.add_work(work);
-  actuators_.add_work(work);
-  if (prestrains_.do_work()) work += beams().work_of_prestrains();
-  state.work += work;
-  state.dissipated += dissipated_;
-  configuration_.remember_increments(state.history);
-  if (is_planar()) planar_->tidy(configuration_, state.history);
-  scales_.choose_order(state.history);
-  loops_.remember(state.history);
-  bodies_.accept(state);
-  joints_.accept(state);
-  actuators_.accept(state);
-  beams().accept(state);
-  if (interpolation_) interpolation_->accept(state);
-  if (interpolation_ && is_planar()) planar_->tidy(model_, state);
-  state.time += configuration_.step();
-}
-
 void StepSystem::accept_rest(State& state) {
   for (std::size_t i = 0; i < state.nodes.size(); ++i) {
     state.nodes[i] = NodeState();
@@ -206,6 +100,7 @@ void StepSystem::accept_rest(State& state) {
   }
   joints_.accept(state);
   actuators_.accept(state);
+  force_elements_.accept(state);
   beams_->accept(state);
   std::fill(state.mass_points.begin(), state.mass_points.end(), MassPointState());
   std::fill(state.strain_rates.begin(), state.strain_rates.end(), Vector6::Zero());

@@ -6,10 +6,11 @@
 ///   begin()     a step starts from a state; the configuration stands at its beginning
 ///   evaluate()  adds to the balance: the residual and, where asked for, the tangent
 ///   update()    Newton's method has moved the unknowns
+///   revise()    sets by which the equations are chosen are chosen anew
 ///   accept()    writes what the step has come to as the new state
 ///
 /// and all refer to one StepConfiguration, both ends of the step. To add a part: its own files, a member in the list
-/// below, and its verbs in the four functions of step_system.cpp. Parts do not know schemes by name, only the rules of
+/// below, and its verbs in step.cpp. Parts do not know schemes by name, only the rules of
 /// a scheme's row; equilibrium is a rule as well (`statics_of`).
 
 #include <memory>
@@ -19,12 +20,12 @@
 #include "integrators/bodies.h"
 #include "integrators/drag.h"
 #include "integrators/dry_friction_step.h"
+#include "integrators/force_elements.h"
 #include "integrators/joint_fold.h"
 #include "integrators/joint_reactions.h"
 #include "integrators/loop_multipliers.h"
 #include "integrators/nodal_forces.h"
 #include "integrators/planar_step.h"
-#include "integrators/point_springs.h"
 #include "integrators/smooth_reversals.h"
 #include "integrators/step_configuration.h"
 #include "integrators/step_histories.h"
@@ -49,7 +50,7 @@ class StepSystem {
   /// values.
   void begin(const State& state, double step, Guess guess);
   /// Starts the step that `other`, of a like model and the same scheme, has solved, from another state, which must
-  /// outlive it: by the newest increments and multipliers of `guess`, and with the same coordinates sticking.
+  /// outlive it: by the newest increments and multipliers of `guess`, and with the same sets, see revise().
   void begin_beside(const StepSystem& other, const State& state, const IncrementHistory& guess);
   /// From the next step on branches of stops and of dry friction are those; null: as each step finds them. Else it must
   /// outlive the steps.
@@ -74,10 +75,10 @@ class StepSystem {
   void carry_strains(double fraction);
   /// Applies a Newton update (one entry per unknown) on the group; slaves follow their joints.
   void update(const Eigen::VectorXd& increment);
-  /// After an evaluation at an updated configuration: decides anew which coordinates stick. True if that changes the
-  /// equations.
-  bool revise_friction() { return friction_.revise(); }
-  /// False if the tangent evaluated last had other coordinates stick, or other dimensions.
+  /// After an evaluation at an updated configuration: decides anew what belongs to the sets by which the equations are
+  /// chosen, as the coordinates that stick. Null: the equations are as before; else what has changed, in words.
+  const char* revise() { return friction_.revise() ? "friction sticks or slips" : nullptr; }
+  /// False if the tangent evaluated last was of other sets, or other dimensions.
   bool tangent_holds() const { return friction_.tangent_holds() && has_planar_tangent_ == is_planar(); }
   /// Writes the trial configuration, evaluated last without an update since, as the new state; an equilibrium at rest.
   void accept(State& state);
@@ -133,7 +134,7 @@ class StepSystem {
   std::unique_ptr<BeamFamily> beams_;
   std::unique_ptr<HhtInterpolation> interpolation_;  // null unless forces are interpolated in time
   NodalForces forces_;
-  PointSprings springs_;
+  ForceElements force_elements_;
   Bodies bodies_;
   Drag drag_;
   LoopMultipliers loops_;

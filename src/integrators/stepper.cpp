@@ -123,38 +123,6 @@ StepResult::Reason Stepper::flaw_by_events(const State& state, double step, cons
   return StepResult::Reason::None;
 }
 
-bool Stepper::simple_step(State& state, double step, StepResult& result) {
-  using Factors = NewtonIteration::Factors;
-  struct Attempt {
-    Guess guess;
-    Factors factors;
-  };
-  const Attempt attempts[] = {
-      {Guess::Extrapolated, settings_.reuse_factorisation ? Factors::MayBeKept : Factors::Fresh},
-      {Guess::Extrapolated, Factors::Fresh},
-      {Guess::Repeated, Factors::Fresh},
-      {Guess::Unchanged, Factors::Fresh}};
-  result.failure.guesses = 0;
-  for (const Attempt& attempt : attempts) {
-    const bool is_again = &attempt == &attempts[1];
-    if (is_again && !newton_.made_kept_updates()) continue;
-    if (attempt.guess == Guess::Repeated && state.history.order == 0) continue;  // it is the extrapolated one
-    if (!is_again) ++result.failure.guesses;
-    enter(StepPhase::Begin);
-    system_.begin(state, step, attempt.guess);
-    if (!newton_.solve(NewtonIteration::Updates::Limited, attempt.factors, result)) continue;
-    result.reason = flaw_of_solution(state, step, result);
-    if (result.reason != StepResult::Reason::None) return false;
-    if (follower_) follower_->follow(state, system_);
-    enter(StepPhase::Accept);
-    system_.accept(state);
-    result.other_guesses += attempt.guess != Guess::Extrapolated;
-    enter(StepPhase::Control);
-    return true;
-  }
-  return false;
-}
-
 StepResult Stepper::advance(State& state) {
   return advance(state, Deadline(settings_.recovery_wall_time));
 }

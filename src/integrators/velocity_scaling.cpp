@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "building/model_builder.h"
-#include "integrators/balance.h"
+#include "integrators/energies.h"
 #include "joints/joint_map.h"
 #include "math/so3.h"
 

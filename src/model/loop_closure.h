@@ -20,7 +20,7 @@ struct ClosureConstraint {
   double value = 0;                     ///< Direction: at the start
 };
 
-/// A joint that closes a loop and has no coordinates of its own. At most six constraints; none where it is a spring.
+/// A joint that closes a loop and has no coordinates of its own. At most six constraints.
 struct LoopClosure {
   std::string name;             ///< of the joint
   int parent = -1, child = -1;  ///< nodes; -1: the world

@@ -10,10 +10,10 @@
 #include "flexarm/math/time_function.h"
 #include "model/actuator.h"
 #include "model/beam_element.h"
+#include "model/force_element.h"
 #include "model/joint.h"
 #include "model/loop_closure.h"
 #include "model/nodal_load.h"
-#include "model/point_spring.h"
 #include "model/prestrain.h"
 #include "model/slide_line.h"
 
@@ -162,7 +162,7 @@ struct Model {
   std::vector<HeldJoint> held;
   std::vector<SlideLine> slide_lines;
   std::vector<LoopClosure> closures;       ///< loops that no joint closes by its slave
-  std::vector<PointSpring> springs;        ///< each has a closure of its own, which couples its nodes
+  ForceElementList force_elements;         ///< what acts between points
   std::vector<Released> initial_released;  ///< per joint, held ones included
   std::vector<Vector6> initial_velocity;   ///< per node {v, w}, spatial
   std::vector<Coordinate> coordinates;

@@ -206,7 +206,8 @@ std::string flaw_of_joints(const Model& model, const PlaneOfMotion& plane) {
     if (actuator.gyroscope &&
         !is_along(plane.normal, model.nodes[actuator.gyroscope->node].rotation * actuator.gyroscope->axis))
       return "the axis of a rotor is not normal to the plane";
-  return model.closures.empty() ? "" : "loops and point springs are three-dimensional";
+  if (!model.closures.empty()) return "loops are three-dimensional";
+  return model.force_elements.empty() ? "" : "what acts between points of links is three-dimensional";
 }
 
 bool acts_in_plane(const PlaneOfMotion& plane, const Vector3& force, const Vector3& moment, const Vector3& arm,

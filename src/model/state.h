@@ -81,6 +81,7 @@ struct State {
   StepMeans transmitted;                 ///< {force, moment} per Model::reactions, for output
   std::vector<double> last_transmitted;  ///< the same as the last step has it, for means of the Newmark family
   std::vector<SensorSample> samples;     ///< per sensor: what it measured last
+  std::vector<double> force_memory;      ///< of force elements, one after the other
   double work = 0, dissipated = 0;       ///< path integrals since the start [J]
   double energy_defect = 0;              ///< energy that scaled velocities still owe [J]
   int halving_level = 0;                 ///< sub-steps are step / 2^level

@@ -92,6 +92,7 @@ void for_each_number(AnyState& state, const Visit& visit) {
     visit("the time of a sample", sample.time);
     for (auto& value : sample.values) visit("a sample", value);
   }
+  for (auto& number : state.force_memory) visit("the memory of a force element", number);
 }
 
 }  // namespace flexarm

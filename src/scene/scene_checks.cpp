@@ -5,6 +5,8 @@
 #include <map>
 #include <optional>
 
+#include <fmt/format.h>
+
 #include "flexarm/scene/sensor_topic.h"
 #include "scene/flexible_link.h"
 #include "scene/mimic_chain.h"
@@ -22,15 +24,19 @@ std::string line_text(const SourceLocation& location) {
 
 using NamesTaken = std::map<std::string, int>;  // and the line that took them
 
+/// Records a name that is there already.
+template <class Named>
+void check_name(const Named& thing, const char* tag, Findings& findings, NamesTaken& taken) {
+  const auto [first, is_new] = taken.emplace(thing.name, thing.location.line);
+  if (!is_new && !thing.name.empty())
+    findings.error(thing.location.line, element_of(tag, thing.name),
+                   "name is taken, by line " + std::to_string(first->second), quoted(thing.name));
+}
+
 /// Records names that come twice. Missing names are recorded already.
 template <class Named>
 NamesTaken check_unique(const std::vector<Named>& things, const char* tag, Findings& findings, NamesTaken taken = {}) {
-  for (const Named& thing : things) {
-    const auto [first, is_new] = taken.emplace(thing.name, thing.location.line);
-    if (!is_new && !thing.name.empty())
-      findings.error(thing.location.line, element_of(tag, thing.name),
-                     "name is taken, by line " + std::to_string(first->second), quoted(thing.name));
-  }
+  for (const Named& thing : things) check_name(thing, tag, findings, taken);
   return taken;
 }
 
@@ -183,12 +189,15 @@ class ReferenceCheck {
     check_unique(scene_.probes, "probe", findings_);
   }
 
-  void check_springs() const {
-    for (const PointSpring& spring : scene_.point_springs)
-      for (const auto& [attribute, link] : {std::pair("from", spring.from), std::pair("to", spring.to)})
+  void check_force_elements() const {
+    NamesTaken taken;
+    for (const auto& element : scene_.force_elements) {
+      for (const auto& [attribute, link, at] : element->points())
         if (!link.empty() && links_.count(link) == 0)
-          findings_.error(spring.location.line, "<spring> of robot " + quoted(scene_.name),
-                          std::string(attribute) + " must be a link of the scene", quoted(link));
+          findings_.error(element->location.line, fmt::format("<{}> of robot {}", element->kind(), quoted(scene_.name)),
+                          attribute + " must be a link of the scene", quoted(link));
+      if (!element->name.empty()) check_name(*element, element->kind(), findings_, taken);
+    }
   }
 
   void check_sensors() const {
@@ -364,7 +373,7 @@ void check_references(const SceneDescription& scene, const std::set<std::string>
   const ReferenceCheck check(scene, unreadable, findings);
   check.check_mimics();
   check.check_simulation();
-  check.check_springs();
+  check.check_force_elements();
   check.check_sensors();
   if (findings.error_count() == 0) check_followers(scene, findings);
 }

@@ -1,18 +1,19 @@
 #include "flexarm/scene/urdf_reader.h"
 
+#include <algorithm>
 #include <fstream>
 
 #include <fmt/format.h>
 
 #include "scene/drive_reader.h"
 #include "scene/extension_reader.h"
+#include "scene/force_element_kinds.h"
 #include "scene/inertia_checks.h"
 #include "scene/limits.h"
 #include "scene/mimic_chain.h"
 #include "scene/parameters.h"
 #include "scene/scene_checks.h"
 #include "scene/sensor_reader.h"
-#include "scene/spring_reader.h"
 #include "scene/standard_reader.h"
 #include "scene/strangers.h"
 #include "scene/urdfdom.h"
@@ -30,15 +31,21 @@ struct Place {
 constexpr Place kPlaces[] = {{"beam", "link"},       {"release", "joint"},    {"axis2", "joint"},
                              {"slide", "joint"},     {"couple", "joint"},     {"child_origin", "loop_joint"},
                              {"friction", "joint"},  {"simulation", "robot"}, {"loop_joint", "robot"},
-                             {"root", "simulation"}, {"spring", "robot"},     {"drive", "robot"},
-                             {"servo", "robot"},     {"hub", "beam"},         {"sensor", "robot"},
-                             {"parameter", "robot"}};
+                             {"root", "simulation"}, {"drive", "robot"},      {"servo", "robot"},
+                             {"hub", "beam"},        {"sensor", "robot"},     {"parameter", "robot"}};
+
+/// Those of force elements are children of <robot>.
+std::vector<Place> places_of_all(const std::vector<ForceElementKind>& kinds) {
+  std::vector<Place> places(std::begin(kPlaces), std::end(kPlaces));
+  for (const ForceElementKind& kind : kinds) places.push_back({kind.tag.c_str(), "robot"});
+  return places;
+}
 
 /// Records our elements where they would be ignored like a stranger's.
-void check_places(const XmlElement& element) {
+void check_places(const XmlElement& element, const std::vector<Place>& places) {
   const std::string tag = element.tag();
   for (const XmlElement& child : element.children()) {
-    for (const Place& place : kPlaces) {
+    for (const Place& place : places) {
       const bool is_here = tag == place.parent || (tag == "loop_joint" && std::string_view(place.parent) == "joint");
       if (child.tag() == place.tag && !is_here)
         child.error("<" + child.tag() + "> must be a child of <" + place.parent + ">");
@@ -48,7 +55,10 @@ void check_places(const XmlElement& element) {
 
 class SceneReader {
  public:
-  SceneReader(const ReadOptions& options, Findings& findings) : findings_(findings) {
+  SceneReader(const ReadOptions& options, Findings& findings) : findings_(findings), kinds_(force_element_kinds()) {
+    if (options.more_force_elements)
+      kinds_.insert(kinds_.end(), options.more_force_elements->begin(), options.more_force_elements->end());
+    places_ = places_of_all(kinds_);
     start_.clamps_all = options.clamp_start;
     scene_.lock_massless = options.lock_massless;
     scene_.starts_in_equilibrium = options.equilibrium_start;
@@ -59,7 +69,7 @@ class SceneReader {
     scene_.file = findings_.file();
     scene_.name = unnamed.text("name").value_or("");
     const XmlElement robot = unnamed.with_name(scene_.name);
-    check_places(robot);
+    check_places(robot, places_);
     robot.expect_at_most_one({"simulation"});
     for (const XmlElement& child : robot.children()) read_child(child);
     warn_of_strangers(robot);
@@ -72,7 +82,7 @@ class SceneReader {
     check_size(robot, "servos", scene_.servos.size(), kMostJoints);
     settle_gears(transmissions_, scene_.drives, findings_);
     check_size(robot, "sensors", scene_.sensors.size(), kMostSensors);
-    check_size(robot, "springs between points", scene_.point_springs.size(), kMostSprings);
+    check_size(robot, "elements between points of links", scene_.force_elements.size(), kMostForceElements);
     if (scene_.links.empty()) robot.error("at least one <link> is expected");
     check_tree(scene_, findings_);
     settle_root(scene_, start_, findings_);
@@ -92,16 +102,16 @@ class SceneReader {
       if (findings_.error_count() > errors) unreadable_.insert(scene_.links.back().name);
     } else if (tag == "joint" && scene_.joints.size() <= kMostJoints) {
       scene_.joints.push_back(read_joint(child));
-      check_places(child.with_name(scene_.joints.back().name));
+      check_places(child.with_name(scene_.joints.back().name), places_);
       if (findings_.error_count() > errors) unreadable_.insert(scene_.joints.back().name);
     } else if (tag == "material") {
       judge_material(child);
     } else if (tag == "loop_joint" && scene_.loop_joints.size() <= kMostJoints) {
       scene_.loop_joints.push_back(read_loop_joint(child));
-      check_places(child.with_name(scene_.loop_joints.back().name));
+      check_places(child.with_name(scene_.loop_joints.back().name), places_);
       if (findings_.error_count() > errors) unreadable_.insert(scene_.loop_joints.back().name);
-    } else if (tag == "spring" && child.has("from") && scene_.point_springs.size() <= kMostSprings) {
-      scene_.point_springs.push_back(read_point_spring(child));
+    } else if (const ForceElementKind* kind = kind_of(child)) {
+      if (scene_.force_elements.size() <= kMostForceElements) scene_.force_elements.push_back(kind->read(child));
     } else if (tag == "spring" && scene_.springs.size() <= kMostJoints) {
       scene_.springs.push_back(read_spring(child));
     } else if (tag == "drive" && scene_.drives.size() <= kMostJoints) {
@@ -118,10 +128,18 @@ class SceneReader {
     }
   }
 
+  /// Null: it is no force element.
+  const ForceElementKind* kind_of(const XmlElement& child) const {
+    const auto kind = std::find_if(kinds_.begin(), kinds_.end(), [&](const ForceElementKind& each) {
+      return each.tag == child.tag() && (each.attribute.empty() || child.has(each.attribute.c_str()));
+    });
+    return kind == kinds_.end() ? nullptr : &*kind;
+  }
+
   LinkDescription read_whole_link(const XmlElement& unnamed) {
     LinkDescription description = read_link(unnamed);
     const XmlElement link = unnamed.with_name(description.name);
-    check_places(link);
+    check_places(link, places_);
     const std::optional<XmlElement> beam = link.child("beam");
     if (!beam) return description;
     description.beam = read_beam(*beam, description.name);
@@ -135,6 +153,8 @@ class SceneReader {
   }
 
   Findings& findings_;
+  std::vector<ForceElementKind> kinds_;
+  std::vector<Place> places_;
   SceneDescription scene_;
   StartRequest start_;
   std::vector<Transmission> transmissions_;

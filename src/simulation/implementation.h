@@ -12,7 +12,7 @@
 #include "building/rigid_lines.h"
 #include "flexarm/scene/scene_description.h"
 #include "flexarm/simulation/simulation.h"
-#include "integrators/balance.h"
+#include "integrators/energies.h"
 #include "integrators/stepper.h"
 #include "model/carried_origin.h"
 #include "model/line_release.h"

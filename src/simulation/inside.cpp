@@ -33,6 +33,12 @@ const std::vector<double>& update_norms_of(const Simulation& simulation) {
   const auto& inside = Inside::of(simulation);
   return inside.static_norms.empty() ? inside.stepper->update_norms() : inside.static_norms;
 }
+void put_out_force(const Simulation& simulation, std::size_t element, std::vector<double>& values) {
+  const auto& s = Inside::of(simulation);
+  const double* memory = s.state.force_memory.data();
+  for (std::size_t k = 0; k < element; ++k) memory += s.model.force_elements[k]->memory_size();
+  s.model.force_elements.at(element)->put_out({s.state, s.published.velocities(s.view()).nodes(), memory}, values);
+}
 const State& initial_state_of(const Simulation& simulation) {
   return *Inside::of(simulation).initial;
 }

@@ -36,6 +36,9 @@ MadeForOutput made_for_output(const Simulation& simulation);
 /// Update norms of the last Newton solve, for tests of the rate of convergence.
 const std::vector<double>& update_norms_of(const Simulation& simulation);
 
+/// Appends what a force element of the model puts out of the present state.
+void put_out_force(const Simulation& simulation, std::size_t element, std::vector<double>& values);
+
 /// Where a simulation starts, with what the scheme keeps there.
 const State& initial_state_of(const Simulation& simulation);
 /// Takes somebody along with the steps of a simulation from now on; null: nobody.

@@ -226,6 +226,9 @@ State initial_state(const Model& model) {
   state.transmitted.resize(6 * model.reactions.size());
   state.last_transmitted.assign(6 * model.reactions.size(), 0.0);
   state.samples.resize(model.sensors.size());
+  std::size_t memory = 0;
+  for (const auto& element : model.force_elements) memory += element->memory_size();
+  state.force_memory.assign(memory, 0.0);
   state.rests.assign(model.coordinates.size(), 0.0);
   for (const Actuator& actuator : model.actuators) {
     const Coordinate& coordinate = model.coordinates[actuator.coordinate];

@@ -55,6 +55,9 @@ void sensor_values(const Simulation& simulation, const StepCounts&, std::size_t 
   const auto& values = simulation.sample(i).values;
   row.insert(row.end(), values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
 }
+void force_values(const Simulation& simulation, const StepCounts&, std::size_t i, Row& row) {
+  put_out_force(simulation, i, row);
+}
 void energy_values(const Simulation& simulation, const StepCounts&, std::size_t, Row& row) {
   const Energies e = simulation.energies();
   row.insert(row.end(), {e.kinetic, e.strain, e.potential, e.total(), e.work, e.dissipated});
@@ -170,6 +173,13 @@ ResultColumns::ResultColumns(const Simulation& simulation, Solver solver, const 
   for (std::size_t i = 0; i < scene.sensors.size(); ++i)
     selection.add("sensor/" + scene.sensors[i].name + "/", scene::sensor_channels(scene.sensors[i].kind), sensor_values,
                   i);
+  const ForceElementList& elements = model_of(simulation).force_elements;
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    if (elements[i]->name().empty()) continue;
+    Names names;
+    for (const auto& [name, unit] : elements[i]->outputs()) names.push_back({name, unit});
+    selection.add(std::string(elements[i]->kind()) + "/" + elements[i]->name() + "/", names, force_values, i);
+  }
   selection.add(
       "energy/",
       {{"kinetic", "J"}, {"strain", "J"}, {"potential", "J"}, {"total", "J"}, {"work", "J"}, {"dissipated", "J"}},

@@ -1,5 +1,7 @@
 #include "simulation/scene_identity.h"
 
+#include <map>
+#include <memory>
 #include <type_traits>
 
 #include <fmt/format.h>
@@ -154,9 +156,11 @@ class SceneFingerprint {
     all(name, kind, link, at, rate, noise, bias, seed);
     if (!joint.empty()) all(joint);
   }
-  void add(const scene::PointSpring& spring) {
-    const auto& [from, to, from_at, to_at, stiffness, rest_length, damping, location] = spring;
-    all(from, to, from_at, to_at, stiffness, rest_length, damping);
+  void add(const std::shared_ptr<const scene::ForceElementDescription>& element) {
+    const std::vector<scene::LinkPoint> points = element->points();
+    for (const scene::LinkPoint& point : points) add(point.link);
+    for (const scene::LinkPoint& point : points) add(point.at);
+    for (const double number : element->numbers()) add(number);
   }
   void add(const scene::JointEffort& effort) { all(effort.coordinate, effort.history); }
 
@@ -178,12 +182,21 @@ std::string named_lines(const char* kind, const Parts& parts) {
   return text;
 }
 
+/// One for each kind that there is.
+std::string force_element_lines(const scene::ForceElementDescriptions& elements) {
+  std::map<std::string, scene::ForceElementDescriptions> kinds;
+  for (const auto& element : elements) kinds[element->kind()].push_back(element);
+  std::string text;
+  for (const auto& [kind, list] : kinds) text += fmt::format("{}s {}\n", kind, SceneFingerprint::of(list));
+  return text;
+}
+
 }  // namespace
 
 std::string scene_identity(const scene::SceneDescription& scene, const Scheme& scheme) {
   const auto& [name, file, root, links, joints, loop_joints, springs, drives, servos, gravity, integrator,
                integrator_location, initial_joints, initial_links, loads, distributed_loads, motions, efforts, probes,
-               sensors, point_springs, lock_massless, starts_in_equilibrium, equilibrium_location,
+               sensors, force_elements, lock_massless, starts_in_equilibrium, equilibrium_location,
                parameters] = scene;  // which count by the numbers that are made of them
   return integrator_line(integrator.step, scheme) + "\n" + named_lines("link", links) + named_lines("joint", joints) +
          named_lines("loop_joint", loop_joints) +
@@ -195,7 +208,7 @@ std::string scene_identity(const scene::SceneDescription& scene, const Scheme& s
                      SceneFingerprint::of(loads), SceneFingerprint::of(distributed_loads),
                      SceneFingerprint::of(motions), SceneFingerprint::of(efforts)) +
          (starts_in_equilibrium ? "initial equilibrium\n" : "") + named_lines("sensor", sensors) +
-         (point_springs.empty() ? "" : fmt::format("springs {}\n", SceneFingerprint::of(point_springs)));
+         force_element_lines(force_elements);
 }
 
 std::string scene_identity(const scene::SceneDescription& scene) {

@@ -166,6 +166,7 @@ void BorderedElimination::assemble(int index) {
                      blocks_.element(element.first_block + i * element.node_count + j), 6, 6, 6);
     }
     for (const int closure : part.closures) add_closure(closure);
+    for (int k = part.first_coupling; k >= 0; k = order_.next_coupling(k)) add_coupling(k);
     for (const int variable : part.complete) add_diagonal(variable);
   });
 }
@@ -190,6 +191,16 @@ void BorderedElimination::add_closure(int k) {
     for (int j = 0; j < 3; ++j)
       if (count[i] > 0 && count[j] > 0)
         front_.add(first[i], first[j], &values(place[i], place[j]), count[i], count[j], distance);
+}
+
+/// But for what nodes have with themselves, which is on their own diagonals.
+void BorderedElimination::add_coupling(int k) {
+  const std::vector<int>& nodes = order_.coupled_nodes(k);
+  const Eigen::MatrixXd& values = blocks_.couplings[k];
+  const int distance = static_cast<int>(values.rows()), count = static_cast<int>(nodes.size());
+  for (int i = 0; i < count; ++i)
+    for (int j = 0; j < count; ++j)
+      if (i != j) front_.add(6 * nodes[i], 6 * nodes[j], &values(6 * i, 6 * j), 6, 6, distance);
 }
 
 void BorderedElimination::add_remainder(const Factors& f) {

@@ -54,6 +54,7 @@ class BorderedElimination {
   void assemble(int index);
   void add_diagonal(int variable);
   void add_closure(int closure);
+  void add_coupling(int coupling);
   void add_remainder(const Factors& factors);
   void fold_slave(const TreePart& part, Factors& factors);
   void set_targets(const JointMap& joint, int j, Factors& factors);

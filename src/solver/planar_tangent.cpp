@@ -16,7 +16,8 @@ namespace {
 }  // namespace
 
 bool PlanarTangent::suits(const Model& model, const DegreesOfFreedom& dof) {
-  if (!model.closures.empty() || !model.slide_lines.empty() || !dof.mimics.empty()) return false;
+  if (!model.closures.empty() || !model.force_elements.empty() || !model.slide_lines.empty() || !dof.mimics.empty())
+    return false;
   const TreeOrder order(model, dof);
   const std::vector<TreePart>& parts = order.parts();
   return order.is_complete() &&
@@ -72,7 +73,11 @@ void PlanarTangent::hold_row(int joint, int component, int first, const Released
 void PlanarTangent::add_closure(int, int, double, const ClosureMaps&) {
   refuse("loops");
 }
-void PlanarTangent::add_coupling(int, const Eigen::Matrix<double, 12, 12>&) {
+void PlanarTangent::couple(int, const int*, int) {
+  refuse("couplings");
+}
+
+void PlanarTangent::add_coupling(int, const Eigen::Ref<const Eigen::MatrixXd>&) {
   refuse("springs between points");
 }
 SlideMaps& PlanarTangent::slide_maps(int) {

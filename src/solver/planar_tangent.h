@@ -37,7 +37,8 @@ class PlanarTangent : public TangentBackend {
   // ---- of what does not suit
   /// @throws std::logic_error as all of them do: what was left out without a word would make steps wrong
   void add_closure(int closure, int index, double multiplier, const ClosureMaps& maps) override;
-  void add_coupling(int closure, const Eigen::Matrix<double, 12, 12>& blocks) override;
+  void couple(int index, const int* nodes, int count) override;
+  void add_coupling(int index, const Eigen::Ref<const Eigen::MatrixXd>& blocks) override;
   SlideMaps& slide_maps(int joint) override;
   /// None, that is.
   void fold_mimics(const std::vector<MimicMap>& maps) override;

@@ -37,13 +37,4 @@ class ReducedResidual {
   std::vector<double> values_;
 };
 
-/// Where the parts of a step put what they contribute.
-struct Balance {
-  ReducedResidual& residual;
-  TangentBackend* tangent;  ///< null where only the residual is asked for
-  /// What carried stresses would add to the residual, for the geometric parts of the tangent; null: nothing.
-  ReducedResidual* carried = nullptr;
-  double dissipated = 0;  ///< energy that has left over the step [J]
-};
-
 }  // namespace flexarm

@@ -37,6 +37,12 @@ class SparseTangent::PatternBuilder {
     a_.closure_blocks_.push_back(blocks);
   }
 
+  void add_coupling(Coupling& coupling) {
+    coupling.blocks.clear();
+    for (const int row : coupling.nodes)
+      for (const int column : coupling.nodes) coupling.blocks.push_back(block(row, column));
+  }
+
   void fold_joint(int j) {
     const JointMap& joint = a_.model_.joints[j];
     const int s = a_.dof_.variable_of_node(joint.slave), m = joint.master;
@@ -135,7 +141,25 @@ class SparseTangent::PatternBuilder {
 
 SparseTangent::SparseTangent(const Model& model, const DegreesOfFreedom& dof)
     : model_(model), dof_(dof), slide_maps_(most_active_nodes(model.slide_lines)) {
+  for (const auto& element : model.force_elements) {
+    couplings_.emplace_back();
+    couplings_.back().nodes.resize(element->most_nodes());
+    couplings_.back().nodes.resize(element->find_nodes(model.nodes, couplings_.back().nodes.data()));
+  }
   build_pattern();
+}
+
+void SparseTangent::build_pattern_anew() {
+  const int pattern = pattern_;
+  const std::vector<NodeRange> active = active_;
+  blocks_.clear(), element_places_.clear(), diagonal_places_.clear(), closure_blocks_.clear();
+  column_folds_.clear(), row_folds_.clear(), slide_columns_.clear(), slide_rows_.clear(), slide_blocks_.clear();
+  mimic_additions_.clear(), mimic_folds_.clear(), column_blocks_.clear();
+  diagonal_blocks_.clear(), element_blocks_.clear();
+  build_pattern();
+  active_ = active;
+  update_pattern();
+  pattern_ = pattern + 1;
 }
 
 void SparseTangent::build_pattern() {
@@ -152,6 +176,7 @@ void SparseTangent::build_pattern() {
       for (const int j : element.nodes) element_places_.push_back(pattern.block(i, j));
   });
   for (std::size_t k = 0; k < model_.closures.size(); ++k) pattern.add_closure(static_cast<int>(k));
+  for (Coupling& coupling : couplings_) pattern.add_coupling(coupling);
   for (int j = static_cast<int>(model_.joints.size()) - 1; j >= 0; --j) {
     if (model_.joints[j].kind == JointMapKind::Slide)
       pattern.fold_slide(j);
@@ -217,6 +242,8 @@ void SparseTangent::mark_live_blocks() {
     for (const int block : {b.parent_parent, b.parent_child, b.child_parent, b.child_child, b.parent_multiplier,
                             b.child_multiplier, b.multiplier_parent, b.multiplier_child})
       mark(block);
+  for (const Coupling& coupling : couplings_)
+    for (const int block : coupling.blocks) mark(block);
   for (int j = static_cast<int>(model_.joints.size()) - 1; j >= 0; --j) {
     if (model_.joints[j].kind == JointMapKind::Slide) {
       mark_slide(j);

@@ -56,16 +56,19 @@ void SparseTangent::add_closure(int closure, int index, double multiplier, const
   add_row(blocks.multiplier_parent, maps.right.parent);
 }
 
-void SparseTangent::add_coupling(int closure, const Eigen::Matrix<double, 12, 12>& coupling) {
-  const ClosureBlocks& blocks = closure_blocks_[closure];
-  const auto add = [&](int block, int row, int column) {
-    Eigen::Map<Matrix6>(values_.data() + blocks_[block].offset) += coupling.block<6, 6>(row, column);
-  };
-  add(blocks.child_child, 0, 0);
-  if (model_.closures[closure].parent < 0) return;
-  add(blocks.child_parent, 0, 6);
-  add(blocks.parent_child, 6, 0);
-  add(blocks.parent_parent, 6, 6);
+void SparseTangent::couple(int index, const int* nodes, int count) {
+  std::vector<int>& old = couplings_[index].nodes;
+  if (std::equal(nodes, nodes + count, old.begin(), old.end())) return;
+  old.assign(nodes, nodes + count);
+  build_pattern_anew();
+}
+
+void SparseTangent::add_coupling(int index, const Eigen::Ref<const Eigen::MatrixXd>& values) {
+  const auto& [nodes, blocks] = couplings_[index];
+  const int count = static_cast<int>(nodes.size());
+  for (int i = 0; i < count; ++i)
+    for (int j = 0; j < count; ++j)
+      Eigen::Map<Matrix6>(values_.data() + blocks_[blocks[i * count + j]].offset) += values.block<6, 6>(6 * i, 6 * j);
 }
 
 void SparseTangent::fold(int j) {

@@ -16,17 +16,20 @@ namespace flexarm {
 /// m: first the columns, (i,u) += (i,s) right and (i,m) += (i,s) L_right, then the rows, (u,j) += left^T (s,j) and
 /// (m,j) += L_left^T (s,j), then the geometric blocks. (joints.md 2)
 ///
-/// A slider may come to couple any elements of its line, but at a time it does few. All blocks have their places for
-/// good, and the reduced matrix only those that the sliders' active nodes reach. When a slider enters other elements
-/// its pattern follows: a new number in pattern(), no allocation here; but the solver analyses it anew, which allocates
-/// and takes the time of about three factorisations.
+/// A force element that comes to couple other nodes has all of that made anew. A slider may come to couple any elements
+/// of its line, but at a time it does few. All blocks have their places for good, and the reduced matrix only those
+/// that the sliders' active nodes reach. When a slider enters other elements its pattern follows: a new number in
+/// pattern(), no allocation here; but the solver analyses it anew, which allocates and takes the time of about three
+/// factorisations.
 class SparseTangent : public TangentBackend {
  public:
   SparseTangent(const Model& model, const DegreesOfFreedom& dof);
 
   void set_zero() override;
   void add_closure(int closure, int index, double multiplier, const ClosureMaps& maps) override;
-  void add_coupling(int closure, const Eigen::Matrix<double, 12, 12>& blocks) override;
+  /// Other nodes than before: all blocks have other places then, which allocates.
+  void couple(int index, const int* nodes, int count) override;
+  void add_coupling(int index, const Eigen::Ref<const Eigen::MatrixXd>& blocks) override;
   FoldMaps& fold_maps(int) override { return maps_; }
   SlideMaps& slide_maps(int) override { return slide_maps_; }
   void fold(int joint) override;
@@ -102,6 +105,7 @@ class SparseTangent : public TangentBackend {
   void mark_live_blocks();
   void mark_slide(int joint);
   void build_pattern();
+  void build_pattern_anew();
   void build_compressed_columns();
   void update_pattern();
   double* slide_block(int index) {
@@ -120,6 +124,11 @@ class SparseTangent : public TangentBackend {
   std::vector<SlideFold> slide_folds_;  // per joint
   std::vector<int> slide_blocks_;
   std::vector<ClosureBlocks> closure_blocks_;  // per closure
+  /// Of a force element: nodes, and blocks of each with each, by rows.
+  struct Coupling {
+    std::vector<int> nodes, blocks;
+  };
+  std::vector<Coupling> couplings_;
   std::vector<ScaledAddition> mimic_additions_;
   std::vector<MimicFold> mimic_folds_;
   std::vector<std::vector<int>> column_blocks_;  // per variable: blocks of the reduced matrix, by rows

@@ -24,8 +24,8 @@ struct MimicMap {
 
 /// Accumulates the nodal tangent in blocks, folds slaves into their masters and released coordinates, and solves.
 ///
-/// Life of a tangent: set_zero(), blocks and closures, then folds from leaf to root, mimics, finish(), rows that are
-/// held, factorise(); then as many solutions as are needed.
+/// Life of a tangent: set_zero(), blocks, closures and couplings, then folds from leaf to root, mimics, finish(), rows
+/// that are held, factorise(); then as many solutions as are needed.
 class TangentBackend {
  public:
   virtual ~TangentBackend() = default;
@@ -49,8 +49,11 @@ class TangentBackend {
   virtual InteriorCondensation* condensation() { return nullptr; }
   /// Adds constraint `index` of a closure with its multiplier, before joints are folded.
   virtual void add_closure(int closure, int index, double multiplier, const ClosureMaps& maps) = 0;
-  /// Adds blocks of a closure's nodes with each other, {child, parent}: of a spring between them.
-  virtual void add_coupling(int closure, const Eigen::Matrix<double, 12, 12>& blocks) = 0;
+  /// The nodes that coupling `index` couples from now on, each once; one for each force element of the model. To be
+  /// called before set_zero().
+  virtual void couple(int index, const int* nodes, int count) = 0;
+  /// Adds the blocks of a coupling's nodes with each other, 6 count x 6 count, before joints are folded.
+  virtual void add_coupling(int index, const Eigen::Ref<const Eigen::MatrixXd>& blocks) = 0;
 
   // ---- reduction
   /// Where the maps of a joint, or of one that slides, are to be written for fold().

@@ -23,6 +23,8 @@ TreeBlocks::TreeBlocks(const Model& model, const DegreesOfFreedom& dof)
     const int size = 12 + dof.size[dof.variable_of_closure(static_cast<int>(k))];
     closures.push_back(Eigen::MatrixXd::Zero(size, size));
   }
+  for (const auto& element : model.force_elements)
+    couplings.push_back(Eigen::MatrixXd::Zero(6 * element->most_nodes(), 6 * element->most_nodes()));
 }
 
 void hold_row(FoldMaps& maps, double* own, bool has_master, int component, int first,

@@ -22,6 +22,7 @@ struct TreeBlocks {
   std::vector<SlideMaps> slide_maps;        ///< per joint; empty but for sliders
   /// Per closure, by rows: {child, parent, multipliers} with each other.
   std::vector<Eigen::MatrixXd> closures;
+  std::vector<Eigen::MatrixXd> couplings;  ///< per force element: of the nodes that it may couple at a time
   std::vector<MimicMap> mimics;
   std::vector<HeldRow> held;
 

@@ -25,6 +25,11 @@ TreeOrder::TreeOrder(const Model& model, const DegreesOfFreedom& dof)
     const int piece = line.piece_at(model_.initial_released[j].displacement[0]);
     windows_[j] = line.support(piece, piece);
   }
+  for (const auto& element : model_.force_elements) {
+    couplings_.emplace_back();
+    couplings_.back().nodes.resize(element->most_nodes());
+    couplings_.back().nodes.resize(element->find_nodes(model_.nodes, couplings_.back().nodes.data()));
+  }
   count_riders();
   complete_ = true;
   update();
@@ -151,6 +156,26 @@ void TreeOrder::set_window(int joint, NodeRange window) {
   old_ = true;
 }
 
+void TreeOrder::set_coupling(int coupling, const int* nodes, int count) {
+  std::vector<int>& old = couplings_[coupling].nodes;
+  if (std::equal(nodes, nodes + count, old.begin(), old.end())) return;
+  old.assign(nodes, nodes + count);
+  old_ = true;
+}
+
+/// Each where the first of its nodes is complete.
+void TreeOrder::place_couplings() {
+  for (TreePart& part : parts_) part.first_coupling = -1;
+  for (std::size_t k = couplings_.size(); k-- > 0;) {
+    auto& [nodes, next] = couplings_[k];
+    if (nodes.size() < 2) continue;
+    int first = completion_[nodes[0]];
+    for (const int node : nodes) first = std::min(first, completion_[node]);
+    next = parts_[first].first_coupling;
+    parts_[first].first_coupling = static_cast<int>(k);
+  }
+}
+
 void TreeOrder::update() {
   if (old_) find_borders();
   old_ = false;
@@ -175,6 +200,12 @@ std::vector<int> TreeOrder::elimination_tree(std::vector<std::vector<int>> parts
     const JointMap& joint = model_.joints[j];
     if (joint.kind != JointMapKind::Slide) continue;
     for (const int node : model_.slide_lines[joint.line].nodes) parts[node].push_back(completion_[joint.slave]);
+  }
+  // A force element may couple any two nodes of its reach. It is enough that the tree has a path through all of them.
+  for (const auto& element : model_.force_elements) {
+    std::vector<int> nodes = element->reach();
+    std::sort(nodes.begin(), nodes.end(), [&](int a, int b) { return completion_[a] < completion_[b]; });
+    for (std::size_t i = 1; i < nodes.size(); ++i) parts[nodes[i]].push_back(completion_[nodes[i - 1]]);
   }
   std::vector<std::vector<int>> ending(parts_.size());  // variables that stay in borders up to a part
   for (std::size_t v = 0; v < last_.size(); ++v)
@@ -212,13 +243,32 @@ void TreeOrder::count_riders() {
     const int last = last_part_of_line(line), scalars = 6 * static_cast<int>(line.most_active_nodes());
     for (int p = completion_[joint.slave]; p >= 0 && p < last; p = next[p]) most_riders_[p] += scalars;
   }
+  count_riders_of_couplings(next);
   std::size_t variables = 0;
   for (const std::vector<int>& own : parts) variables += own.size();
+  for (const auto& element : model_.force_elements) variables += element->most_nodes();
   for (const int riders : most_riders_) variables += riders;  // a node has six, a coordinate one
   border_.reserve(variables);
 }
 
+/// The nodes of a force element ride along from wherever it may be added up to the last part of its reach.
+void TreeOrder::count_riders_of_couplings(const std::vector<int>& next) {
+  std::vector<int> last_rider(parts_.size(), -1);
+  for (std::size_t k = 0; k < model_.force_elements.size(); ++k) {
+    const ForceElement& element = *model_.force_elements[k];
+    std::vector<int> completions;
+    for (const int node : element.reach()) completions.push_back(completion_[node]);
+    const int last = *std::max_element(completions.begin(), completions.end());
+    for (const int first : completions)
+      for (int p = first; p >= 0 && p < last && last_rider[p] != static_cast<int>(k); p = next[p]) {
+        last_rider[p] = static_cast<int>(k);
+        most_riders_[p] += 6 * element.most_nodes();
+      }
+  }
+}
+
 void TreeOrder::find_borders() {
+  place_couplings();
   border_.clear();
   std::fill(visited_.begin(), visited_.end(), -1);
   for (TreePart& part : parts_) part.first_child = part.next_sibling = -1;
@@ -248,7 +298,7 @@ void TreeOrder::find_fronts() {
 
 bool TreeOrder::may_join(const TreePart& part, const TreePart& next) const {
   for (const TreePart* each : {&part, &next})
-    if (!each->closures.empty() || !each->mimics.empty()) return false;
+    if (!each->closures.empty() || !each->mimics.empty() || each->first_coupling >= 0) return false;
   int folds = next.joint >= 0 ? 1 : 0;
   for (int p = part.first_member; p >= 0; p = parts_[p].next_member) folds += parts_[p].joint >= 0 ? 1 : 0;
   const int* rest = border(part);
@@ -276,6 +326,8 @@ void TreeOrder::for_each_of_its_own(const TreePart& part, const Visit& visit) co
     if (closure.parent >= 0) visit(closure.parent);
     visit(closure.child);
   }
+  for (int k = part.first_coupling; k >= 0; k = couplings_[k].next)
+    std::for_each(couplings_[k].nodes.begin(), couplings_[k].nodes.end(), visit);
   std::for_each(part.complete.begin(), part.complete.end(), visit);
   if (part.joint >= 0) {
     const JointMap& joint = model_.joints[part.joint];
@@ -310,8 +362,8 @@ void TreeOrder::find_border(int index) {
   part.passes_node = part.border_count == 0 || (part.border_count == 1 && border_[part.first_border] < dof_.node_count);
   const bool has_own_element =
       part.joint >= 0 ? part.elements.empty() : part.elements.size() == 1 && part.elements[0] == index;
-  part.has_border =
-      part.first_child >= 0 || !part.passes_node || !part.closures.empty() || !part.mimics.empty() || !has_own_element;
+  part.has_border = part.first_child >= 0 || part.first_coupling >= 0 || !part.passes_node || !part.closures.empty() ||
+                    !part.mimics.empty() || !has_own_element;
   if (part.passes_node) return;
   part.next_sibling = parts_[next].first_child;
   parts_[next].first_child = index;

@@ -32,6 +32,7 @@ double TreeTangent::cost_of_factors() const {
 void TreeTangent::set_zero() {
   for (std::size_t v = 0; v < dof_.size.size(); ++v) std::fill_n(diagonal_blocks_[v], dof_.size[v] * dof_.size[v], 0.0);
   for (Eigen::MatrixXd& closure : blocks_.closures) closure.setZero();
+  for (Eigen::MatrixXd& coupling : blocks_.couplings) coupling.setZero();
   blocks_.held.clear();
 }
 
@@ -48,8 +49,12 @@ void TreeTangent::add_closure(int closure, int index, double multiplier, const C
   values.row(own).segment<6>(6) += maps.right.parent;
 }
 
-void TreeTangent::add_coupling(int closure, const Eigen::Matrix<double, 12, 12>& blocks) {
-  blocks_.closures[closure].topLeftCorner<12, 12>() += blocks;
+/// What a node has with itself is complete where the node is: the elimination need not know of it.
+void TreeTangent::add_coupling(int index, const Eigen::Ref<const Eigen::MatrixXd>& blocks) {
+  const std::vector<int>& nodes = order_.coupled_nodes(index);
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    add_to_node(nodes[i], blocks.block<6, 6>(6 * static_cast<Eigen::Index>(i), 6 * static_cast<Eigen::Index>(i)));
+  blocks_.couplings[index].topLeftCorner(blocks.rows(), blocks.cols()) += blocks;
 }
 
 /// Is left to the elimination, but for where sliders are.

@@ -32,7 +32,8 @@ class TreeTangent : public TangentBackend {
   void condense_interiors() override { condensation_ = std::make_unique<InteriorCondensation>(model_, order_); }
   InteriorCondensation* condensation() override { return condensation_.get(); }
   void add_closure(int closure, int index, double multiplier, const ClosureMaps& maps) override;
-  void add_coupling(int closure, const Eigen::Matrix<double, 12, 12>& blocks) override;
+  void couple(int index, const int* nodes, int count) override { order_.set_coupling(index, nodes, count); }
+  void add_coupling(int index, const Eigen::Ref<const Eigen::MatrixXd>& blocks) override;
   FoldMaps& fold_maps(int joint) override { return blocks_.maps[joint]; }
   SlideMaps& slide_maps(int joint) override { return blocks_.slide_maps[joint]; }
   void fold(int joint) override;

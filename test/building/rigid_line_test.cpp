@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "building/expect_model_error.h"
+#include "flexarm/scene/point_spring.h"
 #include "math/so3.h"
 #include "schemes/scheme.h"
 #include "simulation/inside.h"
@@ -195,7 +196,11 @@ SceneBuilder pendulum(bool as_body) {
   b.joint("knee", JointKind::Spherical, "upper", "lower", {0, 0, -length});
   b.scene.initial_joints.push_back({"hinge", 0.8, 0.5, {}, true});
   b.load("upper", {0, 0.02, -0.4}, {0.3, 0.2, 0.1}, {0.01, 0, 0.02}, "t", scene::LoadFrame::Follower);
-  b.scene.point_springs.push_back({"world", "upper", {0.3, 0, 0}, {0, 0, -0.5}, 40, {}, 0.3, {}});
+  auto spring = std::make_shared<scene::PointSpring>();
+  spring->from = "world", spring->from_at = {0.3, 0, 0};
+  spring->to = "upper", spring->to_at = {0, 0, -0.5};
+  spring->stiffness = 40, spring->damping = 0.3;
+  b.scene.force_elements.push_back(spring);
   b.probe("middle", "upper", {0.01, 0, -0.45});
   b.sensor("reaction", SensorKind::Reaction, "upper");
   b.sensor("wrench", SensorKind::Wrench, "lower");

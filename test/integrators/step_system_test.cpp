@@ -1,6 +1,6 @@
 // The residual and the reduced tangent of a whole step, for a mechanism with everything in it.
 #include "analysis/statics.h"
-#include "integrators/balance.h"
+#include "integrators/energies.h"
 #include "integrators/scheme_step.h"
 #include "integrators/step_plane.h"
 #include "integrators/stepper.h"
@@ -149,7 +149,8 @@ TEST(PlanarTangent, RefusesWhatItCannotEliminate) {
   ASSERT_TRUE(search.plane) << search.reason;
   PlanarTangent tangent(model, dof, *search.plane);
   EXPECT_THROW(tangent.add_closure(0, 0, 1, ClosureMaps()), std::logic_error);
-  EXPECT_THROW(tangent.add_coupling(0, Eigen::Matrix<double, 12, 12>::Zero()), std::logic_error);
+  EXPECT_THROW(tangent.add_coupling(0, Eigen::MatrixXd::Zero(12, 12)), std::logic_error);
+  EXPECT_THROW(tangent.couple(0, nullptr, 0), std::logic_error);
   EXPECT_THROW(tangent.slide_maps(0), std::logic_error);
   EXPECT_THROW(tangent.fold_mimics({MimicMap{1, 1, 0}}), std::logic_error);
   EXPECT_NO_THROW(tangent.fold_mimics({}));

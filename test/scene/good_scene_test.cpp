@@ -1,6 +1,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "flexarm/scene/point_spring.h"
 #include "scene/scene_text.h"
 
 namespace flexarm::scene {
@@ -269,8 +270,8 @@ TEST(GoodScene, SensorsOfOthersAreLeftAlone) {
 
 TEST(GoodScene, SpringBetweenPoints) {
   const SceneDescription scene = good_scene();
-  ASSERT_EQ(scene.point_springs.size(), 1u);
-  const PointSpring& spring = scene.point_springs[0];
+  ASSERT_EQ(scene.force_elements.size(), 1u);
+  const auto& spring = dynamic_cast<const PointSpring&>(*scene.force_elements[0]);
   EXPECT_EQ(spring.from, "upper");
   EXPECT_EQ(spring.from_at, Vector3(0.1, 0, 0));
   EXPECT_EQ(spring.to, "hand");

@@ -2,6 +2,7 @@
 // drives them is known all the same.
 #include <gtest/gtest.h>
 
+#include "flexarm/scene/point_spring.h"
 #include "flexarm/simulation/checkpoint.h"
 #include "flexarm/simulation/linear_model.h"
 #include "integrators/step_plane.h"
@@ -270,11 +271,11 @@ TEST(HeldLinks, AreThoseOfPlainJointsAlone) {
   EXPECT_EQ(held([](SceneBuilder& b) { b.scene.joints[1].friction_law.coefficient = 0.1; }), (Names{"lift", "turn"}));
   // What is inboard of a driven joint carries nothing of what hangs on that.
   EXPECT_EQ(held([](SceneBuilder& b) {
-              scene::PointSpring spring;
-              spring.from = "world";
-              spring.to = "tool";
-              spring.stiffness = 10;
-              b.scene.point_springs.push_back(spring);
+              auto spring = std::make_shared<scene::PointSpring>();
+              spring->from = "world";
+              spring->to = "tool";
+              spring->stiffness = 10;
+              b.scene.force_elements.push_back(spring);
             }),
             (Names{"elbow", "lift"}));
 }

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "integrators/balance.h"
 #include "integrators/dissipative_substitute.h"
+#include "integrators/energies.h"
 #include "simulation/everything_scene.h"
 #include "simulation/inside.h"
 #include "support/scene_builder.h"

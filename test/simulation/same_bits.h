@@ -33,6 +33,7 @@ inline std::vector<double> numbers(const State& state) {
   for (const MassPointState& point : state.mass_points) add(point.angular_velocity), add(point.angular_acceleration);
   for (const Vector6& rate : state.strain_rates) add(rate);
   out.insert(out.end(), state.efforts.begin(), state.efforts.end());
+  out.insert(out.end(), state.force_memory.begin(), state.force_memory.end());
   for (const ActuatorState& actuator : state.actuators) {
     out.insert(out.end(), {actuator.angle, actuator.rate, actuator.acceleration, actuator.rest});
     const ServoState& servo = actuator.servo;

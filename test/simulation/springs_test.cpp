@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "building/expect_model_error.h"
+#include "flexarm/scene/point_spring.h"
 #include "math/pi.h"
 #include "support/scene_builder.h"
 
@@ -12,15 +13,15 @@ constexpr double kStiffness = 300;
 
 void add_spring(SceneBuilder& b, const std::string& from, const Vector3& from_at, const std::string& to,
                 const Vector3& to_at, std::optional<double> rest_length = {}, double damping = 0) {
-  scene::PointSpring spring;
-  spring.from = from;
-  spring.from_at = from_at;
-  spring.to = to;
-  spring.to_at = to_at;
-  spring.stiffness = kStiffness;
-  spring.rest_length = rest_length;
-  spring.damping = damping;
-  b.scene.point_springs.push_back(spring);
+  auto spring = std::make_shared<scene::PointSpring>();
+  spring->from = from;
+  spring->from_at = from_at;
+  spring->to = to;
+  spring->to_at = to_at;
+  spring->stiffness = kStiffness;
+  spring->rest_length = rest_length;
+  spring->damping = damping;
+  b.scene.force_elements.push_back(spring);
 }
 
 /// Two carts on a rail with a spring between them.
@@ -129,7 +130,7 @@ TEST(PointSprings, AreSolvedInFewIterations) {
 
 TEST(PointSprings, AreRefusedWhereTheyDoNothing) {
   SceneBuilder b = carts(0);
-  b.scene.point_springs[0].to = "left";
+  add_spring(b, "left", Vector3::Zero(), "left", Vector3::UnitX());
   expect_error(b.scene, "both ends belong to the same rigid body");
   b = carts(0);
   b.scene.integrator.scheme = "hht1";

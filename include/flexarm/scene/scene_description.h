@@ -12,16 +12,12 @@
 #include "flexarm/math/pose.h"
 #include "flexarm/math/time_function.h"
 #include "flexarm/model/results.h"
+#include "flexarm/scene/force_element.h"
+#include "flexarm/scene/source_location.h"
 #include "flexarm/scene/visual_description.h"
 #include "flexarm/schemes/integrator_description.h"
 
 namespace flexarm::scene {
-
-/// Where something stands in the file; kept for errors that only the model builder can find.
-struct SourceLocation {
-  std::string file;
-  int line = 0;
-};
 
 // ---------------------------------------------------------------- beams
 
@@ -324,16 +320,6 @@ struct Probe {
   SourceLocation location;
 };
 
-/// A spring between points of two links, with a damper beside it.
-struct PointSpring {
-  std::string from, to;                                        ///< links
-  Vector3 from_at = Vector3::Zero(), to_at = Vector3::Zero();  ///< in the undeformed link frames [m]
-  double stiffness = 0;                                        ///< [N/m]
-  std::optional<double> rest_length = {};                      ///< empty: as long as it is at the start [m]
-  double damping = 0;                                          ///< [N s/m]
-  SourceLocation location = {};
-};
-
 enum class SensorKind {
   Wrench,        ///< what a joint does to its link, in the link's axes about the sensor's place
   Reaction,      ///< the same in world axes
@@ -395,7 +381,7 @@ struct SceneDescription {
   std::vector<JointEffort> efforts;
   std::vector<Probe> probes;
   std::vector<Sensor> sensors;
-  std::vector<PointSpring> point_springs;
+  ForceElementDescriptions force_elements;  ///< what acts between points of links: springs
   bool lock_massless = false;          ///< joints that move nothing with inertia are held where they start, not refused
   bool starts_in_equilibrium = false;  ///< at rest, where loads, gravity and servos at t = 0 hold it
   SourceLocation equilibrium_location = {};      ///< of the <initial> that says so

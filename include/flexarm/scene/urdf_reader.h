@@ -22,6 +22,8 @@ struct ReadResult {
 /// Values for parameters of a scene, by their names.
 using ParameterValues = std::map<std::string, double>;
 
+struct ForceElementKind;
+
 /// What <simulation> can say as well, where either place is enough; and values for parameters in the place of the
 /// file's.
 struct ReadOptions {
@@ -30,6 +32,8 @@ struct ReadOptions {
   bool equilibrium_start = false;  ///< <initial equilibrium="true"/>: see SceneDescription::starts_in_equilibrium
   /// A name that the scene has no <parameter> for, and a value outside its limits, are errors of the scene.
   ParameterValues parameters = {};
+  /// Kinds of elements between points of links that a scene may have besides those of the format; null: none.
+  const std::vector<ForceElementKind>* more_force_elements = nullptr;
 };
 
 /// Reads a file. Never throws for bad input: every error of the file is in the diagnostics.

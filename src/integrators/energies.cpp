@@ -1,7 +1,6 @@
-#include "integrators/balance.h"
+#include "integrators/energies.h"
 
 #include "elements/element_configuration.h"
-#include "elements/spring_action.h"
 #include "elements/strain_dampers.h"
 #include "joints/elasticity.h"
 #include "joints/joint_stop.h"
@@ -61,11 +60,7 @@ Energies energies(const Model& model, const Scheme& scheme, const State& state) 
                    0.5 * node.angular_velocity.dot(lumped_rotary(inertia, scheme) * node.angular_velocity);
     out.potential -= inertia.total_mass * model.gravity.dot(node.position + (state.origin - model.initial_origin));
   }
-  for (const PointSpring& spring : model.springs) {
-    const LoopClosure& ends = model.closures[spring.closure];
-    const double stretch = spring_length(ends, closure_poses(ends, state)) - spring.rest_length;
-    out.strain += 0.5 * spring.stiffness * stretch * stretch;
-  }
+  for (const auto& element : model.force_elements) out.strain += element->energy(state);
   for (const Coordinate& coordinate : model.coordinates)
     if (coordinate.limit)
       out.strain += stop_energy(*coordinate.limit, stop_penalty(coordinate, scheme.contact_time),

@@ -1,0 +1,39 @@
+#include "building/force_element_builder.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "building/model_builder.h"
+
+namespace flexarm {
+namespace {
+
+Vector3 position_of(const Model& model, const NodePoint& point) {
+  if (point.node < 0) return point.arm;
+  const NodePose& node = model.nodes[point.node];
+  return node.position + node.rotation * point.arm;
+}
+
+}  // namespace
+
+ForceElementList place_force_elements(const ScenePlan& plan, const Model& model) {
+  ForceElementList placed;
+  for (const auto& element : plan.scene.force_elements) {
+    std::vector<NodePoint> places;
+    std::vector<Vector3> positions;
+    for (const scene::LinkPoint& point : element->points()) {
+      const Attachment place = attachment(plan, model, point.link, point.at);
+      places.push_back({place.node, place.offset * point.at});
+      positions.push_back(position_of(model, places.back()));
+    }
+    const auto is_on_first = [&](const NodePoint& place) { return place.node == places.front().node; };
+    if (std::all_of(places.begin(), places.end(), is_on_first))
+      throw ModelError(at(element->location, fmt::format("<{}>", element->kind())) +
+                       (places.size() == 2 ? "both ends belong" : "all points belong") + " to the same rigid body");
+    placed.push_back(element->place(places, positions));
+  }
+  return placed;
+}
+
+}  // namespace flexarm

@@ -1,0 +1,125 @@
+#pragma once
+/// What acts between points of the mechanism: one class for each kind.
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model/joint.h"
+
+namespace flexarm {
+
+struct State;
+
+/// A point fixed to a node, or to the world (-1).
+struct NodePoint {
+  int node = -1;
+  Vector3 arm = Vector3::Zero();  ///< in the node's frame, or where it is in the world [m]
+};
+
+/// The step, or the equilibrium, that a force element is asked about.
+struct ForceStep {
+  const std::vector<NodePose>& begin;  ///< of all nodes
+  const std::vector<NodePose>& end;
+  const std::vector<Vector6>& velocities;  ///< {v, w} of all nodes at the beginning, world axes; of steps with `at_end`
+  double duration = 0;                     ///< [s]; 0: an equilibrium, in which nothing has a rate
+  bool at_end = false;                     ///< forces are those at the end; else means whose work is exact
+  double gamma = 1;                        ///< of rates, as CoordinateStep has it
+  const double* memory = nullptr;          ///< at the beginning, memory_size() numbers
+  double* new_memory = nullptr;            ///< at the end, as many, to be written
+};
+
+/// What a force element adds to the balance of a step. Of the nodes it acts on, in their order: {force, moment} and
+/// {displacement, spin} of each, world axes.
+struct ForceAction {
+  Eigen::Map<Eigen::VectorXd> residual;  ///< to be set: less the forces on the nodes
+  Eigen::Map<Eigen::MatrixXd> tangent;   ///< to be set: its derivative by motions at the end; no rows: not asked for
+  double dissipated = 0;                 ///< over the step [J]
+  double work = 0;                       ///< done on the mechanism from outside, over the step [J]
+};
+
+/// A force element as springs and dampers of a few measures of its nodes' poses: a length, a gap. Its forces are those
+/// of tensions, rows^T tension.
+struct ForceMeasures {
+  Eigen::MatrixXd rows;       ///< per measure: its derivative by {displacement, spin} of the nodes, world axes
+  Eigen::MatrixXd stiffness;  ///< of tensions by measures; positive semi-definite
+};
+struct DamperTensions {
+  Eigen::VectorXd tension;
+  Eigen::MatrixXd slope;  ///< by the measures' rates
+};
+
+/// A number that is put out: the last part of its column's name, and its unit.
+struct ForceOutput {
+  const char* name;
+  const char* unit;
+};
+
+/// Poses and velocities of all nodes for output.
+struct ForceMotion {
+  const State& state;
+  const std::vector<Vector6>& velocities;  ///< {v, w}, world axes
+  const double* memory;                    ///< the element's own part of State::force_memory
+};
+
+/// What acts between points of the mechanism. Constant, as the model is whose part it is; what it remembers is in the
+/// state. Steps, energies, equilibria, modes, linear models, sensitivities and results know force elements by this
+/// class alone.
+class ForceElement {
+ public:
+  /// `reach`: all nodes that it may ever act on, each once.
+  ForceElement(std::string name, std::vector<int> reach) : name_(std::move(name)), reach_(std::move(reach)) {}
+  virtual ~ForceElement() = default;
+
+  /// As the scene's element is called: "spring".
+  virtual const char* kind() const = 0;
+  /// Empty: it has none, and no columns.
+  const std::string& name() const { return name_; }
+  /// What `flexarm check` says of it, but for its kind, name and links.
+  virtual std::string description() const = 0;
+
+  // ---- where
+  const std::vector<int>& reach() const { return reach_; }
+  /// Most nodes that it acts on in one step. Fewer than its reach where these change from step to step.
+  virtual int most_nodes() const { return static_cast<int>(reach_.size()); }
+  /// Writes those on which it acts in a step that begins at these poses, each once; returns how many.
+  virtual int find_nodes(const std::vector<NodePose>& poses, int* nodes) const {
+    static_cast<void>(poses);
+    std::copy(reach_.begin(), reach_.end(), nodes);
+    return static_cast<int>(reach_.size());
+  }
+
+  // ---- what it does. `nodes`: as find_nodes() has written them
+  virtual void evaluate(const ForceStep& step, const int* nodes, ForceAction& action) const = 0;
+  /// What it stores [J].
+  virtual double energy(const State& state) const = 0;
+  virtual ForceMeasures measures(const State& state, const int* nodes) const = 0;
+  /// Of rates of the measures, one for each.
+  virtual DamperTensions dampers(const State& state, const Eigen::VectorXd& rates) const = 0;
+  /// Numbers of State::force_memory that it has for itself, zero at the start.
+  virtual int memory_size() const { return 0; }
+
+  // ---- what it puts out
+  virtual std::vector<ForceOutput> outputs() const { return {}; }
+  /// Appends their values.
+  virtual void put_out(const ForceMotion& motion, std::vector<double>& values) const {
+    static_cast<void>(motion), static_cast<void>(values);
+  }
+
+ protected:
+  ForceElement(const ForceElement&) = default;
+  ForceElement& operator=(const ForceElement&) = delete;
+
+ private:
+  std::string name_;
+  std::vector<int> reach_;
+};
+
+/// On which it acts in a step that begins at a state.
+std::vector<int> nodes_of(const ForceElement& element, const State& state);
+
+using ForceElementList = std::vector<std::shared_ptr<const ForceElement>>;
+
+}  // namespace flexarm

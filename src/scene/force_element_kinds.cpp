@@ -1,0 +1,12 @@
+#include "scene/force_element_kinds.h"
+
+#include "scene/point_spring_reader.h"
+
+namespace flexarm::scene {
+
+const std::vector<ForceElementKind>& force_element_kinds() {
+  static const std::vector<ForceElementKind> kinds = {{"spring", "from", read_point_spring}};
+  return kinds;
+}
+
+}  // namespace flexarm::scene

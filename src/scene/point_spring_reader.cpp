@@ -1,0 +1,37 @@
+#include "scene/point_spring_reader.h"
+
+#include "elements/point_spring.h"
+#include "flexarm/scene/point_spring.h"
+
+namespace flexarm::scene {
+
+std::vector<double> PointSpring::numbers() const {
+  std::vector<double> numbers = {stiffness, rest_length ? 1.0 : 0.0};
+  if (rest_length) numbers.push_back(*rest_length);
+  numbers.push_back(damping);
+  return numbers;
+}
+
+std::shared_ptr<const ForceElement> PointSpring::place(const std::vector<NodePoint>& places,
+                                                       const std::vector<Vector3>& positions) const {
+  const double length = (positions[1] - positions[0]).norm();
+  return std::make_shared<flexarm::PointSpring>(
+      name, places[0], places[1], flexarm::PointSpring::Law{stiffness, rest_length.value_or(length), damping});
+}
+
+std::shared_ptr<const ForceElementDescription> read_point_spring(const XmlElement& spring) {
+  spring.expect_only({"name", "from", "from_at", "to", "to_at", "stiffness", "rest_length", "damping"});
+  auto out = std::make_shared<PointSpring>();
+  out->location = spring.location();
+  if (spring.has("name")) out->name = spring.name("name").value_or("");
+  out->from = spring.name("from").value_or("");
+  out->from_at = spring.vector("from_at", out->from_at);
+  out->to = spring.name("to").value_or("");
+  out->to_at = spring.vector("to_at", out->to_at);
+  out->stiffness = spring.number("stiffness", kNonNegative).value_or(0);
+  if (spring.has("rest_length")) out->rest_length = spring.number("rest_length", kNonNegative);
+  out->damping = spring.number("damping", kNonNegative, 0);
+  return out;
+}
+
+}  // namespace flexarm::scene

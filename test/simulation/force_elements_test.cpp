@@ -1,0 +1,150 @@
+// A kind of force element that only tests know, from its line in the scene to its columns.
+#include <gtest/gtest.h>
+
+#include "flexarm/scene/urdf_reader.h"
+#include "flexarm/simulation/checkpoint.h"
+#include "flexarm/simulation/linear_model.h"
+#include "flexarm/simulation/result_columns.h"
+#include "flexarm/simulation/sensitivities.h"
+#include "flexarm/simulation/simulation.h"
+#include "simulation/inside.h"
+#include "simulation/same_bits.h"
+#include "support/strut.h"
+
+namespace flexarm::test {
+namespace {
+
+scene::ReadResult cart_scene(const std::string& strut, const scene::ParameterValues& parameters = {}) {
+  scene::ReadOptions options;
+  options.more_force_elements = &strut_kind();
+  options.parameters = parameters;
+  return scene::read_scene_text(R"(<robot name="cart">
+  <parameter name="cubic" value="5"/>
+  <link name="world"/>
+  <link name="cart"> <inertial> <mass value="2"/> <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
+  <joint name="rail" type="prismatic"> <parent link="world"/> <child link="cart"/> <axis xyz="1 0 0"/>
+    <limit lower="-50" upper="50" effort="0" velocity="0"/> </joint>
+  )" + strut + R"(
+  <simulation> <gravity xyz="0 0 0"/> <integrator scheme="em" step="0.01"/> <initial joint="rail" velocity="3"/> </simulation>
+</robot>)",
+                                "cart.urdf", options);
+}
+
+Simulation pushed_cart(const std::string& numbers, double step = 0.01, const SimulationOptions& options = {}) {
+  scene::ReadResult result =
+      cart_scene("<strut name=\"s\" from=\"world\" to=\"cart\" to_at=\"1 0 0\" " + numbers + "/>");
+  result.scene.value().integrator.step = step;
+  return Simulation(*result.scene, options);
+}
+
+constexpr double kCartMass = 2, kCubicDamping = 5, kSpeedAtStart = 3;
+
+/// m v' = -c v^3.
+double exact_speed(double time) {
+  return kSpeedAtStart / std::sqrt(1 + 2 * kCubicDamping * kSpeedAtStart * kSpeedAtStart / kCartMass * time);
+}
+
+double run_until(Simulation& simulation, double until) {
+  while (simulation.time() < until - 1e-9) EXPECT_TRUE(simulation.step().converged);
+  return simulation.velocity(0);
+}
+
+double error_of_place(double step) {
+  Simulation simulation = pushed_cart("cubic=\"5\"", step);
+  run_until(simulation, 0.4);
+  // Of the place, since velocities are published at third order: x(t) = m / c (1 / v(t) - 1 / v(0)).
+  return std::abs(simulation.position(0) - kCartMass / kCubicDamping * (1 / exact_speed(0.4) - 1 / kSpeedAtStart));
+}
+
+TEST(ForceElements, OfAnyKindTakePartInSteps) {
+  const double coarse = error_of_place(4e-3), fine = error_of_place(2e-3);
+  EXPECT_NEAR(std::log2(coarse / fine), 2, 0.1) << coarse << " " << fine;
+}
+
+TEST(ForceElements, CountInTheAccountOfEnergies) {
+  Simulation simulation = pushed_cart("linear=\"0.5\" cubic=\"0.2\" push=\"7\"");
+  const double begin = simulation.energies().total();
+  run_until(simulation, 2);
+  const Energies e = simulation.energies();
+  EXPECT_GT(e.dissipated, 1);
+  EXPECT_NEAR(e.work, 7 * simulation.position(0), 1e-11 * e.work);
+  EXPECT_NEAR(e.total() + e.dissipated - e.work, begin, 1e-12 * e.dissipated);
+}
+
+TEST(ForceElements, PutOutWhatTheySay) {
+  Simulation simulation = pushed_cart("linear=\"0.5\" push=\"7\"");
+  ResultColumns columns(simulation, ResultColumns::Solver::Without, {"strut/*"});
+  ASSERT_EQ(columns.columns().size(), 4u);  // time is always there
+  EXPECT_EQ(columns.columns()[1].name, "strut/s/length");
+  EXPECT_EQ(columns.columns()[2].unit, "N");
+  run_until(simulation, 1);
+  const std::vector<double>& row = columns.row(simulation, {});
+  EXPECT_NEAR(row[1], 1 + simulation.position(0), 1e-14);
+  EXPECT_NEAR(row[2], 0.5 * simulation.velocity(0) - 7, 1e-12);
+  EXPECT_NEAR(row[3], simulation.energies().dissipated, 1e-12 * row[3]);
+}
+
+TEST(ForceElements, RememberInCheckpoints) {
+  SimulationOptions options;
+  options.reuse_factorisation = false;  // steps follow from states alone
+  Simulation one = pushed_cart("cubic=\"0.2\"", 0.01, options);
+  run_until(one, 0.5);
+  Simulation other = pushed_cart("cubic=\"0.2\"", 0.01, options);
+  read_checkpoint_text(other, checkpoint_text(one), "text");
+  run_until(one, 1), run_until(other, 1);
+  EXPECT_GT(state_of(one).force_memory.at(0), 0);
+  EXPECT_EQ(numbers(state_of(one)), numbers(state_of(other)));
+  Simulation another = pushed_cart("cubic=\"0.3\"");
+  EXPECT_THROW(read_checkpoint_text(another, checkpoint_text(one), "text"), std::runtime_error);
+}
+
+// Small deviations of the speed v: m dv' = -(c1 + 3 c3 v^2) dv.
+TEST(ForceElements, AreInLinearModels) {
+  const Simulation simulation = pushed_cart("linear=\"0.5\" cubic=\"0.2\"");
+  LinearRequest request;
+  EXPECT_NEAR(linearise(simulation, request).a(1, 1), -0.5 / kCartMass, 1e-12);
+  request.about = LinearisedAbout::Instant;
+  EXPECT_NEAR(linearise(simulation, request).a(1, 1), -(0.5 + 3 * 0.2 * kSpeedAtStart * kSpeedAtStart) / kCartMass,
+              1e-8);
+}
+
+// A spring of 100 N/m, slack at 1 m, holds a push of 7 N.
+TEST(ForceElements, AreInEquilibria) {
+  scene::ReadResult result = cart_scene(R"(<strut from="world" to="cart" to_at="1 0 0" push="7" cubic="1"/>
+  <spring from="world" to="cart" to_at="1 0 0" stiffness="100"/>)");
+  Simulation simulation(result.scene.value());
+  ASSERT_TRUE(simulation.solve_static(1).converged);
+  EXPECT_NEAR(simulation.position(0), 0.07, 1e-12);
+  EXPECT_NEAR(simulation.natural_modes(1).front().frequency, std::sqrt(100 / kCartMass) / (2 * 3.14159265358979323846),
+              1e-9);
+}
+
+// dv(t)/dc of v = v0 (1 + 2 c v0^2 t / m)^(-1/2).
+TEST(ForceElements, HaveSensitivities) {
+  const std::string strut = R"(<strut from="world" to="cart" to_at="1 0 0" cubic="${cubic}"/>)";
+  scene::ReadResult result = cart_scene(strut);
+  result.scene.value().integrator.step = 1e-3;
+  Simulation simulation(*result.scene);
+  SensitivityRequest request;
+  request.parameters = {"cubic"};
+  request.read = [&](const std::string& name, double value) {
+    scene::ReadResult other = cart_scene(strut, {{name, value}});
+    other.scene.value().integrator.step = 1e-3;
+    return other;
+  };
+  Sensitivities sensitivities(simulation, request);
+  while (simulation.time() < 0.4 - 1e-9) ASSERT_TRUE(sensitivities.step().converged);
+  const double exact = -std::pow(exact_speed(0.4), 3) * 0.4 / kCartMass;
+  EXPECT_NEAR(sensitivities.velocities()(0, 0), exact, 1e-3 * std::abs(exact));  // second order in the step
+}
+
+TEST(ForceElements, HaveErrorsWithTheirLines) {
+  const scene::ReadResult result = cart_scene(R"(<strut from="world" to="nobody" cubic="-1"/>)");
+  ASSERT_EQ(result.diagnostics.size(), 2u);
+  EXPECT_NE(result.diagnostics[0].text().find("cart.urdf:7"), std::string::npos) << result.diagnostics[0].text();
+  EXPECT_NE(to_text(result.diagnostics).find("to must be a link of the scene, got 'nobody'"), std::string::npos)
+      << to_text(result.diagnostics);
+}
+
+}  // namespace
+}  // namespace flexarm::test
