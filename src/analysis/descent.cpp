@@ -1,6 +1,7 @@
 #include "analysis/descent.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -174,6 +175,7 @@ bool Descent::rests(const Modes& modes, double tolerance) {
 }
 
 bool Descent::find(State& state, int load_steps, StepResult& result) {
+  assert(load_steps >= 1);
   has_left_ = false;
   result.reason = StepResult::Reason::NotFinite;
   if (!begin(state)) return false;

@@ -1,5 +1,6 @@
 #include "analysis/eigenpairs.h"
 
+#include <cassert>
 #include <stdexcept>
 
 #include "analysis/largest_eigenpairs.h"
@@ -69,6 +70,7 @@ class DampedOperation : public LinearOperation {
 }  // namespace
 
 std::vector<Eigenpair> undamped_pairs(const LinearisedMotion& motion, double shift, int count) {
+  assert(!(shift <= 0) && count >= 1);
   std::vector<Eigenpair> pairs =
       largest_eigenpairs(UndampedOperation(motion, shift), count, motion.unknowns() <= kDenseLimit, Crowded::Fail);
   for (Eigenpair& pair : pairs) pair.value = 1.0 / pair.value - shift;
@@ -76,6 +78,7 @@ std::vector<Eigenpair> undamped_pairs(const LinearisedMotion& motion, double shi
 }
 
 std::vector<Eigenpair> damped_pairs(const LinearisedMotion& motion, double shift, int count) {
+  assert(!(shift <= 0) && count >= 1);
   std::vector<Eigenpair> pairs =
       largest_eigenpairs(DampedOperation(motion, shift), count, motion.unknowns() <= kDenseLimit, Crowded::LeaveOut);
   for (Eigenpair& pair : pairs) pair = {shift * (1.0 + 1.0 / pair.value), pair.vector.head(motion.unknowns())};

@@ -1,6 +1,7 @@
 #include "analysis/joint_potential.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -77,6 +78,7 @@ void JointPotentials::add_bounds(std::size_t axis, const Coordinate& coordinate,
 }
 
 double JointPotentials::position(const State& state, std::size_t axis) const {
+  assert(axis < axes_.size());
   const Coordinate& coordinate = model_.coordinates[axes_[axis].coordinate];
   return coordinate.is_angle ? 0.0 : state.released[coordinate.joint].displacement[coordinate.component];
 }
@@ -191,6 +193,7 @@ bool JointPotentials::look(JointPotential& at) {
 }
 
 Eigen::VectorXd JointPotentials::step(const JointPotential& from, const Eigen::VectorXd& ways) const {
+  assert(ways.size() == static_cast<Eigen::Index>(axes_.size()));
   return from.motions * ways - from.correction;
 }
 

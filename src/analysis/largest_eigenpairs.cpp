@@ -1,6 +1,7 @@
 #include "analysis/largest_eigenpairs.h"
 
 #include <algorithm>
+#include <cassert>
 #include <numeric>
 #include <stdexcept>
 
@@ -51,6 +52,7 @@ Eigenpairs iterated_pairs(const LinearOperation& operation, int count, Crowded c
 }  // namespace
 
 std::vector<Eigenpair> largest_eigenpairs(const LinearOperation& operation, int count, bool is_small, Crowded crowded) {
+  assert(count >= 1);
   const auto [values, vectors] =
       is_small || 2 * count + 2 >= operation.rows() ? all_pairs(operation) : iterated_pairs(operation, count, crowded);
   std::vector<int> order(values.size());

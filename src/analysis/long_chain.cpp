@@ -1,6 +1,7 @@
 #include "analysis/long_chain.h"
 
 #include <algorithm>
+#include <cassert>
 #include <stdexcept>
 
 #include "analysis/linearised_motion.h"
@@ -51,6 +52,7 @@ Eigen::VectorXd least_ritz_vector(Inverse& inverse, Eigen::Index size) {
 }  // namespace
 
 UnstableMotion falling_motion(const Model& model, const Scheme& scheme, const State& equilibrium) {
+  assert(model.closures.empty());
   StepSystem system(model, exact_equilibrium(scheme.contact_time));
   const double neutral = neutral_curvature(model, equilibrium);
   system.begin_equilibrium(equilibrium, 1.0, neutral);

@@ -1,6 +1,7 @@
 #include "analysis/mechanism_states.h"
 
 #include <algorithm>
+#include <cassert>
 #include <stdexcept>
 
 #include "joints/joint_map.h"
@@ -116,6 +117,7 @@ Eigen::VectorXd MechanismStates::deviation(const MechanismMotion& motion) const 
 }
 
 MechanismMotion MechanismStates::moved(int state, double way) const {
+  assert(state >= 0 && state < size());
   const int place = state % positions(), own_count = static_cast<int>(columns_.size());
   const bool is_rate = state >= positions(), is_rotor = place >= own_count;
   const int column = is_rotor ? -1 : columns_[place];

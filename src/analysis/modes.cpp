@@ -1,6 +1,7 @@
 #include "analysis/modes.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <optional>
 #include <tuple>
@@ -101,6 +102,7 @@ bool comes_before(const Mode& a, const Mode& b) {
 }  // namespace
 
 std::vector<Mode> natural_modes(const Model& model, const State& state, int count, double contact_time) {
+  assert(contact_time > 0);
   const LinearisedMotion system(model, state, contact_time);
   // More modes than asked for, so that the scale is that of elastic ones where there are free motions.
   const int computed = std::min(count + kExtraModes, system.freedoms());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <stdexcept>
 
 #include "joints/closure_maps.h"
@@ -69,6 +70,7 @@ void MotionMaps::sort_nodes() {
 }
 
 Eigen::MatrixXd MotionMaps::at(const MechanismPose& pose) const {
+  assert(pose.nodes.size() == model_.nodes.size() && pose.released.size() == model_.joints.size_with_held());
   Eigen::MatrixXd maps = Eigen::MatrixXd::Zero(rows_, columns_);
   for (int scalar = 0; scalar < rows_; ++scalar)
     if (dof_.equation[scalar] >= 0) maps(scalar, dof_.equation[scalar]) = 1;
@@ -120,6 +122,7 @@ Eigen::MatrixXd MotionMaps::at(const MechanismPose& pose) const {
 }
 
 Eigen::MatrixXd MotionMaps::constraints(const MechanismPose& pose, const Eigen::MatrixXd& maps) const {
+  assert(maps.rows() == rows_ && maps.cols() == columns_);
   Eigen::MatrixXd rows(constraint_count_, columns_);
   int row = 0;
   const auto of_node = [&](int node, Vector6 own) {
@@ -145,6 +148,7 @@ std::vector<int> MotionMaps::scalars_of_columns() const {
 }
 
 MotionMaps::Split MotionMaps::split(const MechanismPose& pose, const std::vector<bool>& is_driven) const {
+  assert(static_cast<int>(is_driven.size()) == columns_);
   Split out;
   const Eigen::MatrixXd rows = constraints(pose, at(pose));
   std::vector<int> candidates;
@@ -163,6 +167,7 @@ MotionMaps::Split MotionMaps::split(const MechanismPose& pose, const std::vector
 
 Eigen::MatrixXd MotionMaps::allowed(const MechanismPose& pose, const Eigen::MatrixXd& maps,
                                     const std::vector<int>& independent) const {
+  assert(std::is_sorted(independent.begin(), independent.end()));
   Eigen::MatrixXd allowed = Eigen::MatrixXd::Zero(columns_, static_cast<Eigen::Index>(independent.size()));
   for (std::size_t i = 0; i < independent.size(); ++i) allowed(independent[i], static_cast<Eigen::Index>(i)) = 1;
   if (constraint_count_ == 0) return allowed;
@@ -176,6 +181,7 @@ Eigen::MatrixXd MotionMaps::allowed(const MechanismPose& pose, const Eigen::Matr
 }
 
 Eigen::MatrixXd MotionMaps::unknowns(const MechanismPose& pose, const Eigen::MatrixXd& maps) const {
+  assert(maps.rows() == rows_ && maps.cols() == columns_);
   Eigen::MatrixXd unknowns(columns_, columns_);
   for (int scalar = 0; scalar < rows_; ++scalar)
     if (dof_.equation[scalar] >= 0) unknowns.row(dof_.equation[scalar]) = maps.row(scalar);
@@ -188,6 +194,7 @@ Eigen::MatrixXd MotionMaps::unknowns(const MechanismPose& pose, const Eigen::Mat
 }
 
 MechanismPose MotionMaps::moved(const MechanismPose& pose, const CoordinateRates& rates, double time) const {
+  assert(rates.first.size() == columns_ && rates.second.size() == columns_);
   const Eigen::VectorXd way = time * rates.first + 0.5 * time * time * rates.second;
   const auto way_of = [&](int scalar) { return dof_.equation[scalar] < 0 ? 0.0 : way[dof_.equation[scalar]]; };
   MechanismPose out = pose;
@@ -222,6 +229,7 @@ MechanismPose MotionMaps::moved(const MechanismPose& pose, const CoordinateRates
 }
 
 MovingMatrix along(const std::function<Eigen::MatrixXd(double)>& at_time, double spacing) {
+  assert(spacing >= 0);
   constexpr std::array<double, 4> kFirst = {4. / 5, -1. / 5, 4. / 105, -1. / 280};
   constexpr std::array<double, 4> kSecond = {8. / 5, -1. / 5, 8. / 315, -1. / 560};
   MovingMatrix out;

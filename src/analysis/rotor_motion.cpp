@@ -1,6 +1,7 @@
 #include "analysis/rotor_motion.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include <Eigen/SparseCore>
@@ -117,6 +118,7 @@ std::vector<int> separate_rotors(const Model& model, const DegreesOfFreedom& dof
 }
 
 std::vector<double> efforts_of_gear_dampers(const Model& model, const State& state, const ActuatorRates& rates) {
+  assert(rates.coordinates.size() == model.coordinates.size() && rates.rotors.size() == model.actuators.size());
   std::vector<double> efforts(model.actuators.size(), 0.0);
   for (std::size_t i = 0; i < efforts.size(); ++i) {
     const Actuator& actuator = model.actuators[i];

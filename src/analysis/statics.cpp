@@ -1,5 +1,6 @@
 #include "analysis/statics.h"
 
+#include <cassert>
 #include <limits>
 #include <optional>
 
@@ -239,6 +240,7 @@ class EquilibriumSearch {
 
 StaticResult solve_static(const Model& model, const Scheme& scheme, const StepSettings& settings, int load_steps,
                           Equilibrium wanted, State& state, std::vector<double>* update_norms) {
+  assert(load_steps >= 1);
   EquilibriumSearch search(model, scheme, settings, state);
   const bool is_found = search.find(load_steps, wanted);
   if (is_found) search.renew_forces();

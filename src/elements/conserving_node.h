@@ -1,6 +1,8 @@
 #pragma once
 /// Inertia lumped at a node over a step of a conserving scheme, for one node (S = double) or a pack of them.
 
+#include <cassert>
+
 #include "elements/beam_point.h"
 #include "elements/rotary_inertia.h"
 
@@ -33,6 +35,7 @@ struct ConservingNode {
 
   ConservingNode(const LumpedInertia<S>& inertia, const NodeMotion<S>& node, double factor, double step,
                  bool with_tangent) {
+    assert(step != 0);
     const AverageRate<S> rate(inertia.rotary, node.begin, node.end, node.increment, node.inverse_tangent,
                               node.angular_velocity, step, with_tangent);
     residual.template head<3>() = (inertia.mass * S(factor / step)) * (S(1 / step) * node.displacement - node.velocity);

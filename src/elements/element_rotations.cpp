@@ -29,6 +29,7 @@ InterpolatedRotation<double> ElementRotations<Nodes>::evaluate(const NodalValues
 template <int Nodes>
 void carry_strains(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes,
                    const std::array<Vector6, Nodes>& update, Vector6* strains) {
+  assert(strains);
   const ElementRotations<Nodes> rotations(nodes, true);
   for (int k = 0; k < BeamElement<Nodes>::kStiffnessPoints; ++k) {
     const auto& constants = element.stiffness_points[k];

@@ -1,5 +1,6 @@
 #include "elements/energy_correction.h"
 
+#include <cassert>
 #include <cmath>
 
 #include "elements/orders.h"
@@ -36,6 +37,7 @@ void add_strain_energy(const typename BeamElement<Nodes>::StiffnessPoint& consta
 template <int Nodes>
 void add_kinetic_energy(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, double factor, double step,
                         ElementEnergy<Nodes>& energy) {
+  assert(step != 0 && factor != 0);
   std::array<Vector3, Nodes> velocity;
   for (int i = 0; i < Nodes; ++i)
     velocity[i] = (factor / step) * (nodes.end[i] - nodes.begin[i]) - (factor - 1) * nodes.velocity[i];

@@ -18,7 +18,7 @@ double divisor(double length) {
 }
 
 std::vector<int> nodes_of(const NodePoint& child, const NodePoint& parent) {
-  assert(child.node != parent.node);
+  assert(child.node >= 0 && child.node != parent.node && "between two bodies, of which one at least moves");
   std::vector<int> nodes;
   for (const NodePoint* point : {&child, &parent})
     if (point->node >= 0) nodes.push_back(point->node);
@@ -70,6 +70,9 @@ Vector12 LineElement::gradient(const Ends& v) const {
 }
 
 void LineElement::evaluate(const ForceStep& step, const int*, ForceAction& action) const {
+  assert(action.residual.size() == 6 * static_cast<Eigen::Index>(reach().size()));
+  assert(action.tangent.size() == 0 || action.tangent.rows() == action.residual.size());
+  assert(!step.at_end || step.duration == 0 || step.velocities.size() == step.end.size());
   const Ends begin = ends(step.begin), end = ends(step.end);
   CoordinateStep change;
   change.begin = begin.length();
@@ -124,6 +127,7 @@ ForceMeasures LineElement::measures(const State& state, const int*) const {
 }
 
 DamperTensions LineElement::dampers(const State&, const Eigen::VectorXd& rates) const {
+  assert(rates.size() == 1);
   const LineTension damping = damper(rates[0]);
   return {Eigen::VectorXd::Constant(1, damping.value), Eigen::MatrixXd::Constant(1, 1, damping.slope)};
 }
@@ -133,6 +137,7 @@ std::vector<ForceOutput> LineElement::outputs() const {
 }
 
 void LineElement::put_out(const ForceMotion& motion, std::vector<double>& values) const {
+  assert(motion.velocities.size() == motion.state.nodes.size());
   const Ends here = ends(motion.state);
   const Vector12 direction = gradient(here);
   double rate = direction.head<6>().dot(motion.velocities[child_.node]);

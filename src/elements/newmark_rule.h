@@ -1,6 +1,7 @@
 #pragma once
 /// Newmark's rule over a step.
 
+#include <cassert>
 #include <type_traits>
 
 #include "flexarm/math/pose.h"
@@ -17,6 +18,7 @@ struct NewmarkRule {
   template <class Quantity = Vector3>
   Quantity acceleration(const std::common_type_t<Quantity>& increment, const std::common_type_t<Quantity>& velocity,
                         const std::common_type_t<Quantity>& acceleration) const {
+    assert(beta != 0 && step != 0);
     return (increment - step * velocity - (0.5 - beta) * step * step * acceleration) / (beta * step * step);
   }
   template <class Quantity = Vector3>

@@ -1,5 +1,7 @@
 #include "elements/nodal_inertia.h"
 
+#include <cassert>
+
 #include "elements/conserving_node.h"
 #include "elements/rotary_inertia.h"
 
@@ -23,6 +25,7 @@ NewmarkRule newmark_rule(const TimeRule& rule, double step) {
 
 NodalAction nodal_inertia_action(const NodalInertia& inertia, const TimeRule& rule, const NodeStep& node,
                                  bool with_tangent) {
+  assert(node.step != 0);
   NodalAction action;
   const double h = node.step;
   const Matrix3& begin = node.begin.rotation;
@@ -58,6 +61,7 @@ NodalAction nodal_inertia_action(const NodalInertia& inertia, const TimeRule& ru
 }
 
 NodalAction nodal_damping_action(const NodalInertia& inertia, const TimeRule& rule, const NodeStep& node) {
+  assert(node.step != 0);
   NodalAction action;
   const Matrix3& D = inertia.rotary_damping;
   if (D.isZero(0)) return action;
@@ -89,6 +93,7 @@ NodalAction nodal_damping_action(const NodalInertia& inertia, const TimeRule& ru
 }
 
 NodeState advanced(const TimeRule& rule, const NodeStep& node) {
+  assert(node.step != 0);
   NodeState out;
   out.position = node.end.position;
   out.orientation = node.end.orientation;

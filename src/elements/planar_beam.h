@@ -2,6 +2,8 @@
 /// Beam residual and tangent over a step of the energy-momentum family in the plane: conserving_beam.h and
 /// conserving_tangent.h term by term, where they are not zero. (docs/notes/planar.md)
 
+#include <cassert>
+
 #include "elements/planar_point.h"
 #include "elements/strain_dampers.h"
 #include "elements/translational_inertia.h"
@@ -276,6 +278,8 @@ void beam(const Element<Nodes, S>& element, const S& slope, const Nodal<Nodes, S
           BlockSystem<Nodes, S>& system) {
   StepPoints<Nodes, S> at;
   EnergyMultiplier<Nodes, S> multiplier;
+  assert(step != 0 && begin && end);
+  assert(!(rule.dissipation.any() || element.has_stiffness_damping) || (memory && end_memory));
   set_points<Nodes, S>(element, nodes.end, nodes.cosine, nodes.sine, end);
   set_strains<Nodes, S>(element, slope, nodes, begin, end, carried, at);
   set_forces<Nodes, S>(element, slope, nodes, rule, begin, end, memory, step, with_tangent, carried != nullptr,

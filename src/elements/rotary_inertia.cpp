@@ -1,5 +1,7 @@
 #include "elements/rotary_inertia.h"
 
+#include <cassert>
+
 #include "elements/orders.h"
 
 namespace flexarm {
@@ -8,6 +10,7 @@ template <int Nodes>
 void add_rotary_rate(const BeamElement<Nodes>& element, int k, const RotaryRate& rate,
                      const GeneralisedShapeFunctions<Nodes>& generalised, bool with_tangent,
                      ElementSystem<Nodes>& system) {
+  assert(k >= 0 && k < BeamElement<Nodes>::kMassPoints);
   const auto& constants = element.mass_points[k];
   for (int i = 0; i < Nodes; ++i)
     system.residual.template segment<3>(6 * i + 3) += constants.weight * constants.shape[i] * rate.moment;
@@ -21,6 +24,7 @@ void add_rotary_rate(const BeamElement<Nodes>& element, int k, const RotaryRate&
 RotaryRate average_rotary_rate(const Matrix3& inertia, const Matrix3& begin, const Matrix3& end,
                                const Vector3& increment, const Matrix3& inverse_tangent, const MassPointState& state,
                                double step, bool with_derivative) {
+  assert(step != 0);
   const AverageRate<double> average(inertia, begin, end, increment, inverse_tangent, state.angular_velocity, step,
                                     with_derivative);
   RotaryRate rate;
@@ -51,6 +55,7 @@ RotaryRate newmark_rotary_rate(const Matrix3& inertia, const Matrix3& begin, con
 
 RotaryRate momentum_rotary_rate(const Matrix3& inertia, const Matrix3& begin, const Matrix3& end,
                                 const MassPointState& state, const Vector3& begin_rate, const NewmarkRule& rule) {
+  assert(rule.gamma != 0 && rule.step != 0);
   RotaryRate rate = newmark_rotary_rate(inertia, begin, end, state, rule);
   const Vector3 momentum = end * (inertia * rate.end.angular_velocity),
                 increment = so3::log(Matrix3(end * begin.transpose()));

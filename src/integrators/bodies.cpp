@@ -1,6 +1,7 @@
 #include "integrators/bodies.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "elements/nodal_inertia.h"
 
@@ -51,6 +52,7 @@ void Bodies::evaluate(Balance& balance) {
 }
 
 void Bodies::accept(State& state) const {
+  assert(state.nodes.size() == configuration_.begin().size());
   for (std::size_t i = 0; i < state.nodes.size(); ++i)
     state.nodes[i] = advanced(configuration_.scheme(), {configuration_.begin()[i], configuration_.end()[i],
                                                         state.nodes[i], configuration_.increments()[i],

@@ -1,6 +1,7 @@
 #pragma once
 /// Until when a step has time.
 
+#include <cassert>
 #include <chrono>
 
 namespace flexarm {
@@ -11,6 +12,7 @@ class Deadline {
  public:
   /// @param seconds  after which it has passed [s]; 0: it never does
   explicit Deadline(double seconds) : seconds_(seconds) {
+    assert(seconds >= 0);
     if (seconds_ > 0) begin_ = Clock::now();
   }
   bool has_passed() const {

@@ -1,6 +1,7 @@
 #include "integrators/drag.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "math/cayley.h"
 
@@ -16,6 +17,7 @@ Vector3 Drag::turn(std::size_t node) const {
 }
 
 void Drag::evaluate(Balance& balance) const {
+  assert(strength == 0 || configuration_.scheme().is_static);
   if (strength == 0) return;
   const double length = configuration_.model().length_scale;
   for (std::size_t i = 0; i < configuration_.end().size(); ++i) {

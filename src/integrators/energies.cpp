@@ -1,5 +1,7 @@
 #include "integrators/energies.h"
 
+#include <cassert>
+
 #include "elements/element_configuration.h"
 #include "elements/strain_dampers.h"
 #include "joints/elasticity.h"
@@ -30,6 +32,8 @@ double stored(const TimeRule& rule, const StrainMemory& memory, const BeamElemen
 }  // namespace
 
 Energies energies(const Model& model, const Scheme& scheme, const State& state) {
+  assert(state.nodes.size() == model.nodes.size() && state.released.size() == model.joints.size_with_held());
+  assert(state.actuators.size() == model.actuators.size());
   Energies out;
   out.work = state.work;
   out.dissipated = state.dissipated;
@@ -78,6 +82,7 @@ Energies energies(const Model& model, const Scheme& scheme, const State& state) 
 }
 
 Momenta momenta(const Model& model, const Scheme& scheme, const State& state) {
+  assert(state.nodes.size() == model.nodes.size() && state.actuators.size() == model.actuators.size());
   Momenta out;
   for_each_element(model.beams, [&](const auto& element) {
     constexpr int N = std::decay_t<decltype(element)>::kNodes;

@@ -1,6 +1,7 @@
 #include "integrators/event_march.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include "joints/joint_kinematics.h"
 #include "joints/joint_stop.h"
@@ -67,6 +68,7 @@ void EventMarch::set_stage(std::size_t index, int stage) {
 }
 
 void EventMarch::set_stages(const std::vector<int>& stages) {
+  assert(stages.size() == corners_.size());
   for (std::size_t i = 0; i < stages.size(); ++i) set_stage(i, stages[i]);
 }
 
@@ -101,6 +103,7 @@ StopReach EventMarch::reach(const Corner& corner, const Model& model, const Stat
 }
 
 double EventMarch::guard(std::size_t index, int stage, const Model& model, const State& state) {
+  assert(index < corners_.size());
   const Corner& corner = corners_[index];
   if (corner.is_friction) return stage * rate(model, state, corner.coordinate);
   const StopReach now = reach(corner, model, state);
@@ -285,6 +288,7 @@ bool EventMarch::march(State& state, double length, int pieces, MarchFollower& f
 }
 
 std::string EventMarch::go(State& state, double length, int pieces, MarchFollower& follower) {
+  assert(length > 0 && pieces >= 1);
   const double begin = state.time;
   double left = length;
   last_jump_ = kNone;

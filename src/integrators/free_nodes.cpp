@@ -1,6 +1,7 @@
 #include "integrators/free_nodes.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "integrators/gathered.h"
 #include "math/cayley.h"
@@ -36,6 +37,7 @@ FreeNodes::FreeNodes(const DegreesOfFreedom& dof) {
 template <class Turn>
 void FreeNodes::move(const std::vector<NodePose>& from, const Eigen::VectorXd& increment, const Turn& turn,
                      std::vector<NodePose>& to) const {
+  assert(to.size() == from.size());
   simd::run([&] {
     for (const Four& pack : packs_) {
       const auto pose = [&](int lane) -> const NodePose& { return from[pack.nodes[lane]]; };
@@ -71,6 +73,7 @@ void FreeNodes::advance(const std::vector<NodePose>& begin, const Eigen::VectorX
 
 void set_increments(const std::vector<NodePose>& begin, const std::vector<NodePose>& end,
                     std::vector<Vector3>& increments) {
+  assert(begin.size() == end.size() && increments.size() == end.size());
   const int count = static_cast<int>(end.size());
   simd::run([&] {
     for (int first = 0; first < count; first += kLanes) {

@@ -1,5 +1,7 @@
 #include "integrators/held_efforts.h"
 
+#include <cassert>
+
 #include "elements/nodal_inertia.h"
 #include "joints/joint_kinematics.h"
 
@@ -41,6 +43,7 @@ void HeldEfforts::add_inertia(const HeldJoint& held, int node, double weight, Ve
 }
 
 double HeldEfforts::effort(const HeldJoint& held, const ReducedResidual& residual, double weight) {
+  assert(held.coordinate >= 0 && weight != 0);
   const StepConfiguration& step = configuration_;
   const Model& model = step.model();
   const int j = model.coordinates[held.coordinate].joint, node = model.joints[j].master;

@@ -1,6 +1,7 @@
 #include "integrators/hht_interpolation.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "math/so3.h"
 
@@ -32,6 +33,7 @@ void HhtInterpolation::begin_evaluation(bool in_plane) {
 
 HhtInterpolation::Moment HhtInterpolation::moment(int node, const Vector3& begin, const Vector3& end,
                                                   bool with_derivative) const {
+  assert(!of_rotation_vectors() || total_rotations_.size() == interpolated_.size());
   const double alpha = configuration_.scheme().alpha;
   Moment out{(1 + alpha) * end - alpha * begin, (1 + alpha) * Matrix3::Identity(), Matrix3::Zero()};
   if (!of_rotation_vectors()) return out;
@@ -61,6 +63,7 @@ void HhtInterpolation::take(int node, const Vector6& force, Eigen::Matrix<double
 }
 
 void HhtInterpolation::add_forces(Balance& balance) const {
+  assert(of_kinematics() || configuration_.state().forces.size() == end_forces_.size());
   const double alpha = configuration_.scheme().alpha;
   for (std::size_t i = 0; i < end_forces_.size(); ++i) {
     const int node = static_cast<int>(i);
@@ -81,6 +84,7 @@ void HhtInterpolation::add_forces(Balance& balance) const {
 }
 
 void HhtInterpolation::shift_reactions(Balance& balance) {
+  assert(!has_reactions() || configuration_.state().reactions.size() == end_reactions_.size());
   const double alpha = configuration_.scheme().alpha, weight = alpha / (1 - alpha);
   for (std::size_t i = 0; i < end_reactions_.size(); ++i) {
     Eigen::Map<Vector6> residual = balance.residual.node(static_cast<int>(i));
@@ -90,6 +94,7 @@ void HhtInterpolation::shift_reactions(Balance& balance) {
 }
 
 void HhtInterpolation::accept(State& state) const {
+  assert(state.forces.size() == end_forces_.size());
   std::copy(end_forces_.begin(), end_forces_.end(), state.forces.begin());
   state.reactions = end_reactions_;
 }

@@ -1,6 +1,7 @@
 #include "integrators/integration_points.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "elements/orders.h"
 
@@ -27,6 +28,7 @@ void IntegrationPoints::begin(bool carries) {
 
 void IntegrationPoints::carry_strains(const std::vector<NodePose>& end, const double* update) {
   if (!carries_) return;
+  assert(update && end.size() == configuration_.end().size());
   holds_carried_ = true;
   for_each_element(configuration_.model().beams, [&](const auto& element) {
     constexpr int N = std::decay_t<decltype(element)>::kNodes;

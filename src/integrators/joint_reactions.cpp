@@ -1,8 +1,11 @@
 #include "integrators/joint_reactions.h"
 
+#include <cassert>
+
 namespace flexarm {
 
 Vector6 JointReactions::transmitted(const ReducedResidual& residual, const ReactionPlace& place) const {
+  assert(place.joint >= 0 || place.closure >= 0);
   const Model& model = configuration_.model();
   int node;
   Vector6 wrench;
@@ -28,6 +31,7 @@ Vector6 JointReactions::transmitted(const ReducedResidual& residual, const React
 }
 
 void JointReactions::accept(const ReducedResidual& residual, State& state) const {
+  assert(state.last_transmitted.size() == 6 * configuration_.model().reactions.size());
   const std::vector<ReactionPlace>& places = configuration_.model().reactions;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const Vector6 now = transmitted(residual, places[i]);
@@ -39,6 +43,7 @@ void JointReactions::accept(const ReducedResidual& residual, State& state) const
 }
 
 void JointReactions::accept_rest(const ReducedResidual& residual, State& state) const {
+  assert(state.last_transmitted.size() == 6 * configuration_.model().reactions.size());
   const std::vector<ReactionPlace>& places = configuration_.model().reactions;
   for (std::size_t i = 0; i < places.size(); ++i)
     Eigen::Map<Vector6>(state.last_transmitted.data() + 6 * i) = transmitted(residual, places[i]);

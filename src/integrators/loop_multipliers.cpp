@@ -1,6 +1,7 @@
 #include "integrators/loop_multipliers.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace flexarm {
@@ -32,6 +33,7 @@ void LoopMultipliers::extrapolate(const IncrementHistory& history) {
 }
 
 void LoopMultipliers::update(const Eigen::VectorXd& increment) {
+  assert(increment.size() == configuration_.degrees_of_freedom().unknowns);
   for_each([&](std::size_t k, int i, int equation) { values_[k][i] += increment[equation]; });
 }
 
@@ -40,6 +42,7 @@ double LoopMultipliers::end_weight() const {
 }
 
 Vector6 LoopMultipliers::on_child(int closure) const {
+  assert(closure >= 0 && static_cast<std::size_t>(closure) < values_.size());
   const LoopClosure& loop = configuration_.model().closures[closure];
   const ClosurePoses begin = poses(loop, configuration_.begin()), end = poses(loop, configuration_.end());
   Vector6 sum = Vector6::Zero();

@@ -1,6 +1,7 @@
 #include "integrators/neighbour_steps.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -90,6 +91,7 @@ void NeighbourSteps::measure(Direction& direction, const State& state) {
     const double weight = neighbour.weight / direction.difference;
     std::size_t i = 0;
     for_each_number(neighbour.state, [&](const char*, double number) {
+      assert(i < numbers_.size() && "of a like model");
       sum[i] += weight * (number - numbers_[i]);
       ++i;
     });
@@ -105,6 +107,7 @@ void NeighbourSteps::place(Direction& direction, const State& state) {
     own = state;
     std::size_t i = 0;
     for_each_number(own, [&](const char*, double& number) {
+      assert(i < direction.derivative.size() && "measure() has made it");
       if (const double change = way * direction.derivative[i++]; change != 0) number += change;
     });
     for (NodeState& node : own.nodes) node.orientation.normalize();

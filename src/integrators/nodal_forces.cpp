@@ -1,5 +1,7 @@
 #include "integrators/nodal_forces.h"
 
+#include <cassert>
+
 #include "elements/nodal_inertia.h"
 #include "math/cayley.h"
 #include "model/carried_origin.h"
@@ -86,6 +88,7 @@ void NodalForces::evaluate(Balance& balance) const {
 }
 
 Vector6 NodalForces::loads_on(const std::vector<bool>& links) const {
+  assert(links.size() == configuration_.model().links.size());
   const std::vector<NodePose>&begin = configuration_.begin(), &end = configuration_.end();
   const LoadPoint point = load_point(configuration_.scheme());
   const auto is_on = [&](const NodalLoad& load) { return load.link >= 0 && links[load.link]; };

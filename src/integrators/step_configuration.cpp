@@ -1,6 +1,7 @@
 #include "integrators/step_configuration.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "joints/joint_kinematics.h"
@@ -105,6 +106,7 @@ void StepConfiguration::extrapolate(const IncrementHistory& history, int order) 
 }
 
 void StepConfiguration::update(const Eigen::VectorXd& increment) {
+  assert(increment.size() == dof_.unknowns);
   free_nodes_.update(increment, end_);
   for (std::size_t j = 0; j < model_.joints.size(); ++j) {
     const int variable = dof_.variable_of_joint(static_cast<int>(j));
@@ -144,6 +146,7 @@ void StepConfiguration::set_slaves() {
 }
 
 void StepConfiguration::set_end(const State& state) {
+  assert(state.nodes.size() == end_.size() && state.released.size() == released_.size());
   for (std::size_t i = 0; i < state.nodes.size(); ++i) end_[i] = node_pose(state.nodes[i]);
   std::copy(state.released.begin(), state.released.end(), released_.begin());
   set_increments(begin_, end_, increments_);
@@ -205,6 +208,7 @@ bool StepConfiguration::is_driven_off_line() const {
 }
 
 SlideTravel StepConfiguration::slide_travel(int j) const {
+  assert(model_.joints[j].kind == JointMapKind::Slide);
   const JointMap& joint = model_.joints[j];
   return {model_.slide_lines[joint.line],
           begin_,
@@ -236,6 +240,7 @@ void StepConfiguration::joint_maps(int j, const Vector6& g, SlideMaps& maps, boo
 }
 
 MimicMap StepConfiguration::mimic_map(int coordinate) const {
+  assert(model_.coordinates[coordinate].mimicked >= 0);
   const Coordinate& following = model_.coordinates[coordinate];
   const int joint = model_.coordinates[following.mimicked].joint;
   const double from = state_->released[joint].displacement[0], to = released_[joint].displacement[0];
@@ -250,6 +255,7 @@ ReleasedVector StepConfiguration::increment_of(int joint) const {
 }
 
 double StepConfiguration::end_rate(const Coordinate& coordinate) const {
+  assert(step_ != 0 && "nothing has a rate in statics");
   const double gamma = scheme_.rate_gamma();
   const double begin = begin_rates_[coordinate.joint][coordinate.component];
   return (increment_of(coordinate) / step_ - (1 - gamma) * begin) / gamma;
@@ -283,6 +289,7 @@ int StepConfiguration::aliased_coordinate() const {
 }
 
 CoordinateStep StepConfiguration::coordinate_step(std::size_t index, double increment) const {
+  assert(index < model_.coordinates.size());
   const Coordinate& coordinate = model_.coordinates[index];
   const int j = coordinate.joint, k = coordinate.component;
   CoordinateStep step;

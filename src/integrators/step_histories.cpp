@@ -1,5 +1,7 @@
 #include "integrators/step_histories.h"
 
+#include <cassert>
+
 namespace flexarm {
 namespace {
 
@@ -94,6 +96,7 @@ void StepHistories::begin(const StepConfiguration& configuration) {
 }
 
 StepForce StepHistories::effort(const Model& model, std::size_t coordinate, double commanded) const {
+  assert(coordinate < efforts_.size());
   StepForce out = efforts_[coordinate];
   if (!std::isnan(commanded))
     out.acting = out.mean = out.at_end = applied_effort(model.coordinates[coordinate], commanded, 0);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -81,6 +82,7 @@ UnknownScales::UnknownScales(const Model& model, const DegreesOfFreedom& dof)
 }
 
 double UnknownScales::norm(const Eigen::VectorXd& increment, double step) const {
+  assert(increment.size() == scales_.size());
   constexpr double infinity = std::numeric_limits<double>::infinity();
   double norm = largest_product(increment, scales_);
   if (!std::isfinite(norm)) return infinity;
@@ -94,11 +96,13 @@ double UnknownScales::norm(const Eigen::VectorXd& increment, double step) const 
 }
 
 double UnknownScales::largest_moment(const Eigen::VectorXd& residual) const {
+  assert(residual.size() == scales_.size());
   if (residual.size() == 0) return 0;
   return (scales_ > 0).select(residual.array().abs() / scales_, 0.0).maxCoeff<Eigen::PropagateNaN>();
 }
 
 double UnknownScales::largest_rotation(const Eigen::VectorXd& increment) const {
+  assert(increment.size() == rotations_.size());
   return largest_product(increment, rotations_);
 }
 

@@ -1,6 +1,7 @@
 #include "integrators/velocity_scaling.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "building/model_builder.h"
@@ -130,6 +131,7 @@ void VelocityScaling::project(const State& state) {
 }
 
 bool VelocityScaling::apply(const State& begin, State& state) {
+  assert(begin.nodes.size() == state.nodes.size() && state.nodes.size() == model_.nodes.size());
   const Energies before = energies(model_, scheme_, begin), after = energies(model_, scheme_, state);
   const double target =
       before.total() + begin.energy_defect + (after.work - before.work) - (after.dissipated - before.dissipated);

@@ -1,5 +1,7 @@
 #include "joints/closure_maps.h"
 
+#include <cassert>
+
 #include "math/so3.h"
 
 namespace flexarm {
@@ -57,6 +59,7 @@ ClosureRows closure_rows(const LoopClosure& closure, const ClosureConstraint& co
 
 void closure_maps(const LoopClosure& closure, const ClosureConstraint& constraint, const ClosurePoses& begin,
                   const ClosurePoses& end, double w, ClosureMaps& maps) {
+  assert(w >= 0 && w <= 1);
   const Vectors at_end = vectors(closure, constraint, end);
   const Vectors v = mean(vectors(closure, constraint, begin), at_end, w);
   maps.value = closure_value(closure, constraint, end);

@@ -1,6 +1,8 @@
 #pragma once
 /// What an effort on a released coordinate feels of a step, and what it does there.
 
+#include <cassert>
+
 namespace flexarm {
 
 /// Which law of one side of a stop holds over a step. Runs have it by the penetration; derivatives of runs hold the law
@@ -24,10 +26,12 @@ struct CoordinateStep {
 
 /// The rate that damping and smooth friction feel. Not in statics.
 inline double rate_of(const CoordinateStep& change) {
+  assert(change.step != 0 && change.gamma != 0 && "nothing has a rate in statics");
   return (change.increment / change.step - (1 - change.gamma) * change.begin_rate) / change.gamma;
 }
 /// Its derivative with respect to the increment.
 inline double rate_slope(const CoordinateStep& change) {
+  assert(change.step != 0 && change.gamma != 0 && "nothing has a rate in statics");
   return 1 / (change.gamma * change.step);
 }
 

@@ -1,6 +1,7 @@
 #include "joints/elasticity.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace flexarm {
@@ -12,6 +13,7 @@ struct Deflection {
 };
 
 Deflection deflection(const Elasticity& elasticity, double twist) {
+  assert(elasticity.backlash >= 0);
   const double beyond = std::abs(twist) - 0.5 * elasticity.backlash;
   if (beyond <= 0 && elasticity.backlash > 0) return {0, 0};
   return {std::copysign(beyond, twist), 1};

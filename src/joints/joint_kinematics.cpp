@@ -1,7 +1,11 @@
 #include "joints/joint_kinematics.h"
 
+#include <cassert>
+#include <cstddef>
+
 namespace flexarm {
 NodePose slave_pose(const Model& model, int j, const std::vector<NodePose>& nodes, const Released& released) {
+  assert(j >= 0 && static_cast<std::size_t>(j) < model.joints.size_with_held() && nodes.size() == model.nodes.size());
   const JointMap& joint = model.joints[j];
   if (joint.kind == JointMapKind::Slide)
     return slide_pose(model.slide_lines[joint.line], nodes, released.displacement[0]);
@@ -10,6 +14,8 @@ NodePose slave_pose(const Model& model, int j, const std::vector<NodePose>& node
 
 SlaveVelocity slave_velocity(const Model& model, int j, const std::vector<NodePose>& nodes, const Released& released,
                              const std::vector<Vector6>& velocities) {
+  assert(j >= 0 && static_cast<std::size_t>(j) < model.joints.size_with_held());
+  assert(nodes.size() == model.nodes.size() && velocities.size() == nodes.size());
   const JointMap& joint = model.joints[j];
   SlaveVelocity out;
   out.carried.setZero();
@@ -33,6 +39,8 @@ SlaveVelocity slave_velocity(const Model& model, int j, const std::vector<NodePo
 
 ReleasedVector released_rates(const Model& model, int j, const std::vector<NodePose>& nodes, const Released& released,
                               const std::vector<Vector6>& velocities) {
+  assert(j >= 0 && static_cast<std::size_t>(j) < model.joints.size_with_held() && model.joints[j].slave >= 0);
+  assert(nodes.size() == model.nodes.size() && velocities.size() == nodes.size());
   const JointMap& joint = model.joints[j];
   if (joint.kind != JointMapKind::Slide)
     return released_rates(joint, joint_pose(joint, nodes, released),

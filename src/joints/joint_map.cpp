@@ -1,5 +1,6 @@
 #include "joints/joint_map.h"
 
+#include <cassert>
 #include <cmath>
 
 #include "math/cayley.h"
@@ -214,12 +215,14 @@ void incremental_maps_with_arms(const JointMap& joint, const JointPose& begin, c
 }  // namespace
 
 NodePose slave_pose(const JointMap& joint, const NodePose& master, const Released& released) {
+  assert(joint.kind != JointMapKind::Slide && "slide_pose() has it");
   NodePose slave;
   simd::run([&] { slave = pose_at_arm(joint, master, released); });
   return slave;
 }
 
 Released updated(const JointMap& joint, const Released& released, const Eigen::Ref<const ReleasedVector>& increment) {
+  assert(increment.size() == released_count(joint.kind));
   Released out = released;
   if (joint.kind == JointMapKind::Scalar || joint.kind == JointMapKind::Slide) {
     out.displacement[0] += increment[0];
@@ -243,6 +246,7 @@ ReleasedVector released_increment(const JointMap& joint, const Released& from, c
 }
 
 void variational_maps(const JointMap& joint, const JointPose& pose, const Vector6& g, FoldMaps& maps) {
+  assert(joint.kind != JointMapKind::Slide && "slide_variational_maps() has them");
   const int count = released_count(joint.kind);
   const Matrix3 rotation = joint_rotation(joint, pose.master);
   const Vector3 arm = pose.slave.rotation * joint.arm;
@@ -281,11 +285,14 @@ void variational_maps(const JointMap& joint, const JointPose& pose, const Vector
 
 void incremental_maps(const JointMap& joint, const JointPose& begin, const JointPose& end, const Vector6& g,
                       FoldMaps& maps, bool with_tangent, double arm_weight) {
+  assert(joint.kind != JointMapKind::Slide && "slide_incremental_maps() has them");
+  assert(arm_weight >= 0 && arm_weight <= 1);
   simd::run([&] { incremental_maps_with_arms(joint, begin, end, g, maps, with_tangent, arm_weight); });
 }
 
 Vector6 slave_velocity(const JointMap& joint, const JointPose& pose, const Vector6& master_velocity,
                        const Eigen::Ref<const ReleasedVector>& rates) {
+  assert(rates.size() == released_count(joint.kind));
   FoldMaps maps;
   variational_maps(joint, pose, Vector6::Zero(), maps);
   Vector6 velocity = master_velocity;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 
 #include "joints/stop_restitution.h"
@@ -103,6 +104,7 @@ struct Side {
 };
 
 std::array<Side, 2> sides(const LimitStop& limit, double begin, double end) {
+  assert(limit.lower <= limit.upper && limit.give_below > 0 && limit.give_above > 0);
   return {Side{1, {limit.lower - begin, limit.give_below}, {limit.lower - end, limit.give_below}},
           Side{-1, {begin - limit.upper, limit.give_above}, {end - limit.upper, limit.give_above}}};
 }
@@ -164,6 +166,7 @@ PassiveEffort one_side(const LimitStop& limit, const StopPenalty& penalty, const
 
 StopPenalty stop_penalty(const Coordinate& coordinate, double contact_time) {
   if (!coordinate.limit) return {};
+  assert(contact_time > 0 && coordinate.limit->damping.of_means > 0);
   const auto& [of_means, at_end] = coordinate.limit->damping;
   const double inertia = coordinate.limit->inertia, omega = kPi / contact_time;
   const double damping = 2 * of_means * inertia * omega;
@@ -229,6 +232,7 @@ bool is_coarse(const LimitStop& limit, const StopPenalty& penalty, const Coordin
 
 bool swings(const LimitStop& limit, const StopPenalty& penalty, const CoordinateStep& change, double begin_rate,
             double refinement) {
+  assert(change.step != 0 && refinement > 0);
   const double scale = frequency(limit, penalty), end_rate = 2 * change.increment / change.step - begin_rate;
   for (const Side& side : sides(limit, change.begin, change.end)) {
     if (side.begin.depth <= 0 && side.end.depth <= 0) continue;

@@ -1,6 +1,7 @@
 #include "joints/motor_step.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "joints/elasticity.h"
@@ -17,6 +18,7 @@ struct MotorEffort {
 
 /// The largest effort up to `limit` that a motor can give at a speed at which it pushes forth, and its derivative.
 ValueAndSlope available(const Drive& drive, double limit, double rate) {
+  assert(limit >= 0 && drive.effort_limit >= 0 && drive.velocity_limit > 0);
   const double part = std::clamp(1 - rate / drive.velocity_limit, 0.0, 1.0);
   const double effort = part == 1 ? drive.effort_limit : part * drive.effort_limit;
   if (effort >= limit) return {limit, 0};
@@ -71,7 +73,9 @@ MotorAction rigid_action(const Drive& drive, const MotorDemand& demand, const Ro
 class RotorBalance {
  public:
   RotorBalance(const Drive& drive, const MotorDemand& demand, const RotorStep& rotor, const CoordinateStep& link)
-      : drive_(drive), demand_(demand), rotor_(rotor), link_(link) {}
+      : drive_(drive), demand_(demand), rotor_(rotor), link_(link) {
+    assert(drive.gear && "a rotor that turns with its coordinate has no balance of its own");
+  }
 
   struct Terms {
     PassiveEffort gear;  // on the twist
@@ -157,6 +161,7 @@ class RotorBalance {
 
 /// With Coulomb's law: the staircase of StickSlip in one unknown, whose branch shows by itself.
 MotorAction sticking_action(const RotorBalance& balance, const RotorStep& rotor, double guess) {
+  assert(rotor.rests || rotor.rate_slope != 0);
   const double rest = rotor.rests ? 0 : -rotor.rate_offset / rotor.rate_slope;
   const double low = std::min(rest, 0.0), high = std::max(rest, 0.0);
   const auto held = [&](double u) {

@@ -1,6 +1,7 @@
 #include "joints/servo_step.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "schemes/scheme.h"
@@ -162,6 +163,7 @@ std::size_t outputs_of(const Servo& servo) {
 }
 
 void sample(const Servo& servo, const ServoInput& input, double set_rate, ServoState& state) {
+  assert(servo.sample_time > 0 && state.outputs.size() == outputs_of(servo));
   const double period = servo.sample_time;
   if (input.time < state.samples * period - kRoundOff * input.measured.step) return;
   const ServoLaw& law = law_of(servo, state);
@@ -187,6 +189,8 @@ void sample(const Servo& servo, const ServoInput& input, double set_rate, ServoS
 }
 
 double held_output(const Servo& servo, const ServoState& state, double time, double step) {
+  assert(servo.sample_time > 0 && state.outputs.size() == outputs_of(servo));
+  assert(step > 0 && "what is sampled is not for steps backwards");
   double sum = 0;
   for (std::size_t i = 0; i < state.outputs.size(); ++i) {
     const double number = state.samples - 1 - static_cast<double>(i);  // before the first one: < 0

@@ -1,5 +1,6 @@
 // Maps of a slider's increments over a step, and their derivatives. (joints.md 4.3 to 4.5)
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <optional>
 
@@ -27,6 +28,8 @@ using ActiveWeights = std::array<S, kMostActive>;
 
 template <typename S, typename T, typename F>
 void add_weights(const slide::LineWeights<T>& weights, const F& factor, int first, ActiveWeights<S>& sum) {
+  assert(weights.first >= first);
+  assert(weights.first + weights.count - first <= kMostActive && "a longer way is taken in shorter steps");
   for (int i = 0; i < weights.count; ++i) sum[weights.first + i - first] += factor * weights.values[i];
 }
 
@@ -285,6 +288,7 @@ class IncrementalMaps {
 }  // namespace
 
 void slide_incremental_maps(const SlideTravel& travel, const Vector6& g, SlideMaps& maps, bool with_tangent) {
+  assert(travel.begin.size() == travel.end.size());
   IncrementalMaps(travel, g, maps, with_tangent);
 }
 

@@ -53,6 +53,7 @@ void slide::set_active(const SlideLine& line, int piece, int other_piece, bool w
 }
 
 slide::Place slide_place(const SlideLine& line, const std::vector<NodePose>& nodes, double arc_length) {
+  assert(!line.pieces.empty());
   slide::Place place;
   place.piece = line.piece_at(arc_length);
   place.frames = slide::piece_frames<double>(line, place.piece, slide::LineNodes{line, nodes});
@@ -66,6 +67,7 @@ NodePose slide_pose(const SlideLine& line, const std::vector<NodePose>& nodes, d
 }
 
 NodePose slide_pose(const SlideTravel& travel, const Vector3& begin_position) {
+  assert(travel.begin.size() == travel.end.size());
   const slide::TravelPlaces places(travel);
   NodePose pose = section_pose(travel.line, travel.end, places.end());
   const slide::ContactRule rule = slide::contact_rule(travel.step(), travel.arm_weight);
@@ -84,6 +86,7 @@ NodePose slide_pose(const SlideTravel& travel, const Vector3& begin_position) {
 
 void slide_variational_maps(const SlideLine& line, const std::vector<NodePose>& nodes, double arc_length,
                             const Vector6& g, SlideMaps& maps, bool with_tangent) {
+  assert(!line.pieces.empty());
   const int piece = line.piece_at(arc_length);
   const slide::LineNodes poses{line, nodes};
   slide::set_active(line, piece, piece, with_tangent, maps);

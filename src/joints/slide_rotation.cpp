@@ -1,5 +1,7 @@
 #include "joints/slide_rotation.h"
 
+#include <cassert>
+
 #include "math/cayley.h"
 #include "math/so3.h"
 
@@ -29,7 +31,9 @@ RotationSplit::RotationSplit(const TravelledFrames& frames, double c, double cha
       c1_(1 / (1 - 0.25 * a1_.dot(b1_))),
       c2_(1 / (1 - 0.25 * a2_.dot(b2_))),
       turned1_(cayley::inverse_tangent(a1_) * along1_),
-      turned2_(cayley::inverse_tangent(a2_).transpose() * along2_) {}
+      turned2_(cayley::inverse_tangent(a2_).transpose() * along2_) {
+  assert((is_short || change != 0) && "a way of no length is short");
+}
 
 Vector3 RotationSplit::fixed() const {
   return begin_ * a1_ + end_ * a2_;

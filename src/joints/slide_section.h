@@ -6,6 +6,7 @@
 /// rotations: r + H (jump of r'), exp(H (jump of k)) Lambda. Nodes stay where they are. (joints.md 4.1, beyond.md 2)
 
 #include <array>
+#include <cassert>
 #include <type_traits>
 
 #include "math/cayley.h"
@@ -54,6 +55,7 @@ inline constexpr auto kPieceNodes = [] {
 /// Calls visit(std::integral_constant<int, N>) for the number of nodes of a piece.
 template <class Visit>
 decltype(auto) with_node_count(int count, const Visit& visit) {
+  assert(count >= 2 && count <= kMostNodes);
   switch (count) {
     case 2:
       return visit(std::integral_constant<int, 2>());
@@ -80,6 +82,7 @@ using LineWeights = Weights<S, kMostWeights>;
 /// Lagrange functions of a piece.
 template <typename S>
 LagrangeWeights<S> lagrange_weights(const SlidePiece& piece, const S& arc_length) {
+  assert(piece.node_count >= 2 && piece.node_count <= kMostNodes && piece.length() > 0);
   LagrangeWeights<S> out;
   out.first = piece.first_node;
   out.count = piece.node_count;
@@ -105,6 +108,7 @@ LagrangeWeights<S> lagrange_weights(const SlidePiece& piece, const S& arc_length
 /// [g].
 template <typename S>
 std::array<S, kMostNodes> lagrange_differences(const SlidePiece& piece, double from, const S& to) {
+  assert(piece.node_count >= 2 && piece.node_count <= kMostNodes && piece.length() > 0);
   std::array<S, kMostNodes> out;
   const double scale = 2 / piece.length();
   const double xi_from = scale * (from - piece.begin) - 1;
@@ -153,6 +157,7 @@ struct Hermite {
 /// shares being weighted by lengths such that both sides agree.
 template <class Visit>
 void for_each_smoothed_border(const SlideLine& line, int index, const Visit& visit) {
+  assert(index >= 0 && index < static_cast<int>(line.pieces.size()));
   if (!line.smooth) return;
   const SlidePiece& piece = line.pieces[index];
   for (const bool at_end : {false, true}) {
@@ -186,6 +191,7 @@ LineWeights<S> empty_weights(const SlideLine& line, int index) {
   out.first = support.first;
   out.count = support.end - support.first;
   out.values.fill(S(0));
+  assert(out.count <= kMostWeights);
   out.derivatives.fill(S(0));
   return out;
 }

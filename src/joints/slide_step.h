@@ -1,6 +1,7 @@
 #pragma once
 /// What both forms of a slider's maps are made of.
 
+#include <cassert>
 #include <optional>
 
 #include "joints/slide_map.h"
@@ -18,6 +19,8 @@ struct LineNodes {
   const std::vector<NodePose>& nodes;  ///< of the model
 
   PoseT<double> operator()(int i) const {
+    assert(i >= 0 && static_cast<std::size_t>(i) < line.nodes.size());
+    assert(static_cast<std::size_t>(line.nodes[i]) < nodes.size() && "poses of all nodes of the model");
     const NodePose& node = nodes[line.nodes[i]];
     return {node.position, node.orientation};
   }

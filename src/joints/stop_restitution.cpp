@@ -1,6 +1,7 @@
 #include "joints/stop_restitution.h"
 
 #include <array>
+#include <cassert>
 #include <cmath>
 
 namespace flexarm {
@@ -58,6 +59,7 @@ double ratio_for(const Restitution& restitution, double value) {
 }  // namespace
 
 StopDamping damping_for(double restitution) {
+  assert(restitution >= 0.05 && restitution <= 1);
   return {ratio_for(restitution_of_means, restitution), ratio_for(restitution_at_end, restitution)};
 }
 

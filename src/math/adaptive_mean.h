@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -28,6 +29,7 @@ constexpr std::array<double, 7> kFrom7 = {-0.029952145923186596, 0.0905110633114
 /// outside. Not finite where a value is not. No allocation; some 4,000 values at most.
 template <class Function>
 double adaptive_mean(const Function& f, double begin, double end) {
+  assert(begin < end);
   using namespace mean_rule;
   constexpr double kEpsilon = std::numeric_limits<double>::epsilon(), kTolerance = 2e-14;
   constexpr int kMostValues = 4000, kDepth = 64;
@@ -79,6 +81,7 @@ double adaptive_mean(const Function& f, double begin, double end) {
 /// for the next interval.
 template <class Function>
 double mean_of_what_may_be_smooth(const Function& f, double begin, double end, bool is_smooth) {
+  assert(begin < end);
   using namespace mean_rule;
   constexpr double kForetold = 3e-10;
   const double middle = 0.5 * (begin + end), half = 0.5 * (end - begin);

@@ -1,6 +1,7 @@
 #include "math/cubic_spline.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 
 namespace flexarm {
@@ -24,6 +25,7 @@ struct Piece {
 }  // namespace
 
 double CubicSpline::operator()(double t) const {
+  assert(times.size() >= 2 && values.size() == times.size() && rates.size() == times.size());
   if (t <= times.front()) return values.front();
   if (t >= times.back()) return values.back();
   const Piece p(*this, t);
@@ -32,6 +34,7 @@ double CubicSpline::operator()(double t) const {
 }
 
 double CubicSpline::derivative(double t) const {
+  assert(times.size() >= 2 && values.size() == times.size() && rates.size() == times.size());
   if (t < times.front() || t > times.back()) return 0;
   const Piece p(*this, t);
   const double r = 1 - p.s;
@@ -40,6 +43,7 @@ double CubicSpline::derivative(double t) const {
 }
 
 std::vector<double> smoothest_rates(const std::vector<double>& times, const std::vector<double>& values) {
+  assert(times.size() >= 2 && values.size() == times.size());
   const std::size_t last = times.size() - 1;
   std::vector<double> rates(times.size(), 0.0), above(times.size(), 0.0);
   // Rows h_1 r_(i-1) + 2 (h_0 + h_1) r_i + h_0 r_(i+1) = 3 (h_1 d_0 + h_0 d_1), with the slopes d of the chords on

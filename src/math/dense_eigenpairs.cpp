@@ -1,5 +1,6 @@
 #include "math/dense_eigenpairs.h"
 
+#include <cassert>
 #include <stdexcept>
 
 #include <Spectra/LinAlg/UpperHessenbergEigen.h>
@@ -40,6 +41,7 @@ void require_finite(const Eigen::MatrixXd& matrix) {
 }  // namespace
 
 Eigenpairs dense_eigenpairs(const Eigen::MatrixXd& matrix) {
+  assert(matrix.rows() == matrix.cols());
   require_finite(matrix);
   Eigenpairs pairs;
   if (find_pairs(matrix, pairs) || find_balanced_pairs(matrix, pairs)) return pairs;

@@ -1,5 +1,6 @@
 #include "math/gramians.h"
 
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -24,6 +25,7 @@ Eigen::MatrixXd root_of_sum(const Eigen::MatrixXd& first, const Eigen::MatrixXd&
 }  // namespace
 
 GramianRoots gramian_roots(Eigen::MatrixXd a, const Eigen::MatrixXd& b, const Eigen::MatrixXd& c) {
+  assert(a.rows() == a.cols() && b.rows() == a.rows() && c.cols() == a.cols());
   const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(a.rows(), a.cols());
   Eigen::MatrixXd reached = b.transpose(), seen = c;  // transposed: both grow by rows
   double last = std::numeric_limits<double>::infinity();

@@ -1,5 +1,6 @@
 #include "math/hessenberg.h"
 
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -8,6 +9,7 @@
 namespace flexarm {
 
 Balanced balanced(Eigen::MatrixXd matrix) {
+  assert(matrix.rows() == matrix.cols());
   Eigen::VectorXd scales = Eigen::VectorXd::Ones(matrix.rows());
   for (bool changes = true; changes;) {
     changes = false;
@@ -28,6 +30,7 @@ Balanced balanced(Eigen::MatrixXd matrix) {
 
 // By a reflection for each column. Eigen's HessenbergDecomposition does the same, but takes 140 MB more to compile.
 Hessenberg hessenberg(Eigen::MatrixXd matrix) {
+  assert(matrix.rows() == matrix.cols());
   const Eigen::Index n = matrix.rows();
   Hessenberg out{std::move(matrix), Eigen::MatrixXd::Identity(n, n)};
   Eigen::VectorXd directions(n), workspace(n);
@@ -45,6 +48,7 @@ Hessenberg hessenberg(Eigen::MatrixXd matrix) {
 }
 
 Eigen::MatrixXcd shifted_solution(const Eigen::MatrixXd& reduced, std::complex<double> shift, Eigen::MatrixXcd rights) {
+  assert(reduced.rows() == reduced.cols() && rights.rows() == reduced.rows());
   const Eigen::Index n = reduced.rows();
   Eigen::MatrixXcd rows = -reduced.cast<std::complex<double>>();
   rows.diagonal().array() += shift;

@@ -2,6 +2,7 @@
 /// Roots of scalar functions that grow.
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -17,6 +18,7 @@ struct ValueAndSlope {
 /// no slope.
 template <class Evaluate>
 double increasing_root(const Evaluate& evaluate, double guess, double scale) {
+  assert(!(scale <= 0) && "a length");
   constexpr int kMostSteps = 300;  // far more than bisection from any bounds takes
   constexpr double kRoundOff = std::numeric_limits<double>::epsilon();
   double low = -std::numeric_limits<double>::infinity(), high = -low, x = guess, before = high;

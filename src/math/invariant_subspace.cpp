@@ -1,5 +1,6 @@
 #include "math/invariant_subspace.h"
 
+#include <cassert>
 #include <stdexcept>
 
 #include <Eigen/Eigenvalues>
@@ -10,6 +11,7 @@ namespace flexarm {
 
 Eigen::MatrixXd invariant_subspace(const Eigen::MatrixXd& matrix,
                                    const std::function<bool(std::complex<double>)>& wanted) {
+  assert(matrix.rows() == matrix.cols());
   const Eigen::ComplexSchur<Eigen::MatrixXcd> schur(matrix.cast<std::complex<double>>());
   if (schur.info() != Eigen::Success) throw std::runtime_error("the eigenvalues are not found");
   Eigen::MatrixXcd triangle = schur.matrixT(), basis = schur.matrixU();

@@ -2,6 +2,7 @@
 /// One lane of a pack or of a matrix of packs; a double has one lane.
 
 #include <array>
+#include <cassert>
 #include <cstring>
 
 #include "math/pack.h"
@@ -52,6 +53,7 @@ typedef double UnalignedLanes __attribute__((vector_size(sizeof(Pack::Vector)), 
 /// `set`: = in the place of +=.
 template <int Count, bool set = false>
 [[gnu::always_inline]] inline void add_lanes(const Pack* values, int lanes, double* const* targets) {
+  assert(lanes >= 0 && lanes <= Pack::kLanes);
   constexpr int whole = Count / Pack::kLanes * Pack::kLanes;
   const auto add = [&](int lane, int i, const Pack::Vector& row) {
     UnalignedLanes* target = reinterpret_cast<UnalignedLanes*>(targets[lane] + i);

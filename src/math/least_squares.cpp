@@ -1,5 +1,7 @@
 #include "math/least_squares.h"
 
+#include <cassert>
+
 #include <Eigen/LU>
 #include <Eigen/QR>
 
@@ -18,6 +20,7 @@ Eigen::VectorXd smallest_least_squares(const Eigen::MatrixXd& matrix, const Eige
 }
 
 Eigen::MatrixXd square_solution(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& rights) {
+  assert(matrix.rows() == matrix.cols() && rights.rows() == matrix.rows());
   if (matrix.cols() == 0) return rights;
   return matrix.partialPivLu().solve(rights);
 }
@@ -33,11 +36,13 @@ std::vector<Eigen::Index> independent_rows(const Eigen::MatrixXd& matrix, double
 }
 
 Eigen::MatrixXd column_space(const Eigen::MatrixXd& matrix, Eigen::Index rank) {
+  assert(rank >= 0 && rank <= matrix.rows() && rank <= matrix.cols());
   if (rank == 0) return Eigen::MatrixXd(matrix.rows(), 0);
   return matrix.colPivHouseholderQr().householderQ() * Eigen::MatrixXd::Identity(matrix.rows(), rank);
 }
 
 Eigen::MatrixXd triangular_factor(const Eigen::MatrixXd& tall) {
+  assert(tall.rows() >= tall.cols());
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(tall);
   const Eigen::MatrixXd triangle = qr.matrixQR().topRows(tall.cols()).triangularView<Eigen::Upper>();
   return triangle * qr.colsPermutation().transpose();

@@ -1,6 +1,7 @@
 #include "math/matrix_exponential.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace flexarm {
@@ -12,6 +13,7 @@ constexpr int kTerms = 15;
 }  // namespace
 
 Eigen::MatrixXd matrix_exponential_less_identity(Eigen::MatrixXd matrix) {
+  assert(matrix.rows() == matrix.cols());
   const double norm = matrix.rows() > 0 ? matrix.cwiseAbs().colwise().sum().maxCoeff() : 0;
   int squarings = 0;
   if (norm > 0 && std::isfinite(norm)) squarings = std::max(0, static_cast<int>(std::ceil(std::log2(norm))) + 1);

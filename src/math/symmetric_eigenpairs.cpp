@@ -1,3 +1,4 @@
+#include <cassert>
 #include <cmath>
 
 #include <Eigen/Eigenvalues>
@@ -14,11 +15,13 @@ constexpr int kMostSweeps = 20;
 }  // namespace
 
 SymmetricEigenpairs symmetric_eigenpairs(const Eigen::MatrixXd& matrix) {
+  assert(matrix.rows() == matrix.cols());
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix);
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
 void diagonalise(Eigen::MatrixXd& matrix, Eigen::MatrixXd& vectors) {
+  assert(matrix.rows() == matrix.cols() && vectors.cols() == matrix.cols());
   bool turns = true;
   for (int sweep = 0; sweep < kMostSweeps && turns; ++sweep) {
     turns = false;

@@ -1,5 +1,6 @@
 #include "model/carried_origin.h"
 
+#include <cassert>
 #include <cmath>
 
 namespace flexarm {
@@ -10,6 +11,7 @@ Vector3 carried_translation(const JointMap& joint, const State& state) {
 }
 
 void carry_origin(const Model& model, State& state) {
+  assert(state.nodes.size() == model.nodes.size() && state.released.size() == model.joints.size_with_held());
   if (!model.floats) return;
   const Vector3& place = state.nodes[model.joints.front().slave].position;
   if (place.norm() <= kFarInSizes * model.length_scale) return;

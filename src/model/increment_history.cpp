@@ -1,6 +1,7 @@
 #include "model/increment_history.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace flexarm {
@@ -25,6 +26,7 @@ std::vector<double>& IncrementHistory::push(double step, std::size_t unknowns) {
 }
 
 IncrementHistory::Weights IncrementHistory::weights(int order, int first, double step) const {
+  assert(order >= kNoMotion && order <= kHighestOrder && first >= 0);
   Weights out{};
   if (first + order >= count) return out;
   // Times of the ends, and where the oldest step begins; the increment to come is the polynomial's from 0 to `step`.

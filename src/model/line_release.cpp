@@ -1,6 +1,7 @@
 #include "model/line_release.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace flexarm {
 namespace {
@@ -32,6 +33,7 @@ int slide_beyond_end(const Model& model, const State& state) {
 }
 
 Model model_after_release(Model model, const State& state, int slide) {
+  assert(slide >= 0 && model.joints[slide].leaving >= 0 && "one that has not left yet");
   JointMap& joint = model.joints[slide];
   const int last = joint.leaving;
   for_each_in_chain(model, slide, last, [&](int j) {
@@ -55,6 +57,7 @@ Model model_after_release(Model model, const State& state, int slide) {
 }
 
 State state_after_release(const Model& model, State state, int slide) {
+  assert(slide >= 0 && model.joints[slide].leaving >= 0 && "the model before the release");
   const JointMap& joint = model.joints[slide];
   double& arc_length = state.released[slide].displacement[0];
   if (model.coordinates[model.first_coordinate[slide]].mimicked < 0)

@@ -1,11 +1,13 @@
 #include "model/model.h"
 
 #include <algorithm>
+#include <cassert>
 #include <iterator>
 
 namespace flexarm {
 
 ElementPlace element_at(const BeamLink& beam, double arc_length) {
+  assert(!beam.element_ends.empty());
   const std::vector<double>& ends = beam.element_ends;
   const auto found = std::lower_bound(ends.begin(), std::prev(ends.end()), arc_length - 1e-12 * beam.length);
   const double begin = found == ends.begin() ? 0.0 : *std::prev(found);

@@ -1,6 +1,8 @@
 #include "model/place.h"
 
 #include <algorithm>
+#include <cassert>
+#include <cstddef>
 #include <optional>
 
 #include "model/carried_origin.h"
@@ -10,6 +12,7 @@ namespace flexarm {
 using Place = StepResult::Place;
 
 Place place_of_element(const Model& model, const State& state, int order, int index, int node) {
+  assert(node >= 0 && static_cast<std::size_t>(node) < state.nodes.size());
   Place place;
   place.position = world_origin(model, state) + state.nodes[node].position;
   for (std::size_t link = 0; link < model.links.size(); ++link) {
@@ -24,6 +27,7 @@ Place place_of_element(const Model& model, const State& state, int order, int in
 }
 
 Place place_of_node(const Model& model, const State& state, int node) {
+  assert(node >= 0 && static_cast<std::size_t>(node) < state.nodes.size());
   Place place;
   for_each_group(model.beams, [&](const auto& group) {
     constexpr int N = std::decay_t<decltype(group.elements)>::value_type::kNodes;
@@ -49,6 +53,7 @@ Place place_of_joint(const Model& model, const State& state, int joint, int comp
 }
 
 Place place_of_loop(const Model& model, const State& state, int loop) {
+  assert(loop >= 0 && static_cast<std::size_t>(loop) < model.closures.size());
   Place place;
   place.position = world_origin(model, state) + state.nodes[model.closures[loop].child].position;
   place.loop = loop;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 
@@ -248,6 +249,7 @@ std::string flaw_of_start(const Model& model, const PlaneOfMotion& plane) {
 // ---------------------------------------------------------------- states
 
 bool stands_in_plane(const Model& model, const PlaneOfMotion& plane, const State& state) {
+  assert(plane.frames.size() == state.nodes.size());
   for (std::size_t i = 0; i < state.nodes.size(); ++i) {
     const NodeState& node = state.nodes[i];
     if (!is_normal_to(plane.normal, node.position - state.nodes[0].position, model.length_scale)) return false;

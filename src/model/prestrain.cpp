@@ -1,5 +1,7 @@
 #include "model/prestrain.h"
 
+#include <cassert>
+
 #include "model/model.h"
 
 namespace flexarm {
@@ -8,6 +10,7 @@ namespace {
 
 template <class Value>
 Vector6 centroid_strain(const Model& model, int index, const Value& value) {
+  assert(index < static_cast<int>(model.prestrains.size()));
   Vector6 strain = Vector6::Zero();
   if (index < 0) return strain;
   const Prestrain& prestrain = model.prestrains[index];

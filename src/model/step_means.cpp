@@ -1,6 +1,7 @@
 #include "model/step_means.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace flexarm {
 
@@ -15,6 +16,7 @@ void StepMeans::begin() {
 }
 
 void StepMeans::end(double duration) {
+  assert(duration != 0 && means[0].size() == impulse.size());
   std::rotate(means.begin(), means.end() - 1, means.end());
   std::rotate(durations.begin(), durations.end() - 1, durations.end());
   durations[0] = duration;
@@ -23,12 +25,14 @@ void StepMeans::end(double duration) {
 }
 
 void StepMeans::restart(const std::vector<double>& forces) {
+  assert(forces.size() == means[0].size());
   std::copy(forces.begin(), forces.end(), means[0].begin());
   durations[0] = 0;  // of one instant
   count = 1;
 }
 
 double StepMeans::at_end(std::size_t i) const {
+  assert(i < means[0].size());
   if (count < 2) return means[0][i];
   // The mean of two steps has lost what alternates, and belongs to the step before ...
   if (count < 3) return 0.5 * (means[0][i] + means[1][i]);

@@ -1,6 +1,7 @@
 #include "solver/dense_front.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -238,6 +239,7 @@ void DenseFront::clear() {
 }
 
 void DenseFront::start(int active) {
+  assert(active >= 0 && active <= size() && columns.size() == rows.size());
   active_ = active;
   const int lanes = lanes_for(size());
   stride_ = 4 * lanes;
@@ -252,6 +254,8 @@ void DenseFront::start(int active) {
 
 void DenseFront::add(int row, int column, const double* values, int row_count, int column_count, int distance) {
   const int first_row = row_place_[row], first_column = column_place_[column];
+  assert(first_row >= 0 && first_row + row_count <= size() && "scalars of the front");
+  assert(first_column >= 0 && first_column + column_count <= size() && "scalars of the front");
   if (column_count == 6) {  // most of them: a loop that is unrolled
     for (int r = 0; r < row_count; ++r) {
       double* to = this->row(first_row + r) + first_column;
@@ -269,6 +273,7 @@ void DenseFront::fold(int slave, int count, const double* left, const double* ri
                       int target_count) {
   const int place = column_place_[slave], slave_row = row_place_[slave], lanes = lanes_for(size()),
             rows_in_all = size();
+  assert(place >= 0 && slave_row >= 0 && "scalars of the front");
   right_.assign(static_cast<std::size_t>(lanes) * count, {});  // by columns of the front
   double *columns_of = numbers(right_), *values = numbers(values_);
   for (int k = 0; k < count; ++k)
@@ -292,10 +297,13 @@ void DenseFront::fold(int slave, int count, const double* left, const double* ri
 }
 
 void DenseFront::clear_row(int scalar) {
+  assert(row_place_[scalar] >= 0);
   std::fill_n(row(row_place_[scalar]), stride_, 0.0);
 }
 
 int DenseFront::eliminate(int candidates, const std::vector<int>& certain, bool all) {
+  assert(candidates >= 0 && candidates <= active_);
+  assert(certain.empty() || certain.back() <= candidates);
   lower_.resize(std::max(lower_.size(), static_cast<std::size_t>(lower_stride() / 4) * candidates));
   scales_.resize(active_);
   column_sizes_.assign(lanes_for(candidates), {});

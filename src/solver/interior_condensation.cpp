@@ -1,6 +1,7 @@
 #include "solver/interior_condensation.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "math/lanes.h"
 #include "math/simd.h"
@@ -241,6 +242,7 @@ bool InteriorCondensation::keeps_interiors(const CondensedPack<Nodes>& pack) con
 
 template <int Nodes>
 double* InteriorCondensation::prepare(const Place& place, TreeBlocks& blocks, double* values) {
+  assert(place.pack >= 0 && "an element's part");
   CondensedPack<Nodes>& pack = std::get<std::vector<CondensedPack<Nodes>>>(groups_)[place.pack];
   if (!pack.is_ready) {
     pack.is_ready = true;

@@ -1,6 +1,7 @@
 #include "solver/linear_solver.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace flexarm {
@@ -26,6 +27,7 @@ LinearSolver::~LinearSolver() {
 }
 
 void LinearSolver::analyse() {
+  assert(unknowns_ == 0 || static_cast<int>(column_starts_.size()) == unknowns_ + 1);
   if (numeric_) klu_free_numeric(&numeric_, &common_);
   if (symbolic_) klu_free_symbolic(&symbolic_, &common_);
   if (unknowns_ > 0)
@@ -43,6 +45,7 @@ bool LinearSolver::factorise_anew() {
 }
 
 bool LinearSolver::factorise(const std::vector<double>& values, int pattern) {
+  assert(unknowns_ == 0 || values.size() == row_indices_.size());
   values_ = &values;
   if (unknowns_ == 0) return true;
   if (pattern != pattern_) {
@@ -77,6 +80,7 @@ double LinearSolver::backward_error(const Eigen::VectorXd& x) {
 }
 
 bool LinearSolver::solve(Eigen::VectorXd& b) {
+  assert(b.size() == unknowns_ && (unknowns_ == 0 || values_) && "after factorise()");
   if (unknowns_ == 0) return true;
   right_hand_side_ = b;
   const bool finite = solve_once(b);

@@ -1,6 +1,7 @@
 #include "solver/planar_tangent.h"
 
 #include <algorithm>
+#include <cassert>
 #include <stdexcept>
 #include <string>
 
@@ -113,6 +114,7 @@ bool PlanarTangent::factorise_and_solve(Eigen::VectorXd& b) {
 // ---------------------------------------------------------------- solution
 
 void PlanarTangent::set_right_hand_side(const Eigen::VectorXd& b) {
+  assert(b.size() == dof_.unknowns);
   for (int i = 0; i < dof_.node_count; ++i) {
     const int equation = dof_.equation[dof_.first[i]];
     if (equation >= 0)

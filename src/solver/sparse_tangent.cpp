@@ -1,6 +1,7 @@
 #include "solver/sparse_tangent.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace flexarm {
 namespace {
@@ -36,6 +37,7 @@ void SparseTangent::set_zero() {
 }
 
 void SparseTangent::add_closure(int closure, int index, double multiplier, const ClosureMaps& maps) {
+  assert(index >= 0 && index < dof_.size[dof_.variable_of_closure(closure)]);
   const LoopClosure& loop = model_.closures[closure];
   const int count = dof_.size[dof_.variable_of_closure(closure)];
   const ClosureBlocks& blocks = closure_blocks_[closure];
@@ -57,6 +59,7 @@ void SparseTangent::add_closure(int closure, int index, double multiplier, const
 }
 
 void SparseTangent::couple(int index, const int* nodes, int count) {
+  assert(index >= 0 && static_cast<std::size_t>(index) < couplings_.size() && count >= 0);
   std::vector<int>& old = couplings_[index].nodes;
   if (std::equal(nodes, nodes + count, old.begin(), old.end())) return;
   old.assign(nodes, nodes + count);
@@ -65,6 +68,7 @@ void SparseTangent::couple(int index, const int* nodes, int count) {
 
 void SparseTangent::add_coupling(int index, const Eigen::Ref<const Eigen::MatrixXd>& values) {
   const auto& [nodes, blocks] = couplings_[index];
+  assert(values.cols() == values.rows() && values.rows() == 6 * static_cast<Eigen::Index>(nodes.size()));
   const int count = static_cast<int>(nodes.size());
   for (int i = 0; i < count; ++i)
     for (int j = 0; j < count; ++j)
@@ -182,6 +186,7 @@ void SparseTangent::add_geometric(const Geometric& geometric, const FoldMaps& ma
 }
 
 void SparseTangent::fold_mimics(const std::vector<MimicMap>& maps) {
+  assert(maps.size() == dof_.mimics.size());
   const auto add = [&](int first, int last, double factor) {
     for (int f = first; f < last; ++f) {
       const ScaledAddition& op = mimic_additions_[f];
@@ -221,6 +226,7 @@ bool SparseTangent::factorise() {
 }
 
 bool SparseTangent::solve(Eigen::VectorXd& b) {
+  assert(solver_ && "after factorise()");
   return solver_->solve(b);
 }
 

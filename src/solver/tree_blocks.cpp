@@ -1,6 +1,7 @@
 #include "solver/tree_blocks.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace flexarm {
 
@@ -29,6 +30,8 @@ TreeBlocks::TreeBlocks(const Model& model, const DegreesOfFreedom& dof)
 
 void hold_row(FoldMaps& maps, double* own, bool has_master, int component, int first,
               const ReleasedVector& coefficients) {
+  assert(component >= 0 && component < maps.left.cols() && first >= 0);
+  assert(first + coefficients.size() <= maps.left.cols());
   const int size = static_cast<int>(maps.left.cols());
   maps.left.col(component).setZero();
   if (has_master) maps.released_spin.row(component).setZero();

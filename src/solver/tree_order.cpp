@@ -1,6 +1,7 @@
 #include "solver/tree_order.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace flexarm {
 
@@ -150,6 +151,7 @@ void TreeOrder::place_closures() {
 }
 
 void TreeOrder::set_window(int joint, NodeRange window) {
+  assert(window.first >= 0 && window.first < window.end);
   NodeRange& old = windows_[joint];
   if (old.first == window.first && old.end == window.end) return;
   old = window;
@@ -157,6 +159,7 @@ void TreeOrder::set_window(int joint, NodeRange window) {
 }
 
 void TreeOrder::set_coupling(int coupling, const int* nodes, int count) {
+  assert(coupling >= 0 && static_cast<std::size_t>(coupling) < couplings_.size() && count >= 0);
   std::vector<int>& old = couplings_[coupling].nodes;
   if (std::equal(nodes, nodes + count, old.begin(), old.end())) return;
   old.assign(nodes, nodes + count);

@@ -1,6 +1,7 @@
 #include "solver/tree_tangent.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace flexarm {
 bool TreeTangent::suits(const Model& model, const DegreesOfFreedom& dof) {
@@ -37,6 +38,7 @@ void TreeTangent::set_zero() {
 }
 
 void TreeTangent::add_closure(int closure, int index, double multiplier, const ClosureMaps& maps) {
+  assert(index >= 0 && index < dof_.size[dof_.variable_of_closure(closure)]);
   Eigen::MatrixXd& values = blocks_.closures[closure];
   const int own = 12 + index;
   values.block<6, 6>(0, 0) += multiplier * maps.child_child;
@@ -52,6 +54,7 @@ void TreeTangent::add_closure(int closure, int index, double multiplier, const C
 /// What a node has with itself is complete where the node is: the elimination need not know of it.
 void TreeTangent::add_coupling(int index, const Eigen::Ref<const Eigen::MatrixXd>& blocks) {
   const std::vector<int>& nodes = order_.coupled_nodes(index);
+  assert(blocks.cols() == blocks.rows() && blocks.rows() == 6 * static_cast<Eigen::Index>(nodes.size()));
   for (std::size_t i = 0; i < nodes.size(); ++i)
     add_to_node(nodes[i], blocks.block<6, 6>(6 * static_cast<Eigen::Index>(i), 6 * static_cast<Eigen::Index>(i)));
   blocks_.couplings[index].topLeftCorner(blocks.rows(), blocks.cols()) += blocks;
@@ -118,6 +121,7 @@ bool TreeTangent::factorise_and_solve(Eigen::VectorXd& b) {
 // ---------------------------------------------------------------- solution
 
 void TreeTangent::set_right_hand_side(const Eigen::VectorXd& b) {
+  assert(b.size() == dof_.unknowns);
   std::fill(values_.begin(), values_.end(), 0.0);
   for (const auto& [scalar, equation, count] : dof_.runs)
     std::copy_n(b.data() + equation, count, values_.data() + scalar);
