@@ -71,7 +71,7 @@ class TriesOfARun {
     require(request.accuracy > 0 && request.accuracy < 1, "an accuracy must lie between 0 and 1");
     require(std::isfinite(request.until) && request.until > plan.begin, "the end must be later than the beginning");
     require(request.intervals >= 1, "there must be an interval at least");
-    require(!request.scale || *request.scale > 0, "the scale of errors must be > 0");
+    require(!request.scale || (*request.scale > 0 && std::isfinite(*request.scale)), "the scale of errors must be > 0");
     require(plan.points.size() > 0, "nothing moves by which a run could be judged");
     plan.cells = {plan.begin};
     const std::vector<double> corners = known_corners(simulation, plan.begin, request.until);

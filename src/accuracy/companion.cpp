@@ -4,7 +4,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "accuracy/corners.h"
 #include "flexarm/accuracy/trajectory.h"
@@ -112,6 +115,7 @@ struct Companion::Implementation {
         doubt(simulation, points),
         window(window),
         share(1 / (std::pow(2, make_scheme(simulation.scene().integrator).order) - 1)) {
+    if (!(window > 0)) throw std::invalid_argument(fmt::format("window: expected a time > 0, got {} s", window));
     companion.set_step_size(2 * simulation.step_size());
     begin(simulation);
   }

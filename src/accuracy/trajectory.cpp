@@ -63,6 +63,9 @@ std::vector<Vector3> JudgedPoints::positions(const Simulation& simulation) const
 }
 
 void JudgedMotion::add(const std::vector<Vector3>& positions) {
+  if (positions.size() != points.size())
+    throw std::invalid_argument(
+        fmt::format("positions: expected those of {} points, got {}", points.size(), positions.size()));
   for (std::size_t i = 0; i < points.size(); ++i) points[i].push_back(positions[i]);
 }
 

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <stdexcept>
 
+#include <fmt/format.h>
 #include <Eigen/SparseLU>
 
 namespace flexarm {
@@ -37,6 +38,9 @@ Eigen::VectorXd periodic_spline(const std::vector<double>& h, const std::vector<
 }  // namespace
 
 CamProfile CamProfile::eccentric(double radius, double offset) {
+  if (!std::isfinite(radius) || !std::isfinite(offset))
+    throw std::invalid_argument(
+        fmt::format("radius and offset: expected finite numbers [m], got {} and {}", radius, offset));
   CamProfile profile;
   profile.radius_ = radius;
   profile.offset_ = offset;

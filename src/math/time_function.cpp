@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <iterator>
 #include <limits>
@@ -126,6 +127,11 @@ bool bends(const Table& table, std::size_t i) {
   const double round_off = 8 * std::numeric_limits<double>::epsilon() / shortest *
                            (std::abs(v[i]) + std::abs(t[i]) * std::max(std::abs(before), std::abs(after)));
   return std::abs(after - before) > round_off;
+}
+
+void require_times(double begin, double end) {
+  if (!std::isfinite(begin) || !std::isfinite(end))
+    throw std::invalid_argument(fmt::format("begin and end: expected finite times [s], got {} and {}", begin, end));
 }
 
 using Function = std::variant<double, Table, CubicSpline, Expression>;
@@ -266,6 +272,7 @@ double TimeFunction::mean(double begin, double end) const {
   if (const double* constant = std::get_if<double>(&function)) return *constant;
   if (begin == end) return (*this)(begin);
   if (begin > end) std::swap(begin, end);
+  require_times(begin, end);
   if (const Table* table = std::get_if<Table>(&function)) return flexarm::mean(*table, begin, end);
   if (const CubicSpline* spline = std::get_if<CubicSpline>(&function)) return flexarm::mean(*spline, begin, end);
   const Expression& expression = std::get<Expression>(function);
@@ -273,11 +280,13 @@ double TimeFunction::mean(double begin, double end) const {
 }
 
 double TimeFunction::mean_within(double limit, double begin, double end) const {
+  if (!(limit > 0)) throw std::invalid_argument(fmt::format("limit: expected a number > 0, got {}", limit));
   const Function& function = implementation_->function;
   const auto cut = [limit](double value) { return std::clamp(value, -limit, limit); };
   if (const double* constant = std::get_if<double>(&function)) return cut(*constant);
   if (begin == end) return cut((*this)(begin));
   if (begin > end) std::swap(begin, end);
+  require_times(begin, end);
   if (const Table* table = std::get_if<Table>(&function))
     return mean_by_pieces(*table, begin, end,
                           [&](double a, double b) { return mean_of_cut_line((*table)(a), (*table)(b), limit); });
@@ -290,6 +299,7 @@ double TimeFunction::mean_within(double limit, double begin, double end) const {
 }
 
 std::vector<double> TimeFunction::corners(double begin, double end) const {
+  require_times(begin, end);
   const Function& function = implementation_->function;
   std::vector<double> out;
   const auto add = [&](double t, bool is_corner) {

@@ -1,6 +1,7 @@
 #include "simulation/failure_text.h"
 
 #include <cmath>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -82,6 +83,17 @@ std::string advice(const Model& model, const StepResult& result) {
   return "";
 }
 
+/// @throws std::invalid_argument if the place is none of this model
+void require_place(const Model& model, const StepResult& result) {
+  const StepResult::Place& place = result.failure.place;
+  const auto is_below = [](int index, std::size_t count) { return index < static_cast<int>(count); };
+  const bool is_here = is_below(place.coordinate, model.coordinates.size()) &&
+                       is_below(place.loop, model.closures.size()) && is_below(place.link, model.links.size());
+  const bool needs_element = place.element >= 0 || result.reason == StepResult::Reason::BentTooFar;
+  if (!is_here || (needs_element && (place.link < 0 || !model.links[place.link].beam)))
+    throw std::invalid_argument("result: its place is none of this scene's; explain it by the simulation that failed");
+}
+
 }  // namespace
 
 std::string place_name(const Model& model, const StepResult::Place& place) {
@@ -95,6 +107,7 @@ std::string place_name(const Model& model, const StepResult::Place& place) {
 
 std::string failure_text(const Model& model, const StepSettings& settings, const StepResult& result) {
   if (result.reason == Reason::None) return "";
+  require_place(model, result);
   const Failure& failure = result.failure;
   std::string text = to_string(result.reason);
   if (failure.cause != result.reason && failure.cause != Reason::None)

@@ -17,6 +17,7 @@
 #include "model/carried_origin.h"
 #include "model/line_release.h"
 #include "model/room_for_wrenches.h"
+#include "simulation/entry.h"
 #include "simulation/failure_text.h"
 #include "simulation/joint_state.h"
 #include "simulation/loop_velocities.h"
@@ -105,7 +106,7 @@ struct Simulation::Implementation {
 
   /// Of a link: the end of its beam, if it has one.
   Attachment tip(std::size_t link) const {
-    const LinkFrame& frame = model.links.at(link);
+    const LinkFrame& frame = entry(model.links, link, "link");
     if (frame.beam) return frame.beam->tip;
     if (!rigid_lines[link]) return frame.frame;
     const Vector3& end = rigid_lines[link]->sections.back().position;

@@ -11,6 +11,7 @@
 #include "joints/joint_kinematics.h"
 #include "math/so3.h"
 #include "model/carried_origin.h"
+#include "simulation/entry.h"
 #include "simulation/loop_velocities.h"
 #include "simulation/observables.h"
 
@@ -73,7 +74,7 @@ void set_coordinates(const Model& model, const DegreesOfFreedom& dof, const Stat
                      const std::vector<CoordinateState>& coordinates, Motion& motion) {
   std::set<std::size_t> named;
   for (const CoordinateState& wanted : coordinates) {
-    const Coordinate& coordinate = model.coordinates.at(wanted.coordinate);
+    const Coordinate& coordinate = entry(model.coordinates, wanted.coordinate, "joint coordinate");
     if (!named.insert(wanted.coordinate).second) refuse(coordinate, "is named twice");
     check(model, coordinate, wanted);
     Released& released = motion.released[coordinate.joint];

@@ -1,5 +1,6 @@
 #include "flexarm/simulation/linear_response.h"
 
+#include <cmath>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -22,6 +23,8 @@ FrequencyResponse frequency_response(const LinearModel& model, const std::vector
   const MatrixXcd outputs = (scaled.c * form.basis).cast<Complex>(), direct = model.d.cast<Complex>();
   FrequencyResponse response{frequencies, {}};
   for (const double frequency : frequencies) {
+    if (!std::isfinite(frequency))
+      throw std::invalid_argument(fmt::format("frequencies: expected finite numbers [Hz], got {}", frequency));
     const MatrixXcd states = shifted_solution(form.reduced, {0, 2 * kPi * frequency}, inputs);
     if (!states.allFinite()) throw std::runtime_error(fmt::format("there is an undamped pole at {} Hz", frequency));
     response.gains.push_back(outputs * states + direct);
@@ -30,7 +33,8 @@ FrequencyResponse frequency_response(const LinearModel& model, const std::vector
 }
 
 StepResponse step_response(const LinearModel& model, double until, int intervals) {
-  if (!(until > 0)) throw std::invalid_argument(fmt::format("until: expected a time > 0, got {}", until));
+  if (!(until > 0 && std::isfinite(until)))
+    throw std::invalid_argument(fmt::format("until: expected a time > 0, got {}", until));
   if (intervals < 1) throw std::invalid_argument(fmt::format("intervals: expected a number >= 1, got {}", intervals));
   // Constant inputs are states that stay: exp([a b; 0 0] t) has what they make of the others.
   const ScaledStates scaled = scaled_states(model);

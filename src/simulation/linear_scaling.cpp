@@ -5,6 +5,10 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <stdexcept>
+#include <string>
+
+#include <fmt/format.h>
 
 #include "math/dense_eigenpairs.h"
 #include "math/hessenberg.h"
@@ -132,9 +136,27 @@ ScaledStates by_modes(const LinearModel& model, const Shapes& modes) {
   return out;
 }
 
+void require_sizes(const LinearModel& model) {
+  const Index states = model.a.rows();
+  const auto require = [](bool ok, const char* what, Index rows, Index columns, const std::string& expected) {
+    if (!ok)
+      throw std::invalid_argument(
+          fmt::format("model: {} has {} rows and {} columns, expected {}", what, rows, columns, expected));
+  };
+  require(model.a.cols() == states, "a", states, model.a.cols(), "as many of both");
+  require(model.b.rows() == states, "b", model.b.rows(), model.b.cols(), fmt::format("{} rows as a has", states));
+  require(model.c.cols() == states, "c", model.c.rows(), model.c.cols(), fmt::format("{} columns as a has", states));
+  require(model.d.rows() == model.c.rows() && model.d.cols() == model.b.cols(), "d", model.d.rows(), model.d.cols(),
+          fmt::format("{} and {} as c and b have", model.c.rows(), model.b.cols()));
+  if (model.positions < 0 || model.positions > states)
+    throw std::invalid_argument(
+        fmt::format("model: {} positions, expected 0 to {}, of the states", model.positions, states));
+}
+
 }  // namespace
 
 ScaledStates scaled_states(const LinearModel& model) {
+  require_sizes(model);
   ScaledStates out;
   if (const std::optional<Shapes> modes = shapes_of(model)) {
     out = by_modes(model, *modes);

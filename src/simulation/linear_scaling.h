@@ -15,6 +15,7 @@ struct ScaledStates {
 };
 /// By the modes of mass and stiffness, which need not be those of the model itself: whatever they are, it is the same
 /// model. One that has no such matrices for its states, as a smaller one, is balanced alone.
+/// @throws std::invalid_argument if a, b, c, d and positions are not of one size.
 ScaledStates scaled_states(const LinearModel& model);
 
 }  // namespace flexarm

@@ -51,7 +51,7 @@ void acceleration_values(const Simulation& simulation, const StepCounts&, std::s
   append(row, simulation.probe_acceleration(i).linear);
 }
 void sensor_values(const Simulation& simulation, const StepCounts&, std::size_t i, Row& row) {
-  const std::size_t count = scene::sensor_channels(simulation.scene().sensors[i].kind).size();
+  const std::size_t count = scene::sensor_channels(simulation.scene().sensors.at(i).kind).size();
   const auto& values = simulation.sample(i).values;
   row.insert(row.end(), values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
 }

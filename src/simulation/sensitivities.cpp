@@ -157,8 +157,13 @@ const std::vector<RunEvent>& Sensitivities::events() const {
 
 MatrixXd Sensitivities::of(const std::function<VectorXd(const Simulation&)>& observable) const {
   const VectorXd own = observable(implementation_->simulation);
-  return implementation_->derivative(
-      own.size(), [&](const Simulation& neighbour) -> VectorXd { return observable(neighbour) - own; });
+  return implementation_->derivative(own.size(), [&](const Simulation& neighbour) -> VectorXd {
+    const VectorXd there = observable(neighbour);
+    if (there.size() != own.size())
+      throw std::invalid_argument(
+          fmt::format("observable: expected {} numbers of every simulation, got {}", own.size(), there.size()));
+    return there - own;
+  });
 }
 
 MatrixXd Sensitivities::positions() const {

@@ -10,6 +10,7 @@
 
 #include "integrators/step_histories.h"
 #include "joints/servo_step.h"
+#include "simulation/entry.h"
 
 namespace flexarm {
 namespace {
@@ -80,7 +81,7 @@ void require_hit_samples(const Model& model, double step) {
 }
 
 bool has_servo(const Model& model, std::size_t coordinate) {
-  const int actuator = model.coordinates.at(coordinate).actuator;
+  const int actuator = entry(model.coordinates, coordinate, "joint coordinate").actuator;
   return actuator >= 0 && model.actuators[actuator].servo;
 }
 

@@ -25,6 +25,8 @@ StepSettings settings_of(const scene::SceneDescription& scene, const SimulationO
   };
   require(settings.step > 0 && settings.step <= kLongestStep, "step must be > 0 and at most 1e9");
   require(settings.tolerance > 0 && settings.tolerance <= kLargestTolerance, "tolerance must be > 0 and at most 1");
+  if (!(settings.recovery_wall_time >= 0))
+    throw ModelError(fmt::format("recovery_wall_time: expected a time >= 0, got {} s", settings.recovery_wall_time));
   require(settings.max_iterations >= 1, "max_iterations must be >= 1");
   require(settings.max_halvings >= 0 && settings.max_halvings <= 30, "max_halvings must be 0 to 30");
   return settings;

@@ -12,6 +12,7 @@
 #include "flexarm/simulation/command_refusal.h"
 #include "math/so3.h"
 #include "model/carried_origin.h"
+#include "simulation/entry.h"
 #include "simulation/failure_text.h"
 #include "simulation/implementation.h"
 #include "simulation/joint_state.h"
@@ -28,6 +29,11 @@ namespace {
 void require_own_servo(const Simulation& simulation, std::size_t index) {
   if (!simulation.has_servo(index) && !simulation.is_commandable(index))
     throw std::invalid_argument(refusal_of_commands(simulation, index));
+}
+
+void require_points_between(int between) {
+  if (between < 0)
+    throw std::invalid_argument(fmt::format("between: expected a number of points >= 0, got {}", between));
 }
 
 }  // namespace
@@ -136,7 +142,7 @@ std::optional<std::size_t> Simulation::find_coordinate(std::string_view name) co
 }
 
 double Simulation::position(std::size_t index) const {
-  const Coordinate& coordinate = implementation_->model.coordinates.at(index);
+  const Coordinate& coordinate = entry(implementation_->model.coordinates, index, "joint coordinate");
   const Released& released = implementation_->state.released[coordinate.joint];
   if (!coordinate.is_angle) {
     const JointMap& joint = implementation_->model.joints[coordinate.joint];
@@ -147,12 +153,13 @@ double Simulation::position(std::size_t index) const {
 }
 
 double Simulation::velocity(std::size_t index) const {
-  return implementation_->published.rates(implementation_->view()).rate(implementation_->model.coordinates.at(index));
+  return implementation_->published.rates(implementation_->view())
+      .rate(entry(implementation_->model.coordinates, index, "joint coordinate"));
 }
 
 double Simulation::effort(std::size_t index) const {
   const State& state = implementation_->state;
-  const bool is_driven = implementation_->model.coordinates.at(index).motion >= 0;
+  const bool is_driven = entry(implementation_->model.coordinates, index, "joint coordinate").motion >= 0;
   return is_driven ? state.drives.at_end(index) : state.efforts[index];
 }
 
@@ -163,7 +170,8 @@ void Simulation::command_effort(std::size_t index, double effort) {
 }
 
 void Simulation::release_command(std::size_t index) {
-  implementation_->state.commands.at(index) = std::numeric_limits<double>::quiet_NaN();
+  entry(implementation_->model.coordinates, index, "joint coordinate");
+  implementation_->state.commands[index] = std::numeric_limits<double>::quiet_NaN();
 }
 
 void Simulation::command_set_point(std::size_t index, double set_point, double rate, double acceleration) {
@@ -205,7 +213,7 @@ bool Simulation::has_servo(std::size_t index) const {
 }
 
 bool Simulation::is_commandable(std::size_t index) const {
-  const Coordinate& coordinate = implementation_->model.coordinates.at(index);
+  const Coordinate& coordinate = entry(implementation_->model.coordinates, index, "joint coordinate");
   return coordinate.motion < 0 && coordinate.mimicked < 0;
 }
 
@@ -249,11 +257,11 @@ const std::vector<std::string>& Simulation::link_names() const {
 }
 
 Pose Simulation::link_pose(std::size_t link) const {
-  return implementation_->in_world(implementation_->model.links.at(link).frame);
+  return implementation_->in_world(entry(implementation_->model.links, link, "link").frame);
 }
 
 bool Simulation::is_flexible(std::size_t link) const {
-  return implementation_->model.links.at(link).beam.has_value();
+  return entry(implementation_->model.links, link, "link").beam.has_value();
 }
 
 Pose Simulation::tip_pose(std::size_t link) const {
@@ -261,7 +269,8 @@ Pose Simulation::tip_pose(std::size_t link) const {
 }
 
 void Simulation::beam_points(std::size_t link, int between, std::vector<BeamPoint>& points) const {
-  const LinkFrame& frame = implementation_->model.links.at(link);
+  const LinkFrame& frame = entry(implementation_->model.links, link, "link");
+  require_points_between(between);
   if (const auto& line = implementation_->rigid_lines[link]) rigid_points(*line, link_pose(link), points);
   if (!frame.beam) return;
   const std::size_t first = points.size();
@@ -271,17 +280,18 @@ void Simulation::beam_points(std::size_t link, int between, std::vector<BeamPoin
 
 std::vector<Pose> Simulation::undeformed_sections(std::size_t link, int between) const {
   const Model& model = implementation_->built ? *implementation_->built : implementation_->model;
-  const LinkFrame& frame = model.links.at(link);
+  const LinkFrame& frame = entry(model.links, link, "link");
+  require_points_between(between);
   if (const auto& line = implementation_->rigid_lines[link]) return line->sections;
   return frame.beam ? flexarm::undeformed_sections(model, frame, between) : std::vector<Pose>();
 }
 
 bool Simulation::is_fixed_to_world(std::size_t link) const {
-  return implementation_->model.links.at(link).frame.node < 0;
+  return entry(implementation_->model.links, link, "link").frame.node < 0;
 }
 
 double Simulation::beam_radius(std::size_t link) const {
-  const LinkFrame& frame = implementation_->model.links.at(link);
+  const LinkFrame& frame = entry(implementation_->model.links, link, "link");
   if (const auto& line = implementation_->rigid_lines[link]) return line->radius;
   return frame.beam ? frame.beam->radius : 0.0;
 }
@@ -301,20 +311,21 @@ Vector3 Simulation::angular_momentum() const {
 ProbeState Simulation::probe(std::size_t index) const {
   const Implementation& s = *implementation_;
   const MotionView view = s.view();
-  const ProbePoint& point = view.model.probes.at(index);
+  const ProbePoint& point = entry(view.model.probes, index, "probe");
   ProbeState probe = probe_state(view.model, view.state, s.published.velocities(view).nodes(), point);
   probe.pose.position += probe_origin(view.model, view.state, point);
   return probe;
 }
 Pose Simulation::probe_pose(std::size_t index) const {
-  return pose_in_world(implementation_->model, implementation_->state, implementation_->model.probes.at(index));
+  return pose_in_world(implementation_->model, implementation_->state,
+                       entry(implementation_->model.probes, index, "probe"));
 }
 ProbeAcceleration Simulation::probe_acceleration(std::size_t index) const {
   const MotionView view = implementation_->view();
-  return implementation_->published.past(view).acceleration(view, view.model.probes.at(index));
+  return implementation_->published.past(view).acceleration(view, entry(view.model.probes, index, "probe"));
 }
 BeamPoint Simulation::section(std::size_t link, double arc_length) const {
-  const LinkFrame& frame = implementation_->model.links.at(link);
+  const LinkFrame& frame = entry(implementation_->model.links, link, "link");
   if (!frame.beam) throw std::invalid_argument("link '" + frame.name + "' has no sections: it is rigid");
   if (!(arc_length >= 0 && arc_length <= frame.beam->length))
     throw std::invalid_argument(
@@ -326,7 +337,7 @@ BeamPoint Simulation::section(std::size_t link, double arc_length) const {
 }
 Wrench Simulation::reaction(std::size_t link) const {
   const Model& model = implementation_->model;
-  const std::string& name = model.links.at(link).name;
+  const std::string& name = entry(model.links, link, "link").name;
   const auto place = std::find_if(model.sensors.begin(), model.sensors.end(), [&](const SensorPlace& sensor) {
     if (sensor.reaction < 0 || sensor.point.link != static_cast<int>(link)) return false;
     const ReactionPlace& place = model.reactions[sensor.reaction];
@@ -338,7 +349,7 @@ Wrench Simulation::reaction(std::size_t link) const {
 }
 ActingWrench Simulation::sensed_wrench(std::size_t sensor) const {
   const Implementation& s = *implementation_;
-  const SensorPlace& place = s.model.sensors.at(sensor);
+  const SensorPlace& place = entry(s.model.sensors, sensor, "sensor");
   if (place.reaction < 0)
     throw std::invalid_argument("sensor '" + s.scene.sensors[sensor].name + "' does not measure what a joint does");
   const Pose link = s.in_world(s.model.links[place.point.link].frame);
@@ -363,7 +374,7 @@ double Simulation::mass() const {
   return mass_of(implementation_->model);
 }
 const SensorSample& Simulation::sample(std::size_t sensor) const {
-  return implementation_->state.samples.at(sensor);
+  return entry(implementation_->state.samples, sensor, "sensor");
 }
 
 StaticResult Simulation::solve_static(int load_steps, Equilibrium wanted) {

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "simulation/entry.h"
+
 namespace flexarm {
 namespace {
 
@@ -24,7 +26,7 @@ Attachment carrier_of(const Model& model, const LinkFrame& link, const Vector3& 
 }  // namespace
 
 NodalLoad placed_wrench(const Model& model, const AppliedWrench& wrench) {
-  const LinkFrame& link = model.links.at(wrench.link);
+  const LinkFrame& link = entry(model.links, wrench.link, "link");
   const auto& [force, moment] = wrench.wrench;
   if (!wrench.at.allFinite() || !force.allFinite() || !moment.allFinite())
     throw std::invalid_argument(fmt::format("the wrench on link '{}' is not finite", link.name));

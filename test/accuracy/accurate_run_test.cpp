@@ -479,5 +479,11 @@ TEST(Companion, BeginsAgainWhereTheSimulationIsPut) {
   EXPECT_LT(companion.follow(simulation), 1e-6) << "a step or two are nearly exact";
 }
 
+TEST(Companion, RefusesAWindowOfNoLength) {
+  const Simulation simulation(falling_arm().scene);
+  for (const double window : {0.0, -1.0, double(NAN)})
+    EXPECT_THROW(Companion(simulation, window), std::invalid_argument) << window;
+}
+
 }  // namespace
 }  // namespace flexarm::test

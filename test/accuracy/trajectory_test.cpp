@@ -51,5 +51,11 @@ TEST(MotionError, IsThatOfTheWorstPointOnOneScale) {
   EXPECT_THROW(motion_error(JudgedMotion(1), reference, 1), std::invalid_argument);
 }
 
+TEST(JudgedMotion, TakesAPositionForEachPoint) {
+  JudgedMotion motion(2);
+  EXPECT_THROW(motion.add({Vector3(0, 0, 0)}), std::invalid_argument);
+  EXPECT_TRUE(motion.points[0].empty());
+}
+
 }  // namespace
 }  // namespace flexarm

@@ -111,5 +111,10 @@ TEST(CamProfile, BadTables) {
   EXPECT_EQ(message({0, 1, NAN}, {0, 1, 0}), "numbers must be finite");
 }
 
+TEST(CamProfile, EccentricDiscsAreFinite) {
+  EXPECT_THROW(CamProfile::eccentric(NAN, 0), std::invalid_argument);
+  EXPECT_THROW(CamProfile::eccentric(0.1, INFINITY), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace flexarm

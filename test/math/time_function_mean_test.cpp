@@ -233,5 +233,19 @@ TEST(TimeFunctionCorners, AreThoseOfAnEntireWave) {
   EXPECT_LE(TimeFunction::parse("sign(sin(1e7*t))").corners(0, 10).size(), 10000u);
 }
 
+TEST(TimeFunctionMean, RefusesWhatIsNoTimeOrLimit) {
+  for (const char* text : {"sin(t)", "0:0 1:1", "0:0:0 1:1:0"}) {
+    const TimeFunction function = TimeFunction::parse(text);
+    for (const double bad : {double(NAN), double(INFINITY)}) {
+      EXPECT_THROW(function.mean(0, bad), std::invalid_argument) << text;
+      EXPECT_THROW(function.mean(-bad, 0), std::invalid_argument) << text;
+      EXPECT_THROW(function.mean_within(1, 0, bad), std::invalid_argument) << text;
+      EXPECT_THROW(function.corners(0, bad), std::invalid_argument) << text;
+    }
+    for (const double limit : {0.0, -1.0, double(NAN)})
+      EXPECT_THROW(function.mean_within(limit, 0, 1), std::invalid_argument) << text;
+  }
+}
+
 }  // namespace
 }  // namespace flexarm

@@ -199,5 +199,12 @@ TEST(Copy, GoesItsOwnWay) {
   EXPECT_EQ(copy.time(), 0);
 }
 
+TEST(SpscRing, HasAnEntryAtLeast) {
+  EXPECT_THROW(SpscRing<int>(0), std::invalid_argument);
+  SpscRing<int> ring(1);
+  EXPECT_TRUE(ring.has_room());
+  EXPECT_FALSE(ring.has_room(2));
+}
+
 }  // namespace
 }  // namespace flexarm::test

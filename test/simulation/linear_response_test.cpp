@@ -349,5 +349,31 @@ TEST(ThinBeams, SmallerModelsKeepTheBound) {
   }
 }
 
+TEST(FrequencyResponse, RefusesWhatIsNoFrequency) {
+  for (const double frequency : {double(NAN), double(INFINITY)})
+    EXPECT_THROW(frequency_response(oscillator(1, 1), {frequency}), std::invalid_argument) << frequency;
+}
+
+TEST(StepResponse, RefusesAnEndThatNeverComes) {
+  for (const double until : {double(NAN), double(INFINITY)})
+    EXPECT_THROW(step_response(oscillator(1, 1), until, 10), std::invalid_argument) << until;
+}
+
+TEST(LinearModels, WhoseMatricesDoNotFitAreRefused) {
+  std::vector<LinearModel> models(6, oscillator(1, 1));
+  models[0].a = MatrixXd::Identity(2, 3);
+  models[1].b = MatrixXd::Zero(3, 1);
+  models[2].c = MatrixXd::Zero(3, 1);
+  models[3].d = MatrixXd::Zero(2, 1);
+  models[4].positions = 3;
+  models[5].positions = -1;
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    EXPECT_THROW(poles(models[i]), std::invalid_argument) << i;
+    EXPECT_THROW(frequency_response(models[i], {1}), std::invalid_argument) << i;
+    EXPECT_THROW(step_response(models[i], 1, 1), std::invalid_argument) << i;
+    EXPECT_THROW(reduced(models[i], 2), std::invalid_argument) << i;
+  }
+}
+
 }  // namespace
 }  // namespace flexarm

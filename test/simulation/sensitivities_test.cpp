@@ -324,5 +324,14 @@ TEST(Sensitivities, FrequencyAfterThousandPeriods) {
   EXPECT_NEAR(sensitivities.positions()(0, 0), by_rate / (2 * rate), 1e-6 * 0.5 * steps * step / (2 * rate));
 }
 
+TEST(Sensitivities, OfWhatHasNotAlwaysAsManyNumbersAreRefused) {
+  Simulation simulation = Scene{with_scheme(kPendulum, "em", 5e-3)}.simulation();
+  SensitivityRequest request;
+  request.initial_state = true;
+  const Sensitivities sensitivities(simulation, request);
+  const auto grows = [&](const Simulation& seen) -> VectorXd { return VectorXd::Zero(&seen == &simulation ? 1 : 2); };
+  EXPECT_THROW(sensitivities.of(grows), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace flexarm::test

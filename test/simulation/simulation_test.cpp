@@ -1,5 +1,7 @@
 // The façade: names, coordinates, frames, observables, errors.
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -218,6 +220,80 @@ TEST(Simulation, MomentaAreThoseOfTheMotion) {
   EXPECT_LT((s.momentum() - 2 * velocity).norm(), 1e-13);
   EXPECT_LT((s.angular_momentum() - 2 * center.cross(velocity) - Vector3(0, 0, 12)).norm(), 1e-13);
   EXPECT_NEAR(s.energies().kinetic, 0.5 * 2 * velocity.squaredNorm() + 0.5 * 3 * 16, 1e-12);
+}
+
+/// What an exception of this kind says; empty: there was none.
+template <class Error, class Call>
+std::string what_of(const Call& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST_F(SmallArm, SaysWhichIndexIsWrong) {
+  Simulation s(scene_);
+  const std::string links = "link 9: expected an index from 0 to 3",
+                    coordinates = "joint coordinate 9: expected an index from 0 to 4";
+  std::vector<BeamPoint> points;
+  AppliedWrench wrench;
+  wrench.link = 9;
+  EXPECT_EQ(what_of<std::out_of_range>([&] { s.link_pose(9); }), links);
+  EXPECT_EQ(what_of<std::out_of_range>([&] { s.tip_pose(9); }), links);
+  EXPECT_EQ(what_of<std::out_of_range>([&] { s.beam_points(9, 0, points); }), links);
+  EXPECT_EQ(what_of<std::out_of_range>([&] { s.section(9, 0); }), links);
+  EXPECT_EQ(what_of<std::out_of_range>([&] { s.reaction(9); }), links);
+  EXPECT_EQ(what_of<std::out_of_range>([&] { s.apply_wrenches({wrench}); }), links);
+  EXPECT_EQ(what_of<std::out_of_range>([&] { s.position(9); }), coordinates);
+  EXPECT_EQ(what_of<std::out_of_range>([&] { s.effort(9); }), coordinates);
+  EXPECT_EQ(what_of<std::out_of_range>([&] { s.release_command(9); }), coordinates);
+  EXPECT_EQ(what_of<std::out_of_range>([&] { s.release_set_point(9); }), coordinates);
+  EXPECT_EQ(what_of<std::out_of_range>([&] { s.set_joint_state({{9, 0.0, {}}}); }), coordinates);
+  EXPECT_EQ(what_of<std::out_of_range>([&] { s.probe_pose(2); }), "probe 2: expected an index from 0 to 1");
+  EXPECT_EQ(what_of<std::out_of_range>([&] { s.sample(0); }), "sensor 0: there is none");
+}
+
+TEST_F(SmallArm, RefusesLessThanNoPointsBetweenNodes) {
+  const Simulation s(scene_);
+  const std::string expected = "between: expected a number of points >= 0, got -1";
+  for (const std::size_t link : {1u, 2u}) {  // rigid, flexible
+    std::vector<BeamPoint> points;
+    EXPECT_EQ(what_of<std::invalid_argument>([&] { s.beam_points(link, -1, points); }), expected);
+    EXPECT_TRUE(points.empty());
+    EXPECT_EQ(what_of<std::invalid_argument>([&] { s.undeformed_sections(link, -1); }), expected);
+  }
+}
+
+TEST_F(SmallArm, ExplainsNoResultOfAnotherScene) {
+  const Simulation s(scene_);
+  StepResult result;
+  EXPECT_EQ(s.explain(result), "");
+  result.reason = StepResult::Reason::NoConvergence;
+  EXPECT_FALSE(s.explain(result).empty()) << "the place need not be known";
+  const auto expect_refused = [&](const StepResult::Place& place) {
+    result.failure.place = place;
+    EXPECT_NE(what_of<std::invalid_argument>([&] { s.explain(result); }).find("none of this scene's"),
+              std::string::npos);
+  };
+  expect_refused({4, -1, -1, -1, Vector3::Zero()});
+  expect_refused({-1, -1, 5, -1, Vector3::Zero()});
+  expect_refused({-1, -1, -1, 0, Vector3::Zero()});
+  expect_refused({1, 0, -1, -1, Vector3::Zero()});  // a rigid link has no elements
+  result.failure.place = {2, 1, -1, -1, Vector3::Zero()};
+  EXPECT_NE(s.explain(result).find("element 2 of 2 of link 'boom'"), std::string::npos);
+}
+
+TEST_F(SmallArm, RefusesATimeForRecoveryThatIsNone) {
+  SimulationOptions options;
+  for (const double time : {-1.0, double(NAN)}) {
+    options.recovery_wall_time = time;
+    EXPECT_NE(
+        what_of<ModelError>([&] { Simulation(scene_, options); }).find("recovery_wall_time: expected a time >= 0"),
+        std::string::npos)
+        << time;
+  }
 }
 
 }  // namespace

@@ -15,7 +15,8 @@ class Companion {
  public:
   /// `window`: after that long it starts again from where the simulation is, so that errors of long ago do not count;
   /// infinite: it never does [s].
-  /// @throws std::invalid_argument if steps of twice the length do not divide the sample time of a servo.
+  /// @throws std::invalid_argument if the window is not > 0, or steps of twice the length do not divide the sample time
+  /// of a servo.
   explicit Companion(const Simulation& simulation, double window = std::numeric_limits<double>::infinity());
 
   ~Companion();

@@ -50,6 +50,7 @@ struct JudgedMotion {
   std::vector<Trajectory> points;
 
   explicit JudgedMotion(std::size_t count = 0) : points(count) {}
+  /// @throws std::invalid_argument unless there is one for each point.
   void add(const std::vector<Vector3>& positions);
   /// Of the points, how far the one that comes farthest does so from its start [m].
   double largest_displacement() const;

@@ -9,6 +9,7 @@ namespace flexarm {
 class CamProfile {
  public:
   /// Eccentric disc: f = radius (cos u - 1) - offset (Muñoz 2004, Table 11.1). [m]
+  /// @throws std::invalid_argument if one is not finite.
   static CamProfile eccentric(double radius, double offset);
   /// Periodic cubic spline through (angles[i], travels[i]), angles increasing within less than 2 pi, at least 3 of
   /// them.

@@ -40,13 +40,16 @@ class TimeFunction {
   /// of expressions to about 1e-13 of the largest value, kinks included and jumps by more than 3e-10 of it, with at
   /// most five values where it is smooth over the interval and some 4,000 else. May be non-finite where a value is.
   /// Does not allocate.
+  /// @throws std::invalid_argument if a time is not finite, and the function no constant.
   double mean(double begin, double end) const;
-  /// The same of what is left of the function between -limit and limit (> 0) at each instant.
+  /// The same of what is left of the function between -limit and limit at each instant.
+  /// @throws std::invalid_argument as mean(), and if the limit is not > 0.
   double mean_within(double limit, double begin, double end) const;
   /// Increasing times within (begin, end), at most 10,000, at which the function or its derivative jumps, to round-off.
   /// Of an expression those that its abs, sign, rint, min, max and comparisons have, and others that are apart by more
   /// than a ten thousandth of the interval. For use before a run: it evaluates an expression some 10,000 to a million
   /// times.
+  /// @throws std::invalid_argument if a time is not finite.
   std::vector<double> corners(double begin, double end) const;
   /// The value of a function in which there is no t; none of another one, which may have the same value all the time.
   std::optional<double> constant() const;

@@ -71,7 +71,8 @@ struct Pole {
   double damping_ratio() const;  ///< -Re / |value|; 0 for a pole at 0
 };
 /// By |value|, the smallest first.
-/// @throws std::runtime_error if they are not found.
+/// @throws std::invalid_argument if the matrices of the model are not of one size; std::runtime_error if poles are not
+/// found.
 std::vector<Pole> poles(const LinearModel& model);
 
 }  // namespace flexarm

@@ -19,7 +19,7 @@ struct ReducedModel {
 /// outputs. The model has less than `order` states where the others would be such as inputs do not reach, or outputs do
 /// not see.
 /// @throws std::invalid_argument if `order` is larger than the number of states, or smaller than that of poles which do
-/// not decay.
+/// not decay; or if the matrices of the model are not of one size.
 ReducedModel reduced(const LinearModel& model, int order);
 
 }  // namespace flexarm

@@ -18,7 +18,8 @@ struct FrequencyResponse {
   std::vector<double> frequencies;      ///< f [Hz]
   std::vector<Eigen::MatrixXcd> gains;  ///< c (2 pi i f - a)^-1 b + d of each, outputs x inputs
 };
-/// @throws std::runtime_error at a frequency of an undamped pole, where there is no such response.
+/// @throws std::invalid_argument if a frequency is not finite, or the matrices of the model are not of one size;
+/// std::runtime_error at a frequency of an undamped pole, where there is no such response.
 FrequencyResponse frequency_response(const LinearModel& model, const std::vector<double>& frequencies);
 
 /// Outputs after an input went from 0 to 1 at time 0, all else at rest.
@@ -27,8 +28,8 @@ struct StepResponse {
   std::vector<Eigen::MatrixXd> outputs;  ///< at each of them, outputs x inputs: by each input alone
 };
 /// At 0 and the ends of `intervals` equal parts of the time until `until` [s], exact but for round-off.
-/// @throws std::invalid_argument if `until` is not > 0 or `intervals` < 1; std::runtime_error if it grows beyond all
-/// numbers.
+/// @throws std::invalid_argument if `until` is not > 0 and finite, `intervals` < 1, or the matrices of the model are
+/// not of one size; std::runtime_error if it grows beyond all numbers.
 StepResponse step_response(const LinearModel& model, double until, int intervals);
 
 /// Derivatives of the run that has led to the instant of a model (simulation/sensitivities.h).

@@ -64,6 +64,7 @@ class Sensitivities {
   /// @throws std::out_of_range if there is no such probe.
   Eigen::MatrixXd probe(std::size_t index) const;
   /// Of any smooth function of a simulation: its numbers x directions.
+  /// @throws std::invalid_argument if it has not always as many numbers.
   Eigen::MatrixXd of(const std::function<Eigen::VectorXd(const Simulation&)>& observable) const;
   /// Of outputs of linear models (LinearRequest::outputs): position: and velocity: of joints and points, acceleration:
   /// of points, effort: of driven joints; none: positions of all joints and probes. Outputs x directions.

@@ -31,7 +31,7 @@ struct SimulationOptions {
   bool reuse_factorisation = true;
   std::optional<OnFailure> on_failure;
   /// Ends a step that has been halved after this time by the clock on the wall, with a reason of its own and the state
-  /// after the last good sub-step, from which the next call goes on; 0: never [s].
+  /// after the last good sub-step, from which the next call goes on; 0: never [s]. Not negative.
   double recovery_wall_time = 0;
 };
 
@@ -68,6 +68,7 @@ class Simulation {
   StepResult step();
   /// Why a step has failed: what, at which element or joint, where and when, what was tried, and what usually helps.
   /// One sentence for each, in one line. Empty if it has not failed.
+  /// @throws std::invalid_argument if its place is none of this scene: it is the result of another simulation.
   std::string explain(const StepResult& result) const;
   /// Back to the scene's initial state; commands are forgotten.
   void reset();
@@ -160,6 +161,7 @@ class Simulation {
   /// Points at every node and `between` equally spaced points inside each pair of nodes; appended to `points`. Of a
   /// beam without elements those where the nodes of elements="auto" would be: nothing is known of their resultants,
   /// which are NaN.
+  /// @throws std::invalid_argument if `between` is negative; so does undeformed_sections().
   void beam_points(std::size_t link, int between, std::vector<BeamPoint>& points) const;
   /// The sections of the same points while the link is undeformed, in the link's frame; none: the link has no beam.
   std::vector<Pose> undeformed_sections(std::size_t link, int between) const;

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cassert>
 #include <cstddef>
+#include <stdexcept>
 #include <vector>
 
 namespace flexarm {
@@ -15,7 +16,10 @@ template <class Entry>
 class SpscRing {
  public:
   /// @param capacity  entries that it can hold; > 0
-  explicit SpscRing(std::size_t capacity) : entries_(capacity) {}
+  /// @throws std::invalid_argument if it is 0
+  explicit SpscRing(std::size_t capacity) : entries_(capacity) {
+    if (capacity == 0) throw std::invalid_argument("capacity: expected a number of entries > 0, got 0");
+  }
 
   // ---- for the thread that fills it
   /// Whether so many entries are free.
@@ -30,7 +34,10 @@ class SpscRing {
     return at(pushed_.load(kOwn) + index);
   }
   /// Hands over the first `count` free entries, all at once.
-  void push(std::size_t count = 1) { pushed_.store(pushed_.load(kOwn) + count, std::memory_order_release); }
+  void push(std::size_t count = 1) {
+    assert(has_room(count));
+    pushed_.store(pushed_.load(kOwn) + count, std::memory_order_release);
+  }
 
   // ---- for the thread that empties it
   std::size_t size() {
@@ -47,7 +54,10 @@ class SpscRing {
     assert(!empty());
     return at(popped_.load(kOwn));
   }
-  void pop() { popped_.store(popped_.load(kOwn) + 1, std::memory_order_release); }
+  void pop() {
+    assert(!empty());
+    popped_.store(popped_.load(kOwn) + 1, std::memory_order_release);
+  }
 
  private:
   static constexpr std::memory_order kOwn = std::memory_order_relaxed, kOther = std::memory_order_acquire;

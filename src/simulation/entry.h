@@ -1,0 +1,22 @@
+#pragma once
+/// Entries of lists by the indices that users of the library give.
+
+#include <cstddef>
+#include <stdexcept>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace flexarm {
+
+/// @throws std::out_of_range saying `what` was asked for, and how many there are
+template <class Entry>
+const Entry& entry(const std::vector<Entry>& entries, std::size_t index, const char* what) {
+  if (index >= entries.size())
+    throw std::out_of_range(
+        entries.empty() ? fmt::format("{} {}: there is none", what, index)
+                        : fmt::format("{} {}: expected an index from 0 to {}", what, index, entries.size() - 1));
+  return entries[index];
+}
+
+}  // namespace flexarm
