@@ -5,10 +5,7 @@ namespace flexarm::simd {
 Version best_version() {
 #if defined(__x86_64__)
   if constexpr (has_versions) {
-    if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return Version::Baseline;
-    const bool has_many_registers =
-        __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq");
-    return has_many_registers ? Version::ManyRegisters : Version::Wide;
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? Version::Wide : Version::Baseline;
   }
 #endif
   return Version::Baseline;

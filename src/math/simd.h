@@ -1,12 +1,12 @@
 #pragma once
-/// Runs loops over packs, and other long kernels, with the widest registers of the processor at hand, and with 32 of
-/// them in the place of 16 where it has AVX-512: kernels of beams have more numbers in hand than 16. Registers of eight
-/// numbers are not used. Results differ between processors with and without fused multiply-add by round-off.
+/// Runs loops over packs, and other long kernels, with AVX2 and fused multiply-add where the processor at hand has them.
+/// Results differ between processors with and without by round-off. The 32 registers of AVX-512 are not used: whole runs
+/// of four scenes took 0.98 to 1.05 of their time without them (docs/architecture.md).
 
 namespace flexarm::simd {
 
-/// For which processors a kernel is compiled: all, those with AVX2 and fused multiply-add, and those with AVX-512.
-enum class Version { Baseline, Wide, ManyRegisters };
+/// For which processors a kernel is compiled: all, and those with AVX2 and fused multiply-add.
+enum class Version { Baseline, Wide };
 
 /// The last of them that the processor at hand can run.
 Version best_version();
@@ -22,19 +22,10 @@ template <class Work>
 [[gnu::target("avx2,fma"), gnu::flatten, gnu::noinline]] void run_wide(const Work& work) {
   work();
 }
-template <class Work>
-[[gnu::target("avx2,fma,avx512f,avx512vl,avx512dq,prefer-vector-width=256"), gnu::flatten, gnu::noinline]] void
-run_with_many_registers(const Work& work) {
-  work();
-}
 #else
 inline constexpr bool has_versions = false;
 template <class Work>
 void run_wide(const Work& work) {
-  work();
-}
-template <class Work>
-void run_with_many_registers(const Work& work) {
   work();
 }
 #endif
@@ -44,11 +35,10 @@ template <class Work>
   work();
 }
 
-/// Calls work(), a function object that may be compiled three times.
+/// Calls work(), a function object that may be compiled twice.
 template <class Work>
 void run(const Work& work) {
   if constexpr (has_versions) {
-    if (version == Version::ManyRegisters) return run_with_many_registers(work);
     if (version == Version::Wide) return run_wide(work);
   }
   run_baseline(work);

@@ -118,7 +118,7 @@ class As {
 /// Those that the processor at hand can run.
 std::vector<simd::Version> versions() {
   std::vector<simd::Version> out;
-  for (const simd::Version version : {simd::Version::Baseline, simd::Version::Wide, simd::Version::ManyRegisters})
+  for (const simd::Version version : {simd::Version::Baseline, simd::Version::Wide})
     if (version <= simd::best_version()) out.push_back(version);
   return out;
 }
