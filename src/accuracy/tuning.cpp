@@ -362,7 +362,7 @@ std::vector<std::string> schemes_alike(const IntegratorDescription& integrator, 
     if (is_plain) return false;  // its dissipation, or what is to be studied, is what the scene wants
     return other.conserves_momenta && (other.conserves_energy || !own.conserves_energy);
   };
-  for (const char* name : {"em", "em0", "em_scaled", "em4"}) {
+  for (const char* name : {"em", "em0", "em4"}) {
     if (own.name == name || integrator.scheme == name) continue;
     if (any || is_alike(*find_scheme(name))) names.emplace_back(name);
   }

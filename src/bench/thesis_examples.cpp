@@ -41,8 +41,7 @@ struct Algorithm {
 constexpr Algorithm kTrapezoidal{"trapezoidal rule", "newmark", "", false};
 constexpr Algorithm kAlg1{"alg1", "m1", "alg1", false}, kAlg2{"alg2", "m2", "alg2", false},
     kAlg3{"alg3", "m1", "alg3", false}, kAlg4{"alg4", "m1", "alg4", false}, kSme{"sme", "std", "sme", false},
-    kSmEm{"em, sm_em", "em", "sm_em", false}, kSmooth{"em, sm_em, smooth line", "em", "sm_em", true},
-    kScaled{"em_scaled, sm_em", "em_scaled", "sm_em", false};
+    kSmEm{"em, sm_em", "em", "sm_em", false}, kSmooth{"em, sm_em, smooth line", "em", "sm_em", true};
 constexpr Algorithm kM1{"m1", "m1", "", false}, kBeta1{"beta1", "beta1", "", false}, kEm{"em", "em", "", false};
 
 ThesisRun run(const char* scene, const std::string& how, const Algorithm& algorithm, double step,
@@ -162,7 +161,6 @@ ThesisExample free_sliding_mass() {
       run(scene, "", kSme, 0.004, ""),
       run(scene, "", kSmEm, 0.004, ""),
       run(scene, "", kSmooth, 0.004, ""),
-      run(scene, "", kScaled, 0.004, ""),
       run(scene, "", kSmEm, 0.008, "four times the step"),
       run(scene, "", kSmooth, 0.008, "four times the step"),
       run(scene, "", kSmEm, 0.016, "four times the larger step"),

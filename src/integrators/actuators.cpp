@@ -41,9 +41,6 @@ void Actuators::check(const Actuator& actuator) const {
   const Scheme& scheme = configuration_.scheme();
   const std::string joint = " of joint '" + configuration_.model().coordinates[actuator.coordinate].name + "'";
   const std::string backwards = "<integrator>: scheme '" + std::string(scheme.name) + "' steps backwards, in which ";
-  if (scheme.scales_velocities && actuator.drive.inertia > 0)
-    throw ModelError("<integrator>: scheme 'em_scaled' does not scale the velocity of a rotor (<drive>" + joint +
-                     "); scheme 'em' closes the energy without scaling");
   if (scheme.is_composition && actuator.drive.sticks)
     throw ModelError(backwards + "friction of the law 'coulomb' (<drive>" + joint +
                      ") would drive; take another scheme or the law 'smooth'");

@@ -63,12 +63,11 @@ NeighbourSteps::NeighbourSteps(const Model& model, const Scheme& scheme)
       system_(model, scheme),
       update_(system_.degrees_of_freedom().unknowns),
       poses_(model.nodes.size()) {
-  const auto refuse = [&](const std::string& why) {
-    throw ModelError(fmt::format("runs of scheme '{}' have no derivatives: {}", scheme.name, why));
-  };
-  if (scheme.scales_velocities) refuse("it scales velocities after the step; take 'em'");
   if (scheme.interpolation == Interpolation::Iterative)
-    refuse("with interpolation=\"iterative\" they depend on Newton's iterates");
+    throw ModelError(
+        fmt::format("runs of scheme '{}' have no derivatives: with interpolation=\"iterative\" they "
+                    "depend on Newton's iterates",
+                    scheme.name));
   for (IncrementHistory* history : {&made_, &guess_}) history->push(0, system_.degrees_of_freedom().unknowns);
   if (scheme.is_composition) return;  // some of its sub-steps run backwards
   march_ = std::make_unique<EventMarch>(model, scheme);

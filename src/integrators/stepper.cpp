@@ -39,7 +39,6 @@ Stepper::Stepper(const Model& model, const Scheme& scheme, const StepSettings& s
   for (std::vector<double>& increment : before_.history.increments)
     increment.reserve(system_.degrees_of_freedom().unknowns);
   before_.wrenches.reserve(kRoomForWrenches);
-  if (scheme.scales_velocities) scaling_.emplace(model, scheme);
   if (settings.on_failure == OnFailure::Dissipate)
     substitute_ = std::make_unique<DissipativeSubstitute>(model, scheme, settings);
 }
@@ -69,26 +68,17 @@ void Stepper::observe(StepObserver* observer) {
 }
 
 bool Stepper::sub_step(State& state, double step, StepResult& result) {
-  if (!scheme_.is_composition && !scaling_) return simple_step(state, step, result);
+  if (!scheme_.is_composition) return simple_step(state, step, result);
   before_ = state;
   if (follower_) follower_->keep();
-  const auto fail = [&] {
+  for (const double part : kComposition) {
+    if (simple_step(state, part * step, result)) continue;
     state = before_;
     if (follower_) follower_->take_back();
     invalidate();
     return false;
-  };
-  if (scheme_.is_composition) {
-    for (const double part : kComposition)
-      if (!simple_step(state, part * step, result)) return fail();
-    state.time = before_.time + step;
-  } else if (!simple_step(state, step, result)) {
-    return false;
   }
-  if (scaling_ && !scaling_->apply(before_, state)) {
-    result.reason = StepResult::Reason::EnergyDefect;
-    return fail();
-  }
+  state.time = before_.time + step;
   return true;
 }
 

@@ -2,7 +2,6 @@
 /// Step control around Newton's method: halve on failure, recover after success.
 
 #include <memory>
-#include <optional>
 
 #include "flexarm/model/results.h"
 #include "integrators/deadline.h"
@@ -10,7 +9,6 @@
 #include "integrators/step_follower.h"
 #include "integrators/step_settings.h"
 #include "integrators/step_system.h"
-#include "integrators/velocity_scaling.h"
 
 namespace flexarm {
 
@@ -70,7 +68,6 @@ class Stepper {
   StepSettings settings_;
   StepSystem system_;
   NewtonIteration newton_;
-  std::optional<VelocityScaling> scaling_;
   std::unique_ptr<DissipativeSubstitute> substitute_;  // where it is allowed
   State before_;                                       // of a step that may have to be taken back
   double begin_ = 0, event_ = 0;                       // of the whole step; from there on [s]

@@ -32,7 +32,6 @@ struct Scheme : TimeRule {
   std::string_view name, description;
   bool conserves_energy = false, conserves_momenta = false;
   int order = 2;                    ///< in time
-  bool scales_velocities = false;   ///< closes the energy balance after the step (beyond.md 1.2)
   bool is_composition = false;      ///< sub-steps of a symmetric second-order step: order four
   bool heeds_slide_schemes = true;  ///< else the contact of all sliders is carried by SM-EM
   /// Of what touches a stop [s]: resolved by the scene's steps, and short to the eye.

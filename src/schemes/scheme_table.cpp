@@ -50,10 +50,6 @@ void corrected(Scheme& scheme) {
   scheme.conserves_energy = true;
 }
 
-void scaled(Scheme& scheme) {
-  scheme.scales_velocities = scheme.conserves_energy = true;
-}
-
 template <int order>
 void dissipative(Scheme& scheme) {
   scheme.dissipation = numerical_dissipation(order, kDefaultRho, IntegratorDescription().step);
@@ -111,7 +107,6 @@ std::vector<Scheme> build_table() {
   const Row rows[] = {
       {"em", {energy_momentum, multiplier}, "invariant energy-momentum scheme, one multiplier per element"},
       {"em0", {energy_momentum}, "its base, without the multiplier: momenta exact, energy approximate"},
-      {"em_scaled", {energy_momentum, scaled}, "em0 and a scaling of the velocities that closes the energy"},
       {"em_symmetric", {energy_momentum, multiplier, symmetric}, "em, symmetric in time"},
       {"em4",
        {energy_momentum, multiplier, symmetric, composed},

@@ -40,9 +40,6 @@ scene::SceneDescription driven_scene(bool is_elastic) {
 
 class ActuatorTangent : public SchemeStep {
  protected:
-  void SetUp() override {
-    if (scheme().scales_velocities) GTEST_SKIP() << "refuses rotors";
-  }
   /// Over updates short enough that no gear passes a border of its play.
   void expect_consistent(const Model& model) const {
     RandomSource random(21);

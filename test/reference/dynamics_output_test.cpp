@@ -95,7 +95,6 @@ TEST_P(PublishedOrder, VelocitiesUnderAJumpingTorque) {
 }
 
 TEST_P(PublishedOrder, VelocitiesAndEffortsOfAMotion) {
-  if (GetParam().scales_velocities) GTEST_SKIP() << "refuses motions";
   const int order = std::min(GetParam().order, 2);
   const std::vector<Output> results = runs(driven_arm());
   EXPECT_GT(slope(results, &Output::rates, order), 0.9 * order);
@@ -113,7 +112,6 @@ TEST(PublishedEffort, OfAnInertiaThatAMotionDrives) {
   b.joint("axle", scene::JointKind::Revolute, "world", "wheel");
   b.scene.motions.push_back({"axle", TimeFunction::parse("sin(3*t)"), {}});
   for (const Scheme& scheme : schemes()) {
-    if (scheme.scales_velocities) continue;
     double error[2] = {};
     for (const int k : {0, 1}) {
       const double step = k == 0 ? 0.01 : 0.005;

@@ -124,7 +124,6 @@ TEST_P(JumpBy, OfATorqueKeepsSecondOrderOfAPendulum) {
 
 // What is asked of a motor is a force like others, and so is what a controller in mode `effort` is set to, or adds.
 TEST_P(JumpBy, OfWhatAMotorIsAskedForKeepsSecondOrder) {
-  if (GetParam() == "em_scaled") GTEST_SKIP() << "refuses rotors";
   const auto expect_order = [](const SceneBuilder& b) {
     EXPECT_GT(order_of(b, GetParam(), position_after_a_jump(kBlockMass + kRotor)), 1.8);
   };

@@ -57,10 +57,6 @@ INSTANTIATE_TEST_SUITE_P(Rotations, LeavingSlide,
                          ::testing::Values(JointKind::Fixed, JointKind::Revolute, JointKind::Universal,
                                            JointKind::Spherical, JointKind::Screw));
 
-TEST(SlideEnd, ScaledVelocitiesAreRefused) {
-  EXPECT_THROW(Simulation(leaving(JointKind::Fixed).scene, options("em_scaled", 0.01)), ModelError);
-}
-
 // A bead leaves a stiff inclined line with v = sqrt(2 g sin l) along it and then falls freely.
 TEST(SlideEnd, FallsOnAParabola) {
   SceneBuilder b;

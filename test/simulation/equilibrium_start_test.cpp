@@ -49,7 +49,6 @@ TEST_P(EquilibriumStart, NothingMoves) {
   b.scene.integrator.step = 1e-3;
   if (GetParam().scheme.is_composition)  // which refuses what samples
     b.scene.servos.back().sample_time = b.scene.servos.back().delay = 0;
-  if (GetParam().scheme.scales_velocities) b.scene.drives.clear();  // refused with rotors
   Simulation simulation(b.scene);
   for (const scene::Diagnostic& warning : simulation.start_warnings())
     EXPECT_EQ(warning.element, "<integrator>") << "of the scheme, not of the start: " << warning.text();

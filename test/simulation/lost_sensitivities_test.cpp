@@ -111,8 +111,11 @@ TEST(LostSensitivities, RunThatHasBegunIsRefused) {
   EXPECT_THROW(sensitivities.step(), std::logic_error);
 }
 
-TEST(LostSensitivities, SchemesWithoutThemAreRefused) {
-  const Scene scene{with_scheme(kPendulum, "em_scaled", 5e-3)};
+TEST(LostSensitivities, IterativeInterpolationIsRefused) {
+  std::string text = with_scheme(flexible_arm("0 0 1"), "newmark", 5e-3);
+  const std::string scheme = "scheme=\"newmark\"";
+  text.replace(text.find(scheme), scheme.size(), scheme + " interpolation=\"iterative\"");
+  const Scene scene{text};
   Simulation simulation = scene.simulation();
   EXPECT_THROW(Sensitivities(simulation, scene.request({"payload"})), ModelError);
 }

@@ -31,7 +31,7 @@ struct SensitivityRequest {
 ///
 /// They are those of the steps as they are taken, to about 1e-6 of the largest, but at stops and dry friction: there
 /// they are those of the motion, whose events lie within steps. The simulation goes on with the same bits as without
-/// them. The scheme 'em_scaled' and iterative interpolation have none.
+/// them. Iterative interpolation has none.
 class Sensitivities {
  public:
   /// Of a simulation at its start, which must outlive this and stay where it is: copies go without.
