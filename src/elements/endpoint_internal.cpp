@@ -2,10 +2,36 @@
 
 #include "elements/additive_beam.h"
 #include "elements/endpoint_beam.h"
-#include "elements/endpoint_stress.h"
 #include "elements/orders.h"
 
 namespace flexarm {
+namespace {
+
+/// Stress at a point of a beam.
+struct EndpointStress {
+  Vector6 stress, strain_rate = Vector6::Zero();
+  double slope = 1;       ///< d(stress)/d(strain) = stiffness + (slope - 1) damped
+  double dissipated = 0;  ///< over the step [J/m]
+
+  /// Without damping.
+  EndpointStress(const Matrix6& stiffness, const Vector6& strain) : stress(stiffness * strain) {}
+
+  /// Adds stiffness-proportional damping by the strain rate at t_{n+1+alpha}. `damping`: eta of
+  /// BeamElement::stiffness_damping; `damped`: D C D of the same. `begin`, `begin_rate`: at the beginning of the step.
+  void add_damping(double damping, const Matrix6& damped, const Vector6& strain, const Vector6& begin,
+                   const Vector6& begin_rate, const NewmarkRule& rule) {
+    const Vector6 increment = (strain - begin) / (1 + rule.alpha);
+    strain_rate = (increment / rule.step - (1 - rule.gamma) * begin_rate) / rule.gamma;
+    const Vector6 rate = (1 + rule.alpha) * strain_rate - rule.alpha * begin_rate;
+    const Vector6 damping_stress = damping * (damped * rate);
+    stress += damping_stress;
+    slope += damping / (rule.gamma * rule.step);
+    dissipated = damping_stress.dot(increment);
+  }
+};
+
+}  // namespace
+
 template <int Nodes, class Form>
 void endpoint_internal(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, const NewmarkRule* rule,
                        const PointKinematics* begin, const Vector6* strain_rates, bool with_tangent,
@@ -24,13 +50,13 @@ void endpoint_internal(const BeamElement<Nodes>& element, const ElementNodes<Nod
     const auto rotation = rotations.evaluate(constants.shape, constants.derivative, reference, generalised);
     end[k] = end_kinematics<Nodes>(constants, nodes, rotation);
     const auto stress_at = [&](const Vector6& strain) {
-      EndpointStress<Matrix6> stress(constants.stiffness, strain);
+      EndpointStress stress(constants.stiffness, strain);
       if (rule && element.stiffness_damping != 0)
         stress.add_damping(element.stiffness_damping, is_even ? constants.stiffness : damped, strain, begin[k].strain,
                            strain_rates[k], *rule);
       return stress;
     };
-    const EndpointStress<Matrix6> point = stress_at(end[k].strain);
+    const EndpointStress point = stress_at(end[k].strain);
     system.dissipated += constants.weight * point.dissipated;
     new_strain_rates[k] = point.strain_rate;
     const auto in_space = [&](const Vector3& material) -> Vector3 { return end[k].rotation * material; };
@@ -40,7 +66,7 @@ void endpoint_internal(const BeamElement<Nodes>& element, const ElementNodes<Nod
     if (!is_even) sum = constants.stiffness + (point.slope - 1) * damped;
     endpoint::PointForces forces{end[k], is_even ? constants.stiffness : sum, slope, n, m, n, m};
     if (carried) {
-      const EndpointStress<Matrix6> seen = stress_at(carried[k]);
+      const EndpointStress seen = stress_at(carried[k]);
       forces.seen_n = in_space(seen.stress.template head<3>());
       forces.seen_m = in_space(seen.stress.template tail<3>());
     }

@@ -2,7 +2,6 @@
 /// Newmark's rule over a step.
 
 #include <cassert>
-#include <type_traits>
 
 #include "flexarm/math/pose.h"
 
@@ -14,16 +13,11 @@ struct NewmarkRule {
   double beta = 0.25, gamma = 0.5, step = 0;
   double alpha = 0;  ///< strains are those at t_{n+1+alpha} (HHT3)
 
-  /// Of vectors, or of numbers: acceleration<double>(...).
-  template <class Quantity = Vector3>
-  Quantity acceleration(const std::common_type_t<Quantity>& increment, const std::common_type_t<Quantity>& velocity,
-                        const std::common_type_t<Quantity>& acceleration) const {
+  Vector3 acceleration(const Vector3& increment, const Vector3& velocity, const Vector3& acceleration) const {
     assert(beta != 0 && step != 0);
     return (increment - step * velocity - (0.5 - beta) * step * step * acceleration) / (beta * step * step);
   }
-  template <class Quantity = Vector3>
-  Quantity velocity(const std::common_type_t<Quantity>& velocity, const std::common_type_t<Quantity>& acceleration,
-                    const std::common_type_t<Quantity>& new_acceleration) const {
+  Vector3 velocity(const Vector3& velocity, const Vector3& acceleration, const Vector3& new_acceleration) const {
     return velocity + step * ((1 - gamma) * acceleration + gamma * new_acceleration);
   }
   double acceleration_slope() const { return 1 / (beta * step * step); }

@@ -2,7 +2,8 @@
 /// The kernels of planar_beam.h on packs, compiled once for each order and run with the widest registers of the
 /// processor at hand. `Nodes`: 2 to 5.
 
-#include "elements/planar_endpoint.h"
+#include "elements/planar_element.h"
+#include "schemes/time_rule.h"
 
 namespace flexarm::planar::packs {
 
@@ -21,20 +22,5 @@ template <int Nodes>
 void carry_strains(const Element<Nodes, Pack>& element, const Pack& slope, const Nodal<Nodes, Pack>& nodes,
                    const PointKinematics<Pack>* begin, const std::array<Vector3T<Pack>, Nodes>& update,
                    PointKinematics<Pack>* end, CarriedStrains<Nodes, Pack>& carried);
-
-// ---- of planar_endpoint.h
-
-template <int Nodes>
-void endpoint_beam(const Element<Nodes, Pack>& element, const RotaryElement<Nodes, Pack>& rotary,
-                   const EndpointNodal<Nodes, Pack>& nodes, const EndpointBalance& balance,
-                   const EndpointMemory<Nodes, Pack>& begin, bool with_tangent,
-                   const std::array<Vector3T<Pack>, Nodes - 1>* carried, EndpointResult<Nodes, Pack>& end,
-                   BlockSystem<Nodes, Pack>& system, std::array<Eigen::Matrix<Pack, 4, 1>, Nodes>& inertia);
-
-template <int Nodes>
-void carry_endpoint_strains(const Element<Nodes, Pack>& element,
-                            const std::array<PointKinematics<Pack>, Nodes - 1>& points,
-                            const std::array<Vector3T<Pack>, Nodes>& update,
-                            std::array<Vector3T<Pack>, Nodes - 1>& carried);
 
 }  // namespace flexarm::planar::packs

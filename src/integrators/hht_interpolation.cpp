@@ -15,8 +15,7 @@ HhtInterpolation::HhtInterpolation(const StepConfiguration& configuration, const
       end_forces_(interpolated_.size(), Vector6::Zero()),
       end_reactions_(interpolated_.size(), Vector6::Zero()) {}
 
-void HhtInterpolation::begin_evaluation(bool in_plane) {
-  is_in_plane_ = in_plane;
+void HhtInterpolation::begin_evaluation() {
   std::fill(end_forces_.begin(), end_forces_.end(), Vector6::Zero());
   const double alpha = configuration_.scheme().alpha;
   for (std::size_t i = 0; i < interpolated_.size(); ++i) {

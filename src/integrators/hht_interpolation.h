@@ -23,8 +23,8 @@ class HhtInterpolation {
   /// `total_rotations`: per node, of the trial configuration; HHT1 only.
   HhtInterpolation(const StepConfiguration& configuration, const std::vector<Vector3>& total_rotations);
 
-  /// The trial configuration has changed. `in_plane`: all moves in a plane, where turns commute and HHT1 is HHT2.
-  void begin_evaluation(bool in_plane);
+  /// The trial configuration has changed.
+  void begin_evaluation();
   /// With which the forces are to be evaluated: at t_{n+1+alpha} in HHT3, else the end of the step.
   const std::vector<NodePose>& configuration() const { return interpolated_; }
 
@@ -54,8 +54,7 @@ class HhtInterpolation {
   /// on configuration(), not on the end.
   void take(int node, const Vector6& force, Eigen::Matrix<double, 6, 3>& rotational, bool of_configuration,
             bool with_tangent);
-  /// A force that has gone into the tangent already, {f, phi}; or one that does not change.
-  void take(int node, const Vector6& force) { end_forces_[node] += force; }
+  /// A force that does not change.
   void take(int node, const Vector3& force) { end_forces_[node].head<3>() += force; }
 
   /// Adds the forces of t_{n+1+alpha}; all have been taken.
@@ -74,14 +73,13 @@ class HhtInterpolation {
     Matrix3 slope, derivative;
   };
   bool of_kinematics() const { return configuration_.scheme().hht == HhtForm::Kinematics; }
-  bool of_rotation_vectors() const { return configuration_.scheme().hht == HhtForm::AdditiveForces && !is_in_plane_; }
+  bool of_rotation_vectors() const { return configuration_.scheme().hht == HhtForm::AdditiveForces; }
   bool has_reactions() const { return !configuration_.state().reactions.empty(); }
   Moment moment(int node, const Vector3& begin, const Vector3& end, bool with_derivative) const;
   Matrix3 moment_slope(int node) const { return moment(node, Vector3::Zero(), Vector3::Zero(), false).slope; }
 
   const StepConfiguration& configuration_;
   const std::vector<Vector3>& total_rotations_;
-  bool is_in_plane_ = false;
   std::vector<NodePose> interpolated_;
   std::vector<Matrix3> interpolated_spins_;  // spin there per spin at the end
   std::vector<Vector6> end_forces_, end_reactions_;

@@ -2,25 +2,97 @@
 
 #include <algorithm>
 
+#include "integrators/gathered.h"
 #include "math/simd.h"
 
 namespace flexarm {
+namespace {
+
+/// Four numbers of each lane, lane by lane; get(lane) points to them.
+template <class Get>
+[[gnu::always_inline]] inline std::array<Pack, 4> gathered_four(const Get& get) {
+  std::array<Pack, 4> out;
+  for (int k = 0; k < 4; ++k) out[k] = gathered([&](int lane) { return get(lane)[k]; });
+  return out;
+}
+
+}  // namespace
 
 PlanarBeams::PlanarBeams(const StepConfiguration& configuration, const PlaneOfMotion& plane)
-    : PlanarFamily(configuration, plane), rates_(begin_poses_.size()), has_memory_(rule_.dissipation.any()) {
-  const Model& model = configuration.model();
-  for_each_group(model.beams, [&](const auto& group) {
+    : configuration_(configuration),
+      plane_(plane),
+      rule_(configuration.scheme()),
+      begin_poses_(configuration.model().nodes.size()),
+      end_poses_(begin_poses_.size()),
+      rates_(begin_poses_.size()),
+      forces_(begin_poses_.size()),
+      carried_(begin_poses_.size()),
+      has_memory_(rule_.dissipation.any()) {
+  set_nodes();
+  for_each_group(configuration.model().beams, [&](const auto& group) {
     constexpr int N = std::decay_t<decltype(group)>::kNodes;
     auto& packs = std::get<Group<N>>(groups_);
-    set_packs(group.elements, packs);
+    set_packs<N>(group.elements, packs);
     if (!packs.empty() && packs.front().element.has_stiffness_damping) has_memory_ = true;
   });
-  if (has_memory_) end_memory_.resize(model.stiffness_point_count);
+  if (has_memory_) end_memory_.resize(configuration.model().stiffness_point_count);
+}
+
+template <int Nodes>
+void PlanarBeams::set_packs(const std::vector<BeamElement<Nodes>>& elements, Group<Nodes>& packs) const {
+  constexpr int lanes = Pack::kLanes;
+  const int count = static_cast<int>(elements.size());
+  packs.resize((count + lanes - 1) / lanes);
+  // Which terms there are is the same for a whole group, so that an element does not feel its neighbours.
+  bool is_damped_evenly = true, has_stiffness_damping = false, has_mass_damping = false;
+  for (std::size_t p = 0; p < packs.size(); ++p) {
+    ElementPack<Nodes>& pack = packs[p];
+    const int first = static_cast<int>(p) * lanes;
+    pack.lanes = std::min(lanes, count - first);
+    for (int lane = 0; lane < lanes; ++lane) {
+      const BeamElement<Nodes>& element = elements[std::min(first + lane, count - 1)];
+      pack.nodes[lane] = element.nodes;
+      pack.first_block[lane] = element.first_block;
+      pack.first_stiffness_point[lane] = element.first_stiffness_point;
+      pack.basis[lane] = plane_.strain_basis(element.nodes[0]);
+      planar::set_lane(pack.element, lane, element, pack.basis[lane]);
+    }
+    is_damped_evenly = is_damped_evenly && pack.element.is_damped_evenly;
+    has_stiffness_damping = has_stiffness_damping || pack.element.has_stiffness_damping;
+    has_mass_damping = has_mass_damping || pack.element.has_mass_damping;
+  }
+  for (ElementPack<Nodes>& pack : packs) {
+    pack.element.is_damped_evenly = is_damped_evenly;
+    pack.element.has_stiffness_damping = has_stiffness_damping;
+    pack.element.has_mass_damping = has_mass_damping;
+  }
+}
+
+void PlanarBeams::set_nodes() {
+  const Model& model = configuration_.model();
+  for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+    const Quaternion& frame = plane_.frames[i];
+    frames_.push_back(
+        {frame.coeffs(), (Quaternion(0, plane_.normal.x(), plane_.normal.y(), plane_.normal.z()) * frame).coeffs()});
+    const Vector3 normal = plane_.material_normal(static_cast<int>(i));
+    material_normals_.push_back(normal);
+    const NodalInertia& inertia = model.inertias[i];
+    Matrix3 rotary = inertia.rotary;
+    if (rule_.nodal_rotary_inertia) rotary += inertia.beam_rotary;
+    if (inertia.mass != 0 || !rotary.isZero(0))
+      inertias_.push_back({static_cast<int>(i), inertia.mass, normal.dot(rotary * normal)});
+  }
+}
+
+PlanarPose PlanarBeams::pose(std::size_t node, const NodePose& at) const {
+  const Frame& frame = frames_[node];
+  const auto& q = at.orientation.coeffs();
+  return {plane_.first.dot(at.position), plane_.second.dot(at.position), q.dot(frame.cosine), q.dot(frame.sine)};
 }
 
 void PlanarBeams::begin() {
   const StepMotion step = configuration_.motion();
-  set_begin_poses();
+  for (std::size_t i = 0; i < begin_poses_.size(); ++i) begin_poses_[i] = pose(i, configuration_.begin()[i]);
   for (std::size_t i = 0; i < rates_.size(); ++i) {
     const NodeState& node = step.state.nodes[i];
     rates_[i] = {0, plane_.first.dot(node.velocity), plane_.second.dot(node.velocity),
@@ -42,9 +114,15 @@ void PlanarBeams::set_begin_points() {
   for_each_group(groups_, [&](auto& packs) {
     constexpr int N = std::decay_t<decltype(packs)>::value_type::kNodes;
     for (auto& pack : packs) {
-      const Places<N> places = PlanarFamily::gather<N>(pack, begin_poses_);
-      planar::packs::element_points<N>(pack.element, places.position, places.cosine, places.sine,
-                                       pack.points[begin_].data());
+      std::array<planar::Vector2T<Pack>, N> position;
+      std::array<Pack, N> cosine, sine;
+      for (int i = 0; i < N; ++i) {
+        const auto at = gathered_four([&](int lane) { return &begin_poses_[pack.nodes[lane][i]].x; });
+        position[i] = {at[0], at[1]};
+        cosine[i] = at[2];
+        sine[i] = at[3];
+      }
+      planar::packs::element_points<N>(pack.element, position, cosine, sine, pack.points[begin_].data());
     }
   });
 }
@@ -78,7 +156,7 @@ void PlanarBeams::set_end() {
 }
 
 template <int Nodes>
-planar::Nodal<Nodes, Pack> PlanarBeams::gather_motion(const ConservingPack<Nodes>& pack) const {
+planar::Nodal<Nodes, Pack> PlanarBeams::gather_motion(const ElementPack<Nodes>& pack) const {
   planar::Nodal<Nodes, Pack> nodes;
   for (int i = 0; i < Nodes; ++i) {
     const auto begin = gathered_four([&](int lane) { return &begin_poses_[pack.nodes[lane][i]].x; });
@@ -95,8 +173,20 @@ planar::Nodal<Nodes, Pack> PlanarBeams::gather_motion(const ConservingPack<Nodes
 }
 
 template <int Nodes>
-void PlanarBeams::gather(const ConservingPack<Nodes>& pack,
-                         std::array<planar::StrainMemory<Pack>, Nodes - 1>& memory) const {
+std::array<Vector3T<Pack>, Nodes> PlanarBeams::gather_update(const ElementPack<Nodes>& pack,
+                                                             const double* update) const {
+  std::array<Vector3T<Pack>, Nodes> updates;
+  std::array<Vector3, Pack::kLanes> moved;
+  for (int i = 0; i < Nodes; ++i) {
+    for (int lane = 0; lane < Pack::kLanes; ++lane)
+      moved[lane] = plane_.projected(Eigen::Map<const Vector6>(update + 6 * pack.nodes[lane][i]));
+    updates[i] = gathered_vector([&](int lane) -> const Vector3& { return moved[lane]; });
+  }
+  return updates;
+}
+
+template <int Nodes>
+void PlanarBeams::gather(const ElementPack<Nodes>& pack, Memory<Nodes>& memory) const {
   for (int k = 0; k < Nodes - 1; ++k)
     for (int lane = 0; lane < Pack::kLanes; ++lane) {
       const StrainMemory& from = configuration_.state().strain_memory[pack.first_stiffness_point[lane] + k];
@@ -108,14 +198,38 @@ void PlanarBeams::gather(const ConservingPack<Nodes>& pack,
 }
 
 template <int Nodes>
-void PlanarBeams::scatter(const ConservingPack<Nodes>& pack,
-                          const std::array<planar::StrainMemory<Pack>, Nodes - 1>& memory) {
+void PlanarBeams::scatter(const ElementPack<Nodes>& pack, const Memory<Nodes>& memory) {
   for (int k = 0; k < Nodes - 1; ++k)
     for (int lane = 0; lane < pack.lanes; ++lane) {
       const auto from_plane = [&](const auto& strain) { return Vector6(pack.basis[lane] * get_lane(strain, lane)); };
       end_memory_[pack.first_stiffness_point[lane] + k] = {from_plane(memory[k].average), from_plane(memory[k].rate),
                                                            from_plane(memory[k].delayed_rate)};
     }
+}
+
+template <int Nodes>
+void PlanarBeams::scatter(const ElementPack<Nodes>& pack, const std::array<Eigen::Matrix<Pack, 4, 1>, Nodes>& from,
+                          std::vector<NodeForce>& to) const {
+  std::array<double*, Pack::kLanes> targets;
+  for (int i = 0; i < Nodes; ++i) {
+    for (int lane = 0; lane < pack.lanes; ++lane) targets[lane] = to[pack.nodes[lane][i]].at;
+    add_lanes<4>(from[i].data(), pack.lanes, targets.data());
+  }
+}
+
+template <int Nodes>
+void PlanarBeams::scatter(const ElementPack<Nodes>& pack, const planar::BlockSystem<Nodes, Pack>& system,
+                          Balance& balance) {
+  scatter<Nodes>(pack, system.residual, forces_);
+  if (balance.carried) scatter<Nodes>(pack, system.carried, carried_);
+  std::array<double*, Pack::kLanes> targets;
+  for (int i = 0; i < Nodes && balance.tangent; ++i)
+    for (int j = 0; j < Nodes; ++j) {
+      for (int lane = 0; lane < pack.lanes; ++lane)
+        targets[lane] = balance.tangent->element_block(pack.first_block[lane] + i * Nodes + j);
+      add_lanes<12, true>(system.tangent[i][j].data(), pack.lanes, targets.data());
+    }
+  for (int lane = 0; lane < pack.lanes; ++lane) balance.dissipated += system.dissipated[lane];
 }
 
 void PlanarBeams::add_forces(Balance& balance) {
@@ -127,7 +241,7 @@ void PlanarBeams::add_forces(Balance& balance) {
     if (packs.empty()) return;
     constexpr int N = std::decay_t<decltype(packs)>::value_type::kNodes;
     simd::run([&] {
-      std::array<planar::StrainMemory<Pack>, N - 1> memory, new_memory;
+      Memory<N> memory, new_memory;
       planar::BlockSystem<N, Pack> system;
       for (auto& pack : packs) {
         if (has_memory_) gather<N>(pack, memory);
@@ -136,11 +250,20 @@ void PlanarBeams::add_forces(Balance& balance) {
                                balance.carried ? &pack.carried : nullptr, pack.points[1 - begin_].data(),
                                has_memory_ ? new_memory.data() : nullptr, system);
         if (has_memory_) scatter<N>(pack, new_memory);
-        PlanarFamily::scatter<N>(pack, system, forces_, balance);
+        scatter<N>(pack, system, balance);
       }
     });
   });
   if (balance.tangent) carries_strains_ = false;
+}
+
+void PlanarBeams::hand_over(Balance& balance) const {
+  const auto in_space = [&](const NodeForce& force) { return plane_.expanded(Eigen::Map<const Vector3>(force.at)); };
+  for (std::size_t i = 0; i < forces_.size(); ++i) {
+    const int node = static_cast<int>(i);
+    balance.residual.node(node) += in_space(forces_[i]);
+    if (balance.carried) balance.carried->node(node) += in_space(carried_[i]);
+  }
 }
 
 /// See ConservingNode.

@@ -2,12 +2,18 @@
 /// All beams, and the inertia of all nodes, over a step of the energy-momentum family in a plane.
 /// (docs/notes/planar.md)
 
+#include <array>
+#include <tuple>
+#include <vector>
+
 #include "elements/planar_pack.h"
-#include "integrators/planar_family.h"
+#include "integrators/beam_family.h"
+#include "model/plane.h"
 
 namespace flexarm {
 
-class PlanarBeams : public PlanarFamily {
+/// Adds to the balance in world axes, and to a PlanarTangent in those of the plane.
+class PlanarBeams : public BeamFamily {
  public:
   /// Of a configuration that moves in this plane, by a scheme with StressRule::Conjugate; both must outlive it.
   PlanarBeams(const StepConfiguration& configuration, const PlaneOfMotion& plane);
@@ -17,37 +23,84 @@ class PlanarBeams : public PlanarFamily {
   /// Of the nodes; hands all forces over to the balance.
   void add_inertia(Balance& balance) override;
   void carry_strains(const double* update) override;
+  bool carries_strains() const override { return carries_strains_; }
+  double work_of_prestrains() const override { return 0; }
   void accept(State& state) override;
+  void invalidate() override { holds_begin_points_ = false; }
 
  private:
+  /// What the node's orientation q is multiplied with for {cosine, sine} of PlanarPose: q . frame, q . (normal frame).
+  struct Frame {
+    Eigen::Vector4d cosine, sine;
+  };
+  struct alignas(32) NodeForce {
+    double at[4] = {};
+  };
+  struct Inertia {
+    int node;
+    double mass, rotary;
+  };
   /// What is gathered of a node beside its poses: four numbers, as those.
   struct alignas(32) NodeRate {
     double increment = 0, vx = 0, vy = 0, turning = 0;
   };
   template <int Nodes>
-  struct ConservingPack : ElementPack<Nodes> {
+  struct ElementPack {
+    static constexpr int kNodes = Nodes;
+    int lanes = 0;
+    std::array<std::array<int, Nodes>, Pack::kLanes> nodes;
+    std::array<int, Pack::kLanes> first_block, first_stiffness_point;
+    std::array<Eigen::Matrix<double, 6, 3>, Pack::kLanes> basis;
+    planar::Element<Nodes, Pack> element;
     Pack slope = Pack(1.0);  // of the middle functions' derivatives over Lagrange's
     planar::CarriedStrains<Nodes, Pack> carried;
     std::array<std::array<planar::PointKinematics<Pack>, Nodes - 1>, 2> points;  // at the beginning and at the end
   };
   template <int Nodes>
-  using Group = std::vector<ConservingPack<Nodes>>;
+  using Group = std::vector<ElementPack<Nodes>>;
+  template <int Nodes>
+  using Memory = std::array<planar::StrainMemory<Pack>, Nodes - 1>;
 
+  template <int Nodes>
+  void set_packs(const std::vector<BeamElement<Nodes>>& elements, Group<Nodes>& packs) const;
+  void set_nodes();
+  PlanarPose pose(std::size_t node, const NodePose& at) const;
   void set_end();
   void set_begin_points();
   void set_slopes();
   template <int Nodes>
-  planar::Nodal<Nodes, Pack> gather_motion(const ConservingPack<Nodes>& pack) const;
+  planar::Nodal<Nodes, Pack> gather_motion(const ElementPack<Nodes>& pack) const;
   template <int Nodes>
-  void gather(const ConservingPack<Nodes>& pack, std::array<planar::StrainMemory<Pack>, Nodes - 1>& memory) const;
+  std::array<Vector3T<Pack>, Nodes> gather_update(const ElementPack<Nodes>& pack, const double* update) const;
   template <int Nodes>
-  void scatter(const ConservingPack<Nodes>& pack, const std::array<planar::StrainMemory<Pack>, Nodes - 1>& memory);
+  void gather(const ElementPack<Nodes>& pack, Memory<Nodes>& memory) const;
+  template <int Nodes>
+  void scatter(const ElementPack<Nodes>& pack, const Memory<Nodes>& memory);
+  /// Sums of nodes.
+  template <int Nodes>
+  void scatter(const ElementPack<Nodes>& pack, const std::array<Eigen::Matrix<Pack, 4, 1>, Nodes>& from,
+               std::vector<NodeForce>& to) const;
+  /// Forces and tangent of a pack's elements: sums of nodes, and blocks of the balance's tangent.
+  template <int Nodes>
+  void scatter(const ElementPack<Nodes>& pack, const planar::BlockSystem<Nodes, Pack>& system, Balance& balance);
+  /// Adds the sums of nodes to the balance.
+  void hand_over(Balance& balance) const;
 
+  const StepConfiguration& configuration_;
+  const PlaneOfMotion& plane_;
+  TimeRule rule_;
+  std::vector<Frame> frames_;
+  std::vector<Vector3> material_normals_;
+  std::vector<Inertia> inertias_;
   std::tuple<Group<2>, Group<3>, Group<4>, Group<5>> groups_;
+  std::vector<PlanarPose> begin_poses_, end_poses_;
   std::vector<NodeRate> rates_;
-  bool has_memory_ = false;
+  std::vector<NodeForce> forces_, carried_;
   std::vector<StrainMemory> end_memory_;
-  int begin_ = 0;  // which of ConservingPack::points
+  int begin_ = 0;  // which of ElementPack::points
+  bool has_memory_ = false;
+  bool carries_strains_ = false;
+  bool holds_begin_points_ = false;
 };
 
 }  // namespace flexarm

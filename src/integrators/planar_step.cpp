@@ -6,7 +6,7 @@ namespace flexarm {
 
 PlanarStep::PlanarStep(const StepConfiguration& configuration, PlaneOfMotion found)
     : plane(std::move(found)),
-      beams(make_planar_family(configuration, plane)),
+      beams(configuration, plane),
       tangent(configuration.model(), configuration.degrees_of_freedom(), plane) {
   const Model& model = configuration.model();
   for (const JointMap& joint : model.joints) {
@@ -39,10 +39,6 @@ void PlanarStep::tidy(const StepConfiguration& configuration, IncrementHistory& 
     if (dof.size[variable] == 6) tidy_travel(equation, joint_normals[j]);
     tidy_turn(equation + dof.size[variable] - 3, joint_normals[j]);
   }
-}
-
-void PlanarStep::tidy_start(const Model& model, State& state) const {
-  if (acts_in_plane(model, plane, state) && starts_in_plane(model, plane, state)) tidy(model, state);
 }
 
 bool PlanarStep::choose(const Model& model, const State& state) {

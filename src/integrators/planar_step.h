@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "integrators/planar_family.h"
+#include "integrators/planar_beams.h"
 #include "model/plane_finder.h"
 #include "solver/planar_tangent.h"
 
@@ -19,18 +19,14 @@ struct PlanarStep {
   /// Takes round-off out of the newest increments: extrapolation would magnify it, and Newton's method leaves what is
   /// out of the plane as it is.
   void tidy(const StepConfiguration& configuration, IncrementHistory& history) const;
-  /// The same for all of a state that lies in the plane.
-  void tidy(const Model& model, State& state) const { keep_in_plane(model, plane, state); }
-  /// The same for what schemes make of the beginning of a motion by differences, unless it leaves the plane.
-  void tidy_start(const Model& model, State& state) const;
   /// The state was changed by somebody else.
   void invalidate() {
     is_sure = false;
-    beams->invalidate();
+    beams.invalidate();
   }
 
   PlaneOfMotion plane;
-  std::unique_ptr<BeamFamily> beams;
+  PlanarBeams beams;
   PlanarTangent tangent;
   std::vector<Vector3> joint_normals;  ///< the normal in joints' frames
   bool is_on = false;                  ///< the step is taken in the plane

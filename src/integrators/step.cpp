@@ -136,7 +136,7 @@ bool StepSystem::evaluate(bool with_tangent) {
   if (with_tangent && scheme().stress != StressRule::Conjugate && !scheme().is_static && !is_planar())
     configuration_.set_inverse_tangents();
 
-  if (interpolation_) interpolation_->begin_evaluation(is_planar());
+  if (interpolation_) interpolation_->begin_evaluation();
   add_forces(balance);
   if (interpolation_) interpolation_->add_forces(balance);
   if (scheme().is_static) {
@@ -199,7 +199,6 @@ void StepSystem::accept(State& state) {
   actuators_.accept(state);
   beams().accept(state);
   if (interpolation_) interpolation_->accept(state);
-  if (interpolation_ && is_planar()) planar_->tidy(model_, state);
   state.time += configuration_.step();
 }
 

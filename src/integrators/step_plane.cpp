@@ -8,8 +8,7 @@ namespace flexarm {
 
 PlaneSearch find_step_plane(const Model& model, const Scheme& scheme) {
   if (!scheme.may_be_planar) return {std::nullopt, "three dimensions are asked for"};
-  const bool is_of_family = scheme.stress == StressRule::Conjugate || scheme.stress == StressRule::EndPoint;
-  if (scheme.is_static || !is_of_family || scheme.interpolation != Interpolation::Local)
+  if (scheme.is_static || scheme.stress != StressRule::Conjugate)
     return {std::nullopt, fmt::format("scheme '{}' is three-dimensional", scheme.name)};
   PlaneSearch search = find_plane(model);
   if (search.plane && !PlanarTangent::suits(model, DegreesOfFreedom(model)))

@@ -35,7 +35,6 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme, BackendChoice b
       scales_(model, dof_) {
   beams_->set_interpolation(interpolation_.get());
   if (beams_->evaluates_packs()) tangent_->condense_interiors();
-  if (planar_) planar_->beams->set_interpolation(interpolation_.get());
 }
 
 void StepSystem::begin_beside(const StepSystem& other, const State& state, const IncrementHistory& guess) {
@@ -131,7 +130,6 @@ void StepSystem::initialise(State& state) {
     bodies_.initialise(state);
     state.forces = StepSystem(model_, statics_of(scheme())).nodal_forces(state);
   }
-  if (planar_ && !scheme().is_incremental()) planar_->tidy_start(model_, state);
 }
 
 }  // namespace flexarm

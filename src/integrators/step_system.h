@@ -121,7 +121,7 @@ class StepSystem {
   void move_ahead(const IncrementHistory& history, int order);
   void place_followers();
   const Scheme& scheme() const { return configuration_.scheme(); }
-  BeamFamily& beams() { return is_planar() ? *planar_->beams : *beams_; }
+  BeamFamily& beams() { return is_planar() ? planar_->beams : *beams_; }
   void add_forces(Balance& balance);
   void accept_rest(State& state);
 

@@ -258,69 +258,42 @@ bool stands_in_plane(const Model& model, const PlaneOfMotion& plane, const State
   return true;
 }
 
-/// What a state has beside places. The first two are velocities; the others follow from them or from the past.
-enum Quantity { kVelocity, kTurning, kSpin, kAcceleration, kTurningRate, kStrain, kCurvature, kForce, kMoment, kCount };
+/// What a state has beside places that steps of the energy-momentum family go on from.
+enum Quantity { kVelocity, kTurning, kSpin, kStrain, kCurvature, kCount };
 
 /// Whether a vector of the kind points along the normal, or is normal to it.
 bool is_axial(Quantity quantity) {
-  return quantity != kVelocity && quantity != kAcceleration && quantity != kStrain && quantity != kForce;
+  return quantity != kVelocity && quantity != kStrain;
 }
 
 /// visit(quantity, normal, vector), both in the same frame.
-template <class AnyState, class Visit>
-void for_each_vector_of_points(const Model& model, const PlaneOfMotion& plane, AnyState& state, const Visit& visit) {
+template <class Visit>
+void for_each_vector(const Model& model, const PlaneOfMotion& plane, const State& state, const Visit& visit) {
+  for (std::size_t i = 0; i < state.nodes.size(); ++i) {
+    const NodeState& node = state.nodes[i];
+    visit(kVelocity, plane.normal, node.velocity);
+    visit(kTurning, plane.material_normal(static_cast<int>(i)), node.angular_velocity);
+    visit(kSpin, plane.normal, node.mean_spin);
+  }
   for_each_element(model.beams, [&](const auto& element) {
     const Vector3 normal = plane.material_normal(element.nodes[0]);
-    const auto visit_strain = [&](auto& strain) {
-      visit(kStrain, normal, strain.template head<3>());
-      visit(kCurvature, normal, strain.template tail<3>());
-    };
-    for (int k = 0; k < element.kStiffnessPoints; ++k) {
-      visit_strain(state.strain_rates[element.first_stiffness_point + k]);
-      if (state.strain_memory.empty()) continue;
-      auto& memory = state.strain_memory[element.first_stiffness_point + k];
-      for (auto* strain : {&memory.average, &memory.rate, &memory.delayed_rate}) visit_strain(*strain);
-    }
-    for (int k = 0; k < element.kMassPoints; ++k) {
-      auto& point = state.mass_points[element.first_mass_point + k];
-      visit(kTurning, normal, point.angular_velocity);
-      visit(kTurningRate, normal, point.angular_acceleration);
+    for (int k = 0; k < element.kStiffnessPoints && !state.strain_memory.empty(); ++k) {
+      const StrainMemory& memory = state.strain_memory[element.first_stiffness_point + k];
+      for (const Vector6* strain : {&memory.average, &memory.rate, &memory.delayed_rate}) {
+        visit(kStrain, normal, strain->template head<3>());
+        visit(kCurvature, normal, strain->template tail<3>());
+      }
     }
   });
 }
-template <class AnyState, class Visit>
-void for_each_vector(const Model& model, const PlaneOfMotion& plane, AnyState& state, const Visit& visit) {
-  for (std::size_t i = 0; i < state.nodes.size(); ++i) {
-    auto& node = state.nodes[i];
-    const Vector3 across = plane.material_normal(static_cast<int>(i));
-    visit(kVelocity, plane.normal, node.velocity);
-    visit(kTurning, across, node.angular_velocity);
-    visit(kSpin, plane.normal, node.mean_spin);
-    visit(kAcceleration, plane.normal, node.acceleration);
-    visit(kTurningRate, across, node.angular_acceleration);
-  }
-  for_each_vector_of_points(model, plane, state, visit);
-  for (auto* wrenches : {&state.forces, &state.reactions})
-    for (auto& wrench : *wrenches) {
-      visit(kForce, plane.normal, wrench.template head<3>());
-      visit(kMoment, plane.normal, wrench.template tail<3>());
-    }
-  for (auto& rotation : state.total_rotations) visit(kSpin, plane.normal, rotation);
-  for (auto& moment : state.momentum_rates) visit(kMoment, plane.normal, moment);
-}
 
-Vector3 out_of_plane(Quantity quantity, const Vector3& normal, const Vector3& vector) {
-  const Vector3 along = normal.dot(vector) * normal;
-  return is_axial(quantity) ? Vector3(vector - along) : along;
-}
-
-/// Of the first `count` quantities.
-bool moves_in_plane(const Model& model, const PlaneOfMotion& plane, const State& state, Quantity count) {
+bool moves_in_plane(const Model& model, const PlaneOfMotion& plane, const State& state) {
   std::array<Largest, kCount> largest;
   for_each_vector(model, plane, state, [&](Quantity quantity, const Vector3& normal, const Vector3& vector) {
-    largest[quantity].add(vector, out_of_plane(quantity, normal, vector));
+    const Vector3 along = normal.dot(vector) * normal;
+    largest[quantity].add(vector, is_axial(quantity) ? Vector3(vector - along) : along);
   });
-  return std::all_of(largest.begin(), largest.begin() + count, [](const Largest& l) { return l.is_round_off(); });
+  return std::all_of(largest.begin(), largest.end(), [](const Largest& l) { return l.is_round_off(); });
 }
 
 }  // namespace
@@ -336,17 +309,7 @@ PlaneSearch find_plane(const Model& model) {
 }
 
 bool lies_in_plane(const Model& model, const PlaneOfMotion& plane, const State& state) {
-  return stands_in_plane(model, plane, state) && moves_in_plane(model, plane, state, kCount);
-}
-
-bool starts_in_plane(const Model& model, const PlaneOfMotion& plane, const State& state) {
-  return stands_in_plane(model, plane, state) && moves_in_plane(model, plane, state, kSpin);
-}
-
-void keep_in_plane(const Model& model, const PlaneOfMotion& plane, State& state) {
-  for_each_vector(model, plane, state, [](Quantity quantity, const Vector3& normal, auto&& vector) {
-    vector -= out_of_plane(quantity, normal, vector);
-  });
+  return stands_in_plane(model, plane, state) && moves_in_plane(model, plane, state);
 }
 
 bool acts_in_plane(const Model& model, const PlaneOfMotion& plane, const State& state) {

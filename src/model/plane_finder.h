@@ -19,12 +19,8 @@ struct PlaneSearch {
 /// starts in it stays there. Everything is to fit to round-off.
 PlaneSearch find_plane(const Model& model);
 
-/// Whether all that a state has of a motion has nothing out of the plane but round-off.
+/// Whether all that a step of the energy-momentum family goes on from has nothing out of the plane but round-off.
 bool lies_in_plane(const Model& model, const PlaneOfMotion& plane, const State& state);
-/// The same of places and velocities alone, from which the rest follows where all acts in the plane.
-bool starts_in_plane(const Model& model, const PlaneOfMotion& plane, const State& state);
-/// Takes round-off out of a state that lies in the plane, but for places.
-void keep_in_plane(const Model& model, const PlaneOfMotion& plane, State& state);
 /// The same of wrenches and commands in a state. Free joints' coordinates are the only ones whose efforts may point out
 /// of it.
 bool acts_in_plane(const Model& model, const PlaneOfMotion& plane, const State& state);

@@ -92,7 +92,7 @@ INSTANTIATE_TEST_SUITE_P(Schemes, Allocation,
 
 // Steps in a plane, then three-dimensional ones, and back to the plane.
 TEST_F(Allocation, NoneWhereAPlaneIsLeft) {
-  for (const std::string scheme : {"em", "em0", "em_symmetric", "em4", "edmc2", "newmark", "hht1", "hht2", "hht3"}) {
+  for (const std::string scheme : {"em", "em0", "em_symmetric", "em4", "edmc2"}) {
     SceneBuilder b;
     b.beam("upper", {{1, 0, 0}}, section(2e4, 1e4, 20, 25, 0.5, 2e-3, 1e-3), 4, 2);
     b.beam("lower", {{0, 1, 0}}, section(2e4, 1e4, 20, 25, 0.5, 2e-3, 1e-3), 2, 3);
