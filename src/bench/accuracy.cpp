@@ -11,10 +11,10 @@
 #include "accuracy/processor_time.h"
 #include "accuracy/tuning.h"
 #include "bench/best_fixed.h"
-#include "bench/effort_schedule.h"
 #include "bench/median.h"
 #include "bench/random_arms.h"
 #include "bench/speed.h"
+#include "cli/effort_schedule.h"
 #include "flexarm/accuracy/accurate_run.h"
 #include "flexarm/scene/urdf_reader.h"
 
@@ -98,7 +98,7 @@ class TimedTries : public RunWatcher {
 /// one.
 AccurateRun run_accurately(const AccuracyCase& one, const AutomaticMeshes& meshes, AccuracyOutcome& out) {
   Simulation simulation(with_settings(one.scene, meshes.settings));
-  const auto commands = effort_commands(one.commands);
+  const auto commands = cli::effort_commands(one.commands);
   TimedTries tries(commands ? commands(simulation) : StepCommand(), one.truth ? kOutsideRunSeconds : kRunSeconds);
   AccuracyRequest request;
   request.accuracy = meshes.left(out.asked);
@@ -125,7 +125,7 @@ FinerRun finer_run(TrialRuns& trials, const AccuracyCase& one, const TuningResul
   RunSettings finer = *found.reference;
   finer.step /= 2;
   std::optional<JudgedMotion> shifted =
-      shifted_motion(one.scene, finer, trials.times(), effort_commands(one.commands), kShiftedSeconds);
+      shifted_motion(one.scene, finer, trials.times(), cli::effort_commands(one.commands), kShiftedSeconds);
   if (!shifted) return {nested, found.reference_error};
   const double gap = motion_error(nested, *shifted, shifted->largest_displacement());
   return {std::move(*shifted), std::max(gap, found.reference_error)};
@@ -222,7 +222,7 @@ std::optional<FinerRun> shifted_reference(const AccuracyCase& one, const Accurat
   for (double steps = std::ceil(2.74 * run.steps_per_interval); steps < 1e6; steps *= 2) {
     settings.step = times.interval / steps;
     std::optional<JudgedMotion> next =
-        shifted_motion(one.scene, settings, times, effort_commands(one.commands), kShiftedSeconds);
+        shifted_motion(one.scene, settings, times, cli::effort_commands(one.commands), kShiftedSeconds);
     if (!next) return std::nullopt;
     const double gap = last ? motion_error(*last, *next, next->largest_displacement()) : 1.0;
     if (gap <= wanted) return FinerRun{std::move(*next), gap};
@@ -239,7 +239,7 @@ void measure_by_shifted_runs(const AccuracyCase& one, const std::function<void()
   out.reference_error = finer->error;
   out.error = motion_error(run.motion, finer->motion, finer->motion.largest_displacement());
   if (out.reference_error > 2 * kGoodReference * *out.error) return;
-  FixedRuns fixed(one.scene, times_of(one), effort_commands(one.commands), std::move(finer->motion),
+  FixedRuns fixed(one.scene, times_of(one), cli::effort_commands(one.commands), std::move(finer->motion),
                   kOutsideSearchSeconds, show);
   compare(one, fixed, out);
 }
@@ -353,7 +353,7 @@ AccuracyReport measure_accuracy(const std::vector<AccuracyCase>& cases, const Ac
     if (one.truth)
       fixed.emplace(one.scene, times_of(one), Commands(), *one.truth, kOutsideSearchSeconds, show);
     else if (!is_by_shifted_runs)
-      trials.emplace(one.scene, times_of(one), limits, effort_commands(one.commands), [&] {
+      trials.emplace(one.scene, times_of(one), limits, cli::effort_commands(one.commands), [&] {
         show();
         return true;
       });

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "accuracy/processor_time.h"
-#include "bench/effort_schedule.h"
 #include "bench/speed.h"
+#include "cli/effort_schedule.h"
 #include "flexarm/scene/urdf_reader.h"
 #include "flexarm/schemes/integrator_description.h"
 
@@ -89,16 +89,16 @@ SpeedRun run_speed(const std::string& folder, const SpeedProblem& problem, const
   const std::size_t probe = probe_of(scene, problem.probe);
   const int stride = quotient(problem.interval, discretisation.step, "interval");
   const int intervals = quotient(problem.until, problem.interval, "end");
-  const std::vector<EffortPulse> pulses = problem.commands.empty()
-                                              ? std::vector<EffortPulse>()
-                                              : read_effort_schedule(folder + "/" + problem.commands).pulses;
+  const std::vector<cli::EffortPulse> pulses = problem.commands.empty()
+                                                   ? std::vector<cli::EffortPulse>()
+                                                   : cli::read_effort_schedule(folder + "/" + problem.commands).pulses;
   SimulationOptions options;
   options.reuse_factorisation = reuse_factorisation;
   SpeedRun out;
   const double building = processor_seconds();
   Simulation simulation(std::move(scene), options);
   out.build_seconds = processor_seconds() - building;
-  const EffortPlayer player(pulses, simulation);
+  const cli::EffortPlayer player(pulses, simulation);
   out.trajectory.reserve(intervals + 1);
   const std::optional<std::size_t> frame = frame_of(simulation, problem.frame);
   const auto record = [&] {

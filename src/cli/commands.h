@@ -1,26 +1,11 @@
 #pragma once
-/// The subcommands of `flexarm`, one file each.
-
-#include <stdexcept>
+/// The subcommands of `flexarm`, one file each, but for those that are programs of their own.
 
 #include <CLI/CLI.hpp>
 
+#include "cli/command_line.h"
+
 namespace flexarm::cli {
-
-/// A command that a signal has ended has the status that a shell gives to a program killed by it.
-enum ExitStatus { kDone = 0, kFailed = 1, kBadInput = 2, kInterrupted = 128 /* + the signal's number */ };
-
-/// What the user gave cannot be used; what() is printed and the exit status is kBadInput.
-class InputError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// A signal wants the program to end: what() says how far it came, the exit status is kInterrupted and its number.
-class Interrupted : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 /// Each adds its subcommand to `app`; when that is run, it leaves its exit status in `status`.
 void add_check(CLI::App& app, int& status);
@@ -31,8 +16,10 @@ void add_modes(CLI::App& app, int& status);
 void add_linearise(CLI::App& app, int& status);
 void add_replay(CLI::App& app, int& status);
 void add_tune(CLI::App& app, int& status);
-void add_sweep(CLI::App& app, int& status);
-void add_identify(CLI::App& app, int& status);
-void add_bench(CLI::App& app, int& status);
+
+/// Subcommands that are programs beside this one, which take the place of this process (other_programs.cpp).
+void add_sweep(CLI::App& app);
+void add_identify(CLI::App& app);
+void add_bench(CLI::App& app);
 
 }  // namespace flexarm::cli

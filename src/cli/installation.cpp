@@ -41,6 +41,10 @@ std::optional<std::string> python_folder() {
   return first_of({folder / "flexarm"}) ? std::optional<std::string>(folder.string()) : std::nullopt;
 }
 
+std::optional<std::string> own_program(const std::string& name) {
+  return first_of({program_folder() / name});
+}
+
 std::optional<std::string> own_script(const std::string& name) {
   return first_of({program_folder() / name, fs::path(FLEXARM_SOURCE_DIR) / "scripts" / name});
 }

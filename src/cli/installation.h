@@ -13,6 +13,9 @@ std::optional<std::string> own_scenes(const std::string& folder = {});
 /// The folder of the Python package; empty: it is not installed.
 std::optional<std::string> python_folder();
 
+/// A program that comes with flexarm, beside this one; empty: it is not installed.
+std::optional<std::string> own_program(const std::string& name);
+
 /// A script that comes with flexarm; empty: it is not installed.
 std::optional<std::string> own_script(const std::string& name);
 

@@ -1,18 +1,7 @@
-#include <cstdio>
-#include <new>
-
-#include <malloc.h>
-
-#include <fmt/format.h>
-
-#include "building/model_builder.h"
+#include "cli/command_line.h"
 #include "cli/commands.h"
-#include "cli/interruption.h"
 
-namespace {
-
-/// Runs the command line; the exit status.
-int run(int argc, char** argv) {
+int main(int argc, char** argv) {
   using namespace flexarm::cli;
   CLI::App app("Simulates flexible manipulators.", "flexarm");
   app.require_subcommand(1);
@@ -25,46 +14,8 @@ int run(int argc, char** argv) {
   add_linearise(app, status);
   add_replay(app, status);
   add_tune(app, status);
-  add_sweep(app, status);
-  add_identify(app, status);
-  add_bench(app, status);
-  try {
-    app.parse(argc, argv);
-    return status;
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kDone : kBadInput;  // 0: --help
-  } catch (const InputError& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return kBadInput;
-  } catch (const Interrupted& error) {
-    fmt::print(stderr, "flexarm: {}\n", error.what());
-    return kInterrupted + interruption();
-  } catch (const flexarm::ModelError& error) {
-    fmt::print(stderr, "flexarm: {}\n", error.what());
-    return kBadInput;
-  } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "flexarm: not enough memory for this scene\n");
-    return kFailed;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "flexarm: {}\n", error.what());
-    return kFailed;
-  }
-}
-
-/// What a simulation gives back stays with the process, for the next one: the system takes longer to hand out fresh
-/// memory than building a large model takes.
-void keep_memory() {
-  mallopt(M_MMAP_MAX, 0);
-  mallopt(M_TRIM_THRESHOLD, -1);
-}
-
-}  // namespace
-
-int main(int argc, char** argv) {
-  keep_memory();
-  flexarm::cli::ignore_signals_of_output();
-  const int status = run(argc, argv);
-  if (std::fflush(stdout) == 0) return status;
-  std::perror("flexarm: cannot write the output");
-  return flexarm::cli::kFailed;
+  add_sweep(app);
+  add_identify(app);
+  add_bench(app);
+  return run_command_line(app, status, argc, argv);
 }

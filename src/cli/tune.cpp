@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "accuracy/tuning.h"
-#include "bench/effort_schedule.h"
 #include "cli/commands.h"
+#include "cli/effort_schedule.h"
 #include "cli/files.h"
 #include "cli/installation.h"
 #include "cli/interruption.h"
@@ -92,7 +92,7 @@ int tune_scene(const TuneArguments& arguments) {
   const scene::SceneDescription scene = read(arguments.scene);
   catch_interruptions();
   const JudgedTimes times = judged_times(arguments.until, scene.integrator.step, kMostJudgedTimes);
-  TrialRuns trials(scene, times, arguments.limits, bench::effort_commands(arguments.commands),
+  TrialRuns trials(scene, times, arguments.limits, effort_commands(arguments.commands),
                    [] { return interruption() == 0; });
   const TuningResult result = search(arguments, trials);
   print_result(arguments, result, times);

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/effort_schedule.h"
+#include "cli/effort_schedule.h"
 #include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/simulation.h"
 #include "support/source_path.h"
@@ -25,10 +25,10 @@ class Demo : public ::testing::Test {
  protected:
   Demo()
       : scene_(scene::read_scene_file(source_path("config/demo_arm.urdf"))),
-        schedule_(bench::read_effort_schedule(source_path("config/demo_commands.yaml"))) {}
+        schedule_(cli::read_effort_schedule(source_path("config/demo_commands.yaml"))) {}
 
   scene::ReadResult scene_;
-  bench::EffortSchedule schedule_;
+  cli::EffortSchedule schedule_;
 };
 
 TEST_F(Demo, SceneIsReadWithoutAnyFinding) {
@@ -46,7 +46,7 @@ TEST_F(Demo, HasTheSixJointsOfTheShuttlesArm) {
 TEST_F(Demo, BoomsSwingByADecimetreAndTheEnergyAccountBalances) {
   ASSERT_TRUE(scene_.scene);
   Simulation simulation(*scene_.scene);
-  const bench::EffortPlayer player(schedule_.pulses, simulation);
+  const cli::EffortPlayer player(schedule_.pulses, simulation);
   const std::size_t upper = 2, lower = 4;
   ASSERT_EQ(simulation.link_names().at(upper), "upper_arm");
   ASSERT_EQ(simulation.link_names().at(lower), "lower_arm");

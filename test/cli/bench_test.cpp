@@ -12,6 +12,24 @@ TEST(Bench, UsageErrors) {
     EXPECT_EQ(shell(std::string("flexarm ") + arguments).status, 2) << arguments;
 }
 
+TEST(Bench, HelpIsThatOfTheCommand) {
+  const Outcome outcome = shell("flexarm bench --help");
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_EQ(outcome.output.find("Measures the simulator itself\nUsage: flexarm bench [OPTIONS] SUBCOMMAND\n"), 0u)
+      << outcome.output;
+  expect_contains(shell("flexarm bench speed --help").output, "Usage: flexarm bench speed [OPTIONS]");
+}
+
+TEST(Bench, WithoutItsProgram) {
+  // A copy that stands alone.
+  const std::string folder = temporary("alone");
+  std::filesystem::create_directories(folder);
+  std::filesystem::copy_file(program(), folder + "/flexarm", std::filesystem::copy_options::overwrite_existing);
+  const Outcome outcome = shell("'" + folder + "/flexarm' bench speed --quick");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(outcome.errors, "flexarm: bench: its program flexarm_benchmarks is not installed beside this program\n");
+}
+
 TEST(Bench, PropertiesReport) {
   const std::string folder = temporary("reports");
   const Outcome outcome = shell("flexarm bench properties --quick --output '" + folder + "/new'");

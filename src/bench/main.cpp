@@ -13,14 +13,14 @@
 #include "bench/scaling.h"
 #include "bench/speed.h"
 #include "bench/thesis.h"
-#include "cli/commands.h"
+#include "cli/command_line.h"
 #include "cli/files.h"
 #include "cli/installation.h"
 #include "cli/interruption.h"
 #include "cli/progress_bar.h"
 #include "flexarm/schemes/integrator_description.h"
 
-namespace flexarm::cli {
+namespace flexarm::bench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -31,7 +31,7 @@ struct BenchArguments {
   std::vector<std::string> problems;
   std::vector<std::string> cases, groups;  ///< of the hard ones
   std::vector<int> random_arms;            ///< of the accuracy report: the first one, and how many
-  bench::HardOptions hard;
+  HardOptions hard;
   bool print_only = false;
   bool quick = false;
 };
@@ -42,7 +42,7 @@ fs::path report_file(const BenchArguments& arguments, const std::string& name) {
   std::error_code error;
   fs::create_directories(arguments.output, error);  // what is wrong is found below
   const fs::path file = fs::path(arguments.output) / (name + ".md");
-  require_writable("--output", file.string());
+  cli::require_writable("--output", file.string());
   return file;
 }
 
@@ -50,22 +50,23 @@ fs::path report_file(const BenchArguments& arguments, const std::string& name) {
 /// whole or not at all.
 class Progress {
  public:
-  Progress() { catch_interruptions(); }
+  Progress() { cli::catch_interruptions(); }
   void operator()(double part, const std::string& what) {
     bar_.show(part, what);
-    if (interruption() == 0) return;
+    if (cli::interruption() == 0) return;
     bar_.clear();
-    throw Interrupted(fmt::format("interrupted after {:.0f} % of the measurements, nothing is written", 100 * part));
+    throw cli::Interrupted(
+        fmt::format("interrupted after {:.0f} % of the measurements, nothing is written", 100 * part));
   }
 
  private:
-  ProgressBar bar_{0, 1, true};
+  cli::ProgressBar bar_{0, 1, true};
 };
 
 /// The folder of scenes that was named, or flexarm's own.
 fs::path scene_folder(const BenchArguments& arguments, const std::string& own) {
   const std::optional<std::string> scenes =
-      arguments.scenes.empty() ? own_scenes(own) : std::optional<std::string>(arguments.scenes);
+      arguments.scenes.empty() ? cli::own_scenes(own) : std::optional<std::string>(arguments.scenes);
   if (!scenes) throw std::runtime_error("flexarm's scenes are not installed; name their folder by --scenes");
   return *scenes;
 }
@@ -81,71 +82,71 @@ int write_report(const BenchArguments& arguments, const std::string& name, const
     Progress progress;
     return measure([&](double part, const std::string& what) { progress(part, what); });
   }();
-  write_file(data.string(), to_data(report));
-  const bool is_drawn = draw("plot_" + name + ".py", data.string(), picture.string());
+  cli::write_file(data.string(), to_data(report));
+  const bool is_drawn = cli::draw("plot_" + name + ".py", data.string(), picture.string());
   if (!is_drawn) fmt::print(stderr, "flexarm: no picture: it needs python3-matplotlib\n");
-  write_file(file.string(), bench::to_markdown(report, is_drawn ? picture.filename().string() : ""));
+  cli::write_file(file.string(), to_markdown(report, is_drawn ? picture.filename().string() : ""));
   fmt::print("{}\n", file.string());
-  return kDone;
+  return cli::kDone;
 }
 
-int measure_properties(const BenchArguments& arguments) {
+int report_properties(const BenchArguments& arguments) {
   return write_report(
       arguments, "properties", "properties_dissipation",
       [&](const auto& progress) {
-        return bench::measure_properties(arguments.quick, [&](double part) { progress(part, "properties"); });
+        return measure_properties(arguments.quick, [&](double part) { progress(part, "properties"); });
       },
-      bench::decay_to_csv);
+      decay_to_csv);
 }
 
-int measure_thesis(const BenchArguments& arguments) {
+int report_thesis(const BenchArguments& arguments) {
   const fs::path scenes = scene_folder(arguments, "thesis"), file = report_file(arguments, "thesis"),
                  folder = arguments.output;
-  bench::ThesisReport report;
+  ThesisReport report;
   {
     Progress progress;
-    report = bench::measure_thesis(scenes.string(), arguments.quick, [&](double part) { progress(part, "thesis"); });
+    report = measure_thesis(scenes.string(), arguments.quick, [&](double part) { progress(part, "thesis"); });
   }
   std::map<std::string, std::string> pictures;
   for (std::size_t e = 0; e < report.examples.size(); ++e) {
     const std::string stem = "thesis_" + report.examples[e].runs.front().scene.substr(0, 4);
     const fs::path data = folder / (stem + ".csv"), picture = folder / (stem + ".png");
-    write_file(data.string(), bench::histories_to_csv(report.examples[e], report.outcomes[e]));
-    if (draw("plot_thesis.py", data.string(), picture.string()))
+    cli::write_file(data.string(), histories_to_csv(report.examples[e], report.outcomes[e]));
+    if (cli::draw("plot_thesis.py", data.string(), picture.string()))
       pictures[report.examples[e].number] = picture.filename().string();
   }
   if (pictures.empty()) fmt::print(stderr, "flexarm: no pictures: they need python3-matplotlib\n");
-  write_file(file.string(), bench::to_markdown(report, [&](const std::string& number) { return pictures[number]; }));
+  cli::write_file(file.string(), to_markdown(report, [&](const std::string& number) { return pictures[number]; }));
   fmt::print("{}\n", file.string());
-  return kDone;
+  return cli::kDone;
 }
 
-int measure_scaling(const BenchArguments& arguments) {
+int report_scaling(const BenchArguments& arguments) {
   return write_report(
       arguments, "scaling", "scaling",
       [&](const auto& progress) {
-        return bench::measure_scaling(arguments.quick, [&](double part) { progress(part, "scaling"); });
+        return measure_scaling(arguments.quick, [&](double part) { progress(part, "scaling"); });
       },
-      bench::scaling_to_csv);
+      scaling_to_csv);
 }
 
-std::vector<bench::SpeedProblem> named_problems(const std::vector<std::string>& names) {
-  std::vector<bench::SpeedProblem> problems = bench::speed_problems();
-  const auto is_unwanted = [&](const bench::SpeedProblem& problem) {
+std::vector<SpeedProblem> named_problems(const std::vector<std::string>& names) {
+  std::vector<SpeedProblem> problems = speed_problems();
+  const auto is_unwanted = [&](const SpeedProblem& problem) {
     return !names.empty() && std::find(names.begin(), names.end(), problem.name) == names.end();
   };
   problems.erase(std::remove_if(problems.begin(), problems.end(), is_unwanted), problems.end());
   return problems;
 }
 
-int measure_speed(const BenchArguments& arguments) {
+int report_speed(const BenchArguments& arguments) {
   const fs::path scenes = scene_folder(arguments, "");
   return write_report(
       arguments, "speed", "speed",
       [&](const auto& progress) {
-        return bench::measure_speed(scenes.string(), named_problems(arguments.problems), arguments.quick, progress);
+        return measure_speed(scenes.string(), named_problems(arguments.problems), arguments.quick, progress);
       },
-      bench::runs_to_csv);
+      runs_to_csv);
 }
 
 /// Of the accuracy report: the named folder, or one that is written for this time alone.
@@ -155,7 +156,7 @@ class References {
     if (!folder_.empty()) return;
     folder_ = (fs::temp_directory_path() / fmt::format("flexarm_references_{}", getpid())).string();
     is_own_ = true;
-    if (!run_script("outside_references", {"--output", folder_, "--only", only}))
+    if (!cli::run_script("outside_references", {"--output", folder_, "--only", only}))
       throw std::runtime_error("the references were not made: see above; they need python3-scipy");
   }
   ~References() {
@@ -175,30 +176,30 @@ class References {
 /// That shows in short that references are read.
 constexpr const char* kQuickReference = "jump at sqrt(0.1)";
 
-int measure_accuracy(const BenchArguments& arguments) {
+int report_accuracy(const BenchArguments& arguments) {
   const std::string scenes = scene_folder(arguments, "").string();
-  bench::AccuracyScope scope{arguments.quick, {}, arguments.only};
+  AccuracyScope scope{arguments.quick, {}, arguments.only};
   if (!arguments.random_arms.empty()) {
     scope.random_arms = {arguments.random_arms[0], arguments.random_arms[1]};
     if (scope.random_arms->second < 1) throw std::runtime_error("--random-arms: expected at least one arm, got '0'");
   }
-  std::vector<bench::AccuracyCase> cases;
+  std::vector<AccuracyCase> cases;
   if (scope.random_arms) {
-    cases = bench::accuracy_cases(scenes, "", scope);
+    cases = accuracy_cases(scenes, "", scope);
   } else {
     const References references(arguments, scope.quick ? kQuickReference : scope.only);
-    cases = bench::accuracy_cases(scenes, references.folder(), scope);
+    cases = accuracy_cases(scenes, references.folder(), scope);
   }
   if (cases.empty())
     throw std::runtime_error(fmt::format("--only: there is no scene with '{}' in its name", scope.only));
   return write_report(
       arguments, "accuracy", "accuracy",
       [&](const auto& progress) {
-        const bench::AccuracyReport report = bench::measure_accuracy(cases, scope, progress);
-        fmt::print("{}", bench::accuracy_summary(report));
+        const AccuracyReport report = measure_accuracy(cases, scope, progress);
+        fmt::print("{}", accuracy_summary(report));
         return report;
       },
-      bench::accuracy_to_csv);
+      accuracy_to_csv);
 }
 
 bool is_in(const std::vector<std::string>& names, const std::string& name) {
@@ -211,17 +212,17 @@ bool is_meant(const std::vector<std::string>& parts, const std::string& name) {
                                       [&](const std::string& part) { return name.find(part) != std::string::npos; });
 }
 
-std::vector<bench::HardCase> chosen_cases(const BenchArguments& arguments) {
-  std::vector<bench::HardCase> chosen;
-  for (bench::HardCase& hard : bench::hard_cases())
+std::vector<HardCase> chosen_cases(const BenchArguments& arguments) {
+  std::vector<HardCase> chosen;
+  for (HardCase& hard : hard_cases())
     if (is_in(arguments.groups, hard.group) && is_meant(arguments.cases, hard.name)) chosen.push_back(std::move(hard));
   if (chosen.empty()) throw std::runtime_error("there is no such case");
   return chosen;
 }
 
 /// Each as a file that runs as the case does, but for the end time.
-int print_scenes(const std::vector<bench::HardCase>& cases) {
-  for (const bench::HardCase& hard : cases) {
+int print_scenes(const std::vector<HardCase>& cases) {
+  for (const HardCase& hard : cases) {
     std::string text = hard.scene;
     text.insert(text.find("<simulation>") + std::strlen("<simulation>"),
                 fmt::format("\n<integrator step=\"{}\"/>", hard.step));
@@ -230,28 +231,28 @@ int print_scenes(const std::vector<bench::HardCase>& cases) {
                                    : fmt::format("until {} s", hard.until),
                text);
   }
-  return kDone;
+  return cli::kDone;
 }
 
-int measure_hard(BenchArguments arguments) {
-  const std::vector<bench::HardCase> cases = chosen_cases(arguments);
+int report_hard(BenchArguments arguments) {
+  const std::vector<HardCase> cases = chosen_cases(arguments);
   if (arguments.print_only) return print_scenes(cases);
   arguments.hard.quick = arguments.quick;
   return write_report(
-      arguments, "hard", "hard",
-      [&](const auto& progress) { return bench::measure_hard(cases, arguments.hard, progress); }, bench::hard_to_csv);
+      arguments, "hard", "hard", [&](const auto& progress) { return measure_hard(cases, arguments.hard, progress); },
+      hard_to_csv);
 }
 
 std::vector<std::string> group_names() {
   std::vector<std::string> names;
-  for (const bench::HardCase& hard : bench::hard_cases())
+  for (const HardCase& hard : hard_cases())
     if (!std::count(names.begin(), names.end(), hard.group)) names.push_back(hard.group);
   return names;
 }
 
 std::vector<std::string> problem_names() {
   std::vector<std::string> names;
-  for (const bench::SpeedProblem& problem : bench::speed_problems()) names.push_back(problem.name);
+  for (const SpeedProblem& problem : speed_problems()) names.push_back(problem.name);
   return names;
 }
 
@@ -259,63 +260,97 @@ std::vector<std::string> scheme_choice() {
   return {scheme_names().begin(), scheme_names().end()};
 }
 
-}  // namespace
+using Arguments = std::shared_ptr<BenchArguments>;
 
-void add_bench(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("bench", "Measures the simulator itself");
-  command->require_subcommand(1);
-  const auto arguments = std::make_shared<BenchArguments>();
-  CLI::App* properties =
-      command->add_subcommand("properties", "Properties of all time integration schemes, as a report");
-  properties->add_option("--output", arguments->output, "folder for the report")->capture_default_str();
-  properties->add_flag("--quick", arguments->quick, "short runs, to see that all of it works");
-  properties->callback([arguments, &status] { status = measure_properties(*arguments); });
-  CLI::App* thesis = command->add_subcommand("thesis", "The five examples of Muñoz 2004, chapter 12, as a report");
-  thesis->add_option("--output", arguments->output, "folder for the report")->capture_default_str();
-  thesis->add_option("--scenes", arguments->scenes, "folder of the scenes (default: those that come with flexarm)");
-  thesis->add_flag("--quick", arguments->quick, "short runs, to see that all of it works");
-  thesis->callback([arguments, &status] { status = measure_thesis(*arguments); });
-  CLI::App* speed = command->add_subcommand("speed", "Speed against error of known problems, as a report");
-  speed->add_option("--problem", arguments->problems, "only this one; may be given more than once (default: all)")
+void add_output(CLI::App& command, const Arguments& arguments) {
+  command.add_option("--output", arguments->output, "folder for the report")->capture_default_str();
+}
+
+void add_properties(CLI::App& app, const Arguments& arguments, int& status) {
+  CLI::App* command = app.add_subcommand("properties", "Properties of all time integration schemes, as a report");
+  add_output(*command, arguments);
+  command->add_flag("--quick", arguments->quick, "short runs, to see that all of it works");
+  command->callback([arguments, &status] { status = report_properties(*arguments); });
+}
+
+void add_thesis(CLI::App& app, const Arguments& arguments, int& status) {
+  CLI::App* command = app.add_subcommand("thesis", "The five examples of Muñoz 2004, chapter 12, as a report");
+  add_output(*command, arguments);
+  command->add_option("--scenes", arguments->scenes, "folder of the scenes (default: those that come with flexarm)");
+  command->add_flag("--quick", arguments->quick, "short runs, to see that all of it works");
+  command->callback([arguments, &status] { status = report_thesis(*arguments); });
+}
+
+void add_speed(CLI::App& app, const Arguments& arguments, int& status) {
+  CLI::App* command = app.add_subcommand("speed", "Speed against error of known problems, as a report");
+  command->add_option("--problem", arguments->problems, "only this one; may be given more than once (default: all)")
       ->check(CLI::IsMember(problem_names()));
-  speed->add_option("--output", arguments->output, "folder for the report")->capture_default_str();
-  speed->add_option("--scenes", arguments->scenes, "folder of the scenes (default: config, which comes with flexarm)");
-  speed->add_flag("--quick", arguments->quick, "short runs, few of them, to see that all of it works");
-  speed->callback([arguments, &status] { status = measure_speed(*arguments); });
-  CLI::App* accuracy = command->add_subcommand("accuracy", "True errors over those asked for, and costs, as a report");
-  accuracy->add_option("--output", arguments->output, "folder for the report")->capture_default_str();
-  accuracy->add_option("--scenes", arguments->scenes,
-                       "folder of the scenes (default: config, which comes with flexarm)");
-  accuracy->add_option("--only", arguments->only, "only scenes with this in \"GROUP: NAME\"");
-  accuracy->add_option("--references", arguments->references,
-                       "folder that scripts/outside_references has written (default: one is made, used and removed)");
-  accuracy
+  add_output(*command, arguments);
+  command->add_option("--scenes", arguments->scenes,
+                      "folder of the scenes (default: config, which comes with flexarm)");
+  command->add_flag("--quick", arguments->quick, "short runs, few of them, to see that all of it works");
+  command->callback([arguments, &status] { status = report_speed(*arguments); });
+}
+
+void add_accuracy(CLI::App& app, const Arguments& arguments, int& status) {
+  CLI::App* command = app.add_subcommand("accuracy", "True errors over those asked for, and costs, as a report");
+  add_output(*command, arguments);
+  command->add_option("--scenes", arguments->scenes,
+                      "folder of the scenes (default: config, which comes with flexarm)");
+  command->add_option("--only", arguments->only, "only scenes with this in \"GROUP: NAME\"");
+  command->add_option("--references", arguments->references,
+                      "folder that scripts/outside_references has written (default: one is made, used and removed)");
+  command
       ->add_option("--random-arms", arguments->random_arms,
                    "only these: number of the first one, and how many (the report has 0 to 19)")
       ->expected(2)
       ->type_name("FIRST COUNT")
       ->check(CLI::Range(0, 1000000));
-  accuracy->add_flag("--quick", arguments->quick, "three short scenes, to see that all of it works");
-  accuracy->callback([arguments, &status] { status = measure_accuracy(*arguments); });
-  CLI::App* hard = command->add_subcommand("hard", "Scenes at which a simulator may break, as a report");
-  hard->add_option("--case", arguments->cases, "only those with this in their names; may be given more than once");
-  hard->add_option("--group", arguments->groups, "only this one; may be given more than once (default: all)")
+  command->add_flag("--quick", arguments->quick, "three short scenes, to see that all of it works");
+  command->callback([arguments, &status] { status = report_accuracy(*arguments); });
+}
+
+void add_hard(CLI::App& app, const Arguments& arguments, int& status) {
+  CLI::App* command = app.add_subcommand("hard", "Scenes at which a simulator may break, as a report");
+  command->add_option("--case", arguments->cases, "only those with this in their names; may be given more than once");
+  command->add_option("--group", arguments->groups, "only this one; may be given more than once (default: all)")
       ->check(CLI::IsMember(group_names()));
-  hard->add_option("--scheme", arguments->hard.schemes,
+  command
+      ->add_option("--scheme", arguments->hard.schemes,
                    "may be given more than once; the first is what others are compared with")
       ->capture_default_str()
       ->check(CLI::IsMember(scheme_choice()));
-  hard->add_option("--seconds", arguments->hard.limits.seconds, "of the processor, for each run")
+  command->add_option("--seconds", arguments->hard.limits.seconds, "of the processor, for each run")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
-  hard->add_option("--output", arguments->output, "folder for the report")->capture_default_str();
-  hard->add_flag("--print", arguments->print_only, "print the scenes, run nothing");
-  hard->add_flag("--quick", arguments->quick, "five steps of each, to see that all of it works");
-  hard->callback([arguments, &status] { status = measure_hard(*arguments); });
-  CLI::App* scaling = command->add_subcommand("scaling", "Time and memory over the size of a mechanism, as a report");
-  scaling->add_option("--output", arguments->output, "folder for the report")->capture_default_str();
-  scaling->add_flag("--quick", arguments->quick, "small mechanisms, to see that all of it works");
-  scaling->callback([arguments, &status] { status = measure_scaling(*arguments); });
+  add_output(*command, arguments);
+  command->add_flag("--print", arguments->print_only, "print the scenes, run nothing");
+  command->add_flag("--quick", arguments->quick, "five steps of each, to see that all of it works");
+  command->callback([arguments, &status] { status = report_hard(*arguments); });
 }
 
-}  // namespace flexarm::cli
+void add_scaling(CLI::App& app, const Arguments& arguments, int& status) {
+  CLI::App* command = app.add_subcommand("scaling", "Time and memory over the size of a mechanism, as a report");
+  add_output(*command, arguments);
+  command->add_flag("--quick", arguments->quick, "small mechanisms, to see that all of it works");
+  command->callback([arguments, &status] { status = report_scaling(*arguments); });
+}
+
+}  // namespace
+}  // namespace flexarm::bench
+
+/// What `flexarm bench` becomes, with the same arguments; its name in messages and help is that of the command.
+int main(int argc, char** argv) {
+  using namespace flexarm::bench;
+  CLI::App app("Measures the simulator itself", "flexarm bench");
+  app.require_subcommand(1);
+  int status = flexarm::cli::kDone;
+  const auto arguments = std::make_shared<BenchArguments>();
+  add_properties(app, arguments, status);
+  add_thesis(app, arguments, status);
+  add_speed(app, arguments, status);
+  add_accuracy(app, arguments, status);
+  add_hard(app, arguments, status);
+  add_scaling(app, arguments, status);
+  return flexarm::cli::run_command_line(app, status, argc, argv);
+}

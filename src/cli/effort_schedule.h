@@ -7,7 +7,7 @@
 
 #include "flexarm/simulation/simulation.h"
 
-namespace flexarm::bench {
+namespace flexarm::cli {
 
 /// A constant effort on one joint.
 struct EffortPulse {
@@ -48,4 +48,4 @@ class EffortPlayer {
 /// @throws std::runtime_error as read_effort_schedule(); what is returned, as EffortPlayer.
 std::function<std::function<void(Simulation&)>(const Simulation&)> effort_commands(const std::string& path);
 
-}  // namespace flexarm::bench
+}  // namespace flexarm::cli

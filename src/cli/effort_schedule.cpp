@@ -1,5 +1,4 @@
-#include "bench/effort_schedule.h"
-#include "flexarm/scene/scene_description.h"
+#include "cli/effort_schedule.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -7,7 +6,9 @@
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
-namespace flexarm::bench {
+#include "flexarm/scene/scene_description.h"
+
+namespace flexarm::cli {
 namespace {
 
 template <class T>
@@ -92,4 +93,4 @@ std::function<std::function<void(Simulation&)>(const Simulation&)> effort_comman
   };
 }
 
-}  // namespace flexarm::bench
+}  // namespace flexarm::cli
