@@ -193,7 +193,7 @@ bool JointPotentials::look(JointPotential& at) {
 }
 
 Eigen::VectorXd JointPotentials::step(const JointPotential& from, const Eigen::VectorXd& ways) const {
-  assert(ways.size() == static_cast<Eigen::Index>(axes_.size()));
+  assert(ways.size() == from.motions.cols());
   return from.motions * ways - from.correction;
 }
 
