@@ -30,7 +30,7 @@ LoadAction load_action(const NodalLoad& load, double scale, const Matrix3& begin
 PullAction pull_action(const NodalLoad& load, const Vector3& target, const NodePose& begin, const NodePose& end,
                        double step, LoadPoint point) {
   const double weight = point == LoadPoint::Mean ? 0.5 : 1.0;
-  const double stiffness = load.pull.stiffness, damper = step > 0 ? load.pull.damping / step : 0.0;
+  const double stiffness = load.pull.stiffness, damper = step != 0 ? load.pull.damping / step : 0.0;
   const Vector3 end_arm = end.rotation * load.arm;
   const Vector3 arm = weight * end_arm + (1 - weight) * (begin.rotation * load.arm);
   const Vector3 increment = end.position + end_arm - begin.position - begin.rotation * load.arm;

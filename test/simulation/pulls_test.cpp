@@ -85,6 +85,23 @@ TEST(Pull, OscillatesAsTheMidpointRuleSays) {
   }
 }
 
+// Sub-steps backwards have the damper, too: y'' = -2 d y' - w^2 (y - way) to the fourth order.
+TEST(Pull, WithADamperIsOfTheOrderOfCompositions) {
+  const double way = kTarget.y() - kPoint.y(), d = 0.5 * kDamping / kMass,
+               w = std::sqrt(kStiffness / kMass - d * d);
+  const auto error = [&](double step) {
+    SceneBuilder b = slider();
+    b.scene.integrator.scheme = "em4";
+    b.scene.integrator.step = step;
+    b.scene.integrator.tolerance = 1e-12;
+    Simulation simulation(b.scene);
+    simulation.apply_wrenches({pull_on(simulation, "mass", kDamping)});
+    while (simulation.time() < 1 - 1e-9) EXPECT_TRUE(simulation.step().converged);
+    return std::abs(simulation.position(0) - way * (1 - std::exp(-d) * (std::cos(w) + d / w * std::sin(w))));
+  };
+  EXPECT_NEAR(std::log2(error(0.1) / error(0.05)), 4, 0.3);
+}
+
 // The tangent is exact: Newton's method converges as fast as without.
 TEST(Pull, CostsNoIterations) {
   SimulationOptions options;
