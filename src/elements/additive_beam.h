@@ -2,6 +2,7 @@
 /// The additive weak form (Muñoz 2004, eq. 3.42; beam.md 2.2): rows conjugate to the variations of the nodes' total
 /// rotation vectors, which are interpolated. Unlike the spin form it has a symmetric static tangent.
 
+#include "elements/beam_point.h"
 #include "elements/endpoint_beam.h"
 #include "elements/rotary_inertia.h"
 
@@ -22,5 +23,9 @@ struct AdditiveForm {
 template <int Nodes>
 void add_additive_rotary_rate(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, int k,
                               const RotaryRate& rate, bool with_tangent, ElementSystem<Nodes>& system);
+
+/// From {r, theta} to {r, spin} of the nodes: rows T_i^{-T}, columns T_j^{-1}, and the variation of the former.
+template <int Nodes>
+void additive_to_spins(const ElementNodes<Nodes>& nodes, bool with_tangent, ElementSystem<Nodes>& system);
 
 }  // namespace flexarm

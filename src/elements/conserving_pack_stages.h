@@ -1,9 +1,9 @@
 #pragma once
-/// Stages of a pack's step that conserving_pack_forces.h calls; each is a unit of its own, or compilers need too much
+/// Stages of a pack's step that conserving_pack_forces.cpp calls; each is a unit of its own, or compilers need too much
 /// memory.
 
+#include "elements/conserving_beam.h"
 #include "elements/conserving_element.h"
-#include "elements/energy_multiplier.h"
 #include "schemes/time_rule.h"
 
 namespace flexarm::packs {

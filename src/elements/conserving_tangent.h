@@ -2,7 +2,7 @@
 /// The linearisation of conserving_beam.h. The algebra is by 3 x 3 blocks in world axes: a point has few of them that
 /// are not zero, and fewer still where the section couples no forces with curvatures.
 
-#include "elements/energy_multiplier.h"
+#include "elements/conserving_beam.h"
 #include "math/cayley.h"
 
 namespace flexarm::conserving {

@@ -1,12 +1,117 @@
 #include "elements/momentum_beam.h"
 
 #include <cassert>
+#include <cmath>
 
-#include "elements/moment_map.h"
 #include "elements/orders.h"
+#include "math/cayley.h"
+#include "math/so3.h"
 
 namespace flexarm {
 namespace {
+
+// ---------------------------------------------------------------- moments in space
+
+/// A = T(omega) Lambda_n or, by StressRule::CayleyMoment, S(w) Lambda_n, and d(A a) = derivative(a) * spin for constant
+/// material a; spin: of the section at the end.
+class MomentMap {
+ public:
+  /// From the section's rotations at both ends of the step.
+  MomentMap(StressRule rule, const Matrix3& begin, const Matrix3& end);
+  const Matrix3& map() const { return map_; }
+  Matrix3 derivative(const Vector3& material) const;
+
+ private:
+  bool is_scaled_;
+  Vector3 increment_;
+  Matrix3 begin_, map_;
+};
+
+MomentMap::MomentMap(StressRule rule, const Matrix3& begin, const Matrix3& end)
+    : is_scaled_(rule == StressRule::CayleyMoment), begin_(begin) {
+  const Quaternion relative = so3::quaternion_from_matrix(end * begin.transpose());
+  increment_ = is_scaled_ ? cayley::increment(relative) : so3::log(relative);
+  map_ = (is_scaled_ ? cayley::tangent(increment_) : so3::tangent(increment_)) * begin;
+}
+
+Matrix3 MomentMap::derivative(const Vector3& material) const {
+  const Vector3 a = begin_ * material;
+  return is_scaled_ ? Matrix3(cayley::xi_tangent(increment_, a) * cayley::inverse_tangent(increment_))
+                    : Matrix3(so3::xi_tangent(increment_, a) * so3::inverse_tangent(increment_));
+}
+
+// ---------------------------------------------------------------- energy of the beta schemes (beam.md 3.3)
+
+/// {Delta r, w} of the nodes, tangent-scaled: the increments that joints map exactly.
+template <int Nodes>
+Eigen::Matrix<double, 6 * Nodes, 1> nodal_increments(const ElementNodes<Nodes>& nodes) {
+  Eigen::Matrix<double, 6 * Nodes, 1> increment;
+  for (int i = 0; i < Nodes; ++i) {
+    increment.template segment<3>(6 * i) = nodes.end[i] - nodes.begin[i];
+    increment.template segment<3>(6 * i + 3) = nodes.increment[i];
+  }
+  return increment;
+}
+
+/// Adds the change of strain energy of a stiffness point and its gradient, the internal forces at the end.
+template <int Nodes>
+void add_strain_energy(const typename BeamElement<Nodes>::StiffnessPoint& constants, const PointKinematics& begin,
+                       const PointKinematics& end, const GeneralisedShapeFunctions<Nodes>& generalised,
+                       ElementEnergy<Nodes>& energy) {
+  const Vector6 average = constants.stiffness * (0.5 * (begin.strain + end.strain));
+  energy.change += constants.weight * average.dot(end.strain - begin.strain);
+  const Vector6 stress = constants.stiffness * end.strain;
+  add_point_residual<Nodes>(constants.weight, constants.derivative, GeneralisedTests<Nodes>{generalised},
+                            end.rotation * stress.template head<3>(), end.rotation * stress.template tail<3>(),
+                            end.tangent, energy.gradient);
+}
+
+/// Adds the change of translational kinetic energy and its gradient.
+template <int Nodes>
+void add_kinetic_energy(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, double factor, double step,
+                        ElementEnergy<Nodes>& energy) {
+  assert(step != 0 && factor != 0);
+  std::array<Vector3, Nodes> velocity;
+  for (int i = 0; i < Nodes; ++i)
+    velocity[i] = (factor / step) * (nodes.end[i] - nodes.begin[i]) - (factor - 1) * nodes.velocity[i];
+  for (int i = 0; i < Nodes; ++i)
+    for (int j = 0; j < Nodes; ++j) {
+      energy.change +=
+          0.5 * element.mass(i, j) * (velocity[i] - nodes.velocity[i]).dot(velocity[j] + nodes.velocity[j]);
+      energy.gradient.template segment<3>(6 * i) += (factor / step) * element.mass(i, j) * velocity[j];
+    }
+}
+
+/// Work of nodal forces {f_i, phi_i} along the increments {Delta r, w} of the nodes [J]; w is tangent-scaled.
+template <int Nodes>
+double work_of(const Eigen::Matrix<double, 6 * Nodes, 1>& forces, const ElementNodes<Nodes>& nodes) {
+  return nodal_increments(nodes).dot(forces);
+}
+
+/// system += beta correction with the beta for which the nodal increments do the work energy.change on the sum, and the
+/// tangent of that (beam.md 3.3; eq. F.37-F.39 of Muñoz 2004 leave out G).
+template <int Nodes>
+void correct_energy(const ElementNodes<Nodes>& nodes, const ElementEnergy<Nodes>& energy,
+                    const ElementSystem<Nodes>& correction, bool with_tangent, ElementSystem<Nodes>& system) {
+  const Eigen::Matrix<double, 6 * Nodes, 1> increment = nodal_increments(nodes);
+  const double work = increment.dot(system.residual), denominator = increment.dot(correction.residual);
+  // The correction has no direction where the strain rests.
+  if (std::abs(denominator) <= 1e-14 * (std::abs(energy.change) + std::abs(work)) || denominator == 0) return;
+  const double beta = (energy.change - work) / denominator;
+  system.residual += beta * correction.residual;
+  if (!with_tangent) return;
+  system.tangent += beta * correction.tangent;
+  Eigen::Matrix<double, 6 * Nodes, 1> row = energy.gradient;  // g_E - G^T g_beta - K^T increment
+  row.noalias() -= system.tangent.transpose().lazyProduct(increment);
+  for (int i = 0; i < Nodes; ++i) {
+    row.template segment<3>(6 * i) -= system.residual.template segment<3>(6 * i);
+    row.template segment<3>(6 * i + 3) -=
+        nodes.increment_inverse_tangent[i].transpose() * system.residual.template segment<3>(6 * i + 3);
+  }
+  system.tangent.noalias() += (correction.residual / denominator) * row.transpose();
+}
+
+// ---------------------------------------------------------------- points
 
 /// A stiffness point over a step.
 template <int Nodes>

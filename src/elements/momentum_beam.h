@@ -5,11 +5,18 @@
 
 #include <functional>
 
-#include "elements/energy_correction.h"
+#include "elements/beam_point.h"
 #include "model/state.h"
 #include "schemes/time_rule.h"
 
 namespace flexarm {
+
+/// What the beta schemes keep: an energy of an element and its derivative with respect to the nodal {dr, spin}.
+template <int Nodes>
+struct ElementEnergy {
+  double change = 0;  ///< over the step [J]
+  Eigen::Matrix<double, 6 * Nodes, 1> gradient = Eigen::Matrix<double, 6 * Nodes, 1>::Zero();
+};
 
 /// rotary(with_tangent, energy, system) adds the rotary inertia at the mass points and, if `energy` is not null, its
 /// energy.

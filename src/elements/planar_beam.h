@@ -4,9 +4,8 @@
 
 #include <cassert>
 
+#include "elements/conserving_terms.h"
 #include "elements/planar_point.h"
-#include "elements/strain_dampers.h"
-#include "elements/translational_inertia.h"
 #include "schemes/time_rule.h"
 
 namespace flexarm::planar {

@@ -3,13 +3,49 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "elements/element_configuration.h"
 #include "integrators/gathered.h"
-#include "integrators/initial_strain_memory.h"
 #include "math/simd.h"
 #include "solver/interior_condensation.h"
 
 namespace flexarm {
 namespace {
+
+/// Packs of elements of one order.
+template <int Nodes>
+PackGroup<Nodes> packs_of(const std::vector<BeamElement<Nodes>>& elements) {
+  constexpr int lanes = Pack::kLanes;
+  const int count = static_cast<int>(elements.size());
+  PackGroup<Nodes> packs((count + lanes - 1) / lanes);
+  // Which terms there are is the same for a whole group, so that an element does not feel its neighbours.
+  bool is_uniform = true, is_coupled = false, is_damped_evenly = true;
+  bool has_stiffness_damping = false, has_mass_damping = false;
+  for (std::size_t p = 0; p < packs.size(); ++p) {
+    auto& pack = packs[p];
+    const int first = static_cast<int>(p) * lanes;
+    pack.lanes = std::min(lanes, count - first);
+    for (int lane = 0; lane < lanes; ++lane) {
+      const auto& element = elements[std::min(first + lane, count - 1)];
+      pack.nodes[lane] = element.nodes;
+      pack.first_block[lane] = element.first_block;
+      pack.first_stiffness_point[lane] = element.first_stiffness_point;
+      set_lane(pack.element, lane, element);
+    }
+    is_uniform = is_uniform && pack.element.is_uniform;
+    for (const auto& section : pack.element.sections) is_coupled = is_coupled || section.is_coupled;
+    is_damped_evenly = is_damped_evenly && pack.element.is_damped_evenly;
+    has_stiffness_damping = has_stiffness_damping || pack.element.has_stiffness_damping;
+    has_mass_damping = has_mass_damping || pack.element.has_mass_damping;
+  }
+  for (auto& pack : packs) {
+    pack.element.is_uniform = is_uniform;
+    for (auto& section : pack.element.sections) section.is_coupled = is_coupled;
+    pack.element.is_damped_evenly = is_damped_evenly;
+    pack.element.has_stiffness_damping = has_stiffness_damping;
+    pack.element.has_mass_damping = has_mass_damping;
+  }
+  return packs;
+}
 
 /// Where a pack is evaluated: the condensation's own system, where there is one.
 template <int Nodes>
@@ -244,6 +280,31 @@ void ConservingBeams::add_forces(Balance& balance) {
   });
   balance.dissipated += dissipated;
   if (balance.tangent) carries_strains_ = false;
+}
+
+std::vector<StrainMemory> initial_strain_memory(const Model& model, const State& state) {
+  std::vector<StrainMemory> memories(model.stiffness_point_count);
+  for_each_element(model.beams, [&](const auto& element) {
+    constexpr int N = std::decay_t<decltype(element)>::kNodes;
+    const ElementConfiguration<N> nodes(element, state);
+    const LocalRotationVariation<N> local{LocalRotations<N>(nodes.orientation)};
+    for (int k = 0; k < N - 1; ++k) {
+      const auto& constants = element.stiffness_points[k];
+      GeneralisedShapeFunctions<N> functions;
+      const PointKinematics point =
+          point_kinematics(local.evaluate(constants.shape, constants.derivative, functions),
+                           interpolate<N>(constants.derivative, nodes.position), constants.reference_strain);
+      Eigen::Matrix<double, 9, 1> rate = Eigen::Matrix<double, 9, 1>::Zero();  // of {r', spin, spin'}
+      rate.head<3>() = interpolate<N>(constants.derivative, nodes.velocity);
+      for (int i = 0; i < N; ++i) {
+        rate.segment<3>(3) += functions.values[i] * nodes.spin[i];
+        rate.tail<3>() += functions.derivatives[i] * nodes.spin[i];
+      }
+      StrainMemory& memory = memories[element.first_stiffness_point + k];
+      memory.rate = memory.delayed_rate = strain_derivative(point) * rate;
+    }
+  });
+  return memories;
 }
 
 }  // namespace flexarm

@@ -5,10 +5,25 @@
 #include <tuple>
 #include <vector>
 
+#include "elements/conserving_pack.h"
 #include "integrators/beam_family.h"
-#include "integrators/element_pack.h"
 
 namespace flexarm {
+
+/// Elements side by side; the last one fills what the group leaves of its last pack.
+template <int Nodes>
+struct ElementPack {
+  static constexpr int kNodes = Nodes;
+  int lanes = 0;  // in use
+  std::array<std::array<int, Nodes>, Pack::kLanes> nodes;
+  std::array<int, Pack::kLanes> first_block, first_stiffness_point;
+  ConservingElement<Nodes, Pack> element;
+  ElementFunctions<Nodes, Pack> mid_functions;
+  CarriedStrains<Nodes, Pack> carried;
+  std::array<std::array<PointKinematicsT<Pack>, Nodes - 1>, 2> points;  // at the beginning and at the end
+};
+template <int Nodes>
+using PackGroup = std::vector<ElementPack<Nodes>>;
 
 class ConservingBeams : public BeamFamily {
  public:
@@ -51,5 +66,9 @@ class ConservingBeams : public BeamFamily {
   int begin_ = 0;                    // which of ElementPack::points
   bool holds_begin_points_ = false;  // from the last step
 };
+
+/// What numerical dissipation and structural damping remember at the start of a motion. Per stiffness point: the strain
+/// rates that the velocities of `state` mean [1/s, 1/(m s)].
+std::vector<StrainMemory> initial_strain_memory(const Model& model, const State& state);
 
 }  // namespace flexarm

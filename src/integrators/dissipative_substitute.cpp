@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "integrators/conserving_beams.h"
 #include "integrators/energies.h"
-#include "integrators/initial_strain_memory.h"
 #include "model/room_for_wrenches.h"
 
 namespace flexarm {

@@ -2,8 +2,8 @@
 
 #include <cassert>
 
+#include "elements/conserving_terms.h"
 #include "elements/element_configuration.h"
-#include "elements/strain_dampers.h"
 #include "joints/elasticity.h"
 #include "joints/joint_stop.h"
 

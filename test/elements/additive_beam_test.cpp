@@ -1,6 +1,5 @@
 // The additive weak form: rows conjugate to total rotation vectors.
 #include "elements/additive_beam.h"
-#include "elements/additive_to_spins.h"
 
 #include "elements/kernel_checks.h"
 #include "elements/tested_step.h"

@@ -1,9 +1,7 @@
-#pragma once
-/// Forces on packs, for the units that compile them.
-
 #include "elements/conserving_beam.h"
 #include "elements/conserving_pack.h"
 #include "elements/conserving_pack_stages.h"
+#include "elements/orders.h"
 #include "math/simd.h"
 
 namespace flexarm::packs {
@@ -24,5 +22,10 @@ void conserving_beam(const ConservingElement<Nodes, Pack>& element, const BeamNo
   });
   if (with_tangent) add_tangent<Nodes>(element, nodes, rule, at, multiplier, system);
 }
+
+// Compiled here once for each order of elements.
+#define COMPILE_FOR(Nodes) template decltype(conserving_beam<Nodes>) conserving_beam<Nodes>;
+FLEXARM_FOR_EACH_ORDER(COMPILE_FOR)
+#undef COMPILE_FOR
 
 }  // namespace flexarm::packs
