@@ -137,7 +137,6 @@ void find_place(const StepSystem& system, StepResult::Failure& failure) {
     case Reason::NotFinite:
       return find_largest_residual(system, failure);
     case Reason::None:
-    case Reason::EnergyDefect:
     case Reason::BentTooFar:
     case Reason::DeadPoint:
     case Reason::OutOfTime:
@@ -155,8 +154,7 @@ void locate_failure(const StepSystem& system, StepResult& result) {
   failure.time = system.configuration().state().time;
   failure.step = system.configuration().step();
   // A slow look at the mechanism says more than that the iteration did not converge.
-  const bool is_of_elements = result.reason != Reason::None && result.reason != Reason::EnergyDefect;
-  if (is_of_elements && find_bent_element(system, failure))
+  if (result.reason != Reason::None && find_bent_element(system, failure))
     result.reason = Reason::BentTooFar;
   else if (result.reason == Reason::NoConvergence && find_dead_point(system, failure))
     result.reason = Reason::DeadPoint;

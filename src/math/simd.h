@@ -1,7 +1,7 @@
 #pragma once
-/// Runs loops over packs, and other long kernels, with AVX2 and fused multiply-add where the processor at hand has them.
-/// Results differ between processors with and without by round-off. The 32 registers of AVX-512 are not used: whole runs
-/// of four scenes took 0.98 to 1.05 of their time without them (docs/architecture.md).
+/// Runs loops over packs, and other long kernels, with AVX2 and fused multiply-add where the processor at hand has
+/// them. Results differ between processors with and without by round-off. The 32 registers of AVX-512 are not used:
+/// whole runs of four scenes took 0.98 to 1.05 of their time without them (docs/architecture.md).
 
 namespace flexarm::simd {
 

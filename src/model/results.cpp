@@ -50,8 +50,6 @@ const char* to_string(StepResult::Reason reason) {
       return "a loop comes to a dead point, beyond which a motion goes, or where nothing says which way it turns";
     case StepResult::Reason::OutOfTime:
       return "the step takes longer than it may by the clock on the wall";
-    case StepResult::Reason::EnergyDefect:
-      return "the step's energy defect is too large to be closed by scaling the velocities";
   }
   return "unknown";
 }

@@ -83,7 +83,6 @@ struct State {
   std::vector<SensorSample> samples;     ///< per sensor: what it measured last
   std::vector<double> force_memory;      ///< of force elements, one after the other
   double work = 0, dissipated = 0;       ///< path integrals since the start [J]
-  double energy_defect = 0;              ///< always 0; keeps its place in checkpoints [J]
   int halving_level = 0;                 ///< sub-steps are step / 2^level
   int good_steps = 0;                    ///< converged sub-steps in a row at this level
   long steps = 0;                        ///< whole steps done

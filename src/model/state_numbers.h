@@ -68,7 +68,6 @@ void for_each_number(AnyState& state, const Visit& visit) {
   for (auto& duration : state.drives.durations) visit(kDuration, duration);
   visit("the work", state.work);
   visit("the dissipated energy", state.dissipated);
-  visit("the energy defect", state.energy_defect);
   for (auto& memory : state.strain_memory) {
     vector("an average of strain increments", memory.average);
     vector("a strain rate", memory.rate);

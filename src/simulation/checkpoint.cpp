@@ -20,7 +20,7 @@
 namespace flexarm {
 namespace {
 
-constexpr const char* kHeader = "flexarm-checkpoint 12";
+constexpr const char* kHeader = "flexarm-checkpoint 13";
 constexpr std::size_t kShown = 120;  // characters of a line in messages
 
 /// The last line of a file whose other lines are `text`.

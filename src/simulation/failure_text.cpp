@@ -59,8 +59,6 @@ std::string advice(const Model& model, const StepResult& result) {
       return fmt::format(
           "a smaller step ({:.1g} s, say), or less effort, more damping or a <limit> at what turns there",
           failure.amount > 0 ? 0.5 * failure.step / failure.amount : failure.step);
-    case Reason::EnergyDefect:
-      return "a smaller step, or scheme em, which closes the energy element by element";
     case Reason::OffTheLine:
       return "a smaller step, a longer line, or an end where the slider stops or leaves (on_end)";
     case Reason::DrivenOffTheLine:

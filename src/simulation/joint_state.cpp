@@ -264,7 +264,6 @@ State with_joint_state(const Model& model, const DegreesOfFreedom& dof, const St
   out.samples = state.samples;
   out.work = state.work;
   out.dissipated = state.dissipated;
-  out.energy_defect = state.energy_defect;
   for (std::size_t i = 0; i < out.actuators.size(); ++i)
     out.actuators[i] = carried(model, model.actuators[i], state.actuators[i], before, after);
   return out;

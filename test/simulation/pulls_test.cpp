@@ -87,8 +87,7 @@ TEST(Pull, OscillatesAsTheMidpointRuleSays) {
 
 // Sub-steps backwards have the damper, too: y'' = -2 d y' - w^2 (y - way) to the fourth order.
 TEST(Pull, WithADamperIsOfTheOrderOfCompositions) {
-  const double way = kTarget.y() - kPoint.y(), d = 0.5 * kDamping / kMass,
-               w = std::sqrt(kStiffness / kMass - d * d);
+  const double way = kTarget.y() - kPoint.y(), d = 0.5 * kDamping / kMass, w = std::sqrt(kStiffness / kMass - d * d);
   const auto error = [&](double step) {
     SceneBuilder b = slider();
     b.scene.integrator.scheme = "em4";

@@ -22,7 +22,6 @@ struct StepResult {
     SingularTangent,
     NotFinite,
     RotationTooLarge,
-    EnergyDefect,
     OffTheLine,
     DrivenOffTheLine,
     OpenLoop,
