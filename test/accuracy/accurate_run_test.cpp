@@ -1,7 +1,6 @@
 #include "flexarm/accuracy/accurate_run.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -10,43 +9,12 @@
 
 #include <gtest/gtest.h>
 
-#include "flexarm/accuracy/companion.h"
-#include "flexarm/scene/urdf_reader.h"
-#include "math/pi.h"
-#include "simulation/inside.h"
+#include "accuracy/falling_arm.h"
 #include "support/scene_builder.h"
 #include "support/source_path.h"
 
 namespace flexarm::test {
 namespace {
-
-/// Two beams of two elements that hang on hinges and fall from the horizontal, not in one plane.
-SceneBuilder falling_arm() {
-  SceneBuilder b;
-  const scene::DirectSection soft = section(4e3, 2e3, 40, 60, 1, 0.01, 0.005);
-  b.beam("upper", {{1, 0, 0}}, soft, 2, 2);
-  b.beam("fore", {{0, 0.8, 0}}, soft, 2, 2);
-  b.joint("shoulder", scene::JointKind::Revolute, "world", "upper", Vector3::Zero(), Vector3::UnitY());
-  b.joint("elbow", scene::JointKind::Revolute, "upper", "fore", {1, 0, 0}, Vector3::UnitX());
-  b.probe("tip", "fore", {0, 0.8, 0});
-  b.scene.gravity = {0, 0, -9.81};
-  b.scene.integrator.tolerance = 1e-10;
-  return b;
-}
-
-/// Two rigid links: without fast modes, so that orders are seen at any step.
-SceneBuilder falling_links() {
-  SceneBuilder b;
-  Matrix3 inertia = Vector3(0.02, 0.03, 0.04).asDiagonal();
-  b.body("upper", 1, {0.5, 0, 0}, inertia);
-  b.body("fore", 0.7, {0, 0.4, 0}, inertia);
-  b.joint("shoulder", scene::JointKind::Revolute, "world", "upper", Vector3::Zero(), Vector3::UnitY());
-  b.joint("elbow", scene::JointKind::Revolute, "upper", "fore", {1, 0, 0}, Vector3::UnitX());
-  b.probe("tip", "fore", {0, 0.8, 0});
-  b.scene.gravity = {0, 0, -9.81};
-  b.scene.integrator.tolerance = 1e-12;
-  return b;
-}
 
 /// The motion in equal steps.
 JudgedMotion reference_motion(const SceneBuilder& b, double until, int intervals, int steps) {
@@ -306,183 +274,6 @@ TEST(AccurateRun, HitsSamples) {
     for (int n = 1; n < until / 0.01; ++n) ASSERT_TRUE(ends.has(n * 0.01)) << n;
     EXPECT_THROW(simulation.set_step_size(0.007), std::invalid_argument);
   }
-}
-
-// ---------------------------------------------------------------- the companion
-
-TEST(Companion, KnowsTheErrorOfWhatRuns) {
-  const SceneBuilder b = falling_arm();
-  constexpr int kSteps = 300;
-  constexpr double kStep = 0.004;
-  Simulation simulation(b.scene), reference(b.scene);
-  simulation.set_step_size(kStep);
-  reference.set_step_size(kStep / 16);
-  Companion companion(simulation);
-  double estimate = std::nan(""), error = 0;
-  for (int n = 0; n < kSteps; ++n) {
-    ASSERT_TRUE(simulation.step().converged);
-    estimate = companion.follow(simulation);
-    EXPECT_EQ(std::isnan(estimate), n == 0);
-    for (int k = 0; k < 16; ++k) ASSERT_TRUE(reference.step().converged);
-    error = std::max(error, (simulation.probe(0).pose.position - reference.probe(0).pose.position).norm());
-  }
-  EXPECT_NEAR(estimate, error, 0.3 * error);
-}
-
-/// Efforts that change from step to step have the same impulse for it: what they do to a mass is known exactly.
-TEST(Companion, FollowsCommands) {
-  SceneBuilder b;
-  b.body("block", 2, Vector3::Zero(), Matrix3::Identity());
-  b.joint("rail", scene::JointKind::Prismatic, "world", "block", Vector3::Zero(), Vector3::UnitX());
-  Simulation simulation(b.scene);
-  Companion companion(simulation);
-  double estimate = 0;
-  for (int n = 0; n < 200; ++n) {
-    simulation.command_effort(0, std::sin(0.3 * n));
-    simulation.apply_wrenches({{1, Vector3::Zero(), {{0.1 * n, 0, 0}, Vector3::Zero()}, false}});
-    ASSERT_TRUE(simulation.step().converged);
-    estimate = companion.follow(simulation);
-  }
-  // The acceleration changes once in a step of the companion, which its mean moves by h^2 / 2 of the change.
-  const double change = 0.5 * (0.3 + 0.1) / 2 * 1e-6;
-  EXPECT_GT(estimate, 0);
-  EXPECT_LE(estimate, 100 * change / 3);
-}
-
-/// The largest of estimates, and of distances from where a block on a rail is to be at the time.
-struct Judged {
-  double estimate = 0, error = 0;
-};
-template <class Position>
-Judged follow_block(const SceneBuilder& b, double until, const Position& position) {
-  Simulation simulation(b.scene);
-  Companion companion(simulation);
-  Judged out;
-  for (int n = std::lround(until / simulation.step_size()); n > 0; --n) {
-    EXPECT_TRUE(simulation.step().converged);
-    const double estimate = companion.follow(simulation);
-    if (!std::isnan(estimate)) out.estimate = estimate;
-    out.error = std::max(out.error, std::abs(simulation.position(0) - position(simulation.time())));
-  }
-  return out;
-}
-
-SceneBuilder block_at(double position, double velocity) {
-  SceneBuilder b;
-  b.body("block", 2, Vector3::Zero(), Matrix3::Identity());
-  b.joint("rail", scene::JointKind::Prismatic, "world", "block", Vector3::Zero(), Vector3::UnitX());
-  b.scene.initial_joints.push_back({"rail", position, velocity, {}});
-  b.scene.gravity = Vector3::Zero();
-  b.scene.integrator.step = 0.01;
-  b.scene.integrator.tolerance = 1e-12;
-  return b;
-}
-
-// An effort that turns from 6 N to -6 N somewhere in a step: 3 m/s^2 of 2 kg, so that a step is off by 6 m/s^2 h/2 at
-// most.
-TEST(Companion, CountsJumpsWithinItsSteps) {
-  const double h = 0.01, until = 1;
-  for (int k = 0; k < 16; ++k) {
-    const double jump = 0.3 + h * k / 7.5 + 1e-6;
-    SceneBuilder b = block_at(0, 0);
-    b.scene.efforts.push_back({"rail", TimeFunction::parse("t < " + std::to_string(jump) + " ? 6 : -6"), {}});
-    const Judged judged = follow_block(b, until, [&](double t) {
-      return t < jump ? 1.5 * t * t : 1.5 * jump * jump + 3 * jump * (t - jump) - 1.5 * (t - jump) * (t - jump);
-    });
-    const double bound = 0.5 * 6 * h * (until - jump);
-    EXPECT_GE(judged.estimate, judged.error) << jump;
-    EXPECT_LE(judged.error, 1.1 * bound) << jump;
-    EXPECT_LE(judged.estimate, 2.2 * bound) << jump;  // what the companion differs by comes in addition
-  }
-}
-
-// Pushed by less than friction holds: it comes to rest after v^2/(2 a) and stays there.
-TEST(Companion, CountsWhereFrictionBringsToRest) {
-  for (const double start : {0.3, 0.317, 0.335, 0.349}) {
-    SceneBuilder b = block_at(0, start);
-    b.scene.joints[0].friction = 2;
-    b.scene.joints[0].friction_law.law = scene::FrictionDescription::Law::Coulomb;
-    const Judged judged = follow_block(b, 1, [&](double t) {
-      const double s = std::min(t, start / 1.0);
-      return start * s - 0.5 * s * s;
-    });
-    EXPECT_GE(judged.estimate, judged.error) << start;
-    EXPECT_LE(judged.estimate, 1.0 * 0.01) << "a velocity of 1 m/s^2 h for a second" << start;
-  }
-}
-
-// A motor at its limit until the error is small, then a spring: 4 m/s^2 until 0.1 m are left, and 40/s^2 of it then.
-TEST(Companion, CountsWhereAMotorLeavesItsLimit) {
-  for (const double target : {0.5, 0.513, 0.527, 0.541}) {
-    SceneBuilder b = block_at(0, 0);
-    scene::ServoDescription& servo = b.servo("rail", 80, 0, 0);
-    servo.set_point = TimeFunction(target);
-    servo.effort_limit = 8;
-    const double free = std::sqrt(2 * (target - 0.1) / 4), rate = 4 * free, w = std::sqrt(40.0);
-    const double until = free + 0.9 * (kPi - 2 * std::atan2(rate / w, 0.1)) / w;  // before the limit on the other side
-    const Judged judged = follow_block(b, std::floor(until / 0.02) * 0.02, [&](double t) {
-      return t < free ? 2 * t * t : target - 0.1 * std::cos(w * (t - free)) + rate / w * std::sin(w * (t - free));
-    });
-    EXPECT_GE(judged.estimate, judged.error) << target;
-  }
-}
-
-// Smooth motions of what might have corners are judged as those of what has none.
-TEST(Companion, NoCornerNoDoubt) {
-  SceneBuilder plain = falling_links(), with = falling_links();
-  with.scene.joints[0].limits = scene::JointLimits{-3, 3};
-  with.scene.efforts.push_back({"elbow", TimeFunction(0.0), {}});
-  std::array<double, 2> estimates{};
-  for (std::size_t i = 0; i < 2; ++i) {
-    Simulation simulation((i == 0 ? plain : with).scene);
-    Companion companion(simulation);
-    for (int n = 0; n < 300; ++n) {
-      ASSERT_TRUE(simulation.step().converged);
-      estimates[i] = companion.follow(simulation);
-    }
-  }
-  EXPECT_NEAR(estimates[0] / estimates[1], 1, 1e-6);
-}
-
-// Of a corner in the first steps nothing is known.
-TEST(Companion, SaysWhatItDoesNotKnow) {
-  SceneBuilder b = block_at(0, 0);
-  b.scene.efforts.push_back({"rail", TimeFunction::parse("t < 0.014 ? 6 : -6"), {}});
-  Simulation simulation(b.scene);
-  Companion forever(simulation), windowed(simulation, 0.2);
-  double estimate = 0;
-  for (int n = 0; n < 50; ++n) {
-    ASSERT_TRUE(simulation.step().converged);
-    if (n >= 4) {
-      EXPECT_TRUE(std::isnan(forever.follow(simulation))) << n;
-    } else {
-      forever.follow(simulation);
-    }
-    estimate = windowed.follow(simulation);
-  }
-  EXPECT_FALSE(std::isnan(estimate)) << "another window has begun";
-}
-
-TEST(Companion, BeginsAgainWhereTheSimulationIsPut) {
-  Simulation simulation(falling_arm().scene);
-  Companion companion(simulation, 0.05);
-  for (int n = 0; n < 200; ++n) {
-    ASSERT_TRUE(simulation.step().converged);
-    companion.follow(simulation);
-  }
-  simulation.reset();
-  ASSERT_TRUE(simulation.step().converged);
-  EXPECT_TRUE(std::isnan(companion.follow(simulation)));
-  ASSERT_TRUE(simulation.step().converged);
-  companion.follow(simulation);
-  ASSERT_TRUE(simulation.step().converged);
-  EXPECT_LT(companion.follow(simulation), 1e-6) << "a step or two are nearly exact";
-}
-
-TEST(Companion, RefusesAWindowOfNoLength) {
-  const Simulation simulation(falling_arm().scene);
-  for (const double window : {0.0, -1.0, double(NAN)})
-    EXPECT_THROW(Companion(simulation, window), std::invalid_argument) << window;
 }
 
 }  // namespace
