@@ -228,7 +228,7 @@ TEST_F(DamagedCheckpoint, WrongContentIsRefused) {
       {"steps 5 level 0 good 5 increments 99999999999", line_of(counts)},
       {"steps 5 level 0 good 5 increments -1", line_of(counts)},
       {"steps five level 0 good 5 increments 7", line_of(counts)},
-      {"steps 5 level 0 good 5 increments 8", "expected the energy defect"},
+      {"steps 5 level 0 good 5 increments 8", "expected the dissipated energy"},
       {"steps -5 level 0 good 5 increments 7", "the number of steps is -5, expected 0 or more"},
       {"steps 5 level 41 good 5 increments 7", "the halving level is 41, expected 0 to 40"}};
   for (const auto& [wrong, told] : wrong_counts)

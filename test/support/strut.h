@@ -73,7 +73,7 @@ inline std::shared_ptr<const scene::ForceElementDescription> read_strut(const sc
   strut.expect_only({"name", "from", "from_at", "to", "to_at", "linear", "cubic", "push"});
   auto out = std::make_shared<StrutDescription>();
   out->location = strut.location();
-  out->name = strut.name("name").value_or("");
+  if (strut.has("name")) out->name = strut.name("name").value_or("");
   out->from = strut.name("from").value_or("");
   out->from_at = strut.vector("from_at", out->from_at);
   out->to = strut.name("to").value_or("");
