@@ -96,11 +96,11 @@ std::size_t edits(std::string_view from, std::string_view to) {
 }
 
 /// What a name probably means: differs in a third of its characters at most; empty if nothing does.
-std::string_view nearest(std::string_view tag) {
+std::string_view nearest(std::string_view tag, const std::vector<std::string_view>& own) {
   std::string_view best;
   std::size_t least = tag.size() / 3 + 1;
   if (tag.size() > 2 * kLongestParameterName) return best;  // a costly comparison with nothing to find
-  for (const std::string_view name : kOwn) {
+  for (const std::string_view name : own) {
     const std::size_t count = edits(tag, name);
     if (count >= least) continue;
     least = count;
@@ -110,13 +110,13 @@ std::string_view nearest(std::string_view tag) {
 }
 
 /// Empty: it is known.
-std::string advice_for(std::string_view tag) {
-  if (tag.find(':') != std::string_view::npos || contains(kOwn, tag) || contains(kPlaced, tag) ||
+std::string advice_for(std::string_view tag, const std::vector<std::string_view>& own) {
+  if (tag.find(':') != std::string_view::npos || contains(own, tag) || contains(kPlaced, tag) ||
       contains(kOfOthers, tag))
     return {};
   const auto home = std::find_if(std::begin(kHomes), std::end(kHomes), [&](const Home& it) { return it.tag == tag; });
   if (home != std::end(kHomes)) return "has no effect here: it belongs into <" + std::string(home->parent) + ">";
-  const std::string_view meant = nearest(tag);
+  const std::string_view meant = nearest(tag, own);
   return "has no effect: no program is known that uses it here" +
          (meant.empty() ? std::string() : "; is <" + std::string(meant) + "> meant?");
 }
@@ -132,10 +132,12 @@ std::string link_in(const XmlElement& joint, const char* tag) {
 
 }  // namespace
 
-void warn_of_strangers(const XmlElement& robot) {
+void warn_of_strangers(const XmlElement& robot, const std::vector<ForceElementKind>& kinds) {
+  std::vector<std::string_view> own(std::begin(kOwn), std::end(kOwn));
+  for (const ForceElementKind& kind : kinds) own.push_back(kind.tag);
   std::set<std::string> told;
   for (const XmlElement& child : robot.children()) {
-    const std::string advice = advice_for(child.tag());
+    const std::string advice = advice_for(child.tag(), own);
     if (!advice.empty() && told.insert(child.tag()).second) child.warning(advice);
   }
 }

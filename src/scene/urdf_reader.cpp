@@ -72,7 +72,7 @@ class SceneReader {
     check_places(robot, places_);
     robot.expect_at_most_one({"simulation"});
     for (const XmlElement& child : robot.children()) read_child(child);
-    warn_of_strangers(robot);
+    warn_of_strangers(robot, kinds_);
     warn_of_gazebo_loops(robot, scene_);
     check_size(robot, "links", scene_.links.size(), kMostLinks);
     check_size(robot, "joints", scene_.joints.size(), kMostJoints);

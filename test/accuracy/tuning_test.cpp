@@ -63,7 +63,7 @@ TEST(Tuning, EndsWithTheBestSoFar) {
   TuningGoal goal;
   goal.accuracy = 1e-2;
   int last_count = 0;
-  for (const int most : {1, 8, 30}) {
+  for (const int most : {1, 8, 16}) {
     TrialLimits limits;
     limits.runs = most;
     TrialRuns trials(test::ramped_cantilever(""), test::kOneSecond, limits, {}, {});
