@@ -1,7 +1,7 @@
 #pragma once
 /// Beam residual and tangent over a step for the energy-momentum (EM) family (beam.md 3.2, beyond.md 1):
-///   g_v^i = int {I^i' n,  I_t^i' m - I_t^i r'_* x n} ds,  n = Lambda_bar N_a,  m = Lambda_bar M_a.
-/// Momenta are conserved for any stress N_a, M_a and any test functions with sum I_t = 1, if the arm r'_* suits the
+///   g_v^i = int {I^i' n,  I_t^i' m - I_t^i r'_arm x n} ds,  n = Lambda_bar N_a,  m = Lambda_bar M_a.
+/// Momenta are conserved for any stress N_a, M_a and any test functions with sum I_t = 1, if the arm r'_arm suits the
 /// rule of the velocities.
 ///
 /// Templates on their numbers; those of four elements side by side (S = Pack) are what runs (conserving_pack.h). A step
