@@ -3,7 +3,7 @@
 /// middle of a step, kinematics at its end, strains over it, and nodal forces of their stress resultants.
 
 #include "elements/beam_point.h"
-#include "elements/conserving_element.h"
+#include "elements/conserving_terms.h"
 #include "math/cayley.h"
 #include "math/so3.h"
 #include "schemes/time_rule.h"
@@ -27,21 +27,6 @@ Matrix3T<S> hat_times(const Vector3T<S>& v, const Matrix3T<S>& m) {
   for (int j = 0; j < 3; ++j) product.col(j) = so3::cross(v, m.col(j));
   return product;
 }
-
-/// Strains and elastic stresses of a stiffness point over a step.
-template <typename S>
-struct PointStress {
-  Vector6T<S> strain, stress;                      // means of both ends
-  Vector6T<S> conjugate_strain, conjugate_stress;  // s and C s
-
-  PointStress() = default;
-  PointStress(const SectionStiffness<S>& stiffness, const Vector6T<S>& begin, const Vector6T<S>& end,
-              const Vector6T<S>& conjugate)
-      : strain(S(0.5) * (begin + end)),
-        stress(stiffness.stress(strain)),
-        conjugate_strain(conjugate),
-        conjugate_stress(stiffness.stress(conjugate)) {}
-};
 
 /// A stiffness point over a step.
 template <int Nodes, typename S>

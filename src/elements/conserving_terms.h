@@ -1,7 +1,8 @@
 #pragma once
-/// What beams of the energy-momentum family have in common in space and in the plane: translational inertia, and
-/// dampers with a memory at a stiffness point. Over a step in which the strain grows by s, each of these adds factor C
-/// s - remembered to the stress. (docs/schemes.md, "Numerical dissipation", "Structural damping")
+/// What beams of the energy-momentum family have in common in space and in the plane: translational inertia,
+/// strains and stresses of a stiffness point, and dampers with a memory there. Over a step in which the strain grows by
+/// s, each damper adds factor C s - remembered to the stress. (docs/schemes.md, "Numerical dissipation", "Structural
+/// damping")
 
 #include <array>
 
@@ -68,6 +69,22 @@ S strain_product(const Eigen::Matrix<S, Size, 1>& a, const Eigen::Matrix<S, Size
   else
     return so3::dot(a, b);
 }
+
+/// Strains and elastic stresses of a stiffness point over a step.
+template <typename S, int Size = 6>
+struct PointStress {
+  using Strain = Eigen::Matrix<S, Size, 1>;
+  Strain strain, stress;                      // means of both ends
+  Strain conjugate_strain, conjugate_stress;  // s and C s
+
+  PointStress() = default;
+  template <class Stiffness>
+  PointStress(const Stiffness& stiffness, const Strain& begin, const Strain& end, const Strain& conjugate)
+      : strain(S(0.5) * (begin + end)),
+        stress(stiffness.stress(strain)),
+        conjugate_strain(conjugate),
+        conjugate_stress(stiffness.stress(conjugate)) {}
+};
 
 /// The strain rate at the end: (w_0 + w_1)/2 = s/h.
 template <class Memory, typename S, int Size>

@@ -1,8 +1,9 @@
 #pragma once
-/// A stiffness point of the energy-momentum family in the plane: conserving_point.h, where all rotations are about the
+/// A stiffness point of the energy-momentum family in the plane: conserving_points.h, where all rotations are about the
 /// normal. Then generalised shape functions are Lagrange's, and rotations are products of complex numbers.
 /// (docs/notes/planar.md)
 
+#include "elements/conserving_terms.h"
 #include "elements/planar_element.h"
 #include "math/rotation_series.h"
 
@@ -85,19 +86,8 @@ void set_points(const Element<Nodes, S>& element, const std::array<Vector2T<S>, 
   }
 }
 
-/// Strains and elastic stresses of a stiffness point over a step, see conserving::PointStress.
 template <typename S>
-struct PointStress {
-  Vector3T<S> strain, stress, conjugate_strain, conjugate_stress;
-
-  PointStress() = default;
-  PointStress(const SectionStiffness<S>& stiffness, const Vector3T<S>& begin, const Vector3T<S>& end,
-              const Vector3T<S>& conjugate)
-      : strain(S(0.5) * (begin + end)),
-        stress(stiffness.stress(strain)),
-        conjugate_strain(conjugate),
-        conjugate_stress(stiffness.stress(conjugate)) {}
-};
+using PointStress = conserving::PointStress<S, 3>;
 
 /// A stiffness point over a step, see conserving::Point.
 template <typename S>
