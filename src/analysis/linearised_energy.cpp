@@ -8,16 +8,9 @@
 namespace flexarm {
 namespace {
 
-/// {displacement, spin} of an element's nodes.
-template <int Nodes>
-Eigen::VectorXcd motion_of(const BeamElement<Nodes>& element, const std::vector<ComplexVector6>& node_motion) {
-  Eigen::VectorXcd motion(6 * Nodes);
-  for (int i = 0; i < Nodes; ++i) motion.segment<6>(6 * i) = node_motion[element.nodes[i]];
-  return motion;
-}
-
-/// The same of a force element's nodes.
-Eigen::VectorXcd motion_of(const std::vector<int>& nodes, const std::vector<ComplexVector6>& node_motion) {
+/// {displacement, spin} of these nodes.
+template <class Nodes>
+Eigen::VectorXcd motion_of(const Nodes& nodes, const std::vector<ComplexVector6>& node_motion) {
   Eigen::VectorXcd motion(6 * static_cast<Eigen::Index>(nodes.size()));
   for (std::size_t i = 0; i < nodes.size(); ++i)
     motion.segment<6>(6 * static_cast<Eigen::Index>(i)) = node_motion[nodes[i]];
@@ -41,13 +34,13 @@ double work_of_forces(const Model& model, const State& equilibrium) {
 double round_off(const Model& model, const State& equilibrium, const std::vector<ComplexVector6>& node_motion) {
   double elastic = 0, largest_spin = 0;
   for_each_element(model.beams, [&](const auto& element) {
-    const Eigen::VectorXd motion = motion_of(element, node_motion).cwiseAbs();
+    const Eigen::VectorXd motion = motion_of(element.nodes, node_motion).cwiseAbs();
     elastic += motion.dot(material_stiffness(element, equilibrium).cwiseAbs().lazyProduct(motion));
   });
-  for (const auto& element : model.force_elements) {
-    const std::vector<int> nodes = nodes_of(*element, equilibrium);
-    const auto& [rows, stiffness] = element->measures(equilibrium, nodes.data());
-    const Eigen::VectorXd way = rows.cwiseAbs() * motion_of(nodes, node_motion).cwiseAbs();
+  const std::vector<std::vector<int>> nodes = nodes_of(model.force_elements, equilibrium);
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const auto& [rows, stiffness] = model.force_elements[k]->measures(equilibrium, nodes[k].data());
+    const Eigen::VectorXd way = rows.cwiseAbs() * motion_of(nodes[k], node_motion).cwiseAbs();
     elastic += way.dot(stiffness.cwiseAbs() * way);
   }
   // A force changes its work by a second order of rotations, times an arm.
@@ -87,15 +80,15 @@ Eigen::SparseMatrix<double> LinearisedMotion::curvature() const {
 double LinearisedMotion::strain_energy(const std::vector<ComplexVector6>& node_motion) const {
   double energy = 0;
   for_each_element(model_.beams, [&](const auto& element) {
-    const Eigen::VectorXcd motion = motion_of(element, node_motion);
+    const Eigen::VectorXcd motion = motion_of(element.nodes, node_motion);
     const Eigen::VectorXd real = motion.real(), imaginary = motion.imag();
     const Eigen::MatrixXd curvature = material_curvature(element, state_);
     energy += real.dot(curvature.lazyProduct(real)) + imaginary.dot(curvature.lazyProduct(imaginary));
   });
-  for (const auto& element : model_.force_elements) {
-    const std::vector<int> nodes = nodes_of(*element, state_);
-    const auto& [rows, stiffness] = element->measures(state_, nodes.data());
-    const Eigen::VectorXcd way = rows * motion_of(nodes, node_motion);
+  const std::vector<std::vector<int>> nodes = nodes_of(model_.force_elements, state_);
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const auto& [rows, stiffness] = model_.force_elements[k]->measures(state_, nodes[k].data());
+    const Eigen::VectorXcd way = rows * motion_of(nodes[k], node_motion);
     energy += way.real().dot(stiffness * way.real()) + way.imag().dot(stiffness * way.imag());
   }
   return energy;

@@ -151,9 +151,10 @@ void LinearisedMotion::assemble_damping() {
         damping_of(coordinate, stop_penalty(coordinate, contact_time_), state_.released[coordinate.joint]);
   for (const ActuatorTerms& terms : actuator_terms(model_, state_))
     diagonal(damping_, terms.joint, terms.component) += terms.damping + terms.servo_damping;
-  for (std::size_t k = 0; k < model_.force_elements.size(); ++k) {
+  const std::vector<std::vector<int>> nodes = nodes_of(model_.force_elements, state_);
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
     const ForceElement& element = *model_.force_elements[k];
-    const Eigen::MatrixXd rows = element.measures(state_, nodes_of(element, state_).data()).rows;
+    const Eigen::MatrixXd rows = element.measures(state_, nodes[k].data()).rows;
     const Eigen::MatrixXd slope = element.dampers(state_, Eigen::VectorXd::Zero(rows.rows())).slope;
     damping_.add_coupling(static_cast<int>(k), rows.transpose() * slope * rows);
   }

@@ -110,9 +110,10 @@ std::vector<Stretch> damped_stretches(const Model& model, const DegreesOfFreedom
                       damped_stiffness(element, static_cast<int>(k)),
                   nullptr);
   });
-  for (const auto& element : model.force_elements) {
-    const std::vector<int> nodes = nodes_of(*element, state);
-    add_stretch(nodes, element->measures(state, nodes.data()).rows, {}, element.get());
+  const std::vector<std::vector<int>> nodes = nodes_of(model.force_elements, state);
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const ForceElement& element = *model.force_elements[k];
+    add_stretch(nodes[k], element.measures(state, nodes[k].data()).rows, {}, &element);
   }
   return stretches;
 }

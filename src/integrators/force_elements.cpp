@@ -11,9 +11,8 @@ namespace flexarm {
 void couple_force_elements(const Model& model, const std::vector<NodePose>& poses, TangentBackend& tangent) {
   std::vector<int> nodes;
   for (std::size_t k = 0; k < model.force_elements.size(); ++k) {
-    nodes.resize(model.force_elements[k]->most_nodes());
-    const int count = model.force_elements[k]->find_nodes(poses, nodes.data());
-    tangent.couple(static_cast<int>(k), nodes.data(), count);
+    find_nodes(*model.force_elements[k], poses, nodes);
+    tangent.couple(static_cast<int>(k), nodes.data(), static_cast<int>(nodes.size()));
   }
 }
 
@@ -40,8 +39,7 @@ void ForceElements::begin(TangentBackend& tangent) {
   if (nodes_.empty()) return;
   const ForceElementList& elements = configuration_.model().force_elements;
   for (std::size_t k = 0; k < elements.size(); ++k) {
-    nodes_[k].resize(elements[k]->most_nodes());
-    nodes_[k].resize(elements[k]->find_nodes(configuration_.begin(), nodes_[k].data()));
+    find_nodes(*elements[k], configuration_.begin(), nodes_[k]);
     tangent.couple(static_cast<int>(k), nodes_[k].data(), static_cast<int>(nodes_[k].size()));
   }
   if (configuration_.scheme().is_incremental()) return;

@@ -117,9 +117,11 @@ class ForceElement {
   std::vector<int> reach_;
 };
 
-/// On which it acts in a step that begins at a state.
-std::vector<int> nodes_of(const ForceElement& element, const State& state);
-
 using ForceElementList = std::vector<std::shared_ptr<const ForceElement>>;
+
+/// On which it acts in a step that begins at these poses, in the memory of `nodes`; allocates the first time alone.
+void find_nodes(const ForceElement& element, const std::vector<NodePose>& poses, std::vector<int>& nodes);
+/// On which each acts in a step that begins at a state.
+std::vector<std::vector<int>> nodes_of(const ForceElementList& elements, const State& state);
 
 }  // namespace flexarm

@@ -143,8 +143,7 @@ SparseTangent::SparseTangent(const Model& model, const DegreesOfFreedom& dof)
     : model_(model), dof_(dof), slide_maps_(most_active_nodes(model.slide_lines)) {
   for (const auto& element : model.force_elements) {
     couplings_.emplace_back();
-    couplings_.back().nodes.resize(element->most_nodes());
-    couplings_.back().nodes.resize(element->find_nodes(model.nodes, couplings_.back().nodes.data()));
+    find_nodes(*element, model.nodes, couplings_.back().nodes);
   }
   build_pattern();
 }

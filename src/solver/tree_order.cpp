@@ -28,8 +28,7 @@ TreeOrder::TreeOrder(const Model& model, const DegreesOfFreedom& dof)
   }
   for (const auto& element : model_.force_elements) {
     couplings_.emplace_back();
-    couplings_.back().nodes.resize(element->most_nodes());
-    couplings_.back().nodes.resize(element->find_nodes(model_.nodes, couplings_.back().nodes.data()));
+    find_nodes(*element, model_.nodes, couplings_.back().nodes);
   }
   count_riders();
   complete_ = true;
