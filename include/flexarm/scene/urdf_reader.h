@@ -32,7 +32,8 @@ struct ReadOptions {
   bool equilibrium_start = false;  ///< <initial equilibrium="true"/>: see SceneDescription::starts_in_equilibrium
   /// A name that the scene has no <parameter> for, and a value outside its limits, are errors of the scene.
   ParameterValues parameters = {};
-  /// Kinds of elements between points of links that a scene may have besides those of the format; null: none.
+  /// Kinds of elements between points of links that a scene may have besides those of the format; null: none. For who
+  /// builds in the library's sources, where kinds are declared (scene/force_element_kinds.h).
   const std::vector<ForceElementKind>* more_force_elements = nullptr;
 };
 
