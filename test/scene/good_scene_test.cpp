@@ -272,6 +272,7 @@ TEST(GoodScene, SpringBetweenPoints) {
   const SceneDescription scene = good_scene();
   ASSERT_EQ(scene.force_elements.size(), 1u);
   const auto& spring = dynamic_cast<const PointSpring&>(*scene.force_elements[0]);
+  EXPECT_EQ(spring.name, "tie");
   EXPECT_EQ(spring.from, "upper");
   EXPECT_EQ(spring.from_at, Vector3(0.1, 0, 0));
   EXPECT_EQ(spring.to, "hand");

@@ -3,6 +3,7 @@
 
 #include "building/expect_model_error.h"
 #include "flexarm/scene/point_spring.h"
+#include "flexarm/simulation/result_columns.h"
 #include "math/pi.h"
 #include "support/scene_builder.h"
 
@@ -12,8 +13,10 @@ namespace {
 constexpr double kStiffness = 300;
 
 void add_spring(SceneBuilder& b, const std::string& from, const Vector3& from_at, const std::string& to,
-                const Vector3& to_at, std::optional<double> rest_length = {}, double damping = 0) {
+                const Vector3& to_at, std::optional<double> rest_length = {}, double damping = 0,
+                const std::string& name = "") {
   auto spring = std::make_shared<scene::PointSpring>();
+  spring->name = name;
   spring->from = from;
   spring->from_at = from_at;
   spring->to = to;
@@ -62,6 +65,27 @@ TEST(PointSprings, CarryAWeight) {
   // 1.5 - z = 1 + m g / k
   EXPECT_NEAR(simulation.position(0), 0.5 - 15 / kStiffness, 1e-9);
   EXPECT_NEAR(simulation.energies().strain, 0.5 * 15 * 15 / kStiffness, 1e-9);
+}
+
+// Named, it puts out how long it is, and the weight that it holds; without a name it has no columns.
+TEST(PointSprings, PutOutLengthAndTension) {
+  SceneBuilder b;
+  b.scene.gravity = {0, 0, -10};
+  b.body("mass", 1.5, Vector3::Zero(), Matrix3::Identity());
+  b.joint("rail", scene::JointKind::Prismatic, "world", "mass", Vector3::Zero(), {0, 0, 1});
+  add_spring(b, "world", {0, 0, 2}, "mass", {0, 0, 0.5}, 1.0);
+  const std::vector<std::string> patterns = {"spring/*"};
+  EXPECT_THROW(ResultColumns(Simulation(b.scene), ResultColumns::Solver::Without, patterns), std::invalid_argument);
+  add_spring(b, "world", {0, 0, 2}, "mass", {0, 0, 0.5}, 1.0, 0, "hanger");
+  b.scene.force_elements.erase(b.scene.force_elements.begin());
+  Simulation simulation(b.scene);
+  ASSERT_TRUE(simulation.solve_static(1).converged);
+  ResultColumns columns(simulation, ResultColumns::Solver::Without, patterns);
+  ASSERT_EQ(columns.columns().size(), 3u);
+  EXPECT_EQ(columns.columns()[1].name, "spring/hanger/length");
+  EXPECT_EQ(columns.columns()[2].name, "spring/hanger/tension");
+  EXPECT_NEAR(columns.row(simulation, {})[1], 1 + 15 / kStiffness, 1e-9);
+  EXPECT_NEAR(columns.row(simulation, {})[2], 15, 1e-9 * kStiffness);
 }
 
 /// A flexible arm and a flying body, tied to each other and to the world.
