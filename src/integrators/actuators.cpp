@@ -18,11 +18,10 @@ constexpr double kRoundOff = 1e-6;
 
 }  // namespace
 
-Actuators::Actuators(StepConfiguration& configuration, const StepHistories& histories,
-                     const HhtInterpolation* interpolation)
+Actuators::Actuators(StepConfiguration& configuration, const StepHistories& histories, JointEfforts& efforts)
     : configuration_(configuration),
       histories_(histories),
-      interpolation_(interpolation),
+      efforts_(efforts),
       parts_(configuration.model().actuators.size()),
       gyroscope_of_(configuration.model().joints.size(), -1) {
   for (std::size_t i = 0; i < parts_.size(); ++i) {
@@ -76,7 +75,7 @@ RotorStep Actuators::rotor_step(const Actuator& actuator, const ActuatorState& s
   out.rate_slope = h * scheme.gamma * slope;
   // Rows are balances at the end of the step, from which accelerations of the Hilber-Hughes-Taylor family lie back:
   // Wood, Bossak and Zienkiewicz' mean.
-  const double weight = 1 / effort_weight();
+  const double weight = 1 / configuration_.effort_weight();
   out.acceleration_offset = weight * offset + (1 - weight) * acceleration;
   out.acceleration_slope = weight * slope;
   return out;
@@ -92,8 +91,7 @@ void Actuators::begin() {
     part.rotor = rotor_step(actuator, state);
     part.demand = {};
     if (coordinate.motion < 0) {
-      const StepForce effort =
-          histories_.effort(model, actuator.coordinate, configuration_.state().commands[actuator.coordinate]);
+      const StepForce& effort = efforts_.of(actuator.coordinate);
       part.demand.constant = effort.acting;
       part.demand.surplus = effort.acting - effort.at_end;
     }
@@ -235,14 +233,14 @@ void Actuators::add_gyroscope(int joint, FoldMaps& maps) const {
   const int index = gyroscope_of_[joint];
   if (index < 0) return;
   const Part& part = parts_[index];
-  maps.released_spin.row(0) -=
-      effort_weight() * part.action.effort_by_load * part.load_by_carried * part.carried_by_spin.transpose();
+  maps.released_spin.row(0) -= configuration_.effort_weight() * part.action.effort_by_load * part.load_by_carried *
+                               part.carried_by_spin.transpose();
   maps.moment_released.col(0) += part.moment_by_link;
 }
 
 void Actuators::evaluate(Balance& balance) {
   const Model& model = configuration_.model();
-  const double weight = effort_weight();
+  const double weight = configuration_.effort_weight();
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const Actuator& actuator = model.actuators[i];
     const Coordinate& coordinate = model.coordinates[actuator.coordinate];
@@ -260,6 +258,8 @@ void Actuators::evaluate(Balance& balance) {
     part.action = holds_rotors_ && actuator.drive.gear
                       ? held_motor_action(actuator.drive, part.demand, rotor, link)
                       : motor_action(actuator.drive, part.demand, rotor, link, part.action.increment);
+    if (has_motor(coordinate))
+      efforts_.set_motor(actuator.coordinate, part.action.motor, part.action.motor_at_end, part.action.increment);
     if (is_gyroscope) add_moment(*actuator.gyroscope, configuration_.state().actuators[i], part, balance);
     const PassiveEffort spring = actuator.spring ? spring_effort(*actuator.spring, link) : PassiveEffort();
     balance.dissipated += part.action.dissipated + spring.dissipated;
@@ -269,22 +269,6 @@ void Actuators::evaluate(Balance& balance) {
     if (!balance.tangent) continue;
     const int count = released_count(model.joints[coordinate.joint].kind);
     balance.tangent->diagonal_block(variable)[k * count + k] -= weight * (part.action.slope + spring.slope);
-  }
-}
-
-void Actuators::add_work(double& work) const {
-  const State& state = configuration_.state();
-  const Model& model = configuration_.model();
-  for (std::size_t i = 0; i < parts_.size(); ++i) {
-    const MotorAction& action = parts_[i].action;
-    const int coordinate = model.actuators[i].coordinate;
-    if (model.coordinates[coordinate].motion >= 0) continue;  // whose work is the motion's
-    double mean = action.motor;
-    if (!configuration_.scheme().is_incremental()) {
-      // That of both ends, and what made it the mean over the step.
-      mean += 0.5 * (state.efforts[coordinate] - action.motor_at_end);
-    }
-    work += mean * action.increment;
   }
 }
 
@@ -312,13 +296,11 @@ void Actuators::accept(State& state) const {
     own.angle += action.increment;
     own.rate = rotor.rate_offset + rotor.rate_slope * (action.increment + part.carried);
     if (!configuration_.scheme().is_incremental()) {
-      const double weight = configuration_.scheme().is_static ? 1 : 1 / effort_weight();
+      const double weight = configuration_.scheme().is_static ? 1 : 1 / configuration_.effort_weight();
       const double mean = rotor.acceleration_offset + rotor.acceleration_slope * action.increment;
       own.acceleration = (mean - (1 - weight) * own.acceleration) / weight;
     }
     own.rest = action.is_stopped ? 1 : 0;
-    const int coordinate = actuator.coordinate;
-    if (model.coordinates[coordinate].motion < 0) state.efforts[coordinate] = action.motor_at_end;
   }
 }
 

@@ -3,7 +3,8 @@
 
 #include <vector>
 
-#include "integrators/hht_interpolation.h"
+#include "integrators/balance.h"
+#include "integrators/joint_efforts.h"
 #include "integrators/step_configuration.h"
 #include "integrators/step_events.h"
 #include "integrators/step_histories.h"
@@ -16,10 +17,9 @@ namespace flexarm {
 /// gears are solved for in every evaluation, and no unknowns of the step.
 class Actuators {
  public:
-  /// `interpolation`: null unless forces are interpolated in time.
   /// @throws ModelError if the scheme scales velocities, of which a rotor's would be left out, or steps backwards,
   /// against friction that sticks or samples.
-  Actuators(StepConfiguration& configuration, const StepHistories& histories, const HhtInterpolation* interpolation);
+  Actuators(StepConfiguration& configuration, const StepHistories& histories, JointEfforts& efforts);
 
   /// Of an equilibrium: from now on rotors behind elastic gears stay where the state has them.
   void hold_rotors() { holds_rotors_ = true; }
@@ -28,9 +28,7 @@ class Actuators {
   void evaluate(Balance& balance);
   /// Adds what couples a joint's coordinate to its master by a rotor's gyroscopic effect; after evaluate().
   void add_gyroscope(int joint, FoldMaps& maps) const;
-  /// Adds the work of motors over the step to `work` [J].
-  void add_work(double& work) const;
-  /// Writes rotors and the efforts of motors.
+  /// Writes rotors and servos.
   void accept(State& state) const;
   /// Notes when gears come out of their play or into it, when dry friction stops rotors or turns its direction, and
   /// when motors come to their limits or leave them.
@@ -63,8 +61,6 @@ class Actuators {
     double load_by_carried = 0;               // derivative of the rotor's inertial effort with respect to that
     Vector3 carried_by_spin, moment_by_link;  // its derivative, and that of the carrier's moment
   };
-  /// By which efforts on coordinates are multiplied in their rows.
-  double effort_weight() const { return interpolation_ ? interpolation_->effort_weight() : 1.0; }
   RotorStep rotor_step(const Actuator& actuator, const ActuatorState& state) const;
   /// How far a gyroscope's carrier turns about the axis.
   void turn_carrier(const Gyroscope& gyroscope, Part& part) const;
@@ -86,7 +82,7 @@ class Actuators {
 
   StepConfiguration& configuration_;
   const StepHistories& histories_;
-  const HhtInterpolation* interpolation_;
+  JointEfforts& efforts_;
   std::vector<Part> parts_;        // per actuator
   std::vector<int> gyroscope_of_;  // per joint: the actuator that has one, or -1
   bool holds_rotors_ = false;

@@ -32,9 +32,8 @@ double scale_of(const Model& model, const Coordinate& coordinate) {
 
 }  // namespace
 
-DryFrictionStep::DryFrictionStep(StepConfiguration& configuration, const HhtInterpolation* interpolation)
+DryFrictionStep::DryFrictionStep(StepConfiguration& configuration)
     : configuration_(configuration),
-      interpolation_(interpolation),
       model_(configuration.model()),
       carrier_of_(model_.coordinates.size(), -1),
       capacities_(model_.coordinates.size(), 0.0),
@@ -116,7 +115,7 @@ void DryFrictionStep::add_constant(int index, double increment, double& row, Bal
   if (carrier_of_[index] < 0) return;
   const Coordinate& coordinate = model_.coordinates[index];
   const double effort = direction(index) * coordinate.friction;
-  row += effort_weight() * effort;
+  row += configuration_.effort_weight() * effort;
   balance.dissipated += effort * increment;
   capacities_[index] += coordinate.friction;
 }
@@ -128,7 +127,7 @@ void DryFrictionStep::turn_row(int j, const Vector6& g, Eigen::Ref<Vector6> left
   const Coordinate& coordinate = model_.coordinates[index];
   const NormalForce normal = normal_force(contact_of(model_.joints[j]), left, g.head<3>());
   const double capacity = coordinate.friction_coefficient * normal.magnitude;  // of the row
-  capacities_[index] = capacity / effort_weight();
+  capacities_[index] = capacity / configuration_.effort_weight();
   const CoordinateStep change = configuration_.coordinate_step(index, configuration_.increment_of(coordinate));
   const SmoothDirection direction_now =
       coordinate.sticks ? SmoothDirection{direction(index), 0} : smooth_direction(change);
@@ -180,7 +179,7 @@ void DryFrictionStep::hold(Balance& balance) {
     if (coordinate.motion >= 0) continue;
     double& row = balance.residual.at(dof.variable_of_joint(coordinate.joint))[coordinate.component];
     carrier.increment = configuration_.increment_of(coordinate);
-    carrier.reaction = -row / effort_weight();
+    carrier.reaction = -row / configuration_.effort_weight();
     carrier.capacity = 0;
     for (const int index : carrier.members)
       carrier.capacity += std::abs(travel_per_carrier(index)) * capacities_[index];

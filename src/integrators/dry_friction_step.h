@@ -14,7 +14,6 @@
 
 #include "integrators/balance.h"
 #include "integrators/friction_carrier.h"
-#include "integrators/hht_interpolation.h"
 #include "integrators/step_configuration.h"
 #include "integrators/step_events.h"
 
@@ -22,9 +21,8 @@ namespace flexarm {
 
 class DryFrictionStep {
  public:
-  /// `interpolation`: null unless forces are interpolated in time.
   /// @throws ModelError if the scheme steps backwards, in which friction that sticks would drive.
-  DryFrictionStep(StepConfiguration& configuration, const HhtInterpolation* interpolation);
+  explicit DryFrictionStep(StepConfiguration& configuration);
 
   void begin();
   /// The same coordinates stick, or slip the same way, as in another system of the same joints.
@@ -54,9 +52,6 @@ class DryFrictionStep {
   /// As they are after the last evaluation.
   const std::vector<FrictionCarrier>& carriers() const { return carriers_; }
 
-  /// By which efforts on coordinates are multiplied in their rows.
-  double effort_weight() const { return interpolation_ ? interpolation_->effort_weight() : 1.0; }
-
  private:
   void find_carriers();
   double rate_at_begin(const FrictionCarrier& carrier) const;
@@ -71,7 +66,6 @@ class DryFrictionStep {
   void hold_tangent_row(const Coordinate& coordinate, TangentBackend& tangent) const;
 
   StepConfiguration& configuration_;
-  const HhtInterpolation* interpolation_;
   const Model& model_;
   std::vector<FrictionCarrier> carriers_;
   std::vector<int> carrier_of_;                      // per coordinate: index into carriers_, or -1

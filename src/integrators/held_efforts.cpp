@@ -25,7 +25,7 @@ Vector6 body_momentum_rate(const HeldJoint& held, const NodeState& node) {
 
 }  // namespace
 
-void HeldEfforts::add_inertia(const HeldJoint& held, int node, double weight, Vector6& wrench) const {
+void HeldEfforts::add_inertia(const HeldJoint& held, int node, Vector6& wrench) const {
   const StepConfiguration& step = configuration_;
   const Scheme& scheme = step.scheme();
   const NodeState& begin = step.state().nodes[node];
@@ -36,20 +36,20 @@ void HeldEfforts::add_inertia(const HeldJoint& held, int node, double weight, Ve
     return;
   }
   // Hilber, Hughes and Taylor's accelerations belong to instants before the ends: from there to the end.
-  const double later = 1 / weight - 1;
+  const double later = 1 / step.effort_weight() - 1;
   end.acceleration += later * (end.acceleration - begin.acceleration);
   end.angular_acceleration += later * (end.angular_acceleration - begin.angular_acceleration);
   wrench += body_momentum_rate(held, end);
 }
 
-double HeldEfforts::effort(const HeldJoint& held, const ReducedResidual& residual, double weight) {
-  assert(held.coordinate >= 0 && weight != 0);
+double HeldEfforts::effort(const HeldJoint& held, const ReducedResidual& residual) {
+  assert(held.coordinate >= 0);
   const StepConfiguration& step = configuration_;
   const Model& model = step.model();
   const int j = model.coordinates[held.coordinate].joint, node = model.joints[j].master;
   Vector6 wrench = Vector6::Zero();  // about the centre of mass
   wrench.head<3>() = -histories_.factor * held.mass * model.gravity;
-  if (node >= 0) add_inertia(held, node, weight, wrench);
+  if (node >= 0) add_inertia(held, node, wrench);
   // Arms from the node, as joints fold: their mean over the step, or those at its end.
   const double end = step.scheme().arm_weight();
   const auto arm_in = [&](const std::vector<NodePose>& nodes) {

@@ -20,12 +20,11 @@ class HeldEfforts {
 
   /// Over the step, or at its end in the Newmark family [N or N m].
   /// @param residual  as the step left it
-  /// @param weight    of efforts in the balance
-  double effort(const HeldJoint& held, const ReducedResidual& residual, double weight);
+  double effort(const HeldJoint& held, const ReducedResidual& residual);
 
  private:
   /// Adds {force, moment about the master} of what changes the momenta of the links.
-  void add_inertia(const HeldJoint& held, int node, double weight, Vector6& wrench) const;
+  void add_inertia(const HeldJoint& held, int node, Vector6& wrench) const;
 
   const StepConfiguration& configuration_;
   const StepHistories& histories_;

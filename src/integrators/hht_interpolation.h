@@ -61,8 +61,6 @@ class HhtInterpolation {
   void add_forces(Balance& balance) const;
   /// Extrapolates what joints transmit; the balance of nodes is complete, and nothing is folded yet.
   void shift_reactions(Balance& balance);
-  /// By which efforts on coordinates are to be multiplied, since their rows are reactions.
-  double effort_weight() const { return has_reactions() ? 1 / (1 - configuration_.scheme().alpha) : 1; }
   void accept(State& state) const;
 
  private:

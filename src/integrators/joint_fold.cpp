@@ -7,23 +7,13 @@
 #include "math/cayley.h"
 
 namespace flexarm {
-namespace {
-
-/// Efforts are those of the coordinate's Actuator.
-bool has_motor(const Coordinate& coordinate) {
-  return coordinate.actuator >= 0 && coordinate.motion < 0;
-}
-
-}  // namespace
-
-JointFold::JointFold(const StepConfiguration& configuration, const StepHistories& histories, DryFrictionStep& friction,
+JointFold::JointFold(const StepConfiguration& configuration, const JointEfforts& efforts, DryFrictionStep& friction,
                      const Actuators& actuators)
     : configuration_(configuration),
-      histories_(histories),
+      efforts_(efforts),
       friction_(friction),
       actuators_(actuators),
       is_resisted_(configuration.model().joints.size_with_held(), false),
-      applied_(configuration.model().coordinates.size(), 0.0),
       slide_maps_(most_active_nodes(configuration.model().slide_lines)),
       mimic_maps_(configuration.degrees_of_freedom().mimics.size()) {
   for (const Coordinate& coordinate : configuration.model().coordinates) {
@@ -41,8 +31,7 @@ void JointFold::add_efforts(int j, Balance& balance) {
     const std::size_t index = model.first_coordinate[j] + k;
     const Coordinate& coordinate = model.coordinates[index];
     if (has_motor(coordinate)) continue;
-    applied_[index] = histories_.effort(model, index, configuration_.state().commands[index]).acting;
-    residual[k] -= friction_.effort_weight() * applied_[index];
+    residual[k] -= configuration_.effort_weight() * efforts_.of(index).acting;
   }
   if (is_resisted_[j]) add_resistance(j, balance);
 }
@@ -54,7 +43,7 @@ void JointFold::add_resistance(int j, Balance& balance) {
   double* residual = balance.residual.at(variable);
   const ReleasedVector change =
       configuration_.scheme().is_static ? ReleasedVector(ReleasedVector::Zero(count)) : configuration_.increment_of(j);
-  const double weight = friction_.effort_weight();
+  const double weight = configuration_.effort_weight();
   for (int k = 0; k < count; ++k) {
     const std::size_t index = model.first_coordinate[j] + k;
     const Coordinate& coordinate = model.coordinates[index];
@@ -111,53 +100,8 @@ void JointFold::evaluate(Balance& balance) {
   if (balance.tangent) balance.tangent->fold_mimics(mimic_maps_);
 }
 
-void JointFold::find_drives(const ReducedResidual& residual, HeldEfforts& held, StepMeans& drives) {
-  const Model& model = configuration_.model();
-  for (const HeldJoint& joint : model.held)
-    applied_[joint.coordinate] = held.effort(joint, residual, friction_.effort_weight());
-  const State& state = configuration_.state();
-  for (std::size_t index = 0; index < model.coordinates.size(); ++index) {
-    const Coordinate& coordinate = model.coordinates[index];
-    if (coordinate.motion < 0) continue;
-    // A prescribed coordinate's row is the effort that drives it; that of a held one is empty.
-    const int variable = configuration_.degrees_of_freedom().variable_of_joint(coordinate.joint);
-    applied_[index] += residual.at(variable)[coordinate.component] / friction_.effort_weight();
-    const double mean =
-        configuration_.forces_are_means() ? applied_[index] : 0.5 * (state.efforts[index] + applied_[index]);
-    drives.impulse[index] += configuration_.step() * mean;
-  }
-}
-
-void JointFold::add_work(double& work) const {
-  const Model& model = configuration_.model();
-  for (std::size_t j = 0; j < model.joints.size(); ++j) {
-    const ReleasedVector change = configuration_.increment_of(static_cast<int>(j));
-    for (int k = 0; k < change.size(); ++k) {
-      const std::size_t index = model.first_coordinate[j] + k;
-      if (has_motor(model.coordinates[index])) continue;
-      const double effort = configuration_.scheme().is_incremental() ? applied_[index] : effort_of_step(index);
-      work += effort * change[k];
-    }
-  }
-}
-
-double JointFold::effort_of_step(std::size_t index) const {
-  const State& state = configuration_.state();
-  const Coordinate& coordinate = configuration_.model().coordinates[index];
-  if (coordinate.effort >= 0 && coordinate.motion < 0 && std::isnan(state.commands[index]))
-    return histories_.effort(configuration_.model(), index, state.commands[index]).mean;
-  return 0.5 * (applied_[index] + state.efforts[index]);
-}
-
 void JointFold::accept(State& state) const {
   std::copy(configuration_.released().begin(), configuration_.released().end(), state.released.begin());
-  std::copy(applied_.begin(), applied_.end(), state.efforts.begin());
-  if (configuration_.scheme().is_incremental()) return;
-  // What acts in the balance makes up for jumps within the step; the effort at its end is another one.
-  const std::vector<Coordinate>& coordinates = configuration_.model().coordinates;
-  for (std::size_t i = 0; i < coordinates.size(); ++i)
-    if (coordinates[i].effort >= 0 && coordinates[i].motion < 0 && !has_motor(coordinates[i]))
-      state.efforts[i] = histories_.effort(configuration_.model(), i, state.commands[i]).at_end;
 }
 
 }  // namespace flexarm

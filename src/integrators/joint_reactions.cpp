@@ -19,7 +19,7 @@ Vector6 JointReactions::transmitted(const ReducedResidual& residual, const React
     node = model.joints[place.joint].slave;
     wrench = residual.node(node);
     end = configuration_.scheme().arm_weight();
-    weight = friction_.effort_weight();
+    weight = configuration_.effort_weight();
   }
   const auto arm_in = [&](const std::vector<NodePose>& nodes) {
     const NodePose link = place.link.node < 0 ? NodePose() : nodes[place.link.node];

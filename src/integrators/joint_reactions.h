@@ -1,7 +1,6 @@
 #pragma once
 /// What joints transmit over a step, for output: of those that the model names.
 
-#include "integrators/dry_friction_step.h"
 #include "integrators/loop_multipliers.h"
 #include "integrators/step_configuration.h"
 #include "solver/reduced_residual.h"
@@ -14,8 +13,8 @@ namespace flexarm {
 /// other link is the opposite.
 class JointReactions {
  public:
-  JointReactions(const StepConfiguration& configuration, const DryFrictionStep& friction, const LoopMultipliers& loops)
-      : configuration_(configuration), friction_(friction), loops_(loops) {}
+  JointReactions(const StepConfiguration& configuration, const LoopMultipliers& loops)
+      : configuration_(configuration), loops_(loops) {}
 
   /// Adds to State::transmitted, before the rest of the state is written.
   void accept(const ReducedResidual& residual, State& state) const;
@@ -27,7 +26,6 @@ class JointReactions {
 
  private:
   const StepConfiguration& configuration_;
-  const DryFrictionStep& friction_;
   const LoopMultipliers& loops_;
 };
 

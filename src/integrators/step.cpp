@@ -55,6 +55,7 @@ void StepSystem::start(const State& state, double step) {
   force_elements_.begin(*tangent_);
   loops_.begin();
   friction_.begin();
+  efforts_.begin();
   actuators_.begin();
   reversals_.begin();
 }
@@ -178,15 +179,14 @@ void StepSystem::update(const Eigen::VectorXd& increment) {
 
 void StepSystem::accept(State& state) {
   if (scheme().is_static) return accept_rest(state);
-  joints_.find_drives(rows_, held_efforts_, state.drives);
+  efforts_.find_drives(rows_, held_efforts_, state.drives);
   reactions_.accept(rows_, state);
   friction_.accept(state);
   force_elements_.accept(state);
   double work = 0;
   forces_.add_work(work);
   force_elements_.add_work(work);
-  joints_.add_work(work);
-  actuators_.add_work(work);
+  efforts_.add_work(work);
   if (prestrains_.do_work()) work += beams().work_of_prestrains();
   state.work += work;
   state.dissipated += dissipated_;
@@ -196,6 +196,7 @@ void StepSystem::accept(State& state) {
   loops_.remember(state.history);
   bodies_.accept(state);
   joints_.accept(state);
+  efforts_.accept(state);
   actuators_.accept(state);
   beams().accept(state);
   if (interpolation_) interpolation_->accept(state);

@@ -250,6 +250,11 @@ MimicMap StepConfiguration::mimic_map(int coordinate) const {
   return {law.secant(from, to), right, law.secant_derivative(from, to)};
 }
 
+double StepConfiguration::effort_weight() const {
+  const bool shifts_reactions = scheme_.hht != HhtForm::None && !scheme_.is_static && !state_->reactions.empty();
+  return shifts_reactions ? 1 / (1 - scheme_.alpha) : 1;
+}
+
 ReleasedVector StepConfiguration::increment_of(int joint) const {
   return released_increment(model_.joints[joint], state_->released[joint], released_[joint]);
 }

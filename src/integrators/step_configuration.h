@@ -85,6 +85,9 @@ class StepConfiguration {
   /// True where what acts in the balance is its mean over the step: in the Newmark family it is that at the end, of
   /// which there is none at the start of a simulation.
   bool forces_are_means() const { return scheme_.is_incremental() || state_->history.count == 0; }
+  /// By which efforts on coordinates are multiplied in their rows. These are reactions, which schemes that interpolate
+  /// forces in time extrapolate to the end of the step.
+  double effort_weight() const;
 
   // ---- joints over the step
   bool has_incremental_joints() const { return scheme_.is_incremental(); }

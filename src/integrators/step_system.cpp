@@ -19,10 +19,11 @@ StepSystem::StepSystem(const Model& model, const Scheme& scheme, BackendChoice b
       bodies_(configuration_),
       drag_(configuration_),
       loops_(configuration_),
-      friction_(configuration_, interpolation_.get()),
-      actuators_(configuration_, histories_, interpolation_.get()),
-      joints_(configuration_, histories_, friction_, actuators_),
-      reactions_(configuration_, friction_, loops_),
+      friction_(configuration_),
+      efforts_(configuration_, histories_),
+      actuators_(configuration_, histories_, efforts_),
+      joints_(configuration_, efforts_, friction_, actuators_),
+      reactions_(configuration_, loops_),
       held_efforts_(configuration_, histories_, forces_, reactions_),
       reversals_(configuration_),
       contacts_(configuration_),
@@ -67,6 +68,7 @@ void StepSystem::begin_equilibrium(const State& state, double load_factor, doubl
   beams_->begin();
   force_elements_.begin(*tangent_);
   loops_.begin();
+  efforts_.begin();
   actuators_.begin();
   configuration_.set_prescribed(0.0);
   configuration_.set_slaves();
@@ -98,13 +100,14 @@ void StepSystem::accept_rest(State& state) {
     state.nodes[i].orientation = configuration_.end()[i].orientation;
   }
   joints_.accept(state);
+  efforts_.accept(state);
   actuators_.accept(state);
   force_elements_.accept(state);
   beams_->accept(state);
   std::fill(state.mass_points.begin(), state.mass_points.end(), MassPointState());
   std::fill(state.strain_rates.begin(), state.strain_rates.end(), Vector6::Zero());
   std::fill(state.strain_memory.begin(), state.strain_memory.end(), StrainMemory());
-  state.drives.restart(joints_.efforts());
+  state.drives.restart(state.efforts);
   reactions_.accept_rest(rows_, state);
   state.reactions.clear();
   std::fill(state.momentum_rates.begin(), state.momentum_rates.end(), Vector3::Zero());

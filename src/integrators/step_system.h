@@ -21,6 +21,7 @@
 #include "integrators/drag.h"
 #include "integrators/dry_friction_step.h"
 #include "integrators/force_elements.h"
+#include "integrators/joint_efforts.h"
 #include "integrators/joint_fold.h"
 #include "integrators/joint_reactions.h"
 #include "integrators/loop_multipliers.h"
@@ -139,6 +140,7 @@ class StepSystem {
   Drag drag_;
   LoopMultipliers loops_;
   DryFrictionStep friction_;
+  JointEfforts efforts_;
   Actuators actuators_;
   JointFold joints_;
   JointReactions reactions_;
