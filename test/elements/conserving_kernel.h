@@ -106,13 +106,13 @@ struct KernelData {
   }
 };
 
-/// One element by the kernel.
-template <bool WithMultiplier, int Nodes>
-void conserving_beam(const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes, TimeRule rule,
-                     const ElementFunctions<Nodes>& functions, const PointKinematics* begin, const StrainMemory* memory,
-                     double step, bool with_tangent, PointKinematics* end, StrainMemory* end_memory,
-                     ElementSystem<Nodes>& system) {
-  rule.correction = WithMultiplier ? EnergyCorrection::Multiplier : EnergyCorrection::None;
+/// One element by the kernel, with the multiplier of the energy or without.
+template <int Nodes>
+void conserving_beam(bool has_multiplier, const BeamElement<Nodes>& element, const ElementNodes<Nodes>& nodes,
+                     TimeRule rule, const ElementFunctions<Nodes>& functions, const PointKinematics* begin,
+                     const StrainMemory* memory, double step, bool with_tangent, PointKinematics* end,
+                     StrainMemory* end_memory, ElementSystem<Nodes>& system) {
+  rule.correction = has_multiplier ? EnergyCorrection::Multiplier : EnergyCorrection::None;
   KernelData<Nodes> data({element, nodes, functions, begin, memory});
   data.evaluate(rule, step, with_tangent);
   data.get(0, with_tangent, system);

@@ -56,11 +56,10 @@ struct Dissipative {
       : step(step), rule(rule), memory(memory) {
     functions = functions_at<Nodes>(step.element, step.begin_orientation);
   }
-  template <bool WithMultiplier>
-  ElementSystem<Nodes> evaluate(const ElementNodes<Nodes>& nodes, bool with_tangent) {
+  ElementSystem<Nodes> evaluate(bool has_multiplier, const ElementNodes<Nodes>& nodes, bool with_tangent) {
     ElementSystem<Nodes> system;
-    conserving_beam<WithMultiplier, Nodes>(step.element, nodes, rule, functions, step.begin_points.data(),
-                                           memory.data(), kStep, with_tangent, end.data(), end_memory.data(), system);
+    conserving_beam<Nodes>(has_multiplier, step.element, nodes, rule, functions, step.begin_points.data(),
+                           memory.data(), kStep, with_tangent, end.data(), end_memory.data(), system);
     return system;
   }
 };
@@ -75,12 +74,10 @@ TYPED_TEST(DissipativeBeam, Tangent) {
       step.element.stiffness_damping = damping;
       Dissipative<N> dissipative(step, dissipative_rule(order, 0.5, 2 * kStep), random_memory<N>(random, order, size));
       expect_consistent_tangent<N>(
-          step,
-          [&](const ElementNodes<N>& nodes, bool with) { return dissipative.template evaluate<true>(nodes, with); },
+          step, [&](const ElementNodes<N>& nodes, bool with) { return dissipative.evaluate(true, nodes, with); },
           2 * size);
-      expect_consistent_tangent<N>(step, [&](const ElementNodes<N>& nodes, bool with) {
-        return dissipative.template evaluate<false>(nodes, with);
-      });
+      expect_consistent_tangent<N>(
+          step, [&](const ElementNodes<N>& nodes, bool with) { return dissipative.evaluate(false, nodes, with); });
     }
 }
 
@@ -106,7 +103,7 @@ void expect_exact_budget(RandomSource& random, const TimeRule& rule, int order, 
   step.element.mass.setZero();
   step.element.stiffness_damping = damping;
   Dissipative<Nodes> dissipative(step, rule, random_memory<Nodes>(random, order, size));
-  const ElementSystem<Nodes> system = dissipative.template evaluate<true>(step.nodes, false);
+  const ElementSystem<Nodes> system = dissipative.evaluate(true, step.nodes, false);
   const double before = step.strain_energy(step.begin_points) + stored(step, rule, dissipative.memory);
   const double after = step.strain_energy(dissipative.end) + stored(step, rule, dissipative.end_memory);
   EXPECT_GE(system.dissipated, 0);
@@ -144,7 +141,7 @@ TYPED_TEST(DissipativeBeam, MomentaBalance) {
     RandomStep<N> step(random, 0.5);
     step.element.mass.setZero();
     Dissipative<N> dissipative(step, dissipative_rule(order, 0.5), random_memory<N>(random, order, 0.5));
-    const ElementSystem<N> system = dissipative.template evaluate<true>(step.nodes, false);
+    const ElementSystem<N> system = dissipative.evaluate(true, step.nodes, false);
     EXPECT_LE(resultant<N>(step.nodes, system.residual, 0.5).norm(), kRoundOff * largest(system.residual));
   }
 }
@@ -155,7 +152,7 @@ TYPED_TEST(DissipativeBeam, MemoryFollowsItsDefinition) {
   RandomSource random(4);
   RandomStep<N> step(random, 0.4);
   Dissipative<N> dissipative(step, dissipative_rule(2, 0.5), random_memory<N>(random, 2, 0.4));
-  dissipative.template evaluate<true>(step.nodes, false);
+  dissipative.evaluate(true, step.nodes, false);
   for (int k = 0; k < N - 1; ++k) {
     const StrainMemory &begin = dissipative.memory[k], &end = dissipative.end_memory[k];
     const Vector6 s = 0.5 * kStep * (begin.rate + end.rate);
@@ -174,10 +171,10 @@ TYPED_TEST(DissipativeBeam, DampingFollowsItsDefinition) {
   for (const double viscosity : {0.0, 0.3 * relaxation, 4 * relaxation}) {
     RandomStep<N> step(random, 0.4);
     Dissipative<N> undamped(step, dissipative_rule(0, 1, relaxation), memory);
-    const auto elastic = undamped.template evaluate<true>(step.nodes, false).residual;
+    const auto elastic = undamped.evaluate(true, step.nodes, false).residual;
     step.element.stiffness_damping = viscosity;
     Dissipative<N> damped(step, dissipative_rule(0, 1, relaxation), memory);
-    const auto whole = damped.template evaluate<true>(step.nodes, false).residual;
+    const auto whole = damped.evaluate(true, step.nodes, false).residual;
     if (viscosity == 0) {
       EXPECT_EQ(whole, elastic);
       continue;
