@@ -40,8 +40,7 @@ LinearisedMotion::LinearisedMotion(const Model& model, const State& state, doubl
   if (!system_.evaluate(true)) throw std::runtime_error("the stiffness is not finite");
   find_multipliers();
   set_joint_maps();
-  for (SparseTangent* tangent : {&damping_, &mass_})
-    couple_force_elements(model, system_.configuration().begin(), *tangent);
+  for (SparseTangent* tangent : {&damping_, &mass_}) couple_force_elements(model, state, *tangent);
   assemble_damping();
   assemble_mass();
   matrices_ = with_rotors(model, dof_, state, system_.actuators(), stiffness_, damping_, mass_);

@@ -116,7 +116,7 @@ void LineElement::evaluate(const ForceStep& step, const int*, ForceAction& actio
   action.tangent = tangent.topLeftCorner(action.tangent.rows(), action.tangent.cols());
 }
 
-double LineElement::energy(const State& state) const {
+double LineElement::energy(const State& state, const double*) const {
   return energy(ends(state).length());
 }
 

@@ -26,7 +26,7 @@ class LineElement : public ForceElement {
   LineElement(std::string name, const NodePoint& from, const NodePoint& to);
 
   void evaluate(const ForceStep& step, const int* nodes, ForceAction& action) const override;
-  double energy(const State& state) const final;
+  double energy(const State& state, const double* memory) const final;
   ForceMeasures measures(const State& state, const int* nodes) const final;
   DamperTensions dampers(const State& state, const Eigen::VectorXd& rates) const final;
   /// length [m], and the tension [N] with published velocities

@@ -64,7 +64,11 @@ Energies energies(const Model& model, const Scheme& scheme, const State& state) 
                    0.5 * node.angular_velocity.dot(lumped_rotary(inertia, scheme) * node.angular_velocity);
     out.potential -= inertia.total_mass * model.gravity.dot(node.position + (state.origin - model.initial_origin));
   }
-  for (const auto& element : model.force_elements) out.strain += element->energy(state);
+  const double* memory = state.force_memory.data();
+  for (const auto& element : model.force_elements) {
+    out.strain += element->energy(state, memory);
+    memory += element->memory_size();
+  }
   for (const Coordinate& coordinate : model.coordinates)
     if (coordinate.limit)
       out.strain += stop_energy(*coordinate.limit, stop_penalty(coordinate, scheme.contact_time),

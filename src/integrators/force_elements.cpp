@@ -8,12 +8,10 @@
 
 namespace flexarm {
 
-void couple_force_elements(const Model& model, const std::vector<NodePose>& poses, TangentBackend& tangent) {
-  std::vector<int> nodes;
-  for (std::size_t k = 0; k < model.force_elements.size(); ++k) {
-    find_nodes(*model.force_elements[k], poses, nodes);
-    tangent.couple(static_cast<int>(k), nodes.data(), static_cast<int>(nodes.size()));
-  }
+void couple_force_elements(const Model& model, const State& state, TangentBackend& tangent) {
+  const std::vector<std::vector<int>> nodes = nodes_of(model.force_elements, state);
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    tangent.couple(static_cast<int>(k), nodes[k].data(), static_cast<int>(nodes[k].size()));
 }
 
 ForceElements::ForceElements(const StepConfiguration& configuration) : configuration_(configuration) {
@@ -37,18 +35,17 @@ ForceElements::ForceElements(const StepConfiguration& configuration) : configura
 
 void ForceElements::begin(TangentBackend& tangent) {
   if (nodes_.empty()) return;
-  const ForceElementList& elements = configuration_.model().force_elements;
-  for (std::size_t k = 0; k < elements.size(); ++k) {
-    find_nodes(*elements[k], configuration_.begin(), nodes_[k]);
-    tangent.couple(static_cast<int>(k), nodes_[k].data(), static_cast<int>(nodes_[k].size()));
-  }
-  if (configuration_.scheme().is_incremental()) return;
   const std::vector<NodeState>& states = configuration_.state().nodes;
   std::transform(states.begin(), states.end(), velocities_.begin(), spatial_velocity);
+  const ForceElementList& elements = configuration_.model().force_elements;
+  for (std::size_t k = 0; k < elements.size(); ++k) {
+    find_nodes(*elements[k], start(), nodes_[k]);
+    tangent.couple(static_cast<int>(k), nodes_[k].data(), static_cast<int>(nodes_[k].size()));
+  }
 }
 
-void ForceElements::evaluate(Balance& balance) {
-  if (nodes_.empty()) return;
+/// With the memory of the first element.
+ForceStep ForceElements::step() {
   const Scheme& scheme = configuration_.scheme();
   ForceStep step{configuration_.begin(), configuration_.end(), velocities_};
   step.duration = configuration_.step();
@@ -56,6 +53,12 @@ void ForceElements::evaluate(Balance& balance) {
   if (step.at_end) step.gamma = scheme.gamma;
   step.memory = configuration_.state().force_memory.data();
   step.new_memory = memory_.data();
+  return step;
+}
+
+void ForceElements::evaluate(Balance& balance) {
+  if (nodes_.empty()) return;
+  ForceStep step = this->step();
   work_ = 0;
   const ForceElementList& elements = configuration_.model().force_elements;
   for (std::size_t k = 0; k < elements.size(); ++k) {
@@ -71,6 +74,23 @@ void ForceElements::evaluate(Balance& balance) {
     step.memory += elements[k]->memory_size();
     step.new_memory += elements[k]->memory_size();
   }
+}
+
+bool ForceElements::need_halves(double refinement) {
+  if (nodes_.empty()) return false;
+  ForceStep step = this->step();
+  step.refinement = refinement;
+  const ForceElementList& elements = configuration_.model().force_elements;
+  for (std::size_t k = 0; k < elements.size(); ++k) {
+    if (elements[k]->needs_halves(step, nodes_[k].data(), static_cast<int>(nodes_[k].size()))) return true;
+    step.memory += elements[k]->memory_size();
+  }
+  return false;
+}
+
+bool ForceElements::may_hit() const {
+  const ForceElementList& elements = configuration_.model().force_elements;
+  return std::any_of(elements.begin(), elements.end(), [&](const auto& element) { return element->may_hit(start()); });
 }
 
 void ForceElements::accept(State& state) const {

@@ -8,8 +8,8 @@
 
 namespace flexarm {
 
-/// Tells a tangent of a model which nodes its force elements couple at these poses.
-void couple_force_elements(const Model& model, const std::vector<NodePose>& poses, TangentBackend& tangent);
+/// Tells a tangent of a model which nodes its force elements couple in small motions about a state.
+void couple_force_elements(const Model& model, const State& state, TangentBackend& tangent);
 
 /// The model's force elements as a part of the step.
 class ForceElements {
@@ -20,14 +20,21 @@ class ForceElements {
   /// `tangent`: of the step's space.
   void begin(TangentBackend& tangent);
   void evaluate(Balance& balance);
+  /// See ForceElement::needs_halves(), of the step as it is solved.
+  bool need_halves(double refinement);
+  /// See ForceElement::may_hit().
+  bool may_hit() const;
   /// Of the last evaluation.
   void add_work(double& work) const { work += work_; }
   void accept(State& state) const;
 
  private:
+  ForceStart start() const { return {configuration_.begin(), velocities_, configuration_.step()}; }
+  ForceStep step();
+
   const StepConfiguration& configuration_;
   std::vector<std::vector<int>> nodes_;  // per element
-  std::vector<Vector6> velocities_;      // {v, w} at the beginning, where forces are those at the end
+  std::vector<Vector6> velocities_;      // per node {v, w} at the beginning
   std::vector<double> residual_, tangent_, memory_;
   double work_ = 0;
 };

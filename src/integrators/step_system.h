@@ -100,8 +100,10 @@ class StepSystem {
   const TangentBackend& tangent() const { return is_planar() ? planar_->tangent : *tangent_; }
   /// See LoopMultipliers.
   LoopMultipliers::Opening largest_opening() const { return loops_.largest_opening(); }
-  /// See StopContacts.
-  bool hits_too_fast(double refinement) { return contacts_.hits_too_fast(refinement); }
+  /// See StopContacts and ForceElement::needs_halves().
+  bool hits_too_fast(double refinement) {
+    return contacts_.hits_too_fast(refinement) || force_elements_.need_halves(refinement);
+  }
   /// See SmoothReversals; of joints, rotors and losses of gears.
   bool turn_too_fast(double refinement) {
     return reversals_.turn_too_fast(refinement) || actuators_.turn_too_fast(refinement);
@@ -112,7 +114,7 @@ class StepSystem {
   void note_events(FirstEvent& first);
   /// True where forces have a kink within the step of which no one knows when: friction lets a coordinate go.
   bool has_kink() const { return friction_.breaks_away(); }
-  bool may_hit_a_stop() { return contacts_.may_hit(); }
+  bool may_hit() { return contacts_.may_hit() || force_elements_.may_hit(); }
   /// Internal less external forces on all nodes in the configuration of `state`, before joints fold them; of a scheme
   /// made by statics_of().
   std::vector<Vector6> nodal_forces(const State& state);

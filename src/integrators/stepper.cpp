@@ -149,7 +149,7 @@ StepResult Stepper::advance_by_scheme(State& state, const Deadline& deadline) {
     if (!is_done && result.reason == StepResult::Reason::EventWithin) return result;
     if (!is_done) {
       state.good_steps = 0;
-      const bool may_halve = level < (system_.may_hit_a_stop() ? finest : settings_.max_halvings);
+      const bool may_halve = level < (system_.may_hit() ? finest : settings_.max_halvings);
       if (!may_halve || result.halvings >= settings_.events.refinement * kMostHalvings) return give_up(false, result);
       ++state.halving_level;
       ++result.halvings;

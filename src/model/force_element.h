@@ -19,14 +19,22 @@ struct NodePoint {
   Vector3 arm = Vector3::Zero();  ///< in the node's frame, or where it is in the world [m]
 };
 
+/// The beginning of a step, or what an equilibrium or small motions are about.
+struct ForceStart {
+  const std::vector<NodePose>& poses;      ///< of all nodes
+  const std::vector<Vector6>& velocities;  ///< {v, w} of all nodes, world axes
+  double duration = 0;                     ///< of the step [s]; 0: there is none
+};
+
 /// The step, or the equilibrium, that a force element is asked about.
 struct ForceStep {
   const std::vector<NodePose>& begin;  ///< of all nodes
   const std::vector<NodePose>& end;
-  const std::vector<Vector6>& velocities;  ///< {v, w} of all nodes at the beginning, world axes; of steps with `at_end`
+  const std::vector<Vector6>& velocities;  ///< {v, w} of all nodes at the beginning, world axes; not of equilibria
   double duration = 0;                     ///< [s]; 0: an equilibrium, in which nothing has a rate
   bool at_end = false;                     ///< forces are those at the end; else means whose work is exact
   double gamma = 1;                        ///< of rates, as CoordinateStep has it
+  double refinement = 1;                   ///< by how much finer than usual what happens fast is to be resolved
   const double* memory = nullptr;          ///< at the beginning, memory_size() numbers
   double* new_memory = nullptr;            ///< at the end, as many, to be written
 };
@@ -84,17 +92,29 @@ class ForceElement {
   const std::vector<int>& reach() const { return reach_; }
   /// Most nodes that it acts on in one step. Fewer than its reach where these change from step to step.
   virtual int most_nodes() const { return static_cast<int>(reach_.size()); }
-  /// Writes those on which it acts in a step that begins at these poses, each once; returns how many.
-  virtual int find_nodes(const std::vector<NodePose>& poses, int* nodes) const {
-    static_cast<void>(poses);
+  /// Writes those on which it may act in a step that begins so, each once; returns how many. Without a duration: all
+  /// of its reach.
+  virtual int find_nodes(const ForceStart& start, int* nodes) const {
+    static_cast<void>(start);
     std::copy(reach_.begin(), reach_.end(), nodes);
     return static_cast<int>(reach_.size());
   }
 
   // ---- what it does. `nodes`: as find_nodes() has written them
   virtual void evaluate(const ForceStep& step, const int* nodes, ForceAction& action) const = 0;
-  /// What it stores [J].
-  virtual double energy(const State& state) const = 0;
+  /// True where a step that has been solved is too long for what happens in it: it is done again by halves. Also of an
+  /// element that acts on no nodes in the step, but would have to.
+  virtual bool needs_halves(const ForceStep& step, const int* nodes, int count) const {
+    static_cast<void>(step), static_cast<void>(nodes), static_cast<void>(count);
+    return false;
+  }
+  /// True where a step that begins so may have to be halved more often than others, as one in which something is hit.
+  virtual bool may_hit(const ForceStart& start) const {
+    static_cast<void>(start);
+    return false;
+  }
+  /// What it stores [J]. `memory`: its own part of State::force_memory.
+  virtual double energy(const State& state, const double* memory) const = 0;
   virtual ForceMeasures measures(const State& state, const int* nodes) const = 0;
   /// Of rates of the measures, one for each.
   virtual DamperTensions dampers(const State& state, const Eigen::VectorXd& rates) const = 0;
@@ -119,9 +139,9 @@ class ForceElement {
 
 using ForceElementList = std::vector<std::shared_ptr<const ForceElement>>;
 
-/// On which it acts in a step that begins at these poses, in the memory of `nodes`; allocates the first time alone.
-void find_nodes(const ForceElement& element, const std::vector<NodePose>& poses, std::vector<int>& nodes);
-/// On which each acts in a step that begins at a state.
+/// On which it acts in a step that begins so, in the memory of `nodes`; allocates the first time alone.
+void find_nodes(const ForceElement& element, const ForceStart& start, std::vector<int>& nodes);
+/// On which each acts in small motions about a state.
 std::vector<std::vector<int>> nodes_of(const ForceElementList& elements, const State& state);
 
 }  // namespace flexarm

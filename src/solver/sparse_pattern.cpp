@@ -141,9 +141,10 @@ class SparseTangent::PatternBuilder {
 
 SparseTangent::SparseTangent(const Model& model, const DegreesOfFreedom& dof)
     : model_(model), dof_(dof), slide_maps_(most_active_nodes(model.slide_lines)) {
+  const std::vector<Vector6> at_rest(model.nodes.size(), Vector6::Zero());
   for (const auto& element : model.force_elements) {
     couplings_.emplace_back();
-    find_nodes(*element, model.nodes, couplings_.back().nodes);
+    find_nodes(*element, {model.nodes, at_rest}, couplings_.back().nodes);
   }
   build_pattern();
 }

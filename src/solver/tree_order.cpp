@@ -26,9 +26,10 @@ TreeOrder::TreeOrder(const Model& model, const DegreesOfFreedom& dof)
     const int piece = line.piece_at(model_.initial_released[j].displacement[0]);
     windows_[j] = line.support(piece, piece);
   }
+  const std::vector<Vector6> at_rest(model_.nodes.size(), Vector6::Zero());
   for (const auto& element : model_.force_elements) {
     couplings_.emplace_back();
-    find_nodes(*element, model_.nodes, couplings_.back().nodes);
+    find_nodes(*element, {model_.nodes, at_rest}, couplings_.back().nodes);
   }
   count_riders();
   complete_ = true;

@@ -105,7 +105,7 @@ TEST_P(PointSprings, OfMeansDoExactWork) {
         state.nodes.back().position = pose.position;
         state.nodes.back().orientation = pose.orientation;
       }
-      return static_cast<const ForceElement*>(spring)->energy(state);
+      return static_cast<const ForceElement*>(spring)->energy(state, nullptr);
     };
     EXPECT_GT(here.dissipated, 0);
     EXPECT_NEAR(work, energy(end) - energy(begin) + here.dissipated, 1e-13);

@@ -18,7 +18,8 @@ class NearestSpring : public ForceElement {
   const char* kind() const override { return "nearest_spring"; }
   std::string description() const override { return ""; }
   int most_nodes() const override { return 2; }
-  int find_nodes(const std::vector<NodePose>& poses, int* nodes) const override {
+  int find_nodes(const ForceStart& start, int* nodes) const override {
+    const std::vector<NodePose>& poses = start.poses;
     const auto distance = [&](int other) { return (poses[other].position - poses[reach()[0]].position).norm(); };
     nodes[0] = reach()[0];
     nodes[1] =
@@ -39,7 +40,7 @@ class NearestSpring : public ForceElement {
       for (int j = 0; j < 2; ++j)
         action.tangent.block<3, 3>(6 * i, 6 * j).diagonal().setConstant((i == j ? 1 : -1) * weight * kStiffness);
   }
-  double energy(const State&) const override { return 0; }  // is not asked for here
+  double energy(const State&, const double*) const override { return 0; }  // is not asked for here
   ForceMeasures measures(const State&, const int*) const override { return {}; }
   DamperTensions dampers(const State&, const Eigen::VectorXd&) const override { return {}; }
 
