@@ -1,0 +1,246 @@
+"""Checks that contact's formulas are exact: work, momenta, tangents. Formulas: reference_contact.py."""
+
+import numpy as np
+
+from reference_beam import I3, cayley, cayley_tangent, exp, hat, tangent_scaled
+from reference_contact import (arm_rows, box_distance, box_gradient, closest, curves_gradient, curves_rows, edges_gap,
+                               local, mean, plane_force, point_rows, point_tangent, pose_gradient, pose_rows,
+                               pose_tangent, relative_turn, rolling_slip, shell_force)
+
+class Body:
+    """A rigid body in steps of the energy-momentum rule; material spin."""
+
+    def __init__(self, mass, inertia, pose, velocity, spin):
+        self.mass, self.inertia, self.pose, self.velocity, self.spin = mass, np.diag(inertia), pose, velocity, spin
+
+    def end(self, pose, h):
+        """Velocity and material spin at the end of a step."""
+        turn = tangent_scaled(pose[1] @ self.pose[1].T)
+        return 2 * (pose[0] - self.pose[0]) / h - self.velocity, 2 * self.pose[1].T @ turn / h - self.spin
+
+    def balance(self, pose, h):
+        """Rates of the momenta, and their derivatives by {displacement, spin}."""
+        velocity, spin = self.end(pose, h)
+        turn = tangent_scaled(pose[1] @ self.pose[1].T)
+        rows = np.concatenate([self.mass * (velocity - self.velocity),
+                               pose[1] @ self.inertia @ spin - self.pose[1] @ self.inertia @ self.spin]) / h
+        slope = np.zeros((6, 6))
+        slope[:3, :3] = 2 * self.mass / h**2 * I3
+        slope[3:, 3:] = -hat(pose[1] @ self.inertia @ spin) / h + 2 / h**2 * (
+            pose[1] @ self.inertia @ self.pose[1].T @ np.linalg.inv(cayley_tangent(turn)))
+        return rows, slope
+
+    def totals(self):
+        """Energy, momentum, angular momentum."""
+        kinetic = 0.5 * self.mass * self.velocity @ self.velocity + 0.5 * self.spin @ self.inertia @ self.spin
+        momentum = self.mass * self.velocity
+        return kinetic, momentum, np.cross(self.pose[0], momentum) + self.pose[1] @ self.inertia @ self.spin
+
+
+class Contact:
+    """A point of one body against a function of another one, or of the world (None), and its memory."""
+
+    def __init__(self, first, second, arm, force, law):
+        self.first, self.second, self.arm, self.force = first, second, arm, force
+        self.law = dict(dict(omega=1.0, d=0.0, speed=0.0, memory=np.zeros(3), mu=0.0, kt=1.0), **law)
+
+    def poses(self, poses):
+        return poses[self.first], (np.zeros(3), I3) if self.second is None else poses[self.second]
+
+
+def step(bodies, contacts, h, gravity=np.zeros(3)):
+    """One step of all by Newton's method; returns what was lost, iterations, halved updates."""
+    count, halved = len(bodies), 0
+    begin = [b.pose for b in bodies]
+    end = [(b.pose[0] + h * b.velocity, cayley(h * b.pose[1] @ b.spin) @ b.pose[1]) for b in bodies]
+
+    def residual(end):
+        rows, slope, results = np.zeros(6 * count), np.zeros((6 * count, 6 * count)), []
+        for k, body in enumerate(bodies):
+            part = slice(6 * k, 6 * k + 6)
+            rows[part], slope[part, part] = body.balance(end[k], h)
+            rows[6 * k : 6 * k + 3] -= body.mass * gravity
+        for c in contacts:
+            pair0, pair1 = c.poses(begin), c.poses(end)
+            results.append(c.force(local(*pair0, c.arm), local(*pair1, c.arm), c.law))
+            if not (results[-1][0].any() or results[-1][1].any()):
+                continue
+            add, tangent = point_rows(pair0, pair1, c.arm, results[-1][0]), point_tangent(pair0, pair1, c.arm,
+                                                                                      *results[-1][:2])
+            parts = [c.first] + ([] if c.second is None else [c.second])
+            index = np.concatenate([np.arange(6 * k, 6 * k + 6) for k in parts])
+            rows[index] -= add[: len(index)]
+            slope[np.ix_(index, index)] -= tangent[: len(index), : len(index)]
+        return rows, slope, results
+
+    here = residual(end)
+    for iteration in range(60):
+        update = -np.linalg.solve(here[1], here[0]).reshape(count, 6)
+        for part in 0.5 ** np.arange(8):  # chatter of touching and not touching ends on a line search
+            trial = [(p[0] + part * u[:3], exp(part * u[3:]) @ p[1]) for p, u in zip(end, update)]
+            there = residual(trial)
+            if np.linalg.norm(there[0]) < np.linalg.norm(here[0]) or abs(update).max() < 1e-9:
+                break
+            halved += 1
+        end, here = trial, there
+        if abs(update).max() < 1e-13:
+            break
+    for body, pose in zip(bodies, end):
+        body.velocity, body.spin = body.end(pose, h)
+        body.pose = pose
+    for c, result in zip(contacts, here[2]):
+        c.law["memory"] = result[2]
+    return sum(r[3] for r in here[2]), iteration + 1, halved
+
+
+def total(bodies):
+    return [sum(t) for t in zip(*(b.totals() for b in bodies))]
+
+
+def check_bodies(h, stiffness, damping, mu, steps):
+    """Two free bodies in flight, points of the first in a spherical shell of the second: worst errors."""
+    rng = np.random.default_rng(3)
+    bodies = [Body(1.0, [0.02, 0.03, 0.04], (np.zeros(3), I3), np.array([1.0, 0.3, -0.2]), rng.normal(size=3) * 3),
+              Body(2.0, [0.5, 0.6, 0.8], (np.array([0.1, 0, 0]), exp(rng.normal(size=3))), np.zeros(3),
+                   rng.normal(size=3))]
+    radius, law = 0.35, dict(h=h, k=stiffness, omega=np.sqrt(stiffness), d=damping, mu=mu, kt=stiffness)
+    contacts = [Contact(0, 1, 0.2 * np.array(a), lambda y0, y1, law: shell_force(y0, y1, radius, law), law)
+                for a in [(1, 0, 0), (-0.5, 0.8, 0), (-0.5, -0.8, 0.3), (0, 0, -0.7)]]
+
+    def depths():
+        return np.array([np.linalg.norm(local(*c.poses([b.pose for b in bodies]), c.arm)) - radius for c in contacts])
+
+    start, lost, least, most, hits, halved, errors = total(bodies), 0.0, 0.0, 0, 0, 0, np.zeros(3)
+    p0 = depths()
+    for _ in range(steps):
+        step_lost, iterations, line = step(bodies, contacts, h)
+        p1 = depths()
+        for c, a, b in zip(contacts, p0, p1):
+            c.law["speed"] = max((b - a) / h, c.law["speed"] if b > 0 else 0)
+        hits += np.sum((p0 <= 0) & (p1 > 0))
+        p0 = p1
+        lost, least, most, halved = lost + step_lost, min(least, step_lost), max(most, iterations), halved + line
+        now = total(bodies)
+        now[0] += lost + sum(0.5 * stiffness * (max(p, 0) ** 2 + c.law["memory"] @ c.law["memory"])
+                             for c, p in zip(contacts, p1))
+        errors = np.maximum(errors, [np.abs(a - b).max() for a, b in zip(now, start)])
+    print(f"shell, h {h} k {stiffness:.0e} d {damping} mu {mu}: errors of energy, momenta {errors}, {hits} hits, lost "
+          f"{lost:.3g} of {start[0]:.3g} (least in a step {least:.1e}), iterations {most}, updates halved {halved}")
+
+
+def motions(begin, end):
+    return np.concatenate([np.concatenate([e[0] - b[0], tangent_scaled(e[1] @ b[1].T)]) for b, e in zip(begin, end)])
+
+
+def moment(begin, end, rows):
+    """Total force and moment about the origin."""
+    arms = [mean(b[0], e[0]) for b, e in zip(begin, end)]
+    return np.concatenate([rows[:3] + rows[6:9], np.cross(arms[0], rows[:3]) + rows[3:6] + np.cross(
+        arms[1], rows[6:9]) + rows[9:]])
+
+
+def by_end(rows, end, h=1e-6):
+    """Derivative of rows(end) by {displacement, spin} of both, by differences."""
+
+    def at(k, sign):
+        d = np.zeros(12)
+        d[k] = sign * h
+        return rows(tuple((p[0] + u[:3], exp(u[3:]) @ p[1]) for p, u in zip(end, d.reshape(2, 6))))
+
+    return np.column_stack([(at(k, 1) - at(k, -1)) / (2 * h) for k in range(12)])
+
+
+def check_maps():
+    rng = np.random.default_rng(1)
+    for size in (1e-3, 0.1, 1.0):
+        begin = tuple((rng.normal(size=3), exp(rng.normal(size=3))) for _ in range(2))
+        end = tuple((p[0] + size * rng.normal(size=3), cayley(size * rng.normal(size=3)) @ p[1]) for p in begin)
+        arm, force, matrix = rng.normal(size=3), rng.normal(size=3), rng.normal(size=(3, 3))
+        y0 = local(*begin, arm)
+        rows = point_rows(begin, end, arm, force)
+        work = rows @ motions(begin, end) - force @ (local(*end, arm) - y0)
+        law = dict(h=0.01, k=100.0, omega=3.0, d=0.7, speed=0.1, memory=0.01 * rng.normal(size=3), mu=0.3, kt=50.0)
+
+        def shell_rows(e):
+            return point_rows(begin, e, arm, shell_force(y0, local(*e, arm), 0.5, law)[0])
+
+        local_force, slope = shell_force(y0, local(*end, arm), 0.5, law)[:2]
+        tangent = point_tangent(begin, end, arm, local_force, slope)
+        print(f"point {size}: work {work:.1e}, momenta {abs(moment(begin, end, rows)).max():.1e}, tangent "
+              f"{abs(tangent - by_end(shell_rows, end)).max() / abs(tangent).max():.1e}")
+        arm_a, f = rng.normal(size=3), mean(begin[1][1], end[1][1]) @ force
+        work = arm_rows(begin, end, arm_a, f) @ motions(begin, end) - force @ rolling_slip(begin, end, arm_a)
+
+        def relative(poses):
+            return local(*poses, np.zeros(3)), poses[1][1].T @ poses[0][1]
+
+        def gradient(e):
+            return pose_gradient(relative(begin), relative(e), relative_turn(begin, e)[0], edges_gap, 0.5)
+
+        pose_force = pose_rows(begin, end, gradient(end))
+        change = edges_gap(*relative(end))[0] - edges_gap(*relative(begin))[0]
+        numeric = np.zeros((6, 6))
+        fixed = gradient(end)
+        for k in range(6):  # of the action by {y1, spin of Q1}: moves A alone, in B's axes
+            d = np.zeros(6)
+            d[k] = 1e-6
+            ends = []
+            for sign in (1, -1):
+                turn = exp(sign * end[1][1] @ d[3:])
+                ends.append(gradient(((end[0][0] + sign * end[1][1] @ d[:3], turn @ end[0][1]), end[1])))
+            numeric[:, k] = (ends[0] - ends[1]) / 2e-6
+        tangent = pose_tangent(begin, end, fixed, numeric)
+        error = abs(tangent - by_end(lambda e: pose_rows(begin, e, gradient(e)), end)).max() / abs(tangent).max()
+        print(f"   rolling: work {work:.1e}; pose: work {pose_force @ motions(begin, end) - change:.1e}, momenta "
+              f"{abs(moment(begin, end, pose_force)).max():.1e}, tangent {error:.1e}")
+
+
+def check_box():
+    rng = np.random.default_rng(2)
+    half, worst, longest = np.array([1, 0.5, 0.3]), 0.0, 0.0
+    for _ in range(20000):
+        y0 = rng.normal(size=3)
+        y1 = y0 + rng.normal(size=3) * 10 ** rng.uniform(-3, 0)
+        gradient = box_gradient(y0, y1, half)
+        worst = max(worst, abs(gradient @ (y1 - y0) - box_distance(y1, half) + box_distance(y0, half)))
+        longest = max(longest, np.linalg.norm(gradient))
+    print(f"box: change of distance {worst:.1e}, longest gradient {longest}")
+
+
+def quadratic(s):
+    """Weights of three nodes at -1, 0, 1 and their derivatives."""
+    return (np.array([0.5 * s * (s - 1), 1 - s * s, 0.5 * s * (s + 1)]), np.array([s - 0.5, -2 * s, s + 0.5]),
+            np.array([1.0, -2, 1]))
+
+
+def check_curves():
+    a0, b0 = np.array([[-1, 0, 0], [0, 0.1, 0.05], [1, 0, 0]]), np.array([[0, -1, 0.3], [0.1, 0, 0.25], [0, 1, 0.35]])
+    for turn in (0.0, 1.5):  # of both, and what they move relative to each other
+        for size in (0.3, 1e-2, 1e-4):
+            rng = np.random.default_rng(7)
+            whole = cayley(turn * np.array([0.3, 0.5, -0.4]))
+            a1, b1 = ((n + size * rng.normal(size=(3, 3))) @ whole.T + 0.3 * turn for n in (a0, b0))
+            turns = [np.array([tangent_scaled(whole @ exp(size * rng.normal(size=3))) for _ in a0]) for _ in "ab"]
+            s0, s1 = (closest(quadratic, quadratic, *n) for n in ((a0, b0), (a1, b1)))
+            g0, g1 = (np.linalg.norm(quadratic(s[0])[0] @ n[0] - quadratic(s[1])[0] @ n[1])
+                      for s, n in ((s0, (a0, b0)), (s1, (a1, b1))))
+            weights = [quadratic(mean(*s))[0] for s in zip(s0, s1)]
+            action = curves_gradient(*weights, (a0, b0), (a1, b1), turns, g1 - g0, 0.1)
+            rows = curves_rows(*weights, (a0, b0), (a1, b1), action)
+            work, moment_error = g0 - g1, np.zeros(3)
+            for n0, n1, turn_rows, r in zip((a0, b0), (a1, b1), turns, rows):
+                work += np.sum(r[:, :3] * (n1 - n0)) + np.sum(r[:, 3:] * turn_rows)
+                moment_error += np.sum(np.cross(mean(n0, n1), r[:, :3]) + r[:, 3:], axis=0)
+            d0, d1 = (weights[0] @ n[0] - weights[1] @ n[1] for n in ((a0, b0), (a1, b1)))
+            bare = (d0 + d1) / (np.linalg.norm(d0) + np.linalg.norm(d1))
+            print(f"curves, turn {turn} relative {size}: work {work:.1e}, moment {abs(moment_error).max():.1e}, "
+                  f"correction {np.linalg.norm(action[:3] - bare):.1e}")
+
+
+def run():
+    check_maps()
+    check_box()
+    check_curves()
+    check_bodies(0.02, 2e3, 0.0, 0.0, 950)
+    check_bodies(0.02, 1e6, 0.0, 0.0, 950)  # a contact lasts a sixth of a step
+    check_bodies(0.02, 2e3, 0.373, 0.3, 300)
