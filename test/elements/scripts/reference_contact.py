@@ -288,6 +288,36 @@ def curves_rows(weights_a, weights_b, begin, end, action):
     return np.outer(weights_a, on_a), np.outer(weights_b, on_b)
 
 
+def curves_tangent(weights_a, weights_b, begin, end, turns, change, slope, length):
+    """Derivative of curves_rows(curves_gradient()) at tension 1, by {displacement, spin} of all nodes at the end.
+
+    slope: of the change by the same; weights are held, as they are foreseen. Rows and columns: nodes of A, then of B.
+    """
+    d0, d1 = (weights_a @ nodes[0] - weights_b @ nodes[1] for nodes in (begin, end))
+    d, size, along1 = mean(d0, d1), np.linalg.norm(d0) + np.linalg.norm(d1), d1 / np.linalg.norm(d1)
+    turn_a, turn_b = weights_a @ turns[0], weights_b @ turns[1]
+    count_a, columns = len(weights_a), 6 * (len(weights_a) + len(weights_b))
+    d_d1, d_turn_a, d_turn_b = np.zeros((3, columns)), np.zeros((3, columns)), np.zeros((3, columns))
+    for k, (weight, turn) in enumerate(zip(np.r_[weights_a, -weights_b], np.vstack(turns))):
+        d_d1[:, 6 * k : 6 * k + 3] = weight * I3
+        spin = d_turn_a if k < count_a else d_turn_b
+        spin[:, 6 * k + 3 : 6 * k + 6] = weight * np.linalg.inv(cayley_tangent(turn))
+    d_turn_b *= -1
+    normal = (d0 + d1) / size
+    metric = np.r_[1, 1, 1, np.full(3, length**2)]
+    step = np.concatenate([d1 - d0 - np.cross(turn_b, d), turn_a - turn_b])
+    d_step = np.vstack([d_d1 + hat(d) @ d_turn_b - 0.5 * hat(turn_b) @ d_d1, d_turn_a - d_turn_b])
+    along = metric * step
+    square = step @ along
+    missing = change - (np.linalg.norm(d1) - np.linalg.norm(d0))
+    d_action = np.outer(along, (slope - along1 @ d_d1) / square - 2 * missing / square**2 * (along @ d_step))
+    d_action += missing / square * metric[:, None] * d_step
+    d_action[:3] += (d_d1 - np.outer(normal, along1 @ d_d1)) / size
+    force = normal + missing / square * along[:3]
+    d_b = np.vstack([d_action[:3], hat(d) @ d_action[:3] - 0.5 * hat(force) @ d_d1 + d_action[3:]])
+    return np.vstack([np.kron(weights_a[:, None], d_action), -np.kron(weights_b[:, None], d_b)])
+
+
 def plane_force(y0, y1, normal, law):
     """A point of A over the half-space normal . y < 0 of B: as shell_force."""
     p0, p1, kt = -normal @ y0, -normal @ y1, law["kt"]

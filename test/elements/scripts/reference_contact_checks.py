@@ -3,8 +3,8 @@
 import numpy as np
 
 from reference_beam import I3, cayley, cayley_tangent, exp, hat, tangent_scaled
-from reference_contact import (arm_rows, box_distance, box_gradient, closest, curves_gradient, curves_rows, edges_gap,
-                               local, mean, plane_force, point_rows, point_tangent, pose_gradient, pose_rows,
+from reference_contact import (arm_rows, box_distance, box_gradient, closest, curves_gradient, curves_rows,
+                               curves_tangent, edges_gap, local, mean, plane_force, point_rows, point_tangent, pose_gradient, pose_rows,
                                pose_tangent, relative_turn, rolling_slip, shell_force)
 
 class Body:
@@ -213,28 +213,55 @@ def quadratic(s):
             np.array([1.0, -2, 1]))
 
 
-def check_curves():
+def curves_case(size, turn):
+    """Nodes of two curves before and after a turn of both and a relative motion; turns of their nodes."""
     a0, b0 = np.array([[-1, 0, 0], [0, 0.1, 0.05], [1, 0, 0]]), np.array([[0, -1, 0.3], [0.1, 0, 0.25], [0, 1, 0.35]])
-    for turn in (0.0, 1.5):  # of both, and what they move relative to each other
-        for size in (0.3, 1e-2, 1e-4):
-            rng = np.random.default_rng(7)
-            whole = cayley(turn * np.array([0.3, 0.5, -0.4]))
-            a1, b1 = ((n + size * rng.normal(size=(3, 3))) @ whole.T + 0.3 * turn for n in (a0, b0))
-            turns = [np.array([tangent_scaled(whole @ exp(size * rng.normal(size=3))) for _ in a0]) for _ in "ab"]
-            s0, s1 = (closest(quadratic, quadratic, *n) for n in ((a0, b0), (a1, b1)))
-            g0, g1 = (np.linalg.norm(quadratic(s[0])[0] @ n[0] - quadratic(s[1])[0] @ n[1])
-                      for s, n in ((s0, (a0, b0)), (s1, (a1, b1))))
-            weights = [quadratic(mean(*s))[0] for s in zip(s0, s1)]
-            action = curves_gradient(*weights, (a0, b0), (a1, b1), turns, g1 - g0, 0.1)
-            rows = curves_rows(*weights, (a0, b0), (a1, b1), action)
-            work, moment_error = g0 - g1, np.zeros(3)
-            for n0, n1, turn_rows, r in zip((a0, b0), (a1, b1), turns, rows):
-                work += np.sum(r[:, :3] * (n1 - n0)) + np.sum(r[:, 3:] * turn_rows)
-                moment_error += np.sum(np.cross(mean(n0, n1), r[:, :3]) + r[:, 3:], axis=0)
-            d0, d1 = (weights[0] @ n[0] - weights[1] @ n[1] for n in ((a0, b0), (a1, b1)))
-            bare = (d0 + d1) / (np.linalg.norm(d0) + np.linalg.norm(d1))
-            print(f"curves, turn {turn} relative {size}: work {work:.1e}, moment {abs(moment_error).max():.1e}, "
-                  f"correction {np.linalg.norm(action[:3] - bare):.1e}")
+    rng = np.random.default_rng(7)
+    whole = cayley(turn * np.array([0.3, 0.5, -0.4]))
+    end = [(n + size * rng.normal(size=(3, 3))) @ whole.T + 0.3 * turn for n in (a0, b0)]
+    return [a0, b0], end, [np.array([tangent_scaled(whole @ exp(size * rng.normal(size=3))) for _ in a0]) for _ in "ab"]
+
+
+def nearest(nodes):
+    """Parameters, distance, its derivative by {displacement, spin} of all nodes."""
+    s = closest(quadratic, quadratic, *nodes)
+    weights = [quadratic(x)[0] for x in s]
+    d = weights[0] @ nodes[0] - weights[1] @ nodes[1]
+    gap = np.linalg.norm(d)
+    return np.array(s), gap, np.concatenate([np.concatenate([w * d / gap, np.zeros(3)]) for w in np.r_[
+        weights[0], -weights[1]]])
+
+
+def check_curves():
+    for turn, size in ((0.0, 0.3), (0.0, 1e-2), (0.0, 1e-4), (1.5, 0.3), (1.5, 1e-2), (1.5, 1e-4)):
+        begin, end, turns = curves_case(size, turn)
+        (s0, g0, _), (s1, g1, slope) = nearest(begin), nearest(end)
+        weights = [quadratic(s)[0] for s in mean(s0, s1)]
+
+        def rows(nodes, turns):
+            action = curves_gradient(*weights, begin, nodes, turns, nearest(nodes)[1] - g0, 0.1)
+            return curves_rows(*weights, begin, nodes, action), action
+
+        here, action = rows(end, turns)
+        work, moments = g0 - g1, np.zeros(3)
+        for n0, n1, turn_rows, r in zip(begin, end, turns, here):
+            work += np.sum(r[:, :3] * (n1 - n0)) + np.sum(r[:, 3:] * turn_rows)
+            moments += np.sum(np.cross(mean(n0, n1), r[:, :3]) + r[:, 3:], axis=0)
+        numeric = np.zeros((36, 36))
+        for k in range(36):
+            sides = []
+            for sign in (1e-6, -1e-6):
+                d = np.zeros((2, 3, 6))
+                d[k // 18, k // 6 % 3, k % 6] = sign
+                moved = [[tangent_scaled(exp(u[3:]) @ cayley(w)) for u, w in zip(*pair)] for pair in zip(d, turns)]
+                sides.append(np.concatenate([r.ravel() for r in rows([n + u[:, :3] for n, u in zip(end, d)],
+                                                                     [np.array(m) for m in moved])[0]]))
+            numeric[:, k] = (sides[0] - sides[1]) / 2e-6
+        tangent = curves_tangent(*weights, begin, end, turns, g1 - g0, slope, 0.1)
+        d0, d1 = (weights[0] @ n[0] - weights[1] @ n[1] for n in (begin, end))
+        bare = (d0 + d1) / (np.linalg.norm(d0) + np.linalg.norm(d1))
+        print(f"curves, turn {turn} relative {size}: work {work:.1e}, moment {abs(moments).max():.1e}, correction "
+              f"{np.linalg.norm(action[:3] - bare):.1e}, tangent {abs(tangent - numeric).max() / abs(tangent).max():.1e}")
 
 
 def run():
