@@ -331,7 +331,7 @@ def plane_force(y0, y1, normal, law):
 
 if __name__ == "__main__":
     import reference_contact_checks
-    import reference_contact_laws  # noqa
+    import reference_contact_laws
 
     reference_contact_checks.run()
     reference_contact_laws.run()
