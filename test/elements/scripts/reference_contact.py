@@ -38,25 +38,56 @@ def sign_mean(p0, p1):
     return (p0 + p1) / max(abs(p0) + abs(p1), 1e-300)
 
 
-def box_distance(y, half):
-    q = np.abs(y) - half
+def solid_distance(q):
+    """Signed distance of what is bounded by q_i < 0 at right angles."""
     return np.linalg.norm(np.maximum(q, 0)) + min(max(q), 0)
 
 
-def box_gradient(y0, y1, half):
-    """Of the signed distance of a box, by the discrete chain rule: never longer than 1."""
-    q0, q1 = np.abs(y0) - half, np.abs(y1) - half
-    by_q = np.array([sign_mean(a, b) for a, b in zip(y0, y1)])
+def solid_gradient(q0, q1):
+    """Of solid_distance by q, by the discrete chain rule: never longer than 1."""
     u0, u1 = np.maximum(q0, 0), np.maximum(q1, 0)
     size = np.linalg.norm(u0) + np.linalg.norm(u1)
     above = np.array([quotient(lambda z: max(z, 0), lambda z: float(z > 0), a, b) for a, b in zip(q0, q1)])
-    outer = (u0 + u1) / size * above if size > 0 else np.zeros(3)
-    # max(a, b) = (a + b + |a - b|) / 2, twice
-    first, second = 0.5 * (1 + sign_mean(q0[0] - q0[1], q1[0] - q1[1])), 0.5 * (
-        1 + sign_mean(max(q0[:2]) - q0[2], max(q1[:2]) - q1[2]))
-    largest = np.array([second * first, second * (1 - first), 1 - second])
-    below = quotient(lambda z: min(z, 0), lambda z: float(z < 0), max(q0), max(q1))
-    return (outer + below * largest) * by_q
+    outer = (u0 + u1) / size * above if size > 0 else np.zeros(len(q0))
+    largest, m0, m1 = np.ones(1), q0[0], q1[0]
+    for a, b in zip(q0[1:], q1[1:]):  # max(a, b) = (a + b + |a - b|) / 2
+        first = 0.5 * (1 + sign_mean(m0 - a, m1 - b))
+        largest, m0, m1 = np.append(first * largest, 1 - first), max(m0, a), max(m1, b)
+    return outer + quotient(lambda z: min(z, 0), lambda z: float(z < 0), m0, m1) * largest
+
+
+def box(y, half):
+    return solid_distance(np.abs(y) - half)
+
+
+def box_gradient(y0, y1, half):
+    return solid_gradient(np.abs(y0) - half, np.abs(y1) - half) * np.array([sign_mean(a, b) for a, b in zip(y0, y1)])
+
+
+def cylinder(y, sizes):
+    """sizes: radius, half length."""
+    return solid_distance(np.array([np.linalg.norm(y[:2]), abs(y[2])]) - sizes)
+
+
+def cylinder_gradient(y0, y1, sizes):
+    q0, q1 = (np.array([np.linalg.norm(y[:2]), abs(y[2])]) - sizes for y in (y0, y1))
+    by_q = solid_gradient(q0, q1)
+    return np.append(by_q[0] * norm_gradient(y0[:2], y1[:2])[0], by_q[1] * sign_mean(y0[2], y1[2]))
+
+
+def beyond(z, half):
+    return np.sign(z) * max(abs(z) - half, 0)
+
+
+def capsule(y, half):
+    """Distance of the segment of that half length."""
+    return np.linalg.norm([y[0], y[1], beyond(y[2], half)])
+
+
+def capsule_gradient(y0, y1, half):
+    ends = [np.array([y[0], y[1], beyond(y[2], half)]) for y in (y0, y1)]
+    slope = quotient(lambda z: beyond(z, half), lambda z: float(abs(z) > half), y0[2], y1[2])
+    return norm_gradient(*ends)[0] * np.array([1, 1, slope])
 
 
 def gonzalez(gradient, change, step, length):
@@ -251,6 +282,18 @@ def edges_gap(y, q, edge_a=(np.array([0.3, 0.2, 0.1]), np.array([1.0, 0, 0])),
     return normal @ d, np.concatenate([normal, np.cross(arm, normal) + np.cross(along, np.cross(t, by_cross))])
 
 
+def rim_gap(y, q, normal, radius, axis):
+    """Height of a disc's lowest point over the plane normal . y = 0 of B."""
+    return normal @ y - radius * np.linalg.norm(np.cross(normal, q @ axis))
+
+
+def rim_gradient(begin_relative, end_relative, normal, radius, axis):
+    """Of rim_gap by {change of y, psi}, exact without a correction."""
+    a0, a1 = (q @ axis for _, q in (begin_relative, end_relative))
+    size = sum(np.linalg.norm(np.cross(normal, a)) for a in (a0, a1))
+    return np.concatenate([normal, radius * normal @ (a0 + a1) / size * np.cross(mean(a0, a1), normal)])
+
+
 # ---------------------------------------------------------------- (c) closest points of two curves
 
 
@@ -326,7 +369,8 @@ def plane_force(y0, y1, normal, law):
     by_y = -slope * normal
     lost = force * (p1 - p0) - 0.5 * law["k"] * (max(p1, 0) ** 2 - max(p0, 0) ** 2)
     lost += kt * (memory @ (y1 - y0) - 0.5 * (memory @ memory - law["memory"] @ law["memory"]))
-    return force * normal - kt * memory, np.outer(normal, by_y) - kt * (by_slip + np.outer(by_force, by_y)), memory, lost
+    by_y1 = np.outer(normal, by_y) - kt * (by_slip + np.outer(by_force, by_y))
+    return force * normal - kt * memory, by_y1, memory, lost
 
 
 if __name__ == "__main__":

@@ -3,9 +3,10 @@
 import numpy as np
 
 from reference_beam import I3, cayley, cayley_tangent, exp, hat, tangent_scaled
-from reference_contact import (arm_rows, box_distance, box_gradient, closest, curves_gradient, curves_rows,
-                               curves_tangent, edges_gap, local, mean, plane_force, point_rows, point_tangent, pose_gradient, pose_rows,
-                               pose_tangent, relative_turn, rolling_slip, shell_force)
+import reference_contact as contact
+from reference_contact import (arm_rows, closest, curves_gradient, curves_rows, curves_tangent, edges_gap, local, mean,
+                               point_rows, point_tangent, pose_gradient, pose_rows, pose_tangent, relative_turn,
+                               rolling_slip, shell_force)
 
 class Body:
     """A rigid body in steps of the energy-momentum rule; material spin."""
@@ -155,16 +156,18 @@ def check_maps():
     for size in (1e-3, 0.1, 1.0):
         begin = tuple((rng.normal(size=3), exp(rng.normal(size=3))) for _ in range(2))
         end = tuple((p[0] + size * rng.normal(size=3), cayley(size * rng.normal(size=3)) @ p[1]) for p in begin)
-        arm, force, matrix = rng.normal(size=3), rng.normal(size=3), rng.normal(size=(3, 3))
+        arm, force = rng.normal(size=(2, 3))
         y0 = local(*begin, arm)
         rows = point_rows(begin, end, arm, force)
         work = rows @ motions(begin, end) - force @ (local(*end, arm) - y0)
-        law = dict(h=0.01, k=100.0, omega=3.0, d=0.7, speed=0.1, memory=0.01 * rng.normal(size=3), mu=0.3, kt=50.0)
+        law = dict(h=1.0, k=100.0, omega=3.0, d=0.7, speed=2.0, memory=0.01 * rng.normal(size=3), mu=0.3, kt=50.0)
+
+        radius = 0.9 * max(np.linalg.norm(local(*poses, arm)) for poses in (begin, end))
 
         def shell_rows(e):
-            return point_rows(begin, e, arm, shell_force(y0, local(*e, arm), 0.5, law)[0])
+            return point_rows(begin, e, arm, shell_force(y0, local(*e, arm), radius, law)[0])
 
-        local_force, slope = shell_force(y0, local(*end, arm), 0.5, law)[:2]
+        local_force, slope = shell_force(y0, local(*end, arm), radius, law)[:2]
         tangent = point_tangent(begin, end, arm, local_force, slope)
         print(f"point {size}: work {work:.1e}, momenta {abs(moment(begin, end, rows)).max():.1e}, tangent "
               f"{abs(tangent - by_end(shell_rows, end)).max() / abs(tangent).max():.1e}")
@@ -195,16 +198,26 @@ def check_maps():
               f"{abs(moment(begin, end, pose_force)).max():.1e}, tangent {error:.1e}")
 
 
-def check_box():
-    rng = np.random.default_rng(2)
-    half, worst, longest = np.array([1, 0.5, 0.3]), 0.0, 0.0
-    for _ in range(20000):
-        y0 = rng.normal(size=3)
-        y1 = y0 + rng.normal(size=3) * 10 ** rng.uniform(-3, 0)
-        gradient = box_gradient(y0, y1, half)
-        worst = max(worst, abs(gradient @ (y1 - y0) - box_distance(y1, half) + box_distance(y0, half)))
-        longest = max(longest, np.linalg.norm(gradient))
-    print(f"box: change of distance {worst:.1e}, longest gradient {longest}")
+def check_shapes():
+    rng, shapes = np.random.default_rng(2), {"box": np.array([1, 0.5, 0.3]), "cylinder": np.array([1, 0.5]),
+                                             "capsule": 0.8}
+    for name, sizes in shapes.items():
+        distance, gradient, worst, longest = getattr(contact, name), getattr(contact, name + "_gradient"), 0.0, 0.0
+        for _ in range(10000):
+            y0 = rng.normal(size=3)
+            y1 = y0 + rng.normal(size=3) * 10 ** rng.uniform(-3, 0)
+            d = gradient(y0, y1, sizes)
+            worst = max(worst, abs(d @ (y1 - y0) - distance(y1, sizes) + distance(y0, sizes)))
+            longest = max(longest, np.linalg.norm(d))
+        print(f"{name}: change of distance {worst:.1e}, longest gradient less 1 {longest - 1:.1e}")
+    worst = 0.0
+    for _ in range(1000):
+        begin = (rng.normal(size=3), exp(rng.normal(size=3)))
+        psi, disc = rng.normal(size=3), (np.array([0, 0, 1.0]), 0.7, np.array([1.0, 0, 0]))
+        end = (rng.normal(size=3), cayley(psi) @ begin[1])
+        work = contact.rim_gradient(begin, end, *disc) @ np.concatenate([end[0] - begin[0], psi])
+        worst = max(worst, abs(work - contact.rim_gap(*end, *disc) + contact.rim_gap(*begin, *disc)))
+    print(f"rim of a disc: change of the gap {worst:.1e}")
 
 
 def quadratic(s):
@@ -261,12 +274,13 @@ def check_curves():
         d0, d1 = (weights[0] @ n[0] - weights[1] @ n[1] for n in (begin, end))
         bare = (d0 + d1) / (np.linalg.norm(d0) + np.linalg.norm(d1))
         print(f"curves, turn {turn} relative {size}: work {work:.1e}, moment {abs(moments).max():.1e}, correction "
-              f"{np.linalg.norm(action[:3] - bare):.1e}, tangent {abs(tangent - numeric).max() / abs(tangent).max():.1e}")
+              f"{np.linalg.norm(action[:3] - bare):.1e}, tangent "
+              f"{abs(tangent - numeric).max() / abs(tangent).max():.1e}")
 
 
 def run():
     check_maps()
-    check_box()
+    check_shapes()
     check_curves()
     check_bodies(0.02, 2e3, 0.0, 0.0, 950)
     check_bodies(0.02, 1e6, 0.0, 0.0, 950)  # a contact lasts a sixth of a step
