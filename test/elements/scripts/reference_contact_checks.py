@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from reference_beam import I3, cayley, cayley_tangent, exp, hat, tangent_scaled
+from reference_beam import I3, cayley, cayley_tangent, exp, hat, log, tangent_scaled
 import reference_contact as contact
 from reference_contact import (arm_rows, closest, curves_gradient, curves_rows, curves_tangent, edges_gap, local, mean,
                                point_rows, point_tangent, pose_gradient, pose_rows, pose_tangent, relative_turn,
@@ -278,10 +278,39 @@ def check_curves():
               f"{abs(tangent - numeric).max() / abs(tangent).max():.1e}")
 
 
+def check_curves_friction():
+    """Between curves: the memory in world axes is turned by half of B's turn before and after."""
+    rng, least, moments = np.random.default_rng(0), np.inf, 0.0
+    for _ in range(300):
+        begin, end, turns = curves_case(10 ** rng.uniform(-4, -0.5), rng.uniform(0, 1.5))
+        (s0, g0, _), (s1, g1, _) = nearest(begin), nearest(end)
+        weights = [quadratic(s)[0] for s in mean(s0, s1)]
+        d0, d1 = (weights[0] @ n[0] - weights[1] @ n[1] for n in (begin, end))
+        turn_a, turn_b = weights[0] @ turns[0], weights[1] @ turns[1]
+        half, tension = exp(0.5 * log(cayley(turn_b))), rng.uniform(0, 3)
+        normal = (d0 + d1) / np.linalg.norm(d0 + d1)
+        arm_a = -0.05 * normal
+        arm_b = mean(d0, d1) + arm_a
+        slip = d1 - d0 + np.cross(turn_a, arm_a) - np.cross(turn_b, arm_b)
+        memory = rng.normal(size=3) * 10 ** rng.uniform(-4, 0)
+        new = contact.friction_force(half @ memory, slip, normal, tension, 0.4, 7.0)[0]
+        rows = curves_rows(*weights, begin, end,
+                           tension * curves_gradient(*weights, begin, end, turns, g1 - g0, 0.1))
+        work, moment_sum = 0.0, np.zeros(3)
+        for r, n0, n1, w, arm, turn, sign in zip(rows, begin, end, weights, (arm_a, arm_b), turns, (-7, 7)):
+            r += np.outer(w, np.concatenate([sign * new, np.cross(arm, sign * new)]))
+            work += np.sum(r[:, :3] * (n1 - n0)) + np.sum(r[:, 3:] * turn)
+            moment_sum += np.sum(np.cross(mean(n0, n1), r[:, :3]) + r[:, 3:], axis=0)
+        least = min(least, tension * (g1 - g0) - work - 3.5 * (new @ new - memory @ memory))
+        moments = max(moments, abs(moment_sum).max())
+    print(f"friction of curves: least loss {least:.1e}, moments {moments:.1e}")
+
+
 def run():
     check_maps()
     check_shapes()
     check_curves()
+    check_curves_friction()
     check_bodies(0.02, 2e3, 0.0, 0.0, 950)
     check_bodies(0.02, 1e6, 0.0, 0.0, 950)  # a contact lasts a sixth of a step
     check_bodies(0.02, 2e3, 0.373, 0.3, 300)
