@@ -1,40 +1,286 @@
 #pragma once
-/// Beam residual and tangent over a step for the energy-momentum (EM) family (beam.md 3.2, beyond.md 1):
+/// Beams over a step for the energy-momentum (EM) family (beam.md 3.2, beyond.md 1):
 ///   g_v^i = int {I^i' n,  I_t^i' m - I_t^i r'_arm x n} ds,  n = Lambda_bar N_a,  m = Lambda_bar M_a.
 /// Momenta are conserved for any stress N_a, M_a and any test functions with sum I_t = 1, if the arm r'_arm suits the
 /// rule of the velocities.
 ///
 /// Templates on their numbers; those of four elements side by side (S = Pack) are what runs (conserving_pack.h). A step
-/// goes by stages, which are compiled each by itself: set_points() (conserving_points.h), set_strains() and
-/// set_forces() here, add_tangent() (conserving_tangent.h).
+/// goes by stages, which are compiled each by itself: set_points() here, set_strains() and set_forces()
+/// (conserving_terms.h), add_tangent() (conserving_tangent.h).
 
-#include <cassert>
-
-#include "elements/conserving_points.h"
+#include "elements/beam_point.h"
 #include "elements/conserving_terms.h"
 #include "math/cayley.h"
+#include "math/so3.h"
+#include "schemes/time_rule.h"
 
 namespace flexarm::conserving {
 
-/// The element's energy multiplier mu. The stresses work on the defect Delta Sigma - s of the conjugate strain, which
-/// the relative rotations of the nodes alone make. Moments mu (w_i - mean w), which sum to zero, do that work
-/// (beyond.md 1.3).
+/// m hat(v).
+template <typename S>
+Matrix3T<S> times_hat(const Matrix3T<S>& m, const Vector3T<S>& v) {
+  Matrix3T<S> product;
+  product.col(0) = m.col(1) * v[2] - m.col(2) * v[1];
+  product.col(1) = m.col(2) * v[0] - m.col(0) * v[2];
+  product.col(2) = m.col(0) * v[1] - m.col(1) * v[0];
+  return product;
+}
+
+/// hat(v) m.
+template <typename S>
+Matrix3T<S> hat_times(const Vector3T<S>& v, const Matrix3T<S>& m) {
+  Matrix3T<S> product;
+  for (int j = 0; j < 3; ++j) product.col(j) = so3::cross(v, m.col(j));
+  return product;
+}
+
+/// A stiffness point over a step.
 template <int Nodes, typename S>
-struct EnergyMultiplier {
-  /// Relative increments below this [rad] are rest: there is nothing that a correction could work on.
-  static constexpr double kRest = 1e-7;
+struct Point {
+  GeneralisedShapeFunctions<Nodes, S> generalised;  // at the end
+  Matrix3T<S> end_rotation, average_rotation;       // Lambda_{n+1}, (Lambda_n + Lambda_{n+1}) / 2
+  Vector3T<S> end_tangent, arm;                     // r'_{n+1}, (r'_n + r'_{n+1}) / 2
+  Vector3T<S> increment, increment_derivative;      // interpolated w and w'
+  Vector3T<S> stretch;                              // x = Delta r' + arm x w
+  PointStress<S> own, seen;                         // of the trial configuration, and of what is carried
+  Vector6T<S> half_defect_stress;                   // C (Delta Sigma - s) / 2
+  // What the forces leave for the tangent.
+  Vector6T<S> seen_resultants;  // weighted, with dampers; by the geometric part
+  S factor, damped_factor;      // of s in the stress: of C s, and of D C D s
+};
 
-  std::array<Vector3T<S>, Nodes> relative;  ///< w_i - mean w
-  S square = S(0);                          ///< sum of their squares
-  S work = S(0), seen_work = S(0);          ///< of the trial configuration's stresses, and of those that are carried
+/// All stiffness points of an element over a step, at the trial configuration.
+template <int Nodes, typename S>
+struct StepPoints {
+  std::array<Point<Nodes, S>, Nodes - 1> points;
+  ElementFunctions<Nodes, S> averages;    // where the mid functions are symmetric
+  const ElementFunctions<Nodes, S>* mid;  // of about the middle of the step
 
-  void set_relative(const std::array<Vector3T<S>, Nodes>& increments) {
-    const Vector3T<S> mean = mean_of<Nodes, S>(increments);
+  StepPoints() = default;
+  StepPoints(const StepPoints&) = delete;  // `mid` may point to its own
+};
+
+/// The averages of begin and end, and the conjugate strain s, of the point k.
+template <int Nodes, typename S>
+void set_point_strains(const ConservingElement<Nodes, S>& element, int k, const BeamNodes<Nodes, S>& nodes,
+                       const PointKinematicsT<S>& begin, const PointKinematicsT<S>& end, StepPoints<Nodes, S>& at) {
+  const GeneralisedShapeFunctions<Nodes, S>& mid = (*at.mid)[k];
+  Point<Nodes, S>& p = at.points[k];
+  p.end_rotation = end.rotation;
+  p.end_tangent = end.tangent;
+  p.average_rotation = S(0.5) * (begin.rotation + end.rotation);
+  p.arm = S(0.5) * (begin.tangent + end.tangent);
+  p.increment = mid.values[0] * nodes.increment[0];
+  p.increment_derivative = mid.derivatives[0] * nodes.increment[0];
+  for (int i = 1; i < Nodes; ++i) {
+    p.increment += mid.values[i] * nodes.increment[i];
+    p.increment_derivative += mid.derivatives[i] * nodes.increment[i];
+  }
+  p.stretch = end.tangent - begin.tangent + so3::cross(p.arm, p.increment);
+  Vector6T<S> conjugate;
+  conjugate.template head<3>() = p.average_rotation.transpose() * p.stretch;
+  conjugate.template tail<3>() = p.average_rotation.transpose() * p.increment_derivative;
+  p.own = PointStress<S>(element.section(k), begin.strain, end.strain, conjugate);
+}
+
+/// A variation {dr', spin, spin', dw, dw'} of a point.
+template <typename S>
+struct PointVariation {
+  Vector3T<S> position, spin, spin_derivative, increment, increment_derivative;
+};
+
+/// A linear form of it.
+template <typename S>
+struct PointForm {
+  Vector3T<S> position, spin, spin_derivative, increment, increment_derivative;
+};
+
+template <typename S>
+S value_of(const PointForm<S>& form, const PointVariation<S>& v) {
+  return so3::dot(form.position, v.position) + so3::dot(form.spin, v.spin) +
+         so3::dot(form.spin_derivative, v.spin_derivative) + so3::dot(form.increment, v.increment) +
+         so3::dot(form.increment_derivative, v.increment_derivative);
+}
+
+/// What a variation makes of the strain at the end and of the conjugate strain s.
+template <typename S>
+struct StrainSlopes {
+  Vector6T<S> end, conjugate;
+};
+
+template <int Nodes, typename S>
+StrainSlopes<S> strain_slopes(const Point<Nodes, S>& p, const PointVariation<S>& v) {
+  const Matrix3T<S> end = p.end_rotation.transpose(), average = p.average_rotation.transpose();
+  StrainSlopes<S> slopes;
+  slopes.end.template head<3>() = end * Vector3T<S>(v.position + so3::cross(p.end_tangent, v.spin));
+  slopes.end.template tail<3>() = end * v.spin_derivative;
+  const Vector3T<S> stretch =
+      v.position + S(0.5) * so3::cross(v.position, p.increment) + so3::cross(p.arm, v.increment);
+  slopes.conjugate.template head<3>() = average * stretch + end * Vector3T<S>(S(0.5) * so3::cross(p.stretch, v.spin));
+  slopes.conjugate.template tail<3>() =
+      average * v.increment_derivative + end * Vector3T<S>(S(0.5) * so3::cross(p.increment_derivative, v.spin));
+  return slopes;
+}
+
+/// sum_i functions_i values_i.
+template <int Nodes, typename S>
+Vector3T<S> sum_of(const std::array<Matrix3T<S>, Nodes>& functions, const std::array<Vector3T<S>, Nodes>& values) {
+  Vector3T<S> sum = functions[0] * values[0];
+  for (int i = 1; i < Nodes; ++i) sum += functions[i] * values[i];
+  return sum;
+}
+
+/// The form `conjugate`.ds + `end`.d(strain at the end) (beyond.md 1.3).
+template <int Nodes, typename S>
+PointForm<S> strain_form(const Point<Nodes, S>& p, const Vector6T<S>& conjugate, const Vector6T<S>& end) {
+  const Matrix3T<S>& average = p.average_rotation;
+  const Matrix3T<S>& rotation = p.end_rotation;
+  const Vector3T<S> force = average * conjugate.template head<3>(), moment = average * conjugate.template tail<3>();
+  const Vector3T<S> half_force = S(0.5) * (rotation * conjugate.template head<3>()),
+                    half_moment = S(0.5) * (rotation * conjugate.template tail<3>());
+  const Vector3T<S> end_force = rotation * end.template head<3>();
+  PointForm<S> form;
+  form.position = end_force + force - S(0.5) * so3::cross(force, p.increment);
+  form.spin = so3::cross(end_force, p.end_tangent) + so3::cross(half_force, p.stretch) +
+              so3::cross(half_moment, p.increment_derivative);
+  form.spin_derivative = rotation * end.template tail<3>();
+  form.increment = so3::cross(force, p.arm);
+  form.increment_derivative = moment;
+  return form;
+}
+
+/// Adds {I^i' n, I_t^i' m - I_t^i (arm x n)} of the point k to the residual. The test functions sum to I, their
+/// derivatives to 0: the last node takes what the others leave. `resultants`: weighted {N, M}.
+template <int Nodes, typename S, class Rows>
+void add_resultants(const ConservingElement<Nodes, S>& element, int k, const StepPoints<Nodes, S>& at,
+                    const Vector6T<S>& resultants, Rows& residual) {
+  const NodalValues<Nodes, S>& derivative = element.points[k].derivative;
+  const GeneralisedShapeFunctions<Nodes, S>& tests = (*at.mid)[k];
+  const Point<Nodes, S>& p = at.points[k];
+  const Vector3T<S> n = p.average_rotation * resultants.template head<3>(),
+                    m = p.average_rotation * resultants.template tail<3>(), couple = so3::cross(p.arm, n);
+  Vector3T<S> rest = -couple;
+  for (int i = 0; i < Nodes; ++i) {
+    residual[i].template head<3>() += derivative[i] * n;
+    if (i == Nodes - 1) break;
+    Vector3T<S> moment = tests.derivatives[i].transpose() * m;
+    moment -= tests.values[i].transpose() * couple;
+    residual[i].template tail<3>() += moment;
+    rest -= moment;
+  }
+  residual[Nodes - 1].template tail<3>() += rest;
+}
+
+}  // namespace flexarm::conserving
+
+namespace flexarm {
+
+/// Rotations at the stiffness points; an element of two nodes has its only one half-way between them.
+template <int Nodes, typename S>
+std::array<InterpolatedRotation<S>, Nodes - 1> point_rotations(const ConservingElement<Nodes, S>& element,
+                                                               const LocalRotations<Nodes, S>& local) {
+  std::array<InterpolatedRotation<S>, Nodes - 1> rotations;
+  if constexpr (Nodes == 2) {
+    rotations[0] = evaluate_half_way(local, element.points[0].derivative[1]);
+  } else {
+    for (int k = 0; k < Nodes - 1; ++k)
+      rotations[k] = local.evaluate(element.points[k].shape, element.points[k].derivative);
+  }
+  return rotations;
+}
+/// The same with `functions(k)`, the generalised shape functions at the point k.
+template <int Nodes, typename S, class Functions>
+std::array<InterpolatedRotation<S>, Nodes - 1> point_rotations(const ConservingElement<Nodes, S>& element,
+                                                               const LocalRotations<Nodes, S>& local,
+                                                               const Functions& functions) {
+  std::array<InterpolatedRotation<S>, Nodes - 1> rotations;
+  if constexpr (Nodes == 2) {
+    rotations[0] = evaluate_half_way(local, element.points[0].derivative[1], functions(0));
+  } else {
+    const LocalRotationVariation<Nodes, S> variation(local);
+    for (int k = 0; k < Nodes - 1; ++k)
+      rotations[k] = variation.evaluate(element.points[k].shape, element.points[k].derivative, functions(k));
+  }
+  return rotations;
+}
+
+/// Generalised shape functions for the middle of a step from `orientation` by the `foreseen` tangent-scaled increments:
+/// those of the configuration half-way.
+template <int Nodes, typename S>
+void mid_functions(const ConservingElement<Nodes, S>& element, const std::array<QuaternionT<S>, Nodes>& orientation,
+                   const std::array<Vector3T<S>, Nodes>& foreseen, ElementFunctions<Nodes, S>& functions) {
+  std::array<QuaternionT<S>, Nodes> half_way;
+  for (int i = 0; i < Nodes; ++i) half_way[i] = cayley::half_quaternion(foreseen[i]) * orientation[i];
+  point_rotations(
+      element, LocalRotations<Nodes, S>(half_way), [&](int k) -> auto& { return functions[k]; });
+}
+
+/// The stretch P = I + (cos(theta/2) - 1) e e^T, angle theta about e, of the mean of the `foreseen` increments: values
+/// P^-1 I_g P and derivatives P I_g' P. With it the conjugate strain of a step that turns the element by any angle is
+/// exact to first order in what else it does, and the energy multiplier has little to make up for (beyond.md 1.3).
+template <int Nodes, typename S>
+void stretch_mid_functions(const std::array<Vector3T<S>, Nodes>& foreseen, ElementFunctions<Nodes, S>& functions) {
+  const Vector3T<S> mean = mean_of<Nodes, S>(foreseen);
+  const Matrix3T<S> stretch = cayley::axial_stretch(mean), inverse = cayley::inverse_axial_stretch(mean);
+  for (int k = 0; k < Nodes - 1; ++k) {
     for (int i = 0; i < Nodes; ++i) {
-      relative[i] = increments[i] - mean;
-      square += so3::dot(relative[i], relative[i]);
+      const Matrix3T<S> value = functions[k].values[i].lazyProduct(stretch),
+                        derivative = functions[k].derivatives[i].lazyProduct(stretch);
+      functions[k].values[i] = inverse.lazyProduct(value);
+      functions[k].derivatives[i] = stretch.lazyProduct(derivative);
     }
   }
+}
+
+/// The stiffness points for given nodal positions and rotations.
+template <int Nodes, typename S>
+void element_points(const ConservingElement<Nodes, S>& element, const std::array<Vector3T<S>, Nodes>& position,
+                    const std::array<QuaternionT<S>, Nodes>& orientation, PointKinematicsT<S>* points) {
+  const auto rotations = point_rotations(element, LocalRotations<Nodes, S>(orientation));
+  for (int k = 0; k < Nodes - 1; ++k) {
+    const auto& constants = element.points[k];
+    points[k] =
+        point_kinematics(rotations[k], interpolate<Nodes>(constants.derivative, position), constants.reference_strain);
+  }
+}
+
+namespace conserving {
+
+/// The stiffness points of a step: `end` receives them at t_{n+1}. Their generalised shape functions are set
+/// `with_variation`, or where the mid functions ask for them. `functions` must outlive `at`.
+template <int Nodes, typename S>
+void set_points(const ConservingElement<Nodes, S>& element, const BeamNodes<Nodes, S>& nodes, const TimeRule& rule,
+                const ElementFunctions<Nodes, S>& functions, bool with_variation, PointKinematicsT<S>* end,
+                StepPoints<Nodes, S>& at) {
+  constexpr int kPoints = Nodes - 1;
+  at.mid = &functions;
+  const bool is_symmetric = rule.mid_functions == MidFunctions::Symmetric;
+  const LocalRotations<Nodes, S> local(nodes.orientation);
+  const std::array<InterpolatedRotation<S>, kPoints> rotation =
+      with_variation || is_symmetric ? point_rotations(
+                                           element, local, [&](int k) -> auto& { return at.points[k].generalised; })
+                                     : point_rotations(element, local);
+  if (is_symmetric) {
+    for (int k = 0; k < kPoints; ++k)
+      for (int i = 0; i < Nodes; ++i) {
+        at.averages[k].values[i] = S(0.5) * (functions[k].values[i] + at.points[k].generalised.values[i]);
+        at.averages[k].derivatives[i] =
+            S(0.5) * (functions[k].derivatives[i] + at.points[k].generalised.derivatives[i]);
+      }
+    at.mid = &at.averages;
+  }
+  for (int k = 0; k < kPoints; ++k) {
+    const auto& constants = element.points[k];
+    end[k] =
+        point_kinematics(rotation[k], interpolate<Nodes>(constants.derivative, nodes.end), constants.reference_strain);
+  }
+}
+
+/// The element's energy multiplier.
+template <int Nodes, typename S>
+struct EnergyMultiplier : MultiplierWork<Nodes, Vector3T<S>, Vector6T<S>> {
+  using Base = MultiplierWork<Nodes, Vector3T<S>, Vector6T<S>>;
+  using Base::relative, Base::seen_work;
 
   void add(const S& weight, const SectionStiffness<S>& stiffness, const PointKinematicsT<S>& begin,
            const PointKinematicsT<S>& end, Point<Nodes, S>& p) {
@@ -51,29 +297,14 @@ struct EnergyMultiplier {
     defect.template head<3>() = p.average_rotation.transpose() * so3::cross(p.arm, Vector3T<S>(turn - p.increment));
     defect.template tail<3>() =
         end.strain.template tail<3>() - begin.strain.template tail<3>() - p.own.conjugate_strain.template tail<3>();
-    work += weight * dot6(p.own.stress, defect);
-    seen_work += weight * dot6(p.seen.stress, defect);
-    p.half_defect_stress = S(0.5) * stiffness.stress(defect);
+    this->add_defect(weight, stiffness, defect, p);
   }
 
-  /// d(mu) / d(work).
-  S slope() const { return square / guarded(); }
-  /// d(work) as a linear form at a point, with the stresses that are seen.
-  PointForm<S> form(const S& weight, const Point<Nodes, S>& p) const {
-    return strain_form<Nodes, S>(p, -weight * p.seen.stress,
-                                 weight * Vector6T<S>(p.half_defect_stress + p.seen.stress));
-  }
-
-  /// Adds the moments, and to `carried` what the seen stresses would add to them.
-  void add_moments(BlockSystem<Nodes, S>& system, bool has_carried) const {
-    const S mu = work * slope(), rest = seen_work * slope() - mu;
-    for (int i = 0; i < Nodes; ++i) system.residual[i].template tail<3>() += mu * relative[i];
-    for (int i = 0; i < Nodes && has_carried; ++i) system.carried[i].template tail<3>() += rest * relative[i];
-  }
-  /// Adds their tangent. `work_row`: d(work) for {dr, spin} of the nodes; `inverse_tangent`: S(w)^{-1}.
+  /// Adds the tangent of add_moments(). `work_row`: d(work) for {dr, spin} of the nodes; `inverse_tangent`: S(w)^{-1}.
   void add_tangent(const std::array<Vector6T<S>, Nodes>& work_row,
                    const std::array<Matrix3T<S>, Nodes>& inverse_tangent, BlockTangent<Nodes, S>& tangent) const {
-    const S by_work = slope(), mu = seen_work * by_work, by_square = seen_work / guarded() - S(2) * mu * by_work;
+    const S by_work = this->slope(), mu = seen_work * by_work;
+    const S by_square = seen_work / this->guarded() - S(2) * mu * by_work;
     for (int j = 0; j < Nodes; ++j) {
       Vector6T<S> row = by_work * work_row[j];
       row.template tail<3>() += (S(2) * by_square) * (inverse_tangent[j].transpose() * relative[j]);
@@ -84,134 +315,7 @@ struct EnergyMultiplier {
       }
     }
   }
-
- private:
-  S guarded() const { return square * square + S(kRest * kRest * kRest * kRest); }
 };
-
-}  // namespace flexarm::conserving
-
-namespace flexarm {
-namespace conserving {
-
-/// See translational_forces(). Sets the system.
-template <int Nodes, typename S>
-void set_translation(const ConservingElement<Nodes, S>& element, const BeamNodes<Nodes, S>& nodes, double factor,
-                     double step, bool with_tangent, BlockSystem<Nodes, S>& system) {
-  const auto translation = translational_forces<Vector3T<S>, Nodes>(element, nodes, factor, step);
-  system.dissipated = translation.dissipated;
-  for (int i = 0; i < Nodes; ++i) {
-    const Vector3T<S>& force = translation.forces[i];
-    system.residual[i].template head<3>() = force;
-    system.residual[i].template tail<3>().setConstant(S(0));
-    for (int j = 0; j < Nodes && with_tangent; ++j) {
-      Matrix6T<S>& block = system.tangent[i][j];
-      block.setConstant(S(0));
-      block.diagonal().template head<3>().setConstant(translation.slope * element.mass(i, j));
-    }
-  }
-}
-
-/// Strains and elastic stresses at the points of set_points(). `begin`, `end`: those at t_n and t_{n+1}; `carried`:
-/// what the geometric part of the tangent sees in the place of the latter's strains; may be null.
-template <int Nodes, typename S>
-void set_strains(const ConservingElement<Nodes, S>& element, const BeamNodes<Nodes, S>& nodes,
-                 const PointKinematicsT<S>* begin, const PointKinematicsT<S>* end,
-                 const CarriedStrains<Nodes, S>* carried, StepPoints<Nodes, S>& at) {
-  for (int k = 0; k < Nodes - 1; ++k) {
-    Point<Nodes, S>& p = at.points[k];
-    set_strains<Nodes, S>((*at.mid)[k], element.section(k), nodes, begin[k], end[k], p);
-    p.seen = p.own;
-    if (carried)
-      p.seen = PointStress<S>(element.section(k), begin[k].strain, carried->end[k],
-                              carried->has_conjugate ? carried->conjugate[k] : p.own.conjugate_strain);
-  }
-}
-
-/// Internal forces, damping and translational inertia of one element over a step of length `step`, EM family, at the
-/// points of set_points(). `begin` holds them at t_n, `end` at t_{n+1}; `memory`, `end_memory` serve numerical
-/// dissipation and damped elements; without either they may be null. Rotary inertia is added elsewhere, the tangent of
-/// what is not linear by add_tangent() (conserving_tangent.h).
-///
-/// The moment rows are tested with, and the increments interpolated by, generalised shape functions of about the middle
-/// of the step: those of mid_functions() (MidFunctions::Explicit) or of the beginning (Symmetric), averaged with those
-/// of the end; then the tangent, which leaves their variation out, makes Newton converge linearly, by a factor that
-/// falls with the step. Any of them conserve momenta (sum I_g = 1) and, with the multiplier, energy; those of the
-/// middle make Delta(strain) - s third order in the step. With the Lagrange functions (beyond.md 1.1) it is first order
-/// wherever an element is deformed.
-///
-/// With a tangent, strains may be carried along (`has_carried`): then what its geometric part sees are not those of the
-/// trial configuration. The residual does not depend on them (docs/notes/newton.md).
-template <int Nodes, typename S>
-void set_forces(const ConservingElement<Nodes, S>& element, const BeamNodes<Nodes, S>& nodes, const TimeRule& rule,
-                const PointKinematicsT<S>* begin, const PointKinematicsT<S>* end, const StrainMemoryT<S>* memory,
-                double step, bool with_tangent, bool has_carried, StrainMemoryT<S>* end_memory,
-                StepPoints<Nodes, S>& at, EnergyMultiplier<Nodes, S>& multiplier, BlockSystem<Nodes, S>& system) {
-  constexpr int kPoints = Nodes - 1;
-  const bool is_corrected = rule.correction == EnergyCorrection::Multiplier;
-  const bool has_memory = rule.dissipation.any() || element.has_stiffness_damping;
-  assert(step != 0 && begin && end);
-  assert(!has_memory || (memory && end_memory));
-  set_translation<Nodes, S>(element, nodes, rule.velocity_factor(), step, with_tangent, system);
-
-  const ElementFunctions<Nodes, S>& mid = *at.mid;
-  if (is_corrected) multiplier.set_relative(nodes.increment);
-  for (int k = 0; k < kPoints && is_corrected; ++k)
-    multiplier.add(element.points[k].weight, element.section(k), begin[k], end[k], at.points[k]);
-
-  const DamperParts<S> damper_parts(element.stiffness_damping, rule.damping_relaxation);
-  for (int i = 0; i < Nodes && has_carried; ++i) system.carried[i].setConstant(S(0));
-  for (int k = 0; k < kPoints; ++k) {
-    const auto& constants = element.points[k];
-    const SectionStiffness<S>& section = element.section(k);
-    Point<Nodes, S>& p = at.points[k];
-    S factor = S(0);
-    Vector6T<S> stress = p.own.stress, seen = p.seen.stress;
-    if (rule.dissipation.any()) {
-      const NumericalDamper<S> damper(rule.dissipation, memory[k], p.own.conjugate_strain, section, step);
-      factor += damper.factor;
-      stress -= damper.remembered;
-      seen -= damper.remembered;
-      system.dissipated += constants.weight * damper.dissipated;
-      end_memory[k].average = damper.average;
-    }
-    const bool is_uneven = element.has_stiffness_damping && !element.is_damped_evenly;
-    SectionStiffness<S> damped;  // D C D, with a factor of its own
-    S damped_factor = S(0);
-    if (is_uneven) damped = section.scaled(element.damping_scale);
-    if (element.has_stiffness_damping) {
-      const Vector6T<S> damped_stress = is_uneven ? damped.stress(p.own.conjugate_strain) : p.own.conjugate_stress;
-      const StructuralDamper<S> damper(damper_parts, rule.damping_relaxation, memory[k], p.own.conjugate_strain,
-                                       damped_stress, is_uneven ? damped : section, step);
-      if (is_uneven) {
-        damped_factor = damper.factor;
-        stress += damped_factor * damped_stress;
-        seen += damped_factor * damped.stress(p.seen.conjugate_strain);
-      } else {
-        factor += damper.factor;
-      }
-      stress -= damper.remembered;
-      seen -= damper.remembered;
-      system.dissipated += constants.weight * damper.dissipated;
-      end_memory[k].delayed_rate = damper.delayed_rate;
-    }
-    if (has_memory) end_memory[k].rate = end_rate(memory[k], p.own.conjugate_strain, step);
-    stress += factor * p.own.conjugate_stress;
-    const Vector6T<S> weighted = constants.weight * stress;
-    add_residual<Nodes, S>(constants.derivative, mid[k], p.average_rotation * weighted.template head<3>(),
-                           p.average_rotation * weighted.template tail<3>(), p.arm, system.residual);
-    if (!with_tangent) continue;
-    p.seen_resultants = constants.weight * Vector6T<S>(seen + factor * p.seen.conjugate_stress);
-    p.factor = factor;
-    p.damped_factor = damped_factor;
-    if (has_carried) {
-      const Vector6T<S> more = p.seen_resultants - weighted;
-      add_residual<Nodes, S>(constants.derivative, mid[k], p.average_rotation * more.template head<3>(),
-                             p.average_rotation * more.template tail<3>(), p.arm, system.carried);
-    }
-  }
-  if (is_corrected) multiplier.add_moments(system, has_carried);
-}
 
 /// What the strains become along a Newton update {dr, spin} of the nodes, to first order, from those of set_strains().
 template <int Nodes, typename S>

@@ -70,6 +70,7 @@ struct ConservingElement {
   bool has_stiffness_damping = false, has_mass_damping = false, is_damped_evenly = true;
 
   const SectionStiffness<S>& section(int point) const { return sections[is_uniform ? 0 : point]; }
+  SectionStiffness<S> damped_section(int point) const { return section(point).scaled(damping_scale); }  ///< D C D
 };
 
 /// Makes an element a lane.

@@ -16,9 +16,9 @@ void conserving_beam(const ConservingElement<Nodes, Pack>& element, const BeamNo
   conserving::EnergyMultiplier<Nodes, Pack> multiplier;
   set_points<Nodes>(element, nodes, rule, functions, with_tangent, end, at);
   simd::run([&] {
-    conserving::set_strains<Nodes, Pack>(element, nodes, begin, end, carried, at);
-    conserving::set_forces<Nodes, Pack>(element, nodes, rule, begin, end, memory, step, with_tangent,
-                                        carried != nullptr, end_memory, at, multiplier, system);
+    conserving::set_strains<Nodes>(element, nodes, begin, end, carried, at);
+    conserving::set_forces<Nodes>(element, nodes, rule, begin, end, memory, step, with_tangent, carried != nullptr,
+                                  end_memory, at, multiplier, system);
   });
   if (with_tangent) add_tangent<Nodes>(element, nodes, rule, at, multiplier, system);
 }

@@ -1,7 +1,6 @@
 #include "elements/conserving_beam.h"
 #include "elements/conserving_pack.h"
 #include "elements/conserving_pack_stages.h"
-#include "elements/conserving_points.h"
 #include "elements/orders.h"
 #include "math/simd.h"
 
@@ -39,9 +38,10 @@ void carry_strains(const ConservingElement<Nodes, Pack>& element, const BeamNode
                    const PointKinematicsT<Pack>* begin, const std::array<Vector6T<Pack>, Nodes>& update,
                    PointKinematicsT<Pack>* end, CarriedStrains<Nodes, Pack>& carried) {
   conserving::StepPoints<Nodes, Pack> at;
+  const CarriedStrains<Nodes, Pack>* none = nullptr;
   set_points<Nodes>(element, nodes, rule, functions, true, end, at);
   simd::run([&] {
-    conserving::set_strains<Nodes, Pack>(element, nodes, begin, end, nullptr, at);
+    conserving::set_strains<Nodes>(element, nodes, begin, end, none, at);
     conserving::carry_strains<Nodes, Pack>(element, nodes, at, update, end, carried);
   });
 }

@@ -101,7 +101,7 @@ void for_moment_rows(const GeneralisedShapeFunctions<Nodes, S>& tests, const Mat
   visit(Nodes - 1, rest);
 }
 
-/// Adds the tangent of add_residual. `n`: weighted; `dn`, `dm`: slopes of n and m.
+/// Adds the tangent of add_resultants(). `n`: weighted; `dn`, `dm`: slopes of n and m.
 template <int Nodes, typename S>
 void add_tangent(const NodalValues<Nodes, S>& derivative, const GeneralisedShapeFunctions<Nodes, S>& tests,
                  const Point<Nodes, S>& p, const std::array<Matrix3T<S>, Nodes>& inverse_tangent, bool is_coupled,
@@ -173,7 +173,7 @@ void add_tangent(const ConservingElement<Nodes, S>& element, const BeamNodes<Nod
       dm.increment.setConstant(S(0));
     }
     if (is_uneven) {
-      const SectionStiffness<S> damped = section.scaled(element.damping_scale);
+      const SectionStiffness<S> damped = element.damped_section(k);
       const SlopeBuilder<Nodes, S> damping(p, constants.weight, p.damped_factor);
       damping.add_conjugate_strain_part(damped.forces, dn);
       damping.add_conjugate_curvature_part(damped.moments, dm);

@@ -1,10 +1,15 @@
 #pragma once
 /// What beams of the energy-momentum family have in common in space and in the plane: translational inertia,
-/// strains and stresses of a stiffness point, and dampers with a memory there. Over a step in which the strain grows by
-/// s, each damper adds factor C s - remembered to the stress. (docs/schemes.md, "Numerical dissipation", "Structural
-/// damping")
+/// strains and stresses of a stiffness point, dampers with a memory there, the energy multiplier, and how forces are
+/// made of all these. Over a step in which the strain grows by s, each damper adds factor C s - remembered to the
+/// stress. (docs/schemes.md, "Numerical dissipation", "Structural damping")
+///
+/// In the plane vectors have two components, turns are numbers, and there are three strains. What else differs is in
+/// conserving_beam.h and planar_beam.h: set_point_strains(), add_resultants() and strain_form().
 
 #include <array>
+#include <cassert>
+#include <type_traits>
 
 #include <Eigen/Core>
 
@@ -150,5 +155,181 @@ struct StructuralDamper {
     delayed_rate = S(2) * delayed - begin.delayed_rate;
   }
 };
+
+/// The work of an element's energy multiplier mu. The stresses work on the defect Delta Sigma - s of the conjugate
+/// strain, which the relative rotations of the nodes alone make. Moments mu (w_i - mean w), which sum to zero, do that
+/// work (beyond.md 1.3).
+template <int Nodes, class Turn, class Strain>
+struct MultiplierWork {
+  using S = typename Strain::Scalar;
+  static constexpr bool kIsPlanar = std::is_same_v<Turn, S>;
+  /// Relative increments below this [rad] are rest: there is nothing that a correction could work on.
+  static constexpr double kRest = 1e-7;
+
+  std::array<Turn, Nodes> relative;  ///< w_i - mean w
+  S square = S(0);                   ///< sum of their squares
+  S work = S(0), seen_work = S(0);   ///< of the trial configuration's stresses, and of those that are carried
+
+  void set_relative(const std::array<Turn, Nodes>& increments) {
+    Turn mean = increments[0];
+    for (int i = 1; i < Nodes; ++i) mean += increments[i];
+    mean *= S(1.0 / Nodes);
+    for (int i = 0; i < Nodes; ++i) {
+      relative[i] = increments[i] - mean;
+      if constexpr (kIsPlanar)
+        square += relative[i] * relative[i];
+      else
+        square += so3::dot(relative[i], relative[i]);
+    }
+  }
+
+  /// d(mu) / d(work).
+  S slope() const { return square / guarded(); }
+  /// d(work) as a linear form at a point, with the stresses that are seen.
+  template <class Point>
+  auto form(const S& weight, const Point& p) const {
+    return strain_form(p, Strain(-weight * p.seen.stress),
+                       Strain(weight * Strain(p.half_defect_stress + p.seen.stress)));
+  }
+
+  /// Adds the moments, and to `carried` what the seen stresses would add to them.
+  template <class System>
+  void add_moments(System& system, bool has_carried) const {
+    const S mu = work * slope(), rest = seen_work * slope() - mu;
+    for (int i = 0; i < Nodes; ++i) add_moment(mu * relative[i], system.residual[i]);
+    for (int i = 0; i < Nodes && has_carried; ++i) add_moment(rest * relative[i], system.carried[i]);
+  }
+
+ protected:
+  /// Of a point; `defect` Delta Sigma - s.
+  template <class Stiffness, class Point>
+  void add_defect(const S& weight, const Stiffness& stiffness, const Strain& defect, Point& p) {
+    work += weight * strain_product(p.own.stress, defect);
+    seen_work += weight * strain_product(p.seen.stress, defect);
+    p.half_defect_stress = S(0.5) * stiffness.stress(defect);
+  }
+  S guarded() const { return square * square + S(kRest * kRest * kRest * kRest); }
+
+ private:
+  template <class Row>
+  static void add_moment(const Turn& moment, Row& row) {
+    if constexpr (kIsPlanar)
+      row[2] += moment;
+    else
+      row.template tail<3>() += moment;
+  }
+};
+
+/// See translational_forces(). Sets the system.
+template <int Nodes, class Element, class Motion, class System>
+void set_translation(const Element& element, const Motion& nodes, double factor, double step, bool with_tangent,
+                     System& system) {
+  using Vector = std::decay_t<decltype(nodes.end[0])>;
+  using S = typename Vector::Scalar;
+  const auto translation = translational_forces<Vector, Nodes>(element, nodes, factor, step);
+  system.dissipated = translation.dissipated;
+  for (int i = 0; i < Nodes; ++i) {
+    system.residual[i].setConstant(S(0));
+    system.residual[i].template head<Vector::SizeAtCompileTime>() = translation.forces[i];
+    for (int j = 0; j < Nodes && with_tangent; ++j) {
+      system.tangent[i][j].setConstant(S(0));
+      for (int c = 0; c < Vector::SizeAtCompileTime; ++c)
+        system.tangent[i][j](c, c) = translation.slope * element.mass(i, j);
+    }
+  }
+}
+
+/// Strains and elastic stresses at the points. `begin`, `end`: those at t_n and t_{n+1}; `carried`: what the geometric
+/// part of the tangent sees in the place of the latter's strains; may be null.
+template <int Nodes, class Element, class Motion, class Kinematics, class Carried, class Points>
+void set_strains(const Element& element, const Motion& nodes, const Kinematics* begin, const Kinematics* end,
+                 const Carried* carried, Points& at) {
+  for (int k = 0; k < Nodes - 1; ++k) {
+    auto& p = at.points[k];
+    set_point_strains(element, k, nodes, begin[k], end[k], at);
+    p.seen = p.own;
+    if (carried)
+      p.seen = {element.section(k), begin[k].strain, carried->end[k],
+                carried->has_conjugate ? carried->conjugate[k] : p.own.conjugate_strain};
+  }
+}
+
+/// Internal forces, damping and translational inertia of one element over a step of length `step`, EM family, at the
+/// points of set_points(). `begin` holds them at t_n, `end` at t_{n+1}; `memory`, `end_memory` serve numerical
+/// dissipation and damped elements; without either they may be null. Rotary inertia is added elsewhere, the tangent of
+/// what is not linear by add_tangent() (conserving_tangent.h).
+///
+/// The moment rows are tested with, and the increments interpolated by, generalised shape functions of about the middle
+/// of the step: those of mid_functions() (MidFunctions::Explicit) or of the beginning (Symmetric), averaged with those
+/// of the end; then the tangent, which leaves their variation out, makes Newton converge linearly, by a factor that
+/// falls with the step. Any of them conserve momenta (sum I_g = 1) and, with the multiplier, energy; those of the
+/// middle make Delta(strain) - s third order in the step. With the Lagrange functions (beyond.md 1.1) it is first order
+/// wherever an element is deformed.
+///
+/// With a tangent, strains may be carried along (`has_carried`): then what its geometric part sees are not those of the
+/// trial configuration. The residual does not depend on them (docs/notes/newton.md).
+template <int Nodes, class Element, class Motion, class Kinematics, class Memory, class Points, class Multiplier,
+          class System>
+void set_forces(const Element& element, const Motion& nodes, const TimeRule& rule, const Kinematics* begin,
+                const Kinematics* end, const Memory* memory, double step, bool with_tangent, bool has_carried,
+                Memory* end_memory, Points& at, Multiplier& multiplier, System& system) {
+  using S = std::decay_t<decltype(system.dissipated)>;
+  using Strain = std::decay_t<decltype(begin->strain)>;
+  constexpr int kStrains = Strain::SizeAtCompileTime;
+  const bool is_corrected = rule.correction == EnergyCorrection::Multiplier;
+  const bool has_memory = rule.dissipation.any() || element.has_stiffness_damping;
+  const bool is_uneven = element.has_stiffness_damping && !element.is_damped_evenly;
+  assert(step != 0 && begin && end);
+  assert(!has_memory || (memory && end_memory));
+  set_translation<Nodes>(element, nodes, rule.velocity_factor(), step, with_tangent, system);
+  if (is_corrected) multiplier.set_relative(nodes.increment);
+  for (int k = 0; k < Nodes - 1 && is_corrected; ++k)
+    multiplier.add(element.points[k].weight, element.section(k), begin[k], end[k], at.points[k]);
+
+  const DamperParts<S> damper_parts(element.stiffness_damping, rule.damping_relaxation);
+  for (int i = 0; i < Nodes && has_carried; ++i) system.carried[i].setConstant(S(0));
+  for (int k = 0; k < Nodes - 1; ++k) {
+    const S& weight = element.points[k].weight;
+    const auto& section = element.section(k);
+    auto& p = at.points[k];
+    p.factor = p.damped_factor = S(0);
+    Strain stress = p.own.stress, seen = p.seen.stress;
+    const auto add = [&](const auto& damper) {
+      stress -= damper.remembered;
+      seen -= damper.remembered;
+      system.dissipated += weight * damper.dissipated;
+    };
+    if (rule.dissipation.any()) {
+      const NumericalDamper<S, kStrains> damper(rule.dissipation, memory[k], p.own.conjugate_strain, section, step);
+      p.factor += damper.factor;
+      add(damper);
+      end_memory[k].average = damper.average;
+    }
+    if (is_uneven) {  // D C D, with a factor of its own
+      const auto& damped = element.damped_section(k);
+      const Strain damped_stress = damped.stress(p.own.conjugate_strain);
+      const StructuralDamper<S, kStrains> damper(damper_parts, rule.damping_relaxation, memory[k],
+                                                 p.own.conjugate_strain, damped_stress, damped, step);
+      p.damped_factor = damper.factor;
+      stress += p.damped_factor * damped_stress;
+      seen += p.damped_factor * damped.stress(p.seen.conjugate_strain);
+      add(damper);
+      end_memory[k].delayed_rate = damper.delayed_rate;
+    } else if (element.has_stiffness_damping) {
+      const StructuralDamper<S, kStrains> damper(damper_parts, rule.damping_relaxation, memory[k],
+                                                 p.own.conjugate_strain, p.own.conjugate_stress, section, step);
+      p.factor += damper.factor;
+      add(damper);
+      end_memory[k].delayed_rate = damper.delayed_rate;
+    }
+    if (has_memory) end_memory[k].rate = end_rate(memory[k], p.own.conjugate_strain, step);
+    const Strain weighted = weight * Strain(stress + p.factor * p.own.conjugate_stress);
+    add_resultants(element, k, at, weighted, system.residual);
+    if (!with_tangent) continue;
+    p.seen_resultants = weight * Strain(seen + p.factor * p.seen.conjugate_stress);
+    if (has_carried) add_resultants(element, k, at, Strain(p.seen_resultants - weighted), system.carried);
+  }
+  if (is_corrected) multiplier.add_moments(system, has_carried);
+}
 
 }  // namespace flexarm::conserving

@@ -1,75 +1,219 @@
 #pragma once
-/// Beam residual and tangent over a step of the energy-momentum family in the plane: conserving_beam.h and
-/// conserving_tangent.h term by term, where they are not zero. (docs/notes/planar.md)
-
-#include <cassert>
+/// Beams over a step of the energy-momentum family in the plane: conserving_beam.h and conserving_tangent.h term by
+/// term, where they are not zero, as all rotations are about the normal. Then generalised shape functions are
+/// Lagrange's, and rotations are products of complex numbers. (docs/notes/planar.md)
 
 #include "elements/conserving_terms.h"
-#include "elements/planar_point.h"
+#include "elements/planar_element.h"
+#include "math/rotation_series.h"
 #include "schemes/time_rule.h"
 
 namespace flexarm::planar {
 
-/// See translational_forces(). Sets the system.
+/// n x v: a quarter turn.
+template <typename S>
+inline Vector2T<S> quarter_turn(const Vector2T<S>& v) {
+  return {-v[1], v[0]};
+}
+template <typename S>
+inline S cross(const Vector2T<S>& a, const Vector2T<S>& b) {
+  return a[0] * b[1] - a[1] * b[0];
+}
+template <typename S>
+inline S dot(const Vector2T<S>& a, const Vector2T<S>& b) {
+  return a[0] * b[0] + a[1] * b[1];
+}
+
+/// A turn, or the mean of two, from the axes of the section to those of the plane.
+template <typename S>
+struct Turn {
+  S cosine, sine;
+
+  Vector2T<S> to_plane(const Vector2T<S>& v) const {
+    return {cosine * v[0] - sine * v[1], sine * v[0] + cosine * v[1]};
+  }
+  Vector2T<S> to_section(const Vector2T<S>& v) const {
+    return {cosine * v[0] + sine * v[1], cosine * v[1] - sine * v[0]};
+  }
+};
+
 template <int Nodes, typename S>
-void set_translation(const Element<Nodes, S>& element, const Nodal<Nodes, S>& nodes, double factor, double step,
-                     bool with_tangent, BlockSystem<Nodes, S>& system) {
-  const auto translation = translational_forces<Vector2T<S>, Nodes>(element, nodes, factor, step);
-  system.dissipated = translation.dissipated;
+inline S sum_of(const NodalValues<Nodes, S>& weights, const std::array<S, Nodes>& values) {
+  S sum = weights[0] * values[0];
+  for (int i = 1; i < Nodes; ++i) sum += weights[i] * values[i];
+  return sum;
+}
+template <int Nodes, typename S>
+inline Vector2T<S> sum_of(const NodalValues<Nodes, S>& weights, const std::array<Vector2T<S>, Nodes>& values) {
+  Vector2T<S> sum = weights[0] * values[0];
+  for (int i = 1; i < Nodes; ++i) sum += weights[i] * values[i];
+  return sum;
+}
+
+template <typename S>
+inline Vector2T<S> force_of(const Vector3T<S>& resultants) {
+  return {resultants[0], resultants[1]};
+}
+
+/// The stiffness points for given nodal positions and half angles. Angles are measured from the middle node, or one
+/// beside the middle; interpolated, they do not depend on which one it is.
+template <int Nodes, typename S>
+void set_points(const Element<Nodes, S>& element, const std::array<Vector2T<S>, Nodes>& position,
+                const std::array<S, Nodes>& cosine, const std::array<S, Nodes>& sine, PointKinematics<S>* points) {
+  constexpr int from = (Nodes - 1) / 2;
+  std::array<S, Nodes> angle;
   for (int i = 0; i < Nodes; ++i) {
-    const Vector2T<S>& force = translation.forces[i];
-    system.residual[i] << force[0], force[1], S(0), S(0);
-    for (int j = 0; j < Nodes && with_tangent; ++j) {
-      system.tangent[i][j].setConstant(S(0));
-      system.tangent[i][j](0, 0) = system.tangent[i][j](1, 1) = translation.slope * element.mass(i, j);
+    if (i == from) {
+      angle[i] = S(0);
+      continue;
     }
+    const S relative_cosine = cosine[i] * cosine[from] + sine[i] * sine[from],
+            relative_sine = sine[i] * cosine[from] - cosine[i] * sine[from];
+    angle[i] = so3::detail::angle_per_sine(relative_cosine, S(relative_sine * relative_sine)) * relative_sine;
+  }
+  const Turn<S> middle{cosine[from] * cosine[from] - sine[from] * sine[from], S(2) * cosine[from] * sine[from]};
+  for (int k = 0; k < Nodes - 1; ++k) {
+    const auto& constants = element.points[k];
+    const S turn = sum_of<Nodes, S>(constants.shape, angle), square = turn * turn;
+    const std::array<S, 2> series = so3::series_coefficients<1>(square);
+    const Vector2T<S> rotated = middle.to_plane({S(1) - square * series[1], turn * series[0]});
+    PointKinematics<S>& p = points[k];
+    p.cosine = rotated[0];
+    p.sine = rotated[1];
+    p.tangent = sum_of<Nodes, S>(constants.derivative, position);
+    const Vector2T<S> strain = Turn<S>{p.cosine, p.sine}.to_section(p.tangent);
+    const S curvature = sum_of<Nodes, S>(constants.derivative, angle);
+    p.strain = Vector3T<S>(strain[0], strain[1], curvature) - constants.reference_strain;
+  }
+}
+
+template <typename S>
+using PointStress = conserving::PointStress<S, 3>;
+
+/// A stiffness point over a step, see conserving::Point.
+template <typename S>
+struct Point {
+  Turn<S> end, average;          // Lambda_{n+1}, (Lambda_n + Lambda_{n+1}) / 2
+  Vector2T<S> end_tangent, arm;  // r'_{n+1}, (r'_n + r'_{n+1}) / 2
+  S increment;                   // interpolated w
+  Vector2T<S> stretch;           // x = Delta r' + arm x w
+  PointStress<S> own, seen;
+  Vector3T<S> half_defect_stress;
+  Vector3T<S> seen_resultants;
+  S factor, damped_factor;
+};
+
+/// All stiffness points of an element over a step, at the trial configuration.
+template <int Nodes, typename S>
+struct StepPoints {
+  std::array<Point<S>, Nodes - 1> points;
+  S slope;  // of the derivatives of the middle functions, which are so many times Lagrange's
+};
+
+/// The averages of begin and end, and the conjugate strain s, of the point k.
+template <int Nodes, typename S>
+void set_point_strains(const Element<Nodes, S>& element, int k, const Nodal<Nodes, S>& nodes,
+                       const PointKinematics<S>& begin, const PointKinematics<S>& end, StepPoints<Nodes, S>& at) {
+  const auto& constants = element.points[k];
+  Point<S>& p = at.points[k];
+  p.end = {end.cosine, end.sine};
+  p.end_tangent = end.tangent;
+  p.average = {S(0.5) * (begin.cosine + end.cosine), S(0.5) * (begin.sine + end.sine)};
+  p.arm = S(0.5) * (begin.tangent + end.tangent);
+  p.increment = sum_of<Nodes, S>(constants.shape, nodes.increment);
+  p.stretch = end.tangent - begin.tangent - p.increment * quarter_turn<S>(p.arm);
+  const Vector2T<S> strain = p.average.to_section(p.stretch);
+  const Vector3T<S> conjugate(strain[0], strain[1], at.slope * sum_of<Nodes, S>(constants.derivative, nodes.increment));
+  p.own = PointStress<S>(constants.section, begin.strain, end.strain, conjugate);
+}
+
+/// What a variation {dr', spin, spin', dw, dw'} of a point makes of the strain at the end and of s.
+template <typename S>
+struct PointVariation {
+  Vector2T<S> position;
+  S spin, spin_derivative, increment, increment_derivative;
+};
+template <typename S>
+struct StrainSlopes {
+  Vector3T<S> end, conjugate;
+};
+
+/// Of the strain at one configuration, in which the section has turned so, with the tangent r'.
+template <typename S>
+Vector3T<S> strain_slope(const Turn<S>& turn, const Vector2T<S>& tangent, const Vector2T<S>& position, const S& spin,
+                         const S& spin_derivative) {
+  const Vector2T<S> strain = turn.to_section(position - spin * quarter_turn<S>(tangent));
+  return {strain[0], strain[1], spin_derivative};
+}
+
+template <typename S>
+StrainSlopes<S> strain_slopes(const Point<S>& p, const PointVariation<S>& v) {
+  const Vector2T<S> stretch =
+      v.position - (S(0.5) * p.increment) * quarter_turn<S>(v.position) - v.increment * quarter_turn<S>(p.arm);
+  const Vector2T<S> conjugate =
+      p.average.to_section(stretch) - (S(0.5) * v.spin) * p.end.to_section(quarter_turn<S>(p.stretch));
+  return {strain_slope<S>(p.end, p.end_tangent, v.position, v.spin, v.spin_derivative),
+          {conjugate[0], conjugate[1], v.increment_derivative}};
+}
+
+/// A linear form of a variation.
+template <typename S>
+struct PointForm {
+  Vector2T<S> position;
+  S spin, spin_derivative, increment, increment_derivative;
+};
+
+/// The form `conjugate`.ds + `end`.d(strain at the end) (beyond.md 1.3).
+template <typename S>
+PointForm<S> strain_form(const Point<S>& p, const Vector3T<S>& conjugate, const Vector3T<S>& end) {
+  const Vector2T<S> force = p.average.to_plane(force_of<S>(conjugate)),
+                    half_force = S(0.5) * p.end.to_plane(force_of<S>(conjugate)),
+                    end_force = p.end.to_plane(force_of<S>(end));
+  PointForm<S> form;
+  form.position = end_force + force + (S(0.5) * p.increment) * quarter_turn<S>(force);
+  form.spin = cross<S>(end_force, p.end_tangent) + cross<S>(half_force, p.stretch);
+  form.spin_derivative = end[2];
+  form.increment = cross<S>(force, p.arm);
+  form.increment_derivative = conjugate[2];
+  return form;
+}
+
+/// Adds {I^i' n, slope I^i' m - I^i (arm x n)} of the point k to the residual. `resultants`: weighted {N, M}.
+template <int Nodes, typename S, class Rows>
+void add_resultants(const Element<Nodes, S>& element, int k, const StepPoints<Nodes, S>& at,
+                    const Vector3T<S>& resultants, Rows& residual) {
+  const auto& constants = element.points[k];
+  const Point<S>& p = at.points[k];
+  const Vector2T<S> n = p.average.to_plane(force_of<S>(resultants));
+  const S couple = cross<S>(p.arm, n), m = at.slope * resultants[2];
+  for (int i = 0; i < Nodes; ++i) {
+    residual[i][0] += constants.derivative[i] * n[0];
+    residual[i][1] += constants.derivative[i] * n[1];
+    residual[i][2] += constants.derivative[i] * m - constants.shape[i] * couple;
   }
 }
 
 /// The element's energy multiplier, see conserving::EnergyMultiplier.
 template <int Nodes, typename S>
-struct EnergyMultiplier {
-  static constexpr double kRest = 1e-7;  ///< [rad]
+struct EnergyMultiplier : conserving::MultiplierWork<Nodes, S, Vector3T<S>> {
+  using Base = conserving::MultiplierWork<Nodes, S, Vector3T<S>>;
+  using Base::relative, Base::seen_work;
 
-  std::array<S, Nodes> relative;
-  S square = S(0), work = S(0), seen_work = S(0);
-
-  void set_relative(const std::array<S, Nodes>& increments) {
-    S mean = increments[0];
-    for (int i = 1; i < Nodes; ++i) mean += increments[i];
-    mean *= S(1.0 / Nodes);
-    for (int i = 0; i < Nodes; ++i) {
-      relative[i] = increments[i] - mean;
-      square += relative[i] * relative[i];
-    }
-  }
-
-  void add(const typename Element<Nodes, S>::Point& constants, const PointKinematics<S>& begin,
+  void add(const S& weight, const SectionStiffness<S>& stiffness, const PointKinematics<S>& begin,
            const PointKinematics<S>& end, Point<S>& p) {
     const S sine = begin.cosine * end.sine - begin.sine * end.cosine,
             cosine = begin.cosine * end.cosine + begin.sine * end.sine;
     const S turn = S(2) * sine / (S(1) + cosine);
     const Vector2T<S> strain = (p.increment - turn) * p.average.to_section(quarter_turn<S>(p.arm));
     const Vector3T<S> defect(strain[0], strain[1], end.strain[2] - begin.strain[2] - p.own.conjugate_strain[2]);
-    work += constants.weight * so3::dot(p.own.stress, defect);
-    seen_work += constants.weight * so3::dot(p.seen.stress, defect);
-    p.half_defect_stress = S(0.5) * constants.section.stress(defect);
+    this->add_defect(weight, stiffness, defect, p);
   }
 
-  S slope() const { return square / guarded(); }
-  PointForm<S> form(const S& weight, const Point<S>& p) const {
-    return strain_form<S>(p, -weight * p.seen.stress, weight * Vector3T<S>(p.half_defect_stress + p.seen.stress));
-  }
-
-  void add_moments(BlockSystem<Nodes, S>& system, bool has_carried) const {
-    const S mu = work * slope(), rest = seen_work * slope() - mu;
-    for (int i = 0; i < Nodes; ++i) system.residual[i][2] += mu * relative[i];
-    for (int i = 0; i < Nodes && has_carried; ++i) system.carried[i][2] += rest * relative[i];
-  }
   /// `work_row`: d(work) for {dr, spin} of the nodes; `rate`: of their increments per spin.
   void add_tangent(const std::array<Vector3T<S>, Nodes>& work_row, const std::array<S, Nodes>& rate,
                    BlockSystem<Nodes, S>& system) const {
-    const S by_work = slope(), mu = seen_work * by_work, by_square = seen_work / guarded() - S(2) * mu * by_work;
+    const S by_work = this->slope(), mu = seen_work * by_work;
+    const S by_square = seen_work / this->guarded() - S(2) * mu * by_work;
     for (int j = 0; j < Nodes; ++j) {
       Vector3T<S> row = by_work * work_row[j];
       row[2] += (S(2) * by_square) * (rate[j] * relative[j]);
@@ -80,98 +224,7 @@ struct EnergyMultiplier {
       }
     }
   }
-
- private:
-  S guarded() const { return square * square + S(kRest * kRest * kRest * kRest); }
 };
-
-/// Adds {I^i' n, slope I^i' m - I^i (arm x n)}.
-template <int Nodes, typename S>
-void add_residual(const typename Element<Nodes, S>::Point& constants, const S& slope, const Point<S>& p,
-                  const Vector3T<S>& resultants, std::array<Eigen::Matrix<S, 4, 1>, Nodes>& residual) {
-  const Vector2T<S> n = p.average.to_plane(force_of<S>(resultants));
-  const S couple = cross<S>(p.arm, n), m = slope * resultants[2];
-  for (int i = 0; i < Nodes; ++i) {
-    residual[i][0] += constants.derivative[i] * n[0];
-    residual[i][1] += constants.derivative[i] * n[1];
-    residual[i][2] += constants.derivative[i] * m - constants.shape[i] * couple;
-  }
-}
-
-/// Strains and elastic stresses at the points; `carried` may be null.
-template <int Nodes, typename S>
-void set_strains(const Element<Nodes, S>& element, const S& slope, const Nodal<Nodes, S>& nodes,
-                 const PointKinematics<S>* begin, const PointKinematics<S>* end,
-                 const CarriedStrains<Nodes, S>* carried, StepPoints<Nodes, S>& at) {
-  for (int k = 0; k < Nodes - 1; ++k) {
-    Point<S>& p = at[k];
-    set_strains<Nodes, S>(element.points[k], slope, nodes, begin[k], end[k], p);
-    p.seen = p.own;
-    if (carried)
-      p.seen = PointStress<S>(element.points[k].section, begin[k].strain, carried->end[k],
-                              carried->has_conjugate ? carried->conjugate[k] : p.own.conjugate_strain);
-  }
-}
-
-/// See conserving::set_forces.
-template <int Nodes, typename S>
-void set_forces(const Element<Nodes, S>& element, const S& slope, const Nodal<Nodes, S>& nodes, const TimeRule& rule,
-                const PointKinematics<S>* begin, const PointKinematics<S>* end, const StrainMemory<S>* memory,
-                double step, bool with_tangent, bool has_carried, StrainMemory<S>* end_memory, StepPoints<Nodes, S>& at,
-                EnergyMultiplier<Nodes, S>& multiplier, BlockSystem<Nodes, S>& system) {
-  const bool is_corrected = rule.correction == EnergyCorrection::Multiplier;
-  const bool has_memory = rule.dissipation.any() || element.has_stiffness_damping;
-  const bool is_uneven = element.has_stiffness_damping && !element.is_damped_evenly;
-  set_translation<Nodes, S>(element, nodes, rule.velocity_factor(), step, with_tangent, system);
-  if (is_corrected) {
-    multiplier.set_relative(nodes.increment);
-    for (int k = 0; k < Nodes - 1; ++k) multiplier.add(element.points[k], begin[k], end[k], at[k]);
-  }
-  const conserving::DamperParts<S> damper_parts(element.stiffness_damping, rule.damping_relaxation);
-  for (int i = 0; i < Nodes && has_carried; ++i) system.carried[i].setConstant(S(0));
-  for (int k = 0; k < Nodes - 1; ++k) {
-    const auto& constants = element.points[k];
-    Point<S>& p = at[k];
-    p.factor = p.damped_factor = S(0);
-    Vector3T<S> stress = p.own.stress, seen = p.seen.stress;
-    const auto forget = [&](const Vector3T<S>& remembered) {
-      stress -= remembered;
-      seen -= remembered;
-    };
-    if (rule.dissipation.any()) {
-      const conserving::NumericalDamper<S, 3> damper(rule.dissipation, memory[k], p.own.conjugate_strain,
-                                                     constants.section, step);
-      p.factor += damper.factor;
-      forget(damper.remembered);
-      system.dissipated += constants.weight * damper.dissipated;
-      end_memory[k].average = damper.average;
-    }
-    if (element.has_stiffness_damping) {
-      const SectionStiffness<S>& damped = is_uneven ? constants.damped : constants.section;
-      const Vector3T<S> damped_stress = damped.stress(p.own.conjugate_strain);
-      const conserving::StructuralDamper<S, 3> damper(damper_parts, rule.damping_relaxation, memory[k],
-                                                      p.own.conjugate_strain, damped_stress, damped, step);
-      if (is_uneven) {
-        p.damped_factor = damper.factor;
-        stress += p.damped_factor * damped_stress;
-        seen += p.damped_factor * damped.stress(p.seen.conjugate_strain);
-      } else {
-        p.factor += damper.factor;
-      }
-      forget(damper.remembered);
-      system.dissipated += constants.weight * damper.dissipated;
-      end_memory[k].delayed_rate = damper.delayed_rate;
-    }
-    if (has_memory) end_memory[k].rate = conserving::end_rate(memory[k], p.own.conjugate_strain, step);
-    const Vector3T<S> weighted = constants.weight * Vector3T<S>(stress + p.factor * p.own.conjugate_stress);
-    add_residual<Nodes, S>(constants, slope, p, weighted, system.residual);
-    if (!with_tangent) continue;
-    p.seen_resultants = constants.weight * Vector3T<S>(seen + p.factor * p.seen.conjugate_stress);
-    if (has_carried)
-      add_residual<Nodes, S>(constants, slope, p, Vector3T<S>(p.seen_resultants - weighted), system.carried);
-  }
-  if (is_corrected) multiplier.add_moments(system, has_carried);
-}
 
 /// {dn, dm} of a variation of the strain at the end by `end` and of s by `conjugate`; n is not turned.
 template <int Nodes, typename S>
@@ -184,7 +237,7 @@ Vector3T<S> resultant_slope(const typename Element<Nodes, S>::Point& constants, 
   return {force[0], force[1], stress[2]};
 }
 
-/// Adds the tangent of add_residual(): `position`, `turns` are {dn, dm} of variations of dr' and of the nodes' spins,
+/// Adds the tangent of add_resultants(): `position`, `turns` are {dn, dm} of variations of dr' and of the nodes' spins,
 /// `couple` d(arm x n) of dr'.
 template <int Nodes, typename S>
 [[gnu::always_inline]] inline void add_point_tangent(const typename Element<Nodes, S>::Point& constants, const S& slope,
@@ -217,12 +270,12 @@ template <int Nodes, typename S>
 
 /// Adds the tangent of an element's internal forces, after set_forces().
 template <int Nodes, typename S>
-void add_tangent(const Element<Nodes, S>& element, const S& slope, const Nodal<Nodes, S>& nodes, const TimeRule& rule,
+void add_tangent(const Element<Nodes, S>& element, const Nodal<Nodes, S>& nodes, const TimeRule& rule,
                  const StepPoints<Nodes, S>& at, const EnergyMultiplier<Nodes, S>& multiplier,
                  BlockSystem<Nodes, S>& system) {
   const bool is_corrected = rule.correction == EnergyCorrection::Multiplier;
   const bool is_uneven = element.has_stiffness_damping && !element.is_damped_evenly;
-  const S zero(0), one(1);
+  const S zero(0), one(1), &slope = at.slope;
   std::array<S, Nodes> rate;  // dw = rate spin
   std::array<Vector3T<S>, Nodes> work_row;
   for (int i = 0; i < Nodes; ++i) {
@@ -231,7 +284,7 @@ void add_tangent(const Element<Nodes, S>& element, const S& slope, const Nodal<N
   }
   for (int k = 0; k < Nodes - 1; ++k) {
     const auto& constants = element.points[k];
-    const Point<S>& p = at[k];
+    const Point<S>& p = at.points[k];
     const auto slope_of = [&](const PointVariation<S>& variation) -> Vector3T<S> {
       const StrainSlopes<S> strains = strain_slopes<S>(p, variation);
       return resultant_slope<Nodes, S>(constants, is_uneven, p, strains.end, strains.conjugate);
@@ -269,7 +322,7 @@ void add_tangent(const Element<Nodes, S>& element, const S& slope, const Nodal<N
 }
 
 /// Forces of an element over a step, with the tangent where it is asked for; `end` receives the points at t_{n+1}. See
-/// conserving_beam.h for the others.
+/// conserving::set_forces() for the others.
 template <int Nodes, typename S>
 void beam(const Element<Nodes, S>& element, const S& slope, const Nodal<Nodes, S>& nodes, const TimeRule& rule,
           const PointKinematics<S>* begin, const StrainMemory<S>* memory, double step, bool with_tangent,
@@ -277,13 +330,12 @@ void beam(const Element<Nodes, S>& element, const S& slope, const Nodal<Nodes, S
           BlockSystem<Nodes, S>& system) {
   StepPoints<Nodes, S> at;
   EnergyMultiplier<Nodes, S> multiplier;
-  assert(step != 0 && begin && end);
-  assert(!(rule.dissipation.any() || element.has_stiffness_damping) || (memory && end_memory));
+  at.slope = slope;
   set_points<Nodes, S>(element, nodes.end, nodes.cosine, nodes.sine, end);
-  set_strains<Nodes, S>(element, slope, nodes, begin, end, carried, at);
-  set_forces<Nodes, S>(element, slope, nodes, rule, begin, end, memory, step, with_tangent, carried != nullptr,
-                       end_memory, at, multiplier, system);
-  if (with_tangent) add_tangent<Nodes, S>(element, slope, nodes, rule, at, multiplier, system);
+  conserving::set_strains<Nodes>(element, nodes, begin, end, carried, at);
+  conserving::set_forces<Nodes>(element, nodes, rule, begin, end, memory, step, with_tangent, carried != nullptr,
+                                end_memory, at, multiplier, system);
+  if (with_tangent) add_tangent<Nodes, S>(element, nodes, rule, at, multiplier, system);
 }
 
 /// See conserving::carry_strains. `update`: {dx, dy, spin} of the nodes.
@@ -298,11 +350,13 @@ void carry_strains(const Element<Nodes, S>& element, const S& slope, const Nodal
     spin[i] = update[i][2];
     increment[i] = (S(1) + S(0.25) * nodes.increment[i] * nodes.increment[i]) * spin[i];
   }
+  StepPoints<Nodes, S> at;
+  at.slope = slope;
   set_points<Nodes, S>(element, nodes.end, nodes.cosine, nodes.sine, end);
   for (int k = 0; k < Nodes - 1; ++k) {
     const auto& constants = element.points[k];
-    Point<S> p;
-    set_strains<Nodes, S>(constants, slope, nodes, begin[k], end[k], p);
+    const Point<S>& p = at.points[k];
+    set_point_strains(element, k, nodes, begin[k], end[k], at);
     const StrainSlopes<S> slopes = strain_slopes<S>(
         p, {sum_of<Nodes, S>(constants.derivative, displacement), sum_of<Nodes, S>(constants.shape, spin),
             sum_of<Nodes, S>(constants.derivative, spin), sum_of<Nodes, S>(constants.shape, increment),

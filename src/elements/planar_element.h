@@ -36,6 +36,9 @@ struct Element {
   Eigen::Matrix<S, Nodes, Nodes> mass;
   S stiffness_damping, mass_damping;
   bool has_stiffness_damping = false, has_mass_damping = false, is_damped_evenly = true;
+
+  const SectionStiffness<S>& section(int point) const { return points[point].section; }
+  const SectionStiffness<S>& damped_section(int point) const { return points[point].damped; }
 };
 
 /// Makes an element a lane. `basis`: PlaneOfMotion::strain_basis of its nodes.

@@ -47,7 +47,7 @@ void FreeNodes::move(const std::vector<NodePose>& from, const Eigen::VectorXd& i
           gathered_quaternion([&](int lane) -> const Quaternion& { return pose(lane).orientation; });
       const QuaternionT<Pack> turned = normalised(turn(rotation) * orientation);
       const Matrix3T<Pack> matrix = turned.toRotationMatrix();
-      std::array<double*, kLanes> quaternions, matrices;
+      std::array<double*, kLanes> quaternions = {}, matrices = {};
       for (int lane = 0; lane < pack.lanes; ++lane) {
         NodePose& moved = to[pack.nodes[lane]];
         moved.position = pose(lane).position + Eigen::Map<const Vector3>(increment.data() + pack.equations[lane]);

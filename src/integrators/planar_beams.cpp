@@ -210,7 +210,7 @@ void PlanarBeams::scatter(const ElementPack<Nodes>& pack, const Memory<Nodes>& m
 template <int Nodes>
 void PlanarBeams::scatter(const ElementPack<Nodes>& pack, const std::array<Eigen::Matrix<Pack, 4, 1>, Nodes>& from,
                           std::vector<NodeForce>& to) const {
-  std::array<double*, Pack::kLanes> targets;
+  std::array<double*, Pack::kLanes> targets = {};  // of unused lanes, too: compilers do not see that nobody reads them
   for (int i = 0; i < Nodes; ++i) {
     for (int lane = 0; lane < pack.lanes; ++lane) targets[lane] = to[pack.nodes[lane][i]].at;
     add_lanes<4>(from[i].data(), pack.lanes, targets.data());
@@ -222,7 +222,7 @@ void PlanarBeams::scatter(const ElementPack<Nodes>& pack, const planar::BlockSys
                           Balance& balance) {
   scatter<Nodes>(pack, system.residual, forces_);
   if (balance.carried) scatter<Nodes>(pack, system.carried, carried_);
-  std::array<double*, Pack::kLanes> targets;
+  std::array<double*, Pack::kLanes> targets = {};
   for (int i = 0; i < Nodes && balance.tangent; ++i)
     for (int j = 0; j < Nodes; ++j) {
       for (int lane = 0; lane < pack.lanes; ++lane)

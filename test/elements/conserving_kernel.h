@@ -1,8 +1,8 @@
 #pragma once
 /// The kernel of the energy-momentum family as tests call it: elements in and systems out, lane by lane.
 
+#include "elements/conserving_beam.h"
 #include "elements/conserving_pack.h"
-#include "elements/conserving_points.h"
 #include "elements/random_element.h"
 #include "elements/tested_step.h"
 #include "math/lanes.h"

@@ -15,6 +15,16 @@ using namespace test;
 class StepSystemOf : public SchemeStep {};
 class ConsistentTangent : public SchemeStep {};
 
+/// All else as it is by default.
+StepSettings newton_settings(double step, double tolerance, int max_iterations, int max_halvings) {
+  StepSettings settings;
+  settings.step = step;
+  settings.tolerance = tolerance;
+  settings.max_iterations = max_iterations;
+  settings.max_halvings = max_halvings;
+  return settings;
+}
+
 /// The mechanism without friction, which turns over increments too small for the differences.
 Model smooth_model() {
   Model model = build_model(every_joint_scene(false));
@@ -219,7 +229,8 @@ TEST(Statics, AFailureLeavesTheStateUntouched) {
   const Model model = build_model(builder.scene);
   State state = initial_state(model);
   const State before = state;
-  const StepResult result = solve_static(model, schemes().front(), {1e-2, 1e-9, 20, 2}, 2, Equilibrium::Stable, state);
+  const StepResult result =
+      solve_static(model, schemes().front(), newton_settings(1e-2, 1e-9, 20, 2), 2, Equilibrium::Stable, state);
   EXPECT_FALSE(result.converged);
   EXPECT_NE(result.reason, StepResult::Reason::None);
   for (std::size_t i = 0; i < state.nodes.size(); ++i) EXPECT_EQ(state.nodes[i].position, before.nodes[i].position);
@@ -227,7 +238,7 @@ TEST(Statics, AFailureLeavesTheStateUntouched) {
 
 TEST(Stepper, HalvesAndReportsWhatItCannotDo) {
   const Model model = build_model(rigid_arm());
-  Stepper stepper(model, schemes().front(), {0.1, 1e-9, 20, 2});
+  Stepper stepper(model, schemes().front(), newton_settings(0.1, 1e-9, 20, 2));
   State state = initial_state(model);
   state.nodes.back().velocity.setConstant(std::numeric_limits<double>::quiet_NaN());
   const StepResult result = stepper.advance(state);
@@ -251,7 +262,7 @@ TEST(Stepper, TurnsOfMoreThanNinetyDegreesAreSplit) {
   builder.joint("axle", scene::JointKind::Continuous, "world", "rotor");
   builder.scene.initial_joints.push_back({"axle", 0, 25.0, {}});
   const Model model = build_model(builder.scene);
-  Stepper stepper(model, schemes().front(), {0.1, 1e-10, 20, 4});  // 2.5 rad per step
+  Stepper stepper(model, schemes().front(), newton_settings(0.1, 1e-10, 20, 4));  // 2.5 rad per step
   State state = initial_state(model);
   const StepResult result = stepper.advance(state);
   ASSERT_TRUE(result.converged);
@@ -279,7 +290,7 @@ TEST_P(MomentumConservingSchemes, FreeMechanismKeepsMomentaAndEnergy) {
   const Model model = build_model(scene);
   // The thesis's beta divides by what vanishes where the axial strain rests; then it needs shorter steps, or fails.
   const bool is_fragile = scheme.correction == EnergyCorrection::AxialBeta;
-  Stepper stepper(model, scheme, {1e-2, 1e-10, 20, is_fragile ? 5 : 0});
+  Stepper stepper(model, scheme, newton_settings(1e-2, 1e-10, 20, is_fragile ? 5 : 0));
   State state = initial_state(model);
   stepper.initialise(state);
   const Momenta before = momenta(model, scheme, state);
@@ -300,7 +311,7 @@ TEST_P(MomentumConservingSchemes, FreeMechanismKeepsMomentaAndEnergy) {
 TEST_P(EnergyConservingSchemes, EnergyBudgetCloses) {
   const Scheme& scheme = GetParam().scheme;
   const Model model = build_model(every_joint_scene(false));
-  Stepper stepper(model, scheme, {5e-3, 1e-10, 30, 3});
+  Stepper stepper(model, scheme, newton_settings(5e-3, 1e-10, 30, 3));
   State state = initial_state(model);
   stepper.initialise(state);
   const double start = energies(model, scheme, state).total();
