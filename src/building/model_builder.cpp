@@ -9,6 +9,7 @@
 
 #include "building/articulated_inertia.h"
 #include "building/closure_builder.h"
+#include "building/contact_builder.h"
 #include "building/coordinate_builder.h"
 #include "building/damping_ratios.h"
 #include "building/elementary_joints.h"
@@ -59,6 +60,7 @@ BuiltModel build(const scene::SceneDescription& scene) {
   std::vector<int> dependent = coordinates_without_own_inertia(solvable.node_parents, model);
   model.node_parents = std::move(solvable.node_parents);
   model.force_elements = place_force_elements(plan, model);
+  for (auto& contact : place_contacts(plan, model)) model.force_elements.push_back(std::move(contact));
   return {std::move(model), std::move(massless), std::move(dependent)};
 }
 

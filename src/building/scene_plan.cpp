@@ -80,6 +80,7 @@ bool floats(const scene::SceneDescription& scene, const JointTree& tree, const L
   const auto holds_root = [&](const scene::JointDescription& loop) {
     return loop.parent == scene.root_link || loop.child == scene.root_link;
   };
+  if (!scene.contacts.empty()) return false;  // something may stand in the way
   const auto ties_root = [&](const auto& element) {
     const std::vector<scene::LinkPoint> points = element->points();
     return std::any_of(points.begin(), points.end(),

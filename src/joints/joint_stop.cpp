@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "joints/penetration.h"
 #include "joints/stop_restitution.h"
 #include "math/pi.h"
 
@@ -21,50 +22,6 @@ constexpr double kLargestAngle = kPi / 5, kLargestAngleAtEnd = kPi / 8;
 constexpr double kSwing = 0.5;
 /// Part of what a stop still gives way that a step cannot miss.
 constexpr double kMuch = 0.1;
-/// Depths that a state beyond all bounds counts for.
-constexpr double kDeepest = 1 - 1e-6;
-/// Increments whose quotients lose too much to round-off, relative to the way to where the stop gives way no further.
-constexpr double kTiny = 1e-6;
-
-/// One side of a stop: how deep it is penetrated [m or rad], < 0 outside.
-struct Penetration {
-  double depth, give;
-  bool is_held = false;  // the law of the inside goes on outside
-  bool is_felt() const { return depth > 0 || is_held; }
-};
-
-struct Hardened {
-  double value = 0, slope = 0, curvature = 0;
-};
-
-double share(const Penetration& p) {
-  return std::min(p.depth / p.give, kDeepest);
-}
-
-/// 1 - s^2, exact near s = 1.
-double room(double s) {
-  return (1 - s) * (1 + s);
-}
-
-Hardened hardened(const Penetration& p) {
-  if (!p.is_felt()) return {};
-  const double s = share(p), a = room(s);
-  return {p.depth / (a * a), (1 + 3 * s * s) / (a * a * a), 12 * s * (1 + s * s) / (a * a * a * a) / p.give};
-}
-
-/// Quotient of the increments of hardened and true penetration, and its derivative with respect to the end.
-Hardened quotient(const Penetration& begin, const Penetration& end) {
-  const double change = end.depth - begin.depth;
-  const Hardened x0 = hardened(begin), x1 = hardened(end);
-  if (!begin.is_felt() || !end.is_felt()) {
-    const double value = (x1.value - x0.value) / change;
-    return {value, (x1.slope - value) / change, 0};
-  }
-  const double s0 = share(begin), s1 = share(end), a = room(s0), b = room(s1);
-  const double value = ((a + b) * (1 + s0 * s1) - a * b) / (a * a * b * b);
-  const bool is_tiny = std::abs(change) <= kTiny * (end.give - end.depth);
-  return {value, is_tiny ? 0.5 * x1.curvature : (x1.slope - value) / change, 0};
-}
 
 /// Against the penetration, and its derivative with respect to the one at the end.
 struct Push {

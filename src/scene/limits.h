@@ -13,6 +13,7 @@ constexpr std::size_t kMostJoints = 10000;
 constexpr std::size_t kMostSimulationEntries = 10000;  ///< children of <simulation>
 constexpr std::size_t kMostSensors = 10000;
 constexpr std::size_t kMostForceElements = 10000;     ///< between points
+constexpr std::size_t kMostContacts = 1000;           ///< grounds, and pairs that are named
 constexpr std::size_t kMostCentrelinePieces = 10000;  ///< per beam
 constexpr double kLongestPiece = 1e9;                 ///< of a centreline, and radius of an arc [m]
 constexpr std::size_t kMostProfilePoints = 10000;     ///< of a cam

@@ -256,10 +256,11 @@ LinkDescription read_link(const XmlElement& unnamed) {
   for (const XmlElement& child : link.children()) {
     if (child.tag() != "visual" && child.tag() != "collision") continue;
     const bool is_good = judge_alone(child, "<link name=\"link\">" + printed(child.xml()) + "</link>");
-    if (!is_good || child.tag() == "collision" || !link.child("beam")) continue;
-    if (const std::optional<VisualDescription> visual = visual_of_urdfdom(child.xml()))
-      description.visuals.push_back(*visual);
-    else
+    const bool is_collision = child.tag() == "collision";
+    if (!is_good || (!is_collision && !link.child("beam"))) continue;
+    if (const std::optional<VisualDescription> shape = shape_of_urdfdom(child.xml()))
+      (is_collision ? description.collisions : description.visuals).push_back(*shape);
+    else if (!is_collision)
       child.warning("is not shown: its shape must have an extent, of finite numbers");
   }
   return description;

@@ -14,8 +14,9 @@ namespace flexarm::scene {
 namespace {
 
 /// Children of <robot> that are read, here or as URDF has them: what a misspelt name may mean.
-constexpr std::string_view kOwn[] = {"link",  "joint",        "material",   "loop_joint", "spring",    "drive",
-                                     "servo", "transmission", "simulation", "sensor",     "parameter", "gazebo"};
+constexpr std::string_view kOwn[] = {"link",      "joint",  "material",     "loop_joint", "spring",
+                                     "drive",     "servo",  "transmission", "simulation", "sensor",
+                                     "parameter", "gazebo", "ground",       "contact",    "no_contact"};
 /// Of other programs.
 constexpr std::string_view kOfOthers[] = {"ros2_control",
                                           "mujoco",
@@ -57,7 +58,6 @@ struct Home {
 constexpr Home kHomes[] = {{"inertial", "link"},
                            {"visual", "link"},
                            {"collision", "link"},
-                           {"contact", "link"},
                            {"origin", "joint"},
                            {"parent", "joint"},
                            {"child", "joint"},

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "scene/contact_reader.h"
 #include "scene/drive_reader.h"
 #include "scene/extension_reader.h"
 #include "scene/force_element_kinds.h"
@@ -83,12 +84,16 @@ class SceneReader {
     settle_gears(transmissions_, scene_.drives, findings_);
     check_size(robot, "sensors", scene_.sensors.size(), kMostSensors);
     check_size(robot, "elements between points of links", scene_.force_elements.size(), kMostForceElements);
+    check_size(robot, "grounds", scene_.grounds.size(), kMostContacts);
+    check_size(robot, "<contact>", scene_.contacts.size(), kMostContacts);
+    check_size(robot, "<no_contact>", scene_.no_contacts.size(), kMostContacts);
     if (scene_.links.empty()) robot.error("at least one <link> is expected");
     check_tree(scene_, findings_);
     settle_root(scene_, start_, findings_);
     check_inertias(scene_, findings_);
     settle_positions(scene_, start_, unreadable_, findings_);
     check_references(scene_, unreadable_, findings_);
+    check_contacts(scene_, findings_);
     if (findings_.error_count() == 0) hold_followers_of_fixed_joints(scene_);
     return std::move(scene_);
   }
@@ -112,6 +117,12 @@ class SceneReader {
       if (findings_.error_count() > errors) unreadable_.insert(scene_.loop_joints.back().name);
     } else if (const ForceElementKind* kind = kind_of(child)) {
       if (scene_.force_elements.size() <= kMostForceElements) scene_.force_elements.push_back(kind->read(child));
+    } else if (tag == "ground" && scene_.grounds.size() <= kMostContacts) {
+      scene_.grounds.push_back(read_ground(child));
+    } else if (tag == "contact" && scene_.contacts.size() <= kMostContacts) {
+      scene_.contacts.push_back(read_contact(child));
+    } else if (tag == "no_contact" && scene_.no_contacts.size() <= kMostContacts) {
+      scene_.no_contacts.push_back(read_no_contact(child));
     } else if (tag == "spring" && scene_.springs.size() <= kMostJoints) {
       scene_.springs.push_back(read_spring(child));
     } else if (tag == "drive" && scene_.drives.size() <= kMostJoints) {

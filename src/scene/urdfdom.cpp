@@ -98,12 +98,14 @@ std::optional<std::string> refusal_of_urdfdom(std::string document) {
   return robot.model ? std::nullopt : std::optional(robot.errors.front());
 }
 
-std::optional<VisualDescription> visual_of_urdfdom(const tinyxml2::XMLElement& visual) {
-  const Parsed robot = parsed("<robot name=\"robot\"><link name=\"link\">" + printed(visual) + "</link></robot>");
+std::optional<VisualDescription> shape_of_urdfdom(const tinyxml2::XMLElement& element) {
+  const Parsed robot = parsed("<robot name=\"robot\"><link name=\"link\">" + printed(element) + "</link></robot>");
   const urdf::LinkConstSharedPtr link = robot.model ? robot.model->getLink("link") : nullptr;
-  if (!link || !link->visual || !link->visual->geometry) return std::nullopt;
-  const auto shape = shape_of(*link->visual->geometry);
-  const auto& [position, rotation] = link->visual->origin;
+  if (!link || (!link->visual && !link->collision)) return std::nullopt;
+  const urdf::GeometrySharedPtr geometry = link->visual ? link->visual->geometry : link->collision->geometry;
+  if (!geometry) return std::nullopt;
+  const auto shape = shape_of(*geometry);
+  const auto& [position, rotation] = link->visual ? link->visual->origin : link->collision->origin;
   const Pose origin{vector(position), Quaternion(rotation.w, rotation.x, rotation.y, rotation.z).normalized()};
   if (!shape || !origin.position.allFinite() || !origin.orientation.coeffs().allFinite()) return std::nullopt;
   return VisualDescription{origin, *shape};

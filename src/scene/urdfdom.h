@@ -20,8 +20,9 @@ std::vector<std::string> errors_of_urdfdom(std::string document);
 /// The first of these errors, if urdfdom gives no model for the document; nothing if it does, whatever it logs.
 std::optional<std::string> refusal_of_urdfdom(std::string document);
 
-/// What a <visual> of a link is, of which urdfdom has nothing to complain; nothing where its shape has no extent.
-std::optional<VisualDescription> visual_of_urdfdom(const tinyxml2::XMLElement& visual);
+/// What a <visual> or <collision> of a link is, of which urdfdom has nothing to complain; nothing where its shape has
+/// no extent.
+std::optional<VisualDescription> shape_of_urdfdom(const tinyxml2::XMLElement& element);
 
 /// The element as XML text, references only where a character could not stand for itself.
 std::string printed(const tinyxml2::XMLElement& element);

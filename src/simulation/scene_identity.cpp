@@ -92,7 +92,7 @@ class SceneFingerprint {
   // ---- links and joints
   void add(const scene::RigidInertia& inertia) { all(inertia.mass, inertia.center_of_mass, inertia.inertia); }
   void add(const scene::LinkDescription& link) {
-    const auto& [name, inertial, beam, visuals, location] = link;
+    const auto& [name, inertial, beam, visuals, collisions, location] = link;
     all(name, inertial, beam);
   }
   /// What was not there before counts where it is given: other scenes keep their fingerprints.
@@ -162,6 +162,16 @@ class SceneFingerprint {
     for (const scene::LinkPoint& point : points) add(point.at);
     for (const double number : element->numbers()) add(number);
   }
+  void add(const scene::GroundDescription& ground) { all(ground.name, ground.normal, ground.offset); }
+  void add(const scene::ContactPair& pair) { all(pair.first, pair.second); }
+  void add(const scene::ContactDescription& contact) {
+    all(contact.first, contact.second, contact.stiffness, contact.restitution, contact.friction);
+  }
+  void add(const scene::BoxShape& box) { add(box.size); }
+  void add(const scene::CylinderShape& cylinder) { all(cylinder.radius, cylinder.length); }
+  void add(const scene::SphereShape& sphere) { add(sphere.radius); }
+  void add(const scene::MeshShape& mesh) { all(mesh.url, mesh.scale); }
+  void add(const scene::VisualDescription& shape) { all(shape.origin, shape.shape); }
   void add(const scene::JointEffort& effort) { all(effort.coordinate, effort.history); }
 
   Fingerprint bytes_;
@@ -191,12 +201,21 @@ std::string force_element_lines(const scene::ForceElementDescriptions& elements)
   return text;
 }
 
+/// One where something may touch.
+std::string contact_lines(const scene::SceneDescription& scene) {
+  if (scene.contacts.empty()) return "";
+  std::vector<std::vector<scene::VisualDescription>> shapes;
+  for (const scene::LinkDescription& link : scene.links) shapes.push_back(link.collisions);
+  return fmt::format("contact {}\n", SceneFingerprint::of(scene.grounds, scene.contacts, scene.no_contacts, shapes));
+}
+
 }  // namespace
 
 std::string scene_identity(const scene::SceneDescription& scene, const Scheme& scheme) {
   const auto& [name, file, root, links, joints, loop_joints, springs, drives, servos, gravity, integrator,
                integrator_location, initial_joints, initial_links, loads, distributed_loads, motions, efforts, probes,
-               sensors, force_elements, lock_massless, starts_in_equilibrium, equilibrium_location,
+               sensors, force_elements, grounds, contacts, no_contacts, lock_massless, starts_in_equilibrium,
+               equilibrium_location,
                parameters] = scene;  // which count by the numbers that are made of them
   return integrator_line(integrator.step, scheme) + "\n" + named_lines("link", links) + named_lines("joint", joints) +
          named_lines("loop_joint", loop_joints) +
@@ -208,7 +227,7 @@ std::string scene_identity(const scene::SceneDescription& scene, const Scheme& s
                      SceneFingerprint::of(loads), SceneFingerprint::of(distributed_loads),
                      SceneFingerprint::of(motions), SceneFingerprint::of(efforts)) +
          (starts_in_equilibrium ? "initial equilibrium\n" : "") + named_lines("sensor", sensors) +
-         force_element_lines(force_elements);
+         force_element_lines(force_elements) + contact_lines(scene);
 }
 
 std::string scene_identity(const scene::SceneDescription& scene) {

@@ -12,6 +12,7 @@
 #include "flexarm/math/pose.h"
 #include "flexarm/math/time_function.h"
 #include "flexarm/model/results.h"
+#include "flexarm/scene/contact_description.h"
 #include "flexarm/scene/force_element.h"
 #include "flexarm/scene/source_location.h"
 #include "flexarm/scene/visual_description.h"
@@ -119,7 +120,8 @@ struct LinkDescription {
   std::string name;
   std::optional<RigidInertia> inertial;  ///< ignored where there is a beam
   std::optional<BeamDescription> beam;
-  std::vector<VisualDescription> visuals = {};  ///< read where there is a beam: of other links others draw them
+  std::vector<VisualDescription> visuals = {};     ///< read where there is a beam: of other links others draw them
+  std::vector<VisualDescription> collisions = {};  ///< shapes by which it touches others
   SourceLocation location = {};
 };
 
@@ -382,6 +384,9 @@ struct SceneDescription {
   std::vector<Probe> probes;
   std::vector<Sensor> sensors;
   ForceElementDescriptions force_elements;  ///< what acts between points of links: springs
+  std::vector<GroundDescription> grounds;
+  std::vector<ContactDescription> contacts;
+  std::vector<ContactPair> no_contacts;
   bool lock_massless = false;          ///< joints that move nothing with inertia are held where they start, not refused
   bool starts_in_equilibrium = false;  ///< at rest, where loads, gravity and servos at t = 0 hold it
   SourceLocation equilibrium_location = {};      ///< of the <initial> that says so

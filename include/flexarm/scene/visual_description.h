@@ -1,5 +1,5 @@
 #pragma once
-/// What a link looks like: URDF's <visual>.
+/// Shapes of a link: URDF's <visual> and <collision>.
 
 #include <string>
 #include <variant>
@@ -8,7 +8,7 @@
 
 namespace flexarm::scene {
 
-/// A shape for displays. Cylinders stand along z; all have their middle at the origin.
+/// A shape for displays, or that touches others. Cylinders stand along z; all have their middle at the origin.
 struct BoxShape {
   Vector3 size = Vector3::Zero();  ///< [m]
 };

@@ -1,0 +1,34 @@
+#pragma once
+/// What touches what: <ground>, <contact>, <no_contact> of a scene.
+
+#include <optional>
+#include <string>
+
+#include "flexarm/math/pose.h"
+#include "flexarm/scene/source_location.h"
+
+namespace flexarm::scene {
+
+/// A half-space fixed in the world: where normal . x < offset.
+struct GroundDescription {
+  std::string name;
+  Vector3 normal = Vector3::UnitZ();  ///< outwards, unit
+  double offset = 0;                  ///< [m]
+  SourceLocation location = {};
+};
+
+/// Stands for all links and grounds that are not neighbours.
+constexpr const char* kAllBodies = "*";
+
+/// Two sides that touch: a link, a ground, or all. Of several that name a pair the one counts that names most of it.
+struct ContactPair {
+  std::string first, second;
+  SourceLocation location = {};
+};
+struct ContactDescription : ContactPair {
+  std::optional<double> stiffness = {};  ///< of a contact point [N/m]; empty: by what it moves and the step
+  double restitution = 0.3;              ///< from 0.05 to 1
+  double friction = 0;                   ///< Coulomb's coefficient
+};
+
+}  // namespace flexarm::scene

@@ -1,0 +1,305 @@
+#include "building/contact_builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "building/model_builder.h"
+#include "contact/contact_element.h"
+#include "math/pi.h"
+#include "math/shape_functions.h"
+#include "schemes/scheme.h"
+
+namespace flexarm {
+namespace {
+
+/// Corners of a box, or points of a rim, that usually touch at a time.
+constexpr double kCorners = 4;
+/// Of sizes: depth beyond which a contact gives way no further. A start inside is this part of it, or less.
+constexpr double kDepth = 0.1, kShareOfStart = 0.25;
+/// A hit takes this many steps of the scene; what sticks is not stiffer than kStiffestGrip m / h^2.
+constexpr double kStiffestGrip = 16;
+/// Most stations between both ends of an element.
+constexpr int kMostSpans = 8;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// A link or a ground, as it touches others.
+struct Side {
+  std::string name;
+  const scene::LinkDescription* link = nullptr;  // null: a ground
+  double mass = kInfinity;                       // [kg]
+  double size = kInfinity;                       // smallest half width of what it touches with [m]
+  bool is_fixed = false;                         // in the world
+  std::vector<ContactSides> shapes;              // those of each node that has some, without stations
+  std::vector<ContactSides> stations;            // those of each node or element, without shapes
+  double at_a_time = 1;                          // stations that usually touch
+};
+
+ContactShape shape_of(const scene::VisualDescription& collision, const Attachment& frame) {
+  ContactShape out;
+  out.place = frame.offset * collision.origin;
+  if (const auto* box = std::get_if<scene::BoxShape>(&collision.shape))
+    out.kind = Box{0.5 * box->size};
+  else if (const auto* cylinder = std::get_if<scene::CylinderShape>(&collision.shape))
+    out.kind = Cylinder{cylinder->radius, 0.5 * cylinder->length};
+  else
+    out.kind = Ball{std::get<scene::SphereShape>(collision.shape).radius};
+  return out;
+}
+
+double half_width(const ContactShape& shape) {
+  if (const auto* ball = std::get_if<Ball>(&shape.kind)) return ball->radius;
+  if (const auto* box = std::get_if<Box>(&shape.kind)) return box->half.minCoeff();
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape.kind))
+    return std::min(cylinder->radius, cylinder->half_length);
+  return kInfinity;
+}
+
+class ContactBuilder {
+ public:
+  ContactBuilder(const ScenePlan& plan, const Model& model) : plan_(plan), model_(model), scene_(plan.scene) {
+    for (const scene::LinkDescription& link : scene_.links) sides_.push_back(side_of(link));
+    for (const scene::GroundDescription& ground : scene_.grounds) sides_.push_back(side_of(ground));
+    find_neighbours();
+  }
+
+  ForceElementList place() {
+    for (std::size_t i = 0; i < sides_.size(); ++i)
+      for (std::size_t j = i + 1; j < sides_.size(); ++j)
+        if (const scene::ContactDescription* contact = contact_of(i, j)) join(*contact, sides_[i], sides_[j]);
+    return std::move(placed_);
+  }
+
+ private:
+  // ---------------------------------------------------------------- sides
+
+  Side side_of(const scene::GroundDescription& ground) const {
+    Side side;
+    side.name = ground.name;
+    side.is_fixed = true;
+    ContactShape shape;
+    shape.place.position = ground.offset * ground.normal - model_.origin;
+    shape.place.orientation = Quaternion::FromTwoVectors(Vector3::UnitZ(), ground.normal);
+    side.shapes.push_back({{}, {}, -1, {shape}});
+    return side;
+  }
+
+  Side side_of(const scene::LinkDescription& link) const {
+    Side side;
+    side.name = link.name;
+    side.link = &link;
+    const int index = plan_.links[link.name];
+    if (link.collisions.empty()) {
+      if (plan_.meshes[index]) add_tube(index, side);
+      return side;
+    }
+    side.is_fixed = true;
+    for (const scene::VisualDescription& collision : link.collisions) {
+      if (std::holds_alternative<scene::MeshShape>(collision.shape)) continue;
+      const Attachment frame = attachment(plan_, model_, link.name, collision.origin.position);
+      side.is_fixed = side.is_fixed && frame.node < 0;
+      add(shape_of(collision, frame), frame.node, side);
+    }
+    return side;
+  }
+
+  void add(const ContactShape& shape, int node, Side& side) const {
+    const auto on_node = [&](const ContactSides& each) { return each.shape_node == node; };
+    auto shapes = std::find_if(side.shapes.begin(), side.shapes.end(), on_node);
+    if (shapes == side.shapes.end()) shapes = side.shapes.insert(shapes, {{}, {}, node, {}});
+    shapes->shapes.push_back(shape);
+    side.size = std::min(side.size, half_width(shape));
+    if (node < 0) return;
+    ContactSides stations{{node}, {}, -1, {}};
+    for (const ContactPoint& point : contact_points(shape)) {
+      ContactStation station;
+      station.arm = point.arm;
+      station.radius = point.radius;
+      stations.stations.push_back(station);
+    }
+    if (!std::holds_alternative<Ball>(shape.kind)) side.at_a_time = kCorners;
+    side.stations.push_back(std::move(stations));
+    side.mass = mass_of_body(node);
+  }
+
+  /// Of a body without a mass of its own, which other bodies hold: that of all.
+  double mass_of_body(int node) const {
+    const double mass = model_.inertias[node].total_mass;
+    return mass > 0 ? mass : mass_of(model_);
+  }
+
+  /// A tube of the section's largest radius along the nodes' line: stations at even distances.
+  void add_tube(int index, Side& side) const {
+    const LinkFrame& link = model_.links[index];
+    side.mass = link.beam->mass;
+    side.size = link.beam->radius;
+    const int order = link.beam->order;
+    for (std::size_t k = 0; k < link.beam->elements.size(); ++k) {
+      const double begin = k == 0 ? 0.0 : link.beam->element_ends[k - 1], length = link.beam->element_ends[k] - begin;
+      ContactSides stations;
+      for (const int node : plan_.meshes[index]->mesh.elements[k].nodes)
+        stations.nodes.push_back(link.frame.node + node);
+      const int spans = std::clamp(static_cast<int>(std::ceil(length / link.beam->radius)), order, kMostSpans);
+      for (int i = 0; i <= spans; ++i) {
+        ContactStation station;
+        station.weights = weights_at(order, -1 + 2.0 * i / spans);
+        station.radius = link.beam->radius;
+        station.share = (i == 0 || i == spans ? 0.5 : 1.0) * length / spans / link.beam->length;
+        stations.stations.push_back(station);
+      }
+      side.stations.push_back(std::move(stations));
+    }
+  }
+
+  static std::array<double, ContactStation::kMostNodes> weights_at(int order, double xi) {
+    std::array<double, ContactStation::kMostNodes> out{};
+    const auto put = [&](const auto& functions) {
+      std::copy(functions.values.data(), functions.values.data() + functions.values.size(), out.begin());
+    };
+    if (order == 1) put(lagrange<2>(xi));
+    if (order == 2) put(lagrange<3>(xi));
+    if (order == 3) put(lagrange<4>(xi));
+    if (order == 4) put(lagrange<5>(xi));
+    return out;
+  }
+
+  // ---------------------------------------------------------------- pairs
+
+  void find_neighbours() {
+    for (const auto* joints : {&scene_.joints, &scene_.loop_joints})
+      for (const scene::JointDescription& joint : *joints) {
+        neighbours_.insert(std::minmax(body_of(joint.parent), body_of(joint.child)));
+        joined_.insert(std::minmax(plan_.links[joint.parent], plan_.links[joint.child]));
+      }
+  }
+
+  /// The node that a link is fixed to; of a beam its first one, of what is fixed in the world -1.
+  int body_of(const std::string& link) const { return model_.links[plan_.links[link]].frame.node; }
+
+  bool are_neighbours(const Side& first, const Side& second) const {
+    if (!first.link || !second.link) return false;
+    const int one = body_of(first.name), other = body_of(second.name);
+    return one == other || neighbours_.count(std::minmax(one, other)) > 0 ||
+           joined_.count(std::minmax(plan_.links[first.name], plan_.links[second.name])) > 0;
+  }
+
+  /// How many sides of a pair are named; -1: it does not mean these.
+  static int named_of(const scene::ContactPair& pair, const Side& first, const Side& second) {
+    const auto named = [](const std::string& name, const Side& side) {
+      return name == side.name ? 1 : name == scene::kAllBodies ? 0 : -1;
+    };
+    int best = -1;
+    for (const auto& [a, b] : {std::pair(&pair.first, &pair.second), std::pair(&pair.second, &pair.first)})
+      if (named(*a, first) >= 0 && named(*b, second) >= 0) best = std::max(best, named(*a, first) + named(*b, second));
+    return best;
+  }
+
+  /// Null: none. Of those that name as much of a pair a <no_contact> counts, then the first one in the file.
+  const scene::ContactDescription* contact_of(std::size_t i, std::size_t j) const {
+    const Side &first = sides_[i], &second = sides_[j];
+    if (first.is_fixed && second.is_fixed) return nullptr;
+    const scene::ContactDescription* contact = nullptr;
+    int most = are_neighbours(first, second) ? 1 : -1;
+    for (const scene::ContactPair& pair : scene_.no_contacts) most = std::max(most, named_of(pair, first, second));
+    for (const scene::ContactDescription& each : scene_.contacts)
+      if (const int named = named_of(each, first, second); named > most) contact = &each, most = named;
+    if (contact && most == 2) require_something_to_touch(*contact, first, second);
+    return contact;
+  }
+
+  void require_something_to_touch(const scene::ContactDescription& contact, const Side& first,
+                                  const Side& second) const {
+    for (const Side* side : {&first, &second})
+      if (side->shapes.empty() && side->stations.empty())
+        throw ModelError(at(contact.location, "<contact>") +
+                         fmt::format("link '{}' has nothing to touch with: expected a <collision> that is a box, a "
+                                     "cylinder or a sphere, or a <beam>",
+                                     side->name));
+    if (first.shapes.empty() && second.shapes.empty())
+      throw ModelError(at(contact.location, "<contact>") +
+                       fmt::format("links '{}' and '{}' are both flexible without <collision>: such a contact is not "
+                                   "there yet",
+                                   first.name, second.name));
+  }
+
+  // ---------------------------------------------------------------- laws
+
+  ContactLaw law_of(const scene::ContactDescription& contact, const Side& stations, const Side& shapes) const {
+    const double inverse = 1 / stations.mass + 1 / shapes.mass, step = scene_.integrator.step;
+    const double mass = inverse > 0 ? 1 / inverse : mass_of(model_), frequency = kPi / (kContactSteps * step);
+    ContactLaw law;
+    law.stiffness = contact.stiffness.value_or(mass * frequency * frequency / stations.at_a_time);
+    law.frequency = std::sqrt(law.stiffness * stations.at_a_time / mass);
+    law.damping = damping_for_restitution(contact.restitution);
+    law.depth = kDepth * std::min(stations.size, shapes.size);
+    law.friction = contact.friction;
+    law.grip = std::min(law.stiffness, kStiffestGrip * mass / (step * step) / stations.at_a_time);
+    return law;
+  }
+
+  /// Deeper where it starts inside.
+  void deepen(const ContactSides& sides, ContactLaw& law) const {
+    const auto pose_of = [&](int node) { return node < 0 ? NodePose() : model_.nodes[node]; };
+    const NodePose base = pose_of(sides.shape_node);
+    for (const ContactStation& station : sides.stations)
+      for (const ContactShape& shape : sides.shapes) {
+        Vector3 place = Vector3::Zero();
+        for (std::size_t i = 0; i < sides.nodes.size(); ++i)
+          place +=
+              station.weights[i] * (pose_of(sides.nodes[i]).position + pose_of(sides.nodes[i]).rotation * station.arm);
+        const double gap = shape.distance(base.rotation.transpose() * (place - base.position)).value - station.radius;
+        law.depth = std::max(law.depth, -gap / kShareOfStart);
+      }
+  }
+
+  void join(const scene::ContactDescription& contact, const Side& first, const Side& second) {
+    // Of two round ones one way is enough.
+    const bool is_round = is_ball(first) && is_ball(second);
+    join_stations(contact, first, second);
+    if (!is_round) join_stations(contact, second, first);
+  }
+
+  static bool is_ball(const Side& side) {
+    const auto all_balls = [](const ContactSides& each) {
+      return std::all_of(each.shapes.begin(), each.shapes.end(),
+                         [](const ContactShape& shape) { return std::holds_alternative<Ball>(shape.kind); });
+    };
+    return !side.shapes.empty() && std::all_of(side.shapes.begin(), side.shapes.end(), all_balls);
+  }
+
+  void join_stations(const scene::ContactDescription& contact, const Side& first, const Side& second) {
+    // Corners do not go into balls: the ball's middle is nearer to a face or an edge than they are.
+    if (is_ball(second) && !is_ball(first) && !first.shapes.empty()) return;
+    for (const ContactSides& stations : first.stations)
+      for (const ContactSides& shapes : second.shapes) {
+        const auto& nodes = stations.nodes;
+        if (std::find(nodes.begin(), nodes.end(), shapes.shape_node) != nodes.end()) continue;
+        ContactSides sides{stations.nodes, stations.stations, shapes.shape_node, shapes.shapes};
+        ContactLaw law = law_of(contact, first, second);
+        deepen(sides, law);
+        placed_.push_back(std::make_shared<ContactElement>(std::array{first.name, second.name}, std::move(sides), law));
+      }
+  }
+
+  const ScenePlan& plan_;
+  const Model& model_;
+  const scene::SceneDescription& scene_;
+  std::vector<Side> sides_;
+  std::set<std::pair<int, int>> neighbours_, joined_;  // bodies, by nodes; links
+  ForceElementList placed_;
+};
+
+}  // namespace
+
+ForceElementList place_contacts(const ScenePlan& plan, const Model& model) {
+  if (plan.scene.contacts.empty()) return {};
+  return ContactBuilder(plan, model).place();
+}
+
+}  // namespace flexarm

@@ -1,0 +1,77 @@
+#pragma once
+/// Contact of what one body has to touch with, or an element of a beam, and what another body is: a force element.
+
+#include <array>
+
+#include "contact/point_contact.h"
+#include "model/force_element.h"
+
+namespace flexarm {
+
+/// Where a body or an element of a beam touches others: a ball around a point of its nodes' frames. Of a beam it is on
+/// its line, the sum of its nodes' positions with these weights.
+struct ContactStation {
+  static constexpr int kMostNodes = 5;
+  std::array<double, kMostNodes> weights = {1};
+  Vector3 arm = Vector3::Zero();  ///< in the frame of the only node; zero of a beam [m]
+  double radius = 0;              ///< [m]
+  double share = 1;               ///< of the law's stiffnesses
+};
+
+/// All stations of one side, each with all shapes of the other one.
+struct ContactSides {
+  std::vector<int> nodes;  ///< of the stations: one of a body, all of an element
+  std::vector<ContactStation> stations;
+  int shape_node = -1;  ///< -1: the world
+  std::vector<ContactShape> shapes;
+};
+
+class ContactElement : public ForceElement {
+ public:
+  /// `bodies`: names of the link with the stations, and of the link or ground with the shapes.
+  ContactElement(std::array<std::string, 2> bodies, ContactSides sides, const ContactLaw& law);
+
+  const std::array<std::string, 2>& bodies() const { return bodies_; }
+
+  const char* kind() const override { return "contact"; }
+  std::string description() const override;
+  int find_nodes(const ForceStart& start, int* nodes) const override;
+  void evaluate(const ForceStep& step, const int* nodes, ForceAction& action) const override;
+  bool needs_halves(const ForceStep& step, const int* nodes, int count) const override;
+  bool may_hit(const ForceStart& start) const override;
+  double energy(const State& state, const double* memory) const override;
+  /// Of points that touch: their gaps, and where they stick how far they slip.
+  ForceMeasures measures(const State& state, const int* nodes) const override;
+  DamperTensions dampers(const State& state, const Eigen::VectorXd& rates) const override;
+  int memory_size() const override;
+
+ private:
+  struct Frames;
+  struct Placed;
+  ContactLaw law_of(const ContactStation& station) const;
+  /// Of a station's middle in the frame of the shapes, at poses `pose_of(node)`.
+  template <class PoseOf>
+  Vector3 place(const ContactStation& station, const PoseOf& pose_of) const;
+  /// By which it moves there at the beginning of a step [m/s].
+  Vector3 velocity(const ContactStation& station, const std::vector<NodePose>& poses,
+                   const std::vector<Vector6>& velocities) const;
+  Frames frames(const ForceStep& step) const;
+  Placed placed(const ContactStation& station, const Frames& frames, const ForceStep& step) const;
+  void add(const ContactStation& station, const Frames& frames, const Placed& placed, const PointAction& local,
+           ForceAction& action) const;
+  void add_tangent(const ContactStation& station, const Frames& frames, const Placed& placed, const PointAction& local,
+                   ForceAction& action) const;
+  /// Calls visit(station, shape) of all, in the order of the memory, until it returns false.
+  template <class Visit>
+  void for_each_pair(const Visit& visit) const;
+  /// Calls visit(law, shape, station, place) of those that touch.
+  template <class Visit>
+  void for_each_touching(const State& state, const Visit& visit) const;
+
+  std::array<std::string, 2> bodies_;
+  ContactSides sides_;
+  ContactLaw law_;
+  double size_ = 0;  ///< of the stations' side, about its first node [m]
+};
+
+}  // namespace flexarm

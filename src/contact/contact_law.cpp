@@ -1,0 +1,93 @@
+#include "contact/contact_law.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "joints/penetration.h"
+#include "math/pi.h"
+
+namespace flexarm {
+namespace {
+
+/// Angle that a step may go through of the oscillator that a contact is, and the part of a hit that is worth it.
+constexpr double kLargestAngle = kPi / 9, kLargestPart = 0.25;
+
+}  // namespace
+
+double damping_for_restitution(double restitution) {
+  assert(restitution >= 0.05 && restitution <= 1);
+  if (restitution == 1) return 0;
+  const double e = restitution;
+  double low = 1e-9, high = (1 - 1e-15) / e;
+  for (int i = 0; i < 100; ++i) {
+    const double d = 0.5 * (low + high);
+    (d * (1 + e) - std::log1p(d) + std::log1p(-e * d) > 0 ? low : high) = d;
+  }
+  return low;
+}
+
+double contact_energy(const ContactLaw& law, double penetration) {
+  const double x = hardened({penetration, law.depth}).value;
+  return 0.5 * law.stiffness * x * x;
+}
+
+ContactPush contact_push(const ContactLaw& law, const ContactChange& change) {
+  const Penetration begin{change.begin, law.depth}, end{change.end, law.depth};
+  const Hardened x1 = hardened(end);
+  const double k = law.stiffness;
+  if (change.duration == 0) return {k * x1.slope * x1.value, k * (x1.slope * x1.slope + x1.curvature * x1.value), 0};
+  if (!begin.is_felt() && !end.is_felt()) return {};
+  const double x0 = hardened(begin).value, mean = 0.5 * (x0 + x1.value);
+  const Hardened rise = quotient(begin, end);
+  const double elastic = k * rise.value * mean, slope = k * (rise.slope * mean + 0.5 * rise.value * x1.slope);
+  const double way = change.end - change.begin, stored = k * (x1.value - x0) * mean;
+  if (law.damping == 0) return {elastic, slope, 0};
+  // What is pressed slowly is damped as if it hit with half the speed that its penetration stands for.
+  const double bound = 0.5 * law.frequency * mean, alpha = law.damping / std::max(change.speed, bound);
+  const double factor = 1 + alpha * way / change.duration;
+  if (factor <= 0) return {0, 0, -stored};
+  const double alpha_slope = bound > change.speed ? -0.5 * alpha * x1.slope / mean : 0.0;
+  return {elastic * factor, slope * factor + elastic * (alpha + alpha_slope * way) / change.duration,
+          elastic * factor * way - stored};
+}
+
+bool is_coarse_hit(const ContactLaw& law, const ContactChange& change, double begin_rate, double refinement) {
+  const double x0 = hardened({change.begin, law.depth}).value, x1 = hardened({change.end, law.depth}).value;
+  const bool conserves = law.damping == 0 && std::isinf(law.depth);  // at any angle
+  if (conserves || (x0 == 0 && x1 == 0)) return false;
+  const double way = change.end - change.begin, end_rate = 2 * way / change.duration - begin_rate;
+  const double rise = way == 0 ? 1.0 : std::max((x1 - x0) / way, std::isinf(law.depth) ? 1.0 : 0.0);
+  const double angle = law.frequency * change.duration * rise;
+  if (angle * refinement <= kLargestAngle) return false;
+  const double part = std::hypot(law.frequency * (x1 - x0), end_rate - begin_rate);
+  const double whole = std::max(std::hypot(law.frequency * x0, begin_rate), std::hypot(law.frequency * x1, end_rate));
+  return part * refinement > kLargestPart * whole;
+}
+
+double approach_speed(double penetration, double begin_rate, double remembered) {
+  if (begin_rate <= 0) return std::abs(remembered);
+  return penetration <= 0 || remembered < 0 ? begin_rate : std::max(remembered, begin_rate);
+}
+
+double remembered_speed(const ContactChange& change, double begin_rate) {
+  if (change.end <= 0) return 0;
+  const double end_rate = 2 * (change.end - change.begin) / change.duration - begin_rate;
+  return end_rate < 0 ? -change.speed : change.speed;
+}
+
+ContactGrip contact_grip(const ContactLaw& law, const Vector3& stretch, const Vector3& slip, const Vector3& normal,
+                         double push) {
+  assert(law.grip > 0);
+  const Vector3 whole = stretch + slip;
+  const Matrix3 tangential = Matrix3::Identity() - normal * normal.transpose();
+  const Vector3 trial = tangential * whole;
+  const Matrix3 by_normal = -(normal.dot(whole) * Matrix3::Identity() + normal * whole.transpose());
+  const double size = trial.norm(), most = law.friction * push / law.grip;
+  if (size <= most) return {trial, tangential, by_normal, Vector3::Zero()};
+  const Vector3 along = trial / size;
+  const Matrix3 turn = most / size * (Matrix3::Identity() - along * along.transpose());
+  return {most * along, turn * tangential, turn * by_normal, law.friction / law.grip * along};
+}
+
+}  // namespace flexarm

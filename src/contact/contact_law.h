@@ -1,0 +1,60 @@
+#pragma once
+/// What a point of a contact does over a step: it is pushed out, and it grips. (docs/notes/contact.md)
+
+#include <limits>
+
+#include "flexarm/math/pose.h"
+
+namespace flexarm {
+
+/// Of one contact point.
+struct ContactLaw {
+  double stiffness = 0;  ///< of shallow penetrations [N/m]
+  double frequency = 0;  ///< of a hit: the root of the stiffness over what it moves, roughly [rad/s]
+  double damping = 0;    ///< by which a hit gives back what the restitution says, see damping_for_restitution()
+  double depth = std::numeric_limits<double>::infinity();  ///< beyond which it gives way no further [m]
+  double friction = 0;                                     ///< coefficient
+  double grip = 0;                                         ///< stiffness along the surface where it sticks [N/m]
+};
+
+/// Hunt and Crossley's damping d of a hit that gives back `restitution` of its speed, from 0.05 to 1, whatever mass,
+/// stiffness and speed are: (1 + d) / (1 - e d) = exp(d (1 + e)). (Gonthier et al. 2004)
+double damping_for_restitution(double restitution);
+
+/// Of a penetration, > 0 inside [J].
+double contact_energy(const ContactLaw& law, double penetration);
+
+/// A penetration over a step.
+struct ContactChange {
+  double begin, end;  ///< [m]
+  double duration;    ///< [s]; 0: an equilibrium
+  double speed = 0;   ///< of the approach, by which the hit is damped [m/s]
+};
+/// Force by which it is pushed out [N], its derivative by the penetration at the end, and what is dissipated [J]. It
+/// never pulls. Over a step it is the mean, whose work is exact: the change of the energy, and what is dissipated,
+/// which is never negative. In an equilibrium it is that at the end.
+struct ContactPush {
+  double value = 0, slope = 0, dissipated = 0;
+};
+ContactPush contact_push(const ContactLaw& law, const ContactChange& change);
+
+/// True where the step is too long for a hit: it goes through a large part of it, by a large angle of the oscillator
+/// that the contact is. `begin_rate`: of the penetration.
+bool is_coarse_hit(const ContactLaw& law, const ContactChange& change, double begin_rate, double refinement);
+/// The speed to be remembered for the next step, < 0 where the hit is on its way back.
+double remembered_speed(const ContactChange& change, double begin_rate);
+/// By which the hit is damped in the step. `remembered`: see remembered_speed(); `penetration`: both at the beginning.
+double approach_speed(double penetration, double begin_rate, double remembered);
+
+/// Stretch of what sticks, along the surface [m], at the end of the step, with its derivatives by the slip over the
+/// step, the unit normal and the push. It pulls back with `grip` times it, at most by Coulomb's force. What it does at
+/// the end stands for the step, so that sticking does not ring: it dissipates, and never the reverse.
+struct ContactGrip {
+  Vector3 stretch;
+  Matrix3 by_slip, by_normal;
+  Vector3 by_push;
+};
+ContactGrip contact_grip(const ContactLaw& law, const Vector3& stretch, const Vector3& slip, const Vector3& normal,
+                         double push);
+
+}  // namespace flexarm

@@ -1,0 +1,124 @@
+#include "contact/shape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "math/pi.h"
+
+namespace flexarm {
+namespace {
+
+/// Of the norm of a vector. Where it vanishes, `otherwise` is as good a direction as any.
+SignedDistance norm(const Vector3& vector, const Vector3& otherwise) {
+  SignedDistance out;
+  out.value = vector.norm();
+  if (out.value == 0) {
+    out.gradient = otherwise;
+    return out;
+  }
+  out.gradient = vector / out.value;
+  out.hessian = (Matrix3::Identity() - out.gradient * out.gradient.transpose()) / out.value;
+  return out;
+}
+
+/// Of the corner region x, y, z < 0 of axes along `axes`, from the distances of its faces.
+SignedDistance corner(const Vector3& faces, const Matrix3& axes) {
+  Eigen::Index nearest;
+  const double highest = faces.maxCoeff(&nearest);
+  if (highest <= 0) return {highest, axes.col(nearest), Matrix3::Zero()};
+  const Vector3 outside = faces.cwiseMax(0.0);
+  const SignedDistance local = norm(outside, Vector3::UnitZ());
+  // Along faces that the point is inside of, nothing changes.
+  const Vector3 counts = (faces.array() > 0).cast<double>();
+  const Matrix3 hessian = counts.asDiagonal() * local.hessian * counts.asDiagonal();
+  return {local.value, axes * local.gradient, axes * hessian * axes.transpose()};
+}
+
+SignedDistance distance_of(const HalfSpace&, const Vector3& y) {
+  return {y.z(), Vector3::UnitZ(), Matrix3::Zero()};
+}
+
+SignedDistance distance_of(const Ball& ball, const Vector3& y) {
+  SignedDistance out = norm(y, Vector3::UnitZ());
+  out.value -= ball.radius;
+  return out;
+}
+
+SignedDistance distance_of(const Box& box, const Vector3& y) {
+  const Vector3 signs = y.unaryExpr([](double each) { return each < 0 ? -1.0 : 1.0; });
+  return corner(y.cwiseAbs() - box.half, signs.asDiagonal());
+}
+
+SignedDistance distance_of(const Cylinder& cylinder, const Vector3& y) {
+  const SignedDistance radial = norm({y.x(), y.y(), 0}, Vector3::UnitX());
+  Matrix3 axes;
+  axes << radial.gradient, Vector3::UnitZ().cross(radial.gradient), Vector3(0, 0, y.z() < 0 ? -1 : 1);
+  const double face = radial.value - cylinder.radius;
+  SignedDistance out =
+      corner({face, -std::numeric_limits<double>::infinity(), std::abs(y.z()) - cylinder.half_length}, axes);
+  // The radial axis turns with the point.
+  const double radial_part = out.gradient.dot(radial.gradient);
+  Matrix3 in_section = radial.hessian;
+  in_section.row(2).setZero(), in_section.col(2).setZero();
+  out.hessian += radial_part * in_section;
+  return out;
+}
+
+double reach_of(const HalfSpace&) {
+  return std::numeric_limits<double>::infinity();
+}
+double reach_of(const Ball& ball) {
+  return ball.radius;
+}
+double reach_of(const Box& box) {
+  return box.half.norm();
+}
+double reach_of(const Cylinder& cylinder) {
+  return std::hypot(cylinder.radius, cylinder.half_length);
+}
+
+std::vector<ContactPoint> points_of(const HalfSpace&) {
+  return {};
+}
+std::vector<ContactPoint> points_of(const Ball& ball) {
+  return {{Vector3::Zero(), ball.radius}};
+}
+std::vector<ContactPoint> points_of(const Box& box) {
+  std::vector<ContactPoint> out;
+  for (int k = 0; k < 8; ++k)
+    out.push_back({box.half.cwiseProduct(Vector3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1)), 0});
+  return out;
+}
+std::vector<ContactPoint> points_of(const Cylinder& cylinder) {
+  std::vector<ContactPoint> out;
+  for (const double z : {-cylinder.half_length, cylinder.half_length})
+    for (int k = 0; k < kRimPoints; ++k) {
+      const double angle = 2 * kPi * k / kRimPoints;
+      out.push_back({{cylinder.radius * std::cos(angle), cylinder.radius * std::sin(angle), z}, 0});
+    }
+  return out;
+}
+
+}  // namespace
+
+SignedDistance ContactShape::distance(const Vector3& point) const {
+  const Matrix3 axes = place.orientation.toRotationMatrix();
+  const Vector3 own = axes.transpose() * (point - place.position);
+  SignedDistance out = std::visit([&](const auto& shape) { return distance_of(shape, own); }, kind);
+  out.gradient = axes * out.gradient;
+  out.hessian = axes * out.hessian * axes.transpose();
+  return out;
+}
+
+double ContactShape::reach() const {
+  return std::visit([](const auto& shape) { return reach_of(shape); }, kind);
+}
+
+std::vector<ContactPoint> contact_points(const ContactShape& shape) {
+  std::vector<ContactPoint> out = std::visit([](const auto& each) { return points_of(each); }, shape.kind);
+  for (ContactPoint& point : out) point.arm = shape.place * point.arm;
+  return out;
+}
+
+}  // namespace flexarm

@@ -1,0 +1,52 @@
+#pragma once
+/// Rigid shapes that may be touched: how far points are from them.
+
+#include <variant>
+#include <vector>
+
+#include "flexarm/math/pose.h"
+
+namespace flexarm {
+
+/// Of a point from a surface [m], < 0 inside, with its first and second derivative by the point. The gradient is the
+/// unit normal, outwards; on edges, on axes and in centres one of those that there are.
+struct SignedDistance {
+  double value = 0;
+  Vector3 gradient = Vector3::UnitZ();
+  Matrix3 hessian = Matrix3::Zero();
+};
+
+/// Shapes in their own frames.
+struct HalfSpace {};  ///< below z = 0
+struct Ball {
+  double radius = 0;  ///< [m]
+};
+struct Box {
+  Vector3 half = Vector3::Zero();  ///< [m]
+};
+/// Along z.
+struct Cylinder {
+  double radius = 0, half_length = 0;  ///< [m]
+};
+
+/// A shape fixed to a node, or to the world.
+struct ContactShape {
+  std::variant<HalfSpace, Ball, Box, Cylinder> kind;
+  Pose place;  ///< in the node's frame
+
+  /// `point`: in the node's frame [m].
+  SignedDistance distance(const Vector3& point) const;
+  /// About the origin of `place`: no point of the shape is farther off [m]. Infinite for a half-space.
+  double reach() const;
+};
+
+/// A ball around a point fixed to a node by which a shape touches others: a corner, or the centre of a round one.
+struct ContactPoint {
+  Vector3 arm = Vector3::Zero();  ///< in the node's frame [m]
+  double radius = 0;              ///< [m]
+};
+/// Those of a shape. None of a half-space, which touches nothing itself. A cylinder's rims have `kRimPoints` each.
+std::vector<ContactPoint> contact_points(const ContactShape& shape);
+constexpr int kRimPoints = 24;
+
+}  // namespace flexarm

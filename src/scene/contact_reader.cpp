@@ -1,0 +1,73 @@
+#include "scene/contact_reader.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace flexarm::scene {
+namespace {
+
+ContactPair read_pair(const XmlElement& element) {
+  ContactPair out;
+  out.location = element.location();
+  out.first = element.name("first").value_or("");
+  out.second = element.name("second").value_or("");
+  return out;
+}
+
+}  // namespace
+
+GroundDescription read_ground(const XmlElement& ground) {
+  ground.expect_only({"name", "normal", "offset"});
+  GroundDescription out;
+  out.location = ground.location();
+  out.name = ground.name("name").value_or("");
+  out.normal = ground.has("normal") ? ground.direction("normal").value_or(out.normal) : out.normal;
+  out.offset = ground.number("offset", kAnyNumber, 0);
+  return out;
+}
+
+ContactDescription read_contact(const XmlElement& contact) {
+  contact.expect_only({"first", "second", "stiffness", "restitution", "friction"});
+  ContactDescription out;
+  static_cast<ContactPair&>(out) = read_pair(contact);
+  if (contact.has("stiffness")) out.stiffness = contact.number("stiffness", kPositive);
+  if (contact.has("restitution")) out.restitution = contact.number("restitution", kRestitution).value_or(1);
+  out.friction = contact.number("friction", kNonNegative, 0);
+  return out;
+}
+
+ContactPair read_no_contact(const XmlElement& pair) {
+  pair.expect_only({"first", "second"});
+  return read_pair(pair);
+}
+
+void check_contacts(const SceneDescription& scene, Findings& findings) {
+  std::set<std::string> links, sides = {kAllBodies};
+  for (const LinkDescription& link : scene.links) links.insert(link.name);
+  sides.insert(links.begin(), links.end());
+  for (const GroundDescription& ground : scene.grounds) {
+    const std::string element = "<ground> " + quoted(ground.name);
+    if (ground.name == kAllBodies || !sides.insert(ground.name).second)
+      findings.error(ground.location.line, element, "its name must be that of no link and of no other ground",
+                     quoted(ground.name));
+  }
+  std::set<std::pair<std::string, std::string>> named;
+  const auto check = [&](const ContactPair& pair, const std::string& element) {
+    for (const auto& [attribute, side] : {std::pair("first", pair.first), std::pair("second", pair.second)})
+      if (!side.empty() && sides.count(side) == 0)
+        findings.error(pair.location.line, element,
+                       std::string(attribute) + " must be a link or a ground of the scene, or *", quoted(side));
+    if (pair.first == pair.second && pair.first != kAllBodies)
+      findings.error(pair.location.line, element, "first and second must be different", quoted(pair.first));
+    if (!named.insert(std::minmax(pair.first, pair.second)).second)
+      findings.error(pair.location.line, element, "must be the only <contact> or <no_contact> of its pair",
+                     fmt::format("'{}' and '{}'", pair.first, pair.second));
+  };
+  for (const ContactDescription& contact : scene.contacts) check(contact, "<contact>");
+  for (const ContactPair& pair : scene.no_contacts) check(pair, "<no_contact>");
+}
+
+}  // namespace flexarm::scene

@@ -1,0 +1,179 @@
+// What contacts do over a step: exact work, no momentum, the derivatives of their forces.
+#include "contact/contact_element.h"
+
+#include <gtest/gtest.h>
+
+#include "math/cayley.h"
+#include "math/so3.h"
+#include "model/state.h"
+#include "support/node_poses.h"
+
+namespace flexarm::test {
+namespace {
+
+using Poses = std::vector<NodePose>;
+
+NodePose turned_node(const Vector3& position, const Vector3& rotation) {
+  return node_at(position, so3::exp_quaternion(rotation));
+}
+
+ContactLaw law_with(double friction, double restitution) {
+  ContactLaw law;
+  law.stiffness = 500;
+  law.frequency = 20;
+  law.damping = damping_for_restitution(restitution);
+  law.depth = 0.6;
+  law.friction = friction;
+  law.grip = 400;
+  return law;
+}
+
+struct Scene {
+  const char* name;
+  ContactSides sides;
+};
+
+/// A ball and a corner of node 0, and an element of nodes 0, 2, 3, against shapes of node 1 or of the world.
+std::vector<Scene> scenes() {
+  const Pose place{{0.05, -0.02, 0.03}, so3::exp_quaternion(Vector3(0.2, 0.1, -0.3))};
+  const std::vector<ContactShape> shapes = {
+      {HalfSpace{}, {place * Vector3(0, 0, 0.3), place.orientation}},
+      {Ball{0.3}, place},
+      {Box{{0.4, 0.5, 0.3}}, place},
+      {Cylinder{0.45, 0.3}, place}};
+  ContactStation ball, corner, tube;
+  ball.arm = {0.1, 0.05, -0.1};
+  ball.radius = 0.2;
+  corner.arm = {0.05, 0.1, -0.24};
+  tube.weights = {0.3, 0.5, 0.2};
+  tube.radius = 0.25;
+  tube.share = 0.7;
+  std::vector<Scene> out;
+  const char* names[] = {"half-space", "ball", "box", "cylinder"};
+  for (std::size_t k = 0; k < shapes.size(); ++k)
+    for (const int base : {1, -1}) {
+      out.push_back({names[k], {{0}, {ball, corner}, base, {shapes[k]}}});
+      out.push_back({names[k], {{0, 2, 3}, {tube}, base, {shapes[k]}}});
+    }
+  return out;
+}
+
+class ContactElements : public ::testing::TestWithParam<bool> {
+ protected:
+  struct Action {
+    Eigen::VectorXd residual;
+    Eigen::MatrixXd tangent;
+    double dissipated = 0;
+    std::vector<double> memory;
+  };
+
+  Action action(const Poses& at_end, const ContactElement& element) const {
+    ForceStep step{begin, at_end, velocities};
+    step.duration = GetParam() ? 0.0 : 0.05;
+    step.at_end = GetParam();
+    std::vector<double> memory(element.memory_size(), 0.0);
+    for (std::size_t i = 0; i < memory.size(); i += 4) {
+      memory[i] = 0.3;
+      Eigen::Map<Vector3>(memory.data() + i + 1) = stretch;
+    }
+    Action out;
+    out.memory.resize(memory.size());
+    step.memory = memory.data();
+    step.new_memory = out.memory.data();
+    const Eigen::Index size = 6 * static_cast<Eigen::Index>(element.reach().size());
+    out.residual.resize(size);
+    out.tangent.resize(size, size);
+    ForceAction action{{out.residual.data(), size}, {out.tangent.data(), size, size}};
+    element.evaluate(step, element.reach().data(), action);
+    out.dissipated = action.dissipated;
+    return out;
+  }
+
+  const Vector3 stretch{0.004, -0.003, 0.002};  // of the grip at the beginning
+  const std::vector<Vector6> velocities = std::vector<Vector6>(4, Vector6::Constant(0.2));
+  const Poses begin{turned_node({0.1, 0.05, 0.52}, {-0.1, 0.2, 0.2}), turned_node({0, 0, 0}, {0.2, 0.1, -0.3}),
+                    turned_node({0.15, 0.1, 0.5}, {0, 0.1, 0}), turned_node({0.2, 0.3, 0.45}, {0.1, 0.1, 0})};
+  const Poses end{turned_node({0.12, 0.07, 0.46}, {-0.15, 0.35, 0.3}),
+                  turned_node({0.01, -0.02, 0.03}, {0.3, 0.05, -0.2}),
+                  turned_node({0.17, 0.12, 0.45}, {0.05, 0.2, 0.1}), turned_node({0.22, 0.28, 0.42}, {0.2, 0.1, 0.1})};
+};
+
+// Central differences with a step of 1e-6 have errors of 1e-12 of third derivatives, and of 1e-16 / 1e-6 of forces.
+TEST_P(ContactElements, HaveTheirTangent) {
+  for (const auto& [name, sides] : scenes())
+    for (const double friction : {0.0, 0.05, 5.0}) {
+      const ContactElement element({"", ""}, sides, law_with(friction, 0.5));
+      const Action here = action(end, element);
+      EXPECT_GT(here.residual.norm(), 1) << name << " is not touched";
+      constexpr double h = 1e-6;
+      for (Eigen::Index k = 0; k < here.residual.size(); ++k) {
+        const auto residual = [&](double way) {
+          Vector6 by = Vector6::Zero();
+          by[k % 6] = way;
+          Poses at = end;
+          NodePose& node = at[element.reach()[static_cast<std::size_t>(k / 6)]];
+          node = moved(node, by);
+          return action(at, element).residual;
+        };
+        const Eigen::VectorXd difference = (residual(h) - residual(-h)) / (2 * h);
+        EXPECT_LE((difference - here.tangent.col(k)).norm(), 1e-6 * here.tangent.norm())
+            << name << " " << friction << " " << k << " " << sides.shape_node << " " << sides.nodes.size();
+      }
+    }
+}
+
+TEST_P(ContactElements, AddToNoMomentum) {
+  for (const auto& [name, sides] : scenes()) {
+    if (sides.shape_node < 0) continue;
+    const ContactElement element({"", ""}, sides, law_with(0.3, 0.5));
+    const Action here = action(end, element);
+    Vector3 force = Vector3::Zero(), moment = Vector3::Zero();
+    const double weight = GetParam() ? 1 : 0.5;
+    for (std::size_t i = 0; i < element.reach().size(); ++i) {
+      const int node = element.reach()[i];
+      const Vector3 arm = (1 - weight) * begin[node].position + weight * end[node].position;
+      const Vector6 on_node = here.residual.segment<6>(6 * static_cast<Eigen::Index>(i));
+      force += on_node.head<3>();
+      moment += arm.cross(on_node.head<3>()) + on_node.tail<3>();
+    }
+    EXPECT_LE(force.norm(), 1e-14 * here.residual.norm()) << name;
+    EXPECT_LE(moment.norm(), 1e-13 * here.residual.norm()) << name;
+  }
+}
+
+// What the mean forces do over the step is what is stored and dissipated, to round-off.
+TEST_P(ContactElements, OfMeansDoExactWork) {
+  if (GetParam()) return;  // forces at the end do not
+  for (const auto& [name, sides] : scenes())
+    for (const double friction : {0.01, 0.3, 5.0}) {
+      const ContactElement element({"", ""}, sides, law_with(friction, 0.5));
+      const Action here = action(end, element);
+      double work = 0;
+      for (std::size_t i = 0; i < element.reach().size(); ++i) {
+        const int node = element.reach()[i];
+        const Vector6 on_node = here.residual.segment<6>(6 * static_cast<Eigen::Index>(i));
+        work += on_node.head<3>().dot(end[node].position - begin[node].position) +
+                on_node.tail<3>().dot(cayley::increment(begin[node].orientation, end[node].orientation));
+      }
+      const auto energy = [&](const Poses& poses, const std::vector<double>& memory) {
+        State state;
+        for (const NodePose& pose : poses) {
+          state.nodes.emplace_back();
+          state.nodes.back().position = pose.position;
+          state.nodes.back().orientation = pose.orientation;
+        }
+        return element.energy(state, memory.data());
+      };
+      std::vector<double> old(here.memory.size(), 0.0);
+      for (std::size_t i = 0; i < old.size(); i += 4) Eigen::Map<Vector3>(old.data() + i + 1) = stretch;
+      EXPECT_GT(here.dissipated, 0);
+      EXPECT_NEAR(work, energy(end, here.memory) - energy(begin, old) + here.dissipated, 1e-12 * std::abs(work) + 1e-14)
+          << name << " " << friction;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(At, ContactElements, ::testing::Bool(),
+                         [](const auto& info) { return info.param ? "Rest" : "Means"; });
+
+}  // namespace
+}  // namespace flexarm::test

@@ -1,0 +1,161 @@
+#include "contact/contact_law.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace flexarm::test {
+namespace {
+
+ContactLaw law_with(double restitution, double depth = std::numeric_limits<double>::infinity()) {
+  ContactLaw law;
+  law.stiffness = 7;
+  law.frequency = 2;
+  law.damping = damping_for_restitution(restitution);
+  law.depth = depth;
+  return law;
+}
+
+struct Case {
+  ContactLaw law;
+  ContactChange change;
+};
+std::vector<Case> random_cases() {
+  std::mt19937 generator(3);
+  std::uniform_real_distribution<double> place(-0.6, 0.6), speed(0, 1), part(0.05, 1);
+  std::vector<Case> out;
+  for (int i = 0; i < 3000; ++i) {
+    const double depth = i % 2 == 0 ? 0.7 : std::numeric_limits<double>::infinity();
+    const ContactLaw law = law_with(i % 5 == 0 ? 1.0 : part(generator), depth);
+    out.push_back({law, {place(generator), place(generator), 0.3, speed(generator)}});
+  }
+  return out;
+}
+
+TEST(ContactPush, HasItsSlope) {
+  for (const auto& [law, change] : random_cases()) {
+    if (std::abs(change.end) < 1e-5 || std::abs(change.end - change.begin) < 1e-4) continue;  // a kink; cancellation
+    ContactChange more = change, less = change;
+    more.end += 1e-6;
+    less.end -= 1e-6;
+    const double difference = (contact_push(law, more).value - contact_push(law, less).value) / 2e-6;
+    const double slope = contact_push(law, change).slope;
+    // A push that comes to an end within the difference has a kink there, too.
+    if (contact_push(law, more).value == 0 || contact_push(law, less).value == 0) continue;
+    EXPECT_NEAR(slope, difference, 1e-6 * (std::abs(slope) + 100));
+  }
+}
+
+TEST(ContactPush, DoesTheWorkOfItsEnergyAndDissipates) {
+  for (const auto& [law, change] : random_cases()) {
+    const ContactPush push = contact_push(law, change);
+    const double stored = contact_energy(law, change.end) - contact_energy(law, change.begin);
+    const double size = contact_energy(law, change.end) + contact_energy(law, change.begin);
+    EXPECT_GE(push.value, 0);
+    EXPECT_GE(push.dissipated, -1e-15 * size);
+    if (law.damping == 0) EXPECT_EQ(push.dissipated, 0);
+    EXPECT_NEAR(push.value * (change.end - change.begin), stored + push.dissipated, 1e-13 * (size + push.dissipated));
+  }
+}
+
+TEST(ContactPush, IsTheDerivativeOfTheEnergyAtRest) {
+  for (const double depth : {0.7, std::numeric_limits<double>::infinity()})
+    for (const double p : {-0.1, 0.05, 0.3, 0.6}) {
+      const ContactLaw law = law_with(0.5, depth);
+      const auto push = [&](double at) { return contact_push(law, {0, at, 0}); };
+      const double h = 1e-6;
+      EXPECT_NEAR(push(p).value, (contact_energy(law, p + h) - contact_energy(law, p - h)) / (2 * h),
+                  1e-7 * (1 + push(p).value));
+      EXPECT_NEAR(push(p).slope, (push(p + h).value - push(p - h).value) / (2 * h), 1e-7 * (1 + push(p).slope));
+    }
+}
+
+/// Speed behind a hit over that before it, by steps of the mid-point rule so short that their error is below 1e-4:
+/// a hundredth of the oscillator's radian.
+double restitution_of(const ContactLaw& law, double mass, double speed) {
+  const double step = 0.01 / std::sqrt(law.stiffness / mass);
+  double p = 0, v = speed, remembered = 0;
+  do {
+    ContactChange change{p, p, step};
+    change.speed = approach_speed(p, v, remembered);
+    double low = p - speed * step, high = p + v * step;
+    const auto balance = [&](double end) {
+      change.end = end;
+      return 2 * mass * (end - p - v * step) / (step * step) + contact_push(law, change).value;
+    };
+    while (balance(low) > 0) low -= speed * step;
+    for (int i = 0; i < 80; ++i) {
+      const double middle = 0.5 * (low + high);
+      (balance(middle) > 0 ? high : low) = middle;
+    }
+    change.end = low;
+    remembered = remembered_speed(change, v);
+    v = 2 * (low - p) / step - v;
+    p = low;
+  } while (p > 0);
+  return -v / speed;
+}
+
+// Whatever the mass, the speed and the depth; half a per cent for the law's sum over steps at the ends of the hit.
+TEST(ContactPush, GivesBackWhatItsRestitutionSays) {
+  for (const double e : {0.1, 0.3, 0.5, 0.8, 1.0})
+    for (const double mass : {1.0, 7.0 / 4, 5.0})
+      for (const double speed : {0.01, 1.0})
+        EXPECT_NEAR(restitution_of(law_with(e, speed == 1.0 ? 2.0 : 0.02), mass, speed), e, 0.005) << mass << speed;
+}
+
+TEST(ContactPush, HasTheDampingOfItsClosedForm) {
+  for (const double e : {0.05, 0.3, 0.5, 0.8, 0.95}) {
+    const double d = damping_for_restitution(e);
+    // 1 - e d has the round-off of 1; its logarithm has that over what is left.
+    EXPECT_NEAR(std::log((1 + d) / (1 - e * d)), d * (1 + e), 1e-14 + 1e-15 / (1 - e * d)) << e;
+    EXPECT_GT(d, 0.5 * (1 - e)) << "0 is a solution, too";
+  }
+  EXPECT_EQ(damping_for_restitution(1), 0);
+}
+
+Vector3 random_vector(std::mt19937& generator, double size) {
+  std::uniform_real_distribution<double> number(-size, size);
+  return {number(generator), number(generator), number(generator)};
+}
+
+TEST(ContactGrip, HasItsSlopesAndDissipates) {
+  std::mt19937 generator(5);
+  ContactLaw law;
+  law.friction = 0.4;
+  law.grip = 30;
+  int sliding = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Vector3 stretch = random_vector(generator, 0.01), slip = random_vector(generator, 0.02);
+    const Vector3 normal = random_vector(generator, 1).normalized();
+    const double push = 1.5 * (1 + i % 2);
+    const ContactGrip here = contact_grip(law, stretch, slip, normal, push);
+    const auto at = [&](const Vector3& ds, const Vector3& dn, double dp) {
+      return contact_grip(law, stretch, slip + ds, normal + dn, push + dp).stretch;
+    };
+    const double h = 1e-7;
+    for (int k = 0; k < 3; ++k) {
+      const Vector3 by = h * Vector3::Unit(k);
+      const Vector3 zero = Vector3::Zero();
+      EXPECT_LE(((at(by, zero, 0) - at(-by, zero, 0)) / (2 * h) - here.by_slip.col(k)).norm(), 1e-6);
+      EXPECT_LE(((at(zero, by, 0) - at(zero, -by, 0)) / (2 * h) - here.by_normal.col(k)).norm(), 1e-6);
+    }
+    EXPECT_LE(
+        ((at(Vector3::Zero(), Vector3::Zero(), h) - at(Vector3::Zero(), Vector3::Zero(), -h)) / (2 * h) - here.by_push)
+            .norm(),
+        1e-6);
+    const double size = law.grip * here.stretch.norm(), most = law.friction * push;
+    EXPECT_LE(size, most * (1 + 1e-14));
+    EXPECT_NEAR(here.stretch.dot(normal), 0, 1e-16);
+    sliding += size > most * (1 - 1e-14);
+    const double dissipated =
+        law.grip * (here.stretch.dot(slip) - 0.5 * (here.stretch - stretch).dot(here.stretch + stretch));
+    EXPECT_GE(dissipated, -1e-16);
+  }
+  EXPECT_GT(sliding, 30);
+  EXPECT_LT(sliding, 270);
+}
+
+}  // namespace
+}  // namespace flexarm::test

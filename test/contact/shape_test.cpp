@@ -1,0 +1,104 @@
+#include "contact/shape.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "math/so3.h"
+
+namespace flexarm::test {
+namespace {
+
+const Pose kPlace{{0.3, -0.2, 0.5}, so3::exp_quaternion(Vector3(0.4, -0.7, 0.2))};
+
+struct Named {
+  const char* name;
+  ContactShape shape;
+};
+std::vector<Named> all_shapes() {
+  return {{"half-space", {HalfSpace{}, kPlace}},
+          {"ball", {Ball{0.4}, kPlace}},
+          {"box", {Box{{0.3, 0.5, 0.2}}, kPlace}},
+          {"cylinder", {Cylinder{0.3, 0.5}, kPlace}}};
+}
+
+std::vector<Vector3> random_points(int count) {
+  std::mt19937 generator(1);
+  std::uniform_real_distribution<double> number(-1, 1);
+  std::vector<Vector3> out;
+  for (int i = 0; i < count; ++i)
+    out.push_back(kPlace * Vector3(number(generator), number(generator), number(generator)));
+  return out;
+}
+
+// Differences with steps of 1e-6 and 1e-4 have errors of their squares, but where a face ends within the step.
+TEST(ContactShapes, HaveTheDerivativesOfTheirDistances) {
+  for (const auto& [name, shape] : all_shapes()) {
+    int wrong = 0;
+    for (const Vector3& point : random_points(300)) {
+      const SignedDistance here = shape.distance(point);
+      EXPECT_NEAR(here.gradient.norm(), 1, 1e-14) << name;
+      bool is_right = true;
+      for (int k = 0; k < 3; ++k) {
+        const Vector3 h = 1e-6 * Vector3::Unit(k);
+        const SignedDistance more = shape.distance(point + h), less = shape.distance(point - h);
+        is_right = is_right && std::abs((more.value - less.value) / 2e-6 - here.gradient[k]) < 1e-8 &&
+                   ((more.gradient - less.gradient) / 2e-6 - here.hessian.col(k)).norm() < 1e-7;
+      }
+      wrong += !is_right;
+    }
+    EXPECT_EQ(wrong, 0) << name;
+  }
+}
+
+// The nearest of many points of the surface; as far as these lie apart.
+TEST(ContactShapes, AreAsFarAsTheirSurfaces) {
+  const Box box{{0.3, 0.5, 0.2}};
+  const Cylinder cylinder{0.3, 0.5};
+  const ContactShape shapes[] = {{box, Pose()}, {cylinder, Pose()}};
+  constexpr int kCount = 120;
+  for (const ContactShape& shape : shapes) {
+    std::vector<Vector3> surface;
+    for (int i = 0; i <= kCount; ++i)
+      for (int j = 0; j <= kCount; ++j) {
+        const double u = -1 + 2.0 * i / kCount, v = -1 + 2.0 * j / kCount, angle = 4 * std::atan(1.0) * u;
+        for (const double side : {-1.0, 1.0}) {
+          if (std::holds_alternative<Box>(shape.kind)) {
+            surface.push_back(box.half.cwiseProduct(Vector3(side, u, v)));
+            surface.push_back(box.half.cwiseProduct(Vector3(u, side, v)));
+            surface.push_back(box.half.cwiseProduct(Vector3(u, v, side)));
+          } else {
+            const Vector3 radial(std::cos(angle), std::sin(angle), 0);
+            surface.push_back(cylinder.radius * radial + Vector3(0, 0, v * cylinder.half_length));
+            surface.push_back(0.5 * (v + 1) * cylinder.radius * radial + Vector3(0, 0, side * cylinder.half_length));
+          }
+        }
+      }
+    for (const Vector3& point : random_points(40)) {
+      double nearest = 1e9;
+      for (const Vector3& each : surface) nearest = std::min(nearest, (each - point).norm());
+      EXPECT_NEAR(std::abs(shape.distance(point).value), nearest, 0.012);
+      // On the surface at the end of the gradient.
+      const SignedDistance here = shape.distance(point);
+      EXPECT_NEAR(shape.distance(point - here.value * here.gradient).value, 0, 1e-14);
+    }
+  }
+}
+
+TEST(ContactShapes, HaveTheirPointsOnTheirSurfaces) {
+  for (const auto& [name, shape] : all_shapes())
+    for (const ContactPoint& point : contact_points(shape))
+      EXPECT_NEAR(shape.distance(point.arm).value, -point.radius, 1e-15) << name;
+}
+
+// Their gradients there are unit vectors, so that what is pressed out goes somewhere.
+TEST(ContactShapes, HaveADirectionInTheirMiddles) {
+  for (const auto& [name, shape] : all_shapes()) {
+    const SignedDistance here = shape.distance(kPlace.position);
+    EXPECT_NEAR(here.gradient.norm(), 1, 1e-15) << name;
+    EXPECT_TRUE(here.hessian.allFinite()) << name;
+  }
+}
+
+}  // namespace
+}  // namespace flexarm::test
