@@ -31,7 +31,7 @@ std::vector<int> reach_of(const ContactSides& sides) {
 }
 
 PointMemory memory_at(const double* numbers) {
-  return {numbers[0], Eigen::Map<const Vector3>(numbers + 1)};
+  return {numbers[0], Eigen::Map<const Vector3>(numbers + 1), static_cast<int>(numbers[4])};
 }
 
 auto poses_in(const std::vector<NodePose>& nodes) {
@@ -127,13 +127,15 @@ bool ContactElement::needs_halves(const ForceStep& step, const int*, int count) 
   const double* memory = step.memory;
   for_each_pair([&](const ContactStation& station, const ContactShape& shape) {
     const Vector3 from = place(station, poses_in(step.begin)), to = place(station, poses_in(step.end));
-    const SignedDistance begin = shape.distance(from), end = shape.distance(to);
+    const FeltShape felt = felt_shape(shape, law_, station.radius, from, to, memory_at(memory).face);
+    const SignedDistance begin = felt.shape.distance(from), end = felt.shape.distance(to);
     const double begin_rate = -begin.gradient.dot(velocity(station, step.begin, step.velocities));
     ContactChange change{station.radius - begin.value, station.radius - end.value, std::abs(step.duration)};
     change.speed = approach_speed(change.begin, begin_rate, memory[0]);
     memory += PointMemory::kSize;
+    if (!felt.is_felt) return true;
     if (change.begin <= 0 && change.end <= 0)
-      is_too_long = passes_through(shape, from, to, station.radius);
+      is_too_long = passes_through(felt.shape, from, to, station.radius);
     else
       is_too_long = count == 0 || begin.gradient.dot(end.gradient) < kOtherSide ||
                     is_coarse_hit(law_, change, begin_rate, step.refinement);
@@ -210,8 +212,7 @@ void ContactElement::evaluate(const ForceStep& step, const int*, ForceAction& ac
     motion.begin = place(station, poses_in(step.begin));
     motion.end = frames.base_end.rotation.transpose() * placed.end_base_arm;
     motion.turn = frames.axes.transpose() * placed.turn;
-    if (step.duration != 0)
-      motion.begin_rate = -gap_rate(shape, motion.begin, velocity(station, step.begin, step.velocities));
+    if (step.duration != 0) motion.begin_velocity = velocity(station, step.begin, step.velocities);
     motion.duration = step.duration;
     motion.at_end = step.at_end;
     const PointAction local =
@@ -219,6 +220,7 @@ void ContactElement::evaluate(const ForceStep& step, const int*, ForceAction& ac
     action.dissipated += local.dissipated;
     new_memory[0] = local.memory.speed;
     Eigen::Map<Vector3>(new_memory + 1) = local.memory.stretch;
+    new_memory[4] = local.memory.face;
     memory += PointMemory::kSize;
     new_memory += PointMemory::kSize;
     if (local.acts) add(station, frames, placed, local, action);
@@ -284,8 +286,7 @@ double ContactElement::energy(const State& state, const double* memory) const {
   double energy = 0;
   for_each_pair([&](const ContactStation& station, const ContactShape& shape) {
     const ContactLaw law = law_of(station);
-    const double gap = shape.distance(place(station, poses_in(state))).value - station.radius;
-    energy += contact_energy(law, -gap) + 0.5 * law.grip * memory_at(memory).stretch.squaredNorm();
+    energy += stored_energy(shape, law, station.radius, place(station, poses_in(state)), memory_at(memory));
     memory += PointMemory::kSize;
     return true;
   });

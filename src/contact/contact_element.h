@@ -44,6 +44,7 @@ class ContactElement : public ForceElement {
   ForceMeasures measures(const State& state, const int* nodes) const override;
   DamperTensions dampers(const State& state, const Eigen::VectorXd& rates) const override;
   int memory_size() const override;
+  bool suits_all_schemes() const override { return false; }
 
  private:
   struct Frames;

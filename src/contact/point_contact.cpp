@@ -32,20 +32,46 @@ GapChange gap_change(const ContactShape& shape, const Vector3& from, const Vecto
   return out;
 }
 
-PointAction point_action(const ContactShape& shape, const ContactLaw& law, double radius, const PointMotion& motion,
+FeltShape felt_shape(const ContactShape& shape, const ContactLaw& law, double radius, const Vector3& from,
+                     const Vector3& to, int remembered_face) {
+  FeltShape out{shape};
+  if (radius > 0 || !has_faces(shape)) return out;
+  out.face = remembered_face;
+  if (out.face != 0 && !is_over_face(shape, out.face, from)) {
+    out.let_go = contact_energy(law, -beyond_face(shape, out.face).distance(from).value);
+    out.face = 0;
+  }
+  if (out.face == 0)
+    out.face = shape.distance(from).value < 0 ? nearest_face(shape, from) : entered_face(shape, from, to);
+  out.is_felt = out.face != 0;
+  if (out.is_felt) out.shape = beyond_face(shape, out.face);
+  return out;
+}
+
+double stored_energy(const ContactShape& shape, const ContactLaw& law, double radius, const Vector3& point,
+                     const PointMemory& memory) {
+  const ContactShape& felt = memory.face != 0 ? beyond_face(shape, memory.face) : shape;
+  return contact_energy(law, radius - felt.distance(point).value) + 0.5 * law.grip * memory.stretch.squaredNorm();
+}
+
+PointAction point_action(const ContactShape& whole, const ContactLaw& law, double radius, const PointMotion& motion,
                          const PointMemory& memory, bool with_slope) {
   PointAction out;
+  const FeltShape felt = felt_shape(whole, law, radius, motion.begin, motion.end, memory.face);
+  const ContactShape& shape = felt.shape;
+  const double grip_energy = 0.5 * law.grip * memory.stretch.squaredNorm();
+  out.dissipated = felt.let_go + grip_energy;  // of a contact that has let go
+  if (!felt.is_felt) return out;
   const GapChange gap = gap_change(shape, motion.begin, motion.end, motion.at_end);
   ContactChange change{radius - gap.begin, radius - gap.end, motion.at_end ? 0.0 : motion.duration};
-  if (change.begin <= 0 && change.end <= 0) {
-    out.dissipated = 0.5 * law.grip * memory.stretch.squaredNorm();  // of a grip that has let go
-    return out;
-  }
+  if (change.begin <= 0 && change.end <= 0) return out;
   out.acts = true;
-  change.speed = approach_speed(change.begin, motion.begin_rate, memory.speed);
+  out.memory.face = change.end > 0 ? felt.face : 0;
+  const double begin_rate = -shape.distance(motion.begin).gradient.dot(motion.begin_velocity);
+  change.speed = approach_speed(change.begin, begin_rate, memory.speed);
   const ContactPush push = contact_push(law, change);
-  if (change.duration != 0) out.memory.speed = remembered_speed(change, motion.begin_rate);
-  out.dissipated = push.dissipated;
+  if (change.duration != 0) out.memory.speed = remembered_speed(change, begin_rate);
+  out.dissipated = felt.let_go + push.dissipated;
   Vector3 force = push.value * gap.gradient;
   const Vector3 by_end = -push.slope * gap.end_gradient;  // of the push
   if (with_slope) out.slope.topLeftCorner<3, 3>() = gap.gradient * by_end.transpose() + push.value * gap.slope;
@@ -56,7 +82,7 @@ PointAction point_action(const ContactShape& shape, const ContactLaw& law, doubl
     const ContactGrip grip = contact_grip(law, memory.stretch, slip, normal, push.value);
     const Vector3 drag = -law.grip * grip.stretch;
     out.memory.stretch = grip.stretch;
-    out.dissipated += -drag.dot(slip) - 0.5 * law.grip * (grip.stretch.squaredNorm() - memory.stretch.squaredNorm());
+    out.dissipated += -drag.dot(slip) + grip_energy - 0.5 * law.grip * grip.stretch.squaredNorm();
     force += drag;
     out.wrench.tail<3>() = offset.cross(drag);
     if (with_slope) {
@@ -73,10 +99,6 @@ PointAction point_action(const ContactShape& shape, const ContactLaw& law, doubl
   }
   out.wrench.head<3>() = force;
   return out;
-}
-
-double gap_rate(const ContactShape& shape, const Vector3& point, const Vector3& velocity) {
-  return shape.distance(point).gradient.dot(velocity);
 }
 
 bool passes_through(const ContactShape& shape, const Vector3& from, const Vector3& to, double radius) {

@@ -19,17 +19,18 @@ GapChange gap_change(const ContactShape& shape, const Vector3& from, const Vecto
 
 /// Over a step.
 struct PointMotion {
-  Vector3 begin, end;     ///< where the middle of the point's ball is [m]
-  Vector3 turn;           ///< of the ball less that of the shape's body, tangent-scaled, mean axes
-  double begin_rate = 0;  ///< of the penetration [m/s]
-  double duration = 0;    ///< [s]; 0: an equilibrium
-  bool at_end = false;    ///< what acts at the end counts; else means, whose work is exact
+  Vector3 begin, end;                        ///< where the middle of the point's ball is [m]
+  Vector3 turn;                              ///< of the ball less that of the shape's body, tangent-scaled, mean axes
+  Vector3 begin_velocity = Vector3::Zero();  ///< of that middle, at the beginning [m/s]
+  double duration = 0;                       ///< [s]; 0: an equilibrium
+  bool at_end = false;                       ///< what acts at the end counts; else means, whose work is exact
 };
 /// For each point and shape, zero where they do not touch.
 struct PointMemory {
-  static constexpr int kSize = 4;
+  static constexpr int kSize = 5;
   double speed = 0;  ///< see remembered_speed()
   Vector3 stretch = Vector3::Zero();
+  int face = 0;  ///< by which a corner has come in
 };
 /// On the ball: a force through its middle and a couple, conjugate to the way and to the turn.
 struct PointAction {
@@ -40,11 +41,22 @@ struct PointAction {
   bool acts = false;
 };
 /// `radius`: of the ball [m].
-PointAction point_action(const ContactShape& shape, const ContactLaw& law, double radius, const PointMotion& motion,
+PointAction point_action(const ContactShape& whole, const ContactLaw& law, double radius, const PointMotion& motion,
                          const PointMemory& memory, bool with_slope);
 
-/// Rate of the distance of a point that moves so against the shape's body.
-double gap_rate(const ContactShape& shape, const Vector3& point, const Vector3& velocity);
+/// What a point feels of a shape over a step: all of it, or what is beyond one face.
+struct FeltShape {
+  ContactShape shape;
+  int face = 0;
+  bool is_felt = true;  ///< false: it cannot touch
+  double let_go = 0;    ///< what was stored and is lost, since the point has come beside the face that it was in [J]
+};
+FeltShape felt_shape(const ContactShape& shape, const ContactLaw& law, double radius, const Vector3& from,
+                     const Vector3& to, int remembered_face);
+/// What is stored [J].
+double stored_energy(const ContactShape& shape, const ContactLaw& law, double radius, const Vector3& point,
+                     const PointMemory& memory);
+
 /// True where a ball that goes straight from one point to another, and touches at neither, meets the shape in between.
 bool passes_through(const ContactShape& shape, const Vector3& from, const Vector3& to, double radius);
 

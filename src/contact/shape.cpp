@@ -111,6 +111,98 @@ SignedDistance ContactShape::distance(const Vector3& point) const {
   return out;
 }
 
+// ---------------------------------------------------------------- faces
+
+namespace {
+
+/// A point may be beside a face by this part of its shape's size, and still be over it: round-off.
+constexpr double kBeside = 1e-9;
+
+/// How far a point is outside of each pair of faces on the side on which `side` is, and the size of it all [m].
+struct FaceDistances {
+  Vector3 values;
+  double size;
+};
+FaceDistances face_distances(const ContactShape& shape, const Vector3& point, const Vector3& side) {
+  if (const auto* box = std::get_if<Box>(&shape.kind)) {
+    const Vector3 signs = side.unaryExpr([](double each) { return each < 0 ? -1.0 : 1.0; });
+    return {point.cwiseProduct(signs) - box->half, box->half.maxCoeff()};
+  }
+  const Cylinder& cylinder = std::get<Cylinder>(shape.kind);
+  const double radial = point.head<2>().norm() - cylinder.radius;
+  return {{radial, radial, (side.z() < 0 ? -point.z() : point.z()) - cylinder.half_length},
+          std::max(cylinder.radius, cylinder.half_length)};
+}
+
+/// Of an axis, on the side of a point.
+int face_along(const ContactShape& shape, Eigen::Index axis, const Vector3& side) {
+  if (std::holds_alternative<Cylinder>(shape.kind) && axis < 2) return 1;
+  const int number = static_cast<int>(axis) + 1;
+  return side[axis] < 0 ? -number : number;
+}
+
+bool is_same_pair(const ContactShape& shape, Eigen::Index one, Eigen::Index other) {
+  return one == other || (std::holds_alternative<Cylinder>(shape.kind) && one < 2 && other < 2);
+}
+
+Vector3 own_point(const ContactShape& shape, const Vector3& point) {
+  return shape.place.orientation.conjugate() * (point - shape.place.position);
+}
+
+}  // namespace
+
+bool has_faces(const ContactShape& shape) {
+  return std::holds_alternative<Box>(shape.kind) || std::holds_alternative<Cylinder>(shape.kind);
+}
+
+int entered_face(const ContactShape& shape, const Vector3& from, const Vector3& to) {
+  const Vector3 begin = own_point(shape, from), end = own_point(shape, to);
+  const FaceDistances first = face_distances(shape, begin, begin), last = face_distances(shape, end, begin);
+  const double slack = kBeside * first.size;
+  double entry = -1;  // the last of the pairs of faces between which the point comes, in parts of the way
+  Eigen::Index axis = -1;
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const double a = first.values[k], b = last.values[k];
+    if (a < -slack) continue;
+    if (a > slack && b >= a) return 0;
+    // Where it starts on several faces it comes in by the one towards which it moves.
+    const double part = a > slack ? a / (a - b) : 0;
+    if (part < entry || (part == entry && b >= last.values[axis])) continue;
+    entry = part;
+    axis = k;
+  }
+  if (axis < 0 || entry > 1) return 0;
+  const Vector3 between = first.values + entry * (last.values - first.values);
+  for (Eigen::Index k = 0; k < 3; ++k)
+    if (!is_same_pair(shape, k, axis) && between[k] > slack) return 0;
+  return face_along(shape, axis, begin);
+}
+
+int nearest_face(const ContactShape& shape, const Vector3& point) {
+  const Vector3 own = own_point(shape, point);
+  Eigen::Index axis;
+  face_distances(shape, own, own).values.maxCoeff(&axis);
+  return face_along(shape, axis, own);
+}
+
+bool is_over_face(const ContactShape& shape, int face, const Vector3& point) {
+  const Vector3 own = own_point(shape, point);
+  const FaceDistances distances = face_distances(shape, own, own);
+  for (Eigen::Index k = 0; k < 3; ++k)
+    if (!is_same_pair(shape, k, std::abs(face) - 1) && distances.values[k] > kBeside * distances.size) return false;
+  return true;
+}
+
+ContactShape beyond_face(const ContactShape& shape, int face) {
+  const Eigen::Index axis = std::abs(face) - 1;
+  const auto* cylinder = std::get_if<Cylinder>(&shape.kind);
+  if (cylinder && axis < 2) return {Cylinder{cylinder->radius, std::numeric_limits<double>::infinity()}, shape.place};
+  const double half = cylinder ? cylinder->half_length : std::get<Box>(shape.kind).half[axis];
+  const Vector3 outwards = (face < 0 ? -1.0 : 1.0) * Vector3::Unit(axis);
+  const Pose own{half * outwards, Quaternion::FromTwoVectors(Vector3::UnitZ(), outwards)};
+  return {HalfSpace{}, shape.place * own};
+}
+
 double ContactShape::reach() const {
   return std::visit([](const auto& shape) { return reach_of(shape); }, kind);
 }

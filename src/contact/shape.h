@@ -40,6 +40,18 @@ struct ContactShape {
   double reach() const;
 };
 
+/// Faces of boxes and cylinders, by numbers: +-1, 2, 3 of a box by the axis that they look along, 1 and +-3 of a
+/// cylinder; 0: none. A corner that has come in by a face is pushed out by it, however near others are: corners of
+/// equal boxes on each other lie on edges.
+bool has_faces(const ContactShape& shape);
+/// By which a point comes in that goes straight from outside to another place; 0: it does not.
+int entered_face(const ContactShape& shape, const Vector3& from, const Vector3& to);
+int nearest_face(const ContactShape& shape, const Vector3& point);
+/// Whether a point lies above or below a face, not beside it.
+bool is_over_face(const ContactShape& shape, int face, const Vector3& point);
+/// What a face bounds, as if there were no others: a half-space, or an endless cylinder.
+ContactShape beyond_face(const ContactShape& shape, int face);
+
 /// A ball around a point fixed to a node by which a shape touches others: a corner, or the centre of a round one.
 struct ContactPoint {
   Vector3 arm = Vector3::Zero();  ///< in the node's frame [m]

@@ -21,6 +21,13 @@ ForceElements::ForceElements(const StepConfiguration& configuration) : configura
     throw ModelError(
         fmt::format("schemes that interpolate forces in time (hht1, hht2, hht3) have no <{}> between points",
                     elements.front()->kind()));
+  const Scheme& scheme = configuration.scheme();
+  const bool is_plain = scheme.is_static || (scheme.is_incremental() && !scheme.is_composition);
+  for (const auto& element : elements)
+    if (!is_plain && !element->suits_all_schemes())
+      throw ModelError(
+          fmt::format("<integrator>: scheme '{}' has no <{}>; take one of the energy-momentum family, as em",
+                      scheme.name, element->kind()));
   int most = 0, memory = 0;
   for (const auto& element : elements) {
     nodes_.emplace_back().reserve(element->most_nodes());

@@ -121,6 +121,10 @@ class ForceElement {
   /// Numbers of State::force_memory that it has for itself, zero at the start.
   virtual int memory_size() const { return 0; }
 
+  /// False where it has no forces at the ends of steps, as the Newmark family asks for them, and steps backwards, as
+  /// compositions have them, would undo what it dissipates.
+  virtual bool suits_all_schemes() const { return true; }
+
   // ---- what it puts out
   virtual std::vector<ForceOutput> outputs() const { return {}; }
   /// Appends their values.

@@ -36,11 +36,10 @@ struct Scene {
 /// A ball and a corner of node 0, and an element of nodes 0, 2, 3, against shapes of node 1 or of the world.
 std::vector<Scene> scenes() {
   const Pose place{{0.05, -0.02, 0.03}, so3::exp_quaternion(Vector3(0.2, 0.1, -0.3))};
-  const std::vector<ContactShape> shapes = {
-      {HalfSpace{}, {place * Vector3(0, 0, 0.3), place.orientation}},
-      {Ball{0.3}, place},
-      {Box{{0.4, 0.5, 0.3}}, place},
-      {Cylinder{0.45, 0.3}, place}};
+  const std::vector<ContactShape> shapes = {{HalfSpace{}, {place * Vector3(0, 0, 0.3), place.orientation}},
+                                            {Ball{0.3}, place},
+                                            {Box{{0.4, 0.5, 0.3}}, place},
+                                            {Cylinder{0.45, 0.3}, place}};
   ContactStation ball, corner, tube;
   ball.arm = {0.1, 0.05, -0.1};
   ball.radius = 0.2;
@@ -72,7 +71,7 @@ class ContactElements : public ::testing::TestWithParam<bool> {
     step.duration = GetParam() ? 0.0 : 0.05;
     step.at_end = GetParam();
     std::vector<double> memory(element.memory_size(), 0.0);
-    for (std::size_t i = 0; i < memory.size(); i += 4) {
+    for (std::size_t i = 0; i < memory.size(); i += PointMemory::kSize) {
       memory[i] = 0.3;
       Eigen::Map<Vector3>(memory.data() + i + 1) = stretch;
     }
@@ -165,7 +164,8 @@ TEST_P(ContactElements, OfMeansDoExactWork) {
         return element.energy(state, memory.data());
       };
       std::vector<double> old(here.memory.size(), 0.0);
-      for (std::size_t i = 0; i < old.size(); i += 4) Eigen::Map<Vector3>(old.data() + i + 1) = stretch;
+      for (std::size_t i = 0; i < old.size(); i += PointMemory::kSize)
+        Eigen::Map<Vector3>(old.data() + i + 1) = stretch;
       EXPECT_GT(here.dissipated, 0);
       EXPECT_NEAR(work, energy(end, here.memory) - energy(begin, old) + here.dissipated, 1e-12 * std::abs(work) + 1e-14)
           << name << " " << friction;

@@ -1,0 +1,56 @@
+// By which face corners come into boxes and cylinders.
+#include <gtest/gtest.h>
+
+#include "contact/point_contact.h"
+
+namespace flexarm::test {
+namespace {
+
+const ContactShape kBox{Box{{0.3, 0.2, 0.1}}, Pose()};
+const ContactShape kCylinder{Cylinder{0.3, 0.1}, Pose()};
+
+TEST(Faces, AreEnteredWhereThePointComesIn) {
+  EXPECT_EQ(entered_face(kBox, {0.1, 0.1, 0.2}, {0.1, 0.1, 0.05}), 3);
+  EXPECT_EQ(entered_face(kBox, {0.1, 0.1, -0.2}, {0.1, 0.1, -0.05}), -3);
+  EXPECT_EQ(entered_face(kBox, {-0.4, 0, 0}, {0.4, 0, 0}), -1) << "right through";
+  EXPECT_EQ(entered_face(kBox, {0.1, 0.1, 0.2}, {0.1, 0.1, 0.15}), 0) << "not there yet";
+  EXPECT_EQ(entered_face(kBox, {0.35, 0.1, 0.2}, {0.35, 0.1, 0}), 0) << "passes by";
+  EXPECT_EQ(entered_face(kBox, {0.4, 0, 0.12}, {0.2, 0, 0.05}), 1) << "over the edge, beside it last";
+  EXPECT_EQ(entered_face(kBox, {0.31, 0, 0.2}, {0.2, 0, 0.05}), 3) << "over the edge, above it last";
+  EXPECT_EQ(entered_face(kCylinder, {0.1, 0.1, 0.2}, {0.1, 0.1, 0.05}), 3);
+  EXPECT_EQ(entered_face(kCylinder, {0, 0.4, 0}, {0, 0.2, 0}), 1);
+}
+
+// Corners of equal boxes on each other lie on edges.
+TEST(Faces, OfEdgesAreThoseTowardsWhichThePointMoves) {
+  EXPECT_EQ(entered_face(kBox, {0.3, -0.2, 0.11}, {0.3, -0.2, 0.09}), 3);
+  EXPECT_EQ(entered_face(kBox, {0.3, -0.2, 0.1}, {0.3, -0.2, 0.09}), 3) << "which it touches to begin with";
+  EXPECT_EQ(entered_face(kBox, {0.3, -0.2, 0.1}, {0.3, -0.19, 0.1}), -2);
+  EXPECT_TRUE(is_over_face(kBox, 3, {0.3, -0.2, 0.09}));
+  EXPECT_FALSE(is_over_face(kBox, 3, {0.3, -0.2001, 0.09}));
+}
+
+TEST(Faces, BoundHalfSpacesAndEndlessCylinders) {
+  EXPECT_NEAR(beyond_face(kBox, 3).distance({5, 5, 0.15}).value, 0.05, 1e-15);
+  EXPECT_NEAR(beyond_face(kBox, -2).distance({5, -0.15, 5}).value, -0.05, 1e-14);  // the round-off of 5
+  EXPECT_NEAR(beyond_face(kCylinder, 1).distance({0.4, 0, 7}).value, 0.1, 1e-15);
+  EXPECT_NEAR(beyond_face(kCylinder, -3).distance({4, 0, -0.3}).value, 0.2, 1e-15);
+}
+
+// What comes beside its face is let go, with what was stored; what comes out of it is forgotten.
+TEST(Faces, AreKeptUntilThePointIsOut) {
+  ContactLaw law;
+  law.stiffness = 100;
+  law.frequency = 10;
+  const FeltShape kept = felt_shape(kBox, law, 0, {0.29, 0, 0.02}, {0.28, 0, 0.03}, 3);
+  EXPECT_EQ(kept.face, 3) << "though another face is nearer";
+  EXPECT_EQ(kept.let_go, 0);
+  const FeltShape beside = felt_shape(kBox, law, 0, {0.31, 0, 0.08}, {0.32, 0, 0.08}, 3);
+  EXPECT_FALSE(beside.is_felt);
+  EXPECT_NEAR(beside.let_go, 0.5 * 100 * 0.02 * 0.02, 1e-15);
+  const FeltShape inside = felt_shape(kBox, law, 0, {0.05, 0, 0.08}, {0.05, 0, 0.09}, 0);
+  EXPECT_EQ(inside.face, 3) << "of a start inside the nearest one";
+}
+
+}  // namespace
+}  // namespace flexarm::test
