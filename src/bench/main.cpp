@@ -16,7 +16,6 @@
 #include "cli/command_line.h"
 #include "cli/files.h"
 #include "cli/installation.h"
-#include "cli/interruption.h"
 #include "cli/progress_bar.h"
 #include "flexarm/schemes/integrator_description.h"
 

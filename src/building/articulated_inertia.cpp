@@ -1,4 +1,4 @@
-#include "building/articulated_inertia.h"
+#include "building/passes.h"
 
 #include "joints/joint_kinematics.h"
 #include "math/dense_eigenpairs.h"

@@ -1,5 +1,6 @@
-#include "building/coordinate_builder.h"
+#include "building/passes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <unordered_map>
 #include <unordered_set>
@@ -243,6 +244,87 @@ DrivenMechanism connect_drives(const ScenePlan& plan, ClosedMechanism mechanism)
   for (const scene::DriveDescription& drive : plan.scene.drives) add_drive(plan, drive, names, model);
   for (const scene::ServoDescription& servo : plan.scene.servos) add_servo(plan, servo, names, model);
   return {std::move(mechanism)};
+}
+
+// ---------------------------------------------------------------- stops
+
+namespace {
+
+/// Part of the range.
+constexpr double kDepth = 0.1;
+/// Where there is no range, of a radian or of the size of the mechanism.
+constexpr double kDepthWithoutRange = 1e-4;
+/// A start beyond a stop is this part of what it gives way at most: there it is nearly linear.
+constexpr double kShareOfStart = 0.25;
+
+void deepen(double& give, double start) {
+  give = std::max(give, start / kShareOfStart);
+}
+
+}  // namespace
+
+void set_stop_depths(Model& model) {
+  for (Coordinate& coordinate : model.coordinates) {
+    if (!coordinate.limit) continue;
+    LimitStop& stop = *coordinate.limit;
+    const JointMap& joint = model.joints[coordinate.joint];
+    if (joint.kind == JointMapKind::Slide) {
+      const SlideLine& line = model.slide_lines[joint.line];
+      stop.give_below = SlideLine::kLargestOvershoot * line.pieces.front().length();
+      stop.give_above = SlideLine::kLargestOvershoot * line.pieces.back().length();
+      continue;
+    }
+    const double range = stop.upper - stop.lower,
+                 start = model.initial_released[coordinate.joint].displacement[coordinate.component];
+    const double scale = is_rotation(model, coordinate) ? 1.0 : model.length_scale;
+    stop.give_below = stop.give_above = range > 0 ? kDepth * range : kDepthWithoutRange * scale;
+    deepen(stop.give_below, stop.lower - start);
+    deepen(stop.give_above, start - stop.upper);
+  }
+}
+
+// ---------------------------------------------------------------- damping ratios
+
+namespace {
+
+/// The coordinate's actuator, which it has.
+Actuator& actuator_named(const std::string& coordinate, Model& model) {
+  const auto is_its = [&](const Actuator& actuator) {
+    return model.coordinates[actuator.coordinate].name == coordinate;
+  };
+  return *std::find_if(model.actuators.begin(), model.actuators.end(), is_its);
+}
+
+/// `where`: begins the message if the inertia is not known.
+double damper(double ratio, double stiffness, double inertia, const std::string& where) {
+  if (inertia > 0) return 2 * ratio * std::sqrt(stiffness * inertia);
+  throw ModelError(
+      where +
+      "damping_ratio needs the inertia that the joint moves, which is not known in mechanisms with loops, on "
+      "slides, and where other joints follow it; give the damping itself, that of the joint's <dynamics> or "
+      "of the gear");
+}
+
+}  // namespace
+
+void set_damping_ratios(const scene::SceneDescription& scene, const std::vector<int>& node_parents, Model& model) {
+  const auto has_ratio = [](const auto& description) { return description.damping_ratio > 0; };
+  if (std::none_of(scene.springs.begin(), scene.springs.end(), has_ratio) &&
+      std::none_of(scene.drives.begin(), scene.drives.end(), has_ratio))
+    return;
+  const std::vector<double> inertias = articulated_inertias(node_parents, model);
+  const auto set = [&](const auto& description, Elasticity& elasticity, int coordinate, const char* element) {
+    elasticity.damping = damper(description.damping_ratio, elasticity.stiffness, inertias[coordinate],
+                                at(description.location, element));
+  };
+  for (const scene::SpringDescription& spring : scene.springs) {
+    Actuator& actuator = actuator_named(spring.coordinate, model);
+    if (has_ratio(spring)) set(spring, actuator.spring->elasticity, actuator.coordinate, "<spring>");
+  }
+  for (const scene::DriveDescription& drive : scene.drives) {
+    Actuator& actuator = actuator_named(drive.coordinate, model);
+    if (has_ratio(drive)) set(drive, *actuator.drive.gear, actuator.coordinate, "<drive>");
+  }
 }
 
 }  // namespace flexarm

@@ -1,10 +1,9 @@
-#include "building/held_joints.h"
+#include "building/passes.h"
 
 #include <algorithm>
 #include <set>
 
 #include "building/rigid_body.h"
-#include "building/sensor_builder.h"
 
 namespace flexarm {
 namespace {

@@ -1,4 +1,4 @@
-#include "building/inertia_builder.h"
+#include "building/passes.h"
 
 #include <map>
 #include <utility>

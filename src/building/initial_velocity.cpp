@@ -1,4 +1,4 @@
-#include "building/initial_velocity.h"
+#include "building/passes.h"
 
 #include <map>
 #include <string>

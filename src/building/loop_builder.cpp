@@ -1,4 +1,4 @@
-#include "building/loop_builder.h"
+#include "building/passes.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,6 @@
 #include <unordered_set>
 #include <utility>
 
-#include "building/closure_builder.h"
 #include "building/elementary_joints.h"
 #include "building/model_builder.h"
 #include "joints/joint_kinematics.h"

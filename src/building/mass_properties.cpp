@@ -1,4 +1,4 @@
-#include "building/mass_properties.h"
+#include "building/passes.h"
 
 #include <limits>
 #include <unordered_set>

@@ -7,23 +7,11 @@
 
 #include <fmt/format.h>
 
-#include "building/articulated_inertia.h"
-#include "building/closure_builder.h"
 #include "building/contact_builder.h"
-#include "building/coordinate_builder.h"
-#include "building/damping_ratios.h"
 #include "building/elementary_joints.h"
 #include "building/force_element_builder.h"
-#include "building/held_joints.h"
-#include "building/inertia_builder.h"
-#include "building/initial_velocity.h"
-#include "building/load_builder.h"
-#include "building/loop_builder.h"
-#include "building/mass_properties.h"
+#include "building/passes.h"
 #include "building/rigid_lines.h"
-#include "building/sensor_builder.h"
-#include "building/stop_depths.h"
-#include "building/tree_builder.h"
 
 namespace flexarm {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <type_traits>
 
-#include "building/link_mesh.h"
+#include "building/scene_plan.h"
 #include "flexarm/model/model_error.h"
 #include "math/local_rotation.h"
 #include "model/beam_element.h"

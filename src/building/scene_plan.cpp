@@ -1,10 +1,11 @@
 #include "building/scene_plan.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "building/elementary_joints.h"
-#include "building/held_joints.h"
 #include "building/model_builder.h"
+#include "building/passes.h"
 #include "model/carried_origin.h"
 #include "scene/limits.h"
 
@@ -93,6 +94,10 @@ bool floats(const scene::SceneDescription& scene, const JointTree& tree, const L
 
 }  // namespace
 
+std::string at(const scene::SourceLocation& location, const std::string& element) {
+  return location.file + ":" + std::to_string(location.line) + ": " + element + ": ";
+}
+
 std::string at_loop_joint(const scene::SceneDescription& scene, const std::string& name) {
   const auto joint = std::find_if(scene.loop_joints.begin(), scene.loop_joints.end(),
                                   [&](const scene::JointDescription& loop) { return loop.name == name; });
@@ -134,6 +139,37 @@ JointTree::JointTree(const scene::SceneDescription& scene, const LinkNames& link
   }
   if (joints.size() + 1 != scene.links.size())
     throw ModelError(scene.file + ": not every link is connected to the root link '" + scene.root_link + "'");
+}
+
+Centreline centreline_of(const scene::LinkDescription& link) {
+  const scene::BeamDescription& beam = *link.beam;
+  if (beam.order < 1 || beam.order > 4) throw ModelError(at(beam.location, "<beam>") + "order must be 1 to 4");
+  try {
+    return Centreline(beam.centreline, beam.section_y);
+  } catch (const std::invalid_argument& error) {
+    throw ModelError(at(beam.location, "<centerline> of link '" + link.name + "'") + error.what());
+  }
+}
+
+BeamMesh mesh_of(const scene::LinkDescription& link, const Centreline& centreline, const std::vector<double>& borders,
+                 int most) {
+  try {
+    return mesh_beam(*link.beam, centreline, borders, most);
+  } catch (const std::invalid_argument& error) {
+    throw ModelError(at(link.beam->location, "<beam> of link '" + link.name + "'") + error.what());
+  }
+}
+
+std::vector<double> ends_of(const scene::DistributedLoad& load, const Centreline& centreline) {
+  std::vector<double> ends;
+  for (const std::optional<double>& end : {load.from, load.to}) {
+    if (!end) continue;
+    if (*end > centreline.length())
+      throw ModelError(at(load.location, "<distributed_load>") + "the line of link '" + load.link + "' is " +
+                       std::to_string(centreline.length()) + " m long, got " + std::to_string(*end));
+    ends.push_back(*end);
+  }
+  return ends;
 }
 
 InitialPositions::InitialPositions(const scene::SceneDescription& scene) {

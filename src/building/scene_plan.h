@@ -1,16 +1,20 @@
 #pragma once
-/// What is known of a scene before anything of it has a place (internal to building/).
+/// What is known of a scene before anything of it has a place, the meshes of single links included (internal to
+/// building/).
 
 #include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
 
-#include "building/link_mesh.h"
+#include "building/beam_mesh.h"
+#include "building/centreline.h"
 #include "flexarm/scene/scene_description.h"
 
 namespace flexarm {
 
+/// "file:line: element: ", with which messages about an element begin.
+std::string at(const scene::SourceLocation& location, const std::string& element);
 /// The same of the loop joint of this name, which the scene has.
 std::string at_loop_joint(const scene::SceneDescription& scene, const std::string& name);
 
@@ -39,6 +43,24 @@ struct JointTree {
   std::vector<std::vector<const scene::JointDescription*>> below;  ///< per link; what slides on it comes last
 };
 
+/// A link with a beam, undeformed.
+struct LinkMesh {
+  Centreline centreline;
+  BeamMesh mesh;
+};
+
+/// @throws ModelError where the beam's centreline or order is impossible.
+Centreline centreline_of(const scene::LinkDescription& link);
+
+/// See mesh_beam().
+/// @throws ModelError where there is no such mesh.
+BeamMesh mesh_of(const scene::LinkDescription& link, const Centreline& centreline, const std::vector<double>& borders,
+                 int most = scene::kMostBeamElements);
+
+/// Arc lengths between which the load acts, where it names them [m].
+/// @throws ModelError where they are beyond the line.
+std::vector<double> ends_of(const scene::DistributedLoad& load, const Centreline& centreline);
+
 /// Per link; empty for rigid ones.
 using LinkMeshes = std::vector<std::optional<LinkMesh>>;
 
@@ -62,7 +84,7 @@ struct ScenePlan {
   JointTree tree;
   LinkMeshes meshes;
   InitialPositions initial_positions;
-  /// Positions of the joints that are held, by name (building/held_joints.h).
+  /// Positions of the joints that are held, by name (see joints_to_hold()).
   std::unordered_map<std::string, double> held;
   /// Of the model, in the world [m]: the world's own, or the place of the first joint on the root link where that is
   /// far away beside the mechanism's size, so that positions have as many digits as at the world's origin.

@@ -1,7 +1,6 @@
-#include "building/tree_builder.h"
+#include "building/passes.h"
 
 #include "building/elementary_joints.h"
-#include "building/sensor_builder.h"
 #include "building/slide_builder.h"
 #include "joints/joint_map.h"
 #include "math/so3.h"

@@ -7,15 +7,68 @@
 
 #include <fmt/format.h>
 
+#include "accuracy/automatic_meshes.h"
 #include "cli/commands.h"
 #include "cli/files.h"
-#include "cli/interruption.h"
-#include "cli/mesh_choice.h"
 #include "cli/progress_bar.h"
 #include "flexarm/accuracy/accurate_run.h"
 #include "flexarm/scene/scene_description.h"
 
 namespace flexarm::cli {
+
+// ---------------------------------------------------------------- meshes of beams with elements="auto"
+
+namespace {
+
+constexpr int kJudgedTimes = 100;
+
+/// "elements: arm 5, forearm 3"; those that were chosen.
+std::string names_of(const scene::SceneDescription& scene, const RunSettings& settings) {
+  std::string text = "elements:";
+  auto beam = settings.beams.begin();
+  for (const scene::LinkDescription& link : scene.links) {
+    if (!link.beam) continue;
+    if (!link.beam->elements)
+      text += fmt::format("{} {} {}", text.back() == ':' ? "" : ",", link.name, beam->elements.value_or(0));
+    ++beam;
+  }
+  return text;
+}
+
+struct ChosenMeshes {
+  double left;       ///< of the accuracy, for the steps
+  double error = 0;  ///< of the meshes, as estimated, relative
+  bool is_met = true;
+};
+
+/// Where beams ask for elements="auto", makes the simulation one whose meshes are chosen for the accuracy; says so on
+/// the report's stream, and on the standard error output where they do not keep it. Nothing changes where a state is
+/// read or kept: it is one of the scene's own meshes.
+ChosenMeshes choose_meshes(const SimulateArguments& arguments, double accuracy, Simulation& simulation) {
+  if (!arguments.resume.empty() || !arguments.checkpoint.empty()) return {accuracy};
+  const scene::SceneDescription scene = simulation.scene();
+  ProgressBar bar(0, 1, !arguments.quiet);
+  TrialRuns trials(scene, {(arguments.until - simulation.time()) / kJudgedTimes, kJudgedTimes}, {}, {}, [&] {
+    bar.show(0, "meshes");
+    return interruption() == 0;
+  });
+  const AutomaticMeshes meshes = automatic_meshes(trials, kMeshShare * accuracy);
+  bar.clear();
+  if (!meshes.is_met)
+    fmt::print(stderr, "flexarm: elements=\"auto\": the accuracy {:g} was not met: {}\n", accuracy, meshes.shortcoming);
+  if (meshes.is_chosen) {  // else those of the present rule stay
+    if (!arguments.quiet)
+      fmt::print(report_stream(arguments), "{}; error {:.2g} estimated, after {} runs\n",
+                 names_of(scene, meshes.settings), meshes.error, meshes.runs);
+    simulation = Simulation(with_settings(scene, meshes.settings), arguments.options);
+  }
+  return {meshes.left(accuracy), meshes.error, meshes.is_met};
+}
+
+}  // namespace
+
+// ---------------------------------------------------------------- runs
+
 namespace {
 
 /// Writes the rows of each try over those of the one before, and shows how far it is.

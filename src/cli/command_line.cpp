@@ -1,13 +1,14 @@
 #include "cli/command_line.h"
 
+#include <csignal>
 #include <cstdio>
+#include <initializer_list>
 #include <new>
 
 #include <malloc.h>
 
 #include <fmt/format.h>
 
-#include "cli/interruption.h"
 #include "flexarm/model/model_error.h"
 
 namespace flexarm::cli {
@@ -53,6 +54,37 @@ int run_command_line(CLI::App& app, const int& status, int argc, char** argv) {
   if (std::fflush(stdout) == 0) return result;
   std::perror("flexarm: cannot write the output");
   return kFailed;
+}
+
+// ---------------------------------------------------------------- signals
+
+namespace {
+
+volatile std::sig_atomic_t noted = 0;  // the one thing that a signal handler may set
+
+void handle(int signal) {
+  if (noted == 0) noted = signal;
+}
+
+}  // namespace
+
+void catch_interruptions() {
+  struct sigaction action = {};
+  action.sa_handler = handle;
+  action.sa_flags = SA_RESETHAND;
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction before = {};
+    sigaction(signal, nullptr, &before);
+    if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+  }
+}
+
+int interruption() {
+  return noted;
+}
+
+void ignore_signals_of_output() {
+  for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
 }
 
 }  // namespace flexarm::cli

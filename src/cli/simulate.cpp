@@ -10,7 +10,6 @@
 #include "cli/accurate_simulation.h"
 #include "cli/commands.h"
 #include "cli/files.h"
-#include "cli/interruption.h"
 #include "cli/progress_bar.h"
 #include "cli/scene_input.h"
 #include "cli/simulation_output.h"

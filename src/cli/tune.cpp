@@ -11,7 +11,6 @@
 #include "cli/effort_schedule.h"
 #include "cli/files.h"
 #include "cli/installation.h"
-#include "cli/interruption.h"
 #include "cli/progress_bar.h"
 #include "cli/scene_input.h"
 #include "cli/tuned_scene.h"

@@ -5,9 +5,8 @@
 #include <fmt/format.h>
 
 #include "math/pi.h"
-#include "scene/choice.h"
-#include "scene/extension_reader.h"
 #include "scene/limits.h"
+#include "scene/readers.h"
 #include "scene/section_reader.h"
 
 namespace flexarm::scene {
@@ -130,8 +129,8 @@ void read_mesh(const XmlElement& beam, BeamDescription& description) {
   if (beam.has("order")) description.order = beam.integer("order", 1, 4).value_or(description.order);
 }
 
-constexpr Choice<HubDescription::End> kEnds[] = {{"start", HubDescription::End::Start},
-                                                 {"end", HubDescription::End::End}};
+constexpr Choice<HubDescription::End> kHubEnds[] = {{"start", HubDescription::End::Start},
+                                                    {"end", HubDescription::End::End}};
 
 void read_hubs(const XmlElement& beam, BeamDescription& description) {
   for (const XmlElement& element : beam.children()) {
@@ -139,7 +138,7 @@ void read_hubs(const XmlElement& beam, BeamDescription& description) {
     element.expect_only({"at", "mass", "inertia"});
     HubDescription hub;
     hub.location = element.location();
-    hub.end = read_choice(element, "at", kEnds).value_or(hub.end);
+    hub.end = read_choice(element, "at", kHubEnds).value_or(hub.end);
     hub.mass = element.number("mass", kNonNegative).value_or(0);
     hub.inertia = element.vector("inertia", Vector3::Zero());
     if (hub.inertia.minCoeff() < 0) element.attribute_error("inertia", "moments of inertia must be >= 0");

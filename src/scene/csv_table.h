@@ -1,5 +1,6 @@
 #pragma once
-/// Tables of numbers that lie beside a scene.
+/// Tables of numbers that lie beside a scene. Their columns may be functions of time, as planners and measurements give
+/// them.
 
 #include <fstream>
 #include <optional>
@@ -39,5 +40,12 @@ class CsvTable {
   std::vector<std::string> columns_, cells_;
   mutable bool has_failed_ = false;
 };
+
+/// Whether the value of an attribute means a column of a table, not a formula.
+bool names_column(const std::string& value);
+
+/// Reads "FILE#COLUMN" or "FILE#COLUMN,RATES": a smooth function through a column of a CSV file over its column `time`
+/// [s], which at these times has the rates of the other one. Nothing if there is an error, which is recorded.
+std::optional<TimeFunction> read_trajectory(const XmlElement& element, const char* attribute, const std::string& value);
 
 }  // namespace flexarm::scene

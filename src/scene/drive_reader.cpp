@@ -1,4 +1,4 @@
-#include "scene/drive_reader.h"
+#include "scene/readers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "math/parse_number.h"
-#include "scene/choice.h"
 #include "scene/limits.h"
 
 namespace flexarm::scene {

@@ -1,4 +1,4 @@
-#include "scene/inertia_checks.h"
+#include "scene/scene_checks.h"
 
 #include <map>
 #include <string>

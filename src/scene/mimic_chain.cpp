@@ -1,4 +1,4 @@
-#include "scene/mimic_chain.h"
+#include "scene/scene_checks.h"
 
 #include <algorithm>
 #include <map>

@@ -9,7 +9,6 @@
 
 #include "flexarm/scene/sensor_topic.h"
 #include "scene/flexible_link.h"
-#include "scene/mimic_chain.h"
 
 namespace flexarm::scene {
 namespace {

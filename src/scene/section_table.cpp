@@ -1,4 +1,4 @@
-#include "scene/section_table.h"
+#include "scene/section_reader.h"
 
 #include <algorithm>
 #include <map>
@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "scene/csv_table.h"
-#include "scene/section_matrix.h"
 
 namespace flexarm::scene {
 namespace {

@@ -1,11 +1,9 @@
-#include "scene/sensor_reader.h"
+#include "scene/readers.h"
 
 #include <algorithm>
 #include <limits>
 
 #include <fmt/format.h>
-
-#include "scene/choice.h"
 
 namespace flexarm::scene {
 namespace {

@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 
 #include "flexarm/schemes/integrator_description.h"
-#include "scene/choice.h"
-#include "scene/extension_reader.h"
 #include "scene/limits.h"
+#include "scene/readers.h"
 
 namespace flexarm::scene {
 namespace {

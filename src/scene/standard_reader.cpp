@@ -1,14 +1,10 @@
 #include "scene/standard_reader.h"
 
-#include "scene/choice.h"
-#include "scene/couple_reader.h"
-#include "scene/friction_reader.h"
-#include "scene/slide_reader.h"
-
 #include <fmt/format.h>
 #include <urdf_model/model.h>
 
 #include "math/parse_number.h"
+#include "scene/readers.h"
 #include "scene/urdfdom.h"
 
 namespace flexarm::scene {

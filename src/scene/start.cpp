@@ -11,7 +11,7 @@ namespace {
 constexpr const char* kWorld = "world";
 constexpr const char* kRootJoint = "root";
 
-std::string element_of(const char* tag, const std::string& name) {
+std::string element_named(const char* tag, const std::string& name) {
   return "<" + std::string(tag) + "> " + quoted(name);
 }
 
@@ -89,7 +89,7 @@ bool has_stops(const JointDescription& joint, const std::set<std::string>& moved
 void check_start(const JointDescription& joint, double position, const SourceLocation& location,
                  const std::string& advice, Findings& findings) {
   if (position >= joint.limits->lower && position <= joint.limits->upper) return;
-  findings.warning(location.line, element_of("joint", joint.name),
+  findings.warning(location.line, element_named("joint", joint.name),
                    fmt::format("starts outside its limits, {} to {}, and its stop will throw it back{}",
                                joint.limits->lower, joint.limits->upper, advice),
                    fmt::format("'{}'", position));
@@ -117,7 +117,7 @@ void settle_root(SceneDescription& scene, const StartRequest& request, Findings&
   if (scene.root_link == kWorld) return;  // which says it
   const LinkDescription* root = find(scene.links, scene.root_link);
   if (const double mass = clamped_mass(scene); root && mass > 0)
-    findings.warning(root->location.line, element_of("link", root->name),
+    findings.warning(root->location.line, element_named("link", root->name),
                      "the root link is clamped, though it and what is fixed to it have a mass; <root "
                      "type=\"floating\"/> in <simulation> lets it fly, <root type=\"clamped\"/> says that it is meant",
                      fmt::format("'{}' kg", mass));

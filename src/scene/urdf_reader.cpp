@@ -6,15 +6,11 @@
 #include <fmt/format.h>
 
 #include "scene/contact_reader.h"
-#include "scene/drive_reader.h"
-#include "scene/extension_reader.h"
 #include "scene/force_element_kinds.h"
-#include "scene/inertia_checks.h"
 #include "scene/limits.h"
-#include "scene/mimic_chain.h"
 #include "scene/parameters.h"
+#include "scene/readers.h"
 #include "scene/scene_checks.h"
-#include "scene/sensor_reader.h"
 #include "scene/standard_reader.h"
 #include "scene/strangers.h"
 #include "scene/urdfdom.h"

@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "math/parse_number.h"
+#include "scene/csv_table.h"
 #include "scene/limits.h"
-#include "scene/trajectory.h"
 
 namespace flexarm::scene {
 namespace {

@@ -2,6 +2,7 @@
 /// An XML element read with typed attributes; what is wrong is recorded with its line.
 
 #include <initializer_list>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
@@ -81,7 +82,7 @@ class XmlElement {
   Vector3 vector(const char* attribute, const Vector3& fallback) const;
   /// A vector of unit length from one of any length but zero.
   std::optional<Vector3> direction(const char* attribute) const;
-  /// A function of time, finite at t = 0, as a formula or as a column of a table (see trajectory.h).
+  /// A function of time, finite at t = 0, as a formula or as a column of a table (see csv_table.h).
   std::optional<TimeFunction> function(const char* attribute) const;
 
  private:
@@ -89,5 +90,43 @@ class XmlElement {
   std::string description_, owner_;
   Findings* findings_;
 };
+
+// ---------------------------------------------------------------- attributes whose values are names of a fixed set
+
+template <class Value>
+struct Choice {
+  const char* name;
+  Value value;
+};
+
+/// The row of a table with that `name` which the attribute gives; null where it is missing or unknown, which is
+/// recorded.
+template <class Table>
+auto read_row(const XmlElement& element, const char* attribute, const Table& table) -> decltype(&*std::begin(table)) {
+  const std::optional<std::string> name = element.text(attribute);
+  if (!name) return nullptr;
+  std::string known;
+  for (const auto& row : table) {
+    if (*name == row.name) return &row;
+    known += (known.empty() ? "" : ", ") + std::string(row.name);
+  }
+  element.attribute_error(attribute, std::string(attribute) + " must be one of " + known);
+  return nullptr;
+}
+
+/// What the attribute names among `choices`; nothing where it is missing or unknown, which is recorded.
+template <class Value, std::size_t Count>
+std::optional<Value> read_choice(const XmlElement& element, const char* attribute,
+                                 const Choice<Value> (&choices)[Count]) {
+  const Choice<Value>* choice = read_row(element, attribute, choices);
+  return choice ? std::optional<Value>(choice->value) : std::nullopt;
+}
+
+/// The same for an attribute that may be left out.
+template <class Value, std::size_t Count>
+Value read_choice(const XmlElement& element, const char* attribute, const Choice<Value> (&choices)[Count],
+                  Value fallback) {
+  return element.has(attribute) ? read_choice(element, attribute, choices).value_or(fallback) : fallback;
+}
 
 }  // namespace flexarm::scene

@@ -6,7 +6,7 @@
 
 #include "flexarm/scene/scene_description.h"
 #include "simulation/inside.h"
-#include "simulation/output_velocities.h"
+#include "simulation/published_motion.h"
 
 namespace flexarm {
 namespace {

@@ -28,4 +28,10 @@ std::vector<LinearPort> output_ports(const Simulation& simulation, const std::ve
 MovingMatrix port_motion(const Simulation& simulation, const LinearDynamics& dynamics,
                          const std::vector<LinearPort>& ports);
 
+/// Values of outputs (port_values.cpp); rotations of points as small ones from where `reference` has them, world axes.
+/// @throws std::invalid_argument for accelerations of joints, and what sections of beams feel, which are not
+/// differences of what a simulation puts out.
+Eigen::VectorXd port_values(const Simulation& simulation, const Simulation& reference,
+                            const std::vector<LinearPort>& ports);
+
 }  // namespace flexarm

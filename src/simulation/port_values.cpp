@@ -1,4 +1,4 @@
-#include "simulation/port_values.h"
+#include "simulation/linear_ports.h"
 
 #include <stdexcept>
 
@@ -7,8 +7,9 @@
 #include "flexarm/scene/scene_description.h"
 #include "math/so3.h"
 #include "simulation/inside.h"
+#include "simulation/linear_names.h"
 #include "simulation/observables.h"
-#include "simulation/past_motion.h"
+#include "simulation/published_motion.h"
 
 namespace flexarm {
 namespace {

@@ -13,7 +13,7 @@
 #include "model/state_numbers.h"
 #include "simulation/inside.h"
 #include "simulation/linear_names.h"
-#include "simulation/port_values.h"
+#include "simulation/linear_ports.h"
 #include "simulation/sensitivity_directions.h"
 
 namespace flexarm {

@@ -18,7 +18,6 @@
 #include "simulation/joint_state.h"
 #include "simulation/observables.h"
 #include "simulation/servo_commands.h"
-#include "simulation/shown_wrenches.h"
 #include "simulation/wrenches.h"
 
 namespace flexarm {

@@ -1,5 +1,5 @@
 // The rule that turns increments over steps into rates at their end.
-#include "simulation/output_velocities.h"
+#include "simulation/published_motion.h"
 
 #include <cmath>
 #include <limits>

@@ -1,5 +1,5 @@
 // Accelerations from the last four steps.
-#include "simulation/past_motion.h"
+#include "simulation/published_motion.h"
 
 #include <gtest/gtest.h>
 

@@ -1,15 +1,37 @@
 #pragma once
-/// Options of `flexarm linearise` that ask how the run to its instant changes.
+/// Options of `flexarm linearise` that ask for more than a model, and what they ask for.
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include <CLI/CLI.hpp>
 
 #include "cli/scene_input.h"
 #include "flexarm/simulation/linear_response.h"
 #include "flexarm/simulation/sensitivities.h"
 
 namespace flexarm::cli {
+
+// ---------------------------------------------------------------- what the model answers to inputs
+
+struct ResponseOptions {
+  std::vector<double> frequencies;   ///< [Hz]
+  std::optional<double> step_until;  ///< [s]
+  std::string picture;               ///< file; empty: none
+};
+
+/// `options` must outlive the command.
+void add_responses(CLI::App& command, ResponseOptions& options);
+
+/// @throws std::runtime_error where there is no such response.
+LinearResponses responses_of(const LinearModel& model, const ResponseOptions& options);
+
+/// Where the numbers go that a picture is drawn of: beside it.
+std::string data_of_picture(const std::string& picture);
+
+// ---------------------------------------------------------------- how the run to its instant changes
 
 struct DerivativeOptions {
   std::vector<std::string> parameters;
