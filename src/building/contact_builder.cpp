@@ -18,10 +18,10 @@
 namespace flexarm {
 namespace {
 
-/// Corners of a box, or points of a rim, that usually touch at a time.
-constexpr double kCorners = 4;
+/// Of the points of a box or of a cylinder: those that usually touch at a time.
+constexpr double kAtATime = 0.5;
 /// Of sizes: depth beyond which a contact gives way no further. A start inside is this part of it, or less.
-constexpr double kDepth = 0.1, kShareOfStart = 0.25;
+constexpr double kContactDepth = 0.1, kStartInside = 0.25;
 /// A hit takes this many steps of the scene; what sticks is not stiffer than kStiffestGrip m / h^2.
 constexpr double kStiffestGrip = 16;
 /// Most stations between both ends of an element.
@@ -37,8 +37,7 @@ struct Side {
   double size = kInfinity;                       // smallest half width of what it touches with [m]
   bool is_fixed = false;                         // in the world
   std::vector<ContactSides> shapes;              // those of each node that has some, without stations
-  std::vector<ContactSides> stations;            // those of each node or element, without shapes
-  double at_a_time = 1;                          // stations that usually touch
+  std::vector<ContactSides> tubes;               // stations of each element of a beam
 };
 
 ContactShape shape_of(const scene::VisualDescription& collision, const Attachment& frame) {
@@ -115,17 +114,7 @@ class ContactBuilder {
     if (shapes == side.shapes.end()) shapes = side.shapes.insert(shapes, {{}, {}, node, {}});
     shapes->shapes.push_back(shape);
     side.size = std::min(side.size, half_width(shape));
-    if (node < 0) return;
-    ContactSides stations{{node}, {}, -1, {}};
-    for (const ContactPoint& point : contact_points(shape)) {
-      ContactStation station;
-      station.arm = point.arm;
-      station.radius = point.radius;
-      stations.stations.push_back(station);
-    }
-    if (!std::holds_alternative<Ball>(shape.kind)) side.at_a_time = kCorners;
-    side.stations.push_back(std::move(stations));
-    side.mass = mass_of_body(node);
+    if (node >= 0) side.mass = mass_of_body(node);
   }
 
   /// Of a body without a mass of its own, which other bodies hold: that of all.
@@ -153,7 +142,7 @@ class ContactBuilder {
         station.share = (i == 0 || i == spans ? 0.5 : 1.0) * length / spans / link.beam->length;
         stations.stations.push_back(station);
       }
-      side.stations.push_back(std::move(stations));
+      side.tubes.push_back(std::move(stations));
     }
   }
 
@@ -216,7 +205,7 @@ class ContactBuilder {
   void require_something_to_touch(const scene::ContactDescription& contact, const Side& first,
                                   const Side& second) const {
     for (const Side* side : {&first, &second})
-      if (side->shapes.empty() && side->stations.empty())
+      if (side->shapes.empty() && side->tubes.empty())
         throw ModelError(at(contact.location, "<contact>") +
                          fmt::format("link '{}' has nothing to touch with: expected a <collision> that is a box, a "
                                      "cylinder or a sphere, or a <beam>",
@@ -230,16 +219,17 @@ class ContactBuilder {
 
   // ---------------------------------------------------------------- laws
 
-  ContactLaw law_of(const scene::ContactDescription& contact, const Side& stations, const Side& shapes) const {
+  ContactLaw law_of(const scene::ContactDescription& contact, const Side& stations, const Side& shapes,
+                    double at_a_time) const {
     const double inverse = 1 / stations.mass + 1 / shapes.mass, step = scene_.integrator.step;
     const double mass = inverse > 0 ? 1 / inverse : mass_of(model_), frequency = kPi / (kContactSteps * step);
     ContactLaw law;
-    law.stiffness = contact.stiffness.value_or(mass * frequency * frequency / stations.at_a_time);
-    law.frequency = std::sqrt(law.stiffness * stations.at_a_time / mass);
+    law.stiffness = contact.stiffness.value_or(mass * frequency * frequency / at_a_time);
+    law.frequency = std::sqrt(law.stiffness * at_a_time / mass);
     law.damping = damping_for_restitution(contact.restitution);
-    law.depth = kDepth * std::min(stations.size, shapes.size);
+    law.depth = kContactDepth * std::min(stations.size, shapes.size);
     law.friction = contact.friction;
-    law.grip = std::min(law.stiffness, kStiffestGrip * mass / (step * step) / stations.at_a_time);
+    law.grip = std::min(law.stiffness, kStiffestGrip * mass / (step * step) / at_a_time);
     return law;
   }
 
@@ -254,16 +244,11 @@ class ContactBuilder {
           place +=
               station.weights[i] * (pose_of(sides.nodes[i]).position + pose_of(sides.nodes[i]).rotation * station.arm);
         const double gap = shape.distance(base.rotation.transpose() * (place - base.position)).value - station.radius;
-        law.depth = std::max(law.depth, -gap / kShareOfStart);
+        law.depth = std::max(law.depth, -gap / kStartInside);
       }
   }
 
-  void join(const scene::ContactDescription& contact, const Side& first, const Side& second) {
-    // Of two round ones one way is enough.
-    const bool is_round = is_ball(first) && is_ball(second);
-    join_stations(contact, first, second);
-    if (!is_round) join_stations(contact, second, first);
-  }
+  // ---------------------------------------------------------------- elements
 
   static bool is_ball(const Side& side) {
     const auto all_balls = [](const ContactSides& each) {
@@ -273,15 +258,44 @@ class ContactBuilder {
     return !side.shapes.empty() && std::all_of(side.shapes.begin(), side.shapes.end(), all_balls);
   }
 
+  void join(const scene::ContactDescription& contact, const Side& first, const Side& second) {
+    // Corners do not go into balls: the ball's middle is nearer to a face or an edge than they are. Of two balls one
+    // goes into the other.
+    const bool first_moves = !first.is_fixed;
+    if (!is_ball(second) || first.shapes.empty() || (is_ball(first) && first_moves))
+      join_stations(contact, first, second);
+    if (!is_ball(first) || second.shapes.empty() || (is_ball(second) && !first_moves))
+      join_stations(contact, second, first);
+  }
+
+  /// Those of each node or element; points on edges as near to each other as the other side is small.
+  static std::vector<ContactSides> stations_of(const Side& side, double spacing) {
+    std::vector<ContactSides> out = side.tubes;
+    for (const ContactSides& body : side.shapes) {
+      if (body.shape_node < 0) continue;
+      ContactSides stations{{body.shape_node}, {}, -1, {}};
+      for (const ContactShape& shape : body.shapes)
+        for (const ContactPoint& point : contact_points(shape, spacing)) {
+          ContactStation station;
+          station.arm = point.arm;
+          station.radius = point.radius;
+          stations.stations.push_back(station);
+        }
+      out.push_back(std::move(stations));
+    }
+    return out;
+  }
+
   void join_stations(const scene::ContactDescription& contact, const Side& first, const Side& second) {
-    // Corners do not go into balls: the ball's middle is nearer to a face or an edge than they are.
-    if (is_ball(second) && !is_ball(first) && !first.shapes.empty()) return;
-    for (const ContactSides& stations : first.stations)
+    for (const ContactSides& stations : stations_of(first, second.size))
       for (const ContactSides& shapes : second.shapes) {
         const auto& nodes = stations.nodes;
         if (std::find(nodes.begin(), nodes.end(), shapes.shape_node) != nodes.end()) continue;
         ContactSides sides{stations.nodes, stations.stations, shapes.shape_node, shapes.shapes};
-        ContactLaw law = law_of(contact, first, second);
+        // Stations of a tube have shares of the whole.
+        const bool is_whole = is_ball(first) || !first.tubes.empty();
+        const double at_a_time = is_whole ? 1.0 : kAtATime * static_cast<double>(stations.stations.size());
+        ContactLaw law = law_of(contact, first, second, at_a_time);
         deepen(sides, law);
         placed_.push_back(std::make_shared<ContactElement>(std::array{first.name, second.name}, std::move(sides), law));
       }

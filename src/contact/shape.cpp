@@ -78,19 +78,27 @@ double reach_of(const Cylinder& cylinder) {
   return std::hypot(cylinder.radius, cylinder.half_length);
 }
 
-std::vector<ContactPoint> points_of(const HalfSpace&) {
+std::vector<ContactPoint> points_of(const HalfSpace&, double) {
   return {};
 }
-std::vector<ContactPoint> points_of(const Ball& ball) {
+std::vector<ContactPoint> points_of(const Ball& ball, double) {
   return {{Vector3::Zero(), ball.radius}};
 }
-std::vector<ContactPoint> points_of(const Box& box) {
+std::vector<ContactPoint> points_of(const Box& box, double spacing) {
   std::vector<ContactPoint> out;
-  for (int k = 0; k < 8; ++k)
-    out.push_back({box.half.cwiseProduct(Vector3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1)), 0});
+  for (int k = 0; k < 8; ++k) {
+    const Vector3 corner = box.half.cwiseProduct(Vector3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1));
+    out.push_back({corner, 0});
+    for (int axis = 0; axis < 3; ++axis) {
+      if (k & (1 << axis)) continue;  // edges begin at their lower ends
+      const double length = 2 * box.half[axis];
+      const int between = std::min(static_cast<int>(std::ceil(length / spacing)) - 1, kMostEdgePoints);
+      for (int i = 1; i <= between; ++i) out.push_back({corner + length * i / (between + 1) * Vector3::Unit(axis), 0});
+    }
+  }
   return out;
 }
-std::vector<ContactPoint> points_of(const Cylinder& cylinder) {
+std::vector<ContactPoint> points_of(const Cylinder& cylinder, double) {
   std::vector<ContactPoint> out;
   for (const double z : {-cylinder.half_length, cylinder.half_length})
     for (int k = 0; k < kRimPoints; ++k) {
@@ -207,8 +215,8 @@ double ContactShape::reach() const {
   return std::visit([](const auto& shape) { return reach_of(shape); }, kind);
 }
 
-std::vector<ContactPoint> contact_points(const ContactShape& shape) {
-  std::vector<ContactPoint> out = std::visit([](const auto& each) { return points_of(each); }, shape.kind);
+std::vector<ContactPoint> contact_points(const ContactShape& shape, double spacing) {
+  std::vector<ContactPoint> out = std::visit([&](const auto& each) { return points_of(each, spacing); }, shape.kind);
   for (ContactPoint& point : out) point.arm = shape.place * point.arm;
   return out;
 }

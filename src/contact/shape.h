@@ -57,8 +57,9 @@ struct ContactPoint {
   Vector3 arm = Vector3::Zero();  ///< in the node's frame [m]
   double radius = 0;              ///< [m]
 };
-/// Those of a shape. None of a half-space, which touches nothing itself. A cylinder's rims have `kRimPoints` each.
-std::vector<ContactPoint> contact_points(const ContactShape& shape);
-constexpr int kRimPoints = 24;
+/// Those of a shape: a ball's middle; corners of a box, and points on its edges not much farther from each other than
+/// `spacing` [m]; `kRimPoints` on each rim of a cylinder. None of a half-space, which touches nothing itself.
+std::vector<ContactPoint> contact_points(const ContactShape& shape, double spacing);
+constexpr int kRimPoints = 24, kMostEdgePoints = 7;
 
 }  // namespace flexarm

@@ -49,6 +49,7 @@ void ForceElements::begin(TangentBackend& tangent) {
     find_nodes(*elements[k], start(), nodes_[k]);
     tangent.couple(static_cast<int>(k), nodes_[k].data(), static_cast<int>(nodes_[k].size()));
   }
+  touch_ = configuration_.step() != 0 && may_hit();
 }
 
 /// With the memory of the first element.

@@ -22,8 +22,9 @@ class ForceElements {
   void evaluate(Balance& balance);
   /// See ForceElement::needs_halves(), of the step as it is solved.
   bool need_halves(double refinement);
-  /// See ForceElement::may_hit().
+  /// See ForceElement::may_hit(), of the step begun last.
   bool may_hit() const;
+  bool touch() const { return touch_; }
   /// Of the last evaluation.
   void add_work(double& work) const { work += work_; }
   void accept(State& state) const;
@@ -37,6 +38,7 @@ class ForceElements {
   std::vector<Vector6> velocities_;      // per node {v, w} at the beginning
   std::vector<double> residual_, tangent_, memory_;
   double work_ = 0;
+  bool touch_ = false;
 };
 
 }  // namespace flexarm

@@ -82,6 +82,7 @@ StepResult::Reason NewtonIteration::evaluate(bool with_tangent) {
 StepResult::Reason NewtonIteration::find_update(Updates updates, Progress& progress) {
   enter(progress.with_kept ? StepPhase::Solve : StepPhase::Factorise);
   update_ = -system_.residual();
+  if (system_.touches()) progress.residual = update_.norm();
   TangentBackend& tangent = system_.tangent();
   if (!(progress.with_kept ? tangent.solve(update_) : tangent.factorise_and_solve(update_)))
     return Reason::SingularTangent;
@@ -165,10 +166,12 @@ bool NewtonIteration::renews_factors(const Progress& progress) const {
   return factor_reuse_.renew(progress.iteration + 1, update);
 }
 
-/// After an evaluation at what a first update has led to. The residual tells what no earlier solve could know: that a
-/// stop is touched, say.
+/// After an evaluation at what an update has led to. The residual tells what no earlier solve could know: that a stop
+/// is touched, say; and what no updates could: that a point has come into contact by the last one.
 bool NewtonIteration::is_as_expected(const Progress& progress) const {
-  if (progress.iteration > 0) return true;
+  if (progress.iteration > 0)
+    return progress.residual == 0 || progress.norm <= kStagnation ||
+           system_.residual().norm() <= kStalled * progress.residual;
   const FirstUpdate& start = starts_[progress.with_kept];
   const double growth = std::max(1.0, progress.norm / start.norm);
   const double expected = std::max(kCaution * growth * start.residual_ratio, kRoundOff) * progress.first_residual;

@@ -52,6 +52,7 @@ class NewtonIteration {
     double contraction = 1;          // its ratio to the one before; 1 where there is none
     bool started_with_kept = false;  // factors of the solve's first update
     double first_residual = 0;       // norm before it
+    double residual = 0;             // norm before the update; where something may be hit
   };
 
   /// How a solve went on after its first update: what is to be expected of the next one that starts alike.

@@ -48,26 +48,25 @@ void check_contacts(const SceneDescription& scene, Findings& findings) {
   std::set<std::string> links, sides = {kAllBodies};
   for (const LinkDescription& link : scene.links) links.insert(link.name);
   sides.insert(links.begin(), links.end());
-  for (const GroundDescription& ground : scene.grounds) {
-    const std::string element = "<ground> " + quoted(ground.name);
-    if (ground.name == kAllBodies || !sides.insert(ground.name).second)
-      findings.error(ground.location.line, element, "its name must be that of no link and of no other ground",
+  const auto element = [&](const char* tag) { return fmt::format("<{}> of robot {}", tag, quoted(scene.name)); };
+  for (const GroundDescription& ground : scene.grounds)
+    if (!ground.name.empty() && !sides.insert(ground.name).second)
+      findings.error(ground.location.line, element("ground"), "its name must be that of no link and of no other ground",
                      quoted(ground.name));
-  }
   std::set<std::pair<std::string, std::string>> named;
-  const auto check = [&](const ContactPair& pair, const std::string& element) {
+  const auto check = [&](const ContactPair& pair, const std::string& who) {
     for (const auto& [attribute, side] : {std::pair("first", pair.first), std::pair("second", pair.second)})
       if (!side.empty() && sides.count(side) == 0)
-        findings.error(pair.location.line, element,
+        findings.error(pair.location.line, who,
                        std::string(attribute) + " must be a link or a ground of the scene, or *", quoted(side));
     if (pair.first == pair.second && pair.first != kAllBodies)
-      findings.error(pair.location.line, element, "first and second must be different", quoted(pair.first));
+      findings.error(pair.location.line, who, "first and second must be different", quoted(pair.first));
     if (!named.insert(std::minmax(pair.first, pair.second)).second)
-      findings.error(pair.location.line, element, "must be the only <contact> or <no_contact> of its pair",
-                     fmt::format("'{}' and '{}'", pair.first, pair.second));
+      findings.error(pair.location.line, who, "must be the only <contact> or <no_contact> of its pair",
+                     quoted(pair.first) + " and " + quoted(pair.second));
   };
-  for (const ContactDescription& contact : scene.contacts) check(contact, "<contact>");
-  for (const ContactPair& pair : scene.no_contacts) check(pair, "<no_contact>");
+  for (const ContactDescription& contact : scene.contacts) check(contact, element("contact"));
+  for (const ContactPair& pair : scene.no_contacts) check(pair, element("no_contact"));
 }
 
 }  // namespace flexarm::scene

@@ -87,7 +87,7 @@ TEST(ContactShapes, AreAsFarAsTheirSurfaces) {
 
 TEST(ContactShapes, HaveTheirPointsOnTheirSurfaces) {
   for (const auto& [name, shape] : all_shapes())
-    for (const ContactPoint& point : contact_points(shape))
+    for (const ContactPoint& point : contact_points(shape, 0.15))
       EXPECT_NEAR(shape.distance(point.arm).value, -point.radius, 1e-15) << name;
 }
 

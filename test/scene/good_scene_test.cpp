@@ -282,6 +282,22 @@ TEST(GoodScene, SpringBetweenPoints) {
   EXPECT_EQ(spring.damping, 0.5);
 }
 
+TEST(GoodScene, Contacts) {
+  const SceneDescription scene = good_scene();
+  ASSERT_EQ(scene.grounds.size(), 1u);
+  EXPECT_EQ(scene.grounds[0].name, "floor");
+  EXPECT_EQ(scene.grounds[0].normal, Vector3(0, 0, 1));
+  EXPECT_EQ(scene.grounds[0].offset, -30);
+  ASSERT_EQ(scene.contacts.size(), 1u);
+  EXPECT_EQ(scene.contacts[0].first, "*");
+  EXPECT_EQ(scene.contacts[0].second, "floor");
+  EXPECT_EQ(scene.contacts[0].restitution, 0.4);
+  EXPECT_EQ(scene.contacts[0].friction, 0.2);
+  EXPECT_EQ(scene.contacts[0].stiffness, 1e4);
+  ASSERT_EQ(scene.no_contacts.size(), 1u);
+  EXPECT_EQ(scene.no_contacts[0].first, "hand");
+}
+
 TEST(GoodScene, DampingOfStrains) {
   const std::string damping = R"(<damping stiffness_proportional="1e-4" mass_proportional="0.1"/>)";
   const ReadResult result = read(
