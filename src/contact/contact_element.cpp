@@ -21,6 +21,8 @@ using Rows3 = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kMost
 
 /// Ways that a step may come to beyond those at the speed of its beginning: times that, and of the size.
 constexpr double kMoreWay = 2, kNear = 0.02;
+/// A point that no face has seen coming in may be so deep, of the depth.
+constexpr double kUnseen = 0.01;
 /// Cosine of normals at both ends of a step that goes to the other side of something thin.
 constexpr double kOtherSide = -0.5;
 
@@ -108,7 +110,7 @@ int ContactElement::find_nodes(const ForceStart& start, int* nodes) const {
   if (start.duration == 0) return all;
   bool is_near = false;
   for_each_pair([&](const ContactStation& station, const ContactShape& shape) {
-    const double gap = shape.distance(place(station, poses_in(start.poses))).value - station.radius;
+    const double gap = shape.gap(place(station, poses_in(start.poses))) - station.radius;
     const double way = std::abs(start.duration) * velocity(station, start.poses, start.velocities).norm();
     is_near = gap < kMoreWay * way + kNear * size_;
     return !is_near;
@@ -127,13 +129,20 @@ bool ContactElement::needs_halves(const ForceStep& step, const int*, int count) 
   const double* memory = step.memory;
   for_each_pair([&](const ContactStation& station, const ContactShape& shape) {
     const Vector3 from = place(station, poses_in(step.begin)), to = place(station, poses_in(step.end));
+    if (shape.gap(from) - station.radius > (to - from).norm()) {
+      memory += PointMemory::kSize;
+      return true;
+    }
     const FeltShape felt = felt_shape(shape, law_, station.radius, from, to, memory_at(memory).face);
     const SignedDistance begin = felt.shape.distance(from), end = felt.shape.distance(to);
     const double begin_rate = -begin.gradient.dot(velocity(station, step.begin, step.velocities));
     ContactChange change{station.radius - begin.value, station.radius - end.value, std::abs(step.duration)};
     change.speed = approach_speed(change.begin, begin_rate, memory[0]);
     memory += PointMemory::kSize;
-    if (!felt.is_felt) return true;
+    if (!felt.is_felt) {
+      is_too_long = shape.gap(to) < -kUnseen * law_.depth;
+      return !is_too_long;
+    }
     if (change.begin <= 0 && change.end <= 0)
       is_too_long = passes_through(felt.shape, from, to, station.radius);
     else
@@ -207,10 +216,17 @@ void ContactElement::evaluate(const ForceStep& step, const int*, ForceAction& ac
   const double* memory = step.memory;
   double* new_memory = step.new_memory;
   for_each_pair([&](const ContactStation& station, const ContactShape& shape) {
-    const Placed placed = this->placed(station, frames, step);
+    const bool is_new = std::all_of(memory, memory + PointMemory::kSize, [](double number) { return number == 0; });
     PointMotion motion;
     motion.begin = place(station, poses_in(step.begin));
-    motion.end = frames.base_end.rotation.transpose() * placed.end_base_arm;
+    motion.end = place(station, poses_in(step.end));
+    // No surface is nearer than the distance.
+    if (is_new && shape.gap(motion.begin) - station.radius > (motion.end - motion.begin).norm()) {
+      memory += PointMemory::kSize;
+      new_memory += PointMemory::kSize;
+      return true;
+    }
+    const Placed placed = this->placed(station, frames, step);
     motion.turn = frames.axes.transpose() * placed.turn;
     if (step.duration != 0) motion.begin_velocity = velocity(station, step.begin, step.velocities);
     motion.duration = step.duration;

@@ -119,6 +119,11 @@ SignedDistance ContactShape::distance(const Vector3& point) const {
   return out;
 }
 
+double ContactShape::gap(const Vector3& point) const {
+  const Vector3 own = place.orientation.conjugate() * (point - place.position);
+  return std::visit([&](const auto& shape) { return distance_of(shape, own).value; }, kind);
+}
+
 // ---------------------------------------------------------------- faces
 
 namespace {

@@ -36,6 +36,8 @@ struct ContactShape {
 
   /// `point`: in the node's frame [m].
   SignedDistance distance(const Vector3& point) const;
+  /// Its value alone.
+  double gap(const Vector3& point) const;
   /// About the origin of `place`: no point of the shape is farther off [m]. Infinite for a half-space.
   double reach() const;
 };
