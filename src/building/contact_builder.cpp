@@ -98,13 +98,16 @@ class ContactBuilder {
       if (plan_.meshes[index]) add_tube(index, side);
       return side;
     }
-    side.is_fixed = true;
+    side.is_fixed = plan_.links[link.name] == plan_.tree.root;
+    bool all_fixed = true;
     for (const scene::VisualDescription& collision : link.collisions) {
       if (std::holds_alternative<scene::MeshShape>(collision.shape)) continue;
       const Attachment frame = attachment(plan_, model_, link.name, collision.origin.position);
-      side.is_fixed = side.is_fixed && frame.node < 0;
+      all_fixed = all_fixed && frame.node < 0;
       add(shape_of(collision, frame), frame.node, side);
     }
+    side.is_fixed = side.is_fixed || (all_fixed && !side.shapes.empty());
+    if (model_.links[index].beam) side.mass = model_.links[index].beam->mass;
     return side;
   }
 
@@ -163,7 +166,10 @@ class ContactBuilder {
   void find_neighbours() {
     for (const auto* joints : {&scene_.joints, &scene_.loop_joints})
       for (const scene::JointDescription& joint : *joints) {
-        neighbours_.insert(std::minmax(body_of(joint.parent), body_of(joint.child)));
+        // What is fixed in the world is one body only where nothing moves against it.
+        if (joint.kind == scene::JointKind::Floating) continue;
+        const int parent = body_of(joint.parent), child = body_of(joint.child);
+        if (parent >= 0 && child >= 0) neighbours_.insert(std::minmax(parent, child));
         joined_.insert(std::minmax(plan_.links[joint.parent], plan_.links[joint.child]));
       }
   }
@@ -192,14 +198,13 @@ class ContactBuilder {
   /// Null: none. Of those that name as much of a pair a <no_contact> counts, then the first one in the file.
   const scene::ContactDescription* contact_of(std::size_t i, std::size_t j) const {
     const Side &first = sides_[i], &second = sides_[j];
-    if (first.is_fixed && second.is_fixed) return nullptr;
     const scene::ContactDescription* contact = nullptr;
     int most = are_neighbours(first, second) ? 1 : -1;
     for (const scene::ContactPair& pair : scene_.no_contacts) most = std::max(most, named_of(pair, first, second));
     for (const scene::ContactDescription& each : scene_.contacts)
       if (const int named = named_of(each, first, second); named > most) contact = &each, most = named;
     if (contact && most == 2) require_something_to_touch(*contact, first, second);
-    return contact;
+    return first.is_fixed && second.is_fixed ? nullptr : contact;
   }
 
   void require_something_to_touch(const scene::ContactDescription& contact, const Side& first,
@@ -210,6 +215,9 @@ class ContactBuilder {
                          fmt::format("link '{}' has nothing to touch with: expected a <collision> that is a box, a "
                                      "cylinder or a sphere, or a <beam>",
                                      side->name));
+    if (first.is_fixed && second.is_fixed)
+      throw ModelError(at(contact.location, "<contact>") +
+                       fmt::format("'{}' and '{}' never move against each other", first.name, second.name));
     if (first.shapes.empty() && second.shapes.empty())
       throw ModelError(at(contact.location, "<contact>") +
                        fmt::format("links '{}' and '{}' are both flexible without <collision>: such a contact is not "
@@ -261,18 +269,14 @@ class ContactBuilder {
   void join(const scene::ContactDescription& contact, const Side& first, const Side& second) {
     // Corners do not go into balls: the ball's middle is nearer to a face or an edge than they are. Of two balls one
     // goes into the other.
-    const bool first_moves = !first.is_fixed;
-    if (!is_ball(second) || first.shapes.empty() || (is_ball(first) && first_moves))
-      join_stations(contact, first, second);
-    if (!is_ball(first) || second.shapes.empty() || (is_ball(second) && !first_moves))
-      join_stations(contact, second, first);
+    if (!is_ball(second) || first.shapes.empty() || is_ball(first)) join_stations(contact, first, second);
+    if (!is_ball(first) || second.shapes.empty()) join_stations(contact, second, first);
   }
 
   /// Those of each node or element; points on edges as near to each other as the other side is small.
   static std::vector<ContactSides> stations_of(const Side& side, double spacing) {
     std::vector<ContactSides> out = side.tubes;
     for (const ContactSides& body : side.shapes) {
-      if (body.shape_node < 0) continue;
       ContactSides stations{{body.shape_node}, {}, -1, {}};
       for (const ContactShape& shape : body.shapes)
         for (const ContactPoint& point : contact_points(shape, spacing)) {
@@ -291,6 +295,7 @@ class ContactBuilder {
       for (const ContactSides& shapes : second.shapes) {
         const auto& nodes = stations.nodes;
         if (std::find(nodes.begin(), nodes.end(), shapes.shape_node) != nodes.end()) continue;
+        if (stations.stations.empty()) continue;
         ContactSides sides{stations.nodes, stations.stations, shapes.shape_node, shapes.shapes};
         // Stations of a tube have shares of the whole.
         const bool is_whole = is_ball(first) || !first.tubes.empty();

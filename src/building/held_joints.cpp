@@ -15,6 +15,8 @@ class HeldJointFinder {
     for (const scene::JointDescription& loop : scene.loop_joints) mark_loop(loop);
     for (const auto& element : scene.force_elements)
       for (const scene::LinkPoint& point : element->points()) touched_[links[point.link]] = true;
+    // Of what touches something forces are not known beforehand.
+    if (!scene.contacts.empty()) touched_.assign(scene.links.size(), true);
     for (const scene::PointLoad& load : scene.loads)
       if (may_stand_in_world(links[load.link])) touched_[links[load.link]] = true;
     for (const scene::DriveDescription& drive : scene.drives)

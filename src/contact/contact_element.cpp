@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "joints/penetration.h"
 #include "math/cayley.h"
 #include "math/so3.h"
 #include "model/state.h"
@@ -21,13 +22,14 @@ using Rows3 = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kMost
 
 /// Ways that a step may come to beyond those at the speed of its beginning: times that, and of the size.
 constexpr double kMoreWay = 2, kNear = 0.02;
-/// A point that no face has seen coming in may be so deep, of the depth.
+/// So deep, of the depth, a corner may be in a shape without having come in by a face.
 constexpr double kUnseen = 0.01;
 /// Cosine of normals at both ends of a step that goes to the other side of something thin.
 constexpr double kOtherSide = -0.5;
 
 std::vector<int> reach_of(const ContactSides& sides) {
-  std::vector<int> nodes = sides.nodes;
+  std::vector<int> nodes;
+  if (sides.nodes[0] >= 0) nodes = sides.nodes;
   if (sides.shape_node >= 0) nodes.push_back(sides.shape_node);
   return nodes;
 }
@@ -90,16 +92,17 @@ Vector3 ContactElement::place(const ContactStation& station, const PoseOf& pose_
 
 Vector3 ContactElement::velocity(const ContactStation& station, const std::vector<NodePose>& poses,
                                  const std::vector<Vector6>& velocities) const {
+  const auto motion_of = [&](int node) { return node < 0 ? Vector6(Vector6::Zero()) : velocities[node]; };
   Vector3 place = Vector3::Zero(), velocity = Vector3::Zero();
   for (std::size_t i = 0; i < sides_.nodes.size(); ++i) {
-    const int node = sides_.nodes[i];
-    const Vector3 arm = poses[node].rotation * station.arm;
-    place += station.weights[i] * (poses[node].position + arm);
-    velocity += station.weights[i] * (velocities[node].head<3>() + velocities[node].tail<3>().cross(arm));
+    const NodePose node = poses_in(poses)(sides_.nodes[i]);
+    const Vector6 motion = motion_of(sides_.nodes[i]);
+    const Vector3 arm = node.rotation * station.arm;
+    place += station.weights[i] * (node.position + arm);
+    velocity += station.weights[i] * (motion.head<3>() + motion.tail<3>().cross(arm));
   }
-  if (sides_.shape_node < 0) return velocity;
-  const NodePose& base = poses[sides_.shape_node];
-  const Vector6& motion = velocities[sides_.shape_node];
+  const NodePose base = poses_in(poses)(sides_.shape_node);
+  const Vector6 motion = motion_of(sides_.shape_node);
   velocity -= motion.head<3>() + motion.tail<3>().cross(place - base.position);
   return base.rotation.transpose() * velocity;
 }
@@ -139,8 +142,8 @@ bool ContactElement::needs_halves(const ForceStep& step, const int*, int count) 
     ContactChange change{station.radius - begin.value, station.radius - end.value, std::abs(step.duration)};
     change.speed = approach_speed(change.begin, begin_rate, memory[0]);
     memory += PointMemory::kSize;
-    if (!felt.is_felt) {
-      is_too_long = shape.gap(to) < -kUnseen * law_.depth;
+    if (!felt.is_felt) {  // of a corner that no face has seen coming in
+      is_too_long = passes_through(shape, from, to, -kUnseen * law_.depth);
       return !is_too_long;
     }
     if (change.begin <= 0 && change.end <= 0)
@@ -171,10 +174,11 @@ ContactElement::Frames ContactElement::frames(const ForceStep& step) const {
   out.base_end = poses_in(step.end)(sides_.shape_node);
   out.axes = out.weight * out.base_end.rotation + (1 - out.weight) * out.base_begin.rotation;
   const auto turn_of = [&](int node) {
-    return cayley::increment(step.begin[node].orientation, step.end[node].orientation);
+    return node < 0 ? Vector3(Vector3::Zero())
+                    : cayley::increment(step.begin[node].orientation, step.end[node].orientation);
   };
   for (std::size_t i = 0; i < sides_.nodes.size(); ++i) out.turns[i] = turn_of(sides_.nodes[i]);
-  if (sides_.shape_node >= 0) out.base_turn = turn_of(sides_.shape_node);
+  out.base_turn = turn_of(sides_.shape_node);
   return out;
 }
 
@@ -191,13 +195,13 @@ ContactElement::Placed ContactElement::placed(const ContactStation& station, con
   Vector3 begin = -frames.base_begin.position, end = -frames.base_end.position;
   out.turn = -frames.base_turn;
   for (std::size_t i = 0; i < sides_.nodes.size(); ++i) {
-    begin += station.weights[i] * step.begin[sides_.nodes[i]].position;
-    end += station.weights[i] * step.end[sides_.nodes[i]].position;
+    begin += station.weights[i] * poses_in(step.begin)(sides_.nodes[i]).position;
+    end += station.weights[i] * poses_in(step.end)(sides_.nodes[i]).position;
     out.turn += station.weights[i] * frames.turns[i];
   }
   if (sides_.nodes.size() == 1) {
-    const Vector3 begin_arm = step.begin[sides_.nodes[0]].rotation * station.arm;
-    out.end_arm = step.end[sides_.nodes[0]].rotation * station.arm;
+    const Vector3 begin_arm = poses_in(step.begin)(sides_.nodes[0]).rotation * station.arm;
+    out.end_arm = poses_in(step.end)(sides_.nodes[0]).rotation * station.arm;
     out.arm = frames.weight * out.end_arm + (1 - frames.weight) * begin_arm;
     begin += begin_arm;
     end += out.end_arm;
@@ -211,7 +215,10 @@ void ContactElement::evaluate(const ForceStep& step, const int*, ForceAction& ac
   std::fill(step.new_memory, step.new_memory + memory_size(), 0.0);
   action.residual.setZero();
   action.tangent.setZero();
-  if (action.residual.size() == 0) return;  // nothing is near
+  if (action.residual.size() == 0) {  // nothing is near
+    action.dissipated = remembered_energy(step);
+    return;
+  }
   const Frames frames = this->frames(step);
   const double* memory = step.memory;
   double* new_memory = step.new_memory;
@@ -245,12 +252,26 @@ void ContactElement::evaluate(const ForceStep& step, const int*, ForceAction& ac
   });
 }
 
+/// Of what is remembered at the beginning of a step, and not felt any more [J].
+double ContactElement::remembered_energy(const ForceStep& step) const {
+  double energy = 0;
+  const double* memory = step.memory;
+  for_each_pair([&](const ContactStation& station, const ContactShape& shape) {
+    const PointMemory old = memory_at(memory);
+    if (old.face != 0 || old.stretch != Vector3::Zero())
+      energy += stored_energy(shape, law_of(station), station.radius, place(station, poses_in(step.begin)), old);
+    memory += PointMemory::kSize;
+    return true;
+  });
+  return energy;
+}
+
 void ContactElement::add(const ContactStation& station, const Frames& frames, const Placed& placed,
                          const PointAction& local, ForceAction& action) const {
   const Vector3 force = frames.axes * local.wrench.head<3>(), couple = frames.axes * local.wrench.tail<3>();
   Vector6 wrench;
   wrench << force, placed.arm.cross(force) + couple;
-  const int count = static_cast<int>(sides_.nodes.size());
+  const int count = moving_nodes();
   for (int i = 0; i < count; ++i) action.residual.segment<6>(6 * i) -= station.weights[i] * wrench;
   wrench << force, placed.base_arm.cross(force) + couple;
   if (sides_.shape_node >= 0) action.residual.segment<6>(6 * count) += wrench;
@@ -258,7 +279,7 @@ void ContactElement::add(const ContactStation& station, const Frames& frames, co
 
 void ContactElement::add_tangent(const ContactStation& station, const Frames& frames, const Placed& placed,
                                  const PointAction& local, ForceAction& action) const {
-  const int count = static_cast<int>(sides_.nodes.size()), base = 6 * count;
+  const int count = moving_nodes(), base = 6 * count;
   const bool is_body = count == 1, has_base = sides_.shape_node >= 0;
   const Matrix3& end_axes = frames.base_end.rotation;
   // Of the place at the end, of it in the shapes' frame, and of the turn there, by {displacement, spin} of all.
@@ -335,10 +356,10 @@ ForceMeasures ContactElement::measures(const State& state, const int*) const {
     for (int k = 0; k < each; ++k) {
       // Sticking holds the surfaces, a radius below the station's middle.
       const Vector3 offset = k == 0 ? Vector3(Vector3::Zero()) : Vector3(-station.radius * normal);
-      for (std::size_t i = 0; i < sides_.nodes.size(); ++i) {
+      for (int i = 0; i < moving_nodes(); ++i) {
         const Matrix3 axes_of_node = poses_in(state)(sides_.nodes[i]).rotation;
         const Vector3 arm = axes_of_node * station.arm + offset;
-        out.rows.block<1, 6>(row, 6 * static_cast<Eigen::Index>(i)) << station.weights[i] * axes[k].transpose(),
+        out.rows.block<1, 6>(row, 6 * i) << station.weights[i] * axes[k].transpose(),
             station.weights[i] * arm.cross(axes[k]).transpose();
       }
       if (sides_.shape_node >= 0)
@@ -354,9 +375,10 @@ DamperTensions ContactElement::dampers(const State& state, const Eigen::VectorXd
   const int each = law_.friction > 0 ? 3 : 1;
   Eigen::VectorXd slopes = Eigen::VectorXd::Zero(rates.size());
   Eigen::Index row = 0;
-  for_each_touching(state, [&](const ContactStation& station, const SignedDistance&) {
+  for_each_touching(state, [&](const ContactStation& station, const SignedDistance& distance) {
     // Of what is pressed slowly, see contact_push().
-    slopes[row] = 2 * law_of(station).stiffness * law_.damping / law_.frequency;
+    const double slope = hardened({station.radius - distance.value, law_.depth}).slope;
+    slopes[row] = 2 * law_of(station).stiffness * law_.damping / law_.frequency * slope;
     row += each;
   });
   assert(row == rates.size());

@@ -20,7 +20,7 @@ struct ContactStation {
 
 /// All stations of one side, each with all shapes of the other one.
 struct ContactSides {
-  std::vector<int> nodes;  ///< of the stations: one of a body, all of an element
+  std::vector<int> nodes;  ///< of the stations: one of a body, all of an element; -1: the world
   std::vector<ContactStation> stations;
   int shape_node = -1;  ///< -1: the world
   std::vector<ContactShape> shapes;
@@ -48,6 +48,8 @@ class ContactElement : public ForceElement {
 
  private:
   struct Frames;
+  /// Of the stations' nodes those that move.
+  int moving_nodes() const { return sides_.nodes[0] < 0 ? 0 : static_cast<int>(sides_.nodes.size()); }
   struct Placed;
   ContactLaw law_of(const ContactStation& station) const;
   /// Of a station's middle in the frame of the shapes, at poses `pose_of(node)`.
@@ -57,6 +59,7 @@ class ContactElement : public ForceElement {
   Vector3 velocity(const ContactStation& station, const std::vector<NodePose>& poses,
                    const std::vector<Vector6>& velocities) const;
   Frames frames(const ForceStep& step) const;
+  double remembered_energy(const ForceStep& step) const;
   Placed placed(const ContactStation& station, const Frames& frames, const ForceStep& step) const;
   void add(const ContactStation& station, const Frames& frames, const Placed& placed, const PointAction& local,
            ForceAction& action) const;
@@ -65,7 +68,7 @@ class ContactElement : public ForceElement {
   /// Calls visit(station, shape) of all, in the order of the memory, until it returns false.
   template <class Visit>
   void for_each_pair(const Visit& visit) const;
-  /// Calls visit(law, shape, station, place) of those that touch.
+  /// Calls visit(station, signed distance) of those that touch.
   template <class Visit>
   void for_each_touching(const State& state, const Visit& visit) const;
 

@@ -1,6 +1,7 @@
 #include "contact/point_contact.h"
 
-#include <cassert>
+#include <algorithm>
+#include <limits>
 
 #include "math/so3.h"
 
@@ -11,6 +12,8 @@ using so3::hat;
 
 /// Ways too short for a correction along them, relative to where the points are.
 constexpr double kShort = 1e-6;
+/// Of the depth: no equilibrium is deeper.
+constexpr double kDeepest = 0.95;
 
 }  // namespace
 
@@ -66,6 +69,12 @@ PointAction point_action(const ContactShape& whole, const ContactLaw& law, doubl
   ContactChange change{radius - gap.begin, radius - gap.end, motion.at_end ? 0.0 : motion.duration};
   if (change.begin <= 0 && change.end <= 0) return out;
   out.acts = true;
+  // Beyond its depth the law means nothing, and updates are too small to tell: an equilibrium is to be looked for by
+  // shorter ways.
+  if (motion.at_end && change.end >= kDeepest * law.depth) {
+    out.wrench.setConstant(std::numeric_limits<double>::quiet_NaN());
+    return out;
+  }
   out.memory.face = change.end > 0 ? felt.face : 0;
   const double begin_rate = -shape.distance(motion.begin).gradient.dot(motion.begin_velocity);
   change.speed = approach_speed(change.begin, begin_rate, memory.speed);
@@ -75,8 +84,7 @@ PointAction point_action(const ContactShape& whole, const ContactLaw& law, doubl
   Vector3 force = push.value * gap.gradient;
   const Vector3 by_end = -push.slope * gap.end_gradient;  // of the push
   if (with_slope) out.slope.topLeftCorner<3, 3>() = gap.gradient * by_end.transpose() + push.value * gap.slope;
-  if (law.friction > 0) {
-    const double length = gap.gradient.norm();
+  if (const double length = gap.gradient.norm(); law.friction > 0 && length > 0) {
     const Vector3 normal = gap.gradient / length, offset = -radius * normal;
     const Vector3 slip = motion.end - motion.begin + motion.turn.cross(offset);
     const ContactGrip grip = contact_grip(law, memory.stretch, slip, normal, push.value);
@@ -104,6 +112,8 @@ PointAction point_action(const ContactShape& whole, const ContactLaw& law, doubl
 bool passes_through(const ContactShape& shape, const Vector3& from, const Vector3& to, double radius) {
   const Vector3 way = to - from;
   const double length = way.norm();
+  // Distances of convex shapes are convex: lowest at an end unless they fall first and rise then.
+  if (shape.distance(from).gradient.dot(way) >= 0 || shape.distance(to).gradient.dot(way) <= 0) return false;
   // No surface is nearer than the distance: the ball may go so far without a look.
   double gone = shape.distance(from).value - radius;
   if (gone + shape.distance(to).value - radius >= length) return false;

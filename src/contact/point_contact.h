@@ -32,7 +32,8 @@ struct PointMemory {
   Vector3 stretch = Vector3::Zero();
   int face = 0;  ///< by which a corner has come in
 };
-/// On the ball: a force through its middle and a couple, conjugate to the way and to the turn.
+/// On the ball: a force through its middle and a couple, conjugate to the way and to the turn. Not finite at an instant
+/// at which it is too deep inside.
 struct PointAction {
   Vector6 wrench = Vector6::Zero();
   Matrix6 slope = Matrix6::Zero();  ///< by {end, turn}

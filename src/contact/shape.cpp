@@ -92,7 +92,7 @@ std::vector<ContactPoint> points_of(const Box& box, double spacing) {
     for (int axis = 0; axis < 3; ++axis) {
       if (k & (1 << axis)) continue;  // edges begin at their lower ends
       const double length = 2 * box.half[axis];
-      const int between = std::min(static_cast<int>(std::ceil(length / spacing)) - 1, kMostEdgePoints);
+      const int between = static_cast<int>(std::min(std::ceil(length / spacing), kMostEdgePoints + 1.0)) - 1;
       for (int i = 1; i <= between; ++i) out.push_back({corner + length * i / (between + 1) * Vector3::Unit(axis), 0});
     }
   }
@@ -130,6 +130,9 @@ namespace {
 
 /// A point may be beside a face by this part of its shape's size, and still be over it: round-off.
 constexpr double kBeside = 1e-9;
+/// A point that starts so little inside of a face, of the size, may come in by it: corners of equal boxes that a scene
+/// lays on each other are inside of several.
+constexpr double kFlush = 1e-3;
 
 /// How far a point is outside of each pair of faces on the side on which `side` is, and the size of it all [m].
 struct FaceDistances {
@@ -176,7 +179,7 @@ int entered_face(const ContactShape& shape, const Vector3& from, const Vector3& 
   Eigen::Index axis = -1;
   for (Eigen::Index k = 0; k < 3; ++k) {
     const double a = first.values[k], b = last.values[k];
-    if (a < -slack) continue;
+    if (a < -kFlush * first.size) continue;
     if (a > slack && b >= a) return 0;
     // Where it starts on several faces it comes in by the one towards which it moves.
     const double part = a > slack ? a / (a - b) : 0;
@@ -185,10 +188,8 @@ int entered_face(const ContactShape& shape, const Vector3& from, const Vector3& 
     axis = k;
   }
   if (axis < 0 || entry > 1) return 0;
-  const Vector3 between = first.values + entry * (last.values - first.values);
-  for (Eigen::Index k = 0; k < 3; ++k)
-    if (!is_same_pair(shape, k, axis) && between[k] > slack) return 0;
-  return face_along(shape, axis, begin);
+  const int face = face_along(shape, axis, begin);
+  return is_over_face(shape, face, from + entry * (to - from)) ? face : 0;
 }
 
 int nearest_face(const ContactShape& shape, const Vector3& point) {
@@ -212,7 +213,10 @@ ContactShape beyond_face(const ContactShape& shape, int face) {
   if (cylinder && axis < 2) return {Cylinder{cylinder->radius, std::numeric_limits<double>::infinity()}, shape.place};
   const double half = cylinder ? cylinder->half_length : std::get<Box>(shape.kind).half[axis];
   const Vector3 outwards = (face < 0 ? -1.0 : 1.0) * Vector3::Unit(axis);
-  const Pose own{half * outwards, Quaternion::FromTwoVectors(Vector3::UnitZ(), outwards)};
+  Quaternion upwards = Quaternion::Identity();
+  if (axis == 2 && face < 0) upwards = Quaternion(0, 1, 0, 0);
+  if (axis < 2) upwards = Quaternion::FromTwoVectors(Vector3::UnitZ(), outwards);
+  const Pose own{half * outwards, upwards};
   return {HalfSpace{}, shape.place * own};
 }
 

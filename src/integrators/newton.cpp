@@ -171,7 +171,7 @@ bool NewtonIteration::renews_factors(const Progress& progress) const {
 bool NewtonIteration::is_as_expected(const Progress& progress) const {
   if (progress.iteration > 0)
     return progress.residual == 0 || progress.norm <= kStagnation ||
-           system_.residual().norm() <= kStalled * progress.residual;
+           system_.residual().norm() <= std::max(kStalled * progress.residual, kStagnation * progress.first_residual);
   const FirstUpdate& start = starts_[progress.with_kept];
   const double growth = std::max(1.0, progress.norm / start.norm);
   const double expected = std::max(kCaution * growth * start.residual_ratio, kRoundOff) * progress.first_residual;

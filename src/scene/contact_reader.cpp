@@ -55,8 +55,9 @@ void check_contacts(const SceneDescription& scene, Findings& findings) {
                      quoted(ground.name));
   std::set<std::pair<std::string, std::string>> named;
   const auto check = [&](const ContactPair& pair, const std::string& who) {
+    if (pair.first.empty() || pair.second.empty()) return;  // which is told
     for (const auto& [attribute, side] : {std::pair("first", pair.first), std::pair("second", pair.second)})
-      if (!side.empty() && sides.count(side) == 0)
+      if (sides.count(side) == 0)
         findings.error(pair.location.line, who,
                        std::string(attribute) + " must be a link or a ground of the scene, or *", quoted(side));
     if (pair.first == pair.second && pair.first != kAllBodies)

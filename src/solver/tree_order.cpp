@@ -247,6 +247,10 @@ void TreeOrder::count_riders() {
     for (int p = completion_[joint.slave]; p >= 0 && p < last; p = next[p]) most_riders_[p] += scalars;
   }
   count_riders_of_couplings(next);
+  // Each variable rides once, however many force elements couple it.
+  int all = 0;
+  for (const int size : dof_.size) all += 2 * size;
+  for (int& riders : most_riders_) riders = std::min(riders, all);
   std::size_t variables = 0;
   for (const std::vector<int>& own : parts) variables += own.size();
   for (const auto& element : model_.force_elements) variables += element->most_nodes();

@@ -17,7 +17,7 @@ NodePose turned_node(const Vector3& position, const Vector3& rotation) {
   return node_at(position, so3::exp_quaternion(rotation));
 }
 
-ContactLaw law_with(double friction, double restitution) {
+ContactLaw gripping_law(double friction, double restitution) {
   ContactLaw law;
   law.stiffness = 500;
   law.frequency = 20;
@@ -101,7 +101,7 @@ class ContactElements : public ::testing::TestWithParam<bool> {
 TEST_P(ContactElements, HaveTheirTangent) {
   for (const auto& [name, sides] : scenes())
     for (const double friction : {0.0, 0.05, 5.0}) {
-      const ContactElement element({"", ""}, sides, law_with(friction, 0.5));
+      const ContactElement element({"", ""}, sides, gripping_law(friction, 0.5));
       const Action here = action(end, element);
       EXPECT_GT(here.residual.norm(), 1) << name << " is not touched";
       constexpr double h = 1e-6;
@@ -124,7 +124,7 @@ TEST_P(ContactElements, HaveTheirTangent) {
 TEST_P(ContactElements, AddToNoMomentum) {
   for (const auto& [name, sides] : scenes()) {
     if (sides.shape_node < 0) continue;
-    const ContactElement element({"", ""}, sides, law_with(0.3, 0.5));
+    const ContactElement element({"", ""}, sides, gripping_law(0.3, 0.5));
     const Action here = action(end, element);
     Vector3 force = Vector3::Zero(), moment = Vector3::Zero();
     const double weight = GetParam() ? 1 : 0.5;
@@ -145,7 +145,7 @@ TEST_P(ContactElements, OfMeansDoExactWork) {
   if (GetParam()) return;  // forces at the end do not
   for (const auto& [name, sides] : scenes())
     for (const double friction : {0.01, 0.3, 5.0}) {
-      const ContactElement element({"", ""}, sides, law_with(friction, 0.5));
+      const ContactElement element({"", ""}, sides, gripping_law(friction, 0.5));
       const Action here = action(end, element);
       double work = 0;
       for (std::size_t i = 0; i < element.reach().size(); ++i) {

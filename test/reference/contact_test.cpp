@@ -215,6 +215,66 @@ TEST(Contact, BoxesRestOnEachOther) {
   }
 }
 
+// Of what is fixed in the world corners and balls touch, too; and what floats is no neighbour of it.
+TEST(Contact, PlateRestsOnFixedPostsAndBalls) {
+  std::string parts = box("plate", 1, {0.6, 0.6, 0.04}) + floating("plate") + "<contact first=\"*\" second=\"*\"/>";
+  const auto fixed = [&](const std::string& name, const std::string& shape, double x, double y) {
+    parts += fmt::format(
+        "<link name=\"{0}\"><collision><geometry><{1}/></geometry></collision></link><joint name=\"of_{0}\" "
+        "type=\"fixed\"><parent link=\"world\"/><child link=\"{0}\"/><origin xyz=\"{2} {3} 0\"/></joint>",
+        name, shape, x, y);
+  };
+  fixed("post1", "box size=\"0.05 0.05 0.1\"", 0.2, 0.2);
+  fixed("post2", "box size=\"0.05 0.05 0.1\"", -0.2, 0.2);
+  fixed("ball", "sphere radius=\"0.05\"", 0, -0.2);
+  Simulation simulation = simulation_of(parts, start("plate", {0, 0, 0.071}, {0, 0, 0}), 1e-3);
+  run(simulation, 3);
+  EXPECT_NEAR(simulation.link_pose(1).position.z(), 0.07, 2e-3) << "what it gives way at most";
+  EXPECT_LE(simulation.momentum().norm(), 1e-6);
+}
+
+TEST(Contact, EqualBoxesThatStartALittleInsideRest) {
+  const Vector3 size(0.2, 0.2, 0.1);
+  Simulation simulation =
+      simulation_of(kFloor + box("low", 1, size) + box("high", 1, size) + floating("low") + floating("high") +
+                        "<contact first=\"*\" second=\"*\" friction=\"0.5\"/>",
+                    start("low", {0, 0, 0.05}, {0, 0, 0}) + start("high", {0, 0, 0.15 - 1e-6}, {0, 0, 0}), 1e-3);
+  run(simulation, 3);
+  EXPECT_NEAR(simulation.link_pose(2).position.z(), 0.15, 5e-3) << "what they give way at most";
+}
+
+TEST(Contact, PairsThatCannotTouchAreRefused) {
+  const std::string mesh =
+      "<link name=\"mesh\"><collision><geometry><mesh filename=\"file:///none.stl\"/></geometry></collision></link>"
+      "<joint name=\"of_mesh\" type=\"fixed\"><parent link=\"world\"/><child link=\"mesh\"/></joint>";
+  const std::string post =
+      "<link name=\"post\"><collision><geometry><box size=\"1 1 1\"/></geometry></collision></link>"
+      "<joint name=\"of_post\" type=\"fixed\"><parent link=\"world\"/><child link=\"post\"/></joint>";
+  const std::string moving = ball("ball", 1, 0.1) + floating("ball") + kFloor;
+  EXPECT_THROW(simulation_of(moving + mesh + "<contact first=\"mesh\" second=\"floor\"/>", "", 1e-3),
+               std::runtime_error);
+  EXPECT_THROW(simulation_of(moving + post + "<contact first=\"post\" second=\"floor\"/>", "", 1e-3),
+               std::runtime_error);
+}
+
+// The elastica is not needed: a cantilever that its weight presses on the floor is supported there.
+TEST(Contact, CantileverRestsOnTheFloorInStatics) {
+  Simulation simulation = simulation_of(
+      "<link name=\"arm\"><beam elements=\"10\" order=\"2\"><centerline><line to=\"1 0 0\"/></centerline>"
+      "<circle radius=\"0.004\"/><material young=\"7e9\" poisson=\"0.3\" density=\"2700\"/></beam></link>"
+      "<joint name=\"clamp\" type=\"fixed\"><parent link=\"world\"/><child link=\"arm\"/></joint>"
+      "<ground name=\"low\" offset=\"-0.05\"/><contact first=\"arm\" second=\"low\" stiffness=\"1e6\"/>",
+      "", 1e-3);
+  ASSERT_TRUE(simulation.solve_static(1).converged);
+  EXPECT_NEAR(simulation.tip_pose(1).position.z(), -0.046, 4e-4) << "a radius above the floor, less its depth";
+  // Of a clamped beam on a support of its end, linear theory: 3/8 of the weight, less what lets it sag to the floor.
+  const double ei = 7e9 * 3.14159265358979 / 4 * std::pow(0.004, 4), weight = 2700 * 3.14159265358979 * 1.6e-5 * kG;
+  const double sag = weight / (8 * ei), support = 3 * ei * (sag - 0.046);
+  run(simulation, 0.2);
+  EXPECT_GT(support, 0) << "else it would not touch";
+  EXPECT_NEAR(simulation.tip_pose(1).position.z(), -0.046, 1e-3) << "it stays";
+}
+
 TEST(Contact, StackOfBoxesRests) {
   const Vector3 size(0.2, 0.2, 0.1);
   std::string parts = kFloor + "<contact first=\"*\" second=\"*\" friction=\"0.5\"/>", starts;
