@@ -217,7 +217,8 @@ TEST(Contact, BoxesRestOnEachOther) {
 
 // Of what is fixed in the world corners and balls touch, too; and what floats is no neighbour of it.
 TEST(Contact, PlateRestsOnFixedPostsAndBalls) {
-  std::string parts = box("plate", 1, {0.6, 0.6, 0.04}) + floating("plate") + "<contact first=\"*\" second=\"*\"/>";
+  std::string parts =
+      box("plate", 1, {0.6, 0.6, 0.04}) + floating("plate") + "<contact first=\"*\" second=\"*\" friction=\"0.5\"/>";
   const auto fixed = [&](const std::string& name, const std::string& shape, double x, double y) {
     parts += fmt::format(
         "<link name=\"{0}\"><collision><geometry><{1}/></geometry></collision></link><joint name=\"of_{0}\" "
@@ -257,7 +258,7 @@ TEST(Contact, PairsThatCannotTouchAreRefused) {
                std::runtime_error);
 }
 
-// The elastica is not needed: a cantilever that its weight presses on the floor is supported there.
+// A cantilever that its weight presses on the floor: without it its tip would hang 0.117 m low.
 TEST(Contact, CantileverRestsOnTheFloorInStatics) {
   Simulation simulation = simulation_of(
       "<link name=\"arm\"><beam elements=\"10\" order=\"2\"><centerline><line to=\"1 0 0\"/></centerline>"
@@ -267,11 +268,7 @@ TEST(Contact, CantileverRestsOnTheFloorInStatics) {
       "", 1e-3);
   ASSERT_TRUE(simulation.solve_static(1).converged);
   EXPECT_NEAR(simulation.tip_pose(1).position.z(), -0.046, 4e-4) << "a radius above the floor, less its depth";
-  // Of a clamped beam on a support of its end, linear theory: 3/8 of the weight, less what lets it sag to the floor.
-  const double ei = 7e9 * 3.14159265358979 / 4 * std::pow(0.004, 4), weight = 2700 * 3.14159265358979 * 1.6e-5 * kG;
-  const double sag = weight / (8 * ei), support = 3 * ei * (sag - 0.046);
   run(simulation, 0.2);
-  EXPECT_GT(support, 0) << "else it would not touch";
   EXPECT_NEAR(simulation.tip_pose(1).position.z(), -0.046, 1e-3) << "it stays";
 }
 
