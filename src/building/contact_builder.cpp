@@ -95,7 +95,7 @@ class ContactBuilder {
     side.link = &link;
     const int index = plan_.links[link.name];
     if (link.collisions.empty()) {
-      if (plan_.meshes[index]) add_tube(index, side);
+      if (plan_.meshes[index] && model_.links[index].beam->radius > 0) add_tube(index, side);
       return side;
     }
     side.is_fixed = plan_.links[link.name] == plan_.tree.root;
@@ -137,7 +137,8 @@ class ContactBuilder {
       ContactSides stations;
       for (const int node : plan_.meshes[index]->mesh.elements[k].nodes)
         stations.nodes.push_back(link.frame.node + node);
-      const int spans = std::clamp(static_cast<int>(std::ceil(length / link.beam->radius)), order, kMostSpans);
+      const double radii = std::min(std::ceil(length / link.beam->radius), 1.0 * kMostSpans);
+      const int spans = std::max(static_cast<int>(radii), order);
       for (int i = 0; i <= spans; ++i) {
         ContactStation station;
         station.weights = weights_at(order, -1 + 2.0 * i / spans);

@@ -7,7 +7,7 @@
 #include "flexarm/simulation/simulation.h"
 #include "support/source_path.h"
 
-namespace flexarm::test {
+namespace flexarm::test::touching {
 namespace {
 
 constexpr double kG = 9.81;
@@ -326,4 +326,4 @@ TEST(Contact, BeamThatBouncesKeepsItsEnergy) {
 }
 
 }  // namespace
-}  // namespace flexarm::test
+}  // namespace flexarm::test::touching
