@@ -29,6 +29,10 @@ GroundDescription read_ground(const XmlElement& ground) {
   return out;
 }
 
+bool is_contact(const XmlElement& element) {
+  return element.tag() == "contact" && (element.has("first") || element.has("second"));
+}
+
 ContactDescription read_contact(const XmlElement& contact) {
   contact.expect_only({"first", "second", "stiffness", "restitution", "friction"});
   ContactDescription out;

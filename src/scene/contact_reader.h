@@ -9,6 +9,8 @@
 namespace flexarm::scene {
 
 GroundDescription read_ground(const XmlElement& ground);
+/// Whether a <contact> of <robot> is ours: others' have no sides.
+bool is_contact(const XmlElement& element);
 ContactDescription read_contact(const XmlElement& contact);
 ContactPair read_no_contact(const XmlElement& pair);
 /// Checks that names refer to something and that no pair is named twice.

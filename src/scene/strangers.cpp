@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "math/parse_number.h"
+#include "scene/contact_reader.h"
 #include "scene/limits.h"
 
 namespace flexarm::scene {
@@ -58,6 +59,7 @@ struct Home {
 constexpr Home kHomes[] = {{"inertial", "link"},
                            {"visual", "link"},
                            {"collision", "link"},
+                           {"contact", "link"},  // Bullet's
                            {"origin", "joint"},
                            {"parent", "joint"},
                            {"child", "joint"},
@@ -137,6 +139,7 @@ void warn_of_strangers(const XmlElement& robot, const std::vector<ForceElementKi
   for (const ForceElementKind& kind : kinds) own.push_back(kind.tag);
   std::set<std::string> told;
   for (const XmlElement& child : robot.children()) {
+    if (is_contact(child)) continue;
     const std::string advice = advice_for(child.tag(), own);
     if (!advice.empty() && told.insert(child.tag()).second) child.warning(advice);
   }

@@ -115,7 +115,7 @@ class SceneReader {
       if (scene_.force_elements.size() <= kMostForceElements) scene_.force_elements.push_back(kind->read(child));
     } else if (tag == "ground" && scene_.grounds.size() <= kMostContacts) {
       scene_.grounds.push_back(read_ground(child));
-    } else if (tag == "contact" && scene_.contacts.size() <= kMostContacts) {
+    } else if (is_contact(child) && scene_.contacts.size() <= kMostContacts) {
       scene_.contacts.push_back(read_contact(child));
     } else if (tag == "no_contact" && scene_.no_contacts.size() <= kMostContacts) {
       scene_.no_contacts.push_back(read_no_contact(child));

@@ -292,7 +292,7 @@ TEST(GoodScene, Contacts) {
   EXPECT_EQ(scene.contacts[0].first, "*");
   EXPECT_EQ(scene.contacts[0].second, "floor");
   EXPECT_EQ(scene.contacts[0].restitution, 0.4);
-  EXPECT_EQ(scene.contacts[0].friction, 0.2);
+  EXPECT_EQ(scene.contacts[0].friction, 0.25);
   EXPECT_EQ(scene.contacts[0].stiffness, 1e4);
   ASSERT_EQ(scene.no_contacts.size(), 1u);
   EXPECT_EQ(scene.no_contacts[0].first, "hand");
