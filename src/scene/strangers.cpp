@@ -17,7 +17,7 @@ namespace {
 /// Children of <robot> that are read, here or as URDF has them: what a misspelt name may mean.
 constexpr std::string_view kOwn[] = {"link",      "joint",  "material",     "loop_joint", "spring",
                                      "drive",     "servo",  "transmission", "simulation", "sensor",
-                                     "parameter", "gazebo", "ground",       "contact",    "no_contact"};
+                                     "parameter", "gazebo", "ground",       "no_contact"};
 /// Of other programs.
 constexpr std::string_view kOfOthers[] = {"ros2_control",
                                           "mujoco",
