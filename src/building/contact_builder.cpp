@@ -1,4 +1,4 @@
-#include "building/contact_builder.h"
+#include "building/passes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,8 +36,8 @@ struct Side {
   double mass = kInfinity;                       // [kg]
   double size = kInfinity;                       // smallest half width of what it touches with [m]
   bool is_fixed = false;                         // in the world
-  std::vector<ContactSides> shapes;              // those of each node that has some, without stations
-  std::vector<ContactSides> tubes;               // stations of each element of a beam
+  std::vector<ContactSurface> surfaces;          // of each node that has shapes
+  std::vector<ContactStations> tubes;            // of each element of a beam
 };
 
 ContactShape shape_of(const scene::VisualDescription& collision, const Attachment& frame) {
@@ -85,7 +85,7 @@ class ContactBuilder {
     ContactShape shape;
     shape.place.position = ground.offset * ground.normal - model_.origin;
     shape.place.orientation = Quaternion::FromTwoVectors(Vector3::UnitZ(), ground.normal);
-    side.shapes.push_back({{}, {}, -1, {shape}});
+    side.surfaces.push_back({-1, {shape}});
     return side;
   }
 
@@ -106,16 +106,16 @@ class ContactBuilder {
       all_fixed = all_fixed && frame.node < 0;
       add(shape_of(collision, frame), frame.node, side);
     }
-    side.is_fixed = side.is_fixed || (all_fixed && !side.shapes.empty());
+    side.is_fixed = side.is_fixed || (all_fixed && !side.surfaces.empty());
     if (model_.links[index].beam) side.mass = model_.links[index].beam->mass;
     return side;
   }
 
   void add(const ContactShape& shape, int node, Side& side) const {
-    const auto on_node = [&](const ContactSides& each) { return each.shape_node == node; };
-    auto shapes = std::find_if(side.shapes.begin(), side.shapes.end(), on_node);
-    if (shapes == side.shapes.end()) shapes = side.shapes.insert(shapes, {{}, {}, node, {}});
-    shapes->shapes.push_back(shape);
+    const auto on_node = [&](const ContactSurface& each) { return each.node == node; };
+    auto surface = std::find_if(side.surfaces.begin(), side.surfaces.end(), on_node);
+    if (surface == side.surfaces.end()) surface = side.surfaces.insert(surface, {node, {}});
+    surface->shapes.push_back(shape);
     side.size = std::min(side.size, half_width(shape));
     if (node >= 0) side.mass = mass_of_body(node);
   }
@@ -134,7 +134,7 @@ class ContactBuilder {
     const int order = link.beam->order;
     for (std::size_t k = 0; k < link.beam->elements.size(); ++k) {
       const double begin = k == 0 ? 0.0 : link.beam->element_ends[k - 1], length = link.beam->element_ends[k] - begin;
-      ContactSides stations;
+      ContactStations stations;
       for (const int node : plan_.meshes[index]->mesh.elements[k].nodes)
         stations.nodes.push_back(link.frame.node + node);
       const double radii = std::min(std::ceil(length / link.beam->radius), 1.0 * kMostSpans);
@@ -211,7 +211,7 @@ class ContactBuilder {
   void require_something_to_touch(const scene::ContactDescription& contact, const Side& first,
                                   const Side& second) const {
     for (const Side* side : {&first, &second})
-      if (side->shapes.empty() && side->tubes.empty())
+      if (side->surfaces.empty() && side->tubes.empty())
         throw ModelError(at(contact.location, "<contact>") +
                          fmt::format("link '{}' has nothing to touch with: expected a <collision> that is a box, a "
                                      "cylinder or a sphere, or a <beam>",
@@ -219,7 +219,7 @@ class ContactBuilder {
     if (first.is_fixed && second.is_fixed)
       throw ModelError(at(contact.location, "<contact>") +
                        fmt::format("'{}' and '{}' never move against each other", first.name, second.name));
-    if (first.shapes.empty() && second.shapes.empty())
+    if (first.surfaces.empty() && second.surfaces.empty())
       throw ModelError(at(contact.location, "<contact>") +
                        fmt::format("links '{}' and '{}' are both flexible without <collision>: such a contact is not "
                                    "there yet",
@@ -243,16 +243,11 @@ class ContactBuilder {
   }
 
   /// Deeper where it starts inside.
-  void deepen(const ContactSides& sides, ContactLaw& law) const {
+  void deepen(const ContactStations& side, const ContactSurface& surface, ContactLaw& law) const {
     const auto pose_of = [&](int node) { return node < 0 ? NodePose() : model_.nodes[node]; };
-    const NodePose base = pose_of(sides.shape_node);
-    for (const ContactStation& station : sides.stations)
-      for (const ContactShape& shape : sides.shapes) {
-        Vector3 place = Vector3::Zero();
-        for (std::size_t i = 0; i < sides.nodes.size(); ++i)
-          place +=
-              station.weights[i] * (pose_of(sides.nodes[i]).position + pose_of(sides.nodes[i]).rotation * station.arm);
-        const double gap = shape.distance(base.rotation.transpose() * (place - base.position)).value - station.radius;
+    for (const ContactStation& station : side.stations)
+      for (const ContactShape& shape : surface.shapes) {
+        const double gap = shape.gap(seen_from(surface, middle_of(side, station, pose_of), pose_of)) - station.radius;
         law.depth = std::max(law.depth, -gap / kStartInside);
       }
   }
@@ -260,50 +255,49 @@ class ContactBuilder {
   // ---------------------------------------------------------------- elements
 
   static bool is_ball(const Side& side) {
-    const auto all_balls = [](const ContactSides& each) {
+    const auto all_balls = [](const ContactSurface& each) {
       return std::all_of(each.shapes.begin(), each.shapes.end(),
                          [](const ContactShape& shape) { return std::holds_alternative<Ball>(shape.kind); });
     };
-    return !side.shapes.empty() && std::all_of(side.shapes.begin(), side.shapes.end(), all_balls);
+    return !side.surfaces.empty() && std::all_of(side.surfaces.begin(), side.surfaces.end(), all_balls);
   }
 
   void join(const scene::ContactDescription& contact, const Side& first, const Side& second) {
     // Corners do not go into balls: the ball's middle is nearer to a face or an edge than they are. Of two balls one
     // goes into the other.
-    if (!is_ball(second) || first.shapes.empty() || is_ball(first)) join_stations(contact, first, second);
-    if (!is_ball(first) || second.shapes.empty()) join_stations(contact, second, first);
+    if (!is_ball(second) || first.surfaces.empty() || is_ball(first)) join_stations(contact, first, second);
+    if (!is_ball(first) || second.surfaces.empty()) join_stations(contact, second, first);
   }
 
   /// Those of each node or element; points on edges as near to each other as the other side is small.
-  static std::vector<ContactSides> stations_of(const Side& side, double spacing) {
-    std::vector<ContactSides> out = side.tubes;
-    for (const ContactSides& body : side.shapes) {
-      ContactSides stations{{body.shape_node}, {}, -1, {}};
-      for (const ContactShape& shape : body.shapes)
+  static std::vector<ContactStations> stations_of(const Side& side, double spacing) {
+    std::vector<ContactStations> out = side.tubes;
+    for (const ContactSurface& surface : side.surfaces) {
+      ContactStations body{{surface.node}, {}};
+      for (const ContactShape& shape : surface.shapes)
         for (const ContactPoint& point : contact_points(shape, spacing)) {
           ContactStation station;
           station.arm = point.arm;
           station.radius = point.radius;
-          stations.stations.push_back(station);
+          body.stations.push_back(station);
         }
-      out.push_back(std::move(stations));
+      if (!body.stations.empty()) out.push_back(std::move(body));
     }
     return out;
   }
 
   void join_stations(const scene::ContactDescription& contact, const Side& first, const Side& second) {
-    for (const ContactSides& stations : stations_of(first, second.size))
-      for (const ContactSides& shapes : second.shapes) {
+    for (const ContactStations& stations : stations_of(first, second.size))
+      for (const ContactSurface& surface : second.surfaces) {
         const auto& nodes = stations.nodes;
-        if (std::find(nodes.begin(), nodes.end(), shapes.shape_node) != nodes.end()) continue;
-        if (stations.stations.empty()) continue;
-        ContactSides sides{stations.nodes, stations.stations, shapes.shape_node, shapes.shapes};
+        if (std::find(nodes.begin(), nodes.end(), surface.node) != nodes.end()) continue;
         // Stations of a tube have shares of the whole.
         const bool is_whole = is_ball(first) || !first.tubes.empty();
         const double at_a_time = is_whole ? 1.0 : kAtATime * static_cast<double>(stations.stations.size());
         ContactLaw law = law_of(contact, first, second, at_a_time);
-        deepen(sides, law);
-        placed_.push_back(std::make_shared<ContactElement>(std::array{first.name, second.name}, std::move(sides), law));
+        deepen(stations, surface, law);
+        placed_.push_back(
+            std::make_shared<ContactElement>(std::vector{first.name, second.name}, stations, surface, law));
       }
   }
 

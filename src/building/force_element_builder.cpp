@@ -1,4 +1,4 @@
-#include "building/force_element_builder.h"
+#include "building/passes.h"
 
 #include <algorithm>
 

@@ -7,9 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "building/contact_builder.h"
 #include "building/elementary_joints.h"
-#include "building/force_element_builder.h"
 #include "building/passes.h"
 #include "building/rigid_lines.h"
 

@@ -127,4 +127,16 @@ std::vector<int> coordinates_without_own_inertia(const std::vector<int>& node_pa
 /// prescribed, follow others or are followed. Of a joint with several, those before it are free, too.
 std::vector<double> articulated_inertias(const std::vector<int>& node_parents, const Model& model);
 
+// ---------------------------------------------------------------- force_element_builder.cpp
+
+/// The scene's force elements on the nodes of a model that is complete but for them.
+/// @throws ModelError for one whose points are all on one rigid body.
+ForceElementList place_force_elements(const ScenePlan& plan, const Model& model);
+
+// ---------------------------------------------------------------- contact_builder.cpp
+
+/// Contacts of all pairs of links and grounds for which the scene has one, on the nodes of that model.
+/// @throws ModelError where a side of a named pair has nothing to touch with, or both never move against each other.
+ForceElementList place_contacts(const ScenePlan& plan, const Model& model);
+
 }  // namespace flexarm

@@ -9,7 +9,6 @@
 #include "cli/driven_ends.h"
 #include "cli/mode_table.h"
 #include "cli/scene_input.h"
-#include "contact/contact_element.h"
 #include "integrators/step_plane.h"
 #include "scene/flexible_link.h"
 #include "schemes/scheme.h"
@@ -131,11 +130,9 @@ void print_force_elements(const Simulation& simulation) {
   const ForceElementList& elements = model_of(simulation).force_elements;
   if (!elements.empty()) fmt::print("\n{:<24} {:<12} {:<40} {}\n", "between points", "kind", "links", "law");
   for (std::size_t i = 0; i < elements.size(); ++i) {
-    std::vector<std::string> links;
+    std::vector<std::string> links = elements[i]->links();
     if (i < described.size())
       for (const scene::LinkPoint& point : described[i]->points()) links.push_back(point.link);
-    else
-      for (const std::string& body : static_cast<const ContactElement&>(*elements[i]).bodies()) links.push_back(body);
     fmt::print("{:<24} {:<12} {:<40} {}\n", elements[i]->name().empty() ? "-" : elements[i]->name(),
                elements[i]->kind(), fmt::format("{}", fmt::join(links, ", ")), elements[i]->description());
   }

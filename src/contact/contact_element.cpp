@@ -27,10 +27,10 @@ constexpr double kUnseen = 0.01;
 /// Cosine of normals at both ends of a step that goes to the other side of something thin.
 constexpr double kOtherSide = -0.5;
 
-std::vector<int> reach_of(const ContactSides& sides) {
+std::vector<int> reach_of(const ContactStations& side, const ContactSurface& surface) {
   std::vector<int> nodes;
-  if (sides.nodes[0] >= 0) nodes = sides.nodes;
-  if (sides.shape_node >= 0) nodes.push_back(sides.shape_node);
+  if (side.nodes[0] >= 0) nodes = side.nodes;
+  if (surface.node >= 0) nodes.push_back(surface.node);
   return nodes;
 }
 
@@ -48,19 +48,24 @@ auto poses_in(const State& state) {
 
 }  // namespace
 
-ContactElement::ContactElement(std::array<std::string, 2> bodies, ContactSides sides, const ContactLaw& law)
-    : ForceElement("", reach_of(sides)), bodies_(std::move(bodies)), sides_(std::move(sides)), law_(law) {
-  assert(!sides_.nodes.empty() && sides_.nodes.size() <= ContactStation::kMostNodes);
-  for (const ContactStation& station : sides_.stations) size_ = std::max(size_, station.arm.norm() + station.radius);
+ContactElement::ContactElement(std::vector<std::string> links, ContactStations side, ContactSurface surface,
+                               const ContactLaw& law)
+    : ForceElement("", reach_of(side, surface)),
+      links_(std::move(links)),
+      side_(std::move(side)),
+      surface_(std::move(surface)),
+      law_(law) {
+  assert(!side_.nodes.empty() && side_.nodes.size() <= ContactStation::kMostNodes);
+  for (const ContactStation& station : side_.stations) size_ = std::max(size_, station.arm.norm() + station.radius);
 }
 
 std::string ContactElement::description() const {
-  return fmt::format("{} points, {:.4g} N/m each, friction {:g}", sides_.stations.size() * sides_.shapes.size(),
+  return fmt::format("{} points, {:.4g} N/m each, friction {:g}", side_.stations.size() * surface_.shapes.size(),
                      law_.stiffness, law_.friction);
 }
 
 int ContactElement::memory_size() const {
-  return PointMemory::kSize * static_cast<int>(sides_.stations.size() * sides_.shapes.size());
+  return PointMemory::kSize * static_cast<int>(side_.stations.size() * surface_.shapes.size());
 }
 
 ContactLaw ContactElement::law_of(const ContactStation& station) const {
@@ -72,38 +77,26 @@ ContactLaw ContactElement::law_of(const ContactStation& station) const {
 
 template <class Visit>
 void ContactElement::for_each_pair(const Visit& visit) const {
-  for (const ContactStation& station : sides_.stations)
-    for (const ContactShape& shape : sides_.shapes)
+  for (const ContactStation& station : side_.stations)
+    for (const ContactShape& shape : surface_.shapes)
       if (!visit(station, shape)) return;
 }
 
 // ---------------------------------------------------------------- where
 
-template <class PoseOf>
-Vector3 ContactElement::place(const ContactStation& station, const PoseOf& pose_of) const {
-  Vector3 place = Vector3::Zero();
-  for (std::size_t i = 0; i < sides_.nodes.size(); ++i) {
-    const NodePose node = pose_of(sides_.nodes[i]);
-    place += station.weights[i] * (node.position + node.rotation * station.arm);
-  }
-  const NodePose base = pose_of(sides_.shape_node);
-  return base.rotation.transpose() * (place - base.position);
-}
-
 Vector3 ContactElement::velocity(const ContactStation& station, const std::vector<NodePose>& poses,
                                  const std::vector<Vector6>& velocities) const {
   const auto motion_of = [&](int node) { return node < 0 ? Vector6(Vector6::Zero()) : velocities[node]; };
-  Vector3 place = Vector3::Zero(), velocity = Vector3::Zero();
-  for (std::size_t i = 0; i < sides_.nodes.size(); ++i) {
-    const NodePose node = poses_in(poses)(sides_.nodes[i]);
-    const Vector6 motion = motion_of(sides_.nodes[i]);
-    const Vector3 arm = node.rotation * station.arm;
-    place += station.weights[i] * (node.position + arm);
+  const auto pose_of = poses_in(poses);
+  Vector3 velocity = Vector3::Zero();
+  for (std::size_t i = 0; i < side_.nodes.size(); ++i) {
+    const Vector6 motion = motion_of(side_.nodes[i]);
+    const Vector3 arm = pose_of(side_.nodes[i]).rotation * station.arm;
     velocity += station.weights[i] * (motion.head<3>() + motion.tail<3>().cross(arm));
   }
-  const NodePose base = poses_in(poses)(sides_.shape_node);
-  const Vector6 motion = motion_of(sides_.shape_node);
-  velocity -= motion.head<3>() + motion.tail<3>().cross(place - base.position);
+  const NodePose base = pose_of(surface_.node);
+  const Vector6 motion = motion_of(surface_.node);
+  velocity -= motion.head<3>() + motion.tail<3>().cross(middle_of(side_, station, pose_of) - base.position);
   return base.rotation.transpose() * velocity;
 }
 
@@ -119,11 +112,6 @@ int ContactElement::find_nodes(const ForceStart& start, int* nodes) const {
     return !is_near;
   });
   return is_near ? all : 0;
-}
-
-bool ContactElement::may_hit(const ForceStart& start) const {
-  std::array<int, ContactStation::kMostNodes + 1> nodes;
-  return find_nodes(start, nodes.data()) > 0;
 }
 
 bool ContactElement::needs_halves(const ForceStep& step, const int*, int count) const {
@@ -170,15 +158,15 @@ struct ContactElement::Frames {
 ContactElement::Frames ContactElement::frames(const ForceStep& step) const {
   Frames out;
   out.weight = step.at_end ? 1 : 0.5;
-  out.base_begin = poses_in(step.begin)(sides_.shape_node);
-  out.base_end = poses_in(step.end)(sides_.shape_node);
+  out.base_begin = poses_in(step.begin)(surface_.node);
+  out.base_end = poses_in(step.end)(surface_.node);
   out.axes = out.weight * out.base_end.rotation + (1 - out.weight) * out.base_begin.rotation;
   const auto turn_of = [&](int node) {
     return node < 0 ? Vector3(Vector3::Zero())
                     : cayley::increment(step.begin[node].orientation, step.end[node].orientation);
   };
-  for (std::size_t i = 0; i < sides_.nodes.size(); ++i) out.turns[i] = turn_of(sides_.nodes[i]);
-  out.base_turn = turn_of(sides_.shape_node);
+  for (std::size_t i = 0; i < side_.nodes.size(); ++i) out.turns[i] = turn_of(side_.nodes[i]);
+  out.base_turn = turn_of(surface_.node);
   return out;
 }
 
@@ -192,22 +180,16 @@ struct ContactElement::Placed {
 ContactElement::Placed ContactElement::placed(const ContactStation& station, const Frames& frames,
                                               const ForceStep& step) const {
   Placed out;
-  Vector3 begin = -frames.base_begin.position, end = -frames.base_end.position;
+  const auto begin_of = poses_in(step.begin), end_of = poses_in(step.end);
+  const double weight = frames.weight;
+  const Vector3 begin = middle_of(side_, station, begin_of) - frames.base_begin.position;
+  out.end_base_arm = middle_of(side_, station, end_of) - frames.base_end.position;
+  out.base_arm = weight * out.end_base_arm + (1 - weight) * begin;
   out.turn = -frames.base_turn;
-  for (std::size_t i = 0; i < sides_.nodes.size(); ++i) {
-    begin += station.weights[i] * poses_in(step.begin)(sides_.nodes[i]).position;
-    end += station.weights[i] * poses_in(step.end)(sides_.nodes[i]).position;
-    out.turn += station.weights[i] * frames.turns[i];
-  }
-  if (sides_.nodes.size() == 1) {
-    const Vector3 begin_arm = poses_in(step.begin)(sides_.nodes[0]).rotation * station.arm;
-    out.end_arm = poses_in(step.end)(sides_.nodes[0]).rotation * station.arm;
-    out.arm = frames.weight * out.end_arm + (1 - frames.weight) * begin_arm;
-    begin += begin_arm;
-    end += out.end_arm;
-  }
-  out.end_base_arm = end;
-  out.base_arm = frames.weight * end + (1 - frames.weight) * begin;
+  for (std::size_t i = 0; i < side_.nodes.size(); ++i) out.turn += station.weights[i] * frames.turns[i];
+  if (side_.nodes.size() > 1) return out;
+  out.end_arm = end_of(side_.nodes[0]).rotation * station.arm;
+  out.arm = weight * out.end_arm + (1 - weight) * (begin_of(side_.nodes[0]).rotation * station.arm);
   return out;
 }
 
@@ -274,13 +256,13 @@ void ContactElement::add(const ContactStation& station, const Frames& frames, co
   const int count = moving_nodes();
   for (int i = 0; i < count; ++i) action.residual.segment<6>(6 * i) -= station.weights[i] * wrench;
   wrench << force, placed.base_arm.cross(force) + couple;
-  if (sides_.shape_node >= 0) action.residual.segment<6>(6 * count) += wrench;
+  if (surface_.node >= 0) action.residual.segment<6>(6 * count) += wrench;
 }
 
 void ContactElement::add_tangent(const ContactStation& station, const Frames& frames, const Placed& placed,
                                  const PointAction& local, ForceAction& action) const {
   const int count = moving_nodes(), base = 6 * count;
-  const bool is_body = count == 1, has_base = sides_.shape_node >= 0;
+  const bool is_body = count == 1, has_base = surface_.node >= 0;
   const Matrix3& end_axes = frames.base_end.rotation;
   // Of the place at the end, of it in the shapes' frame, and of the turn there, by {displacement, spin} of all.
   Rows3 way = Rows3::Zero(3, base + 6 * has_base), turn = way;
@@ -345,7 +327,7 @@ ForceMeasures ContactElement::measures(const State& state, const int*) const {
   for_each_touching(state, [&](const ContactStation&, const SignedDistance&) { count += each; });
   const Eigen::Index columns = 6 * static_cast<Eigen::Index>(reach().size());
   ForceMeasures out{Eigen::MatrixXd::Zero(count, columns), Eigen::MatrixXd::Zero(count, count)};
-  const NodePose base = poses_in(state)(sides_.shape_node);
+  const NodePose base = poses_in(state)(surface_.node);
   Eigen::Index row = 0;
   for_each_touching(state, [&](const ContactStation& station, const SignedDistance& distance) {
     const ContactLaw law = law_of(station);
@@ -357,12 +339,12 @@ ForceMeasures ContactElement::measures(const State& state, const int*) const {
       // Sticking holds the surfaces, a radius below the station's middle.
       const Vector3 offset = k == 0 ? Vector3(Vector3::Zero()) : Vector3(-station.radius * normal);
       for (int i = 0; i < moving_nodes(); ++i) {
-        const Matrix3 axes_of_node = poses_in(state)(sides_.nodes[i]).rotation;
+        const Matrix3 axes_of_node = poses_in(state)(side_.nodes[i]).rotation;
         const Vector3 arm = axes_of_node * station.arm + offset;
         out.rows.block<1, 6>(row, 6 * i) << station.weights[i] * axes[k].transpose(),
             station.weights[i] * arm.cross(axes[k]).transpose();
       }
-      if (sides_.shape_node >= 0)
+      if (surface_.node >= 0)
         out.rows.block<1, 6>(row, columns - 6) << -axes[k].transpose(), -(place + offset).cross(axes[k]).transpose();
       out.stiffness(row, row) = k == 0 ? contact_push(law, {0, station.radius - distance.value, 0}).slope : law.grip;
       ++row;

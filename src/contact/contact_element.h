@@ -18,27 +18,47 @@ struct ContactStation {
   double share = 1;               ///< of the law's stiffnesses
 };
 
-/// All stations of one side, each with all shapes of the other one.
-struct ContactSides {
-  std::vector<int> nodes;  ///< of the stations: one of a body, all of an element; -1: the world
+/// Of a body, or of an element of a beam.
+struct ContactStations {
+  std::vector<int> nodes;  ///< one of a body, all of an element; -1: the world
   std::vector<ContactStation> stations;
-  int shape_node = -1;  ///< -1: the world
+};
+/// The shapes of one body.
+struct ContactSurface {
+  int node = -1;  ///< -1: the world
   std::vector<ContactShape> shapes;
 };
 
+/// Middle of a station at poses `pose_of(node)`, world axes [m].
+template <class PoseOf>
+Vector3 middle_of(const ContactStations& side, const ContactStation& station, const PoseOf& pose_of) {
+  Vector3 middle = Vector3::Zero();
+  for (std::size_t i = 0; i < side.nodes.size(); ++i) {
+    const NodePose node = pose_of(side.nodes[i]);
+    middle += station.weights[i] * (node.position + node.rotation * station.arm);
+  }
+  return middle;
+}
+/// Such a point in the frame of a surface [m].
+template <class PoseOf>
+Vector3 seen_from(const ContactSurface& surface, const Vector3& point, const PoseOf& pose_of) {
+  const NodePose body = pose_of(surface.node);
+  return body.rotation.transpose() * (point - body.position);
+}
+
+/// Each station of one side with each shape of the other one.
 class ContactElement : public ForceElement {
  public:
-  /// `bodies`: names of the link with the stations, and of the link or ground with the shapes.
-  ContactElement(std::array<std::string, 2> bodies, ContactSides sides, const ContactLaw& law);
-
-  const std::array<std::string, 2>& bodies() const { return bodies_; }
+  /// `links`: names of the link with the stations, and of the link or ground with the shapes.
+  ContactElement(std::vector<std::string> links, ContactStations side, ContactSurface surface, const ContactLaw& law);
 
   const char* kind() const override { return "contact"; }
+  std::vector<std::string> links() const override { return links_; }
   std::string description() const override;
   int find_nodes(const ForceStart& start, int* nodes) const override;
   void evaluate(const ForceStep& step, const int* nodes, ForceAction& action) const override;
   bool needs_halves(const ForceStep& step, const int* nodes, int count) const override;
-  bool may_hit(const ForceStart& start) const override;
+  bool hits() const override { return true; }
   double energy(const State& state, const double* memory) const override;
   /// Of points that touch: their gaps, and where they stick how far they slip.
   ForceMeasures measures(const State& state, const int* nodes) const override;
@@ -48,14 +68,16 @@ class ContactElement : public ForceElement {
 
  private:
   struct Frames;
-  /// Of the stations' nodes those that move.
-  int moving_nodes() const { return sides_.nodes[0] < 0 ? 0 : static_cast<int>(sides_.nodes.size()); }
   struct Placed;
+  /// Of the stations' nodes those that move.
+  int moving_nodes() const { return side_.nodes[0] < 0 ? 0 : static_cast<int>(side_.nodes.size()); }
   ContactLaw law_of(const ContactStation& station) const;
   /// Of a station's middle in the frame of the shapes, at poses `pose_of(node)`.
   template <class PoseOf>
-  Vector3 place(const ContactStation& station, const PoseOf& pose_of) const;
-  /// By which it moves there at the beginning of a step [m/s].
+  Vector3 place(const ContactStation& station, const PoseOf& pose_of) const {
+    return seen_from(surface_, middle_of(side_, station, pose_of), pose_of);
+  }
+  /// By how much it moves there at the beginning of a step [m/s].
   Vector3 velocity(const ContactStation& station, const std::vector<NodePose>& poses,
                    const std::vector<Vector6>& velocities) const;
   Frames frames(const ForceStep& step) const;
@@ -72,8 +94,9 @@ class ContactElement : public ForceElement {
   template <class Visit>
   void for_each_touching(const State& state, const Visit& visit) const;
 
-  std::array<std::string, 2> bodies_;
-  ContactSides sides_;
+  std::vector<std::string> links_;
+  ContactStations side_;
+  ContactSurface surface_;
   ContactLaw law_;
   double size_ = 0;  ///< of the stations' side, about its first node [m]
 };

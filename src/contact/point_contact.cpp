@@ -15,6 +15,31 @@ constexpr double kShort = 1e-6;
 /// Of the depth: no equilibrium is deeper.
 constexpr double kDeepest = 0.95;
 
+/// Friction on the surface of the ball, a radius off its middle.
+void add_grip(const ContactLaw& law, double radius, const PointMotion& motion, const GapChange& gap,
+              const ContactPush& push, const Vector3& stretch, bool with_slope, PointAction& action) {
+  const double length = gap.gradient.norm();
+  const Vector3 normal = gap.gradient / length, offset = -radius * normal;
+  const Vector3 slip = motion.end - motion.begin + motion.turn.cross(offset);
+  const ContactGrip grip = contact_grip(law, stretch, slip, normal, push.value);
+  const Vector3 drag = -law.grip * grip.stretch;
+  action.memory.stretch = grip.stretch;
+  action.dissipated += -drag.dot(slip) - 0.5 * law.grip * grip.stretch.squaredNorm();
+  action.wrench.head<3>() += drag;
+  action.wrench.tail<3>() = offset.cross(drag);
+  if (!with_slope) return;
+  const Vector3 push_by_end = -push.slope * gap.end_gradient;
+  const Matrix3 by_end = (Matrix3::Identity() - normal * normal.transpose()) * gap.slope / length;  // of the normal
+  const Matrix3 slip_by_end = Matrix3::Identity() - radius * hat(motion.turn) * by_end;
+  Eigen::Matrix<double, 3, 6> drag_slope;
+  drag_slope << grip.by_slip * slip_by_end + grip.by_normal * by_end + grip.by_push * push_by_end.transpose(),
+      -grip.by_slip * hat(offset);
+  drag_slope *= -law.grip;
+  action.slope.topRows<3>() += drag_slope;
+  action.slope.bottomRows<3>() = hat(offset) * drag_slope;
+  action.slope.bottomLeftCorner<3, 3>() += radius * hat(drag) * by_end;
+}
+
 }  // namespace
 
 GapChange gap_change(const ContactShape& shape, const Vector3& from, const Vector3& to, bool at_end) {
@@ -62,8 +87,7 @@ PointAction point_action(const ContactShape& whole, const ContactLaw& law, doubl
   PointAction out;
   const FeltShape felt = felt_shape(whole, law, radius, motion.begin, motion.end, memory.face);
   const ContactShape& shape = felt.shape;
-  const double grip_energy = 0.5 * law.grip * memory.stretch.squaredNorm();
-  out.dissipated = felt.let_go + grip_energy;  // of a contact that has let go
+  out.dissipated = felt.let_go + 0.5 * law.grip * memory.stretch.squaredNorm();  // of a contact that has let go
   if (!felt.is_felt) return out;
   const GapChange gap = gap_change(shape, motion.begin, motion.end, motion.at_end);
   ContactChange change{radius - gap.begin, radius - gap.end, motion.at_end ? 0.0 : motion.duration};
@@ -80,32 +104,12 @@ PointAction point_action(const ContactShape& whole, const ContactLaw& law, doubl
   change.speed = approach_speed(change.begin, begin_rate, memory.speed);
   const ContactPush push = contact_push(law, change);
   if (change.duration != 0) out.memory.speed = remembered_speed(change, begin_rate);
-  out.dissipated = felt.let_go + push.dissipated;
-  Vector3 force = push.value * gap.gradient;
-  const Vector3 by_end = -push.slope * gap.end_gradient;  // of the push
-  if (with_slope) out.slope.topLeftCorner<3, 3>() = gap.gradient * by_end.transpose() + push.value * gap.slope;
-  if (const double length = gap.gradient.norm(); law.friction > 0 && length > 0) {
-    const Vector3 normal = gap.gradient / length, offset = -radius * normal;
-    const Vector3 slip = motion.end - motion.begin + motion.turn.cross(offset);
-    const ContactGrip grip = contact_grip(law, memory.stretch, slip, normal, push.value);
-    const Vector3 drag = -law.grip * grip.stretch;
-    out.memory.stretch = grip.stretch;
-    out.dissipated += -drag.dot(slip) + grip_energy - 0.5 * law.grip * grip.stretch.squaredNorm();
-    force += drag;
-    out.wrench.tail<3>() = offset.cross(drag);
-    if (with_slope) {
-      const Matrix3 by_normal = (Matrix3::Identity() - normal * normal.transpose()) * gap.slope / length;
-      const Matrix3 slip_by_end = Matrix3::Identity() - radius * hat(motion.turn) * by_normal;
-      Eigen::Matrix<double, 3, 6> drag_slope;
-      drag_slope << grip.by_slip * slip_by_end + grip.by_normal * by_normal + grip.by_push * by_end.transpose(),
-          -grip.by_slip * hat(offset);
-      drag_slope *= -law.grip;
-      out.slope.topRows<3>() += drag_slope;
-      out.slope.bottomRows<3>() = hat(offset) * drag_slope;
-      out.slope.bottomLeftCorner<3, 3>() += radius * hat(drag) * by_normal;
-    }
-  }
-  out.wrench.head<3>() = force;
+  out.dissipated += push.dissipated;
+  if (with_slope)
+    out.slope.topLeftCorner<3, 3>() = push.value * gap.slope - push.slope * gap.gradient * gap.end_gradient.transpose();
+  out.wrench.head<3>() = push.value * gap.gradient;
+  if (law.friction > 0 && !gap.gradient.isZero(0))
+    add_grip(law, radius, motion, gap, push, memory.stretch, with_slope, out);
   return out;
 }
 

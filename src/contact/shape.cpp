@@ -65,19 +65,6 @@ SignedDistance distance_of(const Cylinder& cylinder, const Vector3& y) {
   return out;
 }
 
-double reach_of(const HalfSpace&) {
-  return std::numeric_limits<double>::infinity();
-}
-double reach_of(const Ball& ball) {
-  return ball.radius;
-}
-double reach_of(const Box& box) {
-  return box.half.norm();
-}
-double reach_of(const Cylinder& cylinder) {
-  return std::hypot(cylinder.radius, cylinder.half_length);
-}
-
 std::vector<ContactPoint> points_of(const HalfSpace&, double) {
   return {};
 }
@@ -218,10 +205,6 @@ ContactShape beyond_face(const ContactShape& shape, int face) {
   if (axis < 2) upwards = Quaternion::FromTwoVectors(Vector3::UnitZ(), outwards);
   const Pose own{half * outwards, upwards};
   return {HalfSpace{}, shape.place * own};
-}
-
-double ContactShape::reach() const {
-  return std::visit([](const auto& shape) { return reach_of(shape); }, kind);
 }
 
 std::vector<ContactPoint> contact_points(const ContactShape& shape, double spacing) {

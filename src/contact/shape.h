@@ -38,8 +38,6 @@ struct ContactShape {
   SignedDistance distance(const Vector3& point) const;
   /// Its value alone.
   double gap(const Vector3& point) const;
-  /// About the origin of `place`: no point of the shape is farther off [m]. Infinite for a half-space.
-  double reach() const;
 };
 
 /// Faces of boxes and cylinders, by numbers: +-1, 2, 3 of a box by the axis that they look along, 1 and +-3 of a

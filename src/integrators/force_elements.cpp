@@ -17,10 +17,6 @@ void couple_force_elements(const Model& model, const State& state, TangentBacken
 ForceElements::ForceElements(const StepConfiguration& configuration) : configuration_(configuration) {
   const ForceElementList& elements = configuration.model().force_elements;
   if (elements.empty()) return;
-  if (configuration.scheme().hht != HhtForm::None)
-    throw ModelError(
-        fmt::format("schemes that interpolate forces in time (hht1, hht2, hht3) have no <{}> between points",
-                    elements.front()->kind()));
   const Scheme& scheme = configuration.scheme();
   const bool is_plain = scheme.is_static || (scheme.is_incremental() && !scheme.is_composition);
   for (const auto& element : elements)
@@ -28,6 +24,10 @@ ForceElements::ForceElements(const StepConfiguration& configuration) : configura
       throw ModelError(
           fmt::format("<integrator>: scheme '{}' has no <{}>; take one of the energy-momentum family, as em",
                       scheme.name, element->kind()));
+  if (scheme.hht != HhtForm::None)
+    throw ModelError(
+        fmt::format("schemes that interpolate forces in time (hht1, hht2, hht3) have no <{}> between points",
+                    elements.front()->kind()));
   int most = 0, memory = 0;
   for (const auto& element : elements) {
     nodes_.emplace_back().reserve(element->most_nodes());
@@ -45,11 +45,13 @@ void ForceElements::begin(TangentBackend& tangent) {
   const std::vector<NodeState>& states = configuration_.state().nodes;
   std::transform(states.begin(), states.end(), velocities_.begin(), spatial_velocity);
   const ForceElementList& elements = configuration_.model().force_elements;
+  const ForceStart start{configuration_.begin(), velocities_, configuration_.step()};
+  may_hit_ = false;
   for (std::size_t k = 0; k < elements.size(); ++k) {
-    find_nodes(*elements[k], start(), nodes_[k]);
+    find_nodes(*elements[k], start, nodes_[k]);
     tangent.couple(static_cast<int>(k), nodes_[k].data(), static_cast<int>(nodes_[k].size()));
+    may_hit_ = may_hit_ || (start.duration != 0 && elements[k]->hits() && !nodes_[k].empty());
   }
-  touch_ = configuration_.step() != 0 && may_hit();
 }
 
 /// With the memory of the first element.
@@ -94,11 +96,6 @@ bool ForceElements::need_halves(double refinement) {
     step.memory += elements[k]->memory_size();
   }
   return false;
-}
-
-bool ForceElements::may_hit() const {
-  const ForceElementList& elements = configuration_.model().force_elements;
-  return std::any_of(elements.begin(), elements.end(), [&](const auto& element) { return element->may_hit(start()); });
 }
 
 void ForceElements::accept(State& state) const {

@@ -22,15 +22,13 @@ class ForceElements {
   void evaluate(Balance& balance);
   /// See ForceElement::needs_halves(), of the step as it is solved.
   bool need_halves(double refinement);
-  /// See ForceElement::may_hit(), of the step begun last.
-  bool may_hit() const;
-  bool touch() const { return touch_; }
+  /// Something may be hit in the step begun last, see ForceElement::hits().
+  bool may_hit() const { return may_hit_; }
   /// Of the last evaluation.
   void add_work(double& work) const { work += work_; }
   void accept(State& state) const;
 
  private:
-  ForceStart start() const { return {configuration_.begin(), velocities_, configuration_.step()}; }
   ForceStep step();
 
   const StepConfiguration& configuration_;
@@ -38,7 +36,7 @@ class ForceElements {
   std::vector<Vector6> velocities_;      // per node {v, w} at the beginning
   std::vector<double> residual_, tangent_, memory_;
   double work_ = 0;
-  bool touch_ = false;
+  bool may_hit_ = false;
 };
 
 }  // namespace flexarm

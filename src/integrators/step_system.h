@@ -116,7 +116,7 @@ class StepSystem {
   bool has_kink() const { return friction_.breaks_away(); }
   bool may_hit() { return contacts_.may_hit() || force_elements_.may_hit(); }
   /// True where bodies touch each other, or may do so in the step begun last.
-  bool touches() const { return force_elements_.touch(); }
+  bool touches() const { return force_elements_.may_hit(); }
   /// Internal less external forces on all nodes in the configuration of `state`, before joints fold them; of a scheme
   /// made by statics_of().
   std::vector<Vector6> nodal_forces(const State& state);

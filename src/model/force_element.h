@@ -87,6 +87,8 @@ class ForceElement {
   const std::string& name() const { return name_; }
   /// What `flexarm check` says of it, but for its kind, name and links.
   virtual std::string description() const = 0;
+  /// Names of the links that it acts between, where it comes of no ForceElementDescription, which knows them.
+  virtual std::vector<std::string> links() const { return {}; }
 
   // ---- where
   const std::vector<int>& reach() const { return reach_; }
@@ -108,11 +110,8 @@ class ForceElement {
     static_cast<void>(step), static_cast<void>(nodes), static_cast<void>(count);
     return false;
   }
-  /// True where a step that begins so may have to be halved more often than others, as one in which something is hit.
-  virtual bool may_hit(const ForceStart& start) const {
-    static_cast<void>(start);
-    return false;
-  }
+  /// True where something is hit in steps in which it acts on nodes: they may have to be halved more often than others.
+  virtual bool hits() const { return false; }
   /// What it stores [J]. `memory`: its own part of State::force_memory.
   virtual double energy(const State& state, const double* memory) const = 0;
   virtual ForceMeasures measures(const State& state, const int* nodes) const = 0;

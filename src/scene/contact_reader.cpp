@@ -1,10 +1,10 @@
-#include "scene/contact_reader.h"
-
 #include <algorithm>
 #include <set>
 #include <utility>
 
 #include <fmt/format.h>
+
+#include "scene/readers.h"
 
 namespace flexarm::scene {
 namespace {

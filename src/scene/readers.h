@@ -46,6 +46,14 @@ void settle_gears(const std::vector<Transmission>& transmissions, std::vector<Dr
 
 Sensor read_sensor(const XmlElement& sensor);
 
+GroundDescription read_ground(const XmlElement& ground);
+/// Whether a <contact> of <robot> is ours: others' have no sides.
+bool is_contact(const XmlElement& element);
+ContactDescription read_contact(const XmlElement& contact);
+ContactPair read_no_contact(const XmlElement& pair);
+/// Checks that names of contacts refer to something and that no pair is named twice.
+void check_contacts(const SceneDescription& scene, Findings& findings);
+
 /// Reads <simulation> into `scene`, and what it says about the start into `start`, which is settled later. So are
 /// names.
 void read_simulation(const XmlElement& simulation, SceneDescription& scene, StartRequest& start);

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "math/parse_number.h"
-#include "scene/contact_reader.h"
 #include "scene/limits.h"
+#include "scene/readers.h"
 
 namespace flexarm::scene {
 namespace {

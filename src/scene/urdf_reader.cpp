@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "scene/contact_reader.h"
 #include "scene/force_element_kinds.h"
 #include "scene/limits.h"
 #include "scene/parameters.h"

@@ -30,7 +30,8 @@ ContactLaw gripping_law(double friction, double restitution) {
 
 struct Scene {
   const char* name;
-  ContactSides sides;
+  ContactStations side;
+  ContactSurface surface;
 };
 
 /// A ball and a corner of node 0, and an element of nodes 0, 2, 3, against shapes of node 1 or of the world.
@@ -51,8 +52,8 @@ std::vector<Scene> scenes() {
   const char* names[] = {"half-space", "ball", "box", "cylinder"};
   for (std::size_t k = 0; k < shapes.size(); ++k)
     for (const int base : {1, -1}) {
-      out.push_back({names[k], {{0}, {ball, corner}, base, {shapes[k]}}});
-      out.push_back({names[k], {{0, 2, 3}, {tube}, base, {shapes[k]}}});
+      out.push_back({names[k], {{0}, {ball, corner}}, {base, {shapes[k]}}});
+      out.push_back({names[k], {{0, 2, 3}, {tube}}, {base, {shapes[k]}}});
     }
   return out;
 }
@@ -99,9 +100,9 @@ class ContactElements : public ::testing::TestWithParam<bool> {
 
 // Central differences with a step of 1e-6 have errors of 1e-12 of third derivatives, and of 1e-16 / 1e-6 of forces.
 TEST_P(ContactElements, HaveTheirTangent) {
-  for (const auto& [name, sides] : scenes())
+  for (const auto& [name, side, surface] : scenes())
     for (const double friction : {0.0, 0.05, 5.0}) {
-      const ContactElement element({"", ""}, sides, gripping_law(friction, 0.5));
+      const ContactElement element({"", ""}, side, surface, gripping_law(friction, 0.5));
       const Action here = action(end, element);
       EXPECT_GT(here.residual.norm(), 1) << name << " is not touched";
       constexpr double h = 1e-6;
@@ -116,15 +117,15 @@ TEST_P(ContactElements, HaveTheirTangent) {
         };
         const Eigen::VectorXd difference = (residual(h) - residual(-h)) / (2 * h);
         EXPECT_LE((difference - here.tangent.col(k)).norm(), 1e-6 * here.tangent.norm())
-            << name << " " << friction << " " << k << " " << sides.shape_node << " " << sides.nodes.size();
+            << name << " " << friction << " " << k << " " << surface.node << " " << side.nodes.size();
       }
     }
 }
 
 TEST_P(ContactElements, AddToNoMomentum) {
-  for (const auto& [name, sides] : scenes()) {
-    if (sides.shape_node < 0) continue;
-    const ContactElement element({"", ""}, sides, gripping_law(0.3, 0.5));
+  for (const auto& [name, side, surface] : scenes()) {
+    if (surface.node < 0) continue;
+    const ContactElement element({"", ""}, side, surface, gripping_law(0.3, 0.5));
     const Action here = action(end, element);
     Vector3 force = Vector3::Zero(), moment = Vector3::Zero();
     const double weight = GetParam() ? 1 : 0.5;
@@ -143,9 +144,9 @@ TEST_P(ContactElements, AddToNoMomentum) {
 // What the mean forces do over the step is what is stored and dissipated, to round-off.
 TEST_P(ContactElements, OfMeansDoExactWork) {
   if (GetParam()) return;  // forces at the end do not
-  for (const auto& [name, sides] : scenes())
+  for (const auto& [name, side, surface] : scenes())
     for (const double friction : {0.01, 0.3, 5.0}) {
-      const ContactElement element({"", ""}, sides, gripping_law(friction, 0.5));
+      const ContactElement element({"", ""}, side, surface, gripping_law(friction, 0.5));
       const Action here = action(end, element);
       double work = 0;
       for (std::size_t i = 0; i < element.reach().size(); ++i) {
