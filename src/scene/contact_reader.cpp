@@ -17,6 +17,15 @@ ContactPair read_pair(const XmlElement& element) {
   return out;
 }
 
+/// Records links that have nothing but meshes to touch with.
+void warn_of_meshes(const SceneDescription& scene, Findings& findings) {
+  const auto is_mesh = [](const VisualDescription& shape) { return std::holds_alternative<MeshShape>(shape.shape); };
+  for (const LinkDescription& link : scene.links)
+    if (!link.collisions.empty() && std::all_of(link.collisions.begin(), link.collisions.end(), is_mesh))
+      findings.warning(link.location.line, "<link> " + quoted(link.name),
+                       "touches nothing: its <collision> is a mesh; expected a box, a cylinder or a sphere");
+}
+
 }  // namespace
 
 GroundDescription read_ground(const XmlElement& ground) {
@@ -49,6 +58,7 @@ ContactPair read_no_contact(const XmlElement& pair) {
 }
 
 void check_contacts(const SceneDescription& scene, Findings& findings) {
+  if (!scene.contacts.empty()) warn_of_meshes(scene, findings);
   std::set<std::string> links, sides = {kAllBodies};
   for (const LinkDescription& link : scene.links) links.insert(link.name);
   sides.insert(links.begin(), links.end());

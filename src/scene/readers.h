@@ -51,7 +51,8 @@ GroundDescription read_ground(const XmlElement& ground);
 bool is_contact(const XmlElement& element);
 ContactDescription read_contact(const XmlElement& contact);
 ContactPair read_no_contact(const XmlElement& pair);
-/// Checks that names of contacts refer to something and that no pair is named twice.
+/// Checks that names of contacts refer to something, that no pair is named twice, and that links have shapes to touch
+/// with.
 void check_contacts(const SceneDescription& scene, Findings& findings);
 
 /// Reads <simulation> into `scene`, and what it says about the start into `start`, which is settled later. So are

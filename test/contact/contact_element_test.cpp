@@ -1,6 +1,8 @@
 // What contacts do over a step: exact work, no momentum, the derivatives of their forces.
 #include "contact/contact_element.h"
 
+#include <memory>
+
 #include <gtest/gtest.h>
 
 #include "math/cayley.h"
@@ -58,7 +60,17 @@ std::vector<Scene> scenes() {
   return out;
 }
 
-class ContactElements : public ::testing::TestWithParam<bool> {
+State state_at(const Poses& poses) {
+  State state;
+  for (const NodePose& pose : poses) {
+    state.nodes.emplace_back();
+    state.nodes.back().position = pose.position;
+    state.nodes.back().orientation = pose.orientation;
+  }
+  return state;
+}
+
+class ContactElements : public ::testing::Test {
  protected:
   struct Action {
     Eigen::VectorXd residual;
@@ -67,14 +79,15 @@ class ContactElements : public ::testing::TestWithParam<bool> {
     std::vector<double> memory;
   };
 
-  Action action(const Poses& at_end, const ContactElement& element) const {
-    ForceStep step{begin, at_end, velocities};
-    step.duration = GetParam() ? 0.0 : 0.05;
-    step.at_end = GetParam();
+  Action action(const Poses& at_end, const ContactElement& element, const Poses& at_begin, const Vector3& stretched,
+                bool at_rest) const {
+    ForceStep step{at_begin, at_end, velocities};
+    step.duration = at_rest ? 0.0 : 0.05;
+    step.at_end = at_rest;
     std::vector<double> memory(element.memory_size(), 0.0);
     for (std::size_t i = 0; i < memory.size(); i += PointMemory::kSize) {
       memory[i] = 0.3;
-      Eigen::Map<Vector3>(memory.data() + i + 1) = stretch;
+      Eigen::Map<Vector3>(memory.data() + i + 1) = stretched;
     }
     Action out;
     out.memory.resize(memory.size());
@@ -98,8 +111,17 @@ class ContactElements : public ::testing::TestWithParam<bool> {
                   turned_node({0.17, 0.12, 0.45}, {0.05, 0.2, 0.1}), turned_node({0.22, 0.28, 0.42}, {0.2, 0.1, 0.1})};
 };
 
+/// With forces at the end, or means.
+class OverSteps : public ContactElements, public ::testing::WithParamInterface<bool> {
+ protected:
+  using ContactElements::action;
+  Action action(const Poses& at_end, const ContactElement& element) const {
+    return action(at_end, element, begin, stretch, GetParam());
+  }
+};
+
 // Central differences with a step of 1e-6 have errors of 1e-12 of third derivatives, and of 1e-16 / 1e-6 of forces.
-TEST_P(ContactElements, HaveTheirTangent) {
+TEST_P(OverSteps, HaveTheirTangent) {
   for (const auto& [name, side, surface] : scenes())
     for (const double friction : {0.0, 0.05, 5.0}) {
       const ContactElement element({"", ""}, side, surface, gripping_law(friction, 0.5));
@@ -122,7 +144,7 @@ TEST_P(ContactElements, HaveTheirTangent) {
     }
 }
 
-TEST_P(ContactElements, AddToNoMomentum) {
+TEST_P(OverSteps, AddToNoMomentum) {
   for (const auto& [name, side, surface] : scenes()) {
     if (surface.node < 0) continue;
     const ContactElement element({"", ""}, side, surface, gripping_law(0.3, 0.5));
@@ -142,7 +164,7 @@ TEST_P(ContactElements, AddToNoMomentum) {
 }
 
 // What the mean forces do over the step is what is stored and dissipated, to round-off.
-TEST_P(ContactElements, OfMeansDoExactWork) {
+TEST_P(OverSteps, OfMeansDoExactWork) {
   if (GetParam()) return;  // forces at the end do not
   for (const auto& [name, side, surface] : scenes())
     for (const double friction : {0.01, 0.3, 5.0}) {
@@ -156,13 +178,7 @@ TEST_P(ContactElements, OfMeansDoExactWork) {
                 on_node.tail<3>().dot(cayley::increment(begin[node].orientation, end[node].orientation));
       }
       const auto energy = [&](const Poses& poses, const std::vector<double>& memory) {
-        State state;
-        for (const NodePose& pose : poses) {
-          state.nodes.emplace_back();
-          state.nodes.back().position = pose.position;
-          state.nodes.back().orientation = pose.orientation;
-        }
-        return element.energy(state, memory.data());
+        return element.energy(state_at(poses), memory.data());
       };
       std::vector<double> old(here.memory.size(), 0.0);
       for (std::size_t i = 0; i < old.size(); i += PointMemory::kSize)
@@ -173,7 +189,113 @@ TEST_P(ContactElements, OfMeansDoExactWork) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(At, ContactElements, ::testing::Bool(),
+/// One station of a scene that is as deep inside as is asked for.
+Scene alone(const Scene& scene, const ContactStation& station, const Poses& poses, double penetration) {
+  const auto pose_of = [&](int node) { return node < 0 ? NodePose() : poses[node]; };
+  const Vector3 place = seen_from(scene.surface, middle_of(scene.side, station, pose_of), pose_of);
+  Scene out{scene.name, {scene.side.nodes, {station}}, scene.surface};
+  out.side.stations[0].radius = scene.surface.shapes[0].gap(place) + penetration;
+  return out;
+}
+
+// About a touch so light that its force has no part in it, the tangent is that of the springs of what is measured; and
+// dampers are the derivatives of the push by its rate.
+TEST_F(ContactElements, HaveTheStiffnessAndDampersOfTheirMeasures) {
+  const State state = state_at(end);
+  int count = 0;
+  for (const Scene& scene : scenes())
+    for (const ContactStation& station : scene.side.stations)
+      for (const double penetration : {1e-9, 0.1}) {
+        const auto& [name, side, surface] = alone(scene, station, end, penetration);
+        if (side.stations[0].radius <= 0) continue;
+        const ContactLaw law = gripping_law(0.5, 0.5);
+        const ContactElement element({"", ""}, side, surface, law);
+        const ForceMeasures measures = element.measures(state, element.reach().data());
+        ASSERT_EQ(measures.rows.rows(), 3) << name;
+        const double share = side.stations[0].share;
+        if (penetration < 1e-6) {
+          const Eigen::MatrixXd stiffness = measures.rows.transpose() * measures.stiffness * measures.rows;
+          const Action rest = action(end, element, end, Vector3::Zero(), true);
+          EXPECT_LE((rest.tangent - stiffness).norm(), 1e-6 * stiffness.norm()) << name << " " << surface.node;
+        }
+        const double h = 1e-3, v = 1e-6;
+        const auto push = [&](double rate) {
+          return contact_push(law, {penetration - 0.5 * h * rate, penetration + 0.5 * h * rate, h, 0}).value;
+        };
+        const double slope = element.dampers(state, Eigen::VectorXd::Zero(3)).slope(0, 0);
+        // At a light touch a step of that length goes out of it.
+        if (penetration > 1e-6) {
+          EXPECT_NEAR(slope, share * (push(v) - push(-v)) / (2 * v), 1e-4 * slope) << name;
+        }
+        ++count;
+      }
+  EXPECT_GT(count, 12);
+}
+
+/// A ball of node 0 in front of a plate of the world, over a step from one place to another at an even speed.
+struct BallAndPlate {
+  explicit BallAndPlate(double begin_x, double end_x)
+      : begin{node_at(Vector3(begin_x, 0, 0), Quaternion::Identity())},
+        end{node_at(Vector3(end_x, 0, 0), Quaternion::Identity())},
+        velocities(1, Vector6::Unit(0) * (end_x - begin_x) / 0.05) {
+    ContactStation ball;
+    ball.radius = 0.02;
+    element =
+        std::make_unique<ContactElement>(std::vector<std::string>{"ball", "plate"}, ContactStations{{0}, {ball}},
+                                         ContactSurface{-1, {{Box{{0.001, 1, 1}}, Pose()}}}, gripping_law(0.3, 1));
+  }
+  ForceStep step() const {
+    ForceStep out{begin, end, velocities};
+    out.duration = 0.05;
+    return out;
+  }
+
+  Poses begin, end;
+  std::vector<Vector6> velocities;
+  std::unique_ptr<ContactElement> element;
+};
+
+// What goes through, or to the other side, or touches without having been near.
+TEST(ContactElement, AsksForHalvesOfStepsThatItWouldNotSee) {
+  const double memory[PointMemory::kSize] = {};
+  const auto asks = [&](double from, double to, int count) {
+    const BallAndPlate scene(from, to);
+    ForceStep step = scene.step();
+    step.memory = memory;
+    return scene.element->needs_halves(step, scene.element->reach().data(), count);
+  };
+  EXPECT_TRUE(asks(-0.1, 0.3, 1)) << "through";
+  EXPECT_TRUE(asks(-0.1, 0.005, 1)) << "into it, by its middle";
+  EXPECT_TRUE(asks(-0.022, -0.0209, 0)) << "it was not near";
+  EXPECT_FALSE(asks(-0.022, -0.0209, 1)) << "a light touch";
+  EXPECT_FALSE(asks(-0.1, -0.03, 0));
+}
+
+TEST(ContactElement, ActsOnNodesThatAreNearAlone) {
+  const auto nodes_in = [](double from, double to) {
+    const BallAndPlate scene(from, to);
+    int node = -1;
+    return scene.element->find_nodes({scene.begin, scene.velocities, 0.05}, &node);
+  };
+  EXPECT_EQ(nodes_in(-0.1, -0.05), 1) << "twice this way would bring it there";
+  EXPECT_EQ(nodes_in(-0.1, -0.09), 0);
+  EXPECT_EQ(nodes_in(-0.0211, -0.0211), 1) << "it is there";
+}
+
+// Whatever a contact has stored when it is no more near is dissipated.
+TEST(ContactElement, AccountsForWhatIsRememberedFarAway) {
+  const BallAndPlate scene(-0.2, -0.21);
+  std::vector<double> memory = {0.3, 0.001, 0.002, 0, 0}, left(memory.size(), 1.0);
+  ForceStep step = scene.step();
+  step.memory = memory.data();
+  step.new_memory = left.data();
+  ForceAction action{{nullptr, 0}, {nullptr, 0, 0}};
+  scene.element->evaluate(step, nullptr, action);
+  EXPECT_NEAR(action.dissipated, 0.5 * 400 * 5e-6, 1e-18);
+  EXPECT_EQ(left, std::vector<double>(memory.size(), 0.0));
+}
+
+INSTANTIATE_TEST_SUITE_P(Contact, OverSteps, ::testing::Bool(),
                          [](const auto& info) { return info.param ? "Rest" : "Means"; });
 
 }  // namespace

@@ -54,7 +54,9 @@ TEST(ContactPush, DoesTheWorkOfItsEnergyAndDissipates) {
     const double size = contact_energy(law, change.end) + contact_energy(law, change.begin);
     EXPECT_GE(push.value, 0);
     EXPECT_GE(push.dissipated, -1e-15 * size);
-    if (law.damping == 0) EXPECT_EQ(push.dissipated, 0);
+    if (law.damping == 0) {
+      EXPECT_EQ(push.dissipated, 0);
+    }
     EXPECT_NEAR(push.value * (change.end - change.begin), stored + push.dissipated, 1e-13 * (size + push.dissipated));
   }
 }
@@ -103,6 +105,20 @@ TEST(ContactPush, GivesBackWhatItsRestitutionSays) {
     for (const double mass : {1.0, 7.0 / 4, 5.0})
       for (const double speed : {0.01, 1.0})
         EXPECT_NEAR(restitution_of(law_with(e, speed == 1.0 ? 2.0 : 0.02), mass, speed), e, 0.005) << mass << speed;
+}
+
+// A step from the touch to behind the turn is too long; one of a twentieth of a turn is not, nor is one of what rests,
+// however long, nor any of a linear elastic contact. (docs/notes/contact.md 2)
+TEST(ContactPush, HitsAreCoarseInLongSteps) {
+  const ContactLaw law = law_with(0.5), elastic = law_with(1);
+  const double radian = 1 / law.frequency, speed = 0.3;
+  EXPECT_TRUE(is_coarse_hit(law, {0, 0.1, 2 * radian}, speed, 1));
+  EXPECT_FALSE(is_coarse_hit(law, {0, 0.3 * radian * speed, 0.3 * radian}, speed, 1));
+  EXPECT_TRUE(is_coarse_hit(law, {0, 0.3 * radian * speed, 0.3 * radian}, speed, 2)) << "with a refinement";
+  EXPECT_FALSE(is_coarse_hit(law, {0.1, 0.1, 50 * radian}, 0, 1)) << "it rests";
+  EXPECT_FALSE(is_coarse_hit(law, {-0.2, -0.1, 2 * radian}, speed, 1)) << "it does not touch";
+  EXPECT_FALSE(is_coarse_hit(elastic, {0, 0.1, 2 * radian}, speed, 1));
+  EXPECT_TRUE(is_coarse_hit(law_with(1, 0.3), {0, 0.1, 2 * radian}, speed, 1)) << "an elastic one that hardens";
 }
 
 TEST(ContactPush, HasTheDampingOfItsClosedForm) {

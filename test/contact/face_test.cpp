@@ -21,11 +21,20 @@ TEST(Faces, AreEnteredWhereThePointComesIn) {
   EXPECT_EQ(entered_face(kCylinder, {0, 0.4, 0}, {0, 0.2, 0}), 1);
 }
 
+TEST(Faces, AreNotThoseThatThePointPassesBeside) {
+  const ContactShape thin{Box{{0.05, 0.005, 0.05}}, Pose()};
+  EXPECT_EQ(entered_face(thin, {0.06, -0.001, 0}, {0.04, 0.02, 0}), 0) << "over the middle of another side";
+  EXPECT_EQ(entered_face(thin, {0.06, 0.001, 0}, {0.04, 0.003, 0}), 1);
+  EXPECT_EQ(entered_face(kBox, {0.32, 0.18, 0}, {0.28, 0.3, 0}), 0) << "past the edge";
+}
+
 // Corners of equal boxes on each other lie on edges.
 TEST(Faces, OfEdgesAreThoseTowardsWhichThePointMoves) {
   EXPECT_EQ(entered_face(kBox, {0.3, -0.2, 0.11}, {0.3, -0.2, 0.09}), 3);
   EXPECT_EQ(entered_face(kBox, {0.3, -0.2, 0.1}, {0.3, -0.2, 0.09}), 3) << "which it touches to begin with";
   EXPECT_EQ(entered_face(kBox, {0.3, -0.2, 0.1}, {0.3, -0.19, 0.1}), -2);
+  EXPECT_EQ(entered_face(kBox, {0.3, -0.2, 0.1 - 1e-6}, {0.3, -0.2, 0.09}), 3)
+      << "in which it is a little to begin with";
   EXPECT_TRUE(is_over_face(kBox, 3, {0.3, -0.2, 0.09}));
   EXPECT_FALSE(is_over_face(kBox, 3, {0.3, -0.2001, 0.09}));
 }
@@ -35,6 +44,16 @@ TEST(Faces, BoundHalfSpacesAndEndlessCylinders) {
   EXPECT_NEAR(beyond_face(kBox, -2).distance({5, -0.15, 5}).value, -0.05, 1e-14);  // the round-off of 5
   EXPECT_NEAR(beyond_face(kCylinder, 1).distance({0.4, 0, 7}).value, 0.1, 1e-15);
   EXPECT_NEAR(beyond_face(kCylinder, -3).distance({4, 0, -0.3}).value, 0.2, 1e-15);
+}
+
+TEST(Shapes, AreMetByWhatGoesThroughThem) {
+  const ContactShape plate{Box{{0.001, 1, 1}}, Pose()}, rod{Cylinder{0.01, 1}, Pose()};
+  EXPECT_TRUE(passes_through(plate, {-0.3, 0, 0}, {0.5, 0.1, 0}, 0.02));
+  EXPECT_TRUE(passes_through(plate, {-0.3, 0.99, 0}, {0.3, 1.015, 0}, 0.02)) << "by its edge";
+  EXPECT_FALSE(passes_through(plate, {-0.3, 1.03, 0}, {0.3, 1.03, 0}, 0.02)) << "beside it";
+  EXPECT_FALSE(passes_through(plate, {-0.3, 0, 0}, {-0.03, 0, 0}, 0.02)) << "in front of it";
+  EXPECT_TRUE(passes_through(rod, {-0.015, 0, 0}, {0.015, 0, 0}, 0));
+  EXPECT_FALSE(passes_through(rod, {-0.015, 0.011, 0}, {0.015, 0.011, 0}, 0));
 }
 
 // What comes beside its face is let go, with what was stored; what comes out of it is forgotten.

@@ -244,6 +244,22 @@ TEST(Contact, EqualBoxesThatStartALittleInsideRest) {
   EXPECT_NEAR(simulation.link_pose(2).position.z(), 0.15, 5e-3) << "what they give way at most";
 }
 
+// Forces at the ends of steps, and steps backwards, are not those of contact.
+TEST(Contact, SchemesThatHaveNoneAreRefused) {
+  scene::ReadResult result = scene::read_scene_file(source_path("config/examples/gripper.urdf"));
+  for (const std::string scheme : {"newmark", "hht1", "hht2", "hht3", "em4"}) {
+    SimulationOptions options;
+    options.scheme = scheme;
+    try {
+      const Simulation simulation(result.scene.value(), options);
+      ADD_FAILURE() << scheme;
+    } catch (const std::runtime_error& error) {
+      EXPECT_NE(std::string(error.what()).find("scheme '" + scheme + "' has no <contact>"), std::string::npos)
+          << error.what();
+    }
+  }
+}
+
 TEST(Contact, PairsThatCannotTouchAreRefused) {
   const std::string mesh =
       "<link name=\"mesh\"><collision><geometry><mesh filename=\"file:///none.stl\"/></geometry></collision></link>"

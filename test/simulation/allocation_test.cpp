@@ -3,11 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/sensitivities.h"
 #include "simulation/everything_scene.h"
 #include "simulation/inside.h"
 #include "support/allocations.h"
 #include "support/closed_ring.h"
+#include "support/source_path.h"
 
 namespace flexarm::test {
 namespace {
@@ -196,6 +198,18 @@ TEST_F(Allocation, NoneWhereStopsAreHitFast) {
 }
 
 // Halving takes a path of its own.
+TEST_F(Allocation, NoneWhereBodiesTouchAndLetGo) {
+  scene::ReadResult result = scene::read_scene_file(source_path("config/examples/gripper.urdf"));
+  Simulation simulation(result.scene.value());
+  int converged = 0, halved = 0;
+  expect_none_after_the_first_step(simulation, 900, [&](const StepResult& step) {
+    converged += step.converged;
+    halved += step.halvings;
+  });
+  EXPECT_EQ(converged, 900);
+  EXPECT_GT(halved, 0) << "the fingers have hit the block";
+}
+
 TEST_F(Allocation, NoneInHalvedOrFailedSteps) {
   SceneBuilder b;
   b.body("rotor", 1, {0.1, 0, 0}, Matrix3::Identity());
