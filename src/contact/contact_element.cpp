@@ -20,26 +20,11 @@ using so3::hat;
 constexpr int kMostColumns = 6 * (ContactStation::kMostNodes + 1);
 using Rows3 = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kMostColumns>;
 
-/// Ways that a step may come to beyond those at the speed of its beginning: times that, and of the size.
-constexpr double kMoreWay = 2, kNear = 0.02;
-/// So deep, of the depth, a corner may be in a shape without having come in by a face.
-constexpr double kUnseen = 0.01;
-/// Cosine of normals at both ends of a step that goes to the other side of something thin.
-constexpr double kOtherSide = -0.5;
-
 std::vector<int> reach_of(const ContactStations& side, const ContactSurface& surface) {
   std::vector<int> nodes;
   if (side.nodes[0] >= 0) nodes = side.nodes;
   if (surface.node >= 0) nodes.push_back(surface.node);
   return nodes;
-}
-
-PointMemory memory_at(const double* numbers) {
-  return {numbers[0], Eigen::Map<const Vector3>(numbers + 1), static_cast<int>(numbers[4])};
-}
-
-auto poses_in(const std::vector<NodePose>& nodes) {
-  return [&nodes](int node) { return node < 0 ? NodePose() : nodes[node]; };
 }
 
 auto poses_in(const State& state) {
@@ -56,7 +41,15 @@ ContactElement::ContactElement(std::vector<std::string> links, ContactStations s
       surface_(std::move(surface)),
       law_(law) {
   assert(!side_.nodes.empty() && side_.nodes.size() <= ContactStation::kMostNodes);
-  for (const ContactStation& station : side_.stations) size_ = std::max(size_, station.arm.norm() + station.radius);
+  for (const ContactStation& station : side_.stations) {
+    size_ = std::max(size_, station.arm.norm() + station.radius);
+    middle_arm_ += station.arm / static_cast<double>(side_.stations.size());
+    double sum = 0;
+    for (const double weight : station.weights) sum += std::abs(weight);
+    spread_ = std::max(spread_, sum);
+  }
+  for (const ContactStation& station : side_.stations)
+    own_radius_ = std::max(own_radius_, (station.arm - middle_arm_).norm() + station.radius);
 }
 
 std::string ContactElement::description() const {
@@ -80,68 +73,6 @@ void ContactElement::for_each_pair(const Visit& visit) const {
   for (const ContactStation& station : side_.stations)
     for (const ContactShape& shape : surface_.shapes)
       if (!visit(station, shape)) return;
-}
-
-// ---------------------------------------------------------------- where
-
-Vector3 ContactElement::velocity(const ContactStation& station, const std::vector<NodePose>& poses,
-                                 const std::vector<Vector6>& velocities) const {
-  const auto motion_of = [&](int node) { return node < 0 ? Vector6(Vector6::Zero()) : velocities[node]; };
-  const auto pose_of = poses_in(poses);
-  Vector3 velocity = Vector3::Zero();
-  for (std::size_t i = 0; i < side_.nodes.size(); ++i) {
-    const Vector6 motion = motion_of(side_.nodes[i]);
-    const Vector3 arm = pose_of(side_.nodes[i]).rotation * station.arm;
-    velocity += station.weights[i] * (motion.head<3>() + motion.tail<3>().cross(arm));
-  }
-  const NodePose base = pose_of(surface_.node);
-  const Vector6 motion = motion_of(surface_.node);
-  velocity -= motion.head<3>() + motion.tail<3>().cross(middle_of(side_, station, pose_of) - base.position);
-  return base.rotation.transpose() * velocity;
-}
-
-int ContactElement::find_nodes(const ForceStart& start, int* nodes) const {
-  std::copy(reach().begin(), reach().end(), nodes);
-  const int all = static_cast<int>(reach().size());
-  if (start.duration == 0) return all;
-  bool is_near = false;
-  for_each_pair([&](const ContactStation& station, const ContactShape& shape) {
-    const double gap = shape.gap(place(station, poses_in(start.poses))) - station.radius;
-    const double way = std::abs(start.duration) * velocity(station, start.poses, start.velocities).norm();
-    is_near = gap < kMoreWay * way + kNear * size_;
-    return !is_near;
-  });
-  return is_near ? all : 0;
-}
-
-bool ContactElement::needs_halves(const ForceStep& step, const int*, int count) const {
-  if (step.duration == 0) return false;
-  bool is_too_long = false;
-  const double* memory = step.memory;
-  for_each_pair([&](const ContactStation& station, const ContactShape& shape) {
-    const Vector3 from = place(station, poses_in(step.begin)), to = place(station, poses_in(step.end));
-    if (shape.gap(from) - station.radius > (to - from).norm()) {
-      memory += PointMemory::kSize;
-      return true;
-    }
-    const FeltShape felt = felt_shape(shape, law_, station.radius, from, to, memory_at(memory).face);
-    const SignedDistance begin = felt.shape.distance(from), end = felt.shape.distance(to);
-    const double begin_rate = -begin.gradient.dot(velocity(station, step.begin, step.velocities));
-    ContactChange change{station.radius - begin.value, station.radius - end.value, std::abs(step.duration)};
-    change.speed = approach_speed(change.begin, begin_rate, memory[0]);
-    memory += PointMemory::kSize;
-    if (!felt.is_felt) {  // of a corner that no face has seen coming in
-      is_too_long = passes_through(shape, from, to, -kUnseen * law_.depth);
-      return !is_too_long;
-    }
-    if (change.begin <= 0 && change.end <= 0)
-      is_too_long = passes_through(felt.shape, from, to, station.radius);
-    else
-      is_too_long = count == 0 || begin.gradient.dot(end.gradient) < kOtherSide ||
-                    is_coarse_hit(law_, change, begin_rate, step.refinement);
-    return !is_too_long;
-  });
-  return is_too_long;
 }
 
 // ---------------------------------------------------------------- what it does

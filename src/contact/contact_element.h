@@ -29,6 +29,10 @@ struct ContactSurface {
   std::vector<ContactShape> shapes;
 };
 
+/// Of all nodes; the world is where it is.
+inline auto poses_in(const std::vector<NodePose>& nodes) {
+  return [&nodes](int node) { return node < 0 ? NodePose() : nodes[node]; };
+}
 /// Middle of a station at poses `pose_of(node)`, world axes [m].
 template <class PoseOf>
 Vector3 middle_of(const ContactStations& side, const ContactStation& station, const PoseOf& pose_of) {
@@ -72,6 +76,9 @@ class ContactElement : public ForceElement {
   /// Of the stations' nodes those that move.
   int moving_nodes() const { return side_.nodes[0] < 0 ? 0 : static_cast<int>(side_.nodes.size()); }
   ContactLaw law_of(const ContactStation& station) const;
+  static PointMemory memory_at(const double* numbers) {
+    return {numbers[0], Eigen::Map<const Vector3>(numbers + 1), static_cast<int>(numbers[4])};
+  }
   /// Of a station's middle in the frame of the shapes, at poses `pose_of(node)`.
   template <class PoseOf>
   Vector3 place(const ContactStation& station, const PoseOf& pose_of) const {
@@ -80,6 +87,9 @@ class ContactElement : public ForceElement {
   /// By how much it moves there at the beginning of a step [m/s].
   Vector3 velocity(const ContactStation& station, const std::vector<NodePose>& poses,
                    const std::vector<Vector6>& velocities) const;
+  /// Whether a step is too long for one of them; `acts`: see needs_halves().
+  bool is_too_long(const ContactStation& station, const ContactShape& shape, const PointMemory& memory,
+                   const ForceStep& step, bool acts) const;
   Frames frames(const ForceStep& step) const;
   double remembered_energy(const ForceStep& step) const;
   Placed placed(const ContactStation& station, const Frames& frames, const ForceStep& step) const;
@@ -87,6 +97,15 @@ class ContactElement : public ForceElement {
            ForceAction& action) const;
   void add_tangent(const ContactStation& station, const Frames& frames, const Placed& placed, const PointAction& local,
                    ForceAction& action) const;
+  /// A ball that holds all stations.
+  struct Bounds {
+    Vector3 middle;  // in the frame of the shapes [m]
+    double radius;   // [m]
+  };
+  template <class PoseOf>
+  Bounds bounds(const PoseOf& pose_of) const;
+  /// No station is faster there at the beginning of a step [m/s].
+  double highest_speed(const ForceStart& start) const;
   /// Calls visit(station, shape) of all, in the order of the memory, until it returns false.
   template <class Visit>
   void for_each_pair(const Visit& visit) const;
@@ -98,7 +117,9 @@ class ContactElement : public ForceElement {
   ContactStations side_;
   ContactSurface surface_;
   ContactLaw law_;
-  double size_ = 0;  ///< of the stations' side, about its first node [m]
+  double size_ = 0;                       ///< of the stations' side, about its first node [m]
+  Vector3 middle_arm_ = Vector3::Zero();  ///< of the stations' middle, in the frame of the only node [m]
+  double own_radius_ = 0, spread_ = 1;    ///< of stations: about their nodes [m], and of what these are apart
 };
 
 }  // namespace flexarm

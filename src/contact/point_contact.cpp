@@ -73,6 +73,8 @@ FeltShape felt_shape(const ContactShape& shape, const ContactLaw& law, double ra
     out.face = shape.distance(from).value < 0 ? nearest_face(shape, from) : entered_face(shape, from, to);
   out.is_felt = out.face != 0;
   if (out.is_felt) out.shape = beyond_face(shape, out.face);
+  // What it has left one face of a hull for the next one with is still there.
+  if (out.is_felt && out.let_go > 0) out.let_go -= contact_energy(law, -out.shape.distance(from).value);
   return out;
 }
 

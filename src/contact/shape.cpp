@@ -65,6 +65,34 @@ SignedDistance distance_of(const Cylinder& cylinder, const Vector3& y) {
   return out;
 }
 
+/// The face whose plane a point is the farthest above [m].
+struct HighestFace {
+  const Polytope::Face* face;
+  double height;
+};
+HighestFace highest_face(const Hull& hull, const Vector3& y) {
+  HighestFace out{nullptr, -std::numeric_limits<double>::infinity()};
+  for (const Polytope::Face& face : hull.polytope->faces)
+    if (const double height = height_over(face, y); height > out.height) out = {&face, height};
+  return out;
+}
+
+SignedDistance distance_of(const Hull& hull, const Vector3& y) {
+  const auto [highest, height] = highest_face(hull, y);
+  if (height <= 0) return {height, highest->normal, Matrix3::Zero()};
+  const NearestPoint nearest = nearest_point(*hull.polytope, y);
+  if (nearest.dimensions == 2) return {height, highest->normal, Matrix3::Zero()};
+  SignedDistance out = norm(y - nearest.position, highest->normal);
+  out.hessian -= nearest.along * nearest.along.transpose() / out.value;
+  return out;
+}
+
+/// Appends those between both ends of an edge.
+void add_edge_points(const Vector3& begin, const Vector3& end, double spacing, std::vector<ContactPoint>& points) {
+  const int spans = static_cast<int>(std::min(std::ceil((end - begin).norm() / spacing), kMostEdgePoints + 1.0));
+  for (int i = 1; i < spans; ++i) points.push_back({begin + (end - begin) * i / spans, 0});
+}
+
 std::vector<ContactPoint> points_of(const HalfSpace&, double) {
   return {};
 }
@@ -76,13 +104,20 @@ std::vector<ContactPoint> points_of(const Box& box, double spacing) {
   for (int k = 0; k < 8; ++k) {
     const Vector3 corner = box.half.cwiseProduct(Vector3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1));
     out.push_back({corner, 0});
-    for (int axis = 0; axis < 3; ++axis) {
-      if (k & (1 << axis)) continue;  // edges begin at their lower ends
-      const double length = 2 * box.half[axis];
-      const int between = static_cast<int>(std::min(std::ceil(length / spacing), kMostEdgePoints + 1.0)) - 1;
-      for (int i = 1; i <= between; ++i) out.push_back({corner + length * i / (between + 1) * Vector3::Unit(axis), 0});
-    }
+    for (int axis = 0; axis < 3; ++axis)  // edges begin at their lower ends
+      if (!(k & (1 << axis))) add_edge_points(corner, corner + 2 * box.half[axis] * Vector3::Unit(axis), spacing, out);
   }
+  return out;
+}
+std::vector<ContactPoint> points_of(const Hull& hull, double spacing) {
+  std::vector<ContactPoint> out;
+  const std::vector<Vector3>& corners = hull.polytope->corners;
+  for (const Vector3& corner : corners) out.push_back({corner, 0});
+  for (const Polytope::Face& face : hull.polytope->faces)
+    for (std::size_t i = 0; i < face.corners.size(); ++i) {
+      const int begin = face.corners[i], end = face.corners[(i + 1) % face.corners.size()];
+      if (begin < end) add_edge_points(corners[begin], corners[end], spacing, out);  // once of both faces
+    }
   return out;
 }
 std::vector<ContactPoint> points_of(const Cylinder& cylinder, double) {
@@ -108,6 +143,7 @@ SignedDistance ContactShape::distance(const Vector3& point) const {
 
 double ContactShape::gap(const Vector3& point) const {
   const Vector3 own = place.orientation.conjugate() * (point - place.position);
+  if (const auto* hull = std::get_if<Hull>(&kind)) return highest_face(*hull, own).height;
   return std::visit([&](const auto& shape) { return distance_of(shape, own).value; }, kind);
 }
 
@@ -121,90 +157,146 @@ constexpr double kBeside = 1e-9;
 /// lays on each other are inside of several.
 constexpr double kFlush = 1e-3;
 
-/// How far a point is outside of each pair of faces on the side on which `side` is, and the size of it all [m].
-struct FaceDistances {
-  Vector3 values;
-  double size;
-};
-FaceDistances face_distances(const ContactShape& shape, const Vector3& point, const Vector3& side) {
-  if (const auto* box = std::get_if<Box>(&shape.kind)) {
-    const Vector3 signs = side.unaryExpr([](double each) { return each < 0 ? -1.0 : 1.0; });
-    return {point.cwiseProduct(signs) - box->half, box->half.maxCoeff()};
-  }
-  const Cylinder& cylinder = std::get<Cylinder>(shape.kind);
-  const double radial = point.head<2>().norm() - cylinder.radius;
-  return {{radial, radial, (side.z() < 0 ? -point.z() : point.z()) - cylinder.half_length},
-          std::max(cylinder.radius, cylinder.half_length)};
+int face_count(const Box&) {
+  return 6;
+}
+double height_over(const Box& box, int face, const Vector3& y) {
+  const int axis = face / 2;
+  return (face % 2 == 0 ? y[axis] : -y[axis]) - box.half[axis];
+}
+bool is_over(const Box& box, int face, const Vector3& y, double slack) {
+  Vector3 beside = y.cwiseAbs() - box.half;
+  beside[face / 2] = 0;
+  return beside.maxCoeff() <= slack;
+}
+Pose frame_on(const Box& box, int face) {
+  const Vector3 outwards = (face % 2 == 0 ? 1.0 : -1.0) * Vector3::Unit(face / 2);
+  return {box.half[face / 2] * outwards, Quaternion::FromTwoVectors(Vector3::UnitZ(), outwards)};
+}
+double size_of(const Box& box) {
+  return box.half.maxCoeff();
 }
 
-/// Of an axis, on the side of a point.
-int face_along(const ContactShape& shape, Eigen::Index axis, const Vector3& side) {
-  if (std::holds_alternative<Cylinder>(shape.kind) && axis < 2) return 1;
-  const int number = static_cast<int>(axis) + 1;
-  return side[axis] < 0 ? -number : number;
+int face_count(const Cylinder&) {
+  return 3;
+}
+double height_over(const Cylinder& cylinder, int face, const Vector3& y) {
+  if (face == 0) return y.head<2>().norm() - cylinder.radius;
+  return (face == 1 ? y.z() : -y.z()) - cylinder.half_length;
+}
+bool is_over(const Cylinder& cylinder, int face, const Vector3& y, double slack) {
+  if (face == 0) return std::abs(y.z()) - cylinder.half_length <= slack;
+  return height_over(cylinder, 0, y) <= slack;
+}
+Pose frame_on(const Cylinder& cylinder, int face) {
+  if (face == 1) return {{0, 0, cylinder.half_length}, Quaternion::Identity()};
+  return {{0, 0, -cylinder.half_length}, Quaternion(0, 1, 0, 0)};
+}
+double size_of(const Cylinder& cylinder) {
+  return std::max(cylinder.radius, cylinder.half_length);
 }
 
-bool is_same_pair(const ContactShape& shape, Eigen::Index one, Eigen::Index other) {
-  return one == other || (std::holds_alternative<Cylinder>(shape.kind) && one < 2 && other < 2);
+int face_count(const Hull& hull) {
+  return static_cast<int>(hull.polytope->faces.size());
+}
+double height_over(const Hull& hull, int face, const Vector3& y) {
+  return height_over(hull.polytope->faces[face], y);
+}
+bool is_over(const Hull& hull, int face, const Vector3& y, double slack) {
+  return is_over(*hull.polytope, hull.polytope->faces[face], y, slack);
+}
+Pose frame_on(const Hull& hull, int face) {
+  const Polytope::Face& each = hull.polytope->faces[face];
+  return {each.offset * each.normal, Quaternion::FromTwoVectors(Vector3::UnitZ(), each.normal)};
+}
+double size_of(const Hull& hull) {
+  const std::vector<Vector3>& corners = hull.polytope->corners;
+  double size = 0;
+  for (const Vector3& corner : corners) size = std::max(size, 0.5 * (corner - corners.front()).norm());
+  return size;
 }
 
 Vector3 own_point(const ContactShape& shape, const Vector3& point) {
   return shape.place.orientation.conjugate() * (point - shape.place.position);
 }
 
+/// Calls visit(shape) with one that has faces; `otherwise` of one that has none.
+template <class Result, class Visit>
+Result of_faces(const ContactShape& shape, Result otherwise, const Visit& visit) {
+  if (const auto* box = std::get_if<Box>(&shape.kind)) return visit(*box);
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape.kind)) return visit(*cylinder);
+  if (const auto* hull = std::get_if<Hull>(&shape.kind)) return visit(*hull);
+  return otherwise;
+}
+
+/// The face by which a point comes in, from 0 on, and in which part of its way; -1: it does not.
+struct Entry {
+  int face;
+  double part;
+};
+template <class Shape>
+Entry entry_into(const Shape& shape, const Vector3& begin, const Vector3& end) {
+  const double size = size_of(shape), slack = kBeside * size;
+  Entry entry{-1, -1};  // the last of the faces that it comes through
+  double lowest = 0;
+  for (int k = 0; k < face_count(shape); ++k) {
+    const double a = height_over(shape, k, begin);
+    if (a < -kFlush * size) continue;
+    const double b = height_over(shape, k, end);
+    if (a > slack && b >= a) return {-1, 0};
+    // Where it starts on several faces it comes in by the one towards which it moves.
+    const double part = a > slack ? a / (a - b) : 0;
+    if (part < entry.part || (part == entry.part && b >= lowest)) continue;
+    entry = {k, part};
+    lowest = b;
+  }
+  if (entry.part > 1) entry.face = -1;
+  return entry;
+}
+
 }  // namespace
 
 bool has_faces(const ContactShape& shape) {
-  return std::holds_alternative<Box>(shape.kind) || std::holds_alternative<Cylinder>(shape.kind);
+  return of_faces(shape, false, [](const auto&) { return true; });
 }
 
 int entered_face(const ContactShape& shape, const Vector3& from, const Vector3& to) {
   const Vector3 begin = own_point(shape, from), end = own_point(shape, to);
-  const FaceDistances first = face_distances(shape, begin, begin), last = face_distances(shape, end, begin);
-  const double slack = kBeside * first.size;
-  double entry = -1;  // the last of the pairs of faces between which the point comes, in parts of the way
-  Eigen::Index axis = -1;
-  for (Eigen::Index k = 0; k < 3; ++k) {
-    const double a = first.values[k], b = last.values[k];
-    if (a < -kFlush * first.size) continue;
-    if (a > slack && b >= a) return 0;
-    // Where it starts on several faces it comes in by the one towards which it moves.
-    const double part = a > slack ? a / (a - b) : 0;
-    if (part < entry || (part == entry && b >= last.values[axis])) continue;
-    entry = part;
-    axis = k;
-  }
-  if (axis < 0 || entry > 1) return 0;
-  const int face = face_along(shape, axis, begin);
-  return is_over_face(shape, face, from + entry * (to - from)) ? face : 0;
+  const Entry entry = of_faces(shape, Entry{-1, 0}, [&](const auto& each) { return entry_into(each, begin, end); });
+  if (entry.face < 0) return 0;
+  return is_over_face(shape, entry.face + 1, from + entry.part * (to - from)) ? entry.face + 1 : 0;
 }
 
 int nearest_face(const ContactShape& shape, const Vector3& point) {
   const Vector3 own = own_point(shape, point);
-  Eigen::Index axis;
-  face_distances(shape, own, own).values.maxCoeff(&axis);
-  return face_along(shape, axis, own);
+  return of_faces(shape, 0, [&](const auto& each) {
+    int nearest = 0;
+    for (int k = 1; k < face_count(each); ++k)
+      if (height_over(each, k, own) > height_over(each, nearest, own)) nearest = k;
+    return nearest + 1;
+  });
 }
 
 bool is_over_face(const ContactShape& shape, int face, const Vector3& point) {
   const Vector3 own = own_point(shape, point);
-  const FaceDistances distances = face_distances(shape, own, own);
-  for (Eigen::Index k = 0; k < 3; ++k)
-    if (!is_same_pair(shape, k, std::abs(face) - 1) && distances.values[k] > kBeside * distances.size) return false;
-  return true;
+  return of_faces(shape, false,
+                  [&](const auto& each) { return is_over(each, face - 1, own, kBeside * size_of(each)); });
 }
 
 ContactShape beyond_face(const ContactShape& shape, int face) {
-  const Eigen::Index axis = std::abs(face) - 1;
-  const auto* cylinder = std::get_if<Cylinder>(&shape.kind);
-  if (cylinder && axis < 2) return {Cylinder{cylinder->radius, std::numeric_limits<double>::infinity()}, shape.place};
-  const double half = cylinder ? cylinder->half_length : std::get<Box>(shape.kind).half[axis];
-  const Vector3 outwards = (face < 0 ? -1.0 : 1.0) * Vector3::Unit(axis);
-  Quaternion upwards = Quaternion::Identity();
-  if (axis == 2 && face < 0) upwards = Quaternion(0, 1, 0, 0);
-  if (axis < 2) upwards = Quaternion::FromTwoVectors(Vector3::UnitZ(), outwards);
-  const Pose own{half * outwards, upwards};
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape.kind); cylinder && face == 1)
+    return {Cylinder{cylinder->radius, std::numeric_limits<double>::infinity()}, shape.place};
+  const Pose own = of_faces(shape, Pose(), [&](const auto& each) { return frame_on(each, face - 1); });
   return {HalfSpace{}, shape.place * own};
+}
+
+double half_width(const ContactShape& shape) {
+  if (const auto* ball = std::get_if<Ball>(&shape.kind)) return ball->radius;
+  if (const auto* box = std::get_if<Box>(&shape.kind)) return box->half.minCoeff();
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape.kind))
+    return std::min(cylinder->radius, cylinder->half_length);
+  if (const auto* hull = std::get_if<Hull>(&shape.kind)) return inner_radius(*hull->polytope);
+  return std::numeric_limits<double>::infinity();
 }
 
 std::vector<ContactPoint> contact_points(const ContactShape& shape, double spacing) {

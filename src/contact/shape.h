@@ -1,10 +1,11 @@
 #pragma once
 /// Rigid shapes that may be touched: how far points are from them.
 
+#include <memory>
 #include <variant>
 #include <vector>
 
-#include "flexarm/math/pose.h"
+#include "contact/polytope.h"
 
 namespace flexarm {
 
@@ -29,20 +30,25 @@ struct Cylinder {
   double radius = 0, half_length = 0;  ///< [m]
 };
 
+/// The convex hull of a mesh.
+struct Hull {
+  std::shared_ptr<const Polytope> polytope;
+};
+
 /// A shape fixed to a node, or to the world.
 struct ContactShape {
-  std::variant<HalfSpace, Ball, Box, Cylinder> kind;
+  std::variant<HalfSpace, Ball, Box, Cylinder, Hull> kind;
   Pose place;  ///< in the node's frame
 
   /// `point`: in the node's frame [m].
   SignedDistance distance(const Vector3& point) const;
-  /// Its value alone.
+  /// Nothing of the surface is nearer [m]. Inside it is the distance, and of shapes without edges outside as well.
   double gap(const Vector3& point) const;
 };
 
-/// Faces of boxes and cylinders, by numbers: +-1, 2, 3 of a box by the axis that they look along, 1 and +-3 of a
-/// cylinder; 0: none. A corner that has come in by a face is pushed out by it, however near others are: corners of
-/// equal boxes on each other lie on edges.
+/// Faces of boxes, cylinders and hulls have numbers from 1 on: of a box +x, -x, +y, -y, +z, -z; of a cylinder its side,
+/// +z, -z; 0: none. A corner that has come in by a face is pushed out by it, however near others are: corners of equal
+/// boxes on each other lie on edges.
 bool has_faces(const ContactShape& shape);
 /// By which a point comes in that goes straight from outside to another place; 0: it does not.
 int entered_face(const ContactShape& shape, const Vector3& from, const Vector3& to);
@@ -52,13 +58,17 @@ bool is_over_face(const ContactShape& shape, int face, const Vector3& point);
 /// What a face bounds, as if there were no others: a half-space, or an endless cylinder.
 ContactShape beyond_face(const ContactShape& shape, int face);
 
+/// Half of the least width [m]; infinite of a half-space.
+double half_width(const ContactShape& shape);
+
 /// A ball around a point fixed to a node by which a shape touches others: a corner, or the centre of a round one.
 struct ContactPoint {
   Vector3 arm = Vector3::Zero();  ///< in the node's frame [m]
   double radius = 0;              ///< [m]
 };
-/// Those of a shape: a ball's middle; corners of a box, and points on its edges not much farther from each other than
-/// `spacing` [m]; `kRimPoints` on each rim of a cylinder. None of a half-space, which touches nothing itself.
+/// Those of a shape: a ball's middle; corners of a box or a hull, and points on their edges not much farther from each
+/// other than `spacing` [m]; `kRimPoints` on each rim of a cylinder. None of a half-space, which touches nothing
+/// itself.
 std::vector<ContactPoint> contact_points(const ContactShape& shape, double spacing);
 constexpr int kRimPoints = 24, kMostEdgePoints = 7;
 

@@ -37,6 +37,7 @@ ForceElements::ForceElements(const StepConfiguration& configuration) : configura
   residual_.resize(most);
   tangent_.resize(static_cast<std::size_t>(most) * most);
   memory_.resize(memory);
+  acts_.resize(elements.size());
   velocities_.resize(configuration.model().nodes.size());
 }
 
@@ -47,10 +48,15 @@ void ForceElements::begin(TangentBackend& tangent) {
   const ForceElementList& elements = configuration_.model().force_elements;
   const ForceStart start{configuration_.begin(), velocities_, configuration_.step()};
   may_hit_ = false;
+  std::fill(memory_.begin(), memory_.end(), 0.0);
+  const double* memory = configuration_.state().force_memory.data();
   for (std::size_t k = 0; k < elements.size(); ++k) {
     find_nodes(*elements[k], start, nodes_[k]);
     tangent.couple(static_cast<int>(k), nodes_[k].data(), static_cast<int>(nodes_[k].size()));
     may_hit_ = may_hit_ || (start.duration != 0 && elements[k]->hits() && !nodes_[k].empty());
+    const double* const end = memory + elements[k]->memory_size();
+    acts_[k] = !nodes_[k].empty() || std::any_of(memory, end, [](double number) { return number != 0; });
+    memory = end;
   }
 }
 
@@ -72,18 +78,22 @@ void ForceElements::evaluate(Balance& balance) {
   work_ = 0;
   const ForceElementList& elements = configuration_.model().force_elements;
   for (std::size_t k = 0; k < elements.size(); ++k) {
-    const std::vector<int>& nodes = nodes_[k];
-    const Eigen::Index size = 6 * static_cast<Eigen::Index>(nodes.size()), rows = balance.tangent ? size : 0;
-    ForceAction action{{residual_.data(), size}, {tangent_.data(), rows, rows}};
-    elements[k]->evaluate(step, nodes.data(), action);
-    for (std::size_t i = 0; i < nodes.size(); ++i)
-      balance.residual.node(nodes[i]) += action.residual.segment<6>(6 * static_cast<Eigen::Index>(i));
-    if (balance.tangent) balance.tangent->add_coupling(static_cast<int>(k), action.tangent);
-    balance.dissipated += action.dissipated;
-    work_ += action.work;
+    if (acts_[k]) evaluate(k, step, balance);
     step.memory += elements[k]->memory_size();
     step.new_memory += elements[k]->memory_size();
   }
+}
+
+void ForceElements::evaluate(std::size_t k, const ForceStep& step, Balance& balance) {
+  const std::vector<int>& nodes = nodes_[k];
+  const Eigen::Index size = 6 * static_cast<Eigen::Index>(nodes.size()), rows = balance.tangent ? size : 0;
+  ForceAction action{{residual_.data(), size}, {tangent_.data(), rows, rows}};
+  configuration_.model().force_elements[k]->evaluate(step, nodes.data(), action);
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    balance.residual.node(nodes[i]) += action.residual.segment<6>(6 * static_cast<Eigen::Index>(i));
+  if (balance.tangent) balance.tangent->add_coupling(static_cast<int>(k), action.tangent);
+  balance.dissipated += action.dissipated;
+  work_ += action.work;
 }
 
 bool ForceElements::need_halves(double refinement) {

@@ -30,9 +30,11 @@ class ForceElements {
 
  private:
   ForceStep step();
+  void evaluate(std::size_t k, const ForceStep& step, Balance& balance);
 
   const StepConfiguration& configuration_;
   std::vector<std::vector<int>> nodes_;  // per element
+  std::vector<char> acts_;               // per element: on nodes, or it remembers something
   std::vector<Vector6> velocities_;      // per node {v, w} at the beginning
   std::vector<double> residual_, tangent_, memory_;
   double work_ = 0;

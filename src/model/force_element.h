@@ -102,7 +102,7 @@ class ForceElement {
     return static_cast<int>(reach_.size());
   }
 
-  // ---- what it does. `nodes`: as find_nodes() has written them
+  // ---- what it does. `nodes`: as find_nodes() has written them. What acts on none and remembers nothing is not asked
   virtual void evaluate(const ForceStep& step, const int* nodes, ForceAction& action) const = 0;
   /// True where a step that has been solved is too long for what happens in it: it is done again by halves. Also of an
   /// element that acts on no nodes in the step, but would have to.

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "contact/point_contact.h"
+#include "support/polytopes.h"
 
 namespace flexarm::test {
 namespace {
@@ -10,14 +11,14 @@ const ContactShape kBox{Box{{0.3, 0.2, 0.1}}, Pose()};
 const ContactShape kCylinder{Cylinder{0.3, 0.1}, Pose()};
 
 TEST(Faces, AreEnteredWhereThePointComesIn) {
-  EXPECT_EQ(entered_face(kBox, {0.1, 0.1, 0.2}, {0.1, 0.1, 0.05}), 3);
-  EXPECT_EQ(entered_face(kBox, {0.1, 0.1, -0.2}, {0.1, 0.1, -0.05}), -3);
-  EXPECT_EQ(entered_face(kBox, {-0.4, 0, 0}, {0.4, 0, 0}), -1) << "right through";
+  EXPECT_EQ(entered_face(kBox, {0.1, 0.1, 0.2}, {0.1, 0.1, 0.05}), 5);
+  EXPECT_EQ(entered_face(kBox, {0.1, 0.1, -0.2}, {0.1, 0.1, -0.05}), 6);
+  EXPECT_EQ(entered_face(kBox, {-0.4, 0, 0}, {0.4, 0, 0}), 2) << "right through";
   EXPECT_EQ(entered_face(kBox, {0.1, 0.1, 0.2}, {0.1, 0.1, 0.15}), 0) << "not there yet";
   EXPECT_EQ(entered_face(kBox, {0.35, 0.1, 0.2}, {0.35, 0.1, 0}), 0) << "passes by";
   EXPECT_EQ(entered_face(kBox, {0.4, 0, 0.12}, {0.2, 0, 0.05}), 1) << "over the edge, beside it last";
-  EXPECT_EQ(entered_face(kBox, {0.31, 0, 0.2}, {0.2, 0, 0.05}), 3) << "over the edge, above it last";
-  EXPECT_EQ(entered_face(kCylinder, {0.1, 0.1, 0.2}, {0.1, 0.1, 0.05}), 3);
+  EXPECT_EQ(entered_face(kBox, {0.31, 0, 0.2}, {0.2, 0, 0.05}), 5) << "over the edge, above it last";
+  EXPECT_EQ(entered_face(kCylinder, {0.1, 0.1, 0.2}, {0.1, 0.1, 0.05}), 2);
   EXPECT_EQ(entered_face(kCylinder, {0, 0.4, 0}, {0, 0.2, 0}), 1);
 }
 
@@ -30,20 +31,20 @@ TEST(Faces, AreNotThoseThatThePointPassesBeside) {
 
 // Corners of equal boxes on each other lie on edges.
 TEST(Faces, OfEdgesAreThoseTowardsWhichThePointMoves) {
-  EXPECT_EQ(entered_face(kBox, {0.3, -0.2, 0.11}, {0.3, -0.2, 0.09}), 3);
-  EXPECT_EQ(entered_face(kBox, {0.3, -0.2, 0.1}, {0.3, -0.2, 0.09}), 3) << "which it touches to begin with";
-  EXPECT_EQ(entered_face(kBox, {0.3, -0.2, 0.1}, {0.3, -0.19, 0.1}), -2);
-  EXPECT_EQ(entered_face(kBox, {0.3, -0.2, 0.1 - 1e-6}, {0.3, -0.2, 0.09}), 3)
+  EXPECT_EQ(entered_face(kBox, {0.3, -0.2, 0.11}, {0.3, -0.2, 0.09}), 5);
+  EXPECT_EQ(entered_face(kBox, {0.3, -0.2, 0.1}, {0.3, -0.2, 0.09}), 5) << "which it touches to begin with";
+  EXPECT_EQ(entered_face(kBox, {0.3, -0.2, 0.1}, {0.3, -0.19, 0.1}), 4);
+  EXPECT_EQ(entered_face(kBox, {0.3, -0.2, 0.1 - 1e-6}, {0.3, -0.2, 0.09}), 5)
       << "in which it is a little to begin with";
-  EXPECT_TRUE(is_over_face(kBox, 3, {0.3, -0.2, 0.09}));
-  EXPECT_FALSE(is_over_face(kBox, 3, {0.3, -0.2001, 0.09}));
+  EXPECT_TRUE(is_over_face(kBox, 5, {0.3, -0.2, 0.09}));
+  EXPECT_FALSE(is_over_face(kBox, 5, {0.3, -0.2001, 0.09}));
 }
 
 TEST(Faces, BoundHalfSpacesAndEndlessCylinders) {
-  EXPECT_NEAR(beyond_face(kBox, 3).distance({5, 5, 0.15}).value, 0.05, 1e-15);
-  EXPECT_NEAR(beyond_face(kBox, -2).distance({5, -0.15, 5}).value, -0.05, 1e-14);  // the round-off of 5
+  EXPECT_NEAR(beyond_face(kBox, 5).distance({5, 5, 0.15}).value, 0.05, 1e-15);
+  EXPECT_NEAR(beyond_face(kBox, 4).distance({5, -0.15, 5}).value, -0.05, 1e-14);  // the round-off of 5
   EXPECT_NEAR(beyond_face(kCylinder, 1).distance({0.4, 0, 7}).value, 0.1, 1e-15);
-  EXPECT_NEAR(beyond_face(kCylinder, -3).distance({4, 0, -0.3}).value, 0.2, 1e-15);
+  EXPECT_NEAR(beyond_face(kCylinder, 3).distance({4, 0, -0.3}).value, 0.2, 1e-15);
 }
 
 TEST(Shapes, AreMetByWhatGoesThroughThem) {
@@ -56,19 +57,39 @@ TEST(Shapes, AreMetByWhatGoesThroughThem) {
   EXPECT_FALSE(passes_through(rod, {-0.015, 0.011, 0}, {0.015, 0.011, 0}, 0));
 }
 
+// Of which a roof has two on top.
+TEST(Faces, OfHullsAreLeftForTheNextOnes) {
+  const ContactShape roof{Hull{std::make_shared<Polytope>(roof_polytope({0.3, 0.2, 0.1}, 0.03))}, Pose()};
+  EXPECT_EQ(entered_face(roof, {0.1, 0, 0.3}, {0.1, 0, 0.1}), 5);
+  EXPECT_EQ(entered_face(roof, {-0.1, 0, 0.3}, {-0.1, 0, 0.1}), 6);
+  EXPECT_EQ(entered_face(roof, {0.4, 0, 0}, {0.2, 0, 0}), 1);
+  EXPECT_EQ(entered_face(roof, {0.1, 0.3, 0.12}, {0.1, 0.1, 0.11}), 3) << "by the gable";
+  EXPECT_EQ(entered_face(roof, {0.29, 0.3, 0.12}, {0.29, 0.1, 0.12}), 0) << "above the slope";
+  EXPECT_NEAR(beyond_face(roof, 5).distance({0.3, 5, 0.1}).value, 0, 1e-14);
+  ContactLaw law;
+  law.stiffness = 100;
+  // Over the ridge: what the first slope had stored goes on into the other one, less what the ridge is nearer.
+  const Vector3 over(-0.003, 0, 0.12);  // a slope leans by a tenth
+  const FeltShape felt = felt_shape(roof, law, 0, over, {-0.01, 0, 0.119}, 5);
+  EXPECT_EQ(felt.face, 6);
+  const double before = -beyond_face(roof, 5).distance(over).value, after = -felt.shape.distance(over).value;
+  EXPECT_GT(before, after);
+  EXPECT_NEAR(felt.let_go, 50 * (before * before - after * after), 1e-15);
+}
+
 // What comes beside its face is let go, with what was stored; what comes out of it is forgotten.
 TEST(Faces, AreKeptUntilThePointIsOut) {
   ContactLaw law;
   law.stiffness = 100;
   law.frequency = 10;
-  const FeltShape kept = felt_shape(kBox, law, 0, {0.29, 0, 0.02}, {0.28, 0, 0.03}, 3);
-  EXPECT_EQ(kept.face, 3) << "though another face is nearer";
+  const FeltShape kept = felt_shape(kBox, law, 0, {0.29, 0, 0.02}, {0.28, 0, 0.03}, 5);
+  EXPECT_EQ(kept.face, 5) << "though another face is nearer";
   EXPECT_EQ(kept.let_go, 0);
-  const FeltShape beside = felt_shape(kBox, law, 0, {0.31, 0, 0.08}, {0.32, 0, 0.08}, 3);
+  const FeltShape beside = felt_shape(kBox, law, 0, {0.31, 0, 0.08}, {0.32, 0, 0.08}, 5);
   EXPECT_FALSE(beside.is_felt);
   EXPECT_NEAR(beside.let_go, 0.5 * 100 * 0.02 * 0.02, 1e-15);
   const FeltShape inside = felt_shape(kBox, law, 0, {0.05, 0, 0.08}, {0.05, 0, 0.09}, 0);
-  EXPECT_EQ(inside.face, 3) << "of a start inside the nearest one";
+  EXPECT_EQ(inside.face, 5) << "of a start inside the nearest one";
 }
 
 }  // namespace

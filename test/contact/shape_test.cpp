@@ -5,6 +5,7 @@
 #include <random>
 
 #include "math/so3.h"
+#include "support/polytopes.h"
 
 namespace flexarm::test {
 namespace {
@@ -19,7 +20,8 @@ std::vector<Named> all_shapes() {
   return {{"half-space", {HalfSpace{}, kPlace}},
           {"ball", {Ball{0.4}, kPlace}},
           {"box", {Box{{0.3, 0.5, 0.2}}, kPlace}},
-          {"cylinder", {Cylinder{0.3, 0.5}, kPlace}}};
+          {"cylinder", {Cylinder{0.3, 0.5}, kPlace}},
+          {"hull", {Hull{std::make_shared<Polytope>(roof_polytope({0.3, 0.4, 0.2}, 0.15))}, kPlace}}};
 }
 
 std::vector<Vector3> random_points(int count) {
@@ -49,6 +51,22 @@ TEST(ContactShapes, HaveTheDerivativesOfTheirDistances) {
     }
     EXPECT_EQ(wrong, 0) << name;
   }
+}
+
+// Outside and inside, with all derivatives; where two faces or edges are as near, either may count.
+TEST(ContactShapes, ThatAreHullsOfBoxesAreTheBoxes) {
+  const Vector3 half(0.3, 0.5, 0.2);
+  const ContactShape box{Box{half}, kPlace}, hull{Hull{std::make_shared<Polytope>(box_polytope(half))}, kPlace};
+  for (const Vector3& point : random_points(500)) {
+    const SignedDistance one = box.distance(point), other = hull.distance(point);
+    EXPECT_NEAR(one.value, other.value, 1e-14);
+    EXPECT_NEAR((one.gradient - other.gradient).norm(), 0, 1e-12);
+    EXPECT_NEAR((one.hessian - other.hessian).norm(), 0, 1e-12 * (1 + one.hessian.norm()));
+    EXPECT_LE(hull.gap(point), one.value + 1e-14);
+    EXPECT_EQ(nearest_face(box, point), nearest_face(hull, point));
+  }
+  EXPECT_EQ(contact_points(box, 0.1).size(), contact_points(hull, 0.1).size());
+  EXPECT_NEAR(half_width(hull), half_width(box), 1e-15);
 }
 
 // The nearest of many points of the surface; as far as these lie apart.

@@ -1,0 +1,117 @@
+// In which steps a contact acts, and which are too long for it. (docs/notes/contact.md 5)
+#include <algorithm>
+#include <cmath>
+
+#include "contact/contact_element.h"
+
+namespace flexarm {
+namespace {
+
+/// Ways that a step may come to beyond those at the speed of its beginning: times that, and of the size.
+constexpr double kMoreWay = 2, kNear = 0.02;
+/// So deep, of the depth, a corner may be in a shape without having come in by a face.
+constexpr double kUnseen = 0.01;
+/// Cosine of normals at both ends of a step that goes to the other side of something thin.
+constexpr double kOtherSide = -0.5;
+
+}  // namespace
+
+template <class PoseOf>
+ContactElement::Bounds ContactElement::bounds(const PoseOf& pose_of) const {
+  const auto middle_of_node = [&](int node) {
+    const NodePose pose = pose_of(node);
+    return Vector3(pose.position + pose.rotation * middle_arm_);
+  };
+  Vector3 middle = Vector3::Zero();
+  for (const int node : side_.nodes) middle += middle_of_node(node) / static_cast<double>(side_.nodes.size());
+  double apart = 0;
+  for (const int node : side_.nodes) apart = std::max(apart, (middle_of_node(node) - middle).norm());
+  return {seen_from(surface_, middle, pose_of), spread_ * apart + own_radius_};
+}
+
+double ContactElement::highest_speed(const ForceStart& start) const {
+  const auto pose_of = poses_in(start.poses);
+  const auto motion_of = [&](int node) { return node < 0 ? Vector6(Vector6::Zero()) : start.velocities[node]; };
+  const Vector6 base = motion_of(surface_.node);
+  const Vector3 origin = pose_of(surface_.node).position;
+  double speed = 0;
+  for (const int node : side_.nodes) {
+    const Vector6 motion = motion_of(node);
+    const Vector3 arm = pose_of(node).rotation * middle_arm_;
+    const Vector3 base_arm = pose_of(node).position + arm - origin;
+    const Vector3 relative =
+        motion.head<3>() + motion.tail<3>().cross(arm) - base.head<3>() - base.tail<3>().cross(base_arm);
+    speed = std::max(speed, relative.norm());
+  }
+  if (side_.nodes.size() > 1) return spread_ * speed;  // stations are on the line, wherever it turns to
+  return speed + (motion_of(side_.nodes[0]) - base).tail<3>().norm() * own_radius_;
+}
+
+Vector3 ContactElement::velocity(const ContactStation& station, const std::vector<NodePose>& poses,
+                                 const std::vector<Vector6>& velocities) const {
+  const auto motion_of = [&](int node) { return node < 0 ? Vector6(Vector6::Zero()) : velocities[node]; };
+  const auto pose_of = poses_in(poses);
+  Vector3 velocity = Vector3::Zero();
+  for (std::size_t i = 0; i < side_.nodes.size(); ++i) {
+    const Vector6 motion = motion_of(side_.nodes[i]);
+    const Vector3 arm = pose_of(side_.nodes[i]).rotation * station.arm;
+    velocity += station.weights[i] * (motion.head<3>() + motion.tail<3>().cross(arm));
+  }
+  const NodePose base = pose_of(surface_.node);
+  const Vector6 motion = motion_of(surface_.node);
+  velocity -= motion.head<3>() + motion.tail<3>().cross(middle_of(side_, station, pose_of) - base.position);
+  return base.rotation.transpose() * velocity;
+}
+
+int ContactElement::find_nodes(const ForceStart& start, int* nodes) const {
+  std::copy(reach().begin(), reach().end(), nodes);
+  const int all = static_cast<int>(reach().size());
+  if (start.duration == 0) return all;
+  const double duration = std::abs(start.duration), close = kNear * size_;
+  const Bounds bounds = this->bounds(poses_in(start.poses));
+  const double most = kMoreWay * duration * highest_speed(start) + close + bounds.radius;
+  for (const ContactShape& shape : surface_.shapes) {
+    if (shape.gap(bounds.middle) >= most) continue;
+    for (const ContactStation& station : side_.stations) {
+      const double gap = shape.gap(place(station, poses_in(start.poses))) - station.radius;
+      const double way = duration * velocity(station, start.poses, start.velocities).norm();
+      if (gap < kMoreWay * way + close) return all;
+    }
+  }
+  return 0;
+}
+
+bool ContactElement::needs_halves(const ForceStep& step, const int*, int count) const {
+  if (step.duration == 0) return false;
+  const Bounds begin = bounds(poses_in(step.begin)), end = bounds(poses_in(step.end));
+  const double most = (end.middle - begin.middle).norm() + 2 * begin.radius + end.radius;
+  const std::size_t shapes = surface_.shapes.size();
+  for (std::size_t k = 0; k < shapes; ++k) {
+    const ContactShape& shape = surface_.shapes[k];
+    if (shape.gap(begin.middle) > most) continue;
+    const double* memory = step.memory + PointMemory::kSize * k;
+    for (const ContactStation& station : side_.stations) {
+      if (is_too_long(station, shape, memory_at(memory), step, count > 0)) return true;
+      memory += PointMemory::kSize * shapes;
+    }
+  }
+  return false;
+}
+
+bool ContactElement::is_too_long(const ContactStation& station, const ContactShape& shape, const PointMemory& memory,
+                                 const ForceStep& step, bool acts) const {
+  const Vector3 from = place(station, poses_in(step.begin)), to = place(station, poses_in(step.end));
+  if (shape.gap(from) - station.radius > (to - from).norm()) return false;
+  const FeltShape felt = felt_shape(shape, law_, station.radius, from, to, memory.face);
+  // Of a corner that no face has seen coming in.
+  if (!felt.is_felt) return passes_through(shape, from, to, -kUnseen * law_.depth);
+  const SignedDistance begin = felt.shape.distance(from), end = felt.shape.distance(to);
+  const double begin_rate = -begin.gradient.dot(velocity(station, step.begin, step.velocities));
+  ContactChange change{station.radius - begin.value, station.radius - end.value, std::abs(step.duration)};
+  change.speed = approach_speed(change.begin, begin_rate, memory.speed);
+  if (change.begin <= 0 && change.end <= 0) return passes_through(felt.shape, from, to, station.radius);
+  return !acts || begin.gradient.dot(end.gradient) < kOtherSide ||
+         is_coarse_hit(law_, change, begin_rate, step.refinement);
+}
+
+}  // namespace flexarm
