@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "building/model_builder.h"
+#include "building/touching_meshes.h"
 #include "contact/contact_element.h"
 #include "math/pi.h"
 #include "math/shape_functions.h"
@@ -40,24 +41,23 @@ struct Side {
   std::vector<ContactStations> tubes;            // of each element of a beam
 };
 
-ContactShape shape_of(const scene::VisualDescription& collision, const Attachment& frame) {
-  ContactShape out;
-  out.place = frame.offset * collision.origin;
-  if (const auto* box = std::get_if<scene::BoxShape>(&collision.shape))
-    out.kind = Box{0.5 * box->size};
-  else if (const auto* cylinder = std::get_if<scene::CylinderShape>(&collision.shape))
-    out.kind = Cylinder{cylinder->radius, 0.5 * cylinder->length};
-  else
-    out.kind = Ball{std::get<scene::SphereShape>(collision.shape).radius};
+/// Those of a <collision>; a mesh may have several.
+std::vector<ContactShape> shapes_of(const scene::VisualDescription& collision, const Pose& frame,
+                                    const scene::LinkDescription& link) {
+  const Pose place = frame * collision.origin;
+  if (const auto* box = std::get_if<scene::BoxShape>(&collision.shape)) return {{Box{0.5 * box->size}, place}};
+  if (const auto* cylinder = std::get_if<scene::CylinderShape>(&collision.shape))
+    return {{Cylinder{cylinder->radius, 0.5 * cylinder->length}, place}};
+  if (const auto* sphere = std::get_if<scene::SphereShape>(&collision.shape)) return {{Ball{sphere->radius}, place}};
+  const auto& mesh = std::get<scene::MeshShape>(collision.shape);
+  std::vector<ContactShape> out;
+  try {
+    for (const auto& hull : hulls_of_mesh(mesh, link.location.file)) out.push_back({Hull{hull}, place});
+  } catch (const std::runtime_error& error) {
+    throw ModelError(at(link.location, fmt::format("<link> '{}'", link.name)) +
+                     fmt::format("its <collision> has the mesh '{}', but {}", mesh.url, error.what()));
+  }
   return out;
-}
-
-double half_width(const ContactShape& shape) {
-  if (const auto* ball = std::get_if<Ball>(&shape.kind)) return ball->radius;
-  if (const auto* box = std::get_if<Box>(&shape.kind)) return box->half.minCoeff();
-  if (const auto* cylinder = std::get_if<Cylinder>(&shape.kind))
-    return std::min(cylinder->radius, cylinder->half_length);
-  return kInfinity;
 }
 
 class ContactBuilder {
@@ -101,10 +101,11 @@ class ContactBuilder {
     side.is_fixed = plan_.links[link.name] == plan_.tree.root;
     bool all_fixed = true;
     for (const scene::VisualDescription& collision : link.collisions) {
-      if (std::holds_alternative<scene::MeshShape>(collision.shape)) continue;
+      // Nobody has to have the meshes of links that touch nothing.
+      if (std::holds_alternative<scene::MeshShape>(collision.shape) && !is_meant(link.name)) continue;
       const Attachment frame = attachment(plan_, model_, link.name, collision.origin.position);
       all_fixed = all_fixed && frame.node < 0;
-      add(shape_of(collision, frame), frame.node, side);
+      for (const ContactShape& shape : shapes_of(collision, frame.offset, link)) add(shape, frame.node, side);
     }
     side.is_fixed = side.is_fixed || (all_fixed && !side.surfaces.empty());
     if (model_.links[index].beam) side.mass = model_.links[index].beam->mass;
@@ -185,6 +186,14 @@ class ContactBuilder {
            joined_.count(std::minmax(plan_.links[first.name], plan_.links[second.name])) > 0;
   }
 
+  /// Whether any pair can be one with this link.
+  bool is_meant(const std::string& link) const {
+    return std::any_of(scene_.contacts.begin(), scene_.contacts.end(), [&](const scene::ContactPair& pair) {
+      return pair.first == link || pair.second == link || pair.first == scene::kAllBodies ||
+             pair.second == scene::kAllBodies;
+    });
+  }
+
   /// How many sides of a pair are named; -1: it does not mean these.
   static int named_of(const scene::ContactPair& pair, const Side& first, const Side& second) {
     const auto named = [](const std::string& name, const Side& side) {
@@ -212,10 +221,9 @@ class ContactBuilder {
                                   const Side& second) const {
     for (const Side* side : {&first, &second})
       if (side->surfaces.empty() && side->tubes.empty())
-        throw ModelError(at(contact.location, "<contact>") +
-                         fmt::format("link '{}' has nothing to touch with: expected a <collision> that is a box, a "
-                                     "cylinder or a sphere, or a <beam>",
-                                     side->name));
+        throw ModelError(
+            at(contact.location, "<contact>") +
+            fmt::format("link '{}' has nothing to touch with: expected a <collision> or a <beam>", side->name));
     if (first.is_fixed && second.is_fixed)
       throw ModelError(at(contact.location, "<contact>") +
                        fmt::format("'{}' and '{}' never move against each other", first.name, second.name));
@@ -232,14 +240,30 @@ class ContactBuilder {
                     double at_a_time) const {
     const double inverse = 1 / stations.mass + 1 / shapes.mass, step = scene_.integrator.step;
     const double mass = inverse > 0 ? 1 / inverse : mass_of(model_), frequency = kPi / (kContactSteps * step);
+    const scene::SurfaceHints hints = hints_of(stations, shapes);
     ContactLaw law;
-    law.stiffness = contact.stiffness.value_or(mass * frequency * frequency / at_a_time);
+    // A hint makes it softer alone: Gazebo's own steps bear more than what they can follow.
+    const double usual = mass * frequency * frequency / at_a_time;
+    law.stiffness = contact.stiffness.value_or(std::min(usual, hints.stiffness.value_or(kInfinity)));
     law.frequency = std::sqrt(law.stiffness * at_a_time / mass);
     law.damping = damping_for_restitution(contact.restitution);
     law.depth = kContactDepth * std::min(stations.size, shapes.size);
-    law.friction = contact.friction;
+    law.friction = contact.friction.value_or(hints.friction.value_or(0));
     law.grip = std::min(law.stiffness, kStiffestGrip * mass / (step * step) / at_a_time);
     return law;
+  }
+
+  /// Of both surfaces, as Gazebo takes them: the smaller friction, and stiffnesses in series.
+  scene::SurfaceHints hints_of(const Side& one, const Side& other) const {
+    scene::SurfaceHints out;
+    for (const Side* side : {&one, &other}) {
+      const auto found = scene_.surfaces.find(side->name);
+      if (found == scene_.surfaces.end()) continue;
+      const auto& [friction, stiffness] = found->second;
+      if (friction) out.friction = std::min(*friction, out.friction.value_or(*friction));
+      if (stiffness) out.stiffness = out.stiffness ? 1 / (1 / *stiffness + 1 / *out.stiffness) : *stiffness;
+    }
+    return out;
   }
 
   /// Deeper where it starts inside.

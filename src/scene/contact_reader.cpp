@@ -1,10 +1,17 @@
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <set>
+#include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "math/parse_number.h"
+#include "scene/limits.h"
 #include "scene/readers.h"
+#include "scene/resource_path.h"
+#include "scene/xml_document.h"
 
 namespace flexarm::scene {
 namespace {
@@ -15,15 +22,6 @@ ContactPair read_pair(const XmlElement& element) {
   out.first = element.name("first").value_or("");
   out.second = element.name("second").value_or("");
   return out;
-}
-
-/// Records links that have nothing but meshes to touch with.
-void warn_of_meshes(const SceneDescription& scene, Findings& findings) {
-  const auto is_mesh = [](const VisualDescription& shape) { return std::holds_alternative<MeshShape>(shape.shape); };
-  for (const LinkDescription& link : scene.links)
-    if (!link.collisions.empty() && std::all_of(link.collisions.begin(), link.collisions.end(), is_mesh))
-      findings.warning(link.location.line, "<link> " + quoted(link.name),
-                       "touches nothing: its <collision> is a mesh; expected a box, a cylinder or a sphere");
 }
 
 }  // namespace
@@ -48,7 +46,7 @@ ContactDescription read_contact(const XmlElement& contact) {
   static_cast<ContactPair&>(out) = read_pair(contact);
   if (contact.has("stiffness")) out.stiffness = contact.number("stiffness", kPositive);
   if (contact.has("restitution")) out.restitution = contact.number("restitution", kRestitution).value_or(1);
-  out.friction = contact.number("friction", kNonNegative, 0);
+  if (contact.has("friction")) out.friction = contact.number("friction", kNonNegative);
   return out;
 }
 
@@ -57,8 +55,53 @@ ContactPair read_no_contact(const XmlElement& pair) {
   return read_pair(pair);
 }
 
+std::vector<ContactPair> read_srdf(const XmlElement& no_contact) {
+  no_contact.expect_only({"srdf"});
+  const std::string url = no_contact.text("srdf").value_or("");
+  if (url.empty()) return {};
+  tinyxml2::XMLDocument document;
+  try {
+    const std::string path = path_of_resource(url, no_contact.findings().file());
+    std::ifstream file(path, std::ios::binary);
+    if (!file) throw std::runtime_error("there is no file " + path);
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    Findings inside(path);
+    if (!parse_xml(text, document, inside)) throw std::runtime_error(inside.take().front().text());
+    if (!document.RootElement()) throw std::runtime_error(path + " is empty");
+  } catch (const std::runtime_error& error) {
+    no_contact.attribute_error("srdf", fmt::format("its file cannot be read: {}", error.what()));
+    return {};
+  }
+  std::vector<ContactPair> out;
+  for (const auto* each = document.RootElement()->FirstChildElement("disable_collisions"); each;
+       each = each->NextSiblingElement("disable_collisions")) {
+    const char *first = each->Attribute("link1"), *second = each->Attribute("link2");
+    if (first && second) out.push_back({first, second, no_contact.location()});
+  }
+  return out;
+}
+
+void read_surface(const XmlElement& gazebo, SceneDescription& scene) {
+  const char* const link = gazebo.xml().Attribute("reference");
+  if (!link) return;
+  SurfaceHints hints;
+  // Another program's: what is no number says nothing.
+  const auto hint = [&](const char* tag) -> std::optional<double> {
+    const std::optional<XmlElement> child = gazebo.child(tag);
+    const char* const text = child ? child->xml().GetText() : nullptr;
+    if (!text) return std::nullopt;
+    std::string_view words = text;
+    const std::optional<double> number = parse_number(next_word(words));
+    return number && *number >= 0 && *number <= 1e60 ? number : std::nullopt;
+  };
+  for (const char* tag : {"mu1", "mu2"})
+    if (const std::optional<double> number = hint(tag))
+      hints.friction = std::min(hints.friction.value_or(*number), *number);
+  if (const std::optional<double> number = hint("kp"); number && *number > 0) hints.stiffness = number;
+  if (hints.friction || hints.stiffness) scene.surfaces[link] = hints;
+}
+
 void check_contacts(const SceneDescription& scene, Findings& findings) {
-  if (!scene.contacts.empty()) warn_of_meshes(scene, findings);
   std::set<std::string> links, sides = {kAllBodies};
   for (const LinkDescription& link : scene.links) links.insert(link.name);
   sides.insert(links.begin(), links.end());
@@ -82,6 +125,18 @@ void check_contacts(const SceneDescription& scene, Findings& findings) {
   };
   for (const ContactDescription& contact : scene.contacts) check(contact, element("contact"));
   for (const ContactPair& pair : scene.no_contacts) check(pair, element("no_contact"));
+}
+
+void add_disabled_pairs(const std::vector<ContactPair>& pairs, SceneDescription& scene) {
+  std::set<std::string> links;
+  for (const LinkDescription& link : scene.links) links.insert(link.name);
+  std::set<std::pair<std::string, std::string>> named;
+  for (const ContactPair& pair : scene.contacts) named.insert(std::minmax(pair.first, pair.second));
+  for (const ContactPair& pair : scene.no_contacts) named.insert(std::minmax(pair.first, pair.second));
+  for (const ContactPair& pair : pairs)
+    if (links.count(pair.first) > 0 && links.count(pair.second) > 0 &&
+        named.insert(std::minmax(pair.first, pair.second)).second)
+      scene.no_contacts.push_back(pair);
 }
 
 }  // namespace flexarm::scene

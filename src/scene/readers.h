@@ -51,9 +51,14 @@ GroundDescription read_ground(const XmlElement& ground);
 bool is_contact(const XmlElement& element);
 ContactDescription read_contact(const XmlElement& contact);
 ContactPair read_no_contact(const XmlElement& pair);
-/// Checks that names of contacts refer to something, that no pair is named twice, and that links have shapes to touch
-/// with.
+/// Pairs that an SRDF beside the scene disables, of <no_contact srdf="">.
+std::vector<ContactPair> read_srdf(const XmlElement& no_contact);
+/// What <gazebo reference=""> says of a link's surface, if anything.
+void read_surface(const XmlElement& gazebo, SceneDescription& scene);
+/// Checks that names of contacts refer to something, and that no pair is named twice.
 void check_contacts(const SceneDescription& scene, Findings& findings);
+/// Adds those pairs of SRDFs that the scene has links for, and says nothing of.
+void add_disabled_pairs(const std::vector<ContactPair>& pairs, SceneDescription& scene);
 
 /// Reads <simulation> into `scene`, and what it says about the start into `start`, which is settled later. So are
 /// names.

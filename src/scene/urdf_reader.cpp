@@ -89,6 +89,7 @@ class SceneReader {
     settle_positions(scene_, start_, unreadable_, findings_);
     check_references(scene_, unreadable_, findings_);
     check_contacts(scene_, findings_);
+    add_disabled_pairs(disabled_, scene_);
     if (findings_.error_count() == 0) hold_followers_of_fixed_joints(scene_);
     return std::move(scene_);
   }
@@ -116,6 +117,11 @@ class SceneReader {
       scene_.grounds.push_back(read_ground(child));
     } else if (is_contact(child) && scene_.contacts.size() <= kMostContacts) {
       scene_.contacts.push_back(read_contact(child));
+    } else if (tag == "no_contact" && child.has("srdf")) {
+      const std::vector<ContactPair> pairs = read_srdf(child);
+      disabled_.insert(disabled_.end(), pairs.begin(), pairs.end());
+    } else if (tag == "gazebo") {
+      read_surface(child, scene_);
     } else if (tag == "no_contact" && scene_.no_contacts.size() <= kMostContacts) {
       scene_.no_contacts.push_back(read_no_contact(child));
     } else if (tag == "spring" && scene_.springs.size() <= kMostJoints) {
@@ -164,7 +170,8 @@ class SceneReader {
   SceneDescription scene_;
   StartRequest start_;
   std::vector<Transmission> transmissions_;
-  std::set<std::string> unreadable_;  // links and joints with errors, of which only the name is to be trusted
+  std::vector<ContactPair> disabled_;  // by SRDFs
+  std::set<std::string> unreadable_;   // links and joints with errors, of which only the name is to be trusted
 };
 
 /// The document as it is now, without parameters.

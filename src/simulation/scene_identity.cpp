@@ -167,6 +167,7 @@ class SceneFingerprint {
   void add(const scene::ContactDescription& contact) {
     all(contact.first, contact.second, contact.stiffness, contact.restitution, contact.friction);
   }
+  void add(const scene::SurfaceHints& hints) { all(hints.friction, hints.stiffness); }
   void add(const scene::BoxShape& box) { add(box.size); }
   void add(const scene::CylinderShape& cylinder) { all(cylinder.radius, cylinder.length); }
   void add(const scene::SphereShape& sphere) { add(sphere.radius); }
@@ -206,7 +207,11 @@ std::string contact_lines(const scene::SceneDescription& scene) {
   if (scene.contacts.empty()) return "";
   std::vector<std::vector<scene::VisualDescription>> shapes;
   for (const scene::LinkDescription& link : scene.links) shapes.push_back(link.collisions);
-  return fmt::format("contact {}\n", SceneFingerprint::of(scene.grounds, scene.contacts, scene.no_contacts, shapes));
+  std::vector<std::string> names;
+  std::vector<scene::SurfaceHints> surfaces;
+  for (const auto& [link, hints] : scene.surfaces) names.push_back(link), surfaces.push_back(hints);
+  return fmt::format("contact {}\n",
+                     SceneFingerprint::of(scene.grounds, scene.contacts, scene.no_contacts, shapes, names, surfaces));
 }
 
 }  // namespace
@@ -214,7 +219,7 @@ std::string contact_lines(const scene::SceneDescription& scene) {
 std::string scene_identity(const scene::SceneDescription& scene, const Scheme& scheme) {
   const auto& [name, file, root, links, joints, loop_joints, springs, drives, servos, gravity, integrator,
                integrator_location, initial_joints, initial_links, loads, distributed_loads, motions, efforts, probes,
-               sensors, force_elements, grounds, contacts, no_contacts, lock_massless, starts_in_equilibrium,
+               sensors, force_elements, grounds, contacts, no_contacts, surfaces, lock_massless, starts_in_equilibrium,
                equilibrium_location,
                parameters] = scene;  // which count by the numbers that are made of them
   return integrator_line(integrator.step, scheme) + "\n" + named_lines("link", links) + named_lines("joint", joints) +

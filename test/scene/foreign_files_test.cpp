@@ -154,21 +154,6 @@ TEST(ForeignFiles, LoopsInsideGazeboAreTold) {
   EXPECT_EQ(inside("a", "wheel"), Texts());  // to a link that only Gazebo has
 }
 
-TEST(ForeignFiles, LinksThatHaveMeshesAloneToTouchWithAreTold) {
-  const std::string mesh = R"(<collision><geometry><mesh filename="package://r/c.stl"/></geometry></collision>)";
-  const std::string ball = R"(<collision><geometry><sphere radius="1"/></geometry></collision>)";
-  const auto said_of = [](const std::string& shapes, const std::string& contact) {
-    return said(read(scene_of(kFree + joint_to("k", "c", "continuous", "") + contact + "\n<link name=\"c\">" + shapes +
-                              R"(<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>)"
-                              "</inertial></link>")));
-  };
-  const std::string contact = R"(<contact first="*" second="*"/>)";
-  EXPECT_EQ(said_of(mesh, contact), Texts{"scene.urdf:5: warning: <link> 'c': touches nothing: its <collision> is a "
-                                          "mesh; expected a box, a cylinder or a sphere"});
-  EXPECT_EQ(said_of(mesh + ball, contact), Texts());
-  EXPECT_EQ(said_of(mesh, ""), Texts()) << "nothing is asked to touch";
-}
-
 TEST(ForeignFiles, StrangersAreToldOnceWithTheNearestName) {
   const auto said_of = [](const std::string& element) { return said(read(scene_of(kFree + element))); };
   const auto told = [](const std::string& tag, const std::string& words) {

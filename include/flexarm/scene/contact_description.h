@@ -28,7 +28,13 @@ struct ContactPair {
 struct ContactDescription : ContactPair {
   std::optional<double> stiffness = {};  ///< of a contact point [N/m]; empty: by what it moves and the step
   double restitution = 0.3;              ///< from 0.05 to 1
-  double friction = 0;                   ///< Coulomb's coefficient
+  std::optional<double> friction = {};   ///< Coulomb's coefficient; empty: as the links' surfaces have it, else 0
+};
+
+/// What a <gazebo> element says of the surface of a link.
+struct SurfaceHints {
+  std::optional<double> friction;   ///< the smaller one of mu1 and mu2
+  std::optional<double> stiffness;  ///< kp [N/m]
 };
 
 }  // namespace flexarm::scene

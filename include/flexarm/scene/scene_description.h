@@ -2,6 +2,7 @@
 /// What a scene file says: names and SI numbers, immutable, no numerics.
 
 #include <array>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -387,6 +388,7 @@ struct SceneDescription {
   std::vector<GroundDescription> grounds;
   std::vector<ContactDescription> contacts;
   std::vector<ContactPair> no_contacts;
+  std::map<std::string, SurfaceHints> surfaces;  ///< of links that have some, by their names
   bool lock_massless = false;          ///< joints that move nothing with inertia are held where they start, not refused
   bool starts_in_equilibrium = false;  ///< at rest, where loads, gravity and servos at t = 0 hold it
   SourceLocation equilibrium_location = {};      ///< of the <initial> that says so

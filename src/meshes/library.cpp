@@ -1,0 +1,6 @@
+#include "meshes/library.h"
+
+#include "meshes/mesh_hulls.h"
+
+extern "C" const flexarm::meshes::Library flexarm_mesh_library;
+const flexarm::meshes::Library flexarm_mesh_library = {flexarm::meshes::hulls_of_file};
