@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -49,12 +50,13 @@ auto poses_in(const State& state) {
 }  // namespace
 
 ContactElement::ContactElement(std::vector<std::string> links, ContactStations side, ContactSurface surface,
-                               const ContactLaw& law)
+                               const ContactLaw& law, bool is_reversed)
     : ForceElement("", reach_of(side, surface)),
       links_(std::move(links)),
       side_(std::move(side)),
       surface_(std::move(surface)),
-      law_(law) {
+      law_(law),
+      is_reversed_(is_reversed) {
   assert(!side_.nodes.empty() && side_.nodes.size() <= ContactStation::kMostNodes);
   for (const ContactStation& station : side_.stations) size_ = std::max(size_, station.arm.norm() + station.radius);
 }
@@ -84,10 +86,10 @@ void ContactElement::for_each_pair(const Visit& visit) const {
 
 // ---------------------------------------------------------------- where
 
-Vector3 ContactElement::velocity(const ContactStation& station, const std::vector<NodePose>& poses,
+template <class PoseOf>
+Vector3 ContactElement::velocity(const ContactStation& station, const PoseOf& pose_of,
                                  const std::vector<Vector6>& velocities) const {
   const auto motion_of = [&](int node) { return node < 0 ? Vector6(Vector6::Zero()) : velocities[node]; };
-  const auto pose_of = poses_in(poses);
   Vector3 velocity = Vector3::Zero();
   for (std::size_t i = 0; i < side_.nodes.size(); ++i) {
     const Vector6 motion = motion_of(side_.nodes[i]);
@@ -107,7 +109,7 @@ int ContactElement::find_nodes(const ForceStart& start, int* nodes) const {
   bool is_near = false;
   for_each_pair([&](const ContactStation& station, const ContactShape& shape) {
     const double gap = shape.gap(place(station, poses_in(start.poses))) - station.radius;
-    const double way = std::abs(start.duration) * velocity(station, start.poses, start.velocities).norm();
+    const double way = std::abs(start.duration) * velocity(station, poses_in(start.poses), start.velocities).norm();
     is_near = gap < kMoreWay * way + kNear * size_;
     return !is_near;
   });
@@ -126,7 +128,7 @@ bool ContactElement::needs_halves(const ForceStep& step, const int*, int count) 
     }
     const FeltShape felt = felt_shape(shape, law_, station.radius, from, to, memory_at(memory).face);
     const SignedDistance begin = felt.shape.distance(from), end = felt.shape.distance(to);
-    const double begin_rate = -begin.gradient.dot(velocity(station, step.begin, step.velocities));
+    const double begin_rate = -begin.gradient.dot(velocity(station, poses_in(step.begin), step.velocities));
     ContactChange change{station.radius - begin.value, station.radius - end.value, std::abs(step.duration)};
     change.speed = approach_speed(change.begin, begin_rate, memory[0]);
     memory += PointMemory::kSize;
@@ -217,7 +219,7 @@ void ContactElement::evaluate(const ForceStep& step, const int*, ForceAction& ac
     }
     const Placed placed = this->placed(station, frames, step);
     motion.turn = frames.axes.transpose() * placed.turn;
-    if (step.duration != 0) motion.begin_velocity = velocity(station, step.begin, step.velocities);
+    if (step.duration != 0) motion.begin_velocity = velocity(station, poses_in(step.begin), step.velocities);
     motion.duration = step.duration;
     motion.at_end = step.at_end;
     const PointAction local =
@@ -310,6 +312,37 @@ double ContactElement::energy(const State& state, const double* memory) const {
     return true;
   });
   return energy;
+}
+
+double ContactElement::touch(const ForceMotion& motion, const TouchingPointTaker& take) const {
+  const auto pose_of = poses_in(motion.state);
+  const NodePose body = pose_of(surface_.node);
+  const double sign = is_reversed_ ? -1 : 1;
+  const double* memory = motion.memory;
+  double least = std::numeric_limits<double>::infinity();
+  for_each_pair([&](const ContactStation& station, const ContactShape& shape) {
+    const PointMemory old = memory_at(memory);
+    memory += PointMemory::kSize;
+    const Vector3 middle = place(station, pose_of);
+    if (old.face == 0) {
+      const double gap = shape.gap(middle) - station.radius;
+      least = std::min(least, gap);
+      if (gap >= 0) return true;
+    }
+    const PointTouch local =
+        point_touch(shape, law_of(station), station.radius, middle, velocity(station, pose_of, motion.velocities), old);
+    least = std::min(least, local.gap);
+    if (local.gap >= 0) return true;
+    TouchingPoint point;
+    point.position = body.position + body.rotation * (middle - station.radius * local.normal);
+    point.normal = sign * (body.rotation * local.normal);
+    point.push = local.push * point.normal;
+    point.friction = sign * (body.rotation * local.friction);
+    point.gap = local.gap;
+    take(point);
+    return true;
+  });
+  return least;
 }
 
 template <class Visit>

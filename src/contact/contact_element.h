@@ -49,8 +49,10 @@ Vector3 seen_from(const ContactSurface& surface, const Vector3& point, const Pos
 /// Each station of one side with each shape of the other one.
 class ContactElement : public ForceElement {
  public:
-  /// `links`: names of the link with the stations, and of the link or ground with the shapes.
-  ContactElement(std::vector<std::string> links, ContactStations side, ContactSurface surface, const ContactLaw& law);
+  /// `links`: names of the link with the stations, and of the link or ground with the shapes; `is_reversed`: the other
+  /// way round.
+  ContactElement(std::vector<std::string> links, ContactStations side, ContactSurface surface, const ContactLaw& law,
+                 bool is_reversed = false);
 
   const char* kind() const override { return "contact"; }
   std::vector<std::string> links() const override { return links_; }
@@ -64,6 +66,7 @@ class ContactElement : public ForceElement {
   ForceMeasures measures(const State& state, const int* nodes) const override;
   DamperTensions dampers(const State& state, const Eigen::VectorXd& rates) const override;
   int memory_size() const override;
+  double touch(const ForceMotion& motion, const TouchingPointTaker& take) const override;
   bool suits_all_schemes() const override { return false; }
 
  private:
@@ -77,9 +80,9 @@ class ContactElement : public ForceElement {
   Vector3 place(const ContactStation& station, const PoseOf& pose_of) const {
     return seen_from(surface_, middle_of(side_, station, pose_of), pose_of);
   }
-  /// By how much it moves there at the beginning of a step [m/s].
-  Vector3 velocity(const ContactStation& station, const std::vector<NodePose>& poses,
-                   const std::vector<Vector6>& velocities) const;
+  /// By how much it moves there [m/s].
+  template <class PoseOf>
+  Vector3 velocity(const ContactStation& station, const PoseOf& pose_of, const std::vector<Vector6>& velocities) const;
   Frames frames(const ForceStep& step) const;
   double remembered_energy(const ForceStep& step) const;
   Placed placed(const ContactStation& station, const Frames& frames, const ForceStep& step) const;
@@ -98,6 +101,7 @@ class ContactElement : public ForceElement {
   ContactStations side_;
   ContactSurface surface_;
   ContactLaw law_;
+  bool is_reversed_;
   double size_ = 0;  ///< of the stations' side, about its first node [m]
 };
 

@@ -38,6 +38,10 @@ struct ContactPush {
 };
 ContactPush contact_push(const ContactLaw& law, const ContactChange& change);
 
+/// Force at an instant [N]: what contact_push() goes to in short steps. `rate`: of the penetration [m/s]; `speed`: of
+/// the approach, see approach_speed(). (docs/notes/contact.md 2)
+double push_at(const ContactLaw& law, double penetration, double rate, double speed);
+
 /// True where the step is too long for a hit: it goes through a large part of it, by a large angle of the oscillator
 /// that the contact is. `begin_rate`: of the penetration.
 bool is_coarse_hit(const ContactLaw& law, const ContactChange& change, double begin_rate, double refinement);
