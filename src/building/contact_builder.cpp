@@ -236,6 +236,7 @@ class ContactBuilder {
     ContactLaw law;
     law.stiffness = contact.stiffness.value_or(mass * frequency * frequency / at_a_time);
     law.frequency = std::sqrt(law.stiffness * at_a_time / mass);
+    law.restitution = contact.restitution;
     law.damping = damping_for_restitution(contact.restitution);
     law.depth = kContactDepth * std::min(stations.size, shapes.size);
     law.friction = contact.friction;

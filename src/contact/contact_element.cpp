@@ -62,12 +62,12 @@ ContactElement::ContactElement(std::vector<std::string> links, ContactStations s
 }
 
 std::string ContactElement::description() const {
-  return fmt::format("{} points, {:.4g} N/m each, friction {:g}", side_.stations.size() * surface_.shapes.size(),
-                     law_.stiffness, law_.friction);
+  return fmt::format("{} points, {:.4g} N/m each, restitution {:g}, friction {:g}", point_count(), law_.stiffness,
+                     law_.restitution, law_.friction);
 }
 
 int ContactElement::memory_size() const {
-  return PointMemory::kSize * static_cast<int>(side_.stations.size() * surface_.shapes.size());
+  return PointMemory::kSize * static_cast<int>(point_count());
 }
 
 ContactLaw ContactElement::law_of(const ContactStation& station) const {

@@ -55,6 +55,9 @@ class ContactElement : public ForceElement {
                  bool is_reversed = false);
 
   const char* kind() const override { return "contact"; }
+  const ContactLaw& law() const { return law_; }
+  /// Pairs of stations and shapes.
+  std::size_t point_count() const { return side_.stations.size() * surface_.shapes.size(); }
   std::vector<std::string> links() const override { return links_; }
   std::string description() const override;
   int find_nodes(const ForceStart& start, int* nodes) const override;

@@ -11,7 +11,8 @@ namespace flexarm {
 struct ContactLaw {
   double stiffness = 0;  ///< of shallow penetrations [N/m]
   double frequency = 0;  ///< of a hit: the root of the stiffness over what it moves, roughly [rad/s]
-  double damping = 0;    ///< by which a hit gives back what the restitution says, see damping_for_restitution()
+  double restitution = 1;
+  double damping = 0;  ///< by which a hit gives back what the restitution says, see damping_for_restitution()
   double depth = std::numeric_limits<double>::infinity();  ///< beyond which it gives way no further [m]
   double friction = 0;                                     ///< coefficient
   double grip = 0;                                         ///< stiffness along the surface where it sticks [N/m]
