@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
 #include <set>
 #include <utility>
@@ -246,6 +247,7 @@ class ContactBuilder {
     const double usual = mass * frequency * frequency / at_a_time;
     law.stiffness = contact.stiffness.value_or(std::min(usual, hints.stiffness.value_or(kInfinity)));
     law.frequency = std::sqrt(law.stiffness * at_a_time / mass);
+    law.restitution = contact.restitution;
     law.damping = damping_for_restitution(contact.restitution);
     law.depth = kContactDepth * std::min(stations.size, shapes.size);
     law.friction = contact.friction.value_or(hints.friction.value_or(0));
@@ -310,6 +312,12 @@ class ContactBuilder {
     return out;
   }
 
+  /// As a <contact> names both sides, else as the scene has them.
+  bool are_in_order(const scene::ContactDescription& contact, const Side& first, const Side& second) const {
+    if (contact.first == first.name && contact.second == second.name) return true;
+    return &first < &second && !(contact.first == second.name && contact.second == first.name);
+  }
+
   void join_stations(const scene::ContactDescription& contact, const Side& first, const Side& second) {
     for (const ContactStations& stations : stations_of(first, second.size))
       for (const ContactSurface& surface : second.surfaces) {
@@ -320,8 +328,10 @@ class ContactBuilder {
         const double at_a_time = is_whole ? 1.0 : kAtATime * static_cast<double>(stations.stations.size());
         ContactLaw law = law_of(contact, first, second, at_a_time);
         deepen(stations, surface, law);
-        placed_.push_back(
-            std::make_shared<ContactElement>(std::vector{first.name, second.name}, stations, surface, law));
+        std::vector<std::string> names{first.name, second.name};
+        const bool is_reversed = !are_in_order(contact, first, second);
+        if (is_reversed) std::reverse(names.begin(), names.end());
+        placed_.push_back(std::make_shared<ContactElement>(std::move(names), stations, surface, law, is_reversed));
       }
   }
 
@@ -338,6 +348,22 @@ class ContactBuilder {
 ForceElementList place_contacts(const ScenePlan& plan, const Model& model) {
   if (plan.scene.contacts.empty()) return {};
   return ContactBuilder(plan, model).place();
+}
+
+std::vector<TouchingPair> touching_pairs(const ForceElementList& elements) {
+  std::vector<TouchingPair> pairs;
+  std::map<std::vector<std::string>, std::size_t> places;
+  std::size_t memory = 0;
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    const std::vector<std::string> links = elements[i]->links();
+    if (links.size() == 2) {
+      const auto [place, is_new] = places.emplace(links, pairs.size());
+      if (is_new) pairs.push_back({links[0], links[1], {}});
+      pairs[place->second].elements.push_back({i, memory});
+    }
+    memory += static_cast<std::size_t>(elements[i]->memory_size());
+  }
+  return pairs;
 }
 
 }  // namespace flexarm

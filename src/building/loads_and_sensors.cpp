@@ -178,4 +178,25 @@ void place_sensors(const ScenePlan& plan, const Mechanism& mechanism, Model& mod
   }
 }
 
+void connect_contact_sensors(const scene::SceneDescription& scene, Model& model) {
+  for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
+    const scene::Sensor& sensor = scene.sensors[i];
+    if (sensor.kind != SensorKind::Contact) continue;
+    const auto feels = [&](const std::string& name) {
+      if (sensor.group.empty()) return name == sensor.link;
+      return std::find(sensor.group.begin(), sensor.group.end(), name) != sensor.group.end();
+    };
+    bool is_touched = false;
+    for (std::size_t k = 0; k < model.touching_pairs.size(); ++k) {
+      const TouchingPair& pair = model.touching_pairs[k];
+      const bool first = feels(pair.first), second = feels(pair.second);
+      is_touched = is_touched || first || second;
+      if (first != second) model.sensors[i].touched.push_back({k, first});  // within a group forces cancel
+    }
+    if (!is_touched)
+      throw ModelError(at(sensor.location, "<sensor> '" + sensor.name + "'") + "no <contact> lets anything touch " +
+                       (sensor.group.empty() ? "link '" + sensor.link + "'" : "its group"));
+  }
+}
+
 }  // namespace flexarm

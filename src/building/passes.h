@@ -87,6 +87,9 @@ std::vector<ProbePoint> place_probes(const ScenePlan& plan, const Model& model);
 /// Sets the model's sensors and reactions; the mechanism is that of the model.
 /// @throws ModelError for a sensor that does not go with its link.
 void place_sensors(const ScenePlan& plan, const Mechanism& mechanism, Model& model);
+/// Tells those of contacts which ones they measure, once these are in the model.
+/// @throws ModelError where nothing can touch what a sensor is for.
+void connect_contact_sensors(const scene::SceneDescription& scene, Model& model);
 
 /// True if a sensor of the scene measures what carries this link.
 bool measures_reaction(const scene::SceneDescription& scene, const std::string& link);
@@ -138,5 +141,7 @@ ForceElementList place_force_elements(const ScenePlan& plan, const Model& model)
 /// Contacts of all pairs of links and grounds for which the scene has one, on the nodes of that model.
 /// @throws ModelError where a side of a named pair has nothing to touch with, or both never move against each other.
 ForceElementList place_contacts(const ScenePlan& plan, const Model& model);
+/// Of force elements those that are contacts, by what they are between.
+std::vector<TouchingPair> touching_pairs(const ForceElementList& elements);
 
 }  // namespace flexarm

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <iterator>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -9,6 +10,7 @@
 #include "cli/driven_ends.h"
 #include "cli/mode_table.h"
 #include "cli/scene_input.h"
+#include "contact/contact_element.h"
 #include "integrators/step_plane.h"
 #include "scene/flexible_link.h"
 #include "schemes/scheme.h"
@@ -128,14 +130,54 @@ void print_joints(const Simulation& simulation) {
 void print_force_elements(const Simulation& simulation) {
   const scene::ForceElementDescriptions& described = simulation.scene().force_elements;
   const ForceElementList& elements = model_of(simulation).force_elements;
-  if (!elements.empty()) fmt::print("\n{:<24} {:<12} {:<40} {}\n", "between points", "kind", "links", "law");
-  for (std::size_t i = 0; i < elements.size(); ++i) {
-    std::vector<std::string> links = elements[i]->links();
-    if (i < described.size())
-      for (const scene::LinkPoint& point : described[i]->points()) links.push_back(point.link);
+  if (!described.empty()) fmt::print("\n{:<24} {:<12} {:<40} {}\n", "between points", "kind", "links", "law");
+  for (std::size_t i = 0; i < described.size(); ++i) {
+    std::vector<std::string> links;
+    for (const scene::LinkPoint& point : described[i]->points()) links.push_back(point.link);
     fmt::print("{:<24} {:<12} {:<40} {}\n", elements[i]->name().empty() ? "-" : elements[i]->name(),
                elements[i]->kind(), fmt::format("{}", fmt::join(links, ", ")), elements[i]->description());
   }
+}
+
+/// "200", or "100 ... 200"
+std::string range_text(double least, double most) {
+  return least == most ? fmt::format("{:.4g}", least) : fmt::format("{:.4g} ... {:.4g}", least, most);
+}
+
+/// What elements of a pair have to touch with, and their law.
+std::string law_text(const ForceElementList& elements, const TouchingPair& pair) {
+  std::size_t points = 0;
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+  const ContactElement* contact = nullptr;
+  for (const auto& [index, memory] : pair.elements) {
+    contact = dynamic_cast<const ContactElement*>(elements[index].get());
+    if (!contact) return elements[index]->description();
+    points += contact->point_count();
+    least = std::min(least, contact->law().stiffness);
+    most = std::max(most, contact->law().stiffness);
+  }
+  return fmt::format("{} points, {} N/m each, restitution {:g}, friction {:g}", points, range_text(least, most),
+                     contact->law().restitution, contact->law().friction);
+}
+
+/// How a pair touches now.
+std::string touch_text(const Simulation& simulation, std::size_t pair) {
+  constexpr double kRoundOff = 1e-9;  // m
+  std::vector<double> values;
+  put_out_touch(simulation, pair, values);
+  const double count = values[3], gap = values[4];
+  if (count > 0 && gap < -kRoundOff) return fmt::format("{:g} points inside, {:.3g} m deep", count, -gap);
+  return gap <= kRoundOff ? "touches" : fmt::format("{:.3g} m apart", gap);
+}
+
+void print_contacts(const Simulation& simulation) {
+  const Model& model = model_of(simulation);
+  const std::vector<TouchingPair>& pairs = model.touching_pairs;
+  if (!pairs.empty()) fmt::print("\n{:<12} {:<40} {:<30} {}\n", "touching", "links", "at the start", "law");
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    fmt::print("{:<12} {:<40} {:<30} {}\n", model.force_elements[pairs[i].elements[0].index]->kind(),
+               pairs[i].first + ", " + pairs[i].second, touch_text(simulation, i),
+               law_text(model.force_elements, pairs[i]));
 }
 
 /// Lengths in m, stiffnesses in N and N m^2, mass in kg.
@@ -242,6 +284,7 @@ void add_check(CLI::App& app, int& status) {
     print_joints(simulation);
     print_beams(simulation);
     print_force_elements(simulation);
+    print_contacts(simulation);
     for (const std::string& warning : warnings_of_driven_ends(simulation))
       fmt::print(stderr, "flexarm: warning: {}\n", warning);
     print_dead_point(simulation);

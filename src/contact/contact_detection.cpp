@@ -47,22 +47,6 @@ double ContactElement::highest_speed(const ForceStart& start) const {
   return speed + (motion_of(side_.nodes[0]) - base).tail<3>().norm() * own_radius_;
 }
 
-Vector3 ContactElement::velocity(const ContactStation& station, const std::vector<NodePose>& poses,
-                                 const std::vector<Vector6>& velocities) const {
-  const auto motion_of = [&](int node) { return node < 0 ? Vector6(Vector6::Zero()) : velocities[node]; };
-  const auto pose_of = poses_in(poses);
-  Vector3 velocity = Vector3::Zero();
-  for (std::size_t i = 0; i < side_.nodes.size(); ++i) {
-    const Vector6 motion = motion_of(side_.nodes[i]);
-    const Vector3 arm = pose_of(side_.nodes[i]).rotation * station.arm;
-    velocity += station.weights[i] * (motion.head<3>() + motion.tail<3>().cross(arm));
-  }
-  const NodePose base = pose_of(surface_.node);
-  const Vector6 motion = motion_of(surface_.node);
-  velocity -= motion.head<3>() + motion.tail<3>().cross(middle_of(side_, station, pose_of) - base.position);
-  return base.rotation.transpose() * velocity;
-}
-
 int ContactElement::find_nodes(const ForceStart& start, int* nodes) const {
   std::copy(reach().begin(), reach().end(), nodes);
   const int all = static_cast<int>(reach().size());
@@ -74,7 +58,7 @@ int ContactElement::find_nodes(const ForceStart& start, int* nodes) const {
     if (shape.gap(bounds.middle) >= most) continue;
     for (const ContactStation& station : side_.stations) {
       const double gap = shape.gap(place(station, poses_in(start.poses))) - station.radius;
-      const double way = duration * velocity(station, start.poses, start.velocities).norm();
+      const double way = duration * velocity(station, poses_in(start.poses), start.velocities).norm();
       if (gap < kMoreWay * way + close) return all;
     }
   }
@@ -106,7 +90,7 @@ bool ContactElement::is_too_long(const ContactStation& station, const ContactSha
   // Of a corner that no face has seen coming in.
   if (!felt.is_felt) return passes_through(shape, from, to, -kUnseen * law_.depth);
   const SignedDistance begin = felt.shape.distance(from), end = felt.shape.distance(to);
-  const double begin_rate = -begin.gradient.dot(velocity(station, step.begin, step.velocities));
+  const double begin_rate = -begin.gradient.dot(velocity(station, poses_in(step.begin), step.velocities));
   ContactChange change{station.radius - begin.value, station.radius - end.value, std::abs(step.duration)};
   change.speed = approach_speed(change.begin, begin_rate, memory.speed);
   if (change.begin <= 0 && change.end <= 0) return passes_through(felt.shape, from, to, station.radius);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -34,12 +35,13 @@ auto poses_in(const State& state) {
 }  // namespace
 
 ContactElement::ContactElement(std::vector<std::string> links, ContactStations side, ContactSurface surface,
-                               const ContactLaw& law)
+                               const ContactLaw& law, bool is_reversed)
     : ForceElement("", reach_of(side, surface)),
       links_(std::move(links)),
       side_(std::move(side)),
       surface_(std::move(surface)),
-      law_(law) {
+      law_(law),
+      is_reversed_(is_reversed) {
   assert(!side_.nodes.empty() && side_.nodes.size() <= ContactStation::kMostNodes);
   for (const ContactStation& station : side_.stations) {
     size_ = std::max(size_, station.arm.norm() + station.radius);
@@ -53,12 +55,12 @@ ContactElement::ContactElement(std::vector<std::string> links, ContactStations s
 }
 
 std::string ContactElement::description() const {
-  return fmt::format("{} points, {:.4g} N/m each, friction {:g}", side_.stations.size() * surface_.shapes.size(),
-                     law_.stiffness, law_.friction);
+  return fmt::format("{} points, {:.4g} N/m each, restitution {:g}, friction {:g}", point_count(), law_.stiffness,
+                     law_.restitution, law_.friction);
 }
 
 int ContactElement::memory_size() const {
-  return PointMemory::kSize * static_cast<int>(side_.stations.size() * surface_.shapes.size());
+  return PointMemory::kSize * static_cast<int>(point_count());
 }
 
 ContactLaw ContactElement::law_of(const ContactStation& station) const {
@@ -148,7 +150,7 @@ void ContactElement::evaluate(const ForceStep& step, const int*, ForceAction& ac
     }
     const Placed placed = this->placed(station, frames, step);
     motion.turn = frames.axes.transpose() * placed.turn;
-    if (step.duration != 0) motion.begin_velocity = velocity(station, step.begin, step.velocities);
+    if (step.duration != 0) motion.begin_velocity = velocity(station, poses_in(step.begin), step.velocities);
     motion.duration = step.duration;
     motion.at_end = step.at_end;
     const PointAction local =
@@ -241,6 +243,37 @@ double ContactElement::energy(const State& state, const double* memory) const {
     return true;
   });
   return energy;
+}
+
+double ContactElement::touch(const ForceMotion& motion, const TouchingPointTaker& take) const {
+  const auto pose_of = poses_in(motion.state);
+  const NodePose body = pose_of(surface_.node);
+  const double sign = is_reversed_ ? -1 : 1;
+  const double* memory = motion.memory;
+  double least = std::numeric_limits<double>::infinity();
+  for_each_pair([&](const ContactStation& station, const ContactShape& shape) {
+    const PointMemory old = memory_at(memory);
+    memory += PointMemory::kSize;
+    const Vector3 middle = place(station, pose_of);
+    if (old.face == 0) {
+      const double gap = shape.gap(middle) - station.radius;
+      least = std::min(least, gap);
+      if (gap >= 0) return true;
+    }
+    const PointTouch local =
+        point_touch(shape, law_of(station), station.radius, middle, velocity(station, pose_of, motion.velocities), old);
+    least = std::min(least, local.gap);
+    if (local.gap >= 0) return true;
+    TouchingPoint point;
+    point.position = body.position + body.rotation * (middle - station.radius * local.normal);
+    point.normal = sign * (body.rotation * local.normal);
+    point.push = local.push * point.normal;
+    point.friction = sign * (body.rotation * local.friction);
+    point.gap = local.gap;
+    take(point);
+    return true;
+  });
+  return least;
 }
 
 template <class Visit>

@@ -53,10 +53,15 @@ Vector3 seen_from(const ContactSurface& surface, const Vector3& point, const Pos
 /// Each station of one side with each shape of the other one.
 class ContactElement : public ForceElement {
  public:
-  /// `links`: names of the link with the stations, and of the link or ground with the shapes.
-  ContactElement(std::vector<std::string> links, ContactStations side, ContactSurface surface, const ContactLaw& law);
+  /// `links`: names of the link with the stations, and of the link or ground with the shapes; `is_reversed`: the other
+  /// way round.
+  ContactElement(std::vector<std::string> links, ContactStations side, ContactSurface surface, const ContactLaw& law,
+                 bool is_reversed = false);
 
   const char* kind() const override { return "contact"; }
+  const ContactLaw& law() const { return law_; }
+  /// Pairs of stations and shapes.
+  std::size_t point_count() const { return side_.stations.size() * surface_.shapes.size(); }
   std::vector<std::string> links() const override { return links_; }
   std::string description() const override;
   int find_nodes(const ForceStart& start, int* nodes) const override;
@@ -68,6 +73,7 @@ class ContactElement : public ForceElement {
   ForceMeasures measures(const State& state, const int* nodes) const override;
   DamperTensions dampers(const State& state, const Eigen::VectorXd& rates) const override;
   int memory_size() const override;
+  double touch(const ForceMotion& motion, const TouchingPointTaker& take) const override;
   bool suits_all_schemes() const override { return false; }
 
  private:
@@ -84,9 +90,9 @@ class ContactElement : public ForceElement {
   Vector3 place(const ContactStation& station, const PoseOf& pose_of) const {
     return seen_from(surface_, middle_of(side_, station, pose_of), pose_of);
   }
-  /// By how much it moves there at the beginning of a step [m/s].
-  Vector3 velocity(const ContactStation& station, const std::vector<NodePose>& poses,
-                   const std::vector<Vector6>& velocities) const;
+  /// By how much it moves there [m/s].
+  template <class PoseOf>
+  Vector3 velocity(const ContactStation& station, const PoseOf& pose_of, const std::vector<Vector6>& velocities) const;
   /// Whether a step is too long for one of them; `acts`: see needs_halves().
   bool is_too_long(const ContactStation& station, const ContactShape& shape, const PointMemory& memory,
                    const ForceStep& step, bool acts) const;
@@ -117,9 +123,26 @@ class ContactElement : public ForceElement {
   ContactStations side_;
   ContactSurface surface_;
   ContactLaw law_;
+  bool is_reversed_;
   double size_ = 0;                       ///< of the stations' side, about its first node [m]
   Vector3 middle_arm_ = Vector3::Zero();  ///< of the stations' middle, in the frame of the only node [m]
   double own_radius_ = 0, spread_ = 1;    ///< of stations: about their nodes [m], and of what these are apart
 };
+
+template <class PoseOf>
+Vector3 ContactElement::velocity(const ContactStation& station, const PoseOf& pose_of,
+                                 const std::vector<Vector6>& velocities) const {
+  const auto motion_of = [&](int node) { return node < 0 ? Vector6(Vector6::Zero()) : velocities[node]; };
+  Vector3 velocity = Vector3::Zero();
+  for (std::size_t i = 0; i < side_.nodes.size(); ++i) {
+    const Vector6 motion = motion_of(side_.nodes[i]);
+    const Vector3 arm = pose_of(side_.nodes[i]).rotation * station.arm;
+    velocity += station.weights[i] * (motion.head<3>() + motion.tail<3>().cross(arm));
+  }
+  const NodePose base = pose_of(surface_.node);
+  const Vector6 motion = motion_of(surface_.node);
+  velocity -= motion.head<3>() + motion.tail<3>().cross(middle_of(side_, station, pose_of) - base.position);
+  return base.rotation.transpose() * velocity;
+}
 
 }  // namespace flexarm

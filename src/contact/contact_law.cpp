@@ -52,6 +52,13 @@ ContactPush contact_push(const ContactLaw& law, const ContactChange& change) {
           elastic * factor * way - stored};
 }
 
+double push_at(const ContactLaw& law, double penetration, double rate, double speed) {
+  const Hardened x = hardened({penetration, law.depth});
+  if (x.value == 0) return 0;
+  const double alpha = law.damping / std::max(speed, 0.5 * law.frequency * x.value);
+  return law.stiffness * x.slope * x.value * std::max(0.0, 1 + alpha * rate);
+}
+
 bool is_coarse_hit(const ContactLaw& law, const ContactChange& change, double begin_rate, double refinement) {
   const double x0 = hardened({change.begin, law.depth}).value, x1 = hardened({change.end, law.depth}).value;
   const bool conserves = law.damping == 0 && std::isinf(law.depth);  // at any angle

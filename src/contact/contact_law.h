@@ -11,7 +11,8 @@ namespace flexarm {
 struct ContactLaw {
   double stiffness = 0;  ///< of shallow penetrations [N/m]
   double frequency = 0;  ///< of a hit: the root of the stiffness over what it moves, roughly [rad/s]
-  double damping = 0;    ///< by which a hit gives back what the restitution says, see damping_for_restitution()
+  double restitution = 1;
+  double damping = 0;  ///< by which a hit gives back what the restitution says, see damping_for_restitution()
   double depth = std::numeric_limits<double>::infinity();  ///< beyond which it gives way no further [m]
   double friction = 0;                                     ///< coefficient
   double grip = 0;                                         ///< stiffness along the surface where it sticks [N/m]
@@ -37,6 +38,10 @@ struct ContactPush {
   double value = 0, slope = 0, dissipated = 0;
 };
 ContactPush contact_push(const ContactLaw& law, const ContactChange& change);
+
+/// Force at an instant [N]: what contact_push() goes to in short steps. `rate`: of the penetration [m/s]; `speed`: of
+/// the approach, see approach_speed(). (docs/notes/contact.md 2)
+double push_at(const ContactLaw& law, double penetration, double rate, double speed);
 
 /// True where the step is too long for a hit: it goes through a large part of it, by a large angle of the oscillator
 /// that the contact is. `begin_rate`: of the penetration.

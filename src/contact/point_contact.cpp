@@ -115,6 +115,20 @@ PointAction point_action(const ContactShape& whole, const ContactLaw& law, doubl
   return out;
 }
 
+PointTouch point_touch(const ContactShape& whole, const ContactLaw& law, double radius, const Vector3& point,
+                       const Vector3& velocity, const PointMemory& memory) {
+  const ContactShape& shape = memory.face != 0 ? beyond_face(whole, memory.face) : whole;
+  const SignedDistance distance = shape.distance(point);
+  PointTouch out{distance.value - radius, distance.gradient};
+  if (out.gap >= 0) return out;
+  const double rate = -distance.gradient.dot(velocity);
+  out.push = push_at(law, -out.gap, rate, approach_speed(-out.gap, rate, memory.speed));
+  // As a step would begin in which nothing moves.
+  if (law.friction > 0)
+    out.friction = -law.grip * contact_grip(law, memory.stretch, Vector3::Zero(), out.normal, out.push).stretch;
+  return out;
+}
+
 bool passes_through(const ContactShape& shape, const Vector3& from, const Vector3& to, double radius) {
   const Vector3 way = to - from;
   const double length = way.norm();

@@ -45,6 +45,17 @@ struct PointAction {
 PointAction point_action(const ContactShape& whole, const ContactLaw& law, double radius, const PointMotion& motion,
                          const PointMemory& memory, bool with_slope);
 
+/// What acts on the ball at an instant, where its surface touches.
+struct PointTouch {
+  double gap = 0;   ///< < 0 inside [m]
+  Vector3 normal;   ///< unit, outwards
+  double push = 0;  ///< along it [N]
+  Vector3 friction = Vector3::Zero();
+};
+/// `point`, `velocity`: of the ball's middle; `memory`: as the last step has left it.
+PointTouch point_touch(const ContactShape& whole, const ContactLaw& law, double radius, const Vector3& point,
+                       const Vector3& velocity, const PointMemory& memory);
+
 /// What a point feels of a shape over a step: all of it, or what is beyond one face.
 struct FeltShape {
   ContactShape shape;

@@ -27,6 +27,7 @@ constexpr double kSmallestStrain = 1e-9;
 const ArrowKind kEfforts{"joint efforts", make_color(1, 0.65, 0.1)};
 const ArrowKind kWrenches{"applied wrenches", make_color(1, 0.35, 0.8)};
 const ArrowKind kReactions{"reactions", make_color(0.6, 0.9, 1)};
+const ArrowKind kContacts{"contacts", make_color(0.5, 1, 0.4)};
 
 bool measures_reaction(const scene::Sensor& sensor) {
   return sensor.kind == scene::SensorKind::Wrench || sensor.kind == scene::SensorKind::Reaction;
@@ -69,13 +70,14 @@ double balance(const Energies& energies) {
 }  // namespace
 
 bool* MarkerChoice::find(const std::string& name) {
-  bool* const members[] = {&beams, &trails, &efforts, &wrenches, &reactions, &text, &legend};
+  bool* const members[] = {&beams, &trails, &efforts, &wrenches, &reactions, &contacts, &text, &legend};
   const auto found = std::find(names().begin(), names().end(), name);
   return found == names().end() ? nullptr : members[found - names().begin()];
 }
 
 const std::vector<std::string>& MarkerChoice::names() {
-  static const std::vector<std::string> names{"beams", "trails", "efforts", "wrenches", "reactions", "text", "legend"};
+  static const std::vector<std::string> names{"beams",     "trails",   "efforts", "wrenches",
+                                              "reactions", "contacts", "text",    "legend"};
   return names;
 }
 
@@ -119,6 +121,7 @@ visualization_msgs::MarkerArray MarkerMessages::make(const ros::Time& stamp, std
     if (choice_.efforts && !efforts_.empty()) content.kinds.push_back(kEfforts);
     if (choice_.wrenches) content.kinds.push_back(kWrenches);
     if (!reactions_.empty()) content.kinds.push_back(kReactions);
+    if (choice_.contacts && !simulation_.scene().contacts.empty()) content.kinds.push_back(kContacts);
     add_legend(header, extent_, content, message);
   }
   delete_others(header, message);
@@ -152,13 +155,19 @@ void MarkerMessages::add_all_arrows(const std_msgs::Header& header, visualizatio
   const std::vector<scene::Sensor>& sensors = simulation_.scene().sensors;
   for (std::size_t i = 0; i < sensors.size() && choice_.reactions; ++i)
     if (measures_reaction(sensors[i])) reactions_.push_back(simulation_.sensed_wrench(i));
-  for (const auto* shown : {&efforts_, &wrenches_, &reactions_}) arrow_scale_.note(*shown);
+  contacts_.clear();
+  if (choice_.contacts) simulation_.contacts(contacts_);
+  pushes_.clear();
+  for (const ActingContact& contact : contacts_)
+    pushes_.push_back({contact.position, {contact.force, Vector3::Zero()}});
+  for (const auto* shown : {&efforts_, &wrenches_, &reactions_, &pushes_}) arrow_scale_.note(*shown);
   const auto add = [&](const ArrowKind& kind, const std::vector<ActingWrench>& wrenches) {
     add_arrows(header, kind.name, wrenches, arrow_scale_, extent_.radius, kind.color, message);
   };
   add(kEfforts, efforts_);
   add(kWrenches, wrenches_);
   add(kReactions, reactions_);
+  add(kContacts, pushes_);
 }
 
 void MarkerMessages::add_text(const std_msgs::Header& header, std::optional<double> real_time_factor,

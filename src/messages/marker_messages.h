@@ -27,6 +27,7 @@ struct MarkerChoice {
   bool efforts = true;         ///< of joint coordinates
   bool wrenches = true;        ///< loads of the scene, and what is applied from outside
   bool reactions = true;       ///< of joints, where a sensor of kind wrench or reaction asks for them
+  bool contacts = true;        ///< forces of what is touched, on the first of each pair
   bool text = true;            ///< time, real-time factor, energies
   bool legend = true;          ///< of colours and arrows
   double trail_duration = 10;  ///< simulated [s]
@@ -77,8 +78,9 @@ class MarkerMessages {
   Trails trails_;
   double largest_strain_ = 0;
   ArrowScale arrow_scale_;
-  std::vector<ActingWrench> efforts_, wrenches_, reactions_;  ///< scratch
-  std::set<std::pair<std::string, int>> shown_;               ///< names and ids
+  std::vector<ActingWrench> efforts_, wrenches_, reactions_, pushes_;  ///< scratch
+  std::vector<ActingContact> contacts_;                                ///< scratch
+  std::set<std::pair<std::string, int>> shown_;                        ///< names and ids
 };
 
 }  // namespace flexarm::messages

@@ -2,6 +2,8 @@
 /// What acts between points of the mechanism: one class for each kind.
 
 #include <algorithm>
+#include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -72,6 +74,16 @@ struct ForceMotion {
   const double* memory;                    ///< the element's own part of State::force_memory
 };
 
+/// A point at which an element's first link touches its second one, see ForceElement::links(), at an instant: as the
+/// law has it there, with the friction that the last step has left.
+struct TouchingPoint {
+  Vector3 position;        ///< on the surface of the first, from where those of nodes are, world axes [m]
+  Vector3 normal;          ///< unit, from the second to the first
+  Vector3 push, friction;  ///< on the first, along the normal and across it [N]
+  double gap = 0;          ///< < 0: so deep is one in the other [m]
+};
+using TouchingPointTaker = std::function<void(const TouchingPoint&)>;
+
 /// What acts between points of the mechanism. Constant, as the model is whose part it is; what it remembers is in the
 /// state. Steps, energies, equilibria, modes, linear models, sensitivities and results know force elements by this
 /// class alone.
@@ -87,7 +99,8 @@ class ForceElement {
   const std::string& name() const { return name_; }
   /// What `flexarm check` says of it, but for its kind, name and links.
   virtual std::string description() const = 0;
-  /// Names of the links that it acts between, where it comes of no ForceElementDescription, which knows them.
+  /// Names of the links that it acts between, where it comes of no ForceElementDescription, which knows them. All
+  /// contacts of a pair have them in the same order.
   virtual std::vector<std::string> links() const { return {}; }
 
   // ---- where
@@ -129,6 +142,12 @@ class ForceElement {
   /// Appends their values.
   virtual void put_out(const ForceMotion& motion, std::vector<double>& values) const {
     static_cast<void>(motion), static_cast<void>(values);
+  }
+  /// Of a contact, whose links() are two: calls `take` of each point that touches. Returns the smallest gap between
+  /// both links, < 0 where they touch [m].
+  virtual double touch(const ForceMotion& motion, const TouchingPointTaker& take) const {
+    static_cast<void>(motion), static_cast<void>(take);
+    return std::numeric_limits<double>::infinity();
   }
 
  protected:

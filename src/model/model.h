@@ -145,10 +145,26 @@ struct HeldJoint {
   std::vector<int> outboard;          ///< joints that hang on them
 };
 
+/// Two bodies that may touch, and the elements by which they do.
+struct TouchingPair {
+  struct Element {
+    std::size_t index;   ///< into Model::force_elements
+    std::size_t memory;  ///< where its own part of State::force_memory begins
+  };
+  std::string first, second;  ///< names of links or grounds, as ForceElement::links() has them
+  std::vector<Element> elements;
+};
+
 /// Where a sensor sits.
 struct SensorPlace {
+  /// A pair whose contacts it measures: as they act on the first, or on the second.
+  struct Touched {
+    std::size_t pair;  ///< index into Model::touching_pairs
+    bool is_first;
+  };
   ProbePoint point;
   int reaction = -1;  ///< index into Model::reactions; -1: it does not measure one
+  std::vector<Touched> touched = {};
 };
 
 struct Model {
@@ -184,6 +200,7 @@ struct Model {
   std::vector<ProbePoint> probes;
   std::vector<ReactionPlace> reactions;  ///< those that somebody asks for
   std::vector<SensorPlace> sensors;
+  std::vector<TouchingPair> touching_pairs;  ///< of force_elements those that are contacts
 };
 
 /// Of all that moves [kg].

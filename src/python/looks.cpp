@@ -107,6 +107,23 @@ void bind_sums(SimulationClass& type) {
       type, "mass", [](const Simulation& s) { return s.mass(); }, "of all that moves [kg]");
 }
 
+py::list contacts(const Simulation& simulation) {
+  std::vector<ActingContact> contacts;
+  simulation.contacts(contacts);
+  const auto array = [](const Vector3& vector) { return numbers(3, [&](int i) { return vector[i]; }); };
+  py::list out;
+  for (const ActingContact& contact : contacts)
+    out.append(make("flexarm.values", "Contact", contact.first, contact.second, array(contact.position),
+                    array(contact.normal), array(contact.force), contact.penetration));
+  return out;
+}
+
+void bind_contacts(SimulationClass& type) {
+  look(type, "contacts", &contacts,
+       "where links touch each other and grounds now: a list of Contact, one for each point: first, second, position, "
+       "normal, force, penetration");
+}
+
 void bind_settings(SimulationClass& type) {
   type.def_property_readonly(
       "scene", [](const GuardedSimulation& s) { return s.scene(); }, "the Scene of which it was made");
@@ -148,6 +165,7 @@ Raises SceneError if the scene is impossible as a mechanism; what is doubtful ab
   bind_names(type);
   bind_joints(type);
   bind_sums(type);
+  bind_contacts(type);
   type.def("__repr__", [](GuardedSimulation& guarded) {
     const Simulation& s = guarded.use();
     return fmt::format("<flexarm.Simulation of '{}' at t = {:g} s: {} joints, {} unknowns, {} in steps of {:g} s>",

@@ -46,6 +46,7 @@ Node::Node()
                        period(shown_.step_size(), parameters_)),
       state_publisher_(node_, shown_, run_, parameters_.publish_rate, parameters_.frame_prefix),
       beam_state_publisher_(node_, shown_, run_, parameters_.publish_rate, parameters_.frame_prefix),
+      contact_publisher_(private_node_, shown_, run_, parameters_.publish_rate, parameters_.frame_prefix),
       marker_publisher_(node_, shown_, run_, parameters_.marker_rate, parameters_.frame_prefix, parameters_.markers),
       sensor_publisher_(node_, shown_, run_, parameters_.frame_prefix),
       status_publisher_(private_node_, shown_, run_, parameters_.status_rate, parameters_.frame_prefix),
@@ -194,6 +195,7 @@ void Node::publish(bool force) {
   if (!stamp) return;
   state_publisher_.publish(*stamp, force || run_.lock_step);  // who commands the next step waits for it
   beam_state_publisher_.publish(*stamp, force);
+  contact_publisher_.publish(*stamp, force);
   marker_publisher_.publish(*stamp, force);
   if (pull_handles_ && handle_schedule_.due(*stamp, force)) pull_handles_->follow();
   sensor_publisher_.publish(*stamp);
@@ -214,6 +216,7 @@ void Node::publish_news() {
 void Node::set_rates() {
   state_publisher_.set_rate(parameters_.publish_rate);
   beam_state_publisher_.set_rate(parameters_.publish_rate);
+  contact_publisher_.set_rate(parameters_.publish_rate);
   marker_publisher_.set_rate(parameters_.marker_rate);
   handle_schedule_ = PublicationSchedule(parameters_.marker_rate);
   status_publisher_.set_rate(parameters_.status_rate);
@@ -288,6 +291,7 @@ void Node::adopt_scene() {
   shown_ = stepping_.simulation().copy();
   set_pace();
   state_publisher_.adopt_scene();
+  contact_publisher_.adopt_scene();
   marker_publisher_.adopt_scene();
   sensor_publisher_.adopt_scene();
   command_interface_.adopt_scene();

@@ -13,6 +13,7 @@
 #include "bell.h"
 #include "clock_publisher.h"
 #include "command_interface.h"
+#include "contact_publisher.h"
 #include "diagnostics.h"
 #include "flexarm/scene/scene_description.h"
 #include "flexarm/simulation/simulation.h"
@@ -136,6 +137,7 @@ class Node {
   ClockPublisher clock_publisher_;
   StatePublisher state_publisher_;
   BeamStatePublisher beam_state_publisher_;
+  ContactPublisher contact_publisher_;
   MarkerPublisher marker_publisher_;
   SensorPublisher sensor_publisher_;
   StatusPublisher status_publisher_;

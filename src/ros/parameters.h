@@ -21,7 +21,7 @@ struct Parameters {
   double real_time_factor = 1;  ///< simulated per wall time; 0: as fast as possible
   double max_catch_up = 0.1;    ///< backlog that is made up before steps are dropped, wall time [s]
   bool paused = false;          ///< at the start
-  double publish_rate = 100;    ///< joint_states, /tf, beam_states [Hz]
+  double publish_rate = 100;    ///< joint_states, /tf, beam_states, ~contacts [Hz]
   double marker_rate = 25;      ///< beam_markers [Hz]
   messages::MarkerChoice markers;
   double status_rate = 10;   ///< ~status [Hz]

@@ -236,6 +236,20 @@ class ReferenceCheck {
                       quoted(sensor.joint));
     else if (needs_joint && sensor.joint.empty() && sensor.link == scene_.root_link)
       findings_.error(sensor.location.line, element, "no joint carries the root link", quoted(sensor.link));
+    check_group(sensor, element);
+  }
+
+  void check_group(const Sensor& sensor, const std::string& element) const {
+    if (!sensor.group.empty() && sensor.kind != SensorKind::Contact)
+      findings_.error(sensor.location.line, element, "group is for sensors of kind contact");
+    const auto is_ground = [&](const std::string& name) {
+      return std::any_of(scene_.grounds.begin(), scene_.grounds.end(),
+                         [&](const GroundDescription& ground) { return ground.name == name; });
+    };
+    for (const std::string& name : sensor.group)
+      if (links_.count(name) == 0 && !is_ground(name))
+        findings_.error(sensor.location.line, element, "group must be links and grounds of the scene, apart by spaces",
+                        quoted(name));
   }
 
   bool closes_loop_at(const std::string& name, const std::string& link) const {

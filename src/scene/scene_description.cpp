@@ -56,6 +56,7 @@ const std::vector<SensorChannel>& sensor_channels(SensorKind kind) {
     case SensorKind::Wrench:
     case SensorKind::Reaction:
     case SensorKind::SectionForce:
+    case SensorKind::Contact:
       return wrench;
     case SensorKind::Strain:
       return strain;

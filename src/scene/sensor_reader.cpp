@@ -1,7 +1,9 @@
 #include "scene/readers.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
+#include <sstream>
 
 #include <fmt/format.h>
 
@@ -9,8 +11,9 @@ namespace flexarm::scene {
 namespace {
 
 constexpr Choice<SensorKind> kKinds[] = {
-    {"wrench", SensorKind::Wrench}, {"reaction", SensorKind::Reaction}, {"section_force", SensorKind::SectionForce},
-    {"strain", SensorKind::Strain}, {"imu", SensorKind::Imu},           {"pose", SensorKind::Pose}};
+    {"wrench", SensorKind::Wrench},  {"reaction", SensorKind::Reaction}, {"section_force", SensorKind::SectionForce},
+    {"strain", SensorKind::Strain},  {"imu", SensorKind::Imu},           {"pose", SensorKind::Pose},
+    {"contact", SensorKind::Contact}};
 constexpr std::size_t kMostErrors = 6;
 /// Samples of a run of years can be counted.
 constexpr NumberRange kRate{"> 0 and at most 1e9", [](double x) { return x > 0 && x <= 1e9; }};
@@ -25,6 +28,15 @@ std::vector<double> read_errors(const XmlElement& sensor, const char* attribute,
   return {};
 }
 
+/// Names apart by white space.
+std::vector<std::string> read_group(const XmlElement& sensor) {
+  const std::optional<std::string> text = sensor.name("group");
+  std::istringstream words(text.value_or(""));
+  const std::vector<std::string> names{std::istream_iterator<std::string>(words), {}};
+  if (text && names.empty()) sensor.attribute_error("group", "group must be names of links or grounds");
+  return names;
+}
+
 }  // namespace
 
 Sensor read_sensor(const XmlElement& unnamed) {
@@ -32,9 +44,10 @@ Sensor read_sensor(const XmlElement& unnamed) {
   out.name = unnamed.name("name").value_or("");
   out.location = unnamed.location();
   const XmlElement sensor = unnamed.with_name(out.name);
-  sensor.expect_only({"name", "kind", "link", "joint", "at", "rate", "noise", "bias", "seed"});
+  sensor.expect_only({"name", "kind", "link", "joint", "group", "at", "rate", "noise", "bias", "seed"});
   out.link = sensor.name("link").value_or("");
   if (sensor.has("joint")) out.joint = sensor.name("joint").value_or("");
+  if (sensor.has("group")) out.group = read_group(sensor);
   out.at = sensor.vector("at", out.at);
   if (sensor.has("rate")) out.rate = sensor.number("rate", kRate).value_or(0);
   if (sensor.has("seed")) out.seed = sensor.integer("seed", 0, std::numeric_limits<int>::max()).value_or(0);

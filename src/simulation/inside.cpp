@@ -2,6 +2,7 @@
 
 #include "analysis/mechanism_states.h"
 #include "simulation/implementation.h"
+#include "simulation/touching.h"
 
 namespace flexarm {
 
@@ -38,6 +39,16 @@ void put_out_force(const Simulation& simulation, std::size_t element, std::vecto
   const double* memory = s.state.force_memory.data();
   for (std::size_t k = 0; k < element; ++k) memory += s.model.force_elements[k]->memory_size();
   s.model.force_elements.at(element)->put_out({s.state, s.published.velocities(s.view()).nodes(), memory}, values);
+}
+void put_out_touch(const Simulation& simulation, std::size_t pair, std::vector<double>& values) {
+  const auto& s = Inside::of(simulation);
+  Vector3 force = Vector3::Zero();
+  int points = 0;
+  const double gap = touch(s.model.touching_pairs.at(pair), s.view(), s.published, [&](const TouchingPoint& point) {
+    force += point.push + point.friction;
+    ++points;
+  });
+  values.insert(values.end(), {force.x(), force.y(), force.z(), static_cast<double>(points), gap});
 }
 const State& initial_state_of(const Simulation& simulation) {
   return *Inside::of(simulation).initial;

@@ -39,6 +39,10 @@ const std::vector<double>& update_norms_of(const Simulation& simulation);
 /// Appends what a force element of the model puts out of the present state.
 void put_out_force(const Simulation& simulation, std::size_t element, std::vector<double>& values);
 
+/// Of Model::touching_pairs: appends the force on the first body, world axes [N], how many points touch, and the
+/// smallest gap [m].
+void put_out_touch(const Simulation& simulation, std::size_t pair, std::vector<double>& values);
+
 /// Where a simulation starts, with what the scheme keeps there.
 const State& initial_state_of(const Simulation& simulation);
 /// Takes somebody along with the steps of a simulation from now on; null: nobody.

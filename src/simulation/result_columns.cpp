@@ -58,6 +58,9 @@ void sensor_values(const Simulation& simulation, const StepCounts&, std::size_t 
 void force_values(const Simulation& simulation, const StepCounts&, std::size_t i, Row& row) {
   put_out_force(simulation, i, row);
 }
+void touch_values(const Simulation& simulation, const StepCounts&, std::size_t i, Row& row) {
+  put_out_touch(simulation, i, row);
+}
 void energy_values(const Simulation& simulation, const StepCounts&, std::size_t, Row& row) {
   const Energies e = simulation.energies();
   row.insert(row.end(), {e.kinetic, e.strain, e.potential, e.total(), e.work, e.dissipated});
@@ -179,6 +182,15 @@ ResultColumns::ResultColumns(const Simulation& simulation, Solver solver, const 
     Names names;
     for (const auto& [name, unit] : elements[i]->outputs()) names.push_back({name, unit});
     selection.add(std::string(elements[i]->kind()) + "/" + elements[i]->name() + "/", names, force_values, i);
+  }
+  const std::vector<TouchingPair>& pairs = model_of(simulation).touching_pairs;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const auto names_it = [&](const scene::ContactDescription& contact) {
+      return contact.first == pairs[i].first && contact.second == pairs[i].second;
+    };
+    if (std::none_of(scene.contacts.begin(), scene.contacts.end(), names_it)) continue;
+    selection.add("contact/" + pairs[i].first + "/" + pairs[i].second + "/",
+                  {{"fx", "N"}, {"fy", "N"}, {"fz", "N"}, {"points", "1"}, {"gap", "m"}}, touch_values, i);
   }
   selection.add(
       "energy/",

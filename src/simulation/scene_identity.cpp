@@ -152,9 +152,10 @@ class SceneFingerprint {
   }
   void add(const scene::PrescribedMotion& motion) { all(motion.coordinate, motion.position); }
   void add(const scene::Sensor& sensor) {
-    const auto& [name, kind, link, joint, at, rate, noise, bias, seed, location] = sensor;
+    const auto& [name, kind, link, joint, group, at, rate, noise, bias, seed, location] = sensor;
     all(name, kind, link, at, rate, noise, bias, seed);
     if (!joint.empty()) all(joint);
+    if (!group.empty()) all(group);
   }
   void add(const std::shared_ptr<const scene::ForceElementDescription>& element) {
     const std::vector<scene::LinkPoint> points = element->points();

@@ -5,6 +5,7 @@
 #include "math/normal_noise.h"
 #include "math/so3.h"
 #include "simulation/observables.h"
+#include "simulation/touching.h"
 
 namespace flexarm {
 namespace {
@@ -46,13 +47,37 @@ Errors errors_of(const Sensor& sensor, long sample) {
   return errors;
 }
 
+Pose link_pose(const SensorPlace& place, const MotionView& view) {
+  return attached_pose(view.state, view.model.links[place.point.link].frame);
+}
+
 Vector6 measured_wrench(const Sensor& sensor, const SensorPlace& place, const MotionView& view) {
   const Wrench wrench = transmitted_wrench(view.state, place.reaction);
-  const Pose link = attached_pose(view.state, view.model.links[place.point.link].frame);
+  const Pose link = link_pose(place, view);
   const Vector3 arm = link.orientation * sensor.at;
   const Quaternion axes = sensor.kind == SensorKind::Wrench ? link.orientation.conjugate() : Quaternion::Identity();
   Vector6 out;
   out << axes * wrench.force, axes * Vector3(wrench.moment - arm.cross(wrench.force));
+  return out;
+}
+
+/// Of all contacts.
+Vector6 touching_wrench(const Sensor& sensor, const SensorPlace& place, const MotionView& view,
+                        PublishedMotion& motion) {
+  const Pose link = link_pose(place, view);
+  const Vector3 about = link * sensor.at;
+  Wrench sum;
+  for (const auto& [pair, is_first] : place.touched) {
+    const double sign = is_first ? 1 : -1;
+    touch(view.model.touching_pairs[pair], view, motion, [&, sign = sign](const TouchingPoint& point) {
+      const Vector3 force = sign * (point.push + point.friction);
+      sum.force += force;
+      sum.moment += (point.position - about).cross(force);
+    });
+  }
+  const Quaternion axes = link.orientation.conjugate();
+  Vector6 out;
+  out << axes * sum.force, axes * sum.moment;
   return out;
 }
 
@@ -89,6 +114,8 @@ void measure(const Sensor& sensor, const SensorPlace& place, const MotionView& v
     case SensorKind::Strain:
       sample.values[0] = fibre_strain(view.model, view.state, place.point) + errors[0];
       return;
+    case SensorKind::Contact:
+      return set(touching_wrench(sensor, place, view, motion));
     case SensorKind::Imu:
       return set(measured_motion(place, view, motion));
     case SensorKind::Pose:

@@ -18,6 +18,7 @@
 #include "simulation/joint_state.h"
 #include "simulation/observables.h"
 #include "simulation/servo_commands.h"
+#include "simulation/touching.h"
 #include "simulation/wrenches.h"
 
 namespace flexarm {
@@ -371,6 +372,16 @@ void Simulation::outside_wrenches(std::vector<ActingWrench>& wrenches) const {
 }
 double Simulation::mass() const {
   return mass_of(implementation_->model);
+}
+void Simulation::contacts(std::vector<ActingContact>& contacts) const {
+  const Implementation& s = *implementation_;
+  const Vector3 origin = world_origin(s.model, s.state);
+  contacts.clear();
+  for (const TouchingPair& pair : s.model.touching_pairs)
+    touch(pair, s.view(), s.published, [&](const TouchingPoint& point) {
+      contacts.push_back(
+          {pair.first, pair.second, origin + point.position, point.normal, point.push + point.friction, -point.gap});
+    });
 }
 const SensorSample& Simulation::sample(std::size_t sensor) const {
   return entry(implementation_->state.samples, sensor, "sensor");

@@ -61,6 +61,39 @@ TEST(Check, SaysWhichBeamsAreRigid) {
   EXPECT_TRUE(std::regex_search(outcome.output, std::regex("arm .* 0.84823 +rigid\n"))) << outcome.output;
 }
 
+// A line for each pair, whatever elements it has: boxes have points both ways, beams those of each of their elements.
+TEST(Check, HasALineForEachPairThatMayTouch) {
+  const auto body = [](const std::string& name, const std::string& start) {
+    return fmt::format(R"(<joint name="of_{0}" type="floating"> <parent link="world"/> <child link="{0}"/> {1} </joint>
+      <link name="{0}"> <inertial> <mass value="1"/> <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/> </inertial>
+        <collision> <geometry> <box size="0.1 0.1 0.1"/> </geometry> </collision> </link>)",
+                       name, "<origin xyz=\"" + start + "\"/>");
+  };
+  const Outcome outcome =
+      shell("flexarm check " + scene_file(R"(<robot name="r"> <link name="world"/> <ground name="floor"/>)" +
+                                          body("low", "0 0 0.049") + body("high", "0 0 0.149") +
+                                          R"(<joint name="clamp" type="fixed"> <parent link="world"/>
+      <child link="arm"/> <origin xyz="0 0 0.5"/> </joint>
+      <link name="arm"> <beam elements="4"> <centerline> <line to="1 0 0"/> </centerline>
+        <circle radius="0.01"/> <material young="70e9" poisson="0.33" density="2700"/> </beam> </link>
+      <contact first="floor" second="low" restitution="0.5" friction="0.25" stiffness="3e4"/>
+      <contact first="high" second="*"/> </robot>)"));
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  const std::regex line("\ncontact +([a-z]+, [a-z]+) +(.*?)  +([0-9]+ points, .*)");
+  std::map<std::string, std::pair<std::string, std::string>> found;
+  for (std::sregex_iterator i(outcome.output.begin(), outcome.output.end(), line), end; i != end; ++i)
+    EXPECT_TRUE(found.emplace((*i)[1], std::pair((*i)[2], (*i)[3])).second) << "two lines of " << (*i)[1];
+  ASSERT_EQ(found.size(), 4u) << outcome.output;
+  EXPECT_TRUE(std::regex_match(found["floor, low"].first, std::regex("[0-9]+ points inside, 0.001 m deep")))
+      << outcome.output;
+  EXPECT_TRUE(std::regex_match(found["floor, low"].second,
+                               std::regex("[0-9]+ points, 3e\\+04 N/m each, restitution 0.5, friction 0.25")))
+      << outcome.output;
+  EXPECT_EQ(found["low, high"].first, "touches");
+  EXPECT_EQ(found["high, floor"].first, "0.099 m apart");
+  EXPECT_EQ(found["high, arm"].first, "0.291 m apart") << "a radius less than their lines";
+}
+
 // A flexible link in place of a rigid one has no inertia where the drive acts; a hub or a rotor gives it one.
 TEST(Check, WarnsOfDrivenEndsWithoutInertia) {
   const auto check = [](const std::string& hub, const std::string& drive) {

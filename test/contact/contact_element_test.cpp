@@ -192,6 +192,88 @@ TEST_P(OverSteps, OfMeansDoExactWork) {
     }
 }
 
+/// A ball of node 0 in front of a plate of the world, over a step from one place to another at an even speed.
+struct BallAndPlate {
+  explicit BallAndPlate(double begin_x, double end_x)
+      : begin{node_at(Vector3(begin_x, 0, 0), Quaternion::Identity())},
+        end{node_at(Vector3(end_x, 0, 0), Quaternion::Identity())},
+        velocities(1, Vector6::Unit(0) * (end_x - begin_x) / 0.05) {
+    ContactStation ball;
+    ball.radius = 0.02;
+    element =
+        std::make_unique<ContactElement>(std::vector<std::string>{"ball", "plate"}, ContactStations{{0}, {ball}},
+                                         ContactSurface{-1, {{Box{{0.001, 1, 1}}, Pose()}}}, gripping_law(0.3, 1));
+  }
+  ForceStep step() const {
+    ForceStep out{begin, end, velocities};
+    out.duration = 0.05;
+    return out;
+  }
+
+  Poses begin, end;
+  std::vector<Vector6> velocities;
+  std::unique_ptr<ContactElement> element;
+};
+
+/// {force, moment about the world's origin} on what has the stations, by the balance of what rests.
+Vector6 pressed(const Eigen::VectorXd& residual, const std::vector<int>& nodes, const Poses& poses) {
+  Vector6 out = Vector6::Zero();
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const Vector6 on_node = -residual.segment<6>(6 * static_cast<Eigen::Index>(i));
+    out.head<3>() += on_node.head<3>();
+    out.tail<3>() += poses[nodes[i]].position.cross(on_node.head<3>()) + on_node.tail<3>();
+  }
+  return out;
+}
+
+// Where nothing moves, what points are said to do is what the balance has, its moments included; and the names of both
+// sides say only how signs are.
+TEST_F(ContactElements, TellWhatTheyDoAndWhere) {
+  const State state = state_at(end);
+  const std::vector<Vector6> still(4, Vector6::Zero());
+  for (const auto& [name, side, surface] : scenes())
+    for (const bool is_reversed : {false, true}) {
+      const ContactElement element({"", ""}, side, surface, gripping_law(0.05, 0.5), is_reversed);
+      const Action rest = action(end, element, end, stretch, true);
+      const Vector6 expected = (is_reversed ? -1 : 1) * pressed(rest.residual, side.nodes, end);
+      std::vector<double> memory(static_cast<std::size_t>(element.memory_size()), 0.0);
+      for (std::size_t i = 0; i < memory.size(); i += PointMemory::kSize)
+        Eigen::Map<Vector3>(memory.data() + i + 1) = stretch;
+      Vector6 sum = Vector6::Zero();
+      double deepest = 0;
+      const double gap = element.touch({state, still, memory.data()}, [&](const TouchingPoint& point) {
+        const Vector3 force = point.push + point.friction;
+        sum.head<3>() += force;
+        sum.tail<3>() += point.position.cross(force);
+        deepest = std::min(deepest, point.gap);
+        EXPECT_NEAR(point.normal.norm(), 1, 1e-14);
+        EXPECT_GT(point.push.dot(point.normal), 0) << "it pushes the first away";
+        EXPECT_LE(point.friction.norm(), 0.05 * point.push.norm() * (1 + 1e-14));
+        EXPECT_NEAR(point.friction.dot(point.normal), 0, 1e-14 * point.push.norm());
+      });
+      EXPECT_GT(expected.norm(), 1) << name;
+      EXPECT_LE((sum - expected).norm(), 1e-13 * expected.norm()) << name << surface.node << is_reversed;
+      EXPECT_EQ(gap, deepest) << name;
+    }
+}
+
+// That of the ball's surface to the plate, whether it touches or not.
+TEST(ContactElement, TellsTheSmallestGap) {
+  for (const double x : {-0.1, -0.0205}) {
+    const BallAndPlate scene(x, x);
+    const State state = state_at(scene.begin);
+    const double memory[PointMemory::kSize] = {};
+    int count = 0;
+    const double gap = scene.element->touch({state, scene.velocities, memory}, [&](const TouchingPoint& point) {
+      ++count;
+      EXPECT_NEAR((point.position - Vector3(x + 0.02, 0, 0)).norm(), 0, 1e-16);
+      EXPECT_NEAR((point.normal - Vector3(-1, 0, 0)).norm(), 0, 1e-16);
+    });
+    EXPECT_NEAR(gap, -x - 0.001 - 0.02, 1e-16);
+    EXPECT_EQ(count, x > -0.021);
+  }
+}
+
 /// One station of a scene that is as deep inside as is asked for.
 Scene alone(const Scene& scene, const ContactStation& station, const Poses& poses, double penetration) {
   const auto pose_of = [&](int node) { return node < 0 ? NodePose() : poses[node]; };
@@ -234,29 +316,6 @@ TEST_F(ContactElements, HaveTheStiffnessAndDampersOfTheirMeasures) {
       }
   EXPECT_GT(count, 12);
 }
-
-/// A ball of node 0 in front of a plate of the world, over a step from one place to another at an even speed.
-struct BallAndPlate {
-  explicit BallAndPlate(double begin_x, double end_x)
-      : begin{node_at(Vector3(begin_x, 0, 0), Quaternion::Identity())},
-        end{node_at(Vector3(end_x, 0, 0), Quaternion::Identity())},
-        velocities(1, Vector6::Unit(0) * (end_x - begin_x) / 0.05) {
-    ContactStation ball;
-    ball.radius = 0.02;
-    element =
-        std::make_unique<ContactElement>(std::vector<std::string>{"ball", "plate"}, ContactStations{{0}, {ball}},
-                                         ContactSurface{-1, {{Box{{0.001, 1, 1}}, Pose()}}}, gripping_law(0.3, 1));
-  }
-  ForceStep step() const {
-    ForceStep out{begin, end, velocities};
-    out.duration = 0.05;
-    return out;
-  }
-
-  Poses begin, end;
-  std::vector<Vector6> velocities;
-  std::unique_ptr<ContactElement> element;
-};
 
 // What goes through, or to the other side, or touches without having been near.
 TEST(ContactElement, AsksForHalvesOfStepsThatItWouldNotSee) {

@@ -73,6 +73,21 @@ TEST(ContactPush, IsTheDerivativeOfTheEnergyAtRest) {
     }
 }
 
+// The mean over a short step is what acts at an instant in it, to the square of its length.
+TEST(ContactPush, AtAnInstantIsTheMeanOfAShortStep) {
+  for (const double depth : {0.7, std::numeric_limits<double>::infinity()})
+    for (const double rate : {-0.05, 0.2})
+      for (const double speed : {0.0, 0.4}) {
+        const ContactLaw law = law_with(0.5, depth);
+        const double p = 0.3, h = 1e-4;
+        const ContactChange change{p - 0.5 * h * rate, p + 0.5 * h * rate, h, speed};
+        const double mean = contact_push(law, change).value;
+        EXPECT_NEAR(push_at(law, p, rate, speed), mean, 1e-8 * mean);
+      }
+  EXPECT_EQ(push_at(law_with(0.5), -0.1, 1, 1), 0);
+  EXPECT_EQ(push_at(law_with(0.5), 0.1, -10, 1), 0) << "it never pulls";
+}
+
 /// Speed behind a hit over that before it, by steps of the mid-point rule so short that their error is below 1e-4:
 /// a hundredth of the oscillator's radian.
 double restitution_of(const ContactLaw& law, double mass, double speed) {

@@ -146,3 +146,24 @@ def test_settings(pendulum):
     assert pendulum.degrees_of_freedom > 0 and pendulum.node_count > 0 and pendulum.mass == pytest.approx(2)
     fine = flexarm.Simulation(pendulum.scene, scheme="newmark", step=1e-4, tolerance=1e-9)
     assert (fine.scheme, fine.step_size, fine.tolerance) == ("newmark", 1e-4, 1e-9)
+
+
+def test_contacts():
+    ball = flexarm.Simulation(flexarm.read_scene_text(
+        '<robot name="ball"><link name="world"/><ground name="floor"/>'
+        '<joint name="fall" type="floating"><parent link="world"/><child link="ball"/></joint>'
+        '<link name="ball"><inertial><mass value="2"/>'
+        '<inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial>'
+        '<collision><geometry><sphere radius="0.1"/></geometry></collision></link>'
+        '<contact first="ball" second="floor"/><sensor name="bumper" kind="contact" link="ball"/>'
+        '<simulation><initial joint="fall/z" position="0.11"/></simulation></robot>'))
+    assert ball.contacts == []
+    ball.run(2000)
+    (contact,) = ball.contacts
+    assert (contact.first, contact.second) == ("ball", "floor")
+    numpy.testing.assert_allclose(contact.force, [0, 0, 2 * 9.81], atol=1e-4)
+    numpy.testing.assert_allclose(contact.normal, [0, 0, 1], atol=1e-12)
+    numpy.testing.assert_allclose(contact.position, [0, 0, -contact.penetration], atol=1e-12)
+    assert bits(contact.force) == bits(values(ball, "contact/ball/floor/f[xyz]"))
+    assert values(ball, "contact/ball/floor/points", "contact/ball/floor/gap").tolist() == [1, -contact.penetration]
+    numpy.testing.assert_allclose(ball.sample("bumper")[:3], contact.force, atol=1e-12)

@@ -200,6 +200,11 @@ TEST_F(Allocation, NoneWhereStopsAreHitFast) {
 // Halving takes a path of its own.
 TEST_F(Allocation, NoneWhereBodiesTouchAndLetGo) {
   scene::ReadResult result = scene::read_scene_file(source_path("config/examples/gripper.urdf"));
+  scene::Sensor sensor;
+  sensor.name = "felt";
+  sensor.kind = scene::SensorKind::Contact;
+  sensor.link = "block";
+  result.scene.value().sensors.push_back(sensor);
   Simulation simulation(result.scene.value());
   int converged = 0, halved = 0;
   expect_none_after_the_first_step(simulation, 900, [&](const StepResult& step) {

@@ -148,6 +148,15 @@ struct Wrench {
   Vector3 moment = Vector3::Zero();  ///< [N m]
 };
 
+/// A point at which one body touches another one: links, or a link and a ground.
+struct ActingContact {
+  std::string first, second;           ///< their names; as its <contact> names them, else in the scene's order
+  Vector3 position = Vector3::Zero();  ///< on the surface, in the world [m]
+  Vector3 normal = Vector3::UnitZ();   ///< unit, from the second to the first, world axes
+  Vector3 force = Vector3::Zero();     ///< on the first, friction included, world axes [N]
+  double penetration = 0;              ///< >= 0 [m]
+};
+
 /// What acts where.
 struct ActingWrench {
   Vector3 position = Vector3::Zero();  ///< in the world [m]

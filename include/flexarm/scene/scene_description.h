@@ -329,7 +329,8 @@ enum class SensorKind {
   SectionForce,  ///< of a flexible link: elastic force and moment in the section's axes, about its reference line
   Strain,        ///< of a flexible link: of the fibre through the sensor's place, along the line
   Imu,           ///< angular velocity, and acceleration less gravity, in axes that turn with the sensor's place
-  Pose           ///< in the world
+  Pose,          ///< in the world
+  Contact        ///< what others do to the link, or to a group, by touching it: in the link's axes about the place
 };
 
 /// One number that a sensor measures: the last part of its name, and its unit.
@@ -348,8 +349,9 @@ struct Sensor {
   std::string name;
   SensorKind kind = SensorKind::Pose;
   std::string link;
-  std::string joint;             ///< Wrench, Reaction: a loop joint of the link; empty: the joint that carries it
-  Vector3 at = Vector3::Zero();  ///< in the undeformed link frame [m]
+  std::string joint;  ///< Wrench, Reaction: a loop joint of the link; empty: the joint that carries it
+  std::vector<std::string> group = {};  ///< Contact: links and grounds that are touched; empty: the link
+  Vector3 at = Vector3::Zero();         ///< in the undeformed link frame [m]
   double rate = 0;  ///< samples per second, each at the end of the first step that reaches it [Hz]; 0: every step
   std::vector<double> noise, bias;  ///< standard deviations and means of the errors; empty: none, one: all alike
   int seed = 0;                     ///< of the noise, besides the sensor's name

@@ -23,8 +23,12 @@ struct ResultColumn {
 ///   probe/NAME/ax|ay|az                      the same, only where a pattern asks for it
 ///   sensor/NAME/...                          for every sensor what scene::sensor_channels() has: its last sample
 ///   KIND/NAME/...                            for every named element between points what it puts out:
-///   spring/NAME/length energy/kinetic|strain|potential|total|work|dissipated momentum/x|y|z, angular_momentum/x|y|z
-///   (about the world origin) solver/step|iterations|halvings|deepest_halving|other_guesses|dissipated_steps
+///                                            spring/NAME/length
+///   contact/FIRST/SECOND/fx|fy|fz|points|gap for every <contact> that names both: the force on the first, how many
+///                                            points touch, the smallest gap
+///   energy/kinetic|strain|potential|total|work|dissipated
+///   momentum/x|y|z, angular_momentum/x|y|z   (about the world origin)
+///   solver/step|iterations|halvings|deepest_halving|other_guesses|dissipated_steps
 ///                                            of a simulation in time: step size, and StepCounts since the row before
 ///   solver/error_estimate                    StepResult::error_estimate, where there is one
 class ResultColumns {

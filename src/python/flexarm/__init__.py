@@ -29,6 +29,7 @@ _HOMES = {
     "SceneWarning": "errors",
     "StepError": "errors",
     "AccurateRun": "values",
+    "Contact": "values",
     "Energies": "values",
     "Mode": "values",
     "Parameter": "values",

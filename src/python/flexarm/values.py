@@ -17,6 +17,17 @@ class Energies(typing.NamedTuple):
     dissipated: float  # since the start
 
 
+class Contact(typing.NamedTuple):
+    """A point at which one body touches another one, as Simulation.contacts has them."""
+
+    first: str  # links or grounds, as a <contact> names both, else in the scene's order
+    second: str
+    position: numpy.ndarray  # shape (3,), in the world [m]
+    normal: numpy.ndarray  # shape (3,), unit, from the second to the first
+    force: numpy.ndarray  # shape (3,), on the first, friction included, world axes [N]
+    penetration: float  # how deep they are in each other [m]
+
+
 class Parameter(typing.NamedTuple):
     """A number that the expressions of a scene name."""
 

@@ -1,0 +1,238 @@
+// What contacts put out, against statics and closed forms: columns, sensors, points.
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include "flexarm/scene/scene_description.h"
+#include "flexarm/scene/urdf_reader.h"
+#include "flexarm/simulation/result_columns.h"
+#include "flexarm/simulation/simulation.h"
+
+namespace flexarm::test::contact_outputs {
+namespace {
+
+constexpr double kG = 9.81, kMass = 3;
+/// What rests has the forces of statics: the contact's overdamped mode decays by exp(-50 t/s) in steps of 1 ms
+/// (docs/notes/contact.md 2), so that after 1 s nothing is left but Newton's tolerance: 1e-12 of the scene's length,
+/// about 1 m, times 10^6 N/m or less.
+constexpr double kForceError = 1e-6;
+
+std::string box(const std::string& name, double mass, const Vector3& size) {
+  const Vector3 squares = size.cwiseAbs2(), inertia = mass / 12 * (Vector3::Constant(squares.sum()) - squares);
+  return fmt::format(
+      "<link name=\"{0}\"><inertial><mass value=\"{1}\"/><inertia ixx=\"{2:.17g}\" iyy=\"{3:.17g}\" izz=\"{4:.17g}\" "
+      "ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial><collision><geometry><box size=\"{5} {6} "
+      "{7}\"/></geometry></collision>"
+      "</link>",
+      name, mass, inertia.x(), inertia.y(), inertia.z(), size.x(), size.y(), size.z());
+}
+
+std::string joint(const std::string& link, const std::string& type, const Vector3& place = Vector3::Zero(),
+                  const std::string& more = "") {
+  return fmt::format(
+      "<joint name=\"of_{0}\" type=\"{1}\"><parent link=\"world\"/><child link=\"{0}\"/>"
+      "<origin xyz=\"{2} {3} {4}\" {5}/></joint>",
+      link, type, place.x(), place.y(), place.z(), more);
+}
+
+Simulation simulation_of(const std::string& parts, const std::string& starts = "", double step = 1e-3,
+                         double gravity = kG) {
+  scene::ReadResult result = scene::read_scene_text(
+      fmt::format("<robot name=\"outputs\"><link name=\"world\"/>{}<simulation><gravity xyz=\"0 0 {:.17g}\"/>"
+                  "<integrator scheme=\"em\" step=\"{:.17g}\" tolerance=\"1e-12\"/>{}</simulation></robot>",
+                  parts, -gravity, step, starts),
+      "outputs.urdf");
+  for (const scene::Diagnostic& finding : result.diagnostics) ADD_FAILURE() << finding.text();
+  return Simulation(result.scene.value());
+}
+
+void run(Simulation& simulation, double until) {
+  while (simulation.time() < until - 0.5 * simulation.step_size()) {
+    const StepResult result = simulation.step();
+    ASSERT_TRUE(result.converged) << simulation.explain(result);
+  }
+}
+
+const Vector3 kSize(0.2, 0.15, 0.1);
+
+/// A block on the floor.
+Simulation block(const std::string& more, const std::string& floor = "<ground name=\"floor\"/>") {
+  return simulation_of(box("block", kMass, kSize) + joint("block", "floating") + floor + more,
+                       "<initial joint=\"of_block/z\" position=\"0.05\"/>");
+}
+
+/// Force, number of points and gap of the only pair that has columns.
+std::vector<double> columns_of(const Simulation& simulation, const std::string& pair) {
+  ResultColumns columns(simulation, ResultColumns::Solver::Without, {"contact/*"});
+  const char* names[] = {"fx", "fy", "fz", "points", "gap"};
+  const char* units[] = {"N", "N", "N", "1", "m"};
+  EXPECT_EQ(columns.columns().size(), 6u);
+  for (std::size_t i = 0; i < 5; ++i) {
+    EXPECT_EQ(columns.columns()[1 + i].name, "contact/" + pair + "/" + names[i]);
+    EXPECT_EQ(columns.columns()[1 + i].unit, units[i]);
+  }
+  const std::vector<double>& row = columns.row(simulation, {});
+  return {row.begin() + 1, row.end()};
+}
+
+Vector3 force_of(const std::vector<double>& values) {
+  return {values[0], values[1], values[2]};
+}
+
+TEST(ContactOutputs, FloorCarriesTheWeightOfABlock) {
+  Simulation simulation = block("<contact first=\"block\" second=\"floor\" friction=\"0.5\"/>");
+  run(simulation, 1.5);
+  const std::vector<double> values = columns_of(simulation, "block/floor");
+  EXPECT_LE((force_of(values) - Vector3(0, 0, kMass * kG)).norm(), kForceError);
+  EXPECT_GE(values[3], 4) << "its corners at least";
+  EXPECT_NEAR(values[4], simulation.link_pose(1).position.z() - 0.05, 1e-12);
+  EXPECT_LT(values[4], 0);
+  std::vector<ActingContact> contacts;
+  simulation.contacts(contacts);
+  ASSERT_EQ(static_cast<double>(contacts.size()), values[3]);
+  Vector3 force = Vector3::Zero(), moment = Vector3::Zero();
+  for (const ActingContact& contact : contacts) {
+    EXPECT_EQ(contact.first, "block");
+    EXPECT_EQ(contact.second, "floor");
+    EXPECT_NEAR((contact.normal - Vector3::UnitZ()).norm(), 0, 1e-15);
+    EXPECT_NEAR(contact.position.z(), -contact.penetration, 1e-12);
+    force += contact.force;
+    moment += contact.position.cross(contact.force);
+  }
+  EXPECT_LE((force - force_of(values)).norm(), 1e-12 * kMass * kG);
+  EXPECT_LE(moment.norm(), kForceError) << "the block does not tilt";
+}
+
+// The names' order in the file is that of the columns, whichever of both has the points.
+TEST(ContactOutputs, AreOfTheFirstThatAContactNames) {
+  Simulation simulation = block("<contact first=\"floor\" second=\"block\"/>");
+  run(simulation, 1.5);
+  EXPECT_LE((force_of(columns_of(simulation, "floor/block")) - Vector3(0, 0, -kMass * kG)).norm(), kForceError);
+}
+
+TEST(ContactOutputs, OfAllOthersHaveNoColumns) {
+  Simulation simulation = block("<contact first=\"block\" second=\"*\"/>");
+  EXPECT_THROW(columns_of(simulation, ""), std::invalid_argument);
+  run(simulation, 1.5);
+  std::vector<ActingContact> contacts;
+  simulation.contacts(contacts);
+  double force = 0;
+  for (const ActingContact& contact : contacts) force += contact.force.z();
+  EXPECT_NEAR(force, kMass * kG, kForceError) << "but they are told";
+}
+
+// A block that sticks on an incline is carried by m g, of which the floor's friction has the sine of its slope. What
+// sticks is damped to a factor of 0.98 each step (docs/notes/contact.md 3): to 1e-26 in 3000.
+TEST(ContactOutputs, FrictionHoldsABlockOnAnIncline) {
+  const double slope = 0.4;
+  const Vector3 normal(-std::sin(slope), 0, std::cos(slope));
+  const Vector3 start = 0.05 * normal;
+  Simulation simulation =
+      simulation_of(box("block", kMass, kSize) + joint("block", "floating") +
+                        fmt::format("<ground name=\"floor\" normal=\"{:.17g} 0 {:.17g}\"/>", normal.x(), normal.z()) +
+                        "<contact first=\"block\" second=\"floor\" friction=\"0.6\"/>",
+                    fmt::format("<initial joint=\"of_block/x\" position=\"{:.17g}\"/><initial joint=\"of_block/z\" "
+                                "position=\"{:.17g}\"/><initial joint=\"of_block/ry\" position=\"{:.17g}\"/>",
+                                start.x(), start.z(), -slope));
+  run(simulation, 3);
+  const Vector3 force = force_of(columns_of(simulation, "block/floor"));
+  const double push = force.dot(normal);
+  EXPECT_NEAR(push, kMass * kG * std::cos(slope), kForceError);
+  EXPECT_NEAR((force - push * normal).norm(), kMass * kG * std::sin(slope), kForceError);
+}
+
+// An undamped contact that stops a mass m of speed v has all of its energy: k x^2 = m v^2 where it is deepest, with the
+// hardened x = p / (1 - (p/d)^2)^2 of the penetration p, d = 0.01 m a tenth of the ball's radius; and the force is
+// k x dx/dp = v sqrt(k m) dx/dp. The largest of samples 1/500 of a radian apart lacks a few 1e-6 of it.
+TEST(ContactOutputs, AnElasticHitHasTheForceOfItsClosedForm) {
+  const double mass = 2, stiffness = 2e4, speed = 0.5, omega = std::sqrt(stiffness / mass);
+  Simulation simulation = simulation_of(
+      fmt::format("<link name=\"ball\"><inertial><mass value=\"{}\"/><inertia ixx=\"0.01\" iyy=\"0.01\" izz=\"0.01\" "
+                  "ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial><collision><geometry><sphere radius=\"0.1\"/></geometry>"
+                  "</collision></link><ground name=\"floor\"/>",
+                  mass) +
+          joint("ball", "floating") +
+          fmt::format("<contact first=\"ball\" second=\"floor\" restitution=\"1\" stiffness=\"{}\"/>", stiffness),
+      "<initial joint=\"of_ball/z\" position=\"0.1\"/>"
+      "<initial link=\"ball\" linear=\"0 0 -0.5\"/>",
+      1 / omega / 500, 0);
+  double largest = 0, penetration = 0;
+  ResultColumns columns(simulation, ResultColumns::Solver::Without, {"contact/*"});
+  for (int n = 0; n < 1800; ++n) {
+    ASSERT_TRUE(simulation.step().converged);
+    const std::vector<double>& row = columns.row(simulation, {});
+    largest = std::max(largest, row[3]);
+    penetration = std::max(penetration, -row[5]);
+  }
+  const double deepest = penetration, part = deepest / 0.01, room = 1 - part * part;
+  EXPECT_NEAR(deepest / (room * room), speed / omega, 1e-4 * speed / omega) << "all of its energy is in it";
+  const double slope = (1 + 3 * part * part) / (room * room * room);
+  EXPECT_NEAR(largest, slope * speed * std::sqrt(stiffness * mass), 1e-4 * largest);
+  EXPECT_EQ(columns.row(simulation, {})[3], 0) << "it is off again";
+  EXPECT_GT(columns.row(simulation, {})[5], 0);
+}
+
+// A pad that is built in, turned by a quarter about y so that its x axis points down, carries a block beside its
+// middle.
+TEST(ContactOutputs, SensorUnderABlockMeasuresItsWeight) {
+  Simulation simulation = simulation_of(
+      box("block", kMass, {0.1, 0.1, 0.1}) + joint("block", "floating") + box("pad", 1, {0.1, 0.4, 0.4}) +
+          joint("pad", "fixed", {0, 0, 0.2}, "rpy=\"0 1.5707963267948966 0\"") +
+          "<contact first=\"block\" second=\"*\" friction=\"0.5\"/>"
+          "<sensor name=\"cell\" kind=\"contact\" link=\"pad\" at=\"0 0.02 0\"/>"
+          "<sensor name=\"felt\" kind=\"contact\" link=\"world\" group=\"block\" bias=\"1 0 0 0 0 0\"/>"
+          "<sensor name=\"none\" kind=\"contact\" link=\"pad\" group=\"block pad\"/>",
+      "<initial joint=\"of_block/x\" position=\"0.05\"/><initial joint=\"of_block/z\" position=\"0.3\"/>");
+  run(simulation, 1.5);
+  const double weight = kMass * kG;
+  const auto values = [&](std::size_t i) {
+    Vector6 out;
+    for (int k = 0; k < 6; ++k) out[k] = simulation.sample(i).values[static_cast<std::size_t>(k)];
+    return out;
+  };
+  const Vector3 place = simulation.link_pose(1).position;
+  // The pad's axes: x is the world's -z, y its y, z its x. The block's middle is at x = 0.05 and, from `at`, y = -0.02.
+  const Vector3 arm(0.0, place.y() - 0.02, place.x());
+  Vector6 expected;
+  expected << weight, 0, 0, Vector3(arm.cross(Vector3(weight, 0, 0)));
+  EXPECT_LE((values(0) - expected).norm(), kForceError);
+  expected << 1, 0, weight, Vector3(place.cross(Vector3(0, 0, weight)));
+  EXPECT_LE((values(1) - expected).norm(), kForceError) << "on the block, about the world's origin, with its bias";
+  EXPECT_EQ(values(2), Vector6(Vector6::Zero())) << "within a group forces cancel";
+}
+
+// A flexible blade lies on the floor: points are told along it, and the clamp carries what the floor does not.
+TEST(ContactOutputs, FloorAndClampCarryABeam) {
+  Simulation simulation = simulation_of(
+      "<link name=\"arm\"><beam elements=\"10\" order=\"2\"><centerline><line to=\"1 0 0\"/></centerline>"
+      "<circle radius=\"0.004\"/><material young=\"7e9\" poisson=\"0.3\" density=\"2700\"/></beam></link>"
+      "<joint name=\"clamp\" type=\"fixed\"><parent link=\"world\"/><child link=\"arm\"/></joint>"
+      "<ground name=\"low\" offset=\"-0.05\"/><contact first=\"low\" second=\"arm\" stiffness=\"1e6\"/>"
+      "<sensor name=\"root\" kind=\"reaction\" link=\"arm\"/>");
+  ASSERT_TRUE(simulation.solve_static(1).converged);
+  run(simulation, 0.01);
+  const double weight = 2700 * 3.14159265358979323846 * 0.004 * 0.004 * kG;
+  const double floor = -columns_of(simulation, "low/arm")[2], clamp = simulation.sample(0).values[2];
+  EXPECT_GT(floor, 0.05 * weight);
+  EXPECT_NEAR(floor + clamp, weight, 1e-4 * weight) << "it starts in equilibrium, to what statics leave";
+}
+
+TEST(ContactOutputs, SensorsOfWhatNothingTouchesAreRefused) {
+  const std::string contact = "<contact first=\"block\" second=\"floor\"/>";
+  const auto refused = [&](const std::string& more) {
+    try {
+      block(more);
+    } catch (const ModelError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refused(contact + "<sensor name=\"cell\" kind=\"contact\" link=\"world\"/>"),
+            "outputs.urdf:1: <sensor> 'cell': no <contact> lets anything touch link 'world'");
+  EXPECT_EQ(refused("<sensor name=\"cell\" kind=\"contact\" link=\"world\" group=\"block floor\"/>"),
+            "outputs.urdf:1: <sensor> 'cell': no <contact> lets anything touch its group");
+  EXPECT_EQ(refused(contact + "<sensor name=\"cell\" kind=\"contact\" link=\"world\" group=\"block\"/>"), "");
+}
+
+}  // namespace
+}  // namespace flexarm::test::contact_outputs
