@@ -101,17 +101,6 @@ std::string mjcf(const PlaneProblem& problem, const Variant& variant) {
   return text + "</worldbody></mujoco>";
 }
 
-MujocoModel compiled(const std::string& text) {
-  const auto files = std::make_unique<mjVFS>();  // of megabytes
-  mj_defaultVFS(files.get());
-  const int place = mj_makeEmptyFileVFS(files.get(), "chain.xml", static_cast<int>(text.size()));
-  if (place < 0) throw std::runtime_error("MuJoCo: no file in memory");
-  std::memcpy(files->filedata[place], text.data(), text.size());
-  MujocoModel model = mujoco_model("chain.xml", files.get());
-  mj_deleteVFS(files.get());
-  return model;
-}
-
 void drive_hub() {
   mjcb_control = [](const mjModel* model, mjData* data) {
     data->qfrc_applied[0] = model->dof_armature[0] * hub_acceleration(data->time);
@@ -123,7 +112,7 @@ class Chain {
   Chain(const PlaneProblem& problem, const Variant& variant)
       : problem_(problem),
         segments_(variant.segments),
-        model_(compiled(mjcf(problem, variant))),
+        model_(mujoco_model_of_text(mjcf(problem, variant))),
         data_(mujoco_data(model_.get())) {}
 
   void advance(long steps) {

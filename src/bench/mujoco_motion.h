@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -27,6 +28,17 @@ inline MujocoModel mujoco_model(const std::string& file, const mjVFS* memory = n
   char error[1000] = "";
   MujocoModel model(mj_loadXML(file.c_str(), memory, error, sizeof error));
   if (!model) throw std::runtime_error(std::string("MuJoCo: ") + error);
+  return model;
+}
+
+inline MujocoModel mujoco_model_of_text(const std::string& text) {
+  const auto files = std::make_unique<mjVFS>();  // of megabytes
+  mj_defaultVFS(files.get());
+  const int place = mj_makeEmptyFileVFS(files.get(), "text.xml", static_cast<int>(text.size()));
+  if (place < 0) throw std::runtime_error("MuJoCo: no file in memory");
+  std::memcpy(files->filedata[place], text.data(), text.size());
+  MujocoModel model = mujoco_model("text.xml", files.get());
+  mj_deleteVFS(files.get());
   return model;
 }
 

@@ -261,6 +261,7 @@ SpeedReport measure_speed(const std::string& folder, const std::vector<SpeedProb
   }
   report.real_time = measure_real_time(folder, quick);
   report.planar = compare_planar(folder, report);
+  report.contacts = compare_contacts(quick);
   return report;
 }
 

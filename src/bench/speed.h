@@ -165,11 +165,25 @@ struct RealTimeOutcome {
   double measured() const;
 };
 
+/// Rigid bodies that touch: a run of flexarm or of another program, with steps of 1 ms.
+struct ContactRun {
+  std::string scene, program;
+  double seconds;  ///< of the processor, for all steps [s]
+  long steps;
+  int most_contacts;  ///< points that touch at a time
+  double deepest;     ///< penetration [m]
+  double gained;      ///< most that the mechanical energy, less the work from outside, is above its start [J]
+  bool completed;
+  double crept = 0;        ///< by the last body, up or down, from 1 s to the end [m]
+  bool is_driven = false;  ///< there is work from outside, which other programs do not tell
+};
+
 struct SpeedReport {
   std::vector<SpeedMeasurement> measurements;
   std::vector<IterationCost> iteration_costs;
   std::vector<RealTimeOutcome> real_time;
   std::vector<PlanarComparison> planar;
+  std::vector<ContactRun> contacts;
   bool quick = false;
 };
 
@@ -181,6 +195,10 @@ SpeedReport measure_speed(const std::string& folder, const std::vector<SpeedProb
 /// The fastest runs for some errors, in turns with the same in three dimensions; of problems in a plane.
 std::vector<PlanarComparison> compare_planar(const std::string& folder, const SpeedReport& report);
 std::string planar_table(const std::vector<PlanarComparison>& comparisons);
+
+/// A chain that falls, a stack and a grasp, of flexarm and, where it is built with it, MuJoCo with its defaults.
+std::vector<ContactRun> compare_contacts(bool quick);
+std::string contact_table(const std::vector<ContactRun>& runs);
 
 /// The tables. `picture`: file name of the picture next to them; empty if there is none.
 std::string to_markdown(const SpeedReport& report, const std::string& picture);

@@ -284,6 +284,11 @@ std::string to_markdown(const SpeedReport& report, const std::string& picture) {
         "the "
         "same with `dimension=\"3\"`.\n\n" +
         planar_table(report.planar);
+  if (!report.contacts.empty())
+    text +=
+        "\n## Bodies that touch\n\nSteps of 1 ms; MuJoCo with its defaults (its soft contacts creep, and what they "
+        "gain is told as it tells it).\n\n" +
+        contact_table(report.contacts);
   if (!report.iteration_costs.empty())
     text +=
         "\n## Cost of an iteration\n\nRight-angle cantilever, 32 elements, steps of 0.05 s, a factorisation in every "
