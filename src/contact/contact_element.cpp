@@ -256,7 +256,7 @@ double ContactElement::touch(const ForceMotion& motion, const TouchingPointTaker
     memory += PointMemory::kSize;
     const Vector3 middle = place(station, pose_of);
     if (old.face == 0) {
-      const double gap = shape.gap(middle) - station.radius;
+      const double gap = shape.distance(middle).value - station.radius;
       least = std::min(least, gap);
       if (gap >= 0) return true;
     }

@@ -120,13 +120,18 @@ std::vector<ContactPoint> points_of(const Hull& hull, double spacing) {
     }
   return out;
 }
-std::vector<ContactPoint> points_of(const Cylinder& cylinder, double) {
+std::vector<ContactPoint> points_of(const Cylinder& cylinder, double spacing) {
   std::vector<ContactPoint> out;
   for (const double z : {-cylinder.half_length, cylinder.half_length})
     for (int k = 0; k < kRimPoints; ++k) {
       const double angle = 2 * kPi * k / kRimPoints;
       out.push_back({{cylinder.radius * std::cos(angle), cylinder.radius * std::sin(angle), z}, 0});
     }
+  // Its side: balls that fill it.
+  const double end = cylinder.half_length - cylinder.radius;
+  if (end <= 0) return out;
+  const int spans = std::max(1, static_cast<int>(std::min(std::ceil(2 * end / spacing), kMostEdgePoints + 1.0)));
+  for (int i = 0; i <= spans; ++i) out.push_back({{0, 0, end * (2.0 * i / spans - 1)}, cylinder.radius});
   return out;
 }
 

@@ -67,8 +67,9 @@ struct ContactPoint {
   double radius = 0;              ///< [m]
 };
 /// Those of a shape: a ball's middle; corners of a box or a hull, and points on their edges not much farther from each
-/// other than `spacing` [m]; `kRimPoints` on each rim of a cylinder. None of a half-space, which touches nothing
-/// itself.
+/// other than `spacing` [m]; `kRimPoints` on each rim of a
+/// cylinder, and balls along its axis that fill it, if it is longer than wide. None of a half-space, which touches
+/// nothing itself.
 std::vector<ContactPoint> contact_points(const ContactShape& shape, double spacing);
 constexpr int kRimPoints = 24, kMostEdgePoints = 7;
 
