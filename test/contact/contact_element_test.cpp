@@ -83,9 +83,9 @@ class ContactElements : public ::testing::Test {
   };
 
   Action action(const Poses& at_end, const ContactElement& element, const Poses& at_begin, const Vector3& stretched,
-                bool at_rest) const {
+                bool at_rest, double duration = 0.05) const {
     ForceStep step{at_begin, at_end, velocities};
-    step.duration = at_rest ? 0.0 : 0.05;
+    step.duration = at_rest ? 0.0 : duration;
     step.at_end = at_rest;
     std::vector<double> memory(element.memory_size(), 0.0);
     for (std::size_t i = 0; i < memory.size(); i += PointMemory::kSize) {
@@ -255,6 +255,27 @@ TEST_F(ContactElements, TellWhatTheyDoAndWhere) {
       EXPECT_LE((sum - expected).norm(), 1e-13 * expected.norm()) << name << surface.node << is_reversed;
       EXPECT_EQ(gap, deepest) << name;
     }
+}
+
+// In motion it is what acts over a short step, to its length: 1e-7 s of 0.2 m/s beside penetrations of 0.01 m.
+TEST_F(ContactElements, TellWhatTheyDoInMotion) {
+  const double duration = 1e-7;
+  Poses before = end;
+  for (std::size_t i = 0; i < end.size(); ++i) before[i] = moved(end[i], -duration * velocities[i]);
+  for (const auto& [name, side, surface] : scenes()) {
+    const ContactElement element({"", ""}, side, surface, gripping_law(0.05, 0.5));
+    const Action step = action(end, element, before, stretch, false, duration);
+    const Vector6 expected = pressed(step.residual, side.nodes, end);
+    Vector6 sum = Vector6::Zero();
+    element.touch({state_at(end), velocities, step.memory.data()}, [&](const TouchingPoint& point) {
+      const Vector3 force = point.push + point.friction;
+      sum.head<3>() += force;
+      sum.tail<3>() += point.position.cross(force);
+    });
+    EXPECT_LE((sum - expected).norm(), 1e-4 * expected.norm()) << name << surface.node;
+    const Action rest = action(end, element, end, stretch, true);
+    EXPECT_GT((pressed(rest.residual, side.nodes, end) - expected).norm(), 2e-3 * expected.norm()) << name << " moves";
+  }
 }
 
 // That of the ball's surface to the plate, whether it touches or not.

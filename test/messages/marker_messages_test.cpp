@@ -129,7 +129,7 @@ TEST_F(Markers, HaveWhatIsChosen) {
   simulation_.command_effort(0, 5);
   step(5);
   for (const std::string& name : MarkerChoice::names()) {
-    MarkerChoice choice{false, false, false, false, false, false, false};
+    MarkerChoice choice{false, false, false, false, false, false, false, false};
     *choice.find(name) = true;
     MarkerMessages messages = this->messages(choice);
     shown(messages);

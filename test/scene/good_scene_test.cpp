@@ -260,6 +260,15 @@ TEST(GoodScene, Sensors) {
   EXPECT_TRUE(scene.sensors[1].noise.empty());
 }
 
+TEST(GoodScene, SensorsOfContactsHaveGroups) {
+  const ReadResult result = read(good_scene_with(
+      "</robot>", "<sensor name=\"bumper\" kind=\"contact\" link=\"hand\" group=\" tip  floor\"/> </robot>"));
+  EXPECT_TRUE(result.diagnostics.empty()) << to_text(result.diagnostics);
+  const Sensor& bumper = result.scene.value().sensors.back();
+  EXPECT_EQ(bumper.kind, SensorKind::Contact);
+  EXPECT_EQ(bumper.group, (std::vector<std::string>{"tip", "floor"}));
+}
+
 // One with a <parent> is as URDF once proposed it.
 TEST(GoodScene, SensorsOfOthersAreLeftAlone) {
   const ReadResult result = read(
