@@ -30,7 +30,7 @@ std::vector<double> read_errors(const XmlElement& sensor, const char* attribute,
 
 /// Names apart by white space.
 std::vector<std::string> read_group(const XmlElement& sensor) {
-  const std::optional<std::string> text = sensor.name("group");
+  const std::optional<std::string> text = sensor.text("group");
   std::istringstream words(text.value_or(""));
   const std::vector<std::string> names{std::istream_iterator<std::string>(words), {}};
   if (text && names.empty()) sensor.attribute_error("group", "group must be names of links or grounds");

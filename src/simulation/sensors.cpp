@@ -69,7 +69,7 @@ Vector6 touching_wrench(const Sensor& sensor, const SensorPlace& place, const Mo
   Wrench sum;
   for (const auto& [pair, is_first] : place.touched) {
     const double sign = is_first ? 1 : -1;
-    touch(view.model.touching_pairs[pair], view, motion, [&, sign = sign](const TouchingPoint& point) {
+    touch(view.model.touching_pairs[pair], view, motion, [&](const TouchingPoint& point) {
       const Vector3 force = sign * (point.push + point.friction);
       sum.force += force;
       sum.moment += (point.position - about).cross(force);
