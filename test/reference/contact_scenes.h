@@ -37,13 +37,15 @@ inline std::string floating(const std::string& link) {
                      link);
 }
 
-inline std::string start(const std::string& link, const Vector3& place, const Vector3& velocity) {
+inline std::string start(const std::string& link, const Vector3& place, const Vector3& velocity,
+                         const Vector3& rate = Vector3::Zero()) {
   std::string out;
   const char* axes[] = {"x", "y", "z"};
   for (int k = 0; k < 3; ++k)
     out += fmt::format("<initial joint=\"of_{}/{}\" position=\"{:.17g}\"/>", link, axes[k], place[k]);
-  return out + fmt::format("<initial link=\"{}\" linear=\"{:.17g} {:.17g} {:.17g}\"/>", link, velocity.x(),
-                           velocity.y(), velocity.z());
+  return out +
+         fmt::format("<initial link=\"{}\" linear=\"{:.17g} {:.17g} {:.17g}\" angular=\"{:.17g} {:.17g} {:.17g}\"/>",
+                     link, velocity.x(), velocity.y(), velocity.z(), rate.x(), rate.y(), rate.z());
 }
 
 /// `parts`: links, joints and contacts; `starts`: entries of <simulation>. Step in s, gravity in m/s^2.

@@ -123,6 +123,7 @@ TEST(Contact, BlockOnAnInclineSlidesAboveTheAngleOfFriction) {
   EXPECT_NEAR(account(simulation), account(block_on_incline(slope, friction)), 1e-8);
 }
 
+// What sticks drags with the force that it needs: rolling is exact in a step, but for what Newton's method leaves.
 TEST(Contact, BallRollsWithoutSlip) {
   const double slope = 0.4;
   Simulation simulation = simulation_of(
@@ -131,7 +132,7 @@ TEST(Contact, BallRollsWithoutSlip) {
   run(simulation, 0.5);
   const double begin = simulation.momentum().x();
   run(simulation, 1);
-  EXPECT_NEAR((simulation.momentum().x() - begin) / 0.5, 5.0 / 7 * kG * std::sin(slope), 1e-3);
+  EXPECT_NEAR((simulation.momentum().x() - begin) / 0.5, 5.0 / 7 * kG * std::sin(slope), 1e-9);
 }
 
 // ---------------------------------------------------------------- several contacts, beams
@@ -222,8 +223,9 @@ TEST(Contact, CantileverRestsOnTheFloorInStatics) {
       "", 1e-3);
   ASSERT_TRUE(simulation.solve_static(1).converged);
   EXPECT_NEAR(simulation.tip_pose(1).position.z(), -0.046, 4e-4) << "a radius above the floor, less its depth";
+  const Vector3 at_rest = simulation.tip_pose(1).position;
   run(simulation, 0.2);
-  EXPECT_NEAR(simulation.tip_pose(1).position.z(), -0.046, 1e-3) << "it stays";
+  EXPECT_NEAR(simulation.tip_pose(1).position.z(), at_rest.z(), 1e-12) << "it stays";
 }
 
 TEST(Contact, StackOfBoxesRests) {
@@ -237,9 +239,14 @@ TEST(Contact, StackOfBoxesRests) {
   Simulation simulation = simulation_of(parts, starts, 2e-3);
   run(simulation, 6);
   EXPECT_LE(simulation.momentum().norm(), 1e-9);
+  // What lies above is off the middle of a face by e = 10, 10 and 5 mm: it sinks by p = load / stiffness and leans by
+  // p e / r^2, with r^2 the mean square of the points' distances, a^2/4 on the floor (24.7 kN/m), a^2/6 between boxes
+  // (12.3 kN/m): 1.2, 2.4 and 0.6 mrad with the stiffness of shallow contacts. These harden, and lean less.
+  const double leans[] = {6e-5, 3e-4, 7e-4};
   for (int i = 0; i < 3; ++i) {
     EXPECT_NEAR(simulation.link_pose(1 + i).position.z(), 0.05 + 0.1 * i, 5e-3) << "what they give way at most";
-    EXPECT_NEAR(simulation.link_pose(1 + i).position.x(), 0.01 * i, 1e-3) << i;
+    EXPECT_GT(simulation.link_pose(1 + i).position.x(), 0.01 * i) << i;
+    EXPECT_LT(simulation.link_pose(1 + i).position.x(), 0.01 * i + leans[i]) << i;
   }
   const Vector3 top = simulation.link_pose(3).position;
   run(simulation, 8);
@@ -268,7 +275,8 @@ TEST(Contact, BeamThatBouncesKeepsItsEnergy) {
       "<link name=\"rod\"><beam elements=\"6\" order=\"2\"><centerline><line to=\"1 0 0\"/></centerline>"
       "<circle radius=\"0.01\"/><material young=\"5e9\" poisson=\"0.3\" density=\"2000\"/></beam></link>" +
           floating("rod") + kFloor + "<contact first=\"rod\" second=\"floor\" restitution=\"1\" stiffness=\"1e5\"/>",
-      start("rod", {0, 0, 0.15}, {0, 0, 0}) + "<initial joint=\"of_rod/ry\" position=\"0.2\"/>", 1e-3);
+      start("rod", {0, 0, 0.25}, {0, 0, 0}) + "<initial joint=\"of_rod/ry\" position=\"0.2\"/>", 1e-3);
+  ASSERT_LT(simulation.energies().strain, 1e-20) << "it starts outside";
   const double begin = simulation.energies().total();
   bool has_touched = false;
   for (int i = 0; i < 800; ++i) {
