@@ -38,6 +38,7 @@ struct HardCase {
   /// The mechanism could be built and has one motion, which the mesh can describe; else it is to be refused, or to fail
   /// with a reason that says more than that the iteration did not converge.
   bool is_sound = true;
+  bool touches = false;  ///< has a <contact>, which not all schemes have, and from which no energy may come
   bool is_free = false;  ///< nothing acts on it from outside: momenta are kept
   int load_steps = 0;    ///< > 0: an equilibrium is asked for, with so many steps of the load
   std::optional<Target> target;
@@ -59,7 +60,8 @@ struct HardOutcome {
   long steps = 0, iterations = 0, halvings = 0;
   int most_iterations = 0;   ///< of a step
   double seconds = 0;        ///< of the processor, to build and to run
-  double energy_gain = 0;    ///< largest of energy - work + dissipation above its start, relative to the largest energy
+  double energy_gain = 0;    ///< largest of energy - work + dissipation above its start, of what touches without the
+                             ///< dissipation, too; relative to the largest energy
   double energy_defect = 0;  ///< largest change of the same in either direction
   double momentum_defect = std::numeric_limits<double>::quiet_NaN();  ///< of a free motion, relative
   double bound = 0;                                                   ///< largest of the bound's measure
@@ -75,6 +77,7 @@ enum class Verdict {
   Right,
   Warned,      ///< the same as Wrong, but the run ended with a warning
   Wrong,       ///< completed, but off its target, out of bounds, or with energy from nowhere
+  LeftOut,     ///< the scheme has no <contact>
   Failed,      ///< did not complete
   Diagnosed,   ///< unsound, and refused or ended with a reason
   Unnoticed,   ///< unsound, and completed

@@ -44,6 +44,7 @@ std::vector<HardCase> hard_cases() {
   add_joint_cases(cases);
   add_mechanism_cases(cases);
   add_static_cases(cases);
+  add_contact_cases(cases);
   return cases;
 }
 

@@ -39,6 +39,8 @@ const char* to_string(Verdict verdict) {
       return "warned";
     case Verdict::Wrong:
       return "wrong";
+    case Verdict::LeftOut:
+      return "left out";
     case Verdict::Failed:
       return "failed";
     case Verdict::Diagnosed:
@@ -79,7 +81,8 @@ std::string total_row(const HardReport& report, std::size_t s) {
   };
   const auto beats = [&](std::size_t one, std::size_t other) {
     return count_rows(report, [&](const HardRow& row) {
-      return row.hard.is_sound && is_complete(row, one) && !is_complete(row, other);
+      return row.hard.is_sound && is_complete(row, one) && !is_complete(row, other) &&
+             verdict(row.hard, row.outcomes[other]) != Verdict::LeftOut;
     });
   };
   std::vector<double> iterations;
@@ -131,6 +134,8 @@ std::string cell(const HardCase& hard, const HardOutcome& outcome) {
       return fmt::format("**warned** {:.1f}", outcome.iterations_per_step());
     case Verdict::Wrong:
       return fmt::format("**wrong** {:.1f}", outcome.iterations_per_step());
+    case Verdict::LeftOut:
+      return "–";
     case Verdict::Failed:
       if (outcome.end != HardOutcome::End::Failed || hard.load_steps > 0)
         return fmt::format("**{}**", to_string(outcome.end));
@@ -173,7 +178,7 @@ std::string trouble_table(const HardReport& report) {
   for (const HardRow& r : report.rows) {
     const HardOutcome& outcome = r.outcomes.front();
     const Verdict v = verdict(r.hard, outcome);
-    if (v == Verdict::Right || v == Verdict::Diagnosed) continue;
+    if (v == Verdict::Right || v == Verdict::Diagnosed || v == Verdict::LeftOut) continue;
     const std::string what = v == Verdict::Wrong       ? flaw(r.hard, outcome)
                              : v == Verdict::Warned    ? flaw(r.hard, outcome) + "; warned: " + outcome.warning.data()
                              : v == Verdict::Unnoticed ? "completed without a word"
@@ -223,7 +228,9 @@ std::string to_markdown(const HardReport& report, const std::string& picture) {
       "A run is *right* if it completes, its end is where a closed form or a finer run says, it stays within the "
       "bounds "
       "of its case, its energy account gains less than 5 % of the motion's largest energy and loses no more than all "
-      "of it, and the momenta of a free motion change by less than 5 %. A *warned* run is wrong, too, but "
+      "of it (what touches gains no more than 1e-4 of it, with what is dissipated and without), and the momenta of a "
+      "free motion change by less than 5 %. Schemes without contact leave out what touches. A *warned* run is wrong, "
+      "too, but "
       "ends with a warning that names what was out of bounds: rotations per step, strains, the energy account. "
       "*Unsound* scenes (names in italics) cannot be "
       "built, have no definite motion or far too coarse a mesh; they are to be refused, or to end with a reason that "

@@ -3,73 +3,11 @@
 
 #include <fmt/format.h>
 
-#include "flexarm/scene/urdf_reader.h"
-#include "flexarm/simulation/simulation.h"
+#include "reference/contact_scenes.h"
 #include "support/source_path.h"
 
 namespace flexarm::test::touching {
 namespace {
-
-constexpr double kG = 9.81;
-
-std::string inertial(double mass, const Vector3& inertia) {
-  return fmt::format(
-      "<inertial><mass value=\"{:.17g}\"/><inertia ixx=\"{:.17g}\" iyy=\"{:.17g}\" izz=\"{:.17g}\" ixy=\"0\" ixz=\"0\" "
-      "iyz=\"0\"/></inertial>",
-      mass, inertia.x(), inertia.y(), inertia.z());
-}
-
-std::string ball(const std::string& name, double mass, double radius) {
-  return fmt::format("<link name=\"{}\">{}<collision><geometry><sphere radius=\"{}\"/></geometry></collision></link>",
-                     name, inertial(mass, Vector3::Constant(0.4 * mass * radius * radius)), radius);
-}
-
-std::string box(const std::string& name, double mass, const Vector3& size) {
-  const Vector3 squares = size.cwiseAbs2();
-  const Vector3 inertia = mass / 12 * (Vector3::Constant(squares.sum()) - squares);
-  return fmt::format("<link name=\"{}\">{}<collision><geometry><box size=\"{} {} {}\"/></geometry></collision></link>",
-                     name, inertial(mass, inertia), size.x(), size.y(), size.z());
-}
-
-std::string floating(const std::string& link) {
-  return fmt::format("<joint name=\"of_{0}\" type=\"floating\"><parent link=\"world\"/><child link=\"{0}\"/></joint>",
-                     link);
-}
-
-std::string start(const std::string& link, const Vector3& place, const Vector3& velocity) {
-  std::string out;
-  const char* axes[] = {"x", "y", "z"};
-  for (int k = 0; k < 3; ++k)
-    out += fmt::format("<initial joint=\"of_{}/{}\" position=\"{:.17g}\"/>", link, axes[k], place[k]);
-  return out + fmt::format("<initial link=\"{}\" linear=\"{:.17g} {:.17g} {:.17g}\"/>", link, velocity.x(),
-                           velocity.y(), velocity.z());
-}
-
-Simulation simulation_of(const std::string& parts, const std::string& starts, double step,
-                         const Vector3& gravity = {0, 0, -kG}) {
-  scene::ReadResult result = scene::read_scene_text(
-      fmt::format(
-          "<robot name=\"contact\"><link name=\"world\"/>{}<simulation><gravity xyz=\"{:.17g} {:.17g} {:.17g}\"/>"
-          "<integrator scheme=\"em\" step=\"{:.17g}\"/>{}</simulation></robot>",
-          parts, gravity.x(), gravity.y(), gravity.z(), step, starts),
-      "contact.urdf");
-  for (const scene::Diagnostic& finding : result.diagnostics) ADD_FAILURE() << finding.text();
-  return Simulation(result.scene.value());
-}
-
-void run(Simulation& simulation, double until) {
-  while (simulation.time() < until - 0.5 * simulation.step_size()) {
-    const StepResult result = simulation.step();
-    ASSERT_TRUE(result.converged) << simulation.explain(result);
-  }
-}
-
-double account(const Simulation& simulation) {
-  const Energies energies = simulation.energies();
-  return energies.total() + energies.dissipated - energies.work;
-}
-
-const std::string kFloor = "<ground name=\"floor\"/>";
 
 // ---------------------------------------------------------------- hits
 
@@ -185,6 +123,7 @@ TEST(Contact, BlockOnAnInclineSlidesAboveTheAngleOfFriction) {
   EXPECT_NEAR(account(simulation), account(block_on_incline(slope, friction)), 1e-8);
 }
 
+// What sticks drags with the force that it needs: rolling is exact in a step, but for what Newton's method leaves.
 TEST(Contact, BallRollsWithoutSlip) {
   const double slope = 0.4;
   Simulation simulation = simulation_of(
@@ -193,7 +132,7 @@ TEST(Contact, BallRollsWithoutSlip) {
   run(simulation, 0.5);
   const double begin = simulation.momentum().x();
   run(simulation, 1);
-  EXPECT_NEAR((simulation.momentum().x() - begin) / 0.5, 5.0 / 7 * kG * std::sin(slope), 1e-3);
+  EXPECT_NEAR((simulation.momentum().x() - begin) / 0.5, 5.0 / 7 * kG * std::sin(slope), 1e-9);
 }
 
 // ---------------------------------------------------------------- several contacts, beams
@@ -284,8 +223,9 @@ TEST(Contact, CantileverRestsOnTheFloorInStatics) {
       "", 1e-3);
   ASSERT_TRUE(simulation.solve_static(1).converged);
   EXPECT_NEAR(simulation.tip_pose(1).position.z(), -0.046, 4e-4) << "a radius above the floor, less its depth";
+  const Vector3 at_rest = simulation.tip_pose(1).position;
   run(simulation, 0.2);
-  EXPECT_NEAR(simulation.tip_pose(1).position.z(), -0.046, 1e-3) << "it stays";
+  EXPECT_NEAR(simulation.tip_pose(1).position.z(), at_rest.z(), 1e-12) << "it stays";
 }
 
 TEST(Contact, StackOfBoxesRests) {
@@ -299,9 +239,14 @@ TEST(Contact, StackOfBoxesRests) {
   Simulation simulation = simulation_of(parts, starts, 2e-3);
   run(simulation, 6);
   EXPECT_LE(simulation.momentum().norm(), 1e-9);
+  // What lies above is off the middle of a face by e = 10, 10 and 5 mm: it sinks by p = load / stiffness and leans by
+  // p e / r^2, with r^2 the mean square of the points' distances, a^2/4 on the floor (24.7 kN/m), a^2/6 between boxes
+  // (12.3 kN/m): 1.2, 2.4 and 0.6 mrad with the stiffness of shallow contacts. These harden, and lean less.
+  const double leans[] = {6e-5, 3e-4, 7e-4};
   for (int i = 0; i < 3; ++i) {
     EXPECT_NEAR(simulation.link_pose(1 + i).position.z(), 0.05 + 0.1 * i, 5e-3) << "what they give way at most";
-    EXPECT_NEAR(simulation.link_pose(1 + i).position.x(), 0.01 * i, 1e-3) << i;
+    EXPECT_GT(simulation.link_pose(1 + i).position.x(), 0.01 * i) << i;
+    EXPECT_LT(simulation.link_pose(1 + i).position.x(), 0.01 * i + leans[i]) << i;
   }
   const Vector3 top = simulation.link_pose(3).position;
   run(simulation, 8);
@@ -330,7 +275,8 @@ TEST(Contact, BeamThatBouncesKeepsItsEnergy) {
       "<link name=\"rod\"><beam elements=\"6\" order=\"2\"><centerline><line to=\"1 0 0\"/></centerline>"
       "<circle radius=\"0.01\"/><material young=\"5e9\" poisson=\"0.3\" density=\"2000\"/></beam></link>" +
           floating("rod") + kFloor + "<contact first=\"rod\" second=\"floor\" restitution=\"1\" stiffness=\"1e5\"/>",
-      start("rod", {0, 0, 0.15}, {0, 0, 0}) + "<initial joint=\"of_rod/ry\" position=\"0.2\"/>", 1e-3);
+      start("rod", {0, 0, 0.25}, {0, 0, 0}) + "<initial joint=\"of_rod/ry\" position=\"0.2\"/>", 1e-3);
+  ASSERT_LT(simulation.energies().strain, 1e-20) << "it starts outside";
   const double begin = simulation.energies().total();
   bool has_touched = false;
   for (int i = 0; i < 800; ++i) {

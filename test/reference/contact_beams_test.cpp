@@ -1,0 +1,228 @@
+// Beams that touch, against closed forms and an elastica.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "math/pi.h"
+#include "reference/contact_scenes.h"
+#include "reference/observed_order.h"
+
+namespace flexarm::test::touching_beams {
+namespace {
+
+using namespace touching;
+
+std::string rod(const std::string& name, const std::string& line, const std::string& material, double radius,
+                int elements) {
+  return fmt::format(
+      "<link name=\"{}\"><beam elements=\"{}\" order=\"2\"><centerline>{}</centerline><orientation y=\"0 1 0\"/>"
+      "<circle radius=\"{}\"/>{}</beam></link>",
+      name, elements, line, radius, material);
+}
+
+// ---------------------------------------------------------------- a cable over a cylinder
+
+/// A cable that slides over half of a fixed cylinder: tension at the end that is pulled over that at the other one, on
+/// which 10 N hang, at `friction`. It is bent without load as it lies, and thin: no tension is left for its bending.
+struct Capstan {
+  static constexpr double kRadius = 0.1, kCable = 2e-4, kEnds = 0.05, kLine = kRadius + kCable;
+  static double ratio(int elements, double friction) {
+    const double young = 1e4 / (kPi * kCable * kCable), turn = 2 * kLine;
+    const std::string material = fmt::format(
+        "<material young=\"{:.17g}\" poisson=\"0.3\" density=\"3e4\"/><damping stiffness_proportional=\"5e-4\"/>",
+        young);
+    const std::string line = fmt::format(
+        "<line to=\"0 0 {0}\"/><arc to=\"-{1} 0 {2}\" center=\"-{1} 0 {0}\"/><arc to=\"-{3} 0 {0}\" center=\"-{1} 0 "
+        "{0}\"/><line to=\"-{3} 0 0\"/>",
+        kEnds, kLine, kEnds + kLine, turn);
+    const std::string parts = fmt::format(
+        "<joint name=\"pull\" type=\"prismatic\"><parent link=\"world\"/><child link=\"hook\"/><origin xyz=\"{} 0 "
+        "-{}\"/><axis xyz=\"0 0 -1\"/><limit lower=\"-1\" upper=\"1\" effort=\"1e6\" velocity=\"9\"/></joint>"
+        "<link name=\"hook\">{}</link><joint name=\"clamp\" type=\"fixed\"><parent link=\"hook\"/>"
+        "<child link=\"cable\"/></joint>{}<link name=\"post\"><collision><geometry><cylinder radius=\"{}\" "
+        "length=\"0.1\"/></geometry></collision></link><joint name=\"of_post\" type=\"fixed\"><parent link=\"world\"/>"
+        "<child link=\"post\"/><origin rpy=\"{:.17g} 0 0\"/></joint>"
+        "<contact first=\"cable\" second=\"post\" friction=\"{}\" stiffness=\"1e7\"/>",
+        kLine, kEnds, inertial(0.01, Vector3::Constant(1e-6)), rod("cable", line, material, kCable, elements), kRadius,
+        kPi / 2, friction);
+    const std::string motion = fmt::format(
+        "<motion joint=\"pull\" position=\"0:0:0 0.1:0:0 0.2:5e-4:0.01 1:8.5e-3:0.01\"/>"
+        "<load link=\"cable\" at=\"-{} 0 0\" force=\"0 0 -10\" history=\"0:0 0.05:1\"/>",
+        turn);
+    Simulation simulation = simulation_of(parts, motion, 1e-3, Vector3::Zero());
+    run(simulation, 0.4);
+    double pulled = 0, held = 0;
+    const std::size_t cable = 2;
+    for (int i = 0; i < 100; ++i) {
+      EXPECT_TRUE(simulation.step().converged);
+      pulled += simulation.section(cable, 0).resultant[0];
+      held += simulation.section(cable, 2 * kEnds + kPi * kLine).resultant[0];
+    }
+    return pulled / held;
+  }
+  /// Per radian, of a cable of some thickness: friction acts on its surface, at the part e = (radius of the cable) /
+  /// (radius of its line) off the line. Along the line T' = f + Q, across it Q' + T = n, the moment is constant, so
+  /// that Q = -e f; f = mu n. With T ~ exp(a angle): n (1 + e mu a) = T and a = mu (1 - e) / (1 + e mu a).
+  static double exponent(double friction) {
+    const double e = kCable / kLine;
+    return (std::sqrt(1 + 4 * e * friction * friction * (1 - e)) - 1) / (2 * e * friction);
+  }
+};
+
+// Vibrations that friction stirs up leave some 0.1 % in the mean of 0.1 s; 1 % is asked for.
+TEST(ContactOfBeams, CableOverACylinderHoldsByEuler) {
+  constexpr double kFriction = 0.3;
+  const double expected = std::exp(kPi * Capstan::exponent(kFriction));
+  EXPECT_NEAR(expected, std::exp(kPi * kFriction), 3e-3 * expected) << "a thin cable is nearly Euler's";
+  for (const int elements : {12, 24, 48})
+    EXPECT_NEAR(Capstan::ratio(elements, kFriction) / expected, 1, elements < 48 ? 0.01 : 3e-3) << elements;
+}
+
+// ---------------------------------------------------------------- a cantilever on a plane
+
+/// A cantilever of a round bar, radius 4 mm, E = 7e9, 2700 kg/m^3, clamped level at a height over a plane on which its
+/// weight lays its far part.
+struct Laid {
+  double length, height, stiffness;
+  static constexpr double kRadius = 0.004, kBending = 7e9 * kPi / 4 * kRadius * kRadius * kRadius * kRadius;
+  static constexpr double kWeight = 2700 * kPi * kRadius * kRadius * kG;  // per length [N/m]
+  struct Result {
+    double shear, moment, touch;  // at the clamp; arc length where it first touches
+  };
+  Result solve(int elements) const {
+    const std::string line = fmt::format("<line to=\"{} 0 0\"/>", length);
+    Simulation simulation = simulation_of(
+        rod("arm", line, "<material young=\"7e9\" poisson=\"0.3\" density=\"2700\"/>", kRadius, elements) +
+            "<joint name=\"clamp\" type=\"fixed\"><parent link=\"world\"/><child link=\"arm\"/></joint>" +
+            fmt::format("<ground name=\"low\" offset=\"{:.17g}\"/><contact first=\"arm\" second=\"low\" "
+                        "stiffness=\"{}\"/>",
+                        -height - kRadius, stiffness),
+        "", 1e-3);
+    EXPECT_TRUE(simulation.solve_static(4).converged);
+    std::vector<BeamPoint> points;
+    simulation.beam_points(1, 3, points);  // at the stations
+    const auto touch = std::find_if(points.begin(), points.end(),
+                                    [&](const BeamPoint& point) { return point.pose.position.z() < -height; });
+    EXPECT_NE(touch, points.end());
+    return {std::abs(points.front().resultant[2]), std::abs(points.front().resultant[4]), touch->arc_length};
+  }
+};
+
+// Small deflections: w = q/(24 EI) (x^4 - 8/3 a x^3 + 2 a^2 x^2), w(a) = height, without moment at the lift-off a:
+// there the plane presses with the force q a/3; at the clamp 2/3 q a and q a^2/6 are left.
+TEST(ContactOfBeams, CantileverIsLaidOnAPlane) {
+  const Laid laid{1, 1e-3, 1e8};
+  const double a = std::pow(72 * Laid::kBending * laid.height / Laid::kWeight, 0.25);
+  const auto coarse = laid.solve(40), fine = laid.solve(80);
+  for (const auto& seen : {coarse, fine}) {
+    EXPECT_NEAR(seen.shear, 2 * Laid::kWeight * a / 3, 1e-3 * seen.shear);
+    EXPECT_NEAR(seen.moment, Laid::kWeight * a * a / 6, 2e-3 * seen.moment);
+  }
+  // The reaction of the plane at the lift-off, by the balance of what hangs.
+  EXPECT_NEAR(Laid::kWeight * a - fine.shear, Laid::kWeight * a / 3, 1e-3 * Laid::kWeight * a);
+}
+
+// Large ones: EI theta'' = -(V - q s) cos theta, z' = sin theta between the clamp, theta = z = 0, and the lift-off,
+// theta = theta' = 0, z = height, with the length a and the shear V at the clamp as unknowns; no force along the plane.
+// scipy.integrate.solve_bvp, tolerance 1e-10: a = 2.19665864 m, V = 1.95606164 N, EI theta'(0) = 1.06032959 N m.
+TEST(ContactOfBeams, ElasticaIsLaidOnAPlane) {
+  constexpr double kLiftOff = 2.19665864, kShear = 1.95606164, kMoment = 1.06032959;
+  for (const double stiffness : {1e6, 1e8}) {
+    const Laid laid{3, 0.3, stiffness};
+    const auto coarse = laid.solve(40), fine = laid.solve(80);
+    EXPECT_NEAR(fine.shear, kShear, 1e-4 * kShear) << stiffness;
+    EXPECT_NEAR(fine.moment, kMoment, 2e-4 * kMoment) << stiffness;
+    EXPECT_GT(observed_order(coarse.moment - kMoment, fine.moment - kMoment), 1.8) << "of elements of order 2";
+    // A plane that gives way is a foundation, on which w = B exp(-b x) sin(b x), b^4 = k'/(4 EI): it takes the shear Q
+    // and the moment Q/b together, and the bar, whose moment falls to nothing at the lift-off, has that 1/b before it.
+    // Beside that, 1/b once more over the length, and the distance of two stations.
+    const double before = std::pow(4 * Laid::kBending / (stiffness / laid.length), 0.25);
+    EXPECT_NEAR(fine.touch, kLiftOff - before, 3.0 / 80 / 8 + before * before / kLiftOff) << stiffness;
+  }
+}
+
+// ---------------------------------------------------------------- an elastic rod hits a wall
+
+// A rod, E = 1e9, 1000 kg/m^3, radius 20 mm, that comes end-on with v: the wall feels Z v, Z = c A rho, until the wave
+// comes back from the far end, at 2 L/c; then the rod leaves with v, and is at rest within. Through the stiffness k of
+// its end (time r = Z/k): Z v (1 - exp(-t/r)) before that, from s = t - 2 L/c = 0 on Z v (-1 + 2 (1 + s/r) exp(-s/r)),
+// which ends at s = 1.678 r. The middle of that impulse comes r later than L/c, its size is 2 m v (1 - 0.052 r c/(2
+// L)).
+TEST(ContactOfBeams, RodThatHitsAWallEndOnFeelsItsWave) {
+  constexpr double kSpeed = 0.1, kRadius = 0.02, kVelocity = 1e3, kWave = 2 / kVelocity;
+  const double impedance = kVelocity * 1000 * kPi * kRadius * kRadius, force = impedance * kSpeed;
+  struct Hit {
+    int elements;
+    double stiffness;  // of the whole tube
+    double end_share;  // half of the distance of two stations, over the length
+    double ripple;     // of the front, which the mesh disperses
+  };
+  for (const Hit& hit : {Hit{20, 5e9, 0.5 / 60, 0.02}, Hit{40, 1e10, 0.5 / 80, 0.01}}) {
+    Simulation simulation = simulation_of(
+        rod("rod", "<line to=\"0 0 1\"/>", "<material young=\"1e9\" poisson=\"0\" density=\"1000\"/>", kRadius,
+            hit.elements) +
+            floating("rod") + kFloor +
+            fmt::format("<contact first=\"rod\" second=\"floor\" restitution=\"1\" stiffness=\"{}\"/>", hit.stiffness),
+        start("rod", {0, 0, kRadius + 1e-9}, {0, 0, -kSpeed}), kWave / 320, Vector3::Zero());
+    const double rise = impedance / (hit.stiffness * hit.end_share), energy = simulation.energies().total();
+    const double whole = 2 * simulation.mass() * kSpeed;
+    double impulse = 0, first_moment = 0, mean = 0, squares = 0, end = 0;
+    int count = 0;
+    for (int i = 0; i < 480; ++i) {
+      const double before = simulation.momentum().z(), time = simulation.time() + 0.5 * simulation.step_size();
+      ASSERT_TRUE(simulation.step().converged);
+      const double change = simulation.momentum().z() - before, pressed = change / simulation.step_size() / force;
+      impulse += change;
+      first_moment += change * time;
+      if (pressed > 1e-3) end = time;
+      if (time < 0.2 * kWave || time > 0.8 * kWave) continue;
+      ++count;
+      mean += pressed;
+      squares += (pressed - 1) * (pressed - 1);
+    }
+    EXPECT_NEAR(mean / count, 1, 1e-3) << hit.elements;
+    EXPECT_LT(std::sqrt(squares / count), hit.ripple) << hit.elements;
+    EXPECT_NEAR(impulse / whole, 1 - 0.052 * rise / kWave, 1e-3) << hit.elements;
+    EXPECT_NEAR(first_moment / impulse, 0.5 * kWave + rise, 1e-3 * kWave) << hit.elements;
+    EXPECT_NEAR(end, kWave + 1.678 * rise, 0.01 * kWave) << hit.elements;
+    EXPECT_NEAR(simulation.energies().total(), energy, 1e-9 * energy);
+    EXPECT_EQ(simulation.energies().dissipated, 0);
+  }
+}
+
+// ---------------------------------------------------------------- bounces
+
+// Factors are made anew in each iteration, so that nothing is left of the residual.
+TEST(ContactOfBeams, AHundredHitsOfABeamKeepItsEnergy) {
+  SimulationOptions options;
+  options.reuse_factorisation = false;
+  Simulation simulation = simulation_of(
+      rod("rod", "<line to=\"1 0 0\"/>", "<material young=\"5e9\" poisson=\"0.3\" density=\"2000\"/>", 0.01, 6) +
+          floating("rod") + kFloor + "<contact first=\"rod\" second=\"floor\" restitution=\"1\" stiffness=\"1e6\"/>",
+      start("rod", {0, 0, 0.03}, {0, 0, 0}) + "<initial joint=\"of_rod/ry\" position=\"0.01\"/>", 2e-4, {0, 0, -kG},
+      options);
+  const double begin = simulation.energies().total();
+  ASSERT_LT(simulation.energies().strain, 1e-20) << "it starts outside";
+  int hits = 0;
+  bool touched = false;
+  std::vector<BeamPoint> points;
+  while (hits < 100 && simulation.time() < 5) {
+    ASSERT_TRUE(simulation.step().converged);
+    points.clear();
+    simulation.beam_points(1, 3, points);
+    const bool touches = std::any_of(points.begin(), points.end(),
+                                     [](const BeamPoint& point) { return point.pose.position.z() < 0.01; });
+    hits += touches && !touched;
+    touched = touches;
+    ASSERT_NEAR(simulation.energies().total(), begin, 1e-10 * begin) << hits;
+  }
+  EXPECT_EQ(hits, 100);
+  EXPECT_EQ(simulation.energies().dissipated, 0);
+}
+
+}  // namespace
+}  // namespace flexarm::test::touching_beams

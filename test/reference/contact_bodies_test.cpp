@@ -1,0 +1,301 @@
+// Rigid bodies that touch, against closed forms and solvers of ordinary differential equations.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "math/pi.h"
+#include "reference/contact_scenes.h"
+#include "reference/observed_order.h"
+#include "reference/ode.h"
+
+namespace flexarm::test::touching_bodies {
+namespace {
+
+using namespace touching;
+
+/// Of an elastic contact at a penetration: k x dx/dp with x = p / (1 - (p/d)^2)^2, nothing outside (docs/notes/stops.md
+/// 2). [N]
+double push(double stiffness, double depth, double penetration) {
+  if (penetration <= 0) return 0;
+  const double s = penetration / depth, room = 1 - s * s;
+  return stiffness * penetration * (1 + 3 * s * s) / std::pow(room, 5);
+}
+
+// ---------------------------------------------------------------- what stays in contact
+
+/// Largest error of the angle of an arm whose ball swings on the floor that carries it, without leaving it: a hinge at
+/// a height, a ball at the end of a weightless rod, pressed by its weight.
+double error_of_pressed_arm(double step) {
+  constexpr double kMass = 1, kBall = 0.05, kArm = 0.5, kHeight = 0.06, kStiffness = 2e3, kInside = 2e-3, kUntil = 1;
+  const double start = std::asin((kHeight - kBall + kInside) / kArm), inertia = 0.4 * kMass * kBall * kBall;
+  Simulation simulation = simulation_of(
+      fmt::format("<joint name=\"hinge\" type=\"continuous\"><parent link=\"world\"/><child link=\"arm\"/><origin "
+                  "xyz=\"0 0 {0}\"/><axis xyz=\"0 1 0\"/></joint><link name=\"arm\"><inertial><origin xyz=\"{1} 0 0\"/>"
+                  "<mass value=\"{2}\"/><inertia ixx=\"{3}\" iyy=\"{3}\" izz=\"{3}\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/>"
+                  "</inertial><collision><origin xyz=\"{1} 0 0\"/><geometry><sphere radius=\"{4}\"/></geometry>"
+                  "</collision></link>",
+                  kHeight, kArm, kMass, inertia, kBall) +
+          kFloor +
+          fmt::format("<contact first=\"arm\" second=\"floor\" restitution=\"1\" stiffness=\"{}\"/>", kStiffness),
+      fmt::format("<initial joint=\"hinge\" position=\"{:.17g}\"/>", start), step);
+  const double depth = kInside / 0.25;  // what starts inside is a quarter of the depth
+  const OdeFunction swing = [&](double, const Eigen::VectorXd& y) {
+    const double lever = kArm * std::cos(y[0]), inside = kBall - kHeight + kArm * std::sin(y[0]);
+    return Eigen::Vector2d(y[1],
+                           lever * (kMass * kG - push(kStiffness, depth, inside)) / (inertia + kMass * kArm * kArm));
+  };
+  Eigen::VectorXd expected = Eigen::Vector2d(start, 0);
+  double error = 0;
+  for (int i = 1; i <= 50; ++i) {
+    run(simulation, kUntil * i / 50);
+    expected = solve_ode(swing, kUntil * (i - 1) / 50, kUntil * i / 50, expected);
+    EXPECT_GT(kBall - kHeight + kArm * std::sin(expected[0]), 0) << "it stays in contact";
+    error = std::max(error, std::abs(simulation.position(0) - expected[0]));
+  }
+  return error;
+}
+
+TEST(ContactOfBodies, WhatStaysInContactHasOrderTwo) {
+  const double coarse = error_of_pressed_arm(1e-3), fine = error_of_pressed_arm(5e-4);
+  EXPECT_LT(coarse, 1e-4);
+  EXPECT_NEAR(observed_order(coarse, fine), 2, 0.05);
+}
+
+// A ball lies where both walls of a wedge push with m g / (2 cos a).
+TEST(ContactOfBodies, BallComesToRestInAWedge) {
+  constexpr double kMass = 1, kRadius = 0.05, kStiffness = 1e5, kSlope = 0.6;
+  const double sine = std::sin(kSlope), cosine = std::cos(kSlope), each = kMass * kG / (2 * cosine);
+  std::string parts = ball("ball", kMass, kRadius) + floating("ball");
+  for (const double side : {-1.0, 1.0})
+    parts += fmt::format(
+        "<ground name=\"wall{0}\" normal=\"{1:.17g} 0 {2:.17g}\"/><contact first=\"ball\" second=\"wall{0}\" "
+        "stiffness=\"{3}\"/>",
+        side < 0 ? "l" : "r", side * sine, cosine, kStiffness);
+  Simulation simulation = simulation_of(parts, start("ball", {0.003, 0.01, kRadius / cosine + 0.02}, {0, 0, 0}), 1e-3);
+  run(simulation, 6);
+  double inside = each / kStiffness;
+  for (int i = 0; i < 20; ++i) inside *= each / push(kStiffness, 0.1 * kRadius, inside);
+  const Vector3 place = simulation.link_pose(1).position;
+  EXPECT_NEAR(place.z(), (kRadius - inside) / cosine, 1e-10);
+  EXPECT_NEAR(place.x(), 0, 1e-10);
+  EXPECT_NEAR(place.y(), 0.01, 1e-12);
+}
+
+// ---------------------------------------------------------------- hits
+
+/// Newton's cradle of five balls of 0.2 kg and radius 20 mm on rods of 0.3 m, 10 um apart; the first comes in with 1
+/// m/s. What each of them does with contacts of a finite stiffness follows from their equations alone.
+struct Cradle {
+  static constexpr int kBalls = 5;
+  static constexpr double kMass = 0.2, kRadius = 0.02, kRod = 0.3, kGap = 1e-5, kStiffness = 1e6, kUntil = 0.02;
+  static constexpr double kStart = 0.01, kRate = -1 / kRod, kApart = 2 * kRadius + kGap;
+  static constexpr double kInertia = 0.4 * kMass * kRadius * kRadius;  // of a ball
+
+  static Eigen::VectorXd expected() {
+    const OdeFunction swing = [](double, const Eigen::VectorXd& y) {
+      Eigen::VectorXd rates(2 * kBalls);
+      const auto arm = [&](int i) -> Eigen::Vector2d { return {-kRod * std::sin(y[i]), -kRod * std::cos(y[i])}; };
+      for (int i = 0; i < kBalls; ++i) rates[kBalls + i] = kMass * kG * arm(i).x();
+      for (int i = 0; i + 1 < kBalls; ++i) {
+        const Eigen::Vector2d way = arm(i + 1) + Eigen::Vector2d(kApart, 0) - arm(i), along = way.normalized();
+        const double force = push(kStiffness, 0.1 * kRadius, 2 * kRadius - way.norm());
+        // Moment about y of a force: z Fx - x Fz.
+        const auto lever = [&](int j) { return arm(j).y() * along.x() - arm(j).x() * along.y(); };
+        rates[kBalls + i] -= force * lever(i);
+        rates[kBalls + i + 1] += force * lever(i + 1);
+      }
+      rates.head(kBalls) = y.tail(kBalls);
+      rates.tail(kBalls) /= kInertia + kMass * kRod * kRod;
+      return rates;
+    };
+    Eigen::VectorXd y = Eigen::VectorXd::Zero(2 * kBalls);
+    y[0] = kStart;
+    y[kBalls] = kRate;
+    constexpr int kPieces = 400;  // so that no hit lies within one
+    for (int i = 0; i < kPieces; ++i) y = solve_ode(swing, kUntil * i / kPieces, kUntil * (i + 1) / kPieces, y, 1e-10);
+    return y;
+  }
+
+  static Eigen::VectorXd velocities(double step) {
+    std::string parts =
+        fmt::format("<contact first=\"*\" second=\"*\" restitution=\"1\" stiffness=\"{}\"/>", kStiffness);
+    for (int i = 0; i < kBalls; ++i)
+      parts += fmt::format(
+          "<joint name=\"hinge{0}\" type=\"continuous\"><parent link=\"world\"/><child link=\"ball{0}\"/><origin "
+          "xyz=\"{1:.17g} 0 0\"/><axis xyz=\"0 1 0\"/></joint><link name=\"ball{0}\"><inertial><origin xyz=\"0 0 "
+          "{2}\"/><mass value=\"{3}\"/><inertia ixx=\"{4:.17g}\" iyy=\"{4:.17g}\" izz=\"{4:.17g}\" ixy=\"0\" "
+          "ixz=\"0\" iyz=\"0\"/></inertial><collision><origin xyz=\"0 0 {2}\"/><geometry><sphere radius=\"{5}\"/>"
+          "</geometry></collision></link>",
+          i, kApart * i, -kRod, kMass, kInertia, kRadius);
+    Simulation simulation = simulation_of(
+        parts, fmt::format("<initial joint=\"hinge0\" position=\"{}\" velocity=\"{:.17g}\"/>", kStart, kRate), step);
+    const double begin = simulation.energies().total();
+    run(simulation, kUntil);
+    // Of the kinetic energy, 0.1 J: round-off over sub-steps of 1e-5 s.
+    EXPECT_NEAR(simulation.energies().total(), begin, 1e-10);
+    Eigen::VectorXd out(kBalls);
+    for (int i = 0; i < kBalls; ++i) out[i] = simulation.velocity(i);
+    return out;
+  }
+};
+
+// The order at impacts where a step resolves them: a hit lasts 1 ms.
+TEST(ContactOfBodies, NewtonsCradleDoesWhatItsEquationsSay) {
+  const Eigen::VectorXd expected = Cradle::expected().tail(Cradle::kBalls);
+  EXPECT_GT(expected[0], 0) << "the first ball comes back";
+  EXPECT_LT(expected[4], 0.95 * Cradle::kRate) << "the last ball has nearly all";
+  const double coarse = (Cradle::velocities(2.5e-5) - expected).cwiseAbs().maxCoeff(),
+               fine = (Cradle::velocities(1.25e-5) - expected).cwiseAbs().maxCoeff();
+  EXPECT_LT(fine, 1e-3 * std::abs(Cradle::kRate));
+  EXPECT_NEAR(observed_order(coarse, fine), 2, 0.05);
+}
+
+// ---------------------------------------------------------------- friction
+
+// A disc that lies on its rim spins down by mu m g R in all, at whatever of its points: 2 mu g/R. Forces act at the
+// mean of both ends of a step, whose arm is short by (rate h)^2/8.
+TEST(ContactOfBodies, DiscThatSpinsOnTheFloorIsBraked) {
+  constexpr double kMass = 2, kRadius = 0.1, kHigh = 0.02, kFriction = 0.3, kStiffness = 1e5, kRate = 10, kStep = 1e-3;
+  constexpr int kPoints = 24;
+  const double polar = kMass * kRadius * kRadius / 2, across = polar / 2 + kMass * kHigh * kHigh / 12;
+  // It starts where its rim carries it.
+  double inside = kMass * kG / kPoints / kStiffness;
+  for (int i = 0; i < 20; ++i) inside *= kMass * kG / kPoints / push(kStiffness, 0.05 * kHigh, inside);
+  Simulation simulation = simulation_of(
+      fmt::format("<link name=\"disc\">{}<collision><geometry><cylinder radius=\"{}\" length=\"{}\"/></geometry>"
+                  "</collision></link>",
+                  inertial(kMass, {across, across, polar}), kRadius, kHigh) +
+          floating("disc") + kFloor +
+          fmt::format("<contact first=\"disc\" second=\"floor\" friction=\"{}\" stiffness=\"{}\"/>", kFriction,
+                      kStiffness),
+      start("disc", {0, 0, kHigh / 2 - inside}, {0, 0, 0}, {0, 0, kRate}), kStep);
+  const double braking = 2 * kFriction * kG / kRadius, stop = kRate / braking;
+  const auto rate = [&] { return simulation.angular_momentum().z() / polar; };
+  run(simulation, 0.02);  // until all of the rim slips
+  const double first = rate(), begin = simulation.time();
+  run(simulation, 0.9 * stop);
+  const double seen = (first - rate()) / (simulation.time() - begin);
+  EXPECT_NEAR(seen, braking, 2 * kRate * kRate * kStep * kStep / 8 * braking);
+  run(simulation, 4 * stop);
+  EXPECT_NEAR(rate(), 0, 1e-9);
+  EXPECT_LE(simulation.link_pose(1).position.head<2>().norm(), 1e-12) << "it has spun on the spot";
+}
+
+/// A block of 0.5 kg between two pads that press with 20 N each, drawn along them: how far it has come and its
+/// acceleration at the end.
+struct Drawn {
+  double way, acceleration;
+};
+Drawn draw_block(double force, double friction, double pressed) {
+  std::string parts = box("block", 0.5, {0.4, 0.08, 0.1}) + floating("block"), simulation_entries;
+  for (const double side : {-1.0, 1.0}) {
+    const std::string name = side < 0 ? "low" : "high";
+    parts += fmt::format(
+                 "<joint name=\"press_{0}\" type=\"prismatic\"><parent link=\"world\"/><child link=\"{0}\"/><origin "
+                 "xyz=\"0 {1} 0\"/><axis xyz=\"0 {2} 0\"/><limit lower=\"-1\" upper=\"1\" effort=\"1000\" "
+                 "velocity=\"9\"/></joint>",
+                 name, 0.05 * side, -side) +
+             box(name, 0.1, {0.06, 0.02, 0.06});
+    simulation_entries += fmt::format("<effort joint=\"press_{}\" history=\"0:0 0.05:{}\"/>", name, pressed);
+  }
+  parts += fmt::format("<contact first=\"block\" second=\"*\" friction=\"{}\" stiffness=\"1e6\"/>", friction);
+  simulation_entries +=
+      fmt::format("<load link=\"block\" at=\"0 0 0\" force=\"{:.17g} 0 0\" history=\"0:0 0.2:0 0.4:1\"/>", force);
+  Simulation simulation = simulation_of(parts, simulation_entries, 1e-3, Vector3::Zero());
+  run(simulation, 0.5);
+  const double begin = simulation.momentum().x() / 0.5;
+  run(simulation, 0.7);
+  return {simulation.link_pose(1).position.x(), (simulation.momentum().x() / 0.5 - begin) / 0.2};
+}
+
+TEST(ContactOfBodies, WhatIsGraspedSlipsAtTwiceTheFrictionOfAFinger) {
+  constexpr double kFriction = 0.5, kPressed = 20, kMost = 2 * kFriction * kPressed;
+  const Drawn held = draw_block(0.999 * kMost, kFriction, kPressed);
+  // Four corners of each pad stick with 1e6 N/m, or as stiffly as the step allows.
+  EXPECT_LT(held.way, 2e-5);
+  EXPECT_NEAR(held.acceleration, 0, 1e-9);
+  for (const double more : {1.001, 1.01, 1.05})
+    EXPECT_NEAR(draw_block(more * kMost, kFriction, kPressed).acceleration, (more - 1) * kMost / 0.5, 1e-9) << more;
+}
+
+/// Painleve's rod: its lower end comes to the floor with 1 um to go and nothing but speed along it. Two balls of 1 mm
+/// at the ends of 1 m, 1 kg.
+struct Painleve {
+  static constexpr double kHalf = 0.5, kMass = 1, kRadius = 1e-3, kStiffness = 1e6, kGap = 1e-6, kUntil = 0.03;
+  static constexpr double kInertia = kMass * 4 * kHalf * kHalf / 12;
+  double friction, angle, speed;  ///< angle: of the rod over the floor
+
+  bool is_paradox() const {  // friction of what slides presses more than it is pressed
+    const double along = speed < 0 ? -1 : 1;
+    return 1 + 3 * std::cos(angle) * (std::cos(angle) + along * friction * std::sin(angle)) < 0;
+  }
+
+  /// Velocity of the middle, and rate, by steps of the contact law's own equations: semi-implicit Euler's, of order 1.
+  Vector3 expected() const {
+    constexpr int kSteps = 300000;
+    constexpr double kStep = kUntil / kSteps;
+    double height = kRadius + kGap + kHalf * std::sin(angle), turned = angle, stretch = 0;
+    Vector3 motion(speed, 0, 0);
+    for (int i = 0; i < kSteps; ++i) {
+      const double x = -kHalf * std::cos(turned), z = -kHalf * std::sin(turned) - kRadius;
+      const double force = push(kStiffness, 0.1 * kRadius, -(height + z)), most = friction * force / kStiffness;
+      stretch = std::clamp(stretch + kStep * (motion.x() - motion.z() * z), -most, most);
+      const double drag = -kStiffness * stretch;
+      motion += kStep * Vector3(drag / kMass, force / kMass - kG, (x * force - z * drag) / kInertia);
+      height += kStep * motion.y();
+      turned += kStep * motion.z();
+    }
+    return motion;
+  }
+
+  Vector3 seen(double step) const {
+    std::string parts = "<link name=\"rod\">" + inertial(kMass, {1e-4, kInertia, kInertia});
+    for (const double end : {-kHalf, kHalf})
+      parts += fmt::format(
+          "<collision><origin xyz=\"{} 0 0\"/><geometry><sphere radius=\"{}\"/></geometry></collision>", end, kRadius);
+    parts += "</link>" + floating("rod") + kFloor +
+             fmt::format("<contact first=\"rod\" second=\"floor\" friction=\"{}\" restitution=\"1\" stiffness=\"{}\"/>",
+                         friction, kStiffness);
+    Simulation simulation =
+        simulation_of(parts,
+                      start("rod", {0, 0, kRadius + kGap + kHalf * std::sin(angle)}, {speed, 0, 0}) +
+                          fmt::format("<initial joint=\"of_rod/ry\" position=\"{:.17g}\"/>", -angle),
+                      step);
+    const double begin = account(simulation), energy = simulation.energies().total();
+    while (simulation.time() < kUntil - 0.5 * step) {
+      EXPECT_TRUE(simulation.step().converged);
+      EXPECT_LT(simulation.energies().total(), energy * (1 + 1e-9)) << "energy from nowhere";
+    }
+    EXPECT_NEAR(account(simulation), begin, 1e-8 * begin);
+    const Vector3 middle = simulation.link_pose(1).position, momentum = simulation.momentum();
+    const double spin = (simulation.angular_momentum() - middle.cross(momentum)).y();
+    return {momentum.x() / kMass, momentum.z() / kMass, -spin / kInertia};
+  }
+};
+
+// Where friction presses, it comes to a stand and is thrown off, though it had no speed towards the floor. Sticking has
+// order 1, sliding 2.
+TEST(ContactOfBodies, PainlevesRodJamsAndIsThrownOff) {
+  for (const Painleve& rod : {Painleve{2, 1, -3}, Painleve{5, 0.6, -3}}) {
+    EXPECT_TRUE(rod.is_paradox());
+    const Vector3 expected = rod.expected();
+    EXPECT_GT(expected.y(), 1) << "thrown off";
+    const double coarse = (rod.seen(2e-5) - expected).norm(), fine = (rod.seen(1e-5) - expected).norm();
+    EXPECT_LT(fine, 0.01 * expected.norm());
+    EXPECT_GT(observed_order(coarse, fine), 0.8);
+  }
+  for (const Painleve& rod : {Painleve{2, 1, 3}, Painleve{0.5, 1, -3}}) {
+    EXPECT_FALSE(rod.is_paradox());
+    const Vector3 expected = rod.expected();
+    const double coarse = (rod.seen(2e-5) - expected).norm(), fine = (rod.seen(1e-5) - expected).norm();
+    EXPECT_LT(fine, 1e-4);
+    EXPECT_NEAR(observed_order(coarse, fine), 2, 0.2);
+  }
+}
+
+}  // namespace
+}  // namespace flexarm::test::touching_bodies
