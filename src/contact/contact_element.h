@@ -50,7 +50,8 @@ Vector3 seen_from(const ContactSurface& surface, const Vector3& point, const Pos
 class ContactElement : public ForceElement {
  public:
   /// `links`: names of the link with the stations, and of the link or ground with the shapes.
-  ContactElement(std::vector<std::string> links, ContactStations side, ContactSurface surface, const ContactLaw& law);
+  ContactElement(std::vector<std::string> links, ContactStations side, ContactSurface surface, const ContactLaw& law,
+                 const std::string& name = "");
 
   const char* kind() const override { return "contact"; }
   std::vector<std::string> links() const override { return links_; }

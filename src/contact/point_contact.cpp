@@ -114,6 +114,7 @@ PointAction point_action(const ContactShape& whole, const ContactLaw& law, doubl
 }
 
 bool passes_through(const ContactShape& shape, const Vector3& from, const Vector3& to, double radius) {
+  if (shape.is_hollow) return false;  // between two places in a hole there is nothing else
   const Vector3 way = to - from;
   const double length = way.norm();
   // Distances of convex shapes are convex: lowest at an end unless they fall first and rise then.

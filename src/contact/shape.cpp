@@ -101,14 +101,17 @@ SignedDistance ContactShape::distance(const Vector3& point) const {
   const Matrix3 axes = place.orientation.toRotationMatrix();
   const Vector3 own = axes.transpose() * (point - place.position);
   SignedDistance out = std::visit([&](const auto& shape) { return distance_of(shape, own); }, kind);
-  out.gradient = axes * out.gradient;
-  out.hessian = axes * out.hessian * axes.transpose();
+  const double sign = is_hollow ? -1 : 1;
+  out.value *= sign;
+  out.gradient = sign * (axes * out.gradient);
+  out.hessian = sign * (axes * out.hessian * axes.transpose());
   return out;
 }
 
 double ContactShape::gap(const Vector3& point) const {
   const Vector3 own = place.orientation.conjugate() * (point - place.position);
-  return std::visit([&](const auto& shape) { return distance_of(shape, own).value; }, kind);
+  const double value = std::visit([&](const auto& shape) { return distance_of(shape, own).value; }, kind);
+  return is_hollow ? -value : value;
 }
 
 // ---------------------------------------------------------------- faces
@@ -155,7 +158,7 @@ Vector3 own_point(const ContactShape& shape, const Vector3& point) {
 }  // namespace
 
 bool has_faces(const ContactShape& shape) {
-  return std::holds_alternative<Box>(shape.kind) || std::holds_alternative<Cylinder>(shape.kind);
+  return !shape.is_hollow && (std::holds_alternative<Box>(shape.kind) || std::holds_alternative<Cylinder>(shape.kind));
 }
 
 int entered_face(const ContactShape& shape, const Vector3& from, const Vector3& to) {
@@ -208,6 +211,7 @@ ContactShape beyond_face(const ContactShape& shape, int face) {
 }
 
 std::vector<ContactPoint> contact_points(const ContactShape& shape, double spacing) {
+  if (shape.is_hollow) return {};
   std::vector<ContactPoint> out = std::visit([&](const auto& each) { return points_of(each, spacing); }, shape.kind);
   for (ContactPoint& point : out) point.arm = shape.place * point.arm;
   return out;
