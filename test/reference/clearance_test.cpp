@@ -202,6 +202,31 @@ TEST(Clearance, BeamCarriesAWeightInALooseBall) {
   EXPECT_NEAR(loose.link_pose(2).position.z() - loose.tip_pose(1).position.z(), -1e-3 - 2 * kG / 1e5, 1e-8);
 }
 
+// ---------------------------------------------------------------- loops
+
+// A ball with a weight aside swings in a loose bearing. As a joint of the tree, and as a loop that is closed around a
+// body that flies, whose link stands turned at the start.
+TEST(Clearance, OfALoopIsThatOfTheTree) {
+  const Vector3 inertia = Vector3::Constant(0.01), centre(0.2, 0, -0.1);
+  const double turn = 0.7;
+  const std::string pin = kAcross + "<clearance radius=\"1e-3\" length=\"0.1\" restitution=\"0.5\"/>";
+  Simulation tree = simulation_of(body("ball", 1, inertia, centre) + joint("pin", "continuous", "world", "ball", pin),
+                                  "<initial link=\"ball\" linear=\"0 0.1 0\"/>", 1e-3);
+  Simulation loop = simulation_of(
+      body("ball", 1, inertia, Eigen::AngleAxisd(-turn, Vector3::UnitZ()) * centre) +
+          joint("free", "floating", "world", "ball", "") +
+          joint("pin", "continuous", "world", "ball", pin, "loop_joint"),
+      fmt::format("<initial joint=\"free/rz\" position=\"{}\"/><initial link=\"ball\" linear=\"0 0.1 0\"/>", turn),
+      1e-3);
+  for (int i = 0; i < 10; ++i) {
+    run(tree, 0.05 * (i + 1));
+    run(loop, 0.05 * (i + 1));
+    // Newton's tolerance in each of the steps, and what hits make of it.
+    EXPECT_LE((tree.link_pose(1).position - loop.link_pose(1).position).norm(), 1e-9) << i;
+  }
+  EXPECT_GT(tree.energies().dissipated, 0) << "nothing was hit";
+}
+
 // ---------------------------------------------------------------- the joint without play is its limit
 
 /// How a pendulum hangs at t = 1.3 s that starts at 0.5 rad from rest, pressed as it would be without play.
