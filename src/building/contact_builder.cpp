@@ -168,13 +168,16 @@ class ContactBuilder {
 
   void find_neighbours() {
     for (const auto* joints : {&scene_.joints, &scene_.loop_joints})
-      for (const scene::JointDescription& joint : *joints) {
+      for (const scene::JointDescription& joint : *joints)
         // What is fixed in the world is one body only where nothing moves against it.
-        if (joint.kind == scene::JointKind::Floating) continue;
-        const int parent = body_of(joint.parent), child = body_of(joint.child);
-        if (parent >= 0 && child >= 0) neighbours_.insert(std::minmax(parent, child));
-        joined_.insert(std::minmax(plan_.links[joint.parent], plan_.links[joint.child]));
-      }
+        if (joint.kind != scene::JointKind::Floating) add_neighbours(joint);
+    for (const scene::ClearanceDescription& clearance : scene_.clearances) add_neighbours(clearance.joint);
+  }
+
+  void add_neighbours(const scene::JointDescription& joint) {
+    const int parent = body_of(joint.parent), child = body_of(joint.child);
+    if (parent >= 0 && child >= 0) neighbours_.insert(std::minmax(parent, child));
+    joined_.insert(std::minmax(plan_.links[joint.parent], plan_.links[joint.child]));
   }
 
   /// The node that a link is fixed to; of a beam its first one, of what is fixed in the world -1.

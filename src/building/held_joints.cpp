@@ -15,6 +15,8 @@ class HeldJointFinder {
     for (const scene::JointDescription& loop : scene.loop_joints) mark_loop(loop);
     for (const auto& element : scene.force_elements)
       for (const scene::LinkPoint& point : element->points()) touched_[links[point.link]] = true;
+    for (const scene::ClearanceDescription& clearance : scene.clearances)
+      touched_[links[clearance.joint.parent]] = touched_[links[clearance.joint.child]] = true;
     // Of what touches something forces are not known beforehand.
     if (!scene.contacts.empty()) touched_.assign(scene.links.size(), true);
     for (const scene::PointLoad& load : scene.loads)

@@ -136,6 +136,12 @@ std::vector<double> articulated_inertias(const std::vector<int>& node_parents, c
 /// @throws ModelError for one whose points are all on one rigid body.
 ForceElementList place_force_elements(const ScenePlan& plan, const Model& model);
 
+// ---------------------------------------------------------------- clearance_builder.cpp
+
+/// What holds joints with play at its end, on the nodes of that model.
+/// @throws ModelError where both links belong to one rigid body, or a joint starts far beyond its play.
+ForceElementList place_clearances(const ScenePlan& plan, const Model& model);
+
 // ---------------------------------------------------------------- contact_builder.cpp
 
 /// Contacts of all pairs of links and grounds for which the scene has one, on the nodes of that model.

@@ -29,6 +29,10 @@ LinkMeshes mesh_links(const scene::SceneDescription& scene, const LinkNames& lin
     attach(joint.parent, joint.origin.position);
     attach(joint.child, joint.child_origin.position);
   }
+  for (const scene::ClearanceDescription& clearance : scene.clearances) {
+    attach(clearance.joint.parent, clearance.joint.origin.position);
+    attach(clearance.joint.child, clearance.joint.child_origin.position);
+  }
   for (const scene::PointLoad& load : scene.loads) attach(load.link, load.at);
   for (const auto& element : scene.force_elements)
     for (const scene::LinkPoint& point : element->points()) attach(point.link, point.at);
@@ -81,7 +85,7 @@ bool floats(const scene::SceneDescription& scene, const JointTree& tree, const L
   const auto holds_root = [&](const scene::JointDescription& loop) {
     return loop.parent == scene.root_link || loop.child == scene.root_link;
   };
-  if (!scene.contacts.empty()) return false;  // something may stand in the way
+  if (!scene.contacts.empty() || !scene.clearances.empty()) return false;  // something may stand in the way
   const auto ties_root = [&](const auto& element) {
     const std::vector<scene::LinkPoint> points = element->points();
     return std::any_of(points.begin(), points.end(),

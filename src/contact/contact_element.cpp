@@ -35,8 +35,8 @@ auto poses_in(const State& state) {
 }  // namespace
 
 ContactElement::ContactElement(std::vector<std::string> links, ContactStations side, ContactSurface surface,
-                               const ContactLaw& law, bool is_reversed)
-    : ForceElement("", reach_of(side, surface)),
+                               const ContactLaw& law, bool is_reversed, const std::string& name)
+    : ForceElement(name, reach_of(side, surface)),
       links_(std::move(links)),
       side_(std::move(side)),
       surface_(std::move(surface)),

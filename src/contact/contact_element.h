@@ -56,7 +56,7 @@ class ContactElement : public ForceElement {
   /// `links`: names of the link with the stations, and of the link or ground with the shapes; `is_reversed`: the other
   /// way round.
   ContactElement(std::vector<std::string> links, ContactStations side, ContactSurface surface, const ContactLaw& law,
-                 bool is_reversed = false);
+                 bool is_reversed = false, const std::string& name = "");
 
   const char* kind() const override { return "contact"; }
   const ContactLaw& law() const { return law_; }

@@ -79,8 +79,7 @@ double approach_speed(double penetration, double begin_rate, double remembered) 
 
 double remembered_speed(const ContactChange& change, double begin_rate) {
   if (change.end <= 0) return 0;
-  const double end_rate = 2 * (change.end - change.begin) / change.duration - begin_rate;
-  return end_rate < 0 ? -change.speed : change.speed;
+  return begin_rate < 0 ? -change.speed : change.speed;
 }
 
 ContactGrip contact_grip(const ContactLaw& law, const Vector3& stretch, const Vector3& slip, const Vector3& normal,

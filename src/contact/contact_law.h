@@ -46,7 +46,8 @@ double push_at(const ContactLaw& law, double penetration, double rate, double sp
 /// True where the step is too long for a hit: it goes through a large part of it, by a large angle of the oscillator
 /// that the contact is. `begin_rate`: of the penetration.
 bool is_coarse_hit(const ContactLaw& law, const ContactChange& change, double begin_rate, double refinement);
-/// The speed to be remembered for the next step, < 0 where the hit is on its way back.
+/// The speed to be remembered for the next step, < 0 where the hit was on its way back: what comes in again from there
+/// is a new hit.
 double remembered_speed(const ContactChange& change, double begin_rate);
 /// By which the hit is damped in the step. `remembered`: see remembered_speed(); `penetration`: both at the beginning.
 double approach_speed(double penetration, double begin_rate, double remembered);

@@ -130,6 +130,7 @@ PointTouch point_touch(const ContactShape& whole, const ContactLaw& law, double 
 }
 
 bool passes_through(const ContactShape& shape, const Vector3& from, const Vector3& to, double radius) {
+  if (shape.is_hollow) return false;  // between two places in a hole there is nothing else
   const Vector3 way = to - from;
   const double length = way.norm();
   // Distances of convex shapes are convex: lowest at an end unless they fall first and rise then.

@@ -141,15 +141,18 @@ SignedDistance ContactShape::distance(const Vector3& point) const {
   const Matrix3 axes = place.orientation.toRotationMatrix();
   const Vector3 own = axes.transpose() * (point - place.position);
   SignedDistance out = std::visit([&](const auto& shape) { return distance_of(shape, own); }, kind);
-  out.gradient = axes * out.gradient;
-  out.hessian = axes * out.hessian * axes.transpose();
+  const double sign = is_hollow ? -1 : 1;
+  out.value *= sign;
+  out.gradient = sign * (axes * out.gradient);
+  out.hessian = sign * (axes * out.hessian * axes.transpose());
   return out;
 }
 
 double ContactShape::gap(const Vector3& point) const {
   const Vector3 own = place.orientation.conjugate() * (point - place.position);
   if (const auto* hull = std::get_if<Hull>(&kind)) return highest_face(*hull, own).height;
-  return std::visit([&](const auto& shape) { return distance_of(shape, own).value; }, kind);
+  const double value = std::visit([&](const auto& shape) { return distance_of(shape, own).value; }, kind);
+  return is_hollow ? -value : value;
 }
 
 // ---------------------------------------------------------------- faces
@@ -262,7 +265,7 @@ Entry entry_into(const Shape& shape, const Vector3& begin, const Vector3& end) {
 }  // namespace
 
 bool has_faces(const ContactShape& shape) {
-  return of_faces(shape, false, [](const auto&) { return true; });
+  return !shape.is_hollow && of_faces(shape, false, [](const auto&) { return true; });
 }
 
 int entered_face(const ContactShape& shape, const Vector3& from, const Vector3& to) {
@@ -305,6 +308,7 @@ double half_width(const ContactShape& shape) {
 }
 
 std::vector<ContactPoint> contact_points(const ContactShape& shape, double spacing) {
+  if (shape.is_hollow) return {};
   std::vector<ContactPoint> out = std::visit([&](const auto& each) { return points_of(each, spacing); }, shape.kind);
   for (ContactPoint& point : out) point.arm = shape.place * point.arm;
   return out;

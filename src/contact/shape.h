@@ -38,7 +38,8 @@ struct Hull {
 /// A shape fixed to a node, or to the world.
 struct ContactShape {
   std::variant<HalfSpace, Ball, Box, Cylinder, Hull> kind;
-  Pose place;  ///< in the node's frame
+  Pose place;              ///< in the node's frame
+  bool is_hollow = false;  ///< turned inside out: all but the shape is solid, which is a hole without faces
 
   /// `point`: in the node's frame [m].
   SignedDistance distance(const Vector3& point) const;
@@ -67,9 +68,8 @@ struct ContactPoint {
   double radius = 0;              ///< [m]
 };
 /// Those of a shape: a ball's middle; corners of a box or a hull, and points on their edges not much farther from each
-/// other than `spacing` [m]; `kRimPoints` on each rim of a
-/// cylinder, and balls along its axis that fill it, if it is longer than wide. None of a half-space, which touches
-/// nothing itself.
+/// other than `spacing` [m]; `kRimPoints` on each rim of a cylinder, and balls along its axis that fill it, if it is
+/// longer than wide. None of a half-space or a hole, which touch nothing themselves.
 std::vector<ContactPoint> contact_points(const ContactShape& shape, double spacing);
 constexpr int kRimPoints = 24, kMostEdgePoints = 7;
 

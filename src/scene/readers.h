@@ -25,6 +25,12 @@ void read_slide(const XmlElement& joint, const XmlElement& slide, JointDescripti
 /// Reads <friction> into `description`, whose kind is known.
 void read_friction(const XmlElement& friction, JointDescription& description);
 
+/// Reads <clearance> of a joint that has been read as if it had no play.
+ClearanceDescription read_clearance(const XmlElement& clearance, const XmlElement& joint,
+                                    const JointDescription& description);
+/// Makes a joint with play what it is in the tree: a floating one.
+void free_play(JointDescription& joint);
+
 // ---------------------------------------------------------------- of <robot>
 
 SpringDescription read_spring(const XmlElement& spring);

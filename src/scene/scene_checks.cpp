@@ -109,9 +109,12 @@ void check_rings(const SceneDescription& scene, const std::map<std::string, cons
 void check_tree(SceneDescription& scene, Findings& findings) {
   const std::size_t errors = findings.error_count();
   check_unique(scene.links, "link", findings);
-  check_unique(scene.loop_joints, "loop_joint", findings, check_unique(scene.joints, "joint", findings));
+  std::vector<JointDescription> loop_joints = scene.loop_joints;
+  for (const ClearanceDescription& clearance : scene.clearances)
+    if (clearance.closes_loop) loop_joints.push_back(clearance.joint);
+  check_unique(loop_joints, "loop_joint", findings, check_unique(scene.joints, "joint", findings));
   check_links(scene, scene.joints, "joint", findings);
-  check_links(scene, scene.loop_joints, "loop_joint", findings);
+  check_links(scene, loop_joints, "loop_joint", findings);
   const std::map<std::string, const JointDescription*> parents = find_parents(scene, findings);
   check_rings(scene, parents, findings);
   const bool are_joints_good = findings.error_count() == errors &&
@@ -236,7 +239,16 @@ class ReferenceCheck {
                       quoted(sensor.joint));
     else if (needs_joint && sensor.joint.empty() && sensor.link == scene_.root_link)
       findings_.error(sensor.location.line, element, "no joint carries the root link", quoted(sensor.link));
+    else if (needs_joint && sensor.joint.empty() && has_play_above(sensor.link))
+      findings_.error(sensor.location.line, element,
+                      "the joint that carries the link has a <clearance>, and transmits nothing but by contact",
+                      quoted(sensor.link));
     check_group(sensor, element);
+  }
+
+  bool has_play_above(const std::string& link) const {
+    return std::any_of(scene_.clearances.begin(), scene_.clearances.end(),
+                       [&](const ClearanceDescription& each) { return !each.closes_loop && each.joint.child == link; });
   }
 
   void check_group(const Sensor& sensor, const std::string& element) const {

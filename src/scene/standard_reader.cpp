@@ -173,7 +173,7 @@ double read_unlimited(const XmlElement& limit, const char* attribute) {
 
 void read_limits(const XmlElement& joint, JointDescription& description) {
   const std::optional<XmlElement> limit = joint.child("limit");
-  if (!limit || description.kind == JointKind::Fixed) return;
+  if (!limit || description.kind == JointKind::Fixed || joint.child("clearance")) return;
   description.effort_limit = read_unlimited(*limit, "effort");
   const double velocity = read_unlimited(*limit, "velocity");
   if (description.kind != JointKind::Revolute && description.kind != JointKind::Prismatic &&
@@ -204,7 +204,8 @@ bool is_fixed(const XmlElement& joint) {
 /// What has no effect is not judged: of a fixed joint axis, limits, dynamics and mimic, of one without stops their
 /// range.
 void check_joint_structure(const XmlElement& joint) {
-  joint.expect_at_most_one({"origin", "parent", "child", "axis2", "release", "couple", "friction", "child_origin"});
+  joint.expect_at_most_one(
+      {"origin", "parent", "child", "axis2", "release", "couple", "friction", "child_origin", "clearance"});
   check_attributes(joint, kJointAttributes);
   if (is_fixed(joint)) return;
   joint.expect_at_most_one({"axis", "limit", "dynamics", "mimic", "safety_controller", "calibration"});
@@ -336,7 +337,7 @@ JointDescription read_loop_joint(const XmlElement& unnamed) {
       if (const std::optional<XmlElement> child = joint.child(tag))
         child->error("a <loop_joint> cannot have a <" + std::string(tag) + ">");
     joint.expect_only({"name", "type"}, {"origin", "parent", "child", "axis", "axis2", "limit", "dynamics", "mimic",
-                                         "release", "couple", "slide", "friction", "child_origin"});
+                                         "release", "couple", "slide", "friction", "child_origin", "clearance"});
     if (joint.findings().error_count() == errors) description = read_joint(unnamed);
   }
   description.name = unnamed.text("name").value_or("");

@@ -51,7 +51,7 @@ constexpr std::string_view kOfOthers[] = {"ros2_control",
                                           "version"};
 /// Ours, whose place elsewhere is an error (see urdf_reader.cpp).
 constexpr std::string_view kPlaced[] = {"beam",         "release",  "axis2", "slide", "couple",
-                                        "child_origin", "friction", "root",  "hub"};
+                                        "child_origin", "friction", "root",  "hub",   "clearance"};
 /// Names that belong into another element.
 struct Home {
   std::string_view tag, parent;

@@ -28,7 +28,8 @@ constexpr Place kPlaces[] = {{"beam", "link"},       {"release", "joint"},    {"
                              {"slide", "joint"},     {"couple", "joint"},     {"child_origin", "loop_joint"},
                              {"friction", "joint"},  {"simulation", "robot"}, {"loop_joint", "robot"},
                              {"root", "simulation"}, {"drive", "robot"},      {"servo", "robot"},
-                             {"hub", "beam"},        {"sensor", "robot"},     {"parameter", "robot"}};
+                             {"hub", "beam"},        {"sensor", "robot"},     {"parameter", "robot"},
+                             {"clearance", "joint"}};
 
 /// Those of force elements are children of <robot>.
 std::vector<Place> places_of_all(const std::vector<ForceElementKind>& kinds) {
@@ -103,14 +104,21 @@ class SceneReader {
       if (findings_.error_count() > errors) unreadable_.insert(scene_.links.back().name);
     } else if (tag == "joint" && scene_.joints.size() <= kMostJoints) {
       scene_.joints.push_back(read_joint(child));
-      check_places(child.with_name(scene_.joints.back().name), places_);
-      if (findings_.error_count() > errors) unreadable_.insert(scene_.joints.back().name);
+      const std::string name = scene_.joints.back().name;
+      check_places(child.with_name(name), places_);
+      if (read_play(child, scene_.joints.back())) free_play(scene_.joints.back());
+      if (findings_.error_count() > errors) unreadable_.insert(name);
     } else if (tag == "material") {
       judge_material(child);
     } else if (tag == "loop_joint" && scene_.loop_joints.size() <= kMostJoints) {
       scene_.loop_joints.push_back(read_loop_joint(child));
-      check_places(child.with_name(scene_.loop_joints.back().name), places_);
-      if (findings_.error_count() > errors) unreadable_.insert(scene_.loop_joints.back().name);
+      const std::string name = scene_.loop_joints.back().name;
+      check_places(child.with_name(name), places_);
+      if (read_play(child, scene_.loop_joints.back())) {
+        scene_.clearances.back().closes_loop = true;
+        scene_.loop_joints.pop_back();
+      }
+      if (findings_.error_count() > errors) unreadable_.insert(name);
     } else if (const ForceElementKind* kind = kind_of(child)) {
       if (scene_.force_elements.size() <= kMostForceElements) scene_.force_elements.push_back(kind->read(child));
     } else if (tag == "ground" && scene_.grounds.size() <= kMostContacts) {
@@ -138,6 +146,14 @@ class SceneReader {
     } else if (tag == "sensor" && !child.child("parent") && scene_.sensors.size() <= kMostSensors) {
       scene_.sensors.push_back(read_sensor(child));  // those with a <parent> are URDF's own
     }
+  }
+
+  /// Reads the <clearance> of a joint; false where it has none.
+  bool read_play(const XmlElement& unnamed, const JointDescription& description) {
+    const XmlElement joint = unnamed.with_name(description.name);
+    const std::optional<XmlElement> clearance = joint.child("clearance");
+    if (clearance) scene_.clearances.push_back(read_clearance(*clearance, joint, description));
+    return clearance.has_value();
   }
 
   /// Null: it is no force element.

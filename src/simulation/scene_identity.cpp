@@ -169,6 +169,11 @@ class SceneFingerprint {
     all(contact.first, contact.second, contact.stiffness, contact.restitution, contact.friction);
   }
   void add(const scene::SurfaceHints& hints) { all(hints.friction, hints.stiffness); }
+  void add(const scene::ClearanceDescription& clearance) {
+    const auto& [joint, closes_loop, radius, length, width, journal, stiffness, restitution, friction, location] =
+        clearance;
+    all(joint, closes_loop, radius, length, width, journal, stiffness, restitution, friction);
+  }
   void add(const scene::BoxShape& box) { add(box.size); }
   void add(const scene::CylinderShape& cylinder) { all(cylinder.radius, cylinder.length); }
   void add(const scene::SphereShape& sphere) { add(sphere.radius); }
@@ -220,8 +225,8 @@ std::string contact_lines(const scene::SceneDescription& scene) {
 std::string scene_identity(const scene::SceneDescription& scene, const Scheme& scheme) {
   const auto& [name, file, root, links, joints, loop_joints, springs, drives, servos, gravity, integrator,
                integrator_location, initial_joints, initial_links, loads, distributed_loads, motions, efforts, probes,
-               sensors, force_elements, grounds, contacts, no_contacts, surfaces, lock_massless, starts_in_equilibrium,
-               equilibrium_location,
+               sensors, force_elements, grounds, contacts, no_contacts, surfaces, clearances, lock_massless,
+               starts_in_equilibrium, equilibrium_location,
                parameters] = scene;  // which count by the numbers that are made of them
   return integrator_line(integrator.step, scheme) + "\n" + named_lines("link", links) + named_lines("joint", joints) +
          named_lines("loop_joint", loop_joints) +
@@ -233,7 +238,8 @@ std::string scene_identity(const scene::SceneDescription& scene, const Scheme& s
                      SceneFingerprint::of(loads), SceneFingerprint::of(distributed_loads),
                      SceneFingerprint::of(motions), SceneFingerprint::of(efforts)) +
          (starts_in_equilibrium ? "initial equilibrium\n" : "") + named_lines("sensor", sensors) +
-         force_element_lines(force_elements) + contact_lines(scene);
+         force_element_lines(force_elements) + contact_lines(scene) +
+         (clearances.empty() ? "" : fmt::format("clearance {}\n", SceneFingerprint::of(clearances)));
 }
 
 std::string scene_identity(const scene::SceneDescription& scene) {

@@ -1,6 +1,7 @@
 // What contacts do over a step: exact work, no momentum, the derivatives of their forces.
 #include "contact/contact_element.h"
 
+#include <limits>
 #include <memory>
 
 #include <gtest/gtest.h>
@@ -44,6 +45,8 @@ std::vector<Scene> scenes() {
                                             {Ball{0.3}, place},
                                             {Box{{0.4, 0.5, 0.3}}, place},
                                             {Cylinder{0.45, 0.3}, place},
+                                            {Ball{0.4}, place, true},
+                                            {Cylinder{0.3, std::numeric_limits<double>::infinity()}, place, true},
                                             {Hull{std::make_shared<Polytope>(roof_polytope({0.4, 0.5, 0.2}, 0.1))},
                                              {place.position + Vector3(0.1, 0, 0), place.orientation}}};
   ContactStation ball, corner, tube;
@@ -54,7 +57,7 @@ std::vector<Scene> scenes() {
   tube.radius = 0.25;
   tube.share = 0.7;
   std::vector<Scene> out;
-  const char* names[] = {"half-space", "ball", "box", "cylinder", "hull"};
+  const char* names[] = {"half-space", "ball", "box", "cylinder", "socket", "bearing", "hull"};
   for (std::size_t k = 0; k < shapes.size(); ++k)
     for (const int base : {1, -1}) {
       out.push_back({names[k], {{0}, {ball, corner}}, {base, {shapes[k]}}});

@@ -122,6 +122,14 @@ TEST(ContactPush, GivesBackWhatItsRestitutionSays) {
         EXPECT_NEAR(restitution_of(law_with(e, speed == 1.0 ? 2.0 : 0.02), mass, speed), e, 0.005) << mass << speed;
 }
 
+// Pressed in again before it has come off, it is damped by the speed of that, not by that of the hit before.
+TEST(ContactPush, WhatTurnsRoundOnItsWayBackIsANewHit) {
+  ContactChange turning{1e-3, 1.2e-3, 0.01};  // at -0.1 m/s when it begins, at 0.14 m/s when it ends
+  turning.speed = approach_speed(turning.begin, -0.1, -2.0);
+  EXPECT_EQ(turning.speed, 2.0);
+  EXPECT_EQ(approach_speed(turning.end, 0.14, remembered_speed(turning, -0.1)), 0.14);
+}
+
 // A step from the touch to behind the turn is too long; one of a twentieth of a turn is not, nor is one of what rests,
 // however long, nor any of a linear elastic contact. (docs/notes/contact.md 2)
 TEST(ContactPush, HitsAreCoarseInLongSteps) {

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <random>
 
+#include "contact/point_contact.h"
 #include "math/so3.h"
 #include "support/polytopes.h"
 
@@ -21,6 +23,8 @@ std::vector<Named> all_shapes() {
           {"ball", {Ball{0.4}, kPlace}},
           {"box", {Box{{0.3, 0.5, 0.2}}, kPlace}},
           {"cylinder", {Cylinder{0.3, 0.5}, kPlace}},
+          {"socket", {Ball{0.4}, kPlace, true}},
+          {"bearing", {Cylinder{0.3, std::numeric_limits<double>::infinity()}, kPlace, true}},
           {"hull", {Hull{std::make_shared<Polytope>(roof_polytope({0.3, 0.4, 0.2}, 0.15))}, kPlace}}};
 }
 
@@ -107,6 +111,23 @@ TEST(ContactShapes, HaveTheirPointsOnTheirSurfaces) {
   for (const auto& [name, shape] : all_shapes())
     for (const ContactPoint& point : contact_points(shape, 0.15))
       EXPECT_NEAR(shape.distance(point.arm).value, -point.radius, 1e-15) << name;
+}
+
+// What is in a hole looks at its middle, and there is nothing between two places in it.
+TEST(ContactShapes, AreHolesTurnedInsideOut) {
+  for (const ContactShape& hole :
+       {ContactShape{Ball{0.4}, kPlace, true}, ContactShape{Cylinder{0.4, 9}, kPlace, true}}) {
+    ContactShape solid = hole;
+    solid.is_hollow = false;
+    for (const Vector3& point : random_points(20)) {
+      EXPECT_EQ(hole.gap(point), -solid.gap(point));
+      EXPECT_NEAR(hole.distance(point).value, hole.gap(point), 1e-15);
+      EXPECT_GT((kPlace.position - point).dot(hole.distance(point).gradient), 0);
+    }
+    EXPECT_FALSE(has_faces(hole));
+    EXPECT_TRUE(contact_points(hole, 0.1).empty());
+    EXPECT_FALSE(passes_through(hole, kPlace * Vector3(0.3, 0, 0), kPlace * Vector3(-0.3, 0.1, 0), 0.01));
+  }
 }
 
 // Their gradients there are unit vectors, so that what is pressed out goes somewhere.

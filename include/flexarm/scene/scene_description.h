@@ -212,6 +212,21 @@ struct JointDescription {
   SourceLocation location;
 };
 
+/// Play of a joint: what it would hold is held by contact at the end of the play. In the tree the joint itself is a
+/// floating one then; one that would close a loop is nothing else.
+struct ClearanceDescription {
+  JointDescription joint;  ///< without play: revolute, continuous, prismatic or spherical
+  bool closes_loop = false;
+  double radius = 0;                     ///< the play: by which the hole is larger than what is in it [m]
+  std::optional<double> length = {};     ///< of the pin or block along the axis [m]; empty: see docs/scene_format.md
+  std::optional<double> width = {};      ///< of the block's square section [m]; empty: as its length
+  double journal = 0;                    ///< radius of the pin or ball; 0: without friction it does not count [m]
+  std::optional<double> stiffness = {};  ///< of a contact point [N/m]; empty: by what it moves and the step
+  double restitution = 0.3;              ///< from 0.05 to 1
+  double friction = 0;                   ///< Coulomb's coefficient
+  SourceLocation location = {};          ///< of <clearance>
+};
+
 // ---------------------------------------------------------------- drives
 
 /// A linear spring on a joint's coordinate, slack at `rest` [rad or m]; stiffness [N m/rad or N/m].
@@ -391,6 +406,7 @@ struct SceneDescription {
   std::vector<ContactDescription> contacts;
   std::vector<ContactPair> no_contacts;
   std::map<std::string, SurfaceHints> surfaces;  ///< of links that have some, by their names
+  std::vector<ClearanceDescription> clearances;  ///< joints with play
   bool lock_massless = false;          ///< joints that move nothing with inertia are held where they start, not refused
   bool starts_in_equilibrium = false;  ///< at rest, where loads, gravity and servos at t = 0 hold it
   SourceLocation equilibrium_location = {};      ///< of the <initial> that says so

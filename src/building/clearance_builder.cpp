@@ -1,0 +1,182 @@
+#include "building/passes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "building/model_builder.h"
+#include "contact/contact_element.h"
+#include "math/pi.h"
+#include "schemes/scheme.h"
+
+namespace flexarm {
+namespace {
+
+/// Length of a pin or a block for which none is given, in plays, and in radii of the pin. Fits of machines have
+/// diameters of some 1000 plays, and bearings are about as long.
+constexpr double kLengthInPlays = 1000, kLengthInRadii = 2;
+/// Of the depth: how deep inside a joint without stiffness may start.
+constexpr double kDeepestStart = 0.25;
+/// What sticks is not stiffer than kStiffestHold m / h^2.
+constexpr double kStiffestHold = 16;
+
+class Clearance final : public ContactElement {
+ public:
+  using ContactElement::ContactElement;
+  const char* kind() const override { return "clearance"; }
+};
+
+/// Pin, ball or block on the child, and the hole in the parent, in frames at the joint whose z is along its axis.
+struct Fit {
+  std::vector<Vector3> points;
+  std::vector<ContactShape> holes;
+  double at_a_time = 1;  ///< points that are pressed across the axis where nothing tilts
+};
+
+/// What is beyond a wall, whose normal looks back.
+ContactShape wall(const Vector3& direction, double distance) {
+  ContactShape out;
+  out.kind = HalfSpace{};
+  out.place = {distance * direction, Quaternion::FromTwoVectors(Vector3::UnitZ(), -direction)};
+  return out;
+}
+
+template <class Shape>
+ContactShape hole(const Shape& shape) {
+  ContactShape out;
+  out.kind = shape;
+  out.is_hollow = true;
+  return out;
+}
+
+Fit fit_of(const scene::ClearanceDescription& clearance) {
+  const double play = clearance.radius, in_plays = kLengthInPlays * play;
+  const double length =
+      clearance.length.value_or(clearance.journal > 0 ? kLengthInRadii * clearance.journal : in_plays);
+  const double reach = clearance.journal + play;
+  const Vector3 z = Vector3::UnitZ();
+  Fit fit;
+  if (clearance.joint.kind == scene::JointKind::Spherical) {
+    fit.points = {Vector3::Zero()};
+    fit.holes = {hole(Ball{reach})};
+  } else if (clearance.joint.kind == scene::JointKind::Prismatic) {
+    const double across = 0.5 * clearance.width.value_or(length);
+    for (int k = 0; k < 8; ++k)
+      fit.points.emplace_back(k & 1 ? across : -across, k & 2 ? across : -across, (k & 4 ? 0.5 : -0.5) * length);
+    for (const int axis : {0, 1})
+      for (const double side : {-1.0, 1.0}) fit.holes.push_back(wall(side * Vector3::Unit(axis), across + play));
+    fit.at_a_time = 4;
+  } else {
+    fit.points = {0.5 * length * z, -0.5 * length * z};
+    fit.holes = {hole(Cylinder{reach, std::numeric_limits<double>::infinity()}), wall(z, 0.5 * length + reach),
+                 wall(-z, 0.5 * length + reach)};
+    fit.at_a_time = 2;
+  }
+  return fit;
+}
+
+/// Turns z into an axis, and x into one of the frame's own where these are normal to it.
+Quaternion axes_along(const Vector3& axis) {
+  const Vector3 guess = std::abs(axis.x()) < 0.9 ? Vector3::UnitX() : Vector3::UnitY();
+  Matrix3 axes;
+  axes.col(0) = (guess - guess.dot(axis) * axis).normalized();
+  axes.col(1) = axis.cross(axes.col(0));
+  axes.col(2) = axis;
+  return Quaternion(axes).normalized();
+}
+
+class ClearanceBuilder {
+ public:
+  ClearanceBuilder(const ScenePlan& plan, const Model& model) : plan_(plan), model_(model) {}
+
+  std::shared_ptr<const ForceElement> place(const scene::ClearanceDescription& clearance) const {
+    const scene::JointDescription& joint = clearance.joint;
+    const Attachment bearing = frame_of(joint.parent, joint.origin, joint.axis);
+    Attachment pin = frame_of(joint.child, joint.child_origin, joint.axis);
+    // Of a joint that closes a loop position 0 is how its links stand at the start.
+    if (clearance.closes_loop)
+      pin.offset.orientation =
+          pose_of(pin.node).orientation.conjugate() * pose_of(bearing.node).orientation * bearing.offset.orientation;
+    const std::string where = at(clearance.location, "<clearance> of joint '" + joint.name + "'");
+    if (pin.node == bearing.node) throw ModelError(where + "both links belong to the same rigid body");
+    const Fit fit = fit_of(clearance);
+    ContactStations stations{{pin.node}, {}};
+    for (const Vector3& point : fit.points) {
+      ContactStation station;
+      station.arm = pin.offset * point;
+      station.radius = clearance.journal;
+      stations.stations.push_back(station);
+    }
+    ContactSurface surface{bearing.node, fit.holes};
+    for (ContactShape& shape : surface.shapes) shape.place = bearing.offset * shape.place;
+    const double inside = start_inside(stations, surface);
+    if (inside > clearance.radius)
+      throw ModelError(fmt::format("{}starts {:.6g} m beyond its play of {:.6g} m; expected at most as much", where,
+                                   inside, clearance.radius));
+    return std::make_shared<Clearance>(std::vector{joint.child, joint.parent}, stations, surface,
+                                       law_of(clearance, fit.at_a_time, inside), false, joint.name);
+  }
+
+ private:
+  Attachment frame_of(const std::string& link, const Pose& origin, const Vector3& axis) const {
+    Attachment frame = attachment(plan_, model_, link, origin.position);
+    frame.offset = frame.offset * origin * Pose{Vector3::Zero(), axes_along(axis.normalized())};
+    return frame;
+  }
+
+  NodePose pose_of(int node) const { return node < 0 ? NodePose() : model_.nodes[node]; }
+
+  /// How deep the deepest point starts inside; < 0: how near the surface is [m].
+  double start_inside(const ContactStations& side, const ContactSurface& surface) const {
+    const auto poses = [&](int node) { return pose_of(node); };
+    double inside = -std::numeric_limits<double>::infinity();
+    for (const ContactStation& station : side.stations)
+      for (const ContactShape& shape : surface.shapes) {
+        const Vector3 point = seen_from(surface, middle_of(side, station, poses), poses);
+        inside = std::max(inside, station.radius - shape.gap(point));
+      }
+    return inside;
+  }
+
+  /// Of a link, a beam its whole, and of what other bodies hold that of all [kg].
+  double mass_of_link(const std::string& name) const {
+    const LinkFrame& link = model_.links[plan_.links[name]];
+    if (link.beam) return link.beam->mass;
+    if (link.frame.node < 0) return std::numeric_limits<double>::infinity();
+    const double mass = model_.inertias[link.frame.node].total_mass;
+    return mass > 0 ? mass : mass_of(model_);
+  }
+
+  ContactLaw law_of(const scene::ClearanceDescription& clearance, double at_a_time, double inside) const {
+    const double step = plan_.scene.integrator.step, frequency = kPi / (kContactSteps * step);
+    const double mass = 1 / (1 / mass_of_link(clearance.joint.parent) + 1 / mass_of_link(clearance.joint.child));
+    ContactLaw law;
+    law.stiffness = clearance.stiffness.value_or(mass * frequency * frequency / at_a_time);
+    law.frequency = std::sqrt(law.stiffness * at_a_time / mass);
+    law.damping = damping_for_restitution(clearance.restitution);
+    // What is as soft as the step needs it is kept from giving way by more than the play. A stiffness that is given
+    // is the law.
+    if (!clearance.stiffness) law.depth = std::max(clearance.radius, inside / kDeepestStart);
+    law.friction = clearance.friction;
+    law.grip = std::min(law.stiffness, kStiffestHold * mass / (step * step) / at_a_time);
+    return law;
+  }
+
+  const ScenePlan& plan_;
+  const Model& model_;
+};
+
+}  // namespace
+
+ForceElementList place_clearances(const ScenePlan& plan, const Model& model) {
+  ForceElementList placed;
+  for (const scene::ClearanceDescription& clearance : plan.scene.clearances)
+    placed.push_back(ClearanceBuilder(plan, model).place(clearance));
+  return placed;
+}
+
+}  // namespace flexarm

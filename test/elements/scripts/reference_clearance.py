@@ -1,0 +1,206 @@
+"""Joints with play, written from section 11 of docs/notes/contact.md alone: holes, their limit, a slider-crank.
+
+check_holes() says that work in holes is exact, check_socket() that nothing is lost over many hits, check_limit() how fast
+a joint with play tends to the one without. run_crank() integrates the slider-crank of Flores and Ambrosio (Computers &
+Structures 82 (2004) 1359) with scipy, from event to event of the law: the numbers that test/reference/clearance_test.cpp
+holds the library to. Run it for all of them.
+"""
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from reference_beam import I3
+from reference_contact import gonzalez, shell_force
+from reference_contact_checks import Body, Contact, step, total
+from reference_contact_laws import damping_of
+
+
+# ---------------------------------------------------------------- holes
+
+
+def ball_gap(y, radius):
+    """From the inside of a ball: value and gradient."""
+    size = np.linalg.norm(y)
+    return radius - size, -y / size
+
+
+def cylinder_gap(y, radius):
+    value, gradient = ball_gap(y[:2], radius)
+    return value, np.append(gradient, 0)
+
+
+def check_holes():
+    rng, worst, across = np.random.default_rng(2), 0.0, 0
+    for _ in range(2000):
+        y0, y1 = rng.uniform(-1, 1, size=(2, 3))
+        for gap in (ball_gap, cylinder_gap):
+            g0, g1 = gap(y0, 0.8)[0], gap(y1, 0.8)[0]
+            way = np.append(y1 - y0, np.zeros(3))
+            gradient = gonzalez(np.append(gap(0.5 * (y0 + y1), 0.8)[1], np.zeros(3)), g1 - g0, way, 1.0)[:3]
+            worst = max(worst, abs(gradient @ (y1 - y0) - (g1 - g0)))
+            # Between two places in a hole there is nothing else: the gap is concave.
+            inside = min(gap(y0 + s * (y1 - y0), 0.8)[0] for s in np.linspace(0, 1, 21))
+            across += inside < min(g0, g1) - 1e-12
+    print(f"holes: work {worst:.1e}, chords that are deeper between their ends {across}")
+
+
+def check_socket():
+    """A free body whose point is in a socket of the world, elastic: energy over 100 hits."""
+    law = dict(h=2e-3, k=1e5)
+    arm = np.array([0.1, 0.05, -0.02])
+    body = Body(1.0, [2e-3, 3e-3, 4e-3], (-arm, I3), np.array([0.5, 0.2, -0.1]), np.array([1.0, -2, 0.5]))
+    contacts = [Contact(0, None, arm, lambda y0, y1, law: shell_force(y0, y1, 0.01, law), law)]
+    begin, hits, inside, worst = total([body])[0], 0, False, 0.0
+    while hits < 100:
+        step([body], contacts, law["h"])
+        deep = np.linalg.norm(body.pose[0] + body.pose[1] @ arm) - 0.01
+        hits += deep > 0 and not inside
+        inside = deep > 0
+        stored = 0.5 * law["k"] * max(deep, 0) ** 2
+        worst = max(worst, abs(total([body])[0] + stored - begin))
+    print(f"socket: energy over 100 hits {worst / begin:.1e}")
+
+
+# ---------------------------------------------------------------- limit
+
+
+def pendulum(play, stiffness, until, start=0.5):
+    """Angle of a pendulum on a pin with play, from rest, as it would be pressed without play; 0: without."""
+    mass, inertia, arm, g = 1.0, 0.02, 0.5, 9.81
+    whole = inertia + mass * arm**2
+
+    def fixed(t, y):
+        return [y[1], -mass * g * arm * np.sin(y[0]) / whole]
+
+    if play == 0:
+        return solve_ivp(fixed, (0, until), [start, 0], method="DOP853", rtol=1e-12, atol=1e-14).y[0, -1]
+
+    def loose(t, y):
+        x, angle = y[:2], y[2]
+        out = np.array([-np.sin(angle), np.cos(angle)])  # from the centre of mass to the pin
+        pin = x + arm * out
+        size = np.linalg.norm(pin)
+        force = -stiffness * max(size - play, 0) * pin / max(size, 1e-300)
+        moment = arm * (out[0] * force[1] - out[1] * force[0])
+        return [*y[3:], force[0] / mass, force[1] / mass - g, moment / inertia]
+
+    rate = fixed(0, [start, 0])[1]
+    tangent = np.array([np.cos(start), np.sin(start)])  # of the centre's way
+    force = mass * (arm * rate * tangent + np.array([0, g]))
+    pin = -force / np.linalg.norm(force) * (play + np.linalg.norm(force) / stiffness)
+    centre = pin - arm * np.array([-np.sin(start), np.cos(start)])
+    return solve_ivp(loose, (0, until), [*centre, start, 0, 0, 0], method="DOP853", rtol=1e-10, atol=1e-13).y[2, -1]
+
+
+def check_limit():
+    exact = pendulum(0, 0, 1.3)
+    errors = [abs(pendulum(play, 1e7, 1.3) - exact) for play in (4e-3, 2e-3, 1e-3, 5e-4)]
+    print(f"limit: errors {np.array(errors)}, orders {np.log2(np.array(errors[:-1]) / errors[1:]).round(3)}")
+
+
+# ---------------------------------------------------------------- slider-crank
+
+
+class Crank:
+    """Crank at 5000 rpm, rod, slider; play between the last two. y: angle of the rod, place of the slider, rates."""
+
+    CRANK, ROD, ROD_MASS, ROD_INERTIA, SLIDER = 0.05, 0.12, 0.21, 2.5e-4, 0.14  # m, kg, kg m^2
+    SPEED, PLAY, RESTITUTION = 5000 * 2 * np.pi / 60, 0.5e-3, 0.9
+    STIFFNESS = 3e8  # N/m, of Hertz' law of the authors (6.6e10 N/m^1.5) at 8 kN, by force over depth
+
+    def __init__(self):
+        self.damping = damping_of(self.RESTITUTION)
+        self.frequency = np.sqrt(self.STIFFNESS * (1 / self.ROD_MASS + 1 / self.SLIDER))
+        self.inertia = self.ROD_INERTIA + self.ROD_MASS * self.ROD**2 / 4
+        self.start = np.array([0, self.CRANK + self.ROD, -self.CRANK * self.SPEED / self.ROD, 0])
+
+    def pin(self, t, y):
+        """Rod's end from the slider's bearing: place, rate; tangent of the rod, acceleration of the crank's pin."""
+        along = np.array([np.cos(self.SPEED * t), np.sin(self.SPEED * t)])
+        rod = np.array([np.cos(y[0]), np.sin(y[0])])
+        tangent = np.array([-rod[1], rod[0]])
+        place = self.CRANK * along + self.ROD * rod - np.array([y[1], 0])
+        rate = self.CRANK * self.SPEED * np.array([-along[1], along[0]]) + self.ROD * y[2] * tangent
+        return place, rate - np.array([y[3], 0]), tangent, -self.SPEED**2 * self.CRANK * along
+
+    def depth(self, t, y):
+        return np.linalg.norm(self.pin(t, y)[0]) - self.PLAY
+
+    def rate(self, t, y):
+        place, rate = self.pin(t, y)[:2]
+        return place @ rate / max(np.linalg.norm(place), 1e-300)
+
+    def force(self, t, y, speed):
+        """Of the contact; speed: of the approach, None: there is none."""
+        depth = self.depth(t, y)
+        if speed is None or depth <= 0:
+            return 0.0
+        alpha = self.damping / max(speed, 0.5 * self.frequency * depth, 1e-300)
+        return self.STIFFNESS * depth * max(1 + alpha * self.rate(t, y), 0)
+
+    def rates(self, t, y, speed):
+        place, _, tangent, acceleration = self.pin(t, y)
+        force = self.force(t, y, speed) * place / max(np.linalg.norm(place), 1e-300)  # on the slider
+        turn = -0.5 * self.ROD_MASS * self.ROD * acceleration @ tangent - self.ROD * force @ tangent
+        return [y[2], y[3], turn / self.inertia, force[0] / self.SLIDER]
+
+    def growth(self, t, y):
+        """Second derivative of the depth, of an approach that speeds up."""
+        h, slope = 1e-10, np.array(self.rates(t, y, self.rate(t, y)))
+        return (self.rate(t + h, y + h * slope) - self.rate(t - h, y - h * slope)) / (2 * h)
+
+    def run(self, until, tolerance=1e-11):
+        """Pieces of the motion, times and speeds of hits. The speed of the approach is the largest one of it."""
+        def event(function, direction):
+            def of(t, y):
+                return function(t, y)
+
+            of.terminal, of.direction = True, direction
+            return of
+
+        touch, release = event(self.depth, 1), event(self.depth, -1)
+        turns, returns, peak = event(self.rate, -1), event(self.rate, 1), event(self.growth, -1)
+        t, y, phase, speed, pieces, hits = 0.0, self.start, "free", None, [], []
+        while t < until:
+            if phase == "free":
+                events, rates = [touch], lambda t, y: self.rates(t, y, None)
+            elif phase == "faster":
+                events, rates = [release, peak], lambda t, y: self.rates(t, y, max(self.rate(t, y), 0))
+            else:
+                events = [release, turns if phase == "in" else returns]
+                rates = lambda t, y, speed=speed: self.rates(t, y, speed)  # noqa: E731
+            piece = solve_ivp(rates, (t, until), y, method="DOP853", rtol=tolerance, atol=1e-3 * tolerance,
+                              events=events, dense_output=True, max_step=5e-6)
+            pieces.append((piece.t[-1], piece.sol))
+            t, y = piece.t[-1], piece.y[:, -1]
+            if piece.status == 0:
+                break
+            if phase == "free":
+                speed = self.rate(t, y)
+                hits.append((t, speed))
+                phase = "faster" if self.growth(t, y) > 0 else "in"
+            elif len(piece.t_events[0]) > 0:
+                phase = "free"
+            elif phase == "faster":
+                speed, phase = self.rate(t, y), "in"
+            else:
+                phase = "out" if phase == "in" else "faster"
+        return pieces, hits
+
+
+def run_crank():
+    crank = Crank()
+    motions = [crank.run(3e-3, tolerance) for tolerance in (1e-9, 1e-12)]
+    for t, speed in motions[1][1]:
+        print(f"crank: hit at {1e3 * t:.6f} ms with {speed:.6f} m/s")
+    for t in (0.5e-3, 1e-3, 1.5e-3, 2e-3, 2.5e-3, 3e-3):
+        coarse, fine = (next(sol for end, sol in pieces if end >= t - 1e-12)(t) for pieces, _ in motions)
+        print(f"crank: {1e3 * t} ms: " + " ".join(f"{number:.10g}" for number in fine)
+              + f"; tolerances differ by {abs(coarse - fine).max():.1e}")
+
+
+if __name__ == "__main__":
+    check_holes()
+    check_socket()
+    check_limit()
+    run_crank()
