@@ -1,4 +1,6 @@
 // What contacts put out, against statics and closed forms: columns, sensors, points.
+#include <map>
+
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
@@ -7,6 +9,7 @@
 #include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/result_columns.h"
 #include "flexarm/simulation/simulation.h"
+#include "support/source_path.h"
 
 namespace flexarm::test::contact_outputs {
 namespace {
@@ -215,6 +218,26 @@ TEST(ContactOutputs, FloorAndClampCarryABeam) {
   const double floor = -columns_of(simulation, "low/arm")[2], clamp = simulation.sample(0).values[2];
   EXPECT_GT(floor, 0.05 * weight);
   EXPECT_NEAR(floor + clamp, weight, 1e-4 * weight) << "it starts in equilibrium, to what statics leave";
+}
+
+// The motor's 40 N move two fingers, the second of which follows the first: by virtual work each presses with half of
+// it, and friction carries half of the block's weight. Its last swing has ended 2 s before.
+TEST(ContactOutputs, FingersOfAGripperShareEffortAndWeight) {
+  scene::ReadResult result = scene::read_scene_file(source_path("config/examples/gripper.urdf"));
+  Simulation simulation(result.scene.value());
+  run(simulation, 4);
+  std::map<std::string, Vector3> forces;
+  std::vector<ActingContact> contacts;
+  simulation.contacts(contacts);
+  for (const ActingContact& contact : contacts) {
+    EXPECT_EQ(contact.second, "block") << "in the scene's order: its <contact> is with all others";
+    forces.emplace(contact.first, Vector3::Zero()).first->second += contact.force;
+  }
+  ASSERT_EQ(forces.size(), 2u);
+  for (const auto& [finger, force] : forces) {
+    EXPECT_NEAR(std::hypot(force.x(), force.y()), 20, kForceError) << finger;
+    EXPECT_NEAR(force.z(), -0.5 * 0.5 * kG, kForceError) << finger;
+  }
 }
 
 TEST(ContactOutputs, SensorsOfWhatNothingTouchesAreRefused) {
