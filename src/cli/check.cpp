@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <limits>
 
@@ -151,7 +152,7 @@ std::string law_text(const ForceElementList& elements, const TouchingPair& pair)
   const ContactElement* contact = nullptr;
   for (const auto& [index, memory] : pair.elements) {
     contact = dynamic_cast<const ContactElement*>(elements[index].get());
-    if (!contact) return elements[index]->description();
+    if (!contact) return fmt::format("{} times {}", pair.elements.size(), elements[index]->description());
     points += contact->point_count();
     least = std::min(least, contact->law().stiffness);
     most = std::max(most, contact->law().stiffness);
@@ -167,6 +168,7 @@ std::string touch_text(const Simulation& simulation, std::size_t pair) {
   put_out_touch(simulation, pair, values);
   const double count = values[3], gap = values[4];
   if (count > 0 && gap < -kRoundOff) return fmt::format("{:g} points inside, {:.3g} m deep", count, -gap);
+  if (std::isinf(gap)) return "-";  // it does not say
   return gap <= kRoundOff ? "touches" : fmt::format("{:.3g} m apart", gap);
 }
 

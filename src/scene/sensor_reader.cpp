@@ -32,7 +32,7 @@ std::vector<double> read_errors(const XmlElement& sensor, const char* attribute,
 std::vector<std::string> read_group(const XmlElement& sensor) {
   const std::optional<std::string> text = sensor.text("group");
   std::istringstream words(text.value_or(""));
-  const std::vector<std::string> names{std::istream_iterator<std::string>(words), {}};
+  std::vector<std::string> names{std::istream_iterator<std::string>(words), {}};
   if (text && names.empty()) sensor.attribute_error("group", "group must be names of links or grounds");
   return names;
 }

@@ -1,4 +1,6 @@
 // What contacts put out, against statics and closed forms: columns, sensors, points.
+#include <map>
+
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
@@ -7,6 +9,7 @@
 #include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/result_columns.h"
 #include "flexarm/simulation/simulation.h"
+#include "support/source_path.h"
 
 namespace flexarm::test::contact_outputs {
 namespace {
@@ -141,21 +144,28 @@ TEST(ContactOutputs, FrictionHoldsABlockOnAnIncline) {
   EXPECT_NEAR((force - push * normal).norm(), kMass * kG * std::sin(slope), kForceError);
 }
 
+constexpr double kBallMass = 2, kStiffness = 2e4, kSpeed = 0.5;
+const double kOmega = std::sqrt(kStiffness / kBallMass);
+
+/// A ball without weight that begins to touch the floor, in steps of 1/500 of a radian of its contact.
+Simulation hit(double restitution) {
+  return simulation_of(
+      fmt::format("<link name=\"ball\"><inertial><mass value=\"{}\"/><inertia ixx=\"0.01\" iyy=\"0.01\" izz=\"0.01\" "
+                  "ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial><collision><geometry><sphere radius=\"0.1\"/></geometry>"
+                  "</collision></link><ground name=\"floor\"/>",
+                  kBallMass) +
+          joint("ball", "floating") +
+          fmt::format("<contact first=\"ball\" second=\"floor\" restitution=\"{}\" stiffness=\"{}\"/>", restitution,
+                      kStiffness),
+      fmt::format("<initial joint=\"of_ball/z\" position=\"0.1\"/><initial link=\"ball\" linear=\"0 0 {}\"/>", -kSpeed),
+      1 / kOmega / 500, 0);
+}
+
 // An undamped contact that stops a mass m of speed v has all of its energy: k x^2 = m v^2 where it is deepest, with the
 // hardened x = p / (1 - (p/d)^2)^2 of the penetration p, d = 0.01 m a tenth of the ball's radius; and the force is
 // k x dx/dp = v sqrt(k m) dx/dp. The largest of samples 1/500 of a radian apart lacks a few 1e-6 of it.
 TEST(ContactOutputs, AnElasticHitHasTheForceOfItsClosedForm) {
-  const double mass = 2, stiffness = 2e4, speed = 0.5, omega = std::sqrt(stiffness / mass);
-  Simulation simulation = simulation_of(
-      fmt::format("<link name=\"ball\"><inertial><mass value=\"{}\"/><inertia ixx=\"0.01\" iyy=\"0.01\" izz=\"0.01\" "
-                  "ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial><collision><geometry><sphere radius=\"0.1\"/></geometry>"
-                  "</collision></link><ground name=\"floor\"/>",
-                  mass) +
-          joint("ball", "floating") +
-          fmt::format("<contact first=\"ball\" second=\"floor\" restitution=\"1\" stiffness=\"{}\"/>", stiffness),
-      "<initial joint=\"of_ball/z\" position=\"0.1\"/>"
-      "<initial link=\"ball\" linear=\"0 0 -0.5\"/>",
-      1 / omega / 500, 0);
+  Simulation simulation = hit(1);
   double largest = 0, penetration = 0;
   ResultColumns columns(simulation, ResultColumns::Solver::Without, {"contact/*"});
   for (int n = 0; n < 1800; ++n) {
@@ -165,11 +175,29 @@ TEST(ContactOutputs, AnElasticHitHasTheForceOfItsClosedForm) {
     penetration = std::max(penetration, -row[5]);
   }
   const double deepest = penetration, part = deepest / 0.01, room = 1 - part * part;
-  EXPECT_NEAR(deepest / (room * room), speed / omega, 1e-4 * speed / omega) << "all of its energy is in it";
+  EXPECT_NEAR(deepest / (room * room), kSpeed / kOmega, 1e-4 * kSpeed / kOmega) << "all of its energy is in it";
   const double slope = (1 + 3 * part * part) / (room * room * room);
-  EXPECT_NEAR(largest, slope * speed * std::sqrt(stiffness * mass), 1e-4 * largest);
+  EXPECT_NEAR(largest, slope * kSpeed * std::sqrt(kStiffness * kBallMass), 1e-4 * largest);
   EXPECT_EQ(columns.row(simulation, {})[3], 0) << "it is off again";
   EXPECT_GT(columns.row(simulation, {})[5], 0);
+}
+
+// What is put out changes the momentum, damped as it is: the trapezoidal rule over 500 steps for a radian, of order 2.
+TEST(ContactOutputs, ForcesOfAHitAreItsChangeOfMomentum) {
+  Simulation simulation = hit(0.5);
+  ResultColumns columns(simulation, ResultColumns::Solver::Without, {"contact/*/fz"});
+  const double before = simulation.momentum().z();
+  double sum = 0, last = 0;
+  for (int n = 0; n < 2500; ++n) {
+    ASSERT_TRUE(simulation.step().converged);
+    const double force = columns.row(simulation, {})[1];
+    sum += 0.5 * (force + last) * simulation.step_size();
+    last = force;
+  }
+  EXPECT_EQ(last, 0) << "it is off again";
+  const double change = simulation.momentum().z() - before;
+  EXPECT_NEAR(change, 1.5 * kBallMass * kSpeed, 1e-3 * change) << "with the restitution 0.5";
+  EXPECT_NEAR(sum, change, 1e-4 * change);
 }
 
 // A pad that is built in, turned by a quarter about y so that its x axis points down, carries a block beside its
@@ -215,6 +243,26 @@ TEST(ContactOutputs, FloorAndClampCarryABeam) {
   const double floor = -columns_of(simulation, "low/arm")[2], clamp = simulation.sample(0).values[2];
   EXPECT_GT(floor, 0.05 * weight);
   EXPECT_NEAR(floor + clamp, weight, 1e-4 * weight) << "it starts in equilibrium, to what statics leave";
+}
+
+// The motor's 40 N move two fingers, the second of which follows the first: by virtual work each presses with half of
+// it, and friction carries half of the block's weight. Its last swing has ended 2 s before.
+TEST(ContactOutputs, FingersOfAGripperShareEffortAndWeight) {
+  scene::ReadResult result = scene::read_scene_file(source_path("config/examples/gripper.urdf"));
+  Simulation simulation(result.scene.value());
+  run(simulation, 4);
+  std::map<std::string, Vector3> forces;
+  std::vector<ActingContact> contacts;
+  simulation.contacts(contacts);
+  for (const ActingContact& contact : contacts) {
+    EXPECT_EQ(contact.second, "block") << "in the scene's order: its <contact> is with all others";
+    forces.emplace(contact.first, Vector3::Zero()).first->second += contact.force;
+  }
+  ASSERT_EQ(forces.size(), 2u);
+  for (const auto& [finger, force] : forces) {
+    EXPECT_NEAR(std::hypot(force.x(), force.y()), 20, kForceError) << finger;
+    EXPECT_NEAR(force.z(), -0.5 * 0.5 * kG, kForceError) << finger;
+  }
 }
 
 TEST(ContactOutputs, SensorsOfWhatNothingTouchesAreRefused) {

@@ -57,6 +57,18 @@ class Contacts(unittest.TestCase):
         self.assertEqual(message.header.frame_id, "plate")
         self.assertAlmostEqual(message.wrench.force.z, -WEIGHT, delta=1e-3)
 
+    def test_the_topic_comes_and_goes_with_the_scene(self):
+        scene = rospy.get_param("flexarm/scene")
+
+        def is_there():
+            return "/flexarm/contacts" in [name for name, _ in rospy.get_published_topics()]
+
+        self.assertTrue(is_there())
+        for other, has_contacts in (("sensing_arm", False), ("resting_block", True)):
+            rospy.set_param("flexarm/scene", scene.replace("resting_block", other))
+            self.assertTrue(self.arm.reload().success)
+            wait_until(lambda: is_there() == has_contacts, "the topic in scene " + other)
+
     def test_arrows_show_them(self):
         arrows = [marker for marker in self.markers[-1].markers if marker.ns == "contacts"]
         self.assertEqual(len(arrows), 1)
