@@ -1,4 +1,6 @@
 // Events of NeighbourSteps: neighbours go over them in pieces, beside the run that does the same.
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "integrators/neighbour_steps.h"
@@ -159,6 +161,25 @@ void NeighbourSteps::note_motors(const State& state) {
                          rest > 0 ? "its motor sticks" : "its motor slips",
                          "friction within a motor: the derivative is that of the steps, which go over it"});
     motor_rests_[i] = rest;
+  }
+}
+
+/// Hits have no march: they are right to a percent, whatever part of a step they begin in, but differ by as much from
+/// part to part.
+void NeighbourSteps::note_hits(const State& state) {
+  const ForceElementList& elements = model_.force_elements;
+  touches_.resize(elements.size(), -1);
+  const double* memory = state.force_memory.data();
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    const double* const end = memory + elements[i]->memory_size();
+    const int touches =
+        elements[i]->hits() && std::any_of(memory, end, [](double number) { return number != 0; }) ? 1 : 0;
+    memory = end;
+    const bool begins = touches_[i] == 0 && touches == 1;
+    touches_[i] = static_cast<char>(touches);
+    if (begins)
+      events_.push_back({state.time, fmt::format("{}", fmt::join(elements[i]->links(), " and ")), "hit each other",
+                         "the derivative is that of the steps, for which it matters in which part of one they hit"});
   }
 }
 

@@ -203,6 +203,7 @@ void NeighbourSteps::follow(const State& state, const StepSystem& solved) {
   const double step = solved.configuration().step();
   settle(state);
   note_motors(state);
+  note_hits(state);
   if (is_in_hit_ && ways_[0].ahead.origin == state.origin) return go_over_events(state, step);
   is_in_hit_ = false;
   for (Direction& direction : directions_) {

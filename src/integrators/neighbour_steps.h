@@ -88,6 +88,7 @@ class NeighbourSteps : public StepFollower, private MarchFollower {
   bool hit_goes_on(const State& state);
   void jump(Neighbour& neighbour, const Crossing& crossing);
   void note_motors(const State& state);
+  void note_hits(const State& state);
   void note_stops(const State& state, const StepSystem& solved);
   void put_beside(Direction& direction, const State& state, double step);
   void place_slaves(Neighbour& neighbour);
@@ -125,6 +126,7 @@ class NeighbourSteps : public StepFollower, private MarchFollower {
   bool notes_events_ = false;
   std::vector<std::vector<double>> coarse_;  // derivatives by the first way, per direction
   std::vector<double> motor_rests_;
+  std::vector<char> touches_;  // per force element: in a hit; negative: not known yet
   std::vector<RunEvent> events_;
 };
 

@@ -47,3 +47,30 @@ def test_error_over_dry_friction_is_of_first_order():
     worst = [max(abs(sensitivity(rubbing_arm(1.6 / steps), "fc", 1.6)[0] - exact) for steps in counts)
              for counts in ((401, 449, 503), (4001, 4507, 5003))]
     assert worst[1] < worst[0] / 5
+
+
+TOUCHING = """<robot name="touching"> <parameter name="mu" value="0.3"/> <parameter name="height" value="{height}"/>
+  <link name="world"/> <ground name="floor"/>
+  <joint name="j" type="floating"> <parent link="world"/> <child link="block"/> </joint>
+  <link name="block"> <inertial> <mass value="1"/>
+    <inertia ixx="2e-3" iyy="2e-3" izz="2e-3" ixy="0" ixz="0" iyz="0"/> </inertial>
+    <collision> <geometry> <box size="0.1 0.1 0.1"/> </geometry> </collision> </link>
+  <contact first="block" second="floor" friction="${{mu}}"/>
+  <simulation> <gravity xyz="4 0 -8"/> <integrator step="1e-3"/> <initial joint="j/z" position="${{height}}"/>
+  </simulation> </robot>"""
+
+
+def test_friction_of_what_slides():
+    # From where its weight and the contact's stiffness, m (pi / 10 h)^2 on its corners, hold it: nothing settles.
+    depth = 8 / (numpy.pi / 10e-3) ** 2
+    found, events = sensitivity(TOUCHING.format(height=0.05 - depth), "mu", 0.5)
+    # It sticks in none of the first steps, over which friction sets in: the slip of a step is 4e-6 m at first, and the
+    # grip gives way by mu m g / k = 2.4e-5 m, so that it slides fully after some 5 steps.
+    assert found == pytest.approx(-0.5 * 8 * 0.5**2, rel=2 * 5e-3 / 0.5)
+    assert events == []
+
+
+def test_hits_are_doubtful():
+    _, events = sensitivity(TOUCHING.format(height=0.06), "mu", 0.3)
+    assert [(own.joint, own.what) for own in events][0] == ("block and floor", "hit each other")
+    assert all("in which part of one they hit" in own.doubt for own in events)
