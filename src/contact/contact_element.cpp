@@ -35,7 +35,7 @@ std::vector<int> reach_of(const ContactStations& side, const ContactSurface& sur
 }
 
 PointMemory memory_at(const double* numbers) {
-  return {numbers[0], Eigen::Map<const Vector3>(numbers + 1), static_cast<int>(numbers[4])};
+  return {numbers[0], Eigen::Map<const Vector3>(numbers + 1), static_cast<int>(numbers[4]), numbers[5]};
 }
 
 auto poses_in(const std::vector<NodePose>& nodes) {
@@ -124,10 +124,13 @@ bool ContactElement::needs_halves(const ForceStep& step, const int*, int count) 
       memory += PointMemory::kSize;
       return true;
     }
-    const FeltShape felt = felt_shape(shape, law_, station.radius, from, to, memory_at(memory).face);
+    PointMotion motion;
+    motion.begin = from, motion.end = to;
+    motion.outwards = outwards(station, poses_in(step.begin));
+    const FeltShape felt = felt_shape(shape, law_, station.radius, motion, memory_at(memory));
     const SignedDistance begin = felt.shape.distance(from), end = felt.shape.distance(to);
     const double begin_rate = -begin.gradient.dot(velocity(station, step.begin, step.velocities));
-    ContactChange change{station.radius - begin.value, station.radius - end.value, std::abs(step.duration)};
+    ContactChange change{felt.radius - begin.value, felt.radius - end.value, std::abs(step.duration)};
     change.speed = approach_speed(change.begin, begin_rate, memory[0]);
     memory += PointMemory::kSize;
     if (!felt.is_felt) {  // of a corner that no face has seen coming in
@@ -135,7 +138,7 @@ bool ContactElement::needs_halves(const ForceStep& step, const int*, int count) 
       return !is_too_long;
     }
     if (change.begin <= 0 && change.end <= 0)
-      is_too_long = passes_through(felt.shape, from, to, station.radius);
+      is_too_long = passes_through(felt.shape, from, to, felt.radius);
     else
       is_too_long = count == 0 || begin.gradient.dot(end.gradient) < kOtherSide ||
                     is_coarse_hit(law_, change, begin_rate, step.refinement);
@@ -220,12 +223,14 @@ void ContactElement::evaluate(const ForceStep& step, const int*, ForceAction& ac
     if (step.duration != 0) motion.begin_velocity = velocity(station, step.begin, step.velocities);
     motion.duration = step.duration;
     motion.at_end = step.at_end;
+    motion.outwards = outwards(station, poses_in(step.begin));
     const PointAction local =
         point_action(shape, law_of(station), station.radius, motion, memory_at(memory), action.tangent.size() > 0);
     action.dissipated += local.dissipated;
     new_memory[0] = local.memory.speed;
     Eigen::Map<Vector3>(new_memory + 1) = local.memory.stretch;
     new_memory[4] = local.memory.face;
+    new_memory[5] = local.memory.within;
     memory += PointMemory::kSize;
     new_memory += PointMemory::kSize;
     if (local.acts) add(station, frames, placed, local, action);

@@ -13,9 +13,10 @@ namespace flexarm {
 struct ContactStation {
   static constexpr int kMostNodes = 5;
   std::array<double, kMostNodes> weights = {1};
-  Vector3 arm = Vector3::Zero();  ///< in the frame of the only node; zero of a beam [m]
-  double radius = 0;              ///< [m]
-  double share = 1;               ///< of the law's stiffnesses
+  Vector3 arm = Vector3::Zero();       ///< in the frame of the only node; zero of a beam [m]
+  double radius = 0;                   ///< [m]
+  double share = 1;                    ///< of the law's stiffnesses
+  Matrix3 outwards = Matrix3::Zero();  ///< of a corner, see ContactPoint, in the frame of the only node
 };
 
 /// Of a body, or of an element of a beam.
@@ -80,6 +81,11 @@ class ContactElement : public ForceElement {
   /// By how much it moves there at the beginning of a step [m/s].
   Vector3 velocity(const ContactStation& station, const std::vector<NodePose>& poses,
                    const std::vector<Vector6>& velocities) const;
+  /// The same of the faces that meet in a corner, in the frame of the shapes.
+  template <class PoseOf>
+  Matrix3 outwards(const ContactStation& station, const PoseOf& pose_of) const {
+    return pose_of(surface_.node).rotation.transpose() * pose_of(side_.nodes[0]).rotation * station.outwards;
+  }
   Frames frames(const ForceStep& step) const;
   double remembered_energy(const ForceStep& step) const;
   Placed placed(const ContactStation& station, const Frames& frames, const ForceStep& step) const;

@@ -75,12 +75,16 @@ std::vector<ContactPoint> points_of(const Box& box, double spacing) {
   std::vector<ContactPoint> out;
   for (int k = 0; k < 8; ++k) {
     const Vector3 corner = box.half.cwiseProduct(Vector3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1));
-    out.push_back({corner, 0});
+    const Matrix3 outwards = corner.cwiseSign().asDiagonal();
+    out.push_back({corner, 0, outwards});
     for (int axis = 0; axis < 3; ++axis) {
       if (k & (1 << axis)) continue;  // edges begin at their lower ends
       const double length = 2 * box.half[axis];
       const int between = static_cast<int>(std::min(std::ceil(length / spacing), kMostEdgePoints + 1.0)) - 1;
-      for (int i = 1; i <= between; ++i) out.push_back({corner + length * i / (between + 1) * Vector3::Unit(axis), 0});
+      Matrix3 beside = outwards;
+      beside.col(axis).setZero();
+      for (int i = 1; i <= between; ++i)
+        out.push_back({corner + length * i / (between + 1) * Vector3::Unit(axis), 0, beside});
     }
   }
   return out;
@@ -90,7 +94,11 @@ std::vector<ContactPoint> points_of(const Cylinder& cylinder, double) {
   for (const double z : {-cylinder.half_length, cylinder.half_length})
     for (int k = 0; k < kRimPoints; ++k) {
       const double angle = 2 * kPi * k / kRimPoints;
-      out.push_back({{cylinder.radius * std::cos(angle), cylinder.radius * std::sin(angle), z}, 0});
+      const Vector3 radial(std::cos(angle), std::sin(angle), 0);
+      Matrix3 outwards = Matrix3::Zero();
+      outwards.col(0) = radial;
+      outwards(2, 2) = z < 0 ? -1 : 1;
+      out.push_back({cylinder.radius * radial + Vector3(0, 0, z), 0, outwards});
     }
   return out;
 }
@@ -120,6 +128,9 @@ constexpr double kBeside = 1e-9;
 /// A point that starts so little inside of a face, of the size, may come in by it: corners of equal boxes that a scene
 /// lays on each other are inside of several.
 constexpr double kFlush = 1e-3;
+/// Cosines of a face's normal to those of the faces that meet in a corner that lies on it: not above the first, and one
+/// of them below the second.
+constexpr double kAside = 0.2, kOpposite = -0.5;
 
 /// How far a point is outside of each pair of faces on the side on which `side` is, and the size of it all [m].
 struct FaceDistances {
@@ -142,6 +153,10 @@ int face_along(const ContactShape& shape, Eigen::Index axis, const Vector3& side
   if (std::holds_alternative<Cylinder>(shape.kind) && axis < 2) return 1;
   const int number = static_cast<int>(axis) + 1;
   return side[axis] < 0 ? -number : number;
+}
+
+bool is_round(const ContactShape& shape, int face) {
+  return std::holds_alternative<Cylinder>(shape.kind) && face == 1;
 }
 
 bool is_same_pair(const ContactShape& shape, Eigen::Index one, Eigen::Index other) {
@@ -186,6 +201,26 @@ int nearest_face(const ContactShape& shape, const Vector3& point) {
   return face_along(shape, axis, own);
 }
 
+bool can_lie_on(const ContactShape& shape, int face, const Matrix3& outwards) {
+  if (is_round(shape, face)) return true;
+  const Vector3 normal = beyond_face(shape, face).place.orientation * Vector3::UnitZ();
+  const Vector3 cosines = outwards.transpose() * normal;
+  return cosines.maxCoeff() <= kAside && cosines.minCoeff() <= kOpposite;
+}
+
+int face_to_lie_on(const ContactShape& shape, const Vector3& point, const Matrix3& outwards, double deepest) {
+  const Vector3 own = own_point(shape, point);
+  const FaceDistances distances = face_distances(shape, own, own);
+  int best = 0;
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const int face = face_along(shape, k, own);
+    if (is_round(shape, face) || -distances.values[k] > deepest || !can_lie_on(shape, face, outwards)) continue;
+    best = face;
+    deepest = -distances.values[k];
+  }
+  return best;
+}
+
 bool is_over_face(const ContactShape& shape, int face, const Vector3& point) {
   const Vector3 own = own_point(shape, point);
   const FaceDistances distances = face_distances(shape, own, own);
@@ -209,7 +244,11 @@ ContactShape beyond_face(const ContactShape& shape, int face) {
 
 std::vector<ContactPoint> contact_points(const ContactShape& shape, double spacing) {
   std::vector<ContactPoint> out = std::visit([&](const auto& each) { return points_of(each, spacing); }, shape.kind);
-  for (ContactPoint& point : out) point.arm = shape.place * point.arm;
+  const Matrix3 axes = shape.place.orientation.toRotationMatrix();
+  for (ContactPoint& point : out) {
+    point.arm = shape.place * point.arm;
+    point.outwards = axes * point.outwards;
+  }
   return out;
 }
 
