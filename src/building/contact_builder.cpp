@@ -308,6 +308,7 @@ class ContactBuilder {
           ContactStation station;
           station.arm = point.arm;
           station.radius = point.radius;
+          station.outwards = point.outwards;
           body.stations.push_back(station);
         }
       if (!body.stations.empty()) out.push_back(std::move(body));

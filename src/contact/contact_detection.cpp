@@ -86,14 +86,18 @@ bool ContactElement::is_too_long(const ContactStation& station, const ContactSha
                                  const ForceStep& step, bool acts) const {
   const Vector3 from = place(station, poses_in(step.begin)), to = place(station, poses_in(step.end));
   if (shape.gap(from) - station.radius > (to - from).norm()) return false;
-  const FeltShape felt = felt_shape(shape, law_, station.radius, from, to, memory.face);
+  PointMotion motion;
+  motion.begin = from;
+  motion.end = to;
+  motion.outwards = outwards(station, poses_in(step.begin));
+  const FeltShape felt = felt_shape(shape, law_, station.radius, motion, memory);
   // Of a corner that no face has seen coming in.
   if (!felt.is_felt) return passes_through(shape, from, to, -kUnseen * law_.depth);
   const SignedDistance begin = felt.shape.distance(from), end = felt.shape.distance(to);
   const double begin_rate = -begin.gradient.dot(velocity(station, poses_in(step.begin), step.velocities));
-  ContactChange change{station.radius - begin.value, station.radius - end.value, std::abs(step.duration)};
+  ContactChange change{felt.radius - begin.value, felt.radius - end.value, std::abs(step.duration)};
   change.speed = approach_speed(change.begin, begin_rate, memory.speed);
-  if (change.begin <= 0 && change.end <= 0) return passes_through(felt.shape, from, to, station.radius);
+  if (change.begin <= 0 && change.end <= 0) return passes_through(felt.shape, from, to, felt.radius);
   return !acts || begin.gradient.dot(end.gradient) < kOtherSide ||
          is_coarse_hit(law_, change, begin_rate, step.refinement);
 }

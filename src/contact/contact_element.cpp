@@ -153,12 +153,14 @@ void ContactElement::evaluate(const ForceStep& step, const int*, ForceAction& ac
     if (step.duration != 0) motion.begin_velocity = velocity(station, poses_in(step.begin), step.velocities);
     motion.duration = step.duration;
     motion.at_end = step.at_end;
+    motion.outwards = outwards(station, poses_in(step.begin));
     const PointAction local =
         point_action(shape, law_of(station), station.radius, motion, memory_at(memory), action.tangent.size() > 0);
     action.dissipated += local.dissipated;
     new_memory[0] = local.memory.speed;
     Eigen::Map<Vector3>(new_memory + 1) = local.memory.stretch;
     new_memory[4] = local.memory.face;
+    new_memory[5] = local.memory.within;
     memory += PointMemory::kSize;
     new_memory += PointMemory::kSize;
     if (local.acts) add(station, frames, placed, local, action);

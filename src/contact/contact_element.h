@@ -13,9 +13,10 @@ namespace flexarm {
 struct ContactStation {
   static constexpr int kMostNodes = 5;
   std::array<double, kMostNodes> weights = {1};
-  Vector3 arm = Vector3::Zero();  ///< in the frame of the only node; zero of a beam [m]
-  double radius = 0;              ///< [m]
-  double share = 1;               ///< of the law's stiffnesses
+  Vector3 arm = Vector3::Zero();       ///< in the frame of the only node; zero of a beam [m]
+  double radius = 0;                   ///< [m]
+  double share = 1;                    ///< of the law's stiffnesses
+  Matrix3 outwards = Matrix3::Zero();  ///< of a corner, see ContactPoint, in the frame of the only node
 };
 
 /// Of a body, or of an element of a beam.
@@ -83,7 +84,7 @@ class ContactElement : public ForceElement {
   int moving_nodes() const { return side_.nodes[0] < 0 ? 0 : static_cast<int>(side_.nodes.size()); }
   ContactLaw law_of(const ContactStation& station) const;
   static PointMemory memory_at(const double* numbers) {
-    return {numbers[0], Eigen::Map<const Vector3>(numbers + 1), static_cast<int>(numbers[4])};
+    return {numbers[0], Eigen::Map<const Vector3>(numbers + 1), static_cast<int>(numbers[4]), numbers[5]};
   }
   /// Of a station's middle in the frame of the shapes, at poses `pose_of(node)`.
   template <class PoseOf>
@@ -96,6 +97,11 @@ class ContactElement : public ForceElement {
   /// Whether a step is too long for one of them; `acts`: see needs_halves().
   bool is_too_long(const ContactStation& station, const ContactShape& shape, const PointMemory& memory,
                    const ForceStep& step, bool acts) const;
+  /// The same of the faces that meet in a corner, in the frame of the shapes.
+  template <class PoseOf>
+  Matrix3 outwards(const ContactStation& station, const PoseOf& pose_of) const {
+    return pose_of(surface_.node).rotation.transpose() * pose_of(side_.nodes[0]).rotation * station.outwards;
+  }
   Frames frames(const ForceStep& step) const;
   double remembered_energy(const ForceStep& step) const;
   Placed placed(const ContactStation& station, const Frames& frames, const ForceStep& step) const;

@@ -40,6 +40,16 @@ void add_grip(const ContactLaw& law, double radius, const PointMotion& motion, c
   action.slope.bottomLeftCorner<3, 3>() += radius * hat(drag) * by_end;
 }
 
+/// The edge of a table comes into a block that slides off it by the block's front, but it is the block's bottom that
+/// lies on it, deeper by what both give way. Where it comes in is where it begins to be felt, so that nothing is
+/// stored.
+void lay_on_another(const ContactShape& shape, const ContactLaw& law, const PointMotion& motion, FeltShape& felt) {
+  const int face = face_to_lie_on(shape, motion.begin, motion.outwards, law.depth);
+  if (face == 0) return;
+  felt.face = face;
+  felt.radius = std::min(beyond_face(shape, face).distance(motion.begin).value, 0.0);
+}
+
 }  // namespace
 
 GapChange gap_change(const ContactShape& shape, const Vector3& from, const Vector3& to, bool at_end) {
@@ -60,48 +70,63 @@ GapChange gap_change(const ContactShape& shape, const Vector3& from, const Vecto
   return out;
 }
 
-FeltShape felt_shape(const ContactShape& shape, const ContactLaw& law, double radius, const Vector3& from,
-                     const Vector3& to, int remembered_face) {
+FeltShape felt_shape(const ContactShape& shape, const ContactLaw& law, double radius, const PointMotion& motion,
+                     const PointMemory& memory) {
   FeltShape out{shape};
+  out.radius = radius;
   if (radius > 0 || !has_faces(shape)) return out;
-  out.face = remembered_face;
+  const Vector3& from = motion.begin;
+  out.face = memory.face;
+  out.radius = -memory.within;
   if (out.face != 0 && !is_over_face(shape, out.face, from)) {
-    out.let_go = contact_energy(law, -beyond_face(shape, out.face).distance(from).value);
+    out.let_go = contact_energy(law, out.radius - beyond_face(shape, out.face).distance(from).value);
     out.face = 0;
   }
-  if (out.face == 0)
-    out.face = shape.distance(from).value < 0 ? nearest_face(shape, from) : entered_face(shape, from, to);
+  if (out.face == 0) {
+    out.radius = 0;
+    const bool is_inside = shape.distance(from).value < 0;
+    out.face = is_inside ? nearest_face(shape, from) : entered_face(shape, from, motion.end);
+    if (!is_inside && out.face != 0 && !can_lie_on(shape, out.face, motion.outwards))
+      lay_on_another(shape, law, motion, out);
+  }
   out.is_felt = out.face != 0;
   if (out.is_felt) out.shape = beyond_face(shape, out.face);
   // What it has left one face of a hull for the next one with is still there.
-  if (out.is_felt && out.let_go > 0) out.let_go -= contact_energy(law, -out.shape.distance(from).value);
+  if (out.is_felt && out.let_go > 0) out.let_go -= contact_energy(law, out.radius - out.shape.distance(from).value);
   return out;
 }
 
 double stored_energy(const ContactShape& shape, const ContactLaw& law, double radius, const Vector3& point,
                      const PointMemory& memory) {
   const ContactShape& felt = memory.face != 0 ? beyond_face(shape, memory.face) : shape;
-  return contact_energy(law, radius - felt.distance(point).value) + 0.5 * law.grip * memory.stretch.squaredNorm();
+  return contact_energy(law, radius - memory.within - felt.distance(point).value) +
+         0.5 * law.grip * memory.stretch.squaredNorm();
 }
 
 PointAction point_action(const ContactShape& whole, const ContactLaw& law, double radius, const PointMotion& motion,
                          const PointMemory& memory, bool with_slope) {
   PointAction out;
-  const FeltShape felt = felt_shape(whole, law, radius, motion.begin, motion.end, memory.face);
+  const FeltShape felt = felt_shape(whole, law, radius, motion, memory);
   const ContactShape& shape = felt.shape;
   out.dissipated = felt.let_go + 0.5 * law.grip * memory.stretch.squaredNorm();  // of a contact that has let go
   if (!felt.is_felt) return out;
   const GapChange gap = gap_change(shape, motion.begin, motion.end, motion.at_end);
-  ContactChange change{radius - gap.begin, radius - gap.end, motion.at_end ? 0.0 : motion.duration};
+  ContactChange change{felt.radius - gap.begin, felt.radius - gap.end, motion.at_end ? 0.0 : motion.duration};
+  const double inside = felt.face != 0 ? -gap.end : 0;
+  out.memory.face = change.end > 0 || (felt.radius < 0 && inside > 0) ? felt.face : 0;
+  // Where it comes out a little it is felt from there on when it goes in again.
+  if (out.memory.face != 0 && felt.radius < 0) out.memory.within = std::min(-felt.radius, inside);
   if (change.begin <= 0 && change.end <= 0) return out;
   out.acts = true;
   // Beyond its depth the law means nothing, and updates are too small to tell: an equilibrium is to be looked for by
-  // shorter ways.
-  if (motion.at_end && change.end >= kDeepest * law.depth) {
+  // shorter ways. In motion a step may be too long for a hit; what goes on from so deep is driven, and no force is
+  // enough.
+  const bool is_driven = change.begin >= kDeepest * law.depth && change.end >= law.depth;
+  if ((motion.at_end && change.end >= kDeepest * law.depth) || is_driven) {
     out.wrench.setConstant(std::numeric_limits<double>::quiet_NaN());
+    out.dissipated = std::numeric_limits<double>::quiet_NaN();  // told where nothing is free, too
     return out;
   }
-  out.memory.face = change.end > 0 ? felt.face : 0;
   const double begin_rate = -shape.distance(motion.begin).gradient.dot(motion.begin_velocity);
   change.speed = approach_speed(change.begin, begin_rate, memory.speed);
   const ContactPush push = contact_push(law, change);
@@ -119,7 +144,7 @@ PointTouch point_touch(const ContactShape& whole, const ContactLaw& law, double 
                        const Vector3& velocity, const PointMemory& memory) {
   const ContactShape& shape = memory.face != 0 ? beyond_face(whole, memory.face) : whole;
   const SignedDistance distance = shape.distance(point);
-  PointTouch out{distance.value - radius, distance.gradient};
+  PointTouch out{distance.value - radius + memory.within, distance.gradient};
   if (out.gap >= 0) return out;
   const double rate = -distance.gradient.dot(velocity);
   out.push = push_at(law, -out.gap, rate, approach_speed(-out.gap, rate, memory.speed));

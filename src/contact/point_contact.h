@@ -23,14 +23,16 @@ struct PointMotion {
   Vector3 turn;                              ///< of the ball less that of the shape's body, tangent-scaled, mean axes
   Vector3 begin_velocity = Vector3::Zero();  ///< of that middle, at the beginning [m/s]
   double duration = 0;                       ///< [s]; 0: an equilibrium
+  Matrix3 outwards = Matrix3::Zero();        ///< of a corner, see ContactPoint, at the beginning
   bool at_end = false;                       ///< what acts at the end counts; else means, whose work is exact
 };
 /// For each point and shape, zero where they do not touch.
 struct PointMemory {
-  static constexpr int kSize = 5;
+  static constexpr int kSize = 6;
   double speed = 0;  ///< see remembered_speed()
   Vector3 stretch = Vector3::Zero();
-  int face = 0;  ///< by which a corner has come in
+  int face = 0;       ///< by which a corner has come in
+  double within = 0;  ///< so far inside of that face nothing is felt yet [m]
 };
 /// On the ball: a force through its middle and a couple, conjugate to the way and to the turn. Not finite at an instant
 /// at which it is too deep inside.
@@ -60,11 +62,12 @@ PointTouch point_touch(const ContactShape& whole, const ContactLaw& law, double 
 struct FeltShape {
   ContactShape shape;
   int face = 0;
+  double radius = 0;    ///< from which on it is felt: of a corner that came in beside its face < 0 [m]
   bool is_felt = true;  ///< false: it cannot touch
   double let_go = 0;    ///< what was stored and is lost, since the point has come beside the face that it was in [J]
 };
-FeltShape felt_shape(const ContactShape& shape, const ContactLaw& law, double radius, const Vector3& from,
-                     const Vector3& to, int remembered_face);
+FeltShape felt_shape(const ContactShape& shape, const ContactLaw& law, double radius, const PointMotion& motion,
+                     const PointMemory& memory);
 /// What is stored [J].
 double stored_energy(const ContactShape& shape, const ContactLaw& law, double radius, const Vector3& point,
                      const PointMemory& memory);

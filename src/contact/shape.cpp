@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <numeric>
+#include <utility>
 
 #include "math/pi.h"
 
@@ -88,9 +91,10 @@ SignedDistance distance_of(const Hull& hull, const Vector3& y) {
 }
 
 /// Appends those between both ends of an edge.
-void add_edge_points(const Vector3& begin, const Vector3& end, double spacing, std::vector<ContactPoint>& points) {
+void add_edge_points(const Vector3& begin, const Vector3& end, double spacing, const Matrix3& outwards,
+                     std::vector<ContactPoint>& points) {
   const int spans = static_cast<int>(std::min(std::ceil((end - begin).norm() / spacing), kMostEdgePoints + 1.0));
-  for (int i = 1; i < spans; ++i) points.push_back({begin + (end - begin) * i / spans, 0});
+  for (int i = 1; i < spans; ++i) points.push_back({begin + (end - begin) * i / spans, 0, outwards});
 }
 
 std::vector<ContactPoint> points_of(const HalfSpace&, double) {
@@ -103,21 +107,41 @@ std::vector<ContactPoint> points_of(const Box& box, double spacing) {
   std::vector<ContactPoint> out;
   for (int k = 0; k < 8; ++k) {
     const Vector3 corner = box.half.cwiseProduct(Vector3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1));
-    out.push_back({corner, 0});
-    for (int axis = 0; axis < 3; ++axis)  // edges begin at their lower ends
-      if (!(k & (1 << axis))) add_edge_points(corner, corner + 2 * box.half[axis] * Vector3::Unit(axis), spacing, out);
+    const Matrix3 outwards = corner.cwiseSign().asDiagonal();
+    out.push_back({corner, 0, outwards});
+    for (int axis = 0; axis < 3; ++axis) {
+      if (k & (1 << axis)) continue;  // edges begin at their lower ends
+      Matrix3 beside = outwards;
+      beside.col(axis).setZero();
+      add_edge_points(corner, corner + 2 * box.half[axis] * Vector3::Unit(axis), spacing, beside, out);
+    }
   }
   return out;
 }
+/// Of faces that meet: their normals; of more than three the mean.
+Matrix3 outwards_of(const std::vector<Vector3>& normals) {
+  Matrix3 out = Matrix3::Zero();
+  if (normals.size() <= 3)
+    for (std::size_t i = 0; i < normals.size(); ++i) out.col(static_cast<Eigen::Index>(i)) = normals[i];
+  else
+    out.col(0) = std::accumulate(normals.begin(), normals.end(), Vector3(Vector3::Zero())).normalized();
+  return out;
+}
+
 std::vector<ContactPoint> points_of(const Hull& hull, double spacing) {
-  std::vector<ContactPoint> out;
   const std::vector<Vector3>& corners = hull.polytope->corners;
-  for (const Vector3& corner : corners) out.push_back({corner, 0});
+  std::vector<std::vector<Vector3>> at_corners(corners.size());
+  std::map<std::pair<int, int>, std::vector<Vector3>> at_edges;  // each of both faces
   for (const Polytope::Face& face : hull.polytope->faces)
     for (std::size_t i = 0; i < face.corners.size(); ++i) {
       const int begin = face.corners[i], end = face.corners[(i + 1) % face.corners.size()];
-      if (begin < end) add_edge_points(corners[begin], corners[end], spacing, out);  // once of both faces
+      at_corners[begin].push_back(face.normal);
+      at_edges[std::minmax(begin, end)].push_back(face.normal);
     }
+  std::vector<ContactPoint> out;
+  for (std::size_t i = 0; i < corners.size(); ++i) out.push_back({corners[i], 0, outwards_of(at_corners[i])});
+  for (const auto& [edge, normals] : at_edges)
+    add_edge_points(corners[edge.first], corners[edge.second], spacing, outwards_of(normals), out);
   return out;
 }
 std::vector<ContactPoint> points_of(const Cylinder& cylinder, double spacing) {
@@ -125,7 +149,11 @@ std::vector<ContactPoint> points_of(const Cylinder& cylinder, double spacing) {
   for (const double z : {-cylinder.half_length, cylinder.half_length})
     for (int k = 0; k < kRimPoints; ++k) {
       const double angle = 2 * kPi * k / kRimPoints;
-      out.push_back({{cylinder.radius * std::cos(angle), cylinder.radius * std::sin(angle), z}, 0});
+      const Vector3 radial(std::cos(angle), std::sin(angle), 0);
+      Matrix3 outwards = Matrix3::Zero();
+      outwards.col(0) = radial;
+      outwards(2, 2) = z < 0 ? -1 : 1;
+      out.push_back({cylinder.radius * radial + Vector3(0, 0, z), 0, outwards});
     }
   // Its side: balls that fill it.
   const double end = cylinder.half_length - cylinder.radius;
@@ -164,6 +192,9 @@ constexpr double kBeside = 1e-9;
 /// A point that starts so little inside of a face, of the size, may come in by it: corners of equal boxes that a scene
 /// lays on each other are inside of several.
 constexpr double kFlush = 1e-3;
+/// Cosines of a face's normal to those of the faces that meet in a corner that lies on it: not above the first, and one
+/// of them below the second.
+constexpr double kAside = 0.2, kOpposite = -0.5;
 
 int face_count(const Box&) {
   return 6;
@@ -222,6 +253,10 @@ double size_of(const Hull& hull) {
   double size = 0;
   for (const Vector3& corner : corners) size = std::max(size, 0.5 * (corner - corners.front()).norm());
   return size;
+}
+
+bool is_round(const ContactShape& shape, int face) {
+  return std::holds_alternative<Cylinder>(shape.kind) && face == 1;
 }
 
 Vector3 own_point(const ContactShape& shape, const Vector3& point) {
@@ -285,6 +320,27 @@ int nearest_face(const ContactShape& shape, const Vector3& point) {
   });
 }
 
+bool can_lie_on(const ContactShape& shape, int face, const Matrix3& outwards) {
+  if (is_round(shape, face)) return true;
+  const Vector3 normal = beyond_face(shape, face).place.orientation * Vector3::UnitZ();
+  const Vector3 cosines = outwards.transpose() * normal;
+  return cosines.maxCoeff() <= kAside && cosines.minCoeff() <= kOpposite;
+}
+
+int face_to_lie_on(const ContactShape& shape, const Vector3& point, const Matrix3& outwards, double deepest) {
+  const Vector3 own = own_point(shape, point);
+  return of_faces(shape, 0, [&](const auto& each) {
+    int best = 0;
+    for (int face = 1; face <= face_count(each); ++face) {
+      const double depth = -height_over(each, face - 1, own);
+      if (is_round(shape, face) || depth > deepest || !can_lie_on(shape, face, outwards)) continue;
+      best = face;
+      deepest = depth;
+    }
+    return best;
+  });
+}
+
 bool is_over_face(const ContactShape& shape, int face, const Vector3& point) {
   const Vector3 own = own_point(shape, point);
   return of_faces(shape, false,
@@ -310,7 +366,11 @@ double half_width(const ContactShape& shape) {
 std::vector<ContactPoint> contact_points(const ContactShape& shape, double spacing) {
   if (shape.is_hollow) return {};
   std::vector<ContactPoint> out = std::visit([&](const auto& each) { return points_of(each, spacing); }, shape.kind);
-  for (ContactPoint& point : out) point.arm = shape.place * point.arm;
+  const Matrix3 axes = shape.place.orientation.toRotationMatrix();
+  for (ContactPoint& point : out) {
+    point.arm = shape.place * point.arm;
+    point.outwards = axes * point.outwards;
+  }
   return out;
 }
 

@@ -54,6 +54,11 @@ bool has_faces(const ContactShape& shape);
 /// By which a point comes in that goes straight from outside to another place; 0: it does not.
 int entered_face(const ContactShape& shape, const Vector3& from, const Vector3& to);
 int nearest_face(const ContactShape& shape, const Vector3& point);
+/// That face of which a corner or an edge can lie on, `point`, in by no more than `deepest` [m], the least of them; 0:
+/// none. `outwards`: normals of the other body's faces that meet there, in this one's node's frame.
+int face_to_lie_on(const ContactShape& shape, const Vector3& point, const Matrix3& outwards, double deepest);
+/// Whether a corner or an edge can lie on a face: what is pushed out by it is on the other body's side of it.
+bool can_lie_on(const ContactShape& shape, int face, const Matrix3& outwards);
 /// Whether a point lies above or below a face, not beside it.
 bool is_over_face(const ContactShape& shape, int face, const Vector3& point);
 /// What a face bounds, as if there were no others: a half-space, or an endless cylinder.
@@ -64,8 +69,9 @@ double half_width(const ContactShape& shape);
 
 /// A ball around a point fixed to a node by which a shape touches others: a corner, or the centre of a round one.
 struct ContactPoint {
-  Vector3 arm = Vector3::Zero();  ///< in the node's frame [m]
-  double radius = 0;              ///< [m]
+  Vector3 arm = Vector3::Zero();       ///< in the node's frame [m]
+  double radius = 0;                   ///< [m]
+  Matrix3 outwards = Matrix3::Zero();  ///< columns: normals of the faces that meet there, in the node's frame
 };
 /// Those of a shape: a ball's middle; corners of a box or a hull, and points on their edges not much farther from each
 /// other than `spacing` [m]; `kRimPoints` on each rim of a cylinder, and balls along its axis that fill it, if it is

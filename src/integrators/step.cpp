@@ -1,5 +1,7 @@
 // One step from top to bottom, in the order in which it happens: begin, guess, iterate (evaluate, factorise and solve,
 // update, revise), accept. What a part of the step does in each is one line here.
+#include <cmath>
+
 #include "integrators/stepper.h"
 
 namespace flexarm {
@@ -155,7 +157,7 @@ bool StepSystem::evaluate(bool with_tangent) {
   friction_.hold(balance);
   rows_.gather(residual_);
   dissipated_ = balance.dissipated;
-  return residual_.allFinite();
+  return residual_.allFinite() && std::isfinite(dissipated_);
 }
 
 void StepSystem::add_forces(Balance& balance) {

@@ -371,7 +371,7 @@ TEST(ContactElement, ActsOnNodesThatAreNearAlone) {
 // Whatever a contact has stored when it is no more near is dissipated.
 TEST(ContactElement, AccountsForWhatIsRememberedFarAway) {
   const BallAndPlate scene(-0.2, -0.21);
-  std::vector<double> memory = {0.3, 0.001, 0.002, 0, 0}, left(memory.size(), 1.0);
+  std::vector<double> memory = {0.3, 0.001, 0.002, 0, 0, 0}, left(memory.size(), 1.0);
   ForceStep step = scene.step();
   step.memory = memory.data();
   step.new_memory = left.data();

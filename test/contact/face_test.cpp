@@ -70,7 +70,12 @@ TEST(Faces, OfHullsAreLeftForTheNextOnes) {
   law.stiffness = 100;
   // Over the ridge: what the first slope had stored goes on into the other one, less what the ridge is nearer.
   const Vector3 over(-0.003, 0, 0.12);  // a slope leans by a tenth
-  const FeltShape felt = felt_shape(roof, law, 0, over, {-0.01, 0, 0.119}, 5);
+  PointMotion motion;
+  motion.begin = over;
+  motion.end = {-0.01, 0, 0.119};
+  PointMemory memory;
+  memory.face = 5;
+  const FeltShape felt = felt_shape(roof, law, 0, motion, memory);
   EXPECT_EQ(felt.face, 6);
   const double before = -beyond_face(roof, 5).distance(over).value, after = -felt.shape.distance(over).value;
   EXPECT_GT(before, after);
@@ -82,14 +87,61 @@ TEST(Faces, AreKeptUntilThePointIsOut) {
   ContactLaw law;
   law.stiffness = 100;
   law.frequency = 10;
-  const FeltShape kept = felt_shape(kBox, law, 0, {0.29, 0, 0.02}, {0.28, 0, 0.03}, 5);
+  const auto felt = [&](const Vector3& from, const Vector3& to, int face, double within = 0) {
+    PointMotion motion;
+    motion.begin = from;
+    motion.end = to;
+    PointMemory memory;
+    memory.face = face;
+    memory.within = within;
+    return felt_shape(kBox, law, 0, motion, memory);
+  };
+  const FeltShape kept = felt({0.29, 0, 0.02}, {0.28, 0, 0.03}, 5);
   EXPECT_EQ(kept.face, 5) << "though another face is nearer";
   EXPECT_EQ(kept.let_go, 0);
-  const FeltShape beside = felt_shape(kBox, law, 0, {0.31, 0, 0.08}, {0.32, 0, 0.08}, 5);
+  const FeltShape beside = felt({0.31, 0, 0.08}, {0.32, 0, 0.08}, 5);
   EXPECT_FALSE(beside.is_felt);
   EXPECT_NEAR(beside.let_go, 0.5 * 100 * 0.02 * 0.02, 1e-15);
-  const FeltShape inside = felt_shape(kBox, law, 0, {0.05, 0, 0.08}, {0.05, 0, 0.09}, 0);
+  EXPECT_NEAR(felt({0.31, 0, 0.08}, {0.32, 0, 0.08}, 5, 0.005).let_go, 0.5 * 100 * 0.015 * 0.015, 1e-15);
+  const FeltShape inside = felt({0.05, 0, 0.08}, {0.05, 0, 0.09}, 0);
   EXPECT_EQ(inside.face, 5) << "of a start inside the nearest one";
+}
+
+// The edge of a table comes into a block that slides off it by the block's front: it is the bottom that lies on it. The
+// front holds back what it can lie on, a corner of another block.
+TEST(Faces, AreThoseThatACornerCanLieOn) {
+  const ContactShape block{Box{{0.3, 0.2, 0.1}}, Pose()};
+  ContactLaw law;
+  law.stiffness = 100;
+  law.frequency = 10;
+  law.depth = 0.01;
+  PointMotion motion;
+  motion.begin = {0.301, 0, -0.098};
+  motion.end = {0.299, 0, -0.098};
+  motion.outwards.col(0) = Vector3::UnitX();  // of the table
+  motion.outwards.col(2) = Vector3::UnitZ();
+  const FeltShape laid = felt_shape(block, law, 0, motion, {});
+  EXPECT_EQ(laid.face, 6);
+  EXPECT_NEAR(laid.radius, -0.002, 1e-15) << "felt from here on";
+  PointAction action = point_action(block, law, 0, motion, {}, false);
+  EXPECT_EQ(action.memory.face, 6);
+  EXPECT_NEAR(action.memory.within, 0.002, 1e-15);
+  EXPECT_EQ(action.dissipated, 0);
+  EXPECT_EQ(stored_energy(block, law, 0, motion.end, action.memory), 0);
+  PointMotion down = motion;
+  down.begin = {0.29, 0, -0.098};
+  down.end = {0.29, 0, -0.097};
+  down.duration = 1e-3;
+  action = point_action(block, law, 0, down, action.memory, false);
+  const double hardened = 0.001 / (0.99 * 0.99);  // p / (1 - s^2)^2, s = 0.1
+  EXPECT_NEAR(stored_energy(block, law, 0, down.end, action.memory), 0.5 * 100 * hardened * hardened, 1e-15);
+  EXPECT_NEAR(action.wrench.head<3>().dot(down.begin - down.end), stored_energy(block, law, 0, down.end, action.memory),
+              1e-15);
+  motion.outwards.col(0) = -Vector3::UnitX();
+  EXPECT_EQ(felt_shape(block, law, 0, motion, {}).face, 1) << "of another block, that looks this way";
+  motion.outwards.col(0) = Vector3::UnitX();
+  motion.begin.z() = motion.end.z() = -0.05;
+  EXPECT_EQ(felt_shape(block, law, 0, motion, {}).face, 1) << "too far above the bottom";
 }
 
 }  // namespace

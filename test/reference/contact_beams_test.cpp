@@ -11,10 +11,8 @@
 #include "reference/contact_scenes.h"
 #include "reference/observed_order.h"
 
-namespace flexarm::test::touching_beams {
+namespace flexarm::test::touching {
 namespace {
-
-using namespace touching;
 
 std::string rod(const std::string& name, const std::string& line, const std::string& material, double radius,
                 int elements) {
@@ -225,4 +223,4 @@ TEST(ContactOfBeams, AHundredHitsOfABeamKeepItsEnergy) {
 }
 
 }  // namespace
-}  // namespace flexarm::test::touching_beams
+}  // namespace flexarm::test::touching

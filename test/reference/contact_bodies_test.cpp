@@ -12,10 +12,8 @@
 #include "reference/observed_order.h"
 #include "reference/ode.h"
 
-namespace flexarm::test::touching_bodies {
+namespace flexarm::test::touching {
 namespace {
-
-using namespace touching;
 
 /// Of an elastic contact at a penetration: k x dx/dp with x = p / (1 - (p/d)^2)^2, nothing outside (docs/notes/stops.md
 /// 2). [N]
@@ -83,6 +81,21 @@ TEST(ContactOfBodies, BallComesToRestInAWedge) {
   EXPECT_NEAR(place.z(), (kRadius - inside) / cosine, 1e-10);
   EXPECT_NEAR(place.x(), 0, 1e-10);
   EXPECT_NEAR(place.y(), 0.01, 1e-12);
+}
+
+// No force is enough for a motion that leaves no room: the step fails.
+TEST(ContactOfBodies, WhatIsDrivenThroughAnotherIsTold) {
+  Simulation simulation = simulation_of(
+      "<joint name=\"lower\" type=\"prismatic\"><parent link=\"world\"/><child link=\"block\"/><origin xyz=\"0 0 "
+      "0.07\"/><axis xyz=\"0 0 -1\"/><limit lower=\"-1\" upper=\"1\" effort=\"100\" velocity=\"1\"/></joint>" +
+          box("block", 1, Vector3::Constant(0.1)) + kFloor + "<contact first=\"block\" second=\"floor\"/>",
+      "<motion joint=\"lower\" position=\"0:0:0 1:0.1:0\"/>", 1e-3);
+  StepResult result;
+  do {
+    result = simulation.step();
+  } while (result.converged && simulation.time() < 1);
+  EXPECT_EQ(result.reason, StepResult::Reason::NotFinite) << simulation.explain(result);
+  EXPECT_GT(simulation.link_pose(1).position.z(), 0.05 - 5.1e-3) << "the most that it gives way";
 }
 
 // ---------------------------------------------------------------- hits
@@ -222,6 +235,45 @@ TEST(ContactOfBodies, WhatIsGraspedSlipsAtTwiceTheFrictionOfAFinger) {
     EXPECT_NEAR(draw_block(more * kMost, kFriction, kPressed).acceleration, (more - 1) * kMost / 0.5, 1e-9) << more;
 }
 
+// A cube that slides over the edge of a table: the edge comes into it by its front, and lies on its bottom. It goes on
+// as on a plane, x = v t - mu g t^2/2, until its middle has left the table.
+TEST(ContactOfBodies, CubeSlidesOffATable) {
+  constexpr double kFriction = 0.2, kSpeed = 2, kStiffness = 1e6;
+  Simulation simulation = simulation_of(
+      box("cube", 1, Vector3::Constant(0.1)) + floating("cube") +
+          "<link name=\"table\"><collision><geometry><box size=\"0.5 0.5 0.1\"/></geometry></collision></link>"
+          "<joint name=\"stands\" type=\"fixed\"><parent link=\"world\"/><child link=\"table\"/>"
+          "<origin xyz=\"0 0 -0.05\"/></joint>" +
+          fmt::format("<contact first=\"cube\" second=\"table\" friction=\"{}\" stiffness=\"{}\"/>", kFriction,
+                      kStiffness),
+      start("cube", {0, 0, 0.05}, {kSpeed, 0, 0}), 1e-3);
+  const double begin = account(simulation);
+  while (simulation.link_pose(1).position.x() < 0.24) {
+    ASSERT_TRUE(simulation.step().converged);
+    const double t = simulation.time();
+    EXPECT_NEAR(simulation.link_pose(1).position.x(), kSpeed * t - 0.5 * kFriction * kG * t * t, 1e-4) << t;
+    // Two corners carry it at the end, 10 mm behind the middle's way: the edge carries nearly all.
+    EXPECT_NEAR(simulation.link_pose(1).position.z(), 0.05, 2e-4) << t;
+  }
+  while (simulation.link_pose(1).position.z() > -0.1) ASSERT_TRUE(simulation.step().converged);
+  EXPECT_GT(simulation.link_pose(1).position.x(), 0.25);
+  EXPECT_NEAR(account(simulation), begin, 1e-9);
+}
+
+// Equal cubes on a floor: bottoms and sides of both are flush, and they must not pass through each other. Momentum is
+// kept but for friction, of which there is none.
+TEST(ContactOfBodies, CubesOnAFloorKnockAgainstEachOther) {
+  Simulation simulation =
+      simulation_of(box("one", 1, Vector3::Constant(0.1)) + floating("one") + box("other", 1, Vector3::Constant(0.1)) +
+                        floating("other") + kFloor + "<contact first=\"*\" second=\"*\" restitution=\"0.5\"/>",
+                    start("one", {0, 0, 0.05}, {1, 0, 0}) + start("other", {0.12, 0, 0.05}, {0, 0, 0}), 1e-3);
+  run(simulation, 0.2);
+  const double gap = simulation.link_pose(2).position.x() - simulation.link_pose(1).position.x();
+  EXPECT_GT(gap, 0.1);
+  EXPECT_NEAR(simulation.momentum().x(), 1, 1e-9);
+  EXPECT_LT(simulation.link_pose(1).position.x(), 0.02 + 0.18 * 0.5) << "it has given its speed away";
+}
+
 /// Painleve's rod: its lower end comes to the floor with 1 um to go and nothing but speed along it. Two balls of 1 mm
 /// at the ends of 1 m, 1 kg.
 struct Painleve {
@@ -298,4 +350,4 @@ TEST(ContactOfBodies, PainlevesRodJamsAndIsThrownOff) {
 }
 
 }  // namespace
-}  // namespace flexarm::test::touching_bodies
+}  // namespace flexarm::test::touching
