@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "building/line_contacts.h"
 #include "building/model_builder.h"
 #include "contact/contact_element.h"
 #include "math/pi.h"
@@ -20,8 +21,8 @@ namespace {
 
 /// Of the points of a box or of a cylinder: those that usually touch at a time.
 constexpr double kAtATime = 0.5;
-/// Of sizes: depth beyond which a contact gives way no further. A start inside is this part of it, or less.
-constexpr double kContactDepth = 0.1, kStartInside = 0.25;
+/// Of sizes: depth beyond which a contact gives way no further.
+constexpr double kContactDepth = 0.1;
 /// A hit takes this many steps of the scene; what sticks is not stiffer than kStiffestGrip m / h^2.
 constexpr double kStiffestGrip = 16;
 /// Most stations between both ends of an element.
@@ -69,9 +70,12 @@ class ContactBuilder {
   }
 
   ForceElementList place() {
-    for (std::size_t i = 0; i < sides_.size(); ++i)
+    for (std::size_t i = 0; i < sides_.size(); ++i) {
+      for (const scene::ContactDescription& contact : scene_.contacts)
+        if (contact.first == sides_[i].name && contact.second == contact.first) join_itself(contact, sides_[i]);
       for (std::size_t j = i + 1; j < sides_.size(); ++j)
         if (const scene::ContactDescription* contact = contact_of(i, j)) join(*contact, sides_[i], sides_[j]);
+    }
     return std::move(placed_);
   }
 
@@ -219,11 +223,6 @@ class ContactBuilder {
     if (first.is_fixed && second.is_fixed)
       throw ModelError(at(contact.location, "<contact>") +
                        fmt::format("'{}' and '{}' never move against each other", first.name, second.name));
-    if (first.surfaces.empty() && second.surfaces.empty())
-      throw ModelError(at(contact.location, "<contact>") +
-                       fmt::format("links '{}' and '{}' are both flexible without <collision>: such a contact is not "
-                                   "there yet",
-                                   first.name, second.name));
   }
 
   // ---------------------------------------------------------------- laws
@@ -263,10 +262,41 @@ class ContactBuilder {
   }
 
   void join(const scene::ContactDescription& contact, const Side& first, const Side& second) {
+    if (!first.tubes.empty() && !second.tubes.empty()) return join_lines_of(contact, first, second);
+    if (!second.tubes.empty() && touch_line(contact, first, second)) return;
+    if (!first.tubes.empty() && touch_line(contact, second, first)) return;
     // Corners do not go into balls: the ball's middle is nearer to a face or an edge than they are. Of two balls one
     // goes into the other.
     if (!is_ball(second) || first.surfaces.empty() || is_ball(first)) join_stations(contact, first, second);
     if (!is_ball(first) || second.surfaces.empty()) join_stations(contact, second, first);
+  }
+
+  LinkPair links_of(const Side& first, const Side& second) const {
+    return {plan_.links[first.name], plan_.links[second.name], {first.name, second.name}};
+  }
+
+  void join_lines_of(const scene::ContactDescription& contact, const Side& first, const Side& second) {
+    join_lines(model_, plan_, links_of(first, second), law_of(contact, first, second, 1), placed_);
+  }
+
+  void join_itself(const scene::ContactDescription& contact, const Side& side) {
+    if (side.tubes.empty())
+      throw ModelError(at(contact.location, "<contact>") +
+                       fmt::format("link '{}' cannot touch itself: expected a <beam> with elements and without "
+                                   "<collision>",
+                                   side.name));
+    join_lines_of(contact, side, side);
+  }
+
+  /// Contacts of a body's points with the line of a beam. True: stations of the beam need not look for the body.
+  bool touch_line(const scene::ContactDescription& contact, const Side& body, const Side& tube) {
+    const BeamLink& beam = *model_.links[plan_.links[tube.name]].beam;
+    const bool is_small_ball = is_ball(body) && touches_line(body.size, beam);
+    if (!is_small_ball && (is_ball(body) || !has_room_for_corners(beam, kMostSpans))) return false;
+    const double at_a_time = is_small_ball ? 1.0 : 2.0;  // an edge goes in and out
+    join_with_line(model_, plan_, links_of(body, tube), stations_of(body, tube.size),
+                   law_of(contact, body, tube, at_a_time), placed_);
+    return is_small_ball;
   }
 
   /// Those of each node or element; points on edges as near to each other as the other side is small.

@@ -125,6 +125,7 @@ LineAction line_action(const ContactLaw& law, const LineRadii& radii, const Line
     out.wrench.setConstant(std::numeric_limits<double>::quiet_NaN());
     return out;
   }
+  out.memory.stiffening = change.end > 0 || law.friction > 0 ? memory.stiffening : 0;
   change.speed = approach_speed(change.begin, motion.begin_rate, memory.speed);
   out.push = contact_push(law, change);
   if (change.duration != 0) out.memory.speed = remembered_speed(change, motion.begin_rate);

@@ -16,9 +16,10 @@ struct LineMotion {
 };
 /// Zero where they do not touch.
 struct LineMemory {
-  static constexpr int kSize = 4;
+  static constexpr int kSize = 5;
   double speed = 0;                   ///< see remembered_speed()
   Vector3 stretch = Vector3::Zero();  ///< of the grip, world axes; it turns with the line
+  double stiffening = 0;              ///< of the law's stiffnesses, kept as long as it touches; 0: not yet known
 };
 /// On the ball: a force through its middle and a couple; the reverse acts on the line, through the same middle. Of an
 /// instant it is the friction alone: the push goes along the normal, to where the line is nearest. Not finite at an

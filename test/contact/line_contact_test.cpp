@@ -136,8 +136,10 @@ Scene scene_of(const char* name, int order, double friction, unsigned seed) {
     velocity << random.vector(0.3), random.vector(0.3);
     out.velocities.push_back(velocity);
   }
-  out.element = std::make_unique<LineContact>(std::vector<std::string>{"", ""}, side, line, pairs,
-                                              gripping_law(friction, 0.5));
+  const double crossing = kind == "other line" ? 2 : 0;
+  for (LinePair& pair : pairs) pair.tangent = line_weights(order, 0).slopes;
+  out.element = std::make_unique<LineContact>(std::vector<std::string>{"", ""}, LineTouch{side, line, pairs, 0},
+                                              gripping_law(friction, 0.5), crossing);
   return out;
 }
 
@@ -152,6 +154,7 @@ struct Action {
 };
 
 const Vector3 kStretch(0.004, -0.003, 0.002);
+constexpr double kStiffening = 1.3;
 
 Action action_of(const Scene& scene, const Poses& at_end, bool at_rest) {
   ForceStep step{scene.begin, at_end, scene.velocities};
@@ -162,6 +165,7 @@ Action action_of(const Scene& scene, const Poses& at_end, bool at_rest) {
   for (std::size_t i = 0; i < memory.size(); i += LineMemory::kSize) {
     memory[i] = 0.3;
     Eigen::Map<Vector3>(memory.data() + i + 1) = kStretch;
+    memory[i + 4] = kStiffening;
   }
   Action out;
   out.nodes.resize(element.most_nodes());
@@ -243,7 +247,7 @@ TEST(LineContact, OfMeansDoesExactWork) {
           }
           std::vector<double> old(here.memory.size(), 0.0);
           for (std::size_t i = 0; i < old.size(); i += LineMemory::kSize)
-            Eigen::Map<Vector3>(old.data() + i + 1) = kStretch;
+            Eigen::Map<Vector3>(old.data() + i + 1) = kStretch, old[i + 4] = kStiffening;
           const double before = scene.element->energy(state_at(scene.begin), old.data());
           const double behind = scene.element->energy(state_at(scene.end), here.memory.data());
           EXPECT_GE(here.dissipated, 0);
