@@ -22,7 +22,8 @@ struct LinkPair {
 /// Whether what has these stations touches the line of a beam, and not the beam's stations it. A small ball does, or
 /// else it would fall between these: that is true of one that is smaller than an element. Larger ones may be embraced.
 bool touches_line(double ball_radius, const BeamLink& beam);
-/// Whether corners touch the line of a beam, too: where its own stations, which look for faces, are far from each other.
+/// Whether corners touch the line of a beam, too: where its own stations, which look for faces, are far from each
+/// other.
 bool has_room_for_corners(const BeamLink& beam, int most_spans);
 
 /// Stations of a body, of each of its nodes, against the line of the second link.

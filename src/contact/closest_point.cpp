@@ -30,7 +30,8 @@ ShapePowers powers_of(int order) {
 }
 
 const ShapePowers& shape_powers(int order) {
-  static const std::array<ShapePowers, 5> all = {ShapePowers::Zero(), powers_of(1), powers_of(2), powers_of(3), powers_of(4)};
+  static const std::array<ShapePowers, 5> all = {ShapePowers::Zero(), powers_of(1), powers_of(2), powers_of(3),
+                                                 powers_of(4)};
   return all[order];
 }
 
@@ -81,13 +82,14 @@ ClosestPoint closest_point(const LinePiece& piece, const Vector3& point, double 
   const int spans = 2 * piece.order;
   ClosestPoint out;
   double begin = low, end = high;
+  const auto sample = [&](int i) { return i == spans ? high : low + (high - low) * i / spans; };
   for (int i = 0; i <= spans; ++i) {
-    const double xi = low + (high - low) * i / spans, square = offset_at(piece, point, xi).value.squaredNorm();
+    const double xi = sample(i), square = offset_at(piece, point, xi).value.squaredNorm();
     if (square >= out.square) continue;
     out.square = square;
     out.xi = xi;
-    begin = low + (high - low) * std::max(i - 1, 0) / spans;
-    end = low + (high - low) * std::min(i + 1, spans) / spans;
+    begin = sample(std::max(i - 1, 0));
+    end = sample(std::min(i + 1, spans));
   }
   constexpr int kMostLooks = 60;
   constexpr double kTiny = 1e-15;

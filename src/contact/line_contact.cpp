@@ -125,7 +125,7 @@ double LineContact::foreseen(const LinePair& pair, const ClosestPoint& begin, co
 }
 
 LineActing LineContact::acting(std::size_t index, const ClosestPoint& begin, const ClosestPoint& end,
-                                        const ForceStep& step, const ListedNodes& listed, bool with_slope) const {
+                               const ForceStep& step, const ListedNodes& listed, bool with_slope) const {
   const LinePair& pair = search_.pairs()[index];
   const ContactStation& station = search_.station(pair);
   const int order = search_.line().order;
@@ -177,8 +177,8 @@ LineActing LineContact::acting(std::size_t index, const ClosestPoint& begin, con
   if (end.is_clamped || !(out.rise > 0)) out.rise = 0;
   LineMemory old = line_memory_at(step.memory + LineMemory::kSize * index);
   if (old.stiffening == 0) old.stiffening = stiffening(pair, begin, first);
-  out.local = line_action(law_of(pair, old.stiffening), {station.radius, search_.radius_of(pair)}, motion, old,
-                          with_slope);
+  out.local =
+      line_action(law_of(pair, old.stiffening), {station.radius, search_.radius_of(pair)}, motion, old, with_slope);
   if (!with_slope) return out;
   for (int i = 0; i < out.count; ++i)
     out.nodes[i].by_spin = cayley::inverse_tangent(turn_of(listed.nodes[out.nodes[i].at]));
@@ -205,8 +205,7 @@ void LineContact::evaluate(const ForceStep& step, const int* nodes, ForceAction&
   LineSearch::Places begin = search_.closest(from, 0, first, listed), end = search_.closest(to, 0, last, listed);
   std::array<bool, LineSearch::kMostPairs> does_touch{};
   bool any = false;
-  for (std::size_t k = 0; k < count; ++k)
-    any = (does_touch[k] = begin[k].element >= 0 || end[k].element >= 0) || any;
+  for (std::size_t k = 0; k < count; ++k) any = (does_touch[k] = begin[k].element >= 0 || end[k].element >= 0) || any;
   if (any) {
     constexpr double kAnywhere = std::numeric_limits<double>::infinity();
     begin = search_.closest(from, kAnywhere, first, listed);
@@ -246,8 +245,7 @@ double LineContact::energy(const State& state, const double* memory) const {
     if (old.stiffening == 0 && places[k].element >= 0) old.stiffening = stiffening(pair, places[k], now);
     const ContactLaw law = law_of(pair, old.stiffening);
     energy += 0.5 * law.grip * old.stretch.squaredNorm();
-    if (places[k].element >= 0)
-      energy += contact_energy(law, search_.radius_of(pair) - std::sqrt(places[k].square));
+    if (places[k].element >= 0) energy += contact_energy(law, search_.radius_of(pair) - std::sqrt(places[k].square));
   }
   return energy;
 }
@@ -315,8 +313,7 @@ DamperTensions LineContact::dampers(const State& state, const Eigen::VectorXd& r
   for_each_touching(now, [&](const LinePair& pair, const ClosestPoint& place, const Vector3& offset) {
     // Of what is pressed slowly, see contact_push().
     const double rise = hardened({search_.radius_of(pair) - offset.norm(), law_.depth}).slope;
-    slopes[row] =
-        2 * law_of(pair, stiffening(pair, place, now)).stiffness * law_.damping / law_.frequency * rise;
+    slopes[row] = 2 * law_of(pair, stiffening(pair, place, now)).stiffness * law_.damping / law_.frequency * rise;
     row += each;
   });
   return {slopes.cwiseProduct(rates), slopes.asDiagonal()};

@@ -43,7 +43,7 @@ class LineContact : public ForceElement {
   double foreseen(const LinePair& pair, const ClosestPoint& begin, const ForceStep& step) const;
   /// A pair whose nearest places at both ends of the step are these.
   LineActing acting(std::size_t index, const ClosestPoint& begin, const ClosestPoint& end, const ForceStep& step,
-                const ListedNodes& listed, bool with_slope) const;
+                    const ListedNodes& listed, bool with_slope) const;
   /// Calls visit(pair, nearest place) of those that touch.
   template <class Visit>
   void for_each_touching(const NodePlaces& now, const Visit& visit) const;

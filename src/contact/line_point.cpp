@@ -32,8 +32,8 @@ void add_line_push(const LineRadii& radii, const LineMotion& motion, bool with_s
   way << motion.end - motion.begin - motion.line_turn.cross(middle), motion.turn - motion.line_turn;
   along << way.head<3>(), arm * way.tail<3>();
   gradient << normal, Vector3::Zero();
-  const double square = way.dot(along), missing = motion.end_distance - motion.begin_distance -
-                                                   (motion.end.norm() - motion.begin.norm());
+  const double square = way.dot(along),
+               missing = motion.end_distance - motion.begin_distance - (motion.end.norm() - motion.begin.norm());
   const bool is_corrected = square > kShortMotion * kShortMotion * arm;
   if (is_corrected) gradient += missing / square * along;
   action.wrench = action.push.value * gradient;
@@ -75,7 +75,7 @@ HalfTurn half_turn(const Vector3& w) {
 
 /// Friction on the ball's surface.
 void add_line_grip(const ContactLaw& law, const LineRadii& radii, const LineMotion& motion, const LineMemory& memory,
-              bool with_slope, LineAction& action) {
+                   bool with_slope, LineAction& action) {
   const double weight = motion.at_end ? 1 : 0.5, length_least = 1e-12 * radii.sum;
   const Vector3 middle = weight * motion.end + (1 - weight) * motion.begin;
   const double length = middle.norm();

@@ -99,8 +99,7 @@ class LineSearch {
   Cloud cloud(const NodePlaces& places) const;
   /// Calls visit(element, margin_of(element)) of elements of the line that may be so near to a cloud [m].
   template <class MarginOf, class Visit>
-  void for_each_near(const Cloud& cloud, const NodePlaces& places, const MarginOf& margin_of,
-                     const Visit& visit) const;
+  void for_each_near(const Cloud& cloud, const NodePlaces& places, const MarginOf& margin_of, const Visit& visit) const;
   bool is_any_near(int element, double margin, const NodePlaces& places) const;
   double fastest(const Cloud& cloud, const ForceStart& start) const;
 

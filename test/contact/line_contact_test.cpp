@@ -97,8 +97,8 @@ Scene scene_of(const char* name, int order, double friction, unsigned seed) {
     const Poses own = out.begin;
     const std::vector<std::array<int, 5>> elements = add_line(order, -0.1, random, out.begin);
     for (std::size_t i = own.size(); i < out.begin.size(); ++i)
-      out.begin[i] = node_at(so3::exp(Vector3(0.2, 0.1, 1.1)) * out.begin[i].position + above,
-                             out.begin[i].orientation);
+      out.begin[i] =
+          node_at(so3::exp(Vector3(0.2, 0.1, 1.1)) * out.begin[i].position + above, out.begin[i].orientation);
     side.nodes.assign(elements[1].begin(), elements[1].begin() + order + 1);
     for (const double xi : {-0.9, -0.6, -0.2}) {
       ContactStation station;
@@ -242,8 +242,9 @@ TEST(LineContact, OfMeansDoesExactWork) {
           for (std::size_t i = 0; i < here.nodes.size(); ++i) {
             const int node = here.nodes[i];
             const Vector6 on_node = here.residual.segment<6>(6 * static_cast<Eigen::Index>(i));
-            work += on_node.head<3>().dot(scene.end[node].position - scene.begin[node].position) +
-                    on_node.tail<3>().dot(cayley::increment(scene.begin[node].orientation, scene.end[node].orientation));
+            work +=
+                on_node.head<3>().dot(scene.end[node].position - scene.begin[node].position) +
+                on_node.tail<3>().dot(cayley::increment(scene.begin[node].orientation, scene.end[node].orientation));
           }
           std::vector<double> old(here.memory.size(), 0.0);
           for (std::size_t i = 0; i < old.size(); i += LineMemory::kSize)
@@ -254,6 +255,149 @@ TEST(LineContact, OfMeansDoesExactWork) {
           EXPECT_NEAR(work, behind - before + here.dissipated, 1e-12 * (std::abs(work) + before + behind))
               << name << " order " << order << " friction " << friction << " seed " << seed;
         }
+}
+
+// About a touch so light that its force has no part in it, the tangent is that of the springs of what is measured; and
+// dampers are the derivatives of the push by its rate.
+TEST(LineContact, HasTheStiffnessAndDampersOfItsMeasures) {
+  for (const char* name : kNames) {
+    Scene scene = scene_of(name, 2, 0.5, 3);
+    const LineContact* element = scene.element.get();
+    const State state = state_at(scene.begin);
+    std::vector<int> nodes(element->most_nodes());
+    const std::vector<Vector6> at_rest(scene.begin.size(), Vector6::Zero());
+    nodes.resize(element->find_nodes({scene.begin, at_rest}, nodes.data()));
+    const ForceMeasures measures = element->measures(state, nodes.data());
+    ASSERT_GE(measures.rows.rows(), 3) << name;
+    EXPECT_EQ(measures.rows.cols(), 6 * static_cast<Eigen::Index>(nodes.size()));
+    // Each row is the derivative of a gap or of a slip: all nodes moved as one body change none.
+    for (int k = 0; k < 6 && name != std::string("world"); ++k) {
+      Eigen::VectorXd motion(measures.rows.cols());
+      for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const Vector3 turn = k < 3 ? Vector3(Vector3::Zero()) : Vector3(Vector3::Unit(k - 3));
+        const Vector3 way = k < 3 ? Vector3(Vector3::Unit(k)) : turn.cross(scene.begin[nodes[i]].position);
+        motion.segment<6>(6 * static_cast<Eigen::Index>(i)) << way, turn;
+      }
+      EXPECT_LE((measures.rows * motion).norm(), 1e-13) << name << k;
+    }
+    // Normal rows: differences of the energy, whose derivative is the push times the row.
+    const std::vector<double> memory(element->memory_size(), 0.0);
+    Eigen::VectorXd slope = Eigen::VectorXd::Zero(measures.rows.cols());
+    constexpr double h = 1e-6;
+    for (Eigen::Index k = 0; k < slope.size(); ++k) {
+      const auto energy = [&](double way) {
+        Poses at = scene.begin;
+        Vector6 by = Vector6::Zero();
+        by[k % 6] = way;
+        NodePose& node = at[nodes[static_cast<std::size_t>(k / 6)]];
+        node = moved(node, by);
+        return element->energy(state_at(at), memory.data());
+      };
+      slope[k] = (energy(h) - energy(-h)) / (2 * h);
+    }
+    // It is a combination of the normal rows. In the case of several lines the angle has a part in the energy.
+    if (name != std::string("other line")) {
+      Eigen::MatrixXd rows(measures.rows.rows() / 3, measures.rows.cols());
+      for (Eigen::Index i = 0; i < rows.rows(); ++i) rows.row(i) = measures.rows.row(3 * i);
+      const Eigen::VectorXd pushes = rows.transpose().colPivHouseholderQr().solve(slope);
+      EXPECT_LE((rows.transpose() * pushes - slope).norm(), 1e-7 * slope.norm()) << name;
+      EXPECT_LT(pushes.maxCoeff(), 0) << name << ": energies rise as gaps close";
+    }
+    const DamperTensions dampers = element->dampers(state, Eigen::VectorXd::Ones(measures.rows.rows()));
+    EXPECT_GT(dampers.tension[0], 0);
+    EXPECT_EQ(dampers.tension[1], 0);
+  }
+}
+
+// ---------------------------------------------------------------- nearest places, what is near
+
+TEST(LineContact, FindsTheNearestPlaceOfALine) {
+  Random random(5);
+  for (int order = 1; order <= 4; ++order)
+    for (int run = 0; run < 200; ++run) {
+      std::array<Vector3, 5> nodes;
+      for (int i = 0; i <= order; ++i) nodes[i] = Vector3(node_coordinate(order + 1, i), 0, 0) + random.vector(0.15);
+      const Vector3 point = random.vector(1.5);
+      const LinePiece piece = line_piece(order, nodes);
+      const double low = run % 2 ? -1 : -0.3, high = run % 3 ? 1 : 0.4;
+      const ClosestPoint found = closest_point(piece, point, low, high);
+      const auto distance_at = [&](double xi) {
+        const ElementWeights weights = line_weights(order, xi).values;
+        Vector3 at = -point;
+        for (int i = 0; i <= order; ++i) at += weights[i] * nodes[i];
+        return at.norm();
+      };
+      EXPECT_NEAR(std::sqrt(found.square), distance_at(found.xi), 1e-14);
+      for (int k = 0; k <= 300; ++k)
+        EXPECT_GE(distance_at(low + (high - low) * k / 300), std::sqrt(found.square) - 1e-13) << order << " " << run;
+      // Distances are flat there: a place is as exact as the derivative is.
+      if (!found.is_clamped && found.square > 1e-4) {
+        const double h = 1e-4, slope = (distance_at(found.xi + h) - distance_at(found.xi - h)) / (2 * h);
+        EXPECT_LE(std::abs(slope), 1e-6) << order << " " << run;
+      }
+      EXPECT_LE((piece.middle() - nodes[0]).norm(), piece.reach + 1e-14);
+    }
+}
+
+/// A small ball beside a line of ten elements of order 1 along x, over a step from one place to another at even speed.
+struct BallAndLine {
+  BallAndLine(const Vector3& from, const Vector3& to) {
+    LineTouch touch;
+    for (int i = 0; i <= 10; ++i) begin.push_back(node_at({0.1 * i, 0, 0}, Quaternion::Identity()));
+    touch.line.order = 1;
+    for (int i = 0; i < 10; ++i) {
+      touch.line.elements.push_back({i, i + 1});
+      touch.line.lengths.push_back(0.1);
+    }
+    touch.line.radius = 0.001;
+    end = begin;
+    begin.push_back(node_at(from, Quaternion::Identity()));
+    end.push_back(node_at(to, Quaternion::Identity()));
+    velocities.assign(begin.size(), Vector6::Zero());
+    velocities.back().head<3>() = (to - from) / 0.05;
+    ContactStation ball;
+    ball.radius = 0.02;
+    touch.side = {{11}, {ball}};
+    touch.pairs = {{0, {}, {}}};
+    element = std::make_unique<LineContact>(std::vector<std::string>{"", ""}, touch, gripping_law(0, 1));
+  }
+  std::vector<int> near() const {
+    std::vector<int> nodes(element->most_nodes());
+    nodes.resize(element->find_nodes({begin, velocities, 0.05}, nodes.data()));
+    return nodes;
+  }
+  bool asks_for_halves(bool was_near) const {
+    const double memory[LineMemory::kSize] = {};
+    ForceStep step{begin, end, velocities};
+    step.duration = 0.05;
+    step.memory = memory;
+    const std::vector<int> nodes = near();
+    return element->needs_halves(step, nodes.data(), was_near ? static_cast<int>(nodes.size()) : 0);
+  }
+
+  Poses begin, end;
+  std::vector<Vector6> velocities;
+  std::unique_ptr<LineContact> element;
+};
+
+TEST(LineContact, ActsOnNodesThatAreNearAlone) {
+  const Vector3 at(0.55, 0, 0.1);
+  EXPECT_EQ(BallAndLine(at, at).near(), std::vector<int>());
+  EXPECT_EQ(BallAndLine(at, at - Vector3(0, 0, 0.03)).near(), std::vector<int>()) << "twice this way: not yet";
+  EXPECT_EQ(BallAndLine(at, at - Vector3(0, 0, 0.045)).near(), (std::vector<int>{11, 5, 6}));
+  EXPECT_EQ(BallAndLine({0.602, 0, 0.021}, {0.602, 0, 0.021}).near(), (std::vector<int>{11, 6, 7, 5}));
+}
+
+TEST(LineContact, AsksForHalvesOfStepsThatItWouldNotSee) {
+  const auto asks = [](double from, double to, bool was_near) {
+    return BallAndLine({0.55, 0, from}, {0.55, 0, to}).asks_for_halves(was_near);
+  };
+  EXPECT_TRUE(asks(0.1, -0.3, true)) << "through";
+  EXPECT_TRUE(asks(0.022, -0.015, true)) << "to the other side, still inside";
+  EXPECT_TRUE(asks(0.0215, 0.0205, false)) << "it was not near";
+  EXPECT_FALSE(asks(0.0215, 0.0209, true)) << "a light touch";
+  EXPECT_FALSE(asks(0.1, 0.03, false));
+  EXPECT_FALSE(BallAndLine({0.55, 0.03, 0.1}, {0.55, 0.03, -0.1}).asks_for_halves(true)) << "beside it";
 }
 
 INSTANTIATE_TEST_SUITE_P(Contact, LineContacts, ::testing::Bool(),
