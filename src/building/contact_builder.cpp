@@ -290,6 +290,7 @@ class ContactBuilder {
 
   /// Contacts of a body's points with the line of a beam. True: stations of the beam need not look for the body.
   bool touch_line(const scene::ContactDescription& contact, const Side& body, const Side& tube) {
+    if (!body.link) return false;  // a ground has no points
     const BeamLink& beam = *model_.links[plan_.links[tube.name]].beam;
     const bool is_small_ball = is_ball(body) && touches_line(body.size, beam);
     if (!is_small_ball && (is_ball(body) || !has_room_for_corners(beam, kMostSpans))) return false;

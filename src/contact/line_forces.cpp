@@ -3,8 +3,11 @@
 #include "math/so3.h"
 
 namespace flexarm {
+namespace {
 
 using so3::hat;
+
+}  // namespace
 
 void LineActing::add_to(ForceAction& action) const {
   const Vector3 force = local.wrench.head<3>(), couple = local.wrench.tail<3>();
