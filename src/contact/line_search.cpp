@@ -9,8 +9,8 @@
 namespace flexarm {
 namespace {
 
-/// Elements of a line that may act in a step.
-constexpr int kMostNear = 8;
+/// Elements of a line that may act in a step: at most, and besides those beside which the stations are.
+constexpr int kMostNear = 8, kMoreNear = 3;
 /// Ways that a step may come to beyond those at the speed of its beginning: times that, and of the radii.
 constexpr double kWayAhead = 2, kAside = 0.02;
 /// No place of an element moves more than this times the largest motion of its nodes.
@@ -41,6 +41,11 @@ LineSearch::LineSearch(LineTouch touch) : touch_(std::move(touch)) {
     largest_radius_ = std::max(largest_radius_, radius_of(pair));
     largest_arm_ = std::max(largest_arm_, station(pair).arm.norm());
   }
+  const double size = touch_.spacing * static_cast<double>(side().stations.size()) + 2 * largest_arm_;
+  const double shortest = *std::min_element(line().lengths.begin(), line().lengths.end());
+  most_near_ = static_cast<int>(std::min(kMoreNear + std::ceil(size / shortest), 1.0 * kMostNear));
+  const int most = static_cast<int>(side().nodes.size()) + most_near_ * (line().order + 1);
+  most_nodes_ = std::min(most, static_cast<int>(reach().size()));
   // Their distances change no faster along the line than places do, and the parts of the line that they may touch.
   if (touch_.spacing == 0) return;
   const double change = 2 * kLonger * touch_.spacing;
@@ -56,11 +61,6 @@ std::vector<int> LineSearch::reach() const {
   for (const int node : side().nodes) add(node);
   for (const auto& element : line().elements) std::for_each_n(element.begin(), line().order + 1, add);
   return nodes;
-}
-
-int LineSearch::most_nodes() const {
-  const int most = static_cast<int>(side().nodes.size()) + kMostNear * (line().order + 1);
-  return std::min(most, static_cast<int>(reach().size()));
 }
 
 bool LineSearch::is_listed(int element, const ListedNodes& listed) const {
@@ -205,9 +205,9 @@ int LineSearch::find_nodes(const ForceStart& start, int* nodes) const {
   for_each_near(cloud, places, margin_of, [&](int k, double margin) {
     const double distance = std::sqrt(closest_point(piece(k, places), cloud.middle, -1, 1).square);
     const double beyond = distance - cloud.reach - margin;
-    if (beyond > 0 || (found == kMostNear && beyond >= near[found - 1].first)) return;
+    if (beyond > 0 || (found == most_near_ && beyond >= near[found - 1].first)) return;
     if (start.duration != 0 && !is_any_near(k, margin - largest_radius_, places)) return;
-    if (found < kMostNear) ++found;
+    if (found < most_near_) ++found;
     int at = found - 1;
     for (; at > 0 && near[at - 1].first > beyond; --at) near[at] = near[at - 1];
     near[at] = {beyond, k};

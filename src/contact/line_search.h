@@ -65,7 +65,7 @@ class LineSearch {
   int moving_nodes() const { return side().nodes[0] < 0 ? 0 : static_cast<int>(side().nodes.size()); }
   bool is_body() const { return moving_nodes() == 1; }
   std::vector<int> reach() const;
-  int most_nodes() const;
+  int most_nodes() const { return most_nodes_; }
   bool is_listed(int element, const ListedNodes& listed) const;
 
   /// Numbers of an element's nodes times what `of(node)` says of them.
@@ -104,6 +104,8 @@ class LineSearch {
   double fastest(const Cloud& cloud, const ForceStart& start) const;
 
   LineTouch touch_;
+  int most_near_ = 0;  ///< elements of the line that may act in a step
+  int most_nodes_;
   std::size_t stride_ = 1;     ///< of pairs that stand for all where these may be far
   double between_ = 0;         ///< by which those in between may be nearer [m]
   double largest_radius_ = 0;  ///< of a station and the tube [m]
