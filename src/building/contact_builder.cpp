@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "building/line_contacts.h"
 #include "building/model_builder.h"
 #include "building/touching_meshes.h"
 #include "contact/contact_element.h"
@@ -22,8 +23,8 @@ namespace {
 
 /// Of the points of a box or of a cylinder: those that usually touch at a time.
 constexpr double kAtATime = 0.5;
-/// Of sizes: depth beyond which a contact gives way no further. A start inside is this part of it, or less.
-constexpr double kContactDepth = 0.1, kStartInside = 0.25;
+/// Of sizes: depth beyond which a contact gives way no further.
+constexpr double kContactDepth = 0.1;
 /// A hit takes this many steps of the scene; what sticks is not stiffer than kStiffestGrip m / h^2.
 constexpr double kStiffestGrip = 16;
 /// Most stations between both ends of an element.
@@ -70,9 +71,12 @@ class ContactBuilder {
   }
 
   ForceElementList place() {
-    for (std::size_t i = 0; i < sides_.size(); ++i)
+    for (std::size_t i = 0; i < sides_.size(); ++i) {
+      for (const scene::ContactDescription& contact : scene_.contacts)
+        if (contact.first == sides_[i].name && contact.second == contact.first) join_itself(contact, sides_[i]);
       for (std::size_t j = i + 1; j < sides_.size(); ++j)
         if (const scene::ContactDescription* contact = contact_of(i, j)) join(*contact, sides_[i], sides_[j]);
+    }
     return std::move(placed_);
   }
 
@@ -231,11 +235,6 @@ class ContactBuilder {
     if (first.is_fixed && second.is_fixed)
       throw ModelError(at(contact.location, "<contact>") +
                        fmt::format("'{}' and '{}' never move against each other", first.name, second.name));
-    if (first.surfaces.empty() && second.surfaces.empty())
-      throw ModelError(at(contact.location, "<contact>") +
-                       fmt::format("links '{}' and '{}' are both flexible without <collision>: such a contact is not "
-                                   "there yet",
-                                   first.name, second.name));
   }
 
   // ---------------------------------------------------------------- laws
@@ -292,10 +291,47 @@ class ContactBuilder {
   }
 
   void join(const scene::ContactDescription& contact, const Side& first, const Side& second) {
+    if (!first.tubes.empty() && !second.tubes.empty()) return join_lines_of(contact, first, second);
+    if (!second.tubes.empty() && touch_line(contact, first, second)) return;
+    if (!first.tubes.empty() && touch_line(contact, second, first)) return;
     // Corners do not go into balls: the ball's middle is nearer to a face or an edge than they are. Of two balls one
     // goes into the other.
     if (!is_ball(second) || first.surfaces.empty() || is_ball(first)) join_stations(contact, first, second);
     if (!is_ball(first) || second.surfaces.empty()) join_stations(contact, second, first);
+  }
+
+  /// Names and their order alone where one is a ground.
+  LinkPair links_of(const scene::ContactDescription& contact, const Side& first, const Side& second) const {
+    LinkPair out{0, 0, {first.name, second.name}, !are_in_order(contact, first, second)};
+    if (out.is_reversed) std::reverse(out.names.begin(), out.names.end());
+    if (first.link) out.first = plan_.links[first.name];
+    if (second.link) out.second = plan_.links[second.name];
+    return out;
+  }
+
+  void join_lines_of(const scene::ContactDescription& contact, const Side& first, const Side& second) {
+    join_lines(model_, plan_, links_of(contact, first, second), law_of(contact, first, second, 1), placed_);
+  }
+
+  void join_itself(const scene::ContactDescription& contact, const Side& side) {
+    if (side.tubes.empty())
+      throw ModelError(at(contact.location, "<contact>") +
+                       fmt::format("link '{}' cannot touch itself: expected a <beam> with elements and without "
+                                   "<collision>",
+                                   side.name));
+    join_lines_of(contact, side, side);
+  }
+
+  /// Contacts of a body's points with the line of a beam. True: stations of the beam need not look for the body.
+  bool touch_line(const scene::ContactDescription& contact, const Side& body, const Side& tube) {
+    if (!body.link) return false;  // a ground has no points
+    const BeamLink& beam = *model_.links[plan_.links[tube.name]].beam;
+    const bool is_small_ball = is_ball(body) && touches_line(body.size, beam);
+    if (!is_small_ball && (is_ball(body) || !has_room_for_corners(beam, kMostSpans))) return false;
+    const double at_a_time = is_small_ball ? 1.0 : 2.0;  // an edge goes in and out
+    join_with_line(model_, plan_, links_of(contact, body, tube), stations_of(body, tube.size),
+                   law_of(contact, body, tube, at_a_time), placed_);
+    return is_small_ball;
   }
 
   /// Those of each node or element; points on edges as near to each other as the other side is small.
@@ -332,10 +368,9 @@ class ContactBuilder {
         const double at_a_time = is_whole ? 1.0 : kAtATime * static_cast<double>(stations.stations.size());
         ContactLaw law = law_of(contact, first, second, at_a_time);
         deepen(stations, surface, law);
-        std::vector<std::string> names{first.name, second.name};
-        const bool is_reversed = !are_in_order(contact, first, second);
-        if (is_reversed) std::reverse(names.begin(), names.end());
-        placed_.push_back(std::make_shared<ContactElement>(std::move(names), stations, surface, law, is_reversed));
+        LinkPair links = links_of(contact, first, second);
+        placed_.push_back(
+            std::make_shared<ContactElement>(std::move(links.names), stations, surface, law, links.is_reversed));
       }
   }
 

@@ -111,14 +111,20 @@ void check_contacts(const SceneDescription& scene, Findings& findings) {
       findings.error(ground.location.line, element("ground"), "its name must be that of no link and of no other ground",
                      quoted(ground.name));
   std::set<std::pair<std::string, std::string>> named;
+  const auto has_line = [&](const std::string& name) {
+    const auto is_it = [&](const LinkDescription& link) { return link.name == name; };
+    const auto link = std::find_if(scene.links.begin(), scene.links.end(), is_it);
+    return link != scene.links.end() && link->beam && link->collisions.empty();
+  };
   const auto check = [&](const ContactPair& pair, const std::string& who) {
     if (pair.first.empty() || pair.second.empty()) return;  // which is told
     for (const auto& [attribute, side] : {std::pair("first", pair.first), std::pair("second", pair.second)})
       if (sides.count(side) == 0)
         findings.error(pair.location.line, who,
                        std::string(attribute) + " must be a link or a ground of the scene, or *", quoted(side));
-    if (pair.first == pair.second && pair.first != kAllBodies)
-      findings.error(pair.location.line, who, "first and second must be different", quoted(pair.first));
+    if (pair.first == pair.second && pair.first != kAllBodies && !has_line(pair.first))
+      findings.error(pair.location.line, who, "first and second must be different, but of a beam without <collision>",
+                     quoted(pair.first));
     if (!named.insert(std::minmax(pair.first, pair.second)).second)
       findings.error(pair.location.line, who, "must be the only <contact> or <no_contact> of its pair",
                      quoted(pair.first) + " and " + quoted(pair.second));

@@ -41,7 +41,8 @@ BorderedElimination::BorderedElimination(const Model& model, const DegreesOfFree
   reserve();
 }
 
-/// For any windows; more is allocated where pivots are passed on again and again.
+/// For any windows; more is allocated where pivots are passed on again and again. What may be coupled, but is not, as
+/// beams far from each other, takes no memory: what has not been written to is not there yet.
 void BorderedElimination::reserve() {
   std::size_t scalars = 0, fours = 0;
   int most = 0;
@@ -59,7 +60,7 @@ void BorderedElimination::reserve() {
     fours += static_cast<std::size_t>(lanes) * (3 * own + 16 + 2 * riders);
   }
   scalars_.reserve(scalars);
-  memory_.resize(fours);
+  memory_.reserve(fours);
   runs_.reserve(most);
   certain_.reserve(factors_.size());
   work_.resize(lanes_for(most));
@@ -74,7 +75,7 @@ void BorderedElimination::begin() {
 std::size_t BorderedElimination::allocate(int numbers) {
   const std::size_t at = used_;
   used_ += lanes_for(numbers);
-  if (used_ > memory_.size()) memory_.resize(2 * used_);
+  if (used_ > memory_.size()) memory_.resize(used_ <= memory_.capacity() ? used_ : 2 * used_);
   return at;
 }
 

@@ -1,0 +1,152 @@
+#include "building/line_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "math/pi.h"
+
+namespace flexarm {
+namespace {
+
+/// Of the depth beyond which a contact gives way no further: what crossed lines have the law's stiffness at.
+constexpr double kCrossingDepth = 0.25;
+/// Most stations between both ends of an element: with two parts of the line each they are as many as may touch.
+constexpr int kMostLineSpans = LineSearch::kMostPairs / 2 - 1;
+
+ContactLine line_of(const Model& model, const ScenePlan& plan, int link) {
+  const BeamLink& beam = *model.links[link].beam;
+  ContactLine out;
+  out.order = beam.order;
+  out.radius = beam.radius;
+  for (std::size_t k = 0; k < beam.elements.size(); ++k) {
+    const auto& nodes = plan.meshes[link]->mesh.elements[k].nodes;
+    std::array<int, 5> element{};
+    std::transform(nodes.begin(), nodes.end(), element.begin(),
+                   [&](int node) { return model.links[link].frame.node + node; });
+    out.elements.push_back(element);
+    out.lengths.push_back(beam.element_ends[k] - (k == 0 ? 0.0 : beam.element_ends[k - 1]));
+  }
+  return out;
+}
+
+/// Parts of a line between the elements that have a node.
+std::vector<LineRange> ranges_without(const ContactLine& line, int node) {
+  std::vector<LineRange> out;
+  bool is_open = false;
+  for (std::size_t k = 0; k < line.elements.size(); ++k) {
+    const auto& nodes = line.elements[k];
+    const bool has = std::find(nodes.begin(), nodes.begin() + line.order + 1, node) != nodes.begin() + line.order + 1;
+    if (!has && !is_open) out.push_back({1.0 * k, 0});
+    if (!has) out.back().end = k + 1.0;
+    is_open = !has;
+  }
+  return out;
+}
+
+void place(const LinkPair& links, const LineTouch& touch, ContactLaw law, double crossing, const Model& model,
+           ForceElementList& placed) {
+  if (touch.pairs.empty()) return;
+  const double deepest = LineContact(links.names, touch, law, crossing).deepest(model.nodes);
+  law.depth = std::max(law.depth, deepest / kStartInside);
+  placed.push_back(std::make_shared<LineContact>(links.names, touch, law, crossing, links.is_reversed));
+}
+
+/// Where the line of a beam is, by arc length: element + (xi + 1) / 2.
+double parameter_at(const BeamLink& beam, double arc_length) {
+  const ElementPlace at = element_at(beam, std::clamp(arc_length, 0.0, beam.length));
+  return at.element + 0.5 * (at.xi + 1);
+}
+
+/// Parts of its own line that a station at an arc length may touch: a tube whose bend is no tighter than its radius
+/// does not touch itself nearer than over half a circle. The ends of a ring are near, too.
+std::vector<LineRange> own_ranges(const BeamLink& beam, double arc_length, bool is_ring) {
+  const double apart = kPi * beam.radius, low = is_ring ? arc_length + apart - beam.length : 0.0;
+  const double high = is_ring ? arc_length - apart + beam.length : beam.length;
+  std::vector<LineRange> out;
+  if (arc_length - apart > std::max(low, 0.0))
+    out.push_back({parameter_at(beam, low), parameter_at(beam, arc_length - apart)});
+  if (arc_length + apart < std::min(high, beam.length))
+    out.push_back({parameter_at(beam, arc_length + apart), parameter_at(beam, high)});
+  return out;
+}
+
+/// Stations of one beam against the line of another one, or its own.
+void join_stations_to_line(const Model& model, const ScenePlan& plan, const LinkPair& links, const ContactLaw& law,
+                           ForceElementList& placed) {
+  const auto& [first, second, names, is_reversed] = links;
+  const BeamLink& beam = *model.links[first].beam;
+  const ContactLine own = line_of(model, plan, first);
+  LineTouch touch;
+  touch.line = line_of(model, plan, second);
+  const double depth = kCrossingDepth * law.depth, half = std::sqrt(2 * (own.radius + touch.line.radius) * depth);
+  const auto place_of = [&](int node) { return model.nodes[node].position; };
+  const Vector3 gap = place_of(own.elements.back()[own.order]) - place_of(own.elements.front()[0]);
+  const bool is_self = first == second, is_ring = gap.norm() < own.radius;
+  double begin = 0;
+  for (std::size_t k = 0; k < own.elements.size(); ++k) {
+    const double length = own.lengths[k];
+    // So near to each other that crossed lines touch by several of them.
+    const int spans = std::min(static_cast<int>(std::ceil(length / (0.5 * half))), kMostLineSpans);
+    touch.side = {{own.elements[k].begin(), own.elements[k].begin() + own.order + 1}, {}};
+    touch.pairs.clear();
+    touch.spacing = length / spans;
+    for (int i = 0; i <= spans; ++i) {
+      const LineWeights weights = line_weights(own.order, -1 + 2.0 * i / spans);
+      ContactStation station;
+      station.weights = weights.values;
+      station.radius = own.radius;
+      station.share = (i == 0 || i == spans ? 0.5 : 1.0) * touch.spacing / beam.length;
+      touch.side.stations.push_back(station);
+      const double at = begin + i * touch.spacing;
+      for (const LineRange& range : is_self ? own_ranges(beam, at, is_ring) : std::vector<LineRange>{{}})
+        touch.pairs.push_back({i, range, weights.slopes});
+    }
+    begin += length;
+    // Of crossed lines the stations have the law's stiffness together, at that depth. (docs/notes/contact.md 6)
+    place(links, touch, law, 15.0 / 16 * beam.length / half, model, placed);
+  }
+}
+
+}  // namespace
+
+bool touches_line(double ball_radius, const BeamLink& beam) {
+  return ball_radius * static_cast<double>(beam.elements.size()) < beam.length;
+}
+
+bool has_room_for_corners(const BeamLink& beam, int most_spans) {
+  double longest = 0;
+  for (std::size_t k = 0; k < beam.elements.size(); ++k)
+    longest = std::max(longest, beam.element_ends[k] - (k == 0 ? 0.0 : beam.element_ends[k - 1]));
+  return longest > most_spans * beam.radius;
+}
+
+void join_with_line(const Model& model, const ScenePlan& plan, const LinkPair& links,
+                    const std::vector<ContactStations>& bodies, const ContactLaw& law, ForceElementList& placed) {
+  LineTouch touch;
+  touch.line = line_of(model, plan, links.second);
+  for (const ContactStations& body : bodies) {
+    const std::vector<LineRange> ranges = ranges_without(touch.line, body.nodes[0]);
+    touch.side = body;
+    for (std::size_t i = 0; i < body.stations.size(); ++i) {
+      for (const LineRange& range : ranges) touch.pairs.push_back({static_cast<int>(i), range, {}});
+      const bool is_full = touch.pairs.size() + ranges.size() > LineSearch::kMostPairs;
+      if (!is_full && i + 1 < body.stations.size()) continue;
+      place(links, touch, law, 0, model, placed);
+      touch.pairs.clear();
+    }
+  }
+}
+
+void join_lines(const Model& model, const ScenePlan& plan, const LinkPair& links, const ContactLaw& law,
+                ForceElementList& placed) {
+  ContactLaw half = law;  // each way
+  half.stiffness *= 0.5;
+  half.grip *= 0.5;
+  join_stations_to_line(model, plan, links, half, placed);
+  const LinkPair back{links.second, links.first, links.names, !links.is_reversed};
+  if (links.first != links.second) join_stations_to_line(model, plan, back, half, placed);
+}
+
+}  // namespace flexarm

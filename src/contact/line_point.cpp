@@ -1,0 +1,138 @@
+#include "contact/line_point.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "math/cayley.h"
+
+namespace flexarm {
+namespace {
+
+using so3::hat;
+
+/// Motions too short for a correction along them, relative to the radii.
+constexpr double kShortMotion = 1e-6;
+/// Of the depth: no equilibrium is deeper.
+constexpr double kDeepestRest = 0.95;
+
+Vector3 unit_or_zero(const Vector3& v) {
+  const double length = v.norm();
+  return length > 0 ? Vector3(v / length) : Vector3(Vector3::Zero());
+}
+
+/// Gradient of the distance by {what the ball moves against the line, how it turns against it}, made exact.
+void add_line_push(const LineRadii& radii, const LineMotion& motion, bool with_slope, LineAction& action) {
+  const Vector3 middle = 0.5 * (motion.begin + motion.end), along_end = unit_or_zero(motion.end);
+  const double size = motion.begin.norm() + motion.end.norm();
+  if (size == 0) return;  // no direction
+  const Vector3 normal = (motion.begin + motion.end) / size;
+  const double arm = radii.sum * radii.sum;
+  Vector6 way, along, gradient;
+  way << motion.end - motion.begin - motion.line_turn.cross(middle), motion.turn - motion.line_turn;
+  along << way.head<3>(), arm * way.tail<3>();
+  gradient << normal, Vector3::Zero();
+  const double square = way.dot(along),
+               missing = motion.end_distance - motion.begin_distance - (motion.end.norm() - motion.begin.norm());
+  const bool is_corrected = square > kShortMotion * kShortMotion * arm;
+  if (is_corrected) gradient += missing / square * along;
+  action.wrench = action.push.value * gradient;
+  if (!with_slope) return;
+  LineAction::Columns by_end = LineAction::Columns::Zero();
+  by_end.topRows<3>() = (Matrix3::Identity() - normal * along_end.transpose()) / size;
+  action.by_distance = -action.push.slope * gradient;
+  if (is_corrected) {
+    const Matrix3 way_by_end = Matrix3::Identity() - 0.5 * hat(motion.line_turn);
+    const double ratio = missing / square;
+    const Vector3 towards = along.head<3>(), turned = along.tail<3>();
+    const auto by_way = [&](const Matrix3& of_way) {  // of {way, 0}
+      LineAction::Columns out;
+      out.topRows<3>() = ratio * of_way;
+      out.bottomRows<3>().setZero();
+      out.noalias() -= 2 * ratio / square * along * (towards.transpose() * of_way);
+      return out;
+    };
+    by_end += by_way(way_by_end) - along / square * along_end.transpose();
+    LineAction::Columns by_turn = -2 * ratio / square * along * turned.transpose();
+    by_turn.bottomRows<3>().diagonal().array() += ratio * arm;
+    action.by_turn = action.push.value * by_turn;
+    action.by_line_turn = action.push.value * (by_way(hat(middle)) - by_turn);
+    action.by_distance += action.push.value / square * along;
+  }
+  action.by_end = action.push.value * by_end;
+}
+
+/// Half the turn of w, and what it turns by per change of w.
+struct HalfTurn {
+  Matrix3 rotation, spin;
+};
+HalfTurn half_turn(const Vector3& w) {
+  const double q = std::sqrt(1 + 0.25 * w.squaredNorm()), scale = 1 / (1 + q);
+  const Vector3 half = scale * w;
+  const Matrix3 by_w = scale * Matrix3::Identity() - scale * scale / (4 * q) * w * w.transpose();
+  return {cayley::rotation(half), cayley::tangent(half) * by_w};
+}
+
+/// Friction on the ball's surface.
+void add_line_grip(const ContactLaw& law, const LineRadii& radii, const LineMotion& motion, const LineMemory& memory,
+                   bool with_slope, LineAction& action) {
+  const double weight = motion.at_end ? 1 : 0.5, length_least = 1e-12 * radii.sum;
+  const Vector3 middle = weight * motion.end + (1 - weight) * motion.begin;
+  const double length = middle.norm();
+  if (length <= length_least) return;
+  const Vector3 normal = middle / length, offset = -radii.ball * normal;
+  const Vector3 turn = motion.turn - motion.line_turn;
+  const Vector3 slip = motion.end - motion.begin - motion.line_turn.cross(middle) + turn.cross(offset);
+  const HalfTurn half = half_turn(motion.line_turn);
+  const Vector3 stretch = half.rotation * memory.stretch;
+  const ContactGrip grip = contact_grip(law, stretch, slip, normal, action.push.value);
+  const Vector3 drag = -law.grip * grip.stretch;
+  action.memory.stretch = half.rotation * grip.stretch;
+  action.dissipated += -drag.dot(slip) - 0.5 * law.grip * grip.stretch.squaredNorm();
+  action.wrench.head<3>() += drag;
+  action.wrench.tail<3>() += offset.cross(drag);
+  if (!with_slope) return;
+  const Matrix3 normal_by_end = weight / length * (Matrix3::Identity() - normal * normal.transpose());
+  const Matrix3 slip_by_end =
+      Matrix3::Identity() - weight * hat(motion.line_turn) - radii.ball * hat(turn) * normal_by_end;
+  const Matrix3 slip_by_line_turn = hat(middle) + hat(offset);
+  const Matrix3 by_end = -law.grip * (grip.by_slip * slip_by_end + grip.by_normal * normal_by_end);
+  const Matrix3 by_turn = law.grip * grip.by_slip * hat(offset);
+  const Matrix3 by_line_turn = -law.grip * grip.by_slip * (slip_by_line_turn - hat(stretch) * half.spin);
+  const Vector3 by_distance = law.grip * action.push.slope * grip.by_push;
+  const Matrix3 couple = hat(offset);
+  action.by_end.topRows<3>() += by_end;
+  action.by_end.bottomRows<3>() += couple * by_end + radii.ball * hat(drag) * normal_by_end;
+  action.by_turn.topRows<3>() += by_turn;
+  action.by_turn.bottomRows<3>() += couple * by_turn;
+  action.by_line_turn.topRows<3>() += by_line_turn;
+  action.by_line_turn.bottomRows<3>() += couple * by_line_turn;
+  action.by_distance.head<3>() += by_distance;
+  action.by_distance.tail<3>() += couple * by_distance;
+}
+
+}  // namespace
+
+LineAction line_action(const ContactLaw& law, const LineRadii& radii, const LineMotion& motion,
+                       const LineMemory& memory, bool with_slope) {
+  LineAction out;
+  out.dissipated = 0.5 * law.grip * memory.stretch.squaredNorm();  // of a contact that has let go
+  ContactChange change{radii.sum - motion.begin_distance, radii.sum - motion.end_distance,
+                       motion.at_end ? 0.0 : motion.duration};
+  if (change.begin <= 0 && change.end <= 0) return out;
+  out.acts = true;
+  if (motion.at_end && change.end >= kDeepestRest * law.depth) {
+    out.wrench.setConstant(std::numeric_limits<double>::quiet_NaN());
+    return out;
+  }
+  out.memory.stiffening = change.end > 0 || law.friction > 0 ? memory.stiffening : 0;
+  change.speed = approach_speed(change.begin, motion.begin_rate, memory.speed);
+  out.push = contact_push(law, change);
+  if (change.duration != 0) out.memory.speed = remembered_speed(change, motion.begin_rate);
+  out.dissipated += out.push.dissipated;
+  if (!motion.at_end) add_line_push(radii, motion, with_slope, out);
+  if (law.friction > 0) add_line_grip(law, radii, motion, memory, with_slope, out);
+  return out;
+}
+
+}  // namespace flexarm

@@ -1,0 +1,407 @@
+// What contacts with a beam's line do over a step: exact work, no momentum, the derivatives of their forces.
+#include "contact/line_contact.h"
+
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "math/cayley.h"
+#include "math/shape_functions.h"
+#include "math/so3.h"
+#include "model/state.h"
+#include "support/node_poses.h"
+
+namespace flexarm::test::lines {
+namespace {
+
+using Poses = std::vector<NodePose>;
+
+ContactLaw gripping_law(double friction, double restitution) {
+  ContactLaw law;
+  law.stiffness = 500;
+  law.frequency = 20;
+  law.damping = damping_for_restitution(restitution);
+  law.depth = 0.4;
+  law.friction = friction;
+  law.grip = 400;
+  return law;
+}
+
+State state_at(const Poses& poses) {
+  State state;
+  for (const NodePose& pose : poses) {
+    state.nodes.emplace_back();
+    state.nodes.back().position = pose.position;
+    state.nodes.back().orientation = pose.orientation;
+  }
+  return state;
+}
+
+/// Poses at both ends of a step, and what touches in it: all numbers but the order are random.
+struct Scene {
+  const char* name;
+  std::unique_ptr<LineContact> element;
+  Poses begin, end;
+  std::vector<Vector6> velocities;
+};
+
+class Random {
+ public:
+  explicit Random(unsigned seed) : engine_(seed) {}
+  Vector3 vector(double size) { return size * Vector3(number_(engine_), number_(engine_), number_(engine_)); }
+
+ private:
+  std::mt19937 engine_;
+  std::uniform_real_distribution<double> number_{-1, 1};
+};
+
+/// Two elements of a line along x, bent, from node `first` on; the nodes of both.
+std::vector<std::array<int, 5>> add_line(int order, double bend, Random& random, Poses& poses) {
+  std::vector<std::array<int, 5>> elements(2);
+  const int first = static_cast<int>(poses.size());
+  for (int k = 0; k < 2; ++k)
+    for (int i = 0; i <= order; ++i) {
+      elements[k][i] = first + k * order + i;
+      if (k == 1 && i == 0) continue;
+      const double x = k + 0.5 * (node_coordinate(order + 1, i) - 1);
+      poses.push_back(node_at({x, bend * std::sin(2 * x), bend * x * x}, so3::exp_quaternion(random.vector(0.4))));
+    }
+  return elements;
+}
+
+/// All nodes moved and turned by random amounts.
+Poses moved_by(const Poses& poses, double way, double turn, Random& random) {
+  Poses out;
+  for (const NodePose& pose : poses) {
+    Vector6 by;
+    by << random.vector(way), random.vector(turn);
+    out.push_back(moved(pose, by));
+  }
+  return out;
+}
+
+/// A ball and a point of a body; stations of another line; of the same one. Also of what is fixed in the world.
+Scene scene_of(const char* name, int order, double friction, unsigned seed) {
+  Random random(seed);
+  Scene out{name, nullptr, {}, {}, {}};
+  const std::string kind = name;
+  ContactLine line;
+  line.order = order;
+  line.elements = add_line(order, 0.2, random, out.begin);
+  line.lengths = {1, 1};
+  line.radius = 0.2;
+  ContactStations side;
+  std::vector<LinePair> pairs;
+  const Vector3 above(0.15, 0.12, 0.32);
+  if (kind == "other line") {
+    const Poses own = out.begin;
+    const std::vector<std::array<int, 5>> elements = add_line(order, -0.1, random, out.begin);
+    for (std::size_t i = own.size(); i < out.begin.size(); ++i)
+      out.begin[i] =
+          node_at(so3::exp(Vector3(0.2, 0.1, 1.1)) * out.begin[i].position + above, out.begin[i].orientation);
+    side.nodes.assign(elements[1].begin(), elements[1].begin() + order + 1);
+    for (const double xi : {-0.9, -0.6, -0.2}) {
+      ContactStation station;
+      station.weights = line_weights(order, xi).values;
+      station.radius = 0.2;
+      station.share = 0.7;
+      side.stations.push_back(station);
+    }
+    pairs = {{0, {}}, {1, {}}, {2, {}}};
+  } else if (kind == "same line") {
+    side.nodes.assign(line.elements[1].begin(), line.elements[1].begin() + order + 1);
+    ContactStation station;
+    station.weights = line_weights(order, 0.4).values;
+    station.radius = 0.3;
+    side.stations = {station};
+    pairs = {{0, {0, 1.3}}};  // it is clamped there
+  } else {
+    ContactStation ball, point;
+    ball.arm = {0.1, 0.05, -0.1};
+    ball.radius = 0.2;
+    point.arm = {0.05, 0.1, -0.24};
+    side.stations = {ball, point};
+    pairs = {{0, {}}, {1, {}}};
+    side.nodes = {-1};
+    if (kind == "body") {
+      side.nodes = {static_cast<int>(out.begin.size())};
+      out.begin.push_back(node_at(above, so3::exp_quaternion(random.vector(0.3))));
+    } else {
+      for (ContactStation& station : side.stations) station.arm += above;
+    }
+  }
+  out.end = moved_by(out.begin, 0.03, 0.3, random);
+  for (std::size_t i = 0; i < out.begin.size(); ++i) {
+    Vector6 velocity;
+    velocity << random.vector(0.3), random.vector(0.3);
+    out.velocities.push_back(velocity);
+  }
+  const double crossing = kind == "other line" ? 2 : 0;
+  for (LinePair& pair : pairs) pair.tangent = line_weights(order, 0).slopes;
+  out.element = std::make_unique<LineContact>(std::vector<std::string>{"", ""}, LineTouch{side, line, pairs, 0},
+                                              gripping_law(friction, 0.5), crossing);
+  return out;
+}
+
+const char* const kNames[] = {"body", "world", "other line", "same line"};
+
+struct Action {
+  Eigen::VectorXd residual;
+  Eigen::MatrixXd tangent;
+  double dissipated = 0;
+  std::vector<int> nodes;
+  std::vector<double> memory;
+};
+
+const Vector3 kStretch(0.004, -0.003, 0.002);
+constexpr double kStiffening = 1.3;
+
+Action action_of(const Scene& scene, const Poses& at_end, bool at_rest) {
+  ForceStep step{scene.begin, at_end, scene.velocities};
+  step.duration = at_rest ? 0.0 : 0.05;
+  step.at_end = at_rest;
+  const LineContact& element = *scene.element;
+  std::vector<double> memory(element.memory_size(), 0.0);
+  for (std::size_t i = 0; i < memory.size(); i += LineMemory::kSize) {
+    memory[i] = 0.3;
+    Eigen::Map<Vector3>(memory.data() + i + 1) = kStretch;
+    memory[i + 4] = kStiffening;
+  }
+  Action out;
+  out.nodes.resize(element.most_nodes());
+  out.nodes.resize(element.find_nodes({scene.begin, scene.velocities, 0.05}, out.nodes.data()));
+  out.memory.resize(memory.size());
+  step.memory = memory.data();
+  step.new_memory = out.memory.data();
+  const Eigen::Index size = 6 * static_cast<Eigen::Index>(out.nodes.size());
+  out.residual.resize(size);
+  out.tangent.resize(size, size);
+  ForceAction action{{out.residual.data(), size}, {out.tangent.data(), size, size}};
+  element.evaluate(step, out.nodes.data(), action);
+  out.dissipated = action.dissipated;
+  return out;
+}
+
+class LineContacts : public ::testing::TestWithParam<bool> {};
+
+// Central differences with a step of 1e-6 have errors of 1e-12 of third derivatives, and of 1e-16 / 1e-6 of forces.
+TEST_P(LineContacts, HaveTheirTangent) {
+  for (const char* name : kNames)
+    for (int order = 1; order <= 4; ++order)
+      for (const double friction : {0.0, 0.05, 5.0}) {
+        const Scene scene = scene_of(name, order, friction, 7);
+        const Action here = action_of(scene, scene.end, GetParam());
+        EXPECT_GT(here.residual.norm(), 1) << name << order << " is not touched";
+        constexpr double h = 1e-6;
+        for (Eigen::Index k = 0; k < here.residual.size(); ++k) {
+          const auto residual = [&](double way) {
+            Vector6 by = Vector6::Zero();
+            by[k % 6] = way;
+            Poses at = scene.end;
+            NodePose& node = at[here.nodes[static_cast<std::size_t>(k / 6)]];
+            node = moved(node, by);
+            return action_of(scene, at, GetParam()).residual;
+          };
+          const Eigen::VectorXd difference = (residual(h) - residual(-h)) / (2 * h);
+          EXPECT_LE((difference - here.tangent.col(k)).norm(), 1e-6 * here.tangent.norm())
+              << name << " order " << order << " friction " << friction << " column " << k;
+        }
+      }
+}
+
+TEST_P(LineContacts, AddToNoMomentum) {
+  for (const char* name : kNames)
+    for (int order = 1; order <= 4; ++order) {
+      if (name == std::string("world")) continue;
+      const Scene scene = scene_of(name, order, 0.3, 11);
+      const Action here = action_of(scene, scene.end, GetParam());
+      Vector3 force = Vector3::Zero(), moment = Vector3::Zero();
+      const double weight = GetParam() ? 1 : 0.5;
+      for (std::size_t i = 0; i < here.nodes.size(); ++i) {
+        const int node = here.nodes[i];
+        const Vector3 arm = (1 - weight) * scene.begin[node].position + weight * scene.end[node].position;
+        const Vector6 on_node = here.residual.segment<6>(6 * static_cast<Eigen::Index>(i));
+        force += on_node.head<3>();
+        moment += arm.cross(on_node.head<3>()) + on_node.tail<3>();
+      }
+      EXPECT_GT(here.residual.norm(), 1) << name;
+      EXPECT_LE(force.norm(), 1e-14 * here.residual.norm()) << name;
+      EXPECT_LE(moment.norm(), 1e-13 * here.residual.norm()) << name;
+    }
+}
+
+// What the mean forces do over the step is what is stored and dissipated, to round-off, whatever the turns.
+TEST(LineContact, OfMeansDoesExactWork) {
+  for (const char* name : kNames)
+    for (int order = 1; order <= 4; ++order)
+      for (const double friction : {0.0, 0.01, 0.3, 5.0})
+        for (unsigned seed = 1; seed < 20; ++seed) {
+          const Scene scene = scene_of(name, order, friction, seed);
+          const Action here = action_of(scene, scene.end, false);
+          double work = 0;
+          for (std::size_t i = 0; i < here.nodes.size(); ++i) {
+            const int node = here.nodes[i];
+            const Vector6 on_node = here.residual.segment<6>(6 * static_cast<Eigen::Index>(i));
+            work +=
+                on_node.head<3>().dot(scene.end[node].position - scene.begin[node].position) +
+                on_node.tail<3>().dot(cayley::increment(scene.begin[node].orientation, scene.end[node].orientation));
+          }
+          std::vector<double> old(here.memory.size(), 0.0);
+          for (std::size_t i = 0; i < old.size(); i += LineMemory::kSize)
+            Eigen::Map<Vector3>(old.data() + i + 1) = kStretch, old[i + 4] = kStiffening;
+          const double before = scene.element->energy(state_at(scene.begin), old.data());
+          const double behind = scene.element->energy(state_at(scene.end), here.memory.data());
+          EXPECT_GE(here.dissipated, 0);
+          EXPECT_NEAR(work, behind - before + here.dissipated, 1e-12 * (std::abs(work) + before + behind))
+              << name << " order " << order << " friction " << friction << " seed " << seed;
+        }
+}
+
+// About a touch so light that its force has no part in it, the tangent is that of the springs of what is measured; and
+// dampers are the derivatives of the push by its rate.
+TEST(LineContact, HasTheStiffnessAndDampersOfItsMeasures) {
+  for (const char* name : kNames) {
+    Scene scene = scene_of(name, 2, 0.5, 3);
+    const LineContact* element = scene.element.get();
+    const State state = state_at(scene.begin);
+    std::vector<int> nodes(element->most_nodes());
+    const std::vector<Vector6> at_rest(scene.begin.size(), Vector6::Zero());
+    nodes.resize(element->find_nodes({scene.begin, at_rest}, nodes.data()));
+    const ForceMeasures measures = element->measures(state, nodes.data());
+    ASSERT_GE(measures.rows.rows(), 3) << name;
+    EXPECT_EQ(measures.rows.cols(), 6 * static_cast<Eigen::Index>(nodes.size()));
+    // Each row is the derivative of a gap or of a slip: all nodes moved as one body change none.
+    for (int k = 0; k < 6 && name != std::string("world"); ++k) {
+      Eigen::VectorXd motion(measures.rows.cols());
+      for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const Vector3 turn = k < 3 ? Vector3(Vector3::Zero()) : Vector3(Vector3::Unit(k - 3));
+        const Vector3 way = k < 3 ? Vector3(Vector3::Unit(k)) : turn.cross(scene.begin[nodes[i]].position);
+        motion.segment<6>(6 * static_cast<Eigen::Index>(i)) << way, turn;
+      }
+      EXPECT_LE((measures.rows * motion).norm(), 1e-13) << name << k;
+    }
+    // Normal rows: differences of the energy, whose derivative is the push times the row.
+    const std::vector<double> memory(element->memory_size(), 0.0);
+    Eigen::VectorXd slope = Eigen::VectorXd::Zero(measures.rows.cols());
+    constexpr double h = 1e-6;
+    for (Eigen::Index k = 0; k < slope.size(); ++k) {
+      const auto energy = [&](double way) {
+        Poses at = scene.begin;
+        Vector6 by = Vector6::Zero();
+        by[k % 6] = way;
+        NodePose& node = at[nodes[static_cast<std::size_t>(k / 6)]];
+        node = moved(node, by);
+        return element->energy(state_at(at), memory.data());
+      };
+      slope[k] = (energy(h) - energy(-h)) / (2 * h);
+    }
+    // It is a combination of the normal rows. In the case of several lines the angle has a part in the energy.
+    if (name != std::string("other line")) {
+      Eigen::MatrixXd rows(measures.rows.rows() / 3, measures.rows.cols());
+      for (Eigen::Index i = 0; i < rows.rows(); ++i) rows.row(i) = measures.rows.row(3 * i);
+      const Eigen::VectorXd pushes = rows.transpose().colPivHouseholderQr().solve(slope);
+      EXPECT_LE((rows.transpose() * pushes - slope).norm(), 1e-7 * slope.norm()) << name;
+      EXPECT_LT(pushes.maxCoeff(), 0) << name << ": energies rise as gaps close";
+    }
+    const DamperTensions dampers = element->dampers(state, Eigen::VectorXd::Ones(measures.rows.rows()));
+    EXPECT_GT(dampers.tension[0], 0);
+    EXPECT_EQ(dampers.tension[1], 0);
+  }
+}
+
+// ---------------------------------------------------------------- nearest places, what is near
+
+TEST(LineContact, FindsTheNearestPlaceOfALine) {
+  Random random(5);
+  for (int order = 1; order <= 4; ++order)
+    for (int run = 0; run < 200; ++run) {
+      std::array<Vector3, 5> nodes;
+      for (int i = 0; i <= order; ++i) nodes[i] = Vector3(node_coordinate(order + 1, i), 0, 0) + random.vector(0.15);
+      const Vector3 point = random.vector(1.5);
+      const LinePiece piece = line_piece(order, nodes);
+      const double low = run % 2 ? -1 : -0.3, high = run % 3 ? 1 : 0.4;
+      const ClosestPoint found = closest_point(piece, point, low, high);
+      const auto distance_at = [&](double xi) {
+        const ElementWeights weights = line_weights(order, xi).values;
+        Vector3 at = -point;
+        for (int i = 0; i <= order; ++i) at += weights[i] * nodes[i];
+        return at.norm();
+      };
+      EXPECT_NEAR(std::sqrt(found.square), distance_at(found.xi), 1e-14);
+      for (int k = 0; k <= 300; ++k)
+        EXPECT_GE(distance_at(low + (high - low) * k / 300), std::sqrt(found.square) - 1e-13) << order << " " << run;
+      // Distances are flat there: a place is as exact as the derivative is.
+      if (!found.is_clamped && found.square > 1e-4) {
+        const double h = 1e-4, slope = (distance_at(found.xi + h) - distance_at(found.xi - h)) / (2 * h);
+        EXPECT_LE(std::abs(slope), 1e-6) << order << " " << run;
+      }
+      EXPECT_LE((piece.middle() - nodes[0]).norm(), piece.reach + 1e-14);
+    }
+}
+
+/// A small ball beside a line of ten elements of order 1 along x, over a step from one place to another at even speed.
+struct BallAndLine {
+  BallAndLine(const Vector3& from, const Vector3& to) {
+    LineTouch touch;
+    for (int i = 0; i <= 10; ++i) begin.push_back(node_at({0.1 * i, 0, 0}, Quaternion::Identity()));
+    touch.line.order = 1;
+    for (int i = 0; i < 10; ++i) {
+      touch.line.elements.push_back({i, i + 1});
+      touch.line.lengths.push_back(0.1);
+    }
+    touch.line.radius = 0.001;
+    end = begin;
+    begin.push_back(node_at(from, Quaternion::Identity()));
+    end.push_back(node_at(to, Quaternion::Identity()));
+    velocities.assign(begin.size(), Vector6::Zero());
+    velocities.back().head<3>() = (to - from) / 0.05;
+    ContactStation ball;
+    ball.radius = 0.02;
+    touch.side = {{11}, {ball}};
+    touch.pairs = {{0, {}, {}}};
+    element = std::make_unique<LineContact>(std::vector<std::string>{"", ""}, touch, gripping_law(0, 1));
+  }
+  std::vector<int> near() const {
+    std::vector<int> nodes(element->most_nodes());
+    nodes.resize(element->find_nodes({begin, velocities, 0.05}, nodes.data()));
+    return nodes;
+  }
+  bool asks_for_halves(bool was_near) const {
+    const double memory[LineMemory::kSize] = {};
+    ForceStep step{begin, end, velocities};
+    step.duration = 0.05;
+    step.memory = memory;
+    const std::vector<int> nodes = near();
+    return element->needs_halves(step, nodes.data(), was_near ? static_cast<int>(nodes.size()) : 0);
+  }
+
+  Poses begin, end;
+  std::vector<Vector6> velocities;
+  std::unique_ptr<LineContact> element;
+};
+
+TEST(LineContact, ActsOnNodesThatAreNearAlone) {
+  const Vector3 at(0.55, 0, 0.1);
+  EXPECT_EQ(BallAndLine(at, at).near(), std::vector<int>());
+  EXPECT_EQ(BallAndLine(at, at - Vector3(0, 0, 0.03)).near(), std::vector<int>()) << "twice this way: not yet";
+  EXPECT_EQ(BallAndLine(at, at - Vector3(0, 0, 0.045)).near(), (std::vector<int>{11, 5, 6}));
+  EXPECT_EQ(BallAndLine({0.602, 0, 0.021}, {0.602, 0, 0.021}).near(), (std::vector<int>{11, 6, 7, 5}));
+}
+
+TEST(LineContact, AsksForHalvesOfStepsThatItWouldNotSee) {
+  const auto asks = [](double from, double to, bool was_near) {
+    return BallAndLine({0.55, 0, from}, {0.55, 0, to}).asks_for_halves(was_near);
+  };
+  EXPECT_TRUE(asks(0.1, -0.3, true)) << "through";
+  EXPECT_TRUE(asks(0.022, -0.015, true)) << "to the other side, still inside";
+  EXPECT_TRUE(asks(0.0215, 0.0205, false)) << "it was not near";
+  EXPECT_FALSE(asks(0.0215, 0.0209, true)) << "a light touch";
+  EXPECT_FALSE(asks(0.1, 0.03, false));
+  EXPECT_FALSE(BallAndLine({0.55, 0.03, 0.1}, {0.55, 0.03, -0.1}).asks_for_halves(true)) << "beside it";
+}
+
+INSTANTIATE_TEST_SUITE_P(Contact, LineContacts, ::testing::Bool(),
+                         [](const auto& info) { return info.param ? "Rest" : "Means"; });
+
+}  // namespace
+}  // namespace flexarm::test::lines

@@ -1,0 +1,299 @@
+// Beams whose smooth lines are touched: by balls, by each other, by themselves. Against closed forms.
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include "flexarm/scene/urdf_reader.h"
+#include "flexarm/simulation/simulation.h"
+
+namespace flexarm::test::touching_lines {
+namespace {
+
+constexpr double kG = 9.81, kPi = 3.14159265358979323846;
+
+std::string ball(const std::string& name, double mass, double radius) {
+  return fmt::format(
+      "<link name=\"{0}\"><inertial><mass value=\"{1:.17g}\"/><inertia ixx=\"{2:.17g}\" iyy=\"{2:.17g}\" "
+      "izz=\"{2:.17g}\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial><collision><geometry><sphere radius=\"{3}\"/>"
+      "</geometry></collision></link>",
+      name, mass, 0.4 * mass * radius * radius, radius);
+}
+
+struct Rod {
+  Vector3 to;
+  double radius = 0.01, young = 7e10, density = 2700;
+  int elements = 4, order = 2;
+};
+std::string rod(const std::string& name, const Rod& rod) {
+  return fmt::format(
+      "<link name=\"{}\"><beam elements=\"{}\" order=\"{}\"><centerline><line to=\"{:.17g} {:.17g} {:.17g}\"/>"
+      "</centerline><circle radius=\"{:.17g}\"/><material young=\"{:.17g}\" poisson=\"0.3\" "
+      "density=\"{:.17g}\"/></beam>"
+      "</link>",
+      name, rod.elements, rod.order, rod.to.x(), rod.to.y(), rod.to.z(), rod.radius, rod.young, rod.density);
+}
+double bending_stiffness(const Rod& rod) {
+  return rod.young * 0.25 * kPi * std::pow(rod.radius, 4);
+}
+
+std::string joint(const std::string& link, const std::string& type, const Vector3& place = {0, 0, 0}) {
+  return fmt::format(
+      "<joint name=\"of_{0}\" type=\"{1}\"><parent link=\"world\"/><child link=\"{0}\"/><origin xyz=\"{2:.17g} "
+      "{3:.17g} "
+      "{4:.17g}\"/><axis xyz=\"0 0 1\"/></joint>",
+      link, type, place.x(), place.y(), place.z());
+}
+
+std::string start(const std::string& link, const Vector3& place, const Vector3& velocity) {
+  std::string out;
+  const char* axes[] = {"x", "y", "z"};
+  for (int k = 0; k < 3; ++k)
+    out += fmt::format("<initial joint=\"of_{}/{}\" position=\"{:.17g}\"/>", link, axes[k], place[k]);
+  return out + fmt::format("<initial link=\"{}\" linear=\"{:.17g} {:.17g} {:.17g}\"/>", link, velocity.x(),
+                           velocity.y(), velocity.z());
+}
+
+Simulation simulation_of(const std::string& parts, const std::string& starts, double step,
+                         const Vector3& gravity = {0, 0, 0}) {
+  scene::ReadResult result = scene::read_scene_text(
+      fmt::format(
+          "<robot name=\"contact\"><link name=\"world\"/>{}<simulation><gravity xyz=\"{:.17g} {:.17g} {:.17g}\"/>"
+          "<integrator scheme=\"em\" step=\"{:.17g}\"/>{}</simulation></robot>",
+          parts, gravity.x(), gravity.y(), gravity.z(), step, starts),
+      "contact.urdf");
+  for (const scene::Diagnostic& finding : result.diagnostics) ADD_FAILURE() << finding.text();
+  return Simulation(result.scene.value());
+}
+
+/// Of places of two links' lines, by 1/100 of their lengths; of one link those that are farther apart along it [m].
+double nearest_of(const Simulation& simulation, const std::pair<std::size_t, double>& first,
+                  const std::pair<std::size_t, double>& second, double apart = 0) {
+  constexpr int kPlaces = 100;
+  double nearest = 1e9;
+  std::vector<Vector3> places[2];
+  for (int i = 0; i <= kPlaces; ++i) {
+    places[0].push_back(simulation.section(first.first, first.second * i / kPlaces).pose.position);
+    places[1].push_back(simulation.section(second.first, second.second * i / kPlaces).pose.position);
+  }
+  for (int i = 0; i <= kPlaces; ++i)
+    for (int j = 0; j <= kPlaces; ++j)
+      if (std::abs(i - j) * first.second >= apart * kPlaces)
+        nearest = std::min(nearest, (places[0][i] - places[1][j]).norm());
+  return nearest;
+}
+double distance_of(const Simulation& simulation, const Vector3& point, std::size_t link, double length) {
+  double nearest = 1e9;
+  for (int i = 0; i <= 2000; ++i)
+    nearest = std::min(nearest, (simulation.section(link, length * i / 2000).pose.position - point).norm());
+  return nearest;
+}
+
+double account(const Simulation& simulation) {
+  const Energies energies = simulation.energies();
+  return energies.total() + energies.dissipated - energies.work;
+}
+
+// ---------------------------------------------------------------- balls
+
+/// A ball smaller than the distance of the beam's stations, half way between two of them.
+Simulation ball_over_a_thin_beam(double restitution) {
+  return simulation_of(
+      rod("wire", {{1, 0, 0}, 0.003, 7e10, 2700, 4, 2}) + joint("wire", "fixed") + ball("ball", 0.002, 0.004) +
+          joint("ball", "floating") +
+          fmt::format("<contact first=\"ball\" second=\"wire\" restitution=\"{}\" stiffness=\"2000\"/>", restitution),
+      start("ball", {0.140625, 0, 0.02}, {0, 0, -0.5}), 5e-4, {0, 0, -kG});
+}
+
+TEST(LineContact, BallBouncesOnAThinBeamBetweenItsStations) {
+  Simulation simulation = ball_over_a_thin_beam(1);
+  const double begin = simulation.energies().total();
+  int bounces = 0;
+  double last = 0;
+  while (bounces < 30 && simulation.time() < 3) {
+    const StepResult result = simulation.step();
+    ASSERT_TRUE(result.converged) << simulation.explain(result);
+    const double distance = distance_of(simulation, simulation.link_pose(2).position, 1, 1);
+    ASSERT_GT(distance, 0.9 * 0.003 + 0.004) << simulation.time();
+    bounces += last >= 0.007 && distance < 0.007;
+    last = distance;
+    ASSERT_NEAR(simulation.energies().total(), begin, 1e-10 * 0.5);
+  }
+  EXPECT_EQ(bounces, 30);
+}
+
+TEST(LineContact, NothingGoesThroughAThinBeam) {
+  for (const double speed : {1.0, 100.0}) {
+    Simulation simulation = simulation_of(rod("wire", {{1, 0, 0}, 0.002, 2e11, 7800, 4, 2}) + joint("wire", "fixed") +
+                                              ball("ball", 1e-3, 0.002) + joint("ball", "floating") +
+                                              "<contact first=\"ball\" second=\"wire\" restitution=\"0.5\"/>",
+                                          start("ball", {0.53, 0, 0.03}, {0, 0, -speed}), 1e-3);
+    const double begin = account(simulation);
+    while (simulation.time() < 0.06 + 0.06 / speed) {
+      const StepResult result = simulation.step();
+      ASSERT_TRUE(result.converged) << simulation.explain(result);
+    }
+    const double height = simulation.link_pose(2).position.z();
+    EXPECT_GT(height, simulation.section(1, 0.53).pose.position.z() + 0.0035) << speed;
+    EXPECT_NEAR(account(simulation), begin, 1e-6 * begin) << speed;
+  }
+}
+
+// A carriage with a ball goes down on a cantilever, whose deflection at the ball is m g a^3 / (3 E I).
+TEST(LineContact, BallRestsOnABeam) {
+  const Rod beam{{1, 0, 0}, 0.01, 7e10, 1e-3, 5, 3};
+  const double mass = 0.2, at = 0.63, radius = 0.02, stiffness = 1e4;
+  Simulation simulation = simulation_of(
+      rod("beam", beam) + joint("beam", "fixed") + ball("ball", mass, radius) +
+          "<joint name=\"of_ball\" type=\"prismatic\"><parent link=\"world\"/><child link=\"ball\"/>"
+          "<origin xyz=\"0.63 0 0\"/><axis xyz=\"0 0 1\"/><limit effort=\"1e9\" velocity=\"1e9\" lower=\"-1\" "
+          "upper=\"1\"/></joint>" +
+          fmt::format("<contact first=\"ball\" second=\"beam\" stiffness=\"{}\"/>", stiffness),
+      fmt::format("<initial joint=\"of_ball\" position=\"{}\"/>", radius + beam.radius - 1e-6), 1e-3, {0, 0, -kG});
+  ASSERT_TRUE(simulation.solve_static(1).converged);
+  const double deflection = mass * kG * std::pow(at, 3) / (3 * bending_stiffness(beam));
+  const double penetration = mass * kG / stiffness;  // of what hardens by 2 (p / d)^2, which is 0.08 here
+  const double height = simulation.link_pose(2).position.z();
+  const double slope = mass * kG * at * at / (2 * bending_stiffness(beam));
+  // Shear, the ball's place beside the section below it, and the slope count for parts of (radius / length)^2 and
+  // slope^2.
+  EXPECT_NEAR(height, radius + beam.radius - deflection, deflection * (4e-3 + slope * slope) + penetration);
+  EXPECT_NEAR(simulation.section(1, at).pose.position.z(), -deflection, 4e-3 * deflection);
+  const double approach = height - simulation.section(1, at).pose.position.z();
+  EXPECT_LT(approach, radius + beam.radius);
+  EXPECT_GT(approach, radius + beam.radius - penetration - 1e-5);
+}
+
+// ---------------------------------------------------------------- two beams
+
+/// Beams that springs hold together hit each other again and again, and nothing else acts on them.
+void expect_conserved_hits(const std::string& second, const std::string& springs, const std::string& second_start) {
+  const Rod along{{0.6, 0, 0}, 0.01, 2e9, 1500, 3, 2};
+  Simulation simulation =
+      simulation_of(rod("one", along) + second + joint("one", "floating") + joint("two", "floating") + springs +
+                        "<contact first=\"one\" second=\"two\" restitution=\"1\" stiffness=\"1e5\"/>",
+                    second_start, 1e-3);
+  simulation.set_tolerance(1e-10);
+  const double energy = simulation.energies().total();
+  const Vector3 momentum = simulation.momentum(), angular = simulation.angular_momentum();
+  const auto height = [&](std::size_t link) {
+    double sum = 0;
+    for (int i = 0; i < 4; ++i) sum += 0.25 * simulation.section(link, 0.59 * (i + 0.5) / 4).pose.position.z();
+    return sum;
+  };
+  int hits = 0;
+  double last = height(2) - height(1), before = last;
+  while (hits < 100 && simulation.time() < 20) {
+    const StepResult result = simulation.step();
+    ASSERT_TRUE(result.converged) << simulation.explain(result);
+    const double gap = height(2) - height(1);
+    hits += last < before && last < gap;
+    before = last;
+    last = gap;
+  }
+  EXPECT_EQ(hits, 100);
+  // Newton's method leaves 1e-12 J or less of a hit: what a step does is exact to round-off, see test/contact.
+  EXPECT_NEAR(simulation.energies().total(), energy, 1e-10);
+  EXPECT_LE((simulation.momentum() - momentum).norm(), 1e-10);
+  EXPECT_LE((simulation.angular_momentum() - angular).norm(), 1e-10);
+}
+
+std::string spring(const std::string& from, const std::string& to, double stiffness, double rest) {
+  return fmt::format(
+      "<spring from=\"one\" from_at=\"{}\" to=\"two\" to_at=\"{}\" stiffness=\"{}\" rest_length=\"{}\"/>", from, to,
+      stiffness, rest);
+}
+
+TEST(LineContact, BeamsThatHitEachOtherCrosswiseKeepEnergyAndMomenta) {
+  std::string springs;
+  for (const char* one : {"0 0 0", "0.6 0 0"})
+    for (const char* two : {"0 0 0", "0.2 0.56 0"}) springs += spring(one, two, 300, 0.3);
+  expect_conserved_hits(rod("two", {{0.2, 0.56, 0}, 0.01, 2e9, 1500, 3, 2}), springs,
+                        start("two", {0.2, -0.28, 0.0205}, {0.002, 0.001, -0.05}));
+}
+
+TEST(LineContact, BeamsThatHitEachOtherAlongsideKeepEnergyAndMomenta) {
+  std::string springs;
+  for (const char* at : {"0", "0.6"})
+    for (const double side : {-0.05, 0.05})
+      springs += spring(fmt::format("{} {} 0", at, side), fmt::format("{} {} 0", at, -side), 150, 0.08);
+  expect_conserved_hits(rod("two", {{0.6, 0, 0}, 0.01, 2e9, 1500, 3, 2}), springs,
+                        start("two", {0, 0, 0.0205}, {0.002, 0.001, -0.05}));
+}
+
+// Stiff rods hit each other across their middles, at two angles. They bend by the square of the ratio of the contact's
+// frequency to theirs, 314 to 14000 rad/s.
+TEST(LineContact, CrossedRodsGiveBackWhatTheyAreAskedFor) {
+  for (const double e : {0.3, 0.5, 0.8, 1.0})
+    for (const double angle : {90.0, 30.0}) {
+      const double c = std::cos(angle * kPi / 180), s = std::sin(angle * kPi / 180);
+      const Rod one{{0.2, 0, 0}, 0.01, 2e11, 7800, 2, 2}, two{{0.2 * c, 0.2 * s, 0}, 0.01, 2e11, 7800, 2, 2};
+      Simulation simulation = simulation_of(
+          rod("one", one) + rod("two", two) + joint("one", "floating") + joint("two", "floating") +
+              fmt::format("<contact first=\"one\" second=\"two\" restitution=\"{}\"/>", e),
+          start("one", {0, 0, 0}, {0, 0, 0.05}) + start("two", {0.1 - 0.1 * c, -0.1 * s, 0.0205}, {0, 0, -0.05}), 1e-3);
+      const double begin = simulation.energies().kinetic;
+      for (int i = 0; i < 60; ++i) {
+        const StepResult result = simulation.step();
+        ASSERT_TRUE(result.converged) << simulation.explain(result);
+      }
+      EXPECT_GT(simulation.section(2, 0.1).pose.position.z() - simulation.section(1, 0.1).pose.position.z(), 0.02);
+      EXPECT_NEAR(std::sqrt(simulation.energies().kinetic / begin), e, 0.01) << e << " at " << angle;
+      EXPECT_NEAR(account(simulation), begin, 1e-9 * begin);
+    }
+}
+
+/// Acceleration of a rod that lies across two others, which are held, down what is a slope along an axis [m/s^2].
+double acceleration_of_a_rod(int axis, double slope, double friction) {
+  const double down = kG * std::sin(slope);
+  const Rod held{{0.6, 0, 0}, 0.01, 2e11, 7800, 6, 2}, moving{{0, 0.4, 0}, 0.01, 2e11, 7800, 4, 2};
+  Simulation simulation = simulation_of(
+      rod("left", held) + rod("right", held) + rod("rod", moving) + joint("left", "fixed", {0, -0.08, 0}) +
+          joint("right", "fixed", {0, 0.08, 0}) + joint("rod", "floating") +
+          fmt::format("<contact first=\"rod\" second=\"*\" friction=\"{}\" restitution=\"1\"/>", friction),
+      start("rod", {0.05, -0.2, 0.02}, {0, 0, 0}), 1e-3,
+      {axis == 0 ? down : 0, axis == 0 ? 0 : down, -kG * std::cos(slope)});
+  const auto place_at = [&](double time) {
+    while (simulation.time() < time - 1e-6)
+      if (!simulation.step().converged) ADD_FAILURE() << simulation.time();
+    return simulation.section(3, 0.2).pose.position[axis];
+  };
+  const double first = place_at(0.1), second = place_at(0.175), third = place_at(0.25);
+  return (third - 2 * second + first) / (0.075 * 0.075);
+}
+
+// Elastic ones: with restitution stations that come into contact in front are pressed harder than they let go behind,
+// which adds to the friction (docs/notes/contact.md 6). They leave waves of about a hundredth in what is felt.
+TEST(LineContact, CrossedRodsSlideAndRoll) {
+  EXPECT_NEAR(acceleration_of_a_rod(1, 0.5, 0.3), kG * (std::sin(0.5) - 0.3 * std::cos(0.5)), 0.015 * kG);
+  EXPECT_NEAR(acceleration_of_a_rod(0, 0.3, 0.5), kG * std::sin(0.3) / 1.5, 0.015 * kG) << "it rolls";
+}
+
+// ---------------------------------------------------------------- a beam and itself
+
+/// A rod that a moment at its tip rolls up to more than one turn: its tip comes to its root, in one plane.
+double nearest_of_itself(bool touches) {
+  const Rod rope{{1, 0, 0}, 0.01, 1e7, 1000, 12, 2};
+  Simulation simulation = simulation_of(
+      rod("rope", rope) + joint("rope", "fixed") + (touches ? "<contact first=\"rope\" second=\"rope\"/>" : ""),
+      fmt::format("<load link=\"rope\" at=\"1 0 0\" moment=\"0 {:.17g} 0\" history=\"0:0 4:1 10:1\"/>",
+                  -2.4 * kPi * bending_stiffness(rope)),
+      5e-3);
+  double nearest = 1e9;
+  while (simulation.time() < 4) {
+    const StepResult result = simulation.step();
+    EXPECT_TRUE(result.converged) << simulation.explain(result);
+    if (!result.converged) return 0;
+    nearest = std::min(nearest, nearest_of(simulation, {1, 1}, {1, 1}, kPi * rope.radius));
+  }
+  return nearest;
+}
+
+TEST(LineContact, RodDoesNotGoThroughItself) {
+  EXPECT_LT(nearest_of_itself(false), 0.005) << "nothing would have been hit";
+  EXPECT_GT(nearest_of_itself(true), 0.02 - 0.1 * 0.01) << "as far as it gives way at most";
+}
+
+}  // namespace
+}  // namespace flexarm::test::touching_lines
