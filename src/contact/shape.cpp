@@ -208,15 +208,17 @@ bool can_lie_on(const ContactShape& shape, int face, const Matrix3& outwards) {
   return cosines.maxCoeff() <= kAside && cosines.minCoeff() <= kOpposite;
 }
 
-int face_to_lie_on(const ContactShape& shape, const Vector3& point, const Matrix3& outwards, double deepest) {
+int face_to_lie_on(const ContactShape& shape, int crossed, const Vector3& point, const Matrix3& outwards,
+                   double deepest) {
   const Vector3 own = own_point(shape, point);
   const FaceDistances distances = face_distances(shape, own, own);
   int best = 0;
   for (Eigen::Index k = 0; k < 3; ++k) {
     const int face = face_along(shape, k, own);
-    if (is_round(shape, face) || -distances.values[k] > deepest || !can_lie_on(shape, face, outwards)) continue;
+    const double distance = std::abs(distances.values[k]);
+    if (face == crossed || is_round(shape, face) || distance > deepest || !can_lie_on(shape, face, outwards)) continue;
     best = face;
-    deepest = -distances.values[k];
+    deepest = distance;
   }
   return best;
 }
