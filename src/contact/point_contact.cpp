@@ -14,6 +14,8 @@ using so3::hat;
 constexpr double kShort = 1e-6;
 /// Of the depth: no equilibrium is deeper.
 constexpr double kDeepest = 0.95;
+/// Of the depth: so low an edge holds nothing back.
+constexpr double kLow = 0.2;
 
 /// Friction on the surface of the ball, a radius off its middle.
 void add_grip(const ContactLaw& law, double radius, const PointMotion& motion, const GapChange& gap,
@@ -41,10 +43,11 @@ void add_grip(const ContactLaw& law, double radius, const PointMotion& motion, c
 }
 
 /// The edge of a table comes into a block that slides off it by the block's front, but it is the block's bottom that
-/// lies on it, deeper by what both give way. Where it comes in is where it begins to be felt, so that nothing is
-/// stored.
+/// lies on it, deeper by what both give way. A corner that slides from one table to the next one meets an edge that is
+/// as low. Where it comes in is where it begins to be felt, so that nothing is stored.
 void lay_on_another(const ContactShape& shape, const ContactLaw& law, const PointMotion& motion, FeltShape& felt) {
-  const int face = face_to_lie_on(shape, motion.begin, motion.outwards, law.depth);
+  const double deepest = (can_lie_on(shape, felt.face, motion.outwards) ? kLow : 1.0) * law.depth;
+  const int face = face_to_lie_on(shape, felt.face, motion.begin, motion.outwards, deepest);
   if (face == 0) return;
   felt.face = face;
   felt.radius = std::min(beyond_face(shape, face).distance(motion.begin).value, 0.0);
@@ -86,8 +89,7 @@ FeltShape felt_shape(const ContactShape& shape, const ContactLaw& law, double ra
     out.radius = 0;
     const bool is_inside = shape.distance(from).value < 0;
     out.face = is_inside ? nearest_face(shape, from) : entered_face(shape, from, motion.end);
-    if (!is_inside && out.face != 0 && !can_lie_on(shape, out.face, motion.outwards))
-      lay_on_another(shape, law, motion, out);
+    if (!is_inside && out.face != 0) lay_on_another(shape, law, motion, out);
   }
   out.is_felt = out.face != 0;
   if (out.is_felt) out.shape = beyond_face(shape, out.face);

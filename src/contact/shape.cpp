@@ -327,15 +327,17 @@ bool can_lie_on(const ContactShape& shape, int face, const Matrix3& outwards) {
   return cosines.maxCoeff() <= kAside && cosines.minCoeff() <= kOpposite;
 }
 
-int face_to_lie_on(const ContactShape& shape, const Vector3& point, const Matrix3& outwards, double deepest) {
+int face_to_lie_on(const ContactShape& shape, int crossed, const Vector3& point, const Matrix3& outwards,
+                   double deepest) {
   const Vector3 own = own_point(shape, point);
   return of_faces(shape, 0, [&](const auto& each) {
     int best = 0;
     for (int face = 1; face <= face_count(each); ++face) {
-      const double depth = -height_over(each, face - 1, own);
-      if (is_round(shape, face) || depth > deepest || !can_lie_on(shape, face, outwards)) continue;
+      const double distance = std::abs(height_over(each, face - 1, own));
+      if (face == crossed || is_round(shape, face) || distance > deepest) continue;
+      if (!can_lie_on(shape, face, outwards)) continue;
       best = face;
-      deepest = depth;
+      deepest = distance;
     }
     return best;
   });

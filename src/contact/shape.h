@@ -54,9 +54,11 @@ bool has_faces(const ContactShape& shape);
 /// By which a point comes in that goes straight from outside to another place; 0: it does not.
 int entered_face(const ContactShape& shape, const Vector3& from, const Vector3& to);
 int nearest_face(const ContactShape& shape, const Vector3& point);
-/// That face of which a corner or an edge can lie on, `point`, in by no more than `deepest` [m], the least of them; 0:
-/// none. `outwards`: normals of the other body's faces that meet there, in this one's node's frame.
-int face_to_lie_on(const ContactShape& shape, const Vector3& point, const Matrix3& outwards, double deepest);
+/// That one of the faces besides `crossed` which a corner or an edge at `point` can lie on, no farther from it than
+/// `deepest` [m], the nearest of them; 0: none. `outwards`: normals of the other body's faces that meet there, in this
+/// one's node's frame.
+int face_to_lie_on(const ContactShape& shape, int crossed, const Vector3& point, const Matrix3& outwards,
+                   double deepest);
 /// Whether a corner or an edge can lie on a face: what is pushed out by it is on the other body's side of it.
 bool can_lie_on(const ContactShape& shape, int face, const Matrix3& outwards);
 /// Whether a point lies above or below a face, not beside it.

@@ -121,6 +121,25 @@ TEST(HardRuns, EnergyFromNowhereIsWrong) {
   EXPECT_EQ(flaw(carriage(), outcome), "more energy lost than there was");
 }
 
+// What touches gains nothing, and schemes without contact are not asked for it.
+TEST(HardRuns, WhatTouchesHasRulesOfItsOwn) {
+  HardCase hard = carriage();
+  hard.touches = true;
+  HardOutcome outcome;
+  outcome.end = End::Completed;
+  outcome.energy_gain = 1e-3;
+  EXPECT_EQ(flaw(carriage(), outcome), "");
+  EXPECT_EQ(flaw(hard, outcome), "energy from nowhere");
+  hard.scene.replace(hard.scene.find("</robot>"), 0,
+                     "<ground name=\"floor\" offset=\"-5\"/> <contact first=\"carriage\" second=\"floor\"/>");
+  hard.scene.replace(hard.scene.find("</inertial>"), 11,
+                     "</inertial> <collision> <geometry> <sphere radius=\"0.1\"/> </geometry> </collision>");
+  outcome = run_hard(hard, "newmark", {}, {});
+  EXPECT_EQ(outcome.end, End::Refused);
+  EXPECT_EQ(verdict(hard, outcome), Verdict::LeftOut) << outcome.reason.data();
+  EXPECT_EQ(run_hard(hard, "em", {}, {}).end, End::Completed);
+}
+
 TEST(HardRuns, AFreeMotionMustKeepItsMomenta) {
   HardCase hard = carriage();
   HardOutcome outcome;

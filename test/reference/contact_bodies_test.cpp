@@ -260,6 +260,29 @@ TEST(ContactOfBodies, CubeSlidesOffATable) {
   EXPECT_NEAR(account(simulation), begin, 1e-9);
 }
 
+// The same over the joint of two tables: both are as high, and the cube is as deep in one as it would be in the other.
+TEST(ContactOfBodies, CubeSlidesFromATableToAnother) {
+  constexpr double kFriction = 0.1, kSpeed = 2;
+  std::string parts = box("cube", 1, Vector3::Constant(0.1)) + floating("cube") +
+                      fmt::format("<contact first=\"*\" second=\"*\" friction=\"{}\"/>", kFriction);
+  for (const double x : {0.0, 0.5})
+    parts += fmt::format(
+        "<link name=\"table{0}\"><collision><geometry><box size=\"0.5 0.5 0.1\"/></geometry></collision></link>"
+        "<joint name=\"stands{0}\" type=\"fixed\"><parent link=\"world\"/><child link=\"table{0}\"/>"
+        "<origin xyz=\"{0} 0 -0.05\"/></joint>",
+        x);
+  Simulation simulation = simulation_of(parts, start("cube", {0, 0, 0.05}, {kSpeed, 0, 0}), 1e-3);
+  const double begin = account(simulation);
+  while (simulation.link_pose(1).position.x() < 0.6) {
+    ASSERT_TRUE(simulation.step().converged);
+    const double t = simulation.time(), middle = kSpeed * t - 0.5 * kFriction * kG * t * t;
+    // It sinks by 0.12 mm, twice as much on half of its points, and the slip before it slides is as large.
+    ASSERT_NEAR(simulation.link_pose(1).position.x(), middle, 1e-3) << t;
+    ASSERT_NEAR(simulation.link_pose(1).position.z(), 0.05, 1e-3) << t;
+  }
+  EXPECT_NEAR(account(simulation), begin, 1e-9);
+}
+
 // Equal cubes on a floor: bottoms and sides of both are flush, and they must not pass through each other. Momentum is
 // kept but for friction, of which there is none.
 TEST(ContactOfBodies, CubesOnAFloorKnockAgainstEachOther) {
