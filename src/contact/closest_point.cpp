@@ -72,8 +72,16 @@ LinePiece line_piece(int order, const std::array<Vector3, 5>& nodes) {
   out.coefficients.setZero();
   for (int k = 0; k <= order; ++k)
     for (int i = 0; i <= order; ++i) out.coefficients.col(k) += powers(i, k) * nodes[i];
-  for (int k = 1; k <= order; ++k) out.reach += out.coefficients.col(k).norm();
+  for (int k = 2; k <= order; ++k) out.bulge += out.coefficients.col(k).norm();
+  out.reach = out.bulge + out.coefficients.col(1).norm();
   return out;
+}
+
+double LinePiece::least_distance(const Vector3& point) const {
+  const Vector3 along = coefficients.col(1), from = point - coefficients.col(0);
+  const double square = along.squaredNorm();
+  const double xi = square > 0 ? std::clamp(along.dot(from) / square, -1.0, 1.0) : 0.0;
+  return (from - xi * along).norm() - bulge;
 }
 
 ClosestPoint closest_point(const LinePiece& piece, const Vector3& point, double low, double high) {

@@ -36,8 +36,11 @@ struct LinePiece {
   int order = 1;
   Eigen::Matrix<double, 3, 5> coefficients;  ///< of powers [m]
   double reach = 0;                          ///< no point of it is farther from its middle [m]
+  double bulge = 0;                          ///< nor from the straight line that its first two are [m]
 
   Vector3 middle() const { return coefficients.col(0); }
+  /// No point of it is nearer to another one [m]; may be < 0.
+  double least_distance(const Vector3& point) const;
 };
 /// `nodes`: where they are, order + 1 of them [m].
 LinePiece line_piece(int order, const std::array<Vector3, 5>& nodes);

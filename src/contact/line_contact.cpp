@@ -205,13 +205,13 @@ void LineContact::evaluate(const ForceStep& step, const int* nodes, ForceAction&
   const NodePlaces first(step.begin), last(step.end);
   const LineSearch::Middles from = search_.middles(first), to = search_.middles(last);
   LineSearch::Places begin = search_.closest(from, 0, first, listed), end = search_.closest(to, 0, last, listed);
-  std::array<bool, LineSearch::kMostPairs> does_touch{};
+  LineSearch::Chosen does_touch{};
   bool any = false;
   for (std::size_t k = 0; k < count; ++k) any = (does_touch[k] = begin[k].element >= 0 || end[k].element >= 0) || any;
   if (any) {
     constexpr double kAnywhere = std::numeric_limits<double>::infinity();
-    begin = search_.closest(from, kAnywhere, first, listed);
-    end = search_.closest(to, kAnywhere, last, listed);
+    begin = search_.closest(from, kAnywhere, first, listed, &does_touch);
+    end = search_.closest(to, kAnywhere, last, listed, &does_touch);
   }
   const bool with_slope = action.tangent.size() > 0;
   for (std::size_t k = 0; k < count; ++k) {

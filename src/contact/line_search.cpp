@@ -149,13 +149,15 @@ ClosestPoint LineSearch::closest(const LinePiece& piece, int element, std::size_
 bool LineSearch::is_any_near(int element, double margin, const NodePlaces& places) const {
   const LinePiece piece = this->piece(element, places);
   const double most = largest_radius_ + margin + between_;
-  for (std::size_t p = 0; p < pairs().size(); p += stride_)
-    if (closest(piece, element, p, middle(station(pairs()[p]), places)).square < most * most) return true;
+  for (std::size_t p = 0; p < pairs().size(); p += stride_) {
+    const Vector3 at = middle(station(pairs()[p]), places);
+    if (piece.least_distance(at) < most && closest(piece, element, p, at).square < most * most) return true;
+  }
   return false;
 }
 
 LineSearch::Places LineSearch::closest(const Middles& middles, double margin, const NodePlaces& places,
-                                       const ListedNodes& listed) const {
+                                       const ListedNodes& listed, const Chosen* only) const {
   Places out;
   Cloud cloud{middles[0], 0};
   for (std::size_t p = 1; p < pairs().size(); ++p)
@@ -166,7 +168,8 @@ LineSearch::Places LineSearch::closest(const Middles& middles, double margin, co
     const LinePiece piece = this->piece(k, places);
     for (std::size_t p = 0; p < pairs().size(); ++p) {
       const double most = radius_of(pairs()[p]) + margin, square = std::min(most * most, out[p].square);
-      const double distance = (middles[p] - piece.middle()).norm() - piece.reach;
+      if (only && !(*only)[p]) continue;
+      const double distance = piece.least_distance(middles[p]);
       if (distance > 0 && distance * distance > square) continue;
       const ClosestPoint found = closest(piece, k, p, middles[p]);
       if (found.square < square) out[p] = found;

@@ -79,8 +79,10 @@ class LineSearch {
   Middles middles(const NodePlaces& places) const;
   /// From a place of the line to a point.
   Vector3 offset(const Vector3& point, const ClosestPoint& place, const NodePlaces& places) const;
-  /// The nearest places of all pairs that are nearer than their radii and `margin`.
-  Places closest(const Middles& middles, double margin, const NodePlaces& places, const ListedNodes& listed) const;
+  /// The nearest places of all pairs that are nearer than their radii and `margin`. `only`: of those; null: of all.
+  using Chosen = std::array<bool, kMostPairs>;
+  Places closest(const Middles& middles, double margin, const NodePlaces& places, const ListedNodes& listed,
+                 const Chosen* only = nullptr) const;
 
   /// See ForceElement::find_nodes(): the stations', and those of elements of the line that are near; of many the
   /// nearest.

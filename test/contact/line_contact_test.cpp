@@ -336,6 +336,7 @@ TEST(LineContact, FindsTheNearestPlaceOfALine) {
         EXPECT_LE(std::abs(slope), 1e-6) << order << " " << run;
       }
       EXPECT_LE((piece.middle() - nodes[0]).norm(), piece.reach + 1e-14);
+      EXPECT_LE(piece.least_distance(point), std::sqrt(found.square) + 1e-14);
     }
 }
 
