@@ -1,9 +1,9 @@
 """Joints with play, written from section 11 of docs/notes/contact.md alone: holes, their limit, a slider-crank.
 
-check_holes() says that work in holes is exact, check_socket() that nothing is lost over many hits, check_limit() how fast
-a joint with play tends to the one without. run_crank() integrates the slider-crank of Flores and Ambrosio (Computers &
-Structures 82 (2004) 1359) with scipy, from event to event of the law: the numbers that test/reference/clearance_test.cpp
-holds the library to. Run it for all of them.
+check_holes() says that work in holes is exact, check_socket() that nothing is lost over many hits, check_limit() how
+fast a joint with play tends to the one without. run_crank() integrates the slider-crank of Flores and Ambrosio
+(Computers & Structures 82 (2004) 1359) with scipy, from event to event of the law: the numbers that
+test/reference/clearance_test.cpp holds the library to. Run it for all of them.
 """
 
 import numpy as np
