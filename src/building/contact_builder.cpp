@@ -21,8 +21,6 @@
 namespace flexarm {
 namespace {
 
-/// Of the points of a box or of a cylinder: those that usually touch at a time.
-constexpr double kAtATime = 0.5;
 /// Of sizes: depth beyond which a contact gives way no further.
 constexpr double kContactDepth = 0.1;
 /// A hit takes this many steps of the scene; what sticks is not stiffer than kStiffestGrip m / h^2.
@@ -338,15 +336,18 @@ class ContactBuilder {
   static std::vector<ContactStations> stations_of(const Side& side, double spacing) {
     std::vector<ContactStations> out = side.tubes;
     for (const ContactSurface& surface : side.surfaces) {
-      ContactStations body{{surface.node}, {}};
-      for (const ContactShape& shape : surface.shapes)
-        for (const ContactPoint& point : contact_points(shape, spacing)) {
+      ContactStations body{{surface.node}, {}, 0};
+      for (const ContactShape& shape : surface.shapes) {
+        const std::vector<ContactPoint> points = contact_points(shape, spacing);
+        body.at_a_time += points_at_a_time(shape, points);
+        for (const ContactPoint& point : points) {
           ContactStation station;
           station.arm = point.arm;
           station.radius = point.radius;
           station.outwards = point.outwards;
           body.stations.push_back(station);
         }
+      }
       if (!body.stations.empty()) out.push_back(std::move(body));
     }
     return out;
@@ -365,7 +366,7 @@ class ContactBuilder {
         if (std::find(nodes.begin(), nodes.end(), surface.node) != nodes.end()) continue;
         // Stations of a tube have shares of the whole.
         const bool is_whole = is_ball(first) || !first.tubes.empty();
-        const double at_a_time = is_whole ? 1.0 : kAtATime * static_cast<double>(stations.stations.size());
+        const double at_a_time = is_whole ? 1.0 : stations.at_a_time;
         ContactLaw law = law_of(contact, first, second, at_a_time);
         deepen(stations, surface, law);
         LinkPair links = links_of(contact, first, second);

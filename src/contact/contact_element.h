@@ -23,6 +23,7 @@ struct ContactStation {
 struct ContactStations {
   std::vector<int> nodes;  ///< one of a body, all of an element; -1: the world
   std::vector<ContactStation> stations;
+  int at_a_time = 1;  ///< so many touch where the side lies on something flat
 };
 /// The shapes of one body.
 struct ContactSurface {

@@ -376,4 +376,18 @@ std::vector<ContactPoint> contact_points(const ContactShape& shape, double spaci
   return out;
 }
 
+int points_at_a_time(const ContactShape& shape, const std::vector<ContactPoint>& points) {
+  return of_faces(shape, 1, [&](const auto& each) {
+    std::ptrdiff_t most = 1;
+    for (int face = 0; face < face_count(each); ++face) {
+      if (is_round(shape, face + 1)) continue;
+      const auto lies_on = [&](const ContactPoint& point) {
+        return std::abs(height_over(each, face, own_point(shape, point.arm)) + point.radius) < kFlush * size_of(each);
+      };
+      most = std::max(most, std::count_if(points.begin(), points.end(), lies_on));
+    }
+    return static_cast<int>(most);
+  });
+}
+
 }  // namespace flexarm

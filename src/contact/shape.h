@@ -80,5 +80,8 @@ struct ContactPoint {
 /// longer than wide. None of a half-space or a hole, which touch nothing themselves.
 std::vector<ContactPoint> contact_points(const ContactShape& shape, double spacing);
 constexpr int kRimPoints = 24, kMostEdgePoints = 7;
+/// How many of these points of a shape touch a plane at a time that it lies on: those of the flat face that has most of
+/// them; without faces 1.
+int points_at_a_time(const ContactShape& shape, const std::vector<ContactPoint>& points);
 
 }  // namespace flexarm

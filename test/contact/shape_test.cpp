@@ -73,6 +73,17 @@ TEST(ContactShapes, ThatAreHullsOfBoxesAreTheBoxes) {
   EXPECT_NEAR(half_width(hull), half_width(box), 1e-15);
 }
 
+TEST(ContactShapes, TouchAPlaneByThePointsOfAFace) {
+  const auto count = [](const ContactShape& shape, double spacing) {
+    return points_at_a_time(shape, contact_points(shape, spacing));
+  };
+  EXPECT_EQ(count({Ball{0.1}, kPlace}, 1), 1);
+  EXPECT_EQ(count({Box{{0.3, 0.2, 0.1}}, kPlace}, 10), 4);
+  EXPECT_EQ(count({Box{{0.3, 0.2, 0.1}}, kPlace}, 0.2), 4 + 2 * 2 + 2 * 1) << "the largest has most";
+  EXPECT_EQ(count({Cylinder{0.1, 0.05}, kPlace}, 1), kRimPoints);
+  EXPECT_EQ(count({Hull{std::make_shared<Polytope>(roof_polytope({0.3, 0.4, 0.2}, 0.15))}, kPlace}, 10), 5);
+}
+
 // The nearest of many points of the surface; as far as these lie apart.
 TEST(ContactShapes, AreAsFarAsTheirSurfaces) {
   const Box box{{0.3, 0.5, 0.2}};
