@@ -61,7 +61,7 @@ Touching chain() {
         "<link name=\"link{0}\">{1}<collision><origin xyz=\"0.1 0 0\"/><geometry><sphere radius=\"0.05\"/></geometry>"
         "</collision></link><joint name=\"joint{0}\" type=\"{2}\"><parent link=\"{3}\"/><child "
         "link=\"link{0}\"/>{4}</joint>",
-        k, inertia, k == 0 ? "floating" : "fixed", k == 0 ? "world" : fmt::format("link{}", k - 1),
+        k, inertia, "floating", k == 0 ? "world" : fmt::format("link{}", k - 1),
         k == 0 ? "<origin xyz=\"0 0 1.8\" rpy=\"0 0.6 0.1\"/>"
                : "<origin xyz=\"0.2 0 0\"/><release kind=\"spherical\"/>");
     bodies += k == 0 ? "<body pos=\"0 0 1.8\" quat=\"0.954139 -0.014769 0.295152 0.047748\"><freejoint/>"

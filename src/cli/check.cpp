@@ -2,6 +2,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -12,6 +13,7 @@
 #include "cli/mode_table.h"
 #include "cli/scene_input.h"
 #include "contact/contact_element.h"
+#include "contact/line_contact.h"
 #include "integrators/step_plane.h"
 #include "scene/flexible_link.h"
 #include "schemes/scheme.h"
@@ -145,20 +147,34 @@ std::string range_text(double least, double most) {
   return least == most ? fmt::format("{:.4g}", least) : fmt::format("{:.4g} ... {:.4g}", least, most);
 }
 
+/// How many points an element touches with, and the law of each; none of what is no contact.
+struct TouchingPoints {
+  std::size_t count;
+  ContactLaw law;
+};
+std::optional<TouchingPoints> points_of(const ForceElement& element) {
+  if (const auto* contact = dynamic_cast<const ContactElement*>(&element))
+    return TouchingPoints{contact->point_count(), contact->law()};
+  if (const auto* line = dynamic_cast<const LineContact*>(&element))
+    return TouchingPoints{line->point_count(), line->law()};
+  return std::nullopt;
+}
+
 /// What elements of a pair have to touch with, and their law.
 std::string law_text(const ForceElementList& elements, const TouchingPair& pair) {
   std::size_t points = 0;
   double least = std::numeric_limits<double>::infinity(), most = 0;
-  const ContactElement* contact = nullptr;
+  ContactLaw law;
   for (const auto& [index, memory] : pair.elements) {
-    contact = dynamic_cast<const ContactElement*>(elements[index].get());
-    if (!contact) return fmt::format("{} times {}", pair.elements.size(), elements[index]->description());
-    points += contact->point_count();
-    least = std::min(least, contact->law().stiffness);
-    most = std::max(most, contact->law().stiffness);
+    const std::optional<TouchingPoints> own = points_of(*elements[index]);
+    if (!own) return fmt::format("{} times {}", pair.elements.size(), elements[index]->description());
+    law = own->law;
+    points += own->count;
+    least = std::min(least, law.stiffness);
+    most = std::max(most, law.stiffness);
   }
   return fmt::format("{} points, {} N/m each, restitution {:g}, friction {:g}", points, range_text(least, most),
-                     contact->law().restitution, contact->law().friction);
+                     law.restitution, law.friction);
 }
 
 /// How a pair touches now.

@@ -17,6 +17,9 @@ class LineContact : public ForceElement {
               bool is_reversed = false);
 
   const char* kind() const override { return "contact"; }
+  /// Of the first pair, alongside.
+  ContactLaw law() const { return law_of(search_.pairs()[0], 0); }
+  std::size_t point_count() const { return search_.pairs().size(); }
   std::vector<std::string> links() const override { return links_; }
   std::string description() const override;
   int most_nodes() const override { return search_.most_nodes(); }

@@ -27,6 +27,13 @@ Model rubbing(Model model) {
 /// each other.
 constexpr double kBackwardError = 1e-12;
 
+/// A place at random may be too deep inside of what it touches.
+bool is_too_deep(const Model& model, StepSystem& matrix, StepSystem& tree) {
+  const auto hits = [](const auto& element) { return element->hits(); };
+  return std::any_of(model.force_elements.begin(), model.force_elements.end(), hits) && !matrix.evaluate(true) &&
+         !tree.evaluate(true);
+}
+
 void expect_equal_solutions(StepSystem& matrix, StepSystem& tree) {
   ASSERT_TRUE(matrix.evaluate(true));
   ASSERT_TRUE(tree.evaluate(true));
@@ -97,7 +104,7 @@ TEST_P(TreeSystem, SolvesWithTheTangentsOfAllScenes) {
     for (const double size : {1e-3, 3e-3}) {
       const Eigen::VectorXd update = random_update(matrix->degrees_of_freedom().unknowns, random, size);
       for (StepSystem* system : {&*matrix, &*tree}) system->update(update);
-      expect_equal_solutions(*matrix, *tree);
+      if (!is_too_deep(model, *matrix, *tree)) expect_equal_solutions(*matrix, *tree);
     }
   }
 }
@@ -120,6 +127,7 @@ TEST(TreeTangent, SolvesWithTheTangentOfStatics) {
       system->begin_equilibrium(state, 0.7);
       system->update(update);
     }
+    if (is_too_deep(model, matrix, tree)) continue;
     ASSERT_TRUE(matrix.evaluate(true));
     ASSERT_TRUE(tree.evaluate(true));
     if (!is_invertible(dense(matrix_of(matrix)))) continue;
