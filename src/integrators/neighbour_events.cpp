@@ -168,15 +168,17 @@ void NeighbourSteps::note_motors(const State& state) {
 /// part to part.
 void NeighbourSteps::note_hits(const State& state) {
   const ForceElementList& elements = model_.force_elements;
-  touches_.resize(elements.size(), -1);
+  if (touches_.empty()) {  // what touches at the start does not hit
+    touches_.assign(elements.size(), 1);
+    return;
+  }
   const double* memory = state.force_memory.data();
   for (std::size_t i = 0; i < elements.size(); ++i) {
     const double* const end = memory + elements[i]->memory_size();
-    const int touches =
-        elements[i]->hits() && std::any_of(memory, end, [](double number) { return number != 0; }) ? 1 : 0;
+    const bool touches = elements[i]->hits() && std::any_of(memory, end, [](double number) { return number != 0; });
     memory = end;
-    const bool begins = touches_[i] == 0 && touches == 1;
-    touches_[i] = static_cast<char>(touches);
+    const bool begins = touches && touches_[i] == 0;
+    touches_[i] = touches ? 1 : 0;
     if (begins)
       events_.push_back({state.time, fmt::format("{}", fmt::join(elements[i]->links(), " and ")), "hit each other",
                          "the derivative is that of the steps, for which it matters in which part of one they hit"});

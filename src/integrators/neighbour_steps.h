@@ -126,7 +126,7 @@ class NeighbourSteps : public StepFollower, private MarchFollower {
   bool notes_events_ = false;
   std::vector<std::vector<double>> coarse_;  // derivatives by the first way, per direction
   std::vector<double> motor_rests_;
-  std::vector<char> touches_;  // per force element: in a hit; negative: not known yet
+  std::vector<char> touches_;  // per force element
   std::vector<RunEvent> events_;
 };
 
