@@ -136,7 +136,7 @@ void add_several_at_once(HardGroup& group) {
   add(group, "ten balls in a rack, hit at 8 m/s",
       rack + ball("cue", 0.17, 0.028) + kFloor + contact("restitution=\"0.95\" friction=\"0.1\""),
       kGravity + racked + start("cue", {-0.3, 0.002, 0.028}, kZero, {8, 0, 0}), 1e-3, 0.3);
-  std::string table = "";
+  std::string table;
   for (const double x : {-0.3, 0.0, 0.3})
     for (const double y : {-0.3, 0.0, 0.3}) table += collision(cuboid({0.04, 0.04, 0.4}), {x, y, -0.2});
   add(group, "table on nine legs: redundant",
