@@ -27,16 +27,17 @@ Model rubbing(Model model) {
 /// each other.
 constexpr double kBackwardError = 1e-12;
 
-/// A place at random may be too deep inside of what it touches.
-bool is_too_deep(const Model& model, StepSystem& matrix, StepSystem& tree) {
-  const auto hits = [](const auto& element) { return element->hits(); };
-  return std::any_of(model.force_elements.begin(), model.force_elements.end(), hits) && !matrix.evaluate(true) &&
-         !tree.evaluate(true);
+bool may_touch(const Model& model) {
+  return std::any_of(model.force_elements.begin(), model.force_elements.end(),
+                     [](const auto& element) { return element->hits(); });
 }
 
 void expect_equal_solutions(StepSystem& matrix, StepSystem& tree) {
-  ASSERT_TRUE(matrix.evaluate(true));
-  ASSERT_TRUE(tree.evaluate(true));
+  const bool is_finite = matrix.evaluate(true);
+  ASSERT_EQ(tree.evaluate(true), is_finite);
+  if (!is_finite && may_touch(matrix.configuration().model()))
+    return;  // a place at random: too deep in what it touches
+  ASSERT_TRUE(is_finite);
   EXPECT_EQ(matrix.residual(), tree.residual());
   const Eigen::MatrixXd tangent = dense(matrix_of(matrix));
   for (int repeat = 0; repeat < 3; ++repeat) {  // with new factors, then with kept ones
@@ -104,7 +105,7 @@ TEST_P(TreeSystem, SolvesWithTheTangentsOfAllScenes) {
     for (const double size : {1e-3, 3e-3}) {
       const Eigen::VectorXd update = random_update(matrix->degrees_of_freedom().unknowns, random, size);
       for (StepSystem* system : {&*matrix, &*tree}) system->update(update);
-      if (!is_too_deep(model, *matrix, *tree)) expect_equal_solutions(*matrix, *tree);
+      expect_equal_solutions(*matrix, *tree);
     }
   }
 }
@@ -127,9 +128,10 @@ TEST(TreeTangent, SolvesWithTheTangentOfStatics) {
       system->begin_equilibrium(state, 0.7);
       system->update(update);
     }
-    if (is_too_deep(model, matrix, tree)) continue;
-    ASSERT_TRUE(matrix.evaluate(true));
-    ASSERT_TRUE(tree.evaluate(true));
+    const bool is_finite = matrix.evaluate(true);
+    ASSERT_EQ(tree.evaluate(true), is_finite);
+    if (!is_finite && may_touch(model)) continue;
+    ASSERT_TRUE(is_finite);
     if (!is_invertible(dense(matrix_of(matrix)))) continue;
     expect_equal_solutions(matrix, tree);
     ++regular;
