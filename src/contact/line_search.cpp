@@ -256,7 +256,9 @@ bool LineSearch::passes_through(std::size_t index, const ClosestPoint& begin, co
   const ContactStation& station = this->station(pairs()[index]);
   const Vector3 from = middle(station, first), to = middle(station, last);
   // Towards a straight line distances are convex: lowest at an end unless they fall first and rise then.
-  const auto change = [&](const ClosestPoint& place) { return offset(to, place, last) - offset(from, place, first); };
+  const auto change = [&](const ClosestPoint& place) {
+    return Vector3(offset(to, place, last) - offset(from, place, first));
+  };
   if (offset(from, begin, first).dot(change(begin)) >= 0 || offset(to, end, last).dot(change(end)) <= 0) return false;
   constexpr double kLeast = 1.0 / 64;  // of the way, per look
   while (gone < way) {
