@@ -27,17 +27,16 @@ Model rubbing(Model model) {
 /// each other.
 constexpr double kBackwardError = 1e-12;
 
-bool may_touch(const Model& model) {
-  return std::any_of(model.force_elements.begin(), model.force_elements.end(),
-                     [](const auto& element) { return element->hits(); });
+/// Of random displacements of a scene. Where something touches they are small against what it may give way by.
+double displacement_of(const Model& model) {
+  const bool touches = std::any_of(model.force_elements.begin(), model.force_elements.end(),
+                                   [](const auto& element) { return element->hits(); });
+  return touches ? 1e-5 : 1e-3;
 }
 
 void expect_equal_solutions(StepSystem& matrix, StepSystem& tree) {
-  const bool is_finite = matrix.evaluate(true);
-  ASSERT_EQ(tree.evaluate(true), is_finite);
-  if (!is_finite && may_touch(matrix.configuration().model()))
-    return;  // a place at random: too deep in what it touches
-  ASSERT_TRUE(is_finite);
+  ASSERT_TRUE(matrix.evaluate(true));
+  ASSERT_TRUE(tree.evaluate(true));
   EXPECT_EQ(matrix.residual(), tree.residual());
   const Eigen::MatrixXd tangent = dense(matrix_of(matrix));
   for (int repeat = 0; repeat < 3; ++repeat) {  // with new factors, then with kept ones
@@ -100,10 +99,11 @@ TEST_P(TreeSystem, SolvesWithTheTangentsOfAllScenes) {
       continue;  // dry friction in a step backwards
     }
     RandomSource random(2);
-    const State state = prepared(random_state(model, random, 1e-3), *matrix, random);
+    const double size = displacement_of(model);
+    const State state = prepared(random_state(model, random, size), *matrix, random);
     for (StepSystem* system : {&*matrix, &*tree}) system->begin(state, 1e-3, Guess::Unchanged);
-    for (const double size : {1e-3, 3e-3}) {
-      const Eigen::VectorXd update = random_update(matrix->degrees_of_freedom().unknowns, random, size);
+    for (const double times : {1, 3}) {
+      const Eigen::VectorXd update = random_update(matrix->degrees_of_freedom().unknowns, random, times * size);
       for (StepSystem* system : {&*matrix, &*tree}) system->update(update);
       expect_equal_solutions(*matrix, *tree);
     }
@@ -123,15 +123,13 @@ TEST(TreeTangent, SolvesWithTheTangentOfStatics) {
     StepSystem matrix(model, statics, BackendChoice::Matrix), tree(model, statics);
     const State state = initial_state(model);
     RandomSource random(3);
-    const Eigen::VectorXd update = random_update(matrix.degrees_of_freedom().unknowns, random, 1e-3);
+    const Eigen::VectorXd update = random_update(matrix.degrees_of_freedom().unknowns, random, displacement_of(model));
     for (StepSystem* system : {&matrix, &tree}) {
       system->begin_equilibrium(state, 0.7);
       system->update(update);
     }
-    const bool is_finite = matrix.evaluate(true);
-    ASSERT_EQ(tree.evaluate(true), is_finite);
-    if (!is_finite && may_touch(model)) continue;
-    ASSERT_TRUE(is_finite);
+    ASSERT_TRUE(matrix.evaluate(true));
+    ASSERT_TRUE(tree.evaluate(true));
     if (!is_invertible(dense(matrix_of(matrix)))) continue;
     expect_equal_solutions(matrix, tree);
     ++regular;
