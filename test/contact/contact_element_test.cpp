@@ -9,6 +9,7 @@
 #include "math/cayley.h"
 #include "math/so3.h"
 #include "model/state.h"
+#include "support/gripping_law.h"
 #include "support/node_poses.h"
 #include "support/polytopes.h"
 
@@ -22,14 +23,7 @@ NodePose turned_node(const Vector3& position, const Vector3& rotation) {
 }
 
 ContactLaw gripping_law(double friction, double restitution) {
-  ContactLaw law;
-  law.stiffness = 500;
-  law.frequency = 20;
-  law.damping = damping_for_restitution(restitution);
-  law.depth = 0.6;
-  law.friction = friction;
-  law.grip = 400;
-  return law;
+  return test::gripping_law(friction, restitution, 0.6);
 }
 
 struct Scene {
@@ -64,16 +58,6 @@ std::vector<Scene> scenes() {
       out.push_back({names[k], {{0, 2, 3}, {tube}}, {base, {shapes[k]}}});
     }
   return out;
-}
-
-State state_at(const Poses& poses) {
-  State state;
-  for (const NodePose& pose : poses) {
-    state.nodes.emplace_back();
-    state.nodes.back().position = pose.position;
-    state.nodes.back().orientation = pose.orientation;
-  }
-  return state;
 }
 
 class ContactElements : public ::testing::Test {

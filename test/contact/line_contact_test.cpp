@@ -9,6 +9,7 @@
 #include "math/shape_functions.h"
 #include "math/so3.h"
 #include "model/state.h"
+#include "support/gripping_law.h"
 #include "support/node_poses.h"
 
 namespace flexarm::test::lines {
@@ -17,24 +18,7 @@ namespace {
 using Poses = std::vector<NodePose>;
 
 ContactLaw gripping_law(double friction, double restitution) {
-  ContactLaw law;
-  law.stiffness = 500;
-  law.frequency = 20;
-  law.damping = damping_for_restitution(restitution);
-  law.depth = 0.4;
-  law.friction = friction;
-  law.grip = 400;
-  return law;
-}
-
-State state_at(const Poses& poses) {
-  State state;
-  for (const NodePose& pose : poses) {
-    state.nodes.emplace_back();
-    state.nodes.back().position = pose.position;
-    state.nodes.back().orientation = pose.orientation;
-  }
-  return state;
+  return test::gripping_law(friction, restitution, 0.4);
 }
 
 /// Poses at both ends of a step, and what touches in it: all numbers but the order are random.

@@ -5,21 +5,15 @@
 
 #include <fmt/format.h>
 
-#include "flexarm/scene/urdf_reader.h"
-#include "flexarm/simulation/simulation.h"
+#include "math/pi.h"
+#include "reference/contact_scenes.h"
 
 namespace flexarm::test::touching_lines {
 namespace {
 
-constexpr double kG = 9.81, kPi = 3.14159265358979323846;
-
-std::string ball(const std::string& name, double mass, double radius) {
-  return fmt::format(
-      "<link name=\"{0}\"><inertial><mass value=\"{1:.17g}\"/><inertia ixx=\"{2:.17g}\" iyy=\"{2:.17g}\" "
-      "izz=\"{2:.17g}\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial><collision><geometry><sphere radius=\"{3}\"/>"
-      "</geometry></collision></link>",
-      name, mass, 0.4 * mass * radius * radius, radius);
-}
+using touching::ball;
+using touching::kG;
+using touching::start;
 
 struct Rod {
   Vector3 to;
@@ -46,25 +40,9 @@ std::string joint(const std::string& link, const std::string& type, const Vector
       link, type, place.x(), place.y(), place.z());
 }
 
-std::string start(const std::string& link, const Vector3& place, const Vector3& velocity) {
-  std::string out;
-  const char* axes[] = {"x", "y", "z"};
-  for (int k = 0; k < 3; ++k)
-    out += fmt::format("<initial joint=\"of_{}/{}\" position=\"{:.17g}\"/>", link, axes[k], place[k]);
-  return out + fmt::format("<initial link=\"{}\" linear=\"{:.17g} {:.17g} {:.17g}\"/>", link, velocity.x(),
-                           velocity.y(), velocity.z());
-}
-
 Simulation simulation_of(const std::string& parts, const std::string& starts, double step,
                          const Vector3& gravity = {0, 0, 0}) {
-  scene::ReadResult result = scene::read_scene_text(
-      fmt::format(
-          "<robot name=\"contact\"><link name=\"world\"/>{}<simulation><gravity xyz=\"{:.17g} {:.17g} {:.17g}\"/>"
-          "<integrator scheme=\"em\" step=\"{:.17g}\"/>{}</simulation></robot>",
-          parts, gravity.x(), gravity.y(), gravity.z(), step, starts),
-      "contact.urdf");
-  for (const scene::Diagnostic& finding : result.diagnostics) ADD_FAILURE() << finding.text();
-  return Simulation(result.scene.value());
+  return touching::simulation_of(parts, starts, step, gravity);
 }
 
 /// Of places of two links' lines, by 1/100 of their lengths; of one link those that are farther apart along it [m].

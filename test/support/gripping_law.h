@@ -1,0 +1,20 @@
+#pragma once
+/// A law of contact points for tests of what they do over a step.
+
+#include "contact/contact_law.h"
+
+namespace flexarm::test {
+
+/// `depth`: in m.
+inline ContactLaw gripping_law(double friction, double restitution, double depth) {
+  ContactLaw law;
+  law.stiffness = 500;
+  law.frequency = 20;
+  law.damping = damping_for_restitution(restitution);
+  law.depth = depth;
+  law.friction = friction;
+  law.grip = 400;
+  return law;
+}
+
+}  // namespace flexarm::test
