@@ -8,10 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "building/contact_laws.h"
 #include "building/model_builder.h"
-#include "contact/contact_element.h"
-#include "math/pi.h"
-#include "schemes/scheme.h"
 
 namespace flexarm {
 namespace {
@@ -19,10 +17,6 @@ namespace {
 /// Length of a pin or a block for which none is given, in plays, and in radii of the pin. Fits of machines have
 /// diameters of some 1000 plays, and bearings are about as long.
 constexpr double kLengthInPlays = 1000, kLengthInRadii = 2;
-/// Of the depth: how deep inside a joint without stiffness may start.
-constexpr double kDeepestStart = 0.25;
-/// What sticks is not stiffer than kStiffestHold m / h^2.
-constexpr double kStiffestHold = 16;
 
 class Clearance final : public ContactElement {
  public:
@@ -113,7 +107,7 @@ class ClearanceBuilder {
     }
     ContactSurface surface{bearing.node, fit.holes};
     for (ContactShape& shape : surface.shapes) shape.place = bearing.offset * shape.place;
-    const double inside = start_inside(stations, surface);
+    const double inside = deepest_start(model_, stations, surface);
     if (inside > clearance.radius)
       throw ModelError(fmt::format("{}starts {:.6g} m beyond its play of {:.6g} m; expected at most as much", where,
                                    inside, clearance.radius));
@@ -130,39 +124,21 @@ class ClearanceBuilder {
 
   NodePose pose_of(int node) const { return node < 0 ? NodePose() : model_.nodes[node]; }
 
-  /// How deep the deepest point starts inside; < 0: how near the surface is [m].
-  double start_inside(const ContactStations& side, const ContactSurface& surface) const {
-    const auto poses = [&](int node) { return pose_of(node); };
-    double inside = -std::numeric_limits<double>::infinity();
-    for (const ContactStation& station : side.stations)
-      for (const ContactShape& shape : surface.shapes) {
-        const Vector3 point = seen_from(surface, middle_of(side, station, poses), poses);
-        inside = std::max(inside, station.radius - shape.gap(point));
-      }
-    return inside;
-  }
-
-  /// Of a link, a beam its whole, and of what other bodies hold that of all [kg].
+  /// Of a beam its whole [kg].
   double mass_of_link(const std::string& name) const {
     const LinkFrame& link = model_.links[plan_.links[name]];
-    if (link.beam) return link.beam->mass;
-    if (link.frame.node < 0) return std::numeric_limits<double>::infinity();
-    const double mass = model_.inertias[link.frame.node].total_mass;
-    return mass > 0 ? mass : mass_of(model_);
+    return link.beam ? link.beam->mass : mass_of_body(model_, link.frame.node);
   }
 
   ContactLaw law_of(const scene::ClearanceDescription& clearance, double at_a_time, double inside) const {
-    const double step = plan_.scene.integrator.step, frequency = kPi / (kContactSteps * step);
-    const double mass = 1 / (1 / mass_of_link(clearance.joint.parent) + 1 / mass_of_link(clearance.joint.child));
-    ContactLaw law;
-    law.stiffness = clearance.stiffness.value_or(mass * frequency * frequency / at_a_time);
-    law.frequency = std::sqrt(law.stiffness * at_a_time / mass);
-    law.damping = damping_for_restitution(clearance.restitution);
+    LawRequest request{1 / (1 / mass_of_link(clearance.joint.parent) + 1 / mass_of_link(clearance.joint.child)),
+                       at_a_time, clearance.stiffness};
+    request.restitution = clearance.restitution;
+    request.friction = clearance.friction;
+    ContactLaw law = law_of_points(request, plan_.scene.integrator.step);
     // What is as soft as the step needs it is kept from giving way by more than the play. A stiffness that is given
     // is the law.
-    if (!clearance.stiffness) law.depth = std::max(clearance.radius, inside / kDeepestStart);
-    law.friction = clearance.friction;
-    law.grip = std::min(law.stiffness, kStiffestHold * mass / (step * step) / at_a_time);
+    if (!clearance.stiffness) law.depth = std::max(clearance.radius, inside / kStartInside);
     return law;
   }
 

@@ -10,21 +10,17 @@
 
 #include <fmt/format.h>
 
+#include "building/contact_laws.h"
 #include "building/line_contacts.h"
 #include "building/model_builder.h"
 #include "building/touching_meshes.h"
 #include "contact/contact_element.h"
-#include "math/pi.h"
-#include "math/shape_functions.h"
-#include "schemes/scheme.h"
 
 namespace flexarm {
 namespace {
 
 /// Of sizes: depth beyond which a contact gives way no further.
 constexpr double kContactDepth = 0.1;
-/// A hit takes this many steps of the scene; what sticks is not stiffer than kStiffestGrip m / h^2.
-constexpr double kStiffestGrip = 16;
 /// Most stations between both ends of an element.
 constexpr int kMostSpans = 8;
 
@@ -121,13 +117,7 @@ class ContactBuilder {
     if (surface == side.surfaces.end()) surface = side.surfaces.insert(surface, {node, {}});
     surface->shapes.push_back(shape);
     side.size = std::min(side.size, half_width(shape));
-    if (node >= 0) side.mass = mass_of_body(node);
-  }
-
-  /// Of a body without a mass of its own, which other bodies hold: that of all.
-  double mass_of_body(int node) const {
-    const double mass = model_.inertias[node].total_mass;
-    return mass > 0 ? mass : mass_of(model_);
+    if (node >= 0) side.mass = mass_of_body(model_, node);
   }
 
   /// A tube of the section's largest radius along the nodes' line: stations at even distances.
@@ -145,25 +135,13 @@ class ContactBuilder {
       const int spans = std::max(static_cast<int>(radii), order);
       for (int i = 0; i <= spans; ++i) {
         ContactStation station;
-        station.weights = weights_at(order, -1 + 2.0 * i / spans);
+        station.weights = line_weights(order, -1 + 2.0 * i / spans).values;
         station.radius = link.beam->radius;
         station.share = (i == 0 || i == spans ? 0.5 : 1.0) * length / spans / link.beam->length;
         stations.stations.push_back(station);
       }
       side.tubes.push_back(std::move(stations));
     }
-  }
-
-  static std::array<double, ContactStation::kMostNodes> weights_at(int order, double xi) {
-    std::array<double, ContactStation::kMostNodes> out{};
-    const auto put = [&](const auto& functions) {
-      std::copy(functions.values.data(), functions.values.data() + functions.values.size(), out.begin());
-    };
-    if (order == 1) put(lagrange<2>(xi));
-    if (order == 2) put(lagrange<3>(xi));
-    if (order == 3) put(lagrange<4>(xi));
-    if (order == 4) put(lagrange<5>(xi));
-    return out;
   }
 
   // ---------------------------------------------------------------- pairs
@@ -239,19 +217,15 @@ class ContactBuilder {
 
   ContactLaw law_of(const scene::ContactDescription& contact, const Side& stations, const Side& shapes,
                     double at_a_time) const {
-    const double inverse = 1 / stations.mass + 1 / shapes.mass, step = scene_.integrator.step;
-    const double mass = inverse > 0 ? 1 / inverse : mass_of(model_), frequency = kPi / (kContactSteps * step);
+    const double inverse = 1 / stations.mass + 1 / shapes.mass;
     const scene::SurfaceHints hints = hints_of(stations, shapes);
-    ContactLaw law;
+    LawRequest request{inverse > 0 ? 1 / inverse : mass_of(model_), at_a_time, contact.stiffness};
     // A hint makes it softer alone: Gazebo's own steps bear more than what they can follow.
-    const double usual = mass * frequency * frequency / at_a_time;
-    law.stiffness = contact.stiffness.value_or(std::min(usual, hints.stiffness.value_or(kInfinity)));
-    law.frequency = std::sqrt(law.stiffness * at_a_time / mass);
-    law.restitution = contact.restitution;
-    law.damping = damping_for_restitution(contact.restitution);
+    request.softest = hints.stiffness.value_or(kInfinity);
+    request.restitution = contact.restitution;
+    request.friction = contact.friction.value_or(hints.friction.value_or(0));
+    ContactLaw law = law_of_points(request, scene_.integrator.step);
     law.depth = kContactDepth * std::min(stations.size, shapes.size);
-    law.friction = contact.friction.value_or(hints.friction.value_or(0));
-    law.grip = std::min(law.stiffness, kStiffestGrip * mass / (step * step) / at_a_time);
     return law;
   }
 
@@ -266,16 +240,6 @@ class ContactBuilder {
       if (stiffness) out.stiffness = out.stiffness ? 1 / (1 / *stiffness + 1 / *out.stiffness) : *stiffness;
     }
     return out;
-  }
-
-  /// Deeper where it starts inside.
-  void deepen(const ContactStations& side, const ContactSurface& surface, ContactLaw& law) const {
-    const auto pose_of = [&](int node) { return node < 0 ? NodePose() : model_.nodes[node]; };
-    for (const ContactStation& station : side.stations)
-      for (const ContactShape& shape : surface.shapes) {
-        const double gap = shape.gap(seen_from(surface, middle_of(side, station, pose_of), pose_of)) - station.radius;
-        law.depth = std::max(law.depth, -gap / kStartInside);
-      }
   }
 
   // ---------------------------------------------------------------- elements
@@ -368,7 +332,7 @@ class ContactBuilder {
         const bool is_whole = is_ball(first) || !first.tubes.empty();
         const double at_a_time = is_whole ? 1.0 : stations.at_a_time;
         ContactLaw law = law_of(contact, first, second, at_a_time);
-        deepen(stations, surface, law);
+        law.depth = std::max(law.depth, deepest_start(model_, stations, surface) / kStartInside);
         LinkPair links = links_of(contact, first, second);
         placed_.push_back(
             std::make_shared<ContactElement>(std::move(links.names), stations, surface, law, links.is_reversed));

@@ -4,14 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "building/contact_laws.h"
 #include "building/scene_plan.h"
 #include "contact/line_contact.h"
 #include "model/model.h"
 
 namespace flexarm {
-
-/// Of the depth beyond which a contact gives way no further: a start inside is this part of it, or less.
-constexpr double kStartInside = 0.25;
 
 /// Of two links by their index among the plan's, the names of both; `is_reversed`: the other way round.
 struct LinkPair {

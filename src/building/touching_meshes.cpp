@@ -7,8 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include <dlfcn.h>
-
+#include "building/loaded_library.h"
 #include "meshes/library.h"
 #include "scene/resource_path.h"
 
@@ -16,14 +15,6 @@ namespace flexarm {
 namespace {
 
 namespace fs = std::filesystem;
-
-const meshes::Library& mesh_library() {
-  // It stays loaded: what it made has its code.
-  void* const library = dlopen(meshes::kLibrary, RTLD_LAZY | RTLD_LOCAL);
-  const void* const functions = library ? dlsym(library, meshes::kSymbol) : nullptr;
-  if (!functions) throw std::runtime_error(std::string("meshes cannot be read: ") + dlerror());
-  return *static_cast<const meshes::Library*>(functions);
-}
 
 }  // namespace
 
@@ -38,7 +29,9 @@ Polytopes hulls_of_mesh(const scene::MeshShape& mesh, const std::string& scene_f
       known.try_emplace(Key(path, fs::last_write_time(path), mesh.scale.x(), mesh.scale.y(), mesh.scale.z()));
   if (!is_new) return place->second;
   try {
-    for (Polytope& hull : mesh_library().hulls_of_file(path, mesh.scale))
+    const auto& functions =
+        loaded_functions<meshes::Library>(meshes::kLibrary, meshes::kSymbol, "meshes cannot be read");
+    for (Polytope& hull : functions.hulls_of_file(path, mesh.scale))
       place->second.push_back(std::make_shared<const Polytope>(std::move(hull)));
   } catch (...) {
     known.erase(place);

@@ -1,8 +1,6 @@
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <limits>
-#include <optional>
 
 #include <fmt/format.h>
 
@@ -12,8 +10,6 @@
 #include "cli/driven_ends.h"
 #include "cli/mode_table.h"
 #include "cli/scene_input.h"
-#include "contact/contact_element.h"
-#include "contact/line_contact.h"
 #include "integrators/step_plane.h"
 #include "scene/flexible_link.h"
 #include "schemes/scheme.h"
@@ -147,34 +143,19 @@ std::string range_text(double least, double most) {
   return least == most ? fmt::format("{:.4g}", least) : fmt::format("{:.4g} ... {:.4g}", least, most);
 }
 
-/// How many points an element touches with, and the law of each; none of what is no contact.
-struct TouchingPoints {
-  std::size_t count;
-  ContactLaw law;
-};
-std::optional<TouchingPoints> points_of(const ForceElement& element) {
-  if (const auto* contact = dynamic_cast<const ContactElement*>(&element))
-    return TouchingPoints{contact->point_count(), contact->law()};
-  if (const auto* line = dynamic_cast<const LineContact*>(&element))
-    return TouchingPoints{line->point_count(), line->law()};
-  return std::nullopt;
-}
-
 /// What elements of a pair have to touch with, and their law.
 std::string law_text(const ForceElementList& elements, const TouchingPair& pair) {
-  std::size_t points = 0;
   double least = std::numeric_limits<double>::infinity(), most = 0;
-  ContactLaw law;
+  TouchLaw all;
   for (const auto& [index, memory] : pair.elements) {
-    const std::optional<TouchingPoints> own = points_of(*elements[index]);
-    if (!own) return fmt::format("{} times {}", pair.elements.size(), elements[index]->description());
-    law = own->law;
-    points += own->count;
-    least = std::min(least, law.stiffness);
-    most = std::max(most, law.stiffness);
+    const std::size_t points = all.points;
+    all = elements[index]->touch_law();
+    all.points += points;
+    least = std::min(least, all.stiffness);
+    most = std::max(most, all.stiffness);
   }
-  return fmt::format("{} points, {} N/m each, restitution {:g}, friction {:g}", points, range_text(least, most),
-                     law.restitution, law.friction);
+  return fmt::format("{} points, {} N/m each, restitution {:g}, friction {:g}", all.points, range_text(least, most),
+                     all.restitution, all.friction);
 }
 
 /// How a pair touches now.
@@ -184,7 +165,6 @@ std::string touch_text(const Simulation& simulation, std::size_t pair) {
   put_out_touch(simulation, pair, values);
   const double count = values[3], gap = values[4];
   if (count > 0 && gap < -kRoundOff) return fmt::format("{:g} points inside, {:.3g} m deep", count, -gap);
-  if (std::isinf(gap)) return "-";  // it does not say
   return gap <= kRoundOff ? "touches" : fmt::format("{:.3g} m apart", gap);
 }
 

@@ -7,12 +7,8 @@
 namespace flexarm {
 namespace {
 
-/// Ways that a step may come to beyond those at the speed of its beginning: times that, and of the size.
-constexpr double kMoreWay = 2, kNear = 0.02;
 /// So deep, of the depth, a corner may be in a shape without having come in by a face.
 constexpr double kUnseen = 0.01;
-/// Cosine of normals at both ends of a step that goes to the other side of something thin.
-constexpr double kOtherSide = -0.5;
 
 }  // namespace
 

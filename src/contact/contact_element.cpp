@@ -54,13 +54,8 @@ ContactElement::ContactElement(std::vector<std::string> links, ContactStations s
     own_radius_ = std::max(own_radius_, (station.arm - middle_arm_).norm() + station.radius);
 }
 
-std::string ContactElement::description() const {
-  return fmt::format("{} points, {:.4g} N/m each, restitution {:g}, friction {:g}", point_count(), law_.stiffness,
-                     law_.restitution, law_.friction);
-}
-
 int ContactElement::memory_size() const {
-  return PointMemory::kSize * static_cast<int>(point_count());
+  return PointMemory::kSize * static_cast<int>(side_.stations.size() * surface_.shapes.size());
 }
 
 ContactLaw ContactElement::law_of(const ContactStation& station) const {

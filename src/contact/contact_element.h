@@ -8,6 +8,12 @@
 
 namespace flexarm {
 
+/// Ways that a step may come to beyond those at the speed of its beginning: times that, and of the size of what
+/// touches.
+constexpr double kMoreWay = 2, kNear = 0.02;
+/// Cosine of normals at both ends of a step that goes to the other side of something thin.
+constexpr double kOtherSide = -0.5;
+
 /// Where a body or an element of a beam touches others: a ball around a point of its nodes' frames. Of a beam it is on
 /// its line, the sum of its nodes' positions with these weights.
 struct ContactStation {
@@ -61,11 +67,7 @@ class ContactElement : public ForceElement {
                  bool is_reversed = false, const std::string& name = "");
 
   const char* kind() const override { return "contact"; }
-  const ContactLaw& law() const { return law_; }
-  /// Pairs of stations and shapes.
-  std::size_t point_count() const { return side_.stations.size() * surface_.shapes.size(); }
   std::vector<std::string> links() const override { return links_; }
-  std::string description() const override;
   int find_nodes(const ForceStart& start, int* nodes) const override;
   void evaluate(const ForceStep& step, const int* nodes, ForceAction& action) const override;
   bool needs_halves(const ForceStep& step, const int* nodes, int count) const override;
@@ -76,6 +78,9 @@ class ContactElement : public ForceElement {
   DamperTensions dampers(const State& state, const Eigen::VectorXd& rates) const override;
   int memory_size() const override;
   double touch(const ForceMotion& motion, const TouchingPointTaker& take) const override;
+  TouchLaw touch_law() const override {
+    return {side_.stations.size() * surface_.shapes.size(), law_.stiffness, law_.restitution, law_.friction};
+  }
   bool suits_all_schemes() const override { return false; }
 
  private:

@@ -22,6 +22,9 @@ struct ContactLaw {
 /// stiffness and speed are: (1 + d) / (1 - e d) = exp(d (1 + e)). (Gonthier et al. 2004)
 double damping_for_restitution(double restitution);
 
+/// Of the depth: no equilibrium is deeper.
+constexpr double kDeepestRest = 0.95;
+
 /// Of a penetration, > 0 inside [J].
 double contact_energy(const ContactLaw& law, double penetration);
 

@@ -15,9 +15,6 @@
 namespace flexarm {
 namespace {
 
-/// Cosine of normals at both ends of a step that goes to the other side.
-constexpr double kTurnedOver = -0.5;
-
 LineMemory line_memory_at(const double* numbers) {
   return {numbers[0], Eigen::Map<const Vector3>(numbers + 1), numbers[4]};
 }
@@ -32,11 +29,6 @@ LineContact::LineContact(std::vector<std::string> links, LineTouch touch, const 
       law_(law),
       crossing_(crossing),
       is_reversed_(is_reversed) {}
-
-std::string LineContact::description() const {
-  return fmt::format("{} points against a line, {:.4g} N/m each, friction {:g}", search_.pairs().size(),
-                     law_.stiffness * search_.side().stations[0].share, law_.friction);
-}
 
 ContactLaw LineContact::law_of(const LinePair& pair, double stiffening) const {
   ContactLaw law = law_;
@@ -77,7 +69,7 @@ bool LineContact::needs_halves(const ForceStep& step, const int* nodes, int coun
     }
     const bool is_seen = count > 0 && (change.begin <= 0 || search_.is_listed(begin[k].element, listed)) &&
                          (change.end <= 0 || search_.is_listed(end[k].element, listed));
-    if (!is_seen || before.dot(behind) < kTurnedOver * before.norm() * behind.norm()) return true;
+    if (!is_seen || before.dot(behind) < kOtherSide * before.norm() * behind.norm()) return true;
     const double rate = this->rate(pair, begin[k], first, step.velocities);
     change.speed = approach_speed(change.begin, rate, step.memory[LineMemory::kSize * k]);
     if (is_coarse_hit(law_, change, rate, step.refinement)) return true;

@@ -17,11 +17,7 @@ class LineContact : public ForceElement {
               bool is_reversed = false);
 
   const char* kind() const override { return "contact"; }
-  /// Of the first pair, alongside.
-  ContactLaw law() const { return law_of(search_.pairs()[0], 0); }
-  std::size_t point_count() const { return search_.pairs().size(); }
   std::vector<std::string> links() const override { return links_; }
-  std::string description() const override;
   int most_nodes() const override { return search_.most_nodes(); }
   /// Of the stations, and of those elements of the line that are near, nearest first where there are many.
   int find_nodes(const ForceStart& start, int* nodes) const override { return search_.find_nodes(start, nodes); }
@@ -33,6 +29,10 @@ class LineContact : public ForceElement {
   DamperTensions dampers(const State& state, const Eigen::VectorXd& rates) const override;
   int memory_size() const override { return LineMemory::kSize * static_cast<int>(search_.pairs().size()); }
   double touch(const ForceMotion& motion, const TouchingPointTaker& take) const override;
+  /// Alongside, not where lines cross.
+  TouchLaw touch_law() const override {
+    return {search_.pairs().size(), law_of(search_.pairs()[0], 0).stiffness, law_.restitution, law_.friction};
+  }
   bool suits_all_schemes() const override { return false; }
 
   /// Deepest penetration of all pairs; 0: none touches [m].

@@ -13,8 +13,6 @@ using so3::hat;
 
 /// Motions too short for a correction along them, relative to the radii.
 constexpr double kShortMotion = 1e-6;
-/// Of the depth: no equilibrium is deeper.
-constexpr double kDeepestRest = 0.95;
 
 Vector3 unit_or_zero(const Vector3& v) {
   const double length = v.norm();

@@ -11,8 +11,6 @@ namespace {
 
 /// Elements of a line that may act in a step: at most, and besides those beside which the stations are.
 constexpr int kMostNear = 8, kMoreNear = 3;
-/// Ways that a step may come to beyond those at the speed of its beginning: times that, and of the radii.
-constexpr double kWayAhead = 2, kAside = 0.02;
 /// No place of an element moves more than this times the largest motion of its nodes.
 constexpr double kLebesgue = 1.7;
 /// No element becomes longer than this times what it was.
@@ -194,14 +192,14 @@ double LineSearch::fastest(const Cloud& cloud, const ForceStart& start) const {
 int LineSearch::find_nodes(const ForceStart& start, int* nodes) const {
   const NodePlaces places(start.poses);
   const Cloud cloud = this->cloud(places);
-  const double way = kWayAhead * std::abs(start.duration), own = start.duration == 0 ? 0 : fastest(cloud, start);
+  const double way = kMoreWay * std::abs(start.duration), own = start.duration == 0 ? 0 : fastest(cloud, start);
   const auto margin_of = [&](int k) {
     // Of an equilibrium: what it may come to by a step of the load.
     if (start.duration == 0) return 4 * largest_radius_ + cloud.reach;
     double speed = 0;
     for (int i = 0; i <= line().order; ++i)
       speed = std::max(speed, start.velocities[line().elements[k][i]].head<3>().norm());
-    return (1 + kAside) * largest_radius_ + way * (own + kLebesgue * speed);
+    return (1 + kNear) * largest_radius_ + way * (own + kLebesgue * speed);
   };
   std::array<std::pair<double, int>, kMostNear> near;  // by how near they are
   int found = 0;

@@ -12,8 +12,6 @@ using so3::hat;
 
 /// Ways too short for a correction along them, relative to where the points are.
 constexpr double kShort = 1e-6;
-/// Of the depth: no equilibrium is deeper.
-constexpr double kDeepest = 0.95;
 /// Of the depth: so low an edge holds nothing back.
 constexpr double kLow = 0.2;
 
@@ -123,8 +121,8 @@ PointAction point_action(const ContactShape& whole, const ContactLaw& law, doubl
   // Beyond its depth the law means nothing, and updates are too small to tell: an equilibrium is to be looked for by
   // shorter ways. In motion a step may be too long for a hit; what goes on from so deep is driven, and no force is
   // enough.
-  const bool is_driven = change.begin >= kDeepest * law.depth && change.end >= law.depth;
-  if ((motion.at_end && change.end >= kDeepest * law.depth) || is_driven) {
+  const bool is_driven = change.begin >= kDeepestRest * law.depth && change.end >= law.depth;
+  if ((motion.at_end && change.end >= kDeepestRest * law.depth) || is_driven) {
     out.wrench.setConstant(std::numeric_limits<double>::quiet_NaN());
     out.dissipated = std::numeric_limits<double>::quiet_NaN();  // told where nothing is free, too
     return out;

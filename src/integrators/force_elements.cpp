@@ -54,9 +54,8 @@ void ForceElements::begin(TangentBackend& tangent) {
     find_nodes(*elements[k], start, nodes_[k]);
     tangent.couple(static_cast<int>(k), nodes_[k].data(), static_cast<int>(nodes_[k].size()));
     may_hit_ = may_hit_ || (start.duration != 0 && elements[k]->hits() && !nodes_[k].empty());
-    const double* const end = memory + elements[k]->memory_size();
-    acts_[k] = !nodes_[k].empty() || std::any_of(memory, end, [](double number) { return number != 0; });
-    memory = end;
+    acts_[k] = !nodes_[k].empty() || elements[k]->remembers(memory);
+    memory += elements[k]->memory_size();
   }
 }
 

@@ -1,6 +1,4 @@
 // Events of NeighbourSteps: neighbours go over them in pieces, beside the run that does the same.
-#include <algorithm>
-
 #include <fmt/format.h>
 
 #include "integrators/neighbour_steps.h"
@@ -174,9 +172,8 @@ void NeighbourSteps::note_hits(const State& state) {
   }
   const double* memory = state.force_memory.data();
   for (std::size_t i = 0; i < elements.size(); ++i) {
-    const double* const end = memory + elements[i]->memory_size();
-    const bool touches = elements[i]->hits() && std::any_of(memory, end, [](double number) { return number != 0; });
-    memory = end;
+    const bool touches = elements[i]->hits() && elements[i]->remembers(memory);
+    memory += elements[i]->memory_size();
     const bool begins = touches && touches_[i] == 0;
     touches_[i] = touches ? 1 : 0;
     if (begins)

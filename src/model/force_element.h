@@ -67,6 +67,13 @@ struct ForceOutput {
   const char* unit;
 };
 
+/// What a contact has to touch with: its points, and the law of each.
+struct TouchLaw {
+  std::size_t points = 0;  ///< 0: it is no contact
+  double stiffness = 0;    ///< of shallow penetrations [N/m]
+  double restitution = 1, friction = 0;
+};
+
 /// Poses and velocities of all nodes for output.
 struct ForceMotion {
   const State& state;
@@ -97,8 +104,8 @@ class ForceElement {
   virtual const char* kind() const = 0;
   /// Empty: it has none, and no columns.
   const std::string& name() const { return name_; }
-  /// What `flexarm check` says of it, but for its kind, name and links.
-  virtual std::string description() const = 0;
+  /// What `flexarm check` says of one that a ForceElementDescription has made, but for its kind, name and links.
+  virtual std::string description() const { return {}; }
   /// Names of the links that it acts between, where it comes of no ForceElementDescription, which knows them. All
   /// contacts of a pair have them in the same order.
   virtual std::vector<std::string> links() const { return {}; }
@@ -132,6 +139,10 @@ class ForceElement {
   virtual DamperTensions dampers(const State& state, const Eigen::VectorXd& rates) const = 0;
   /// Numbers of State::force_memory that it has for itself, zero at the start.
   virtual int memory_size() const { return 0; }
+  /// Whether any of these, at `memory`, is not zero.
+  bool remembers(const double* memory) const {
+    return std::any_of(memory, memory + memory_size(), [](double number) { return number != 0; });
+  }
 
   /// False where it has no forces at the ends of steps, as the Newmark family asks for them, and steps backwards, as
   /// compositions have them, would undo what it dissipates.
@@ -149,6 +160,7 @@ class ForceElement {
     static_cast<void>(motion), static_cast<void>(take);
     return std::numeric_limits<double>::infinity();
   }
+  virtual TouchLaw touch_law() const { return {}; }
 
  protected:
   ForceElement(const ForceElement&) = default;

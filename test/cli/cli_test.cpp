@@ -94,6 +94,14 @@ TEST(Check, HasALineForEachPairThatMayTouch) {
   EXPECT_EQ(found["high, arm"].first, "0.291 m apart") << "a radius less than their lines";
 }
 
+TEST(Check, HasALineForEachJointWithPlay) {
+  const Outcome outcome = shell("flexarm check " + test::source_path("config/examples/loose_crank.urdf"));
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_TRUE(std::regex_search(outcome.output,
+                                std::regex("\nclearance .* points, 1.5e\\+08 N/m each, restitution 0.9, friction 0\n")))
+      << outcome.output;
+}
+
 // A flexible link in place of a rigid one has no inertia where the drive acts; a hub or a rotor gives it one.
 TEST(Check, WarnsOfDrivenEndsWithoutInertia) {
   const auto check = [](const std::string& hub, const std::string& drive) {

@@ -1,0 +1,47 @@
+#include "building/contact_laws.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "math/pi.h"
+#include "schemes/scheme.h"
+
+namespace flexarm {
+namespace {
+
+/// What sticks is not stiffer than kStiffestGrip m / h^2.
+constexpr double kStiffestGrip = 16;
+
+}  // namespace
+
+ContactLaw law_of_points(const LawRequest& request, double step) {
+  const double frequency = kPi / (kContactSteps * step);
+  ContactLaw law;
+  const double usual = request.mass * frequency * frequency / request.at_a_time;
+  law.stiffness = request.stiffness.value_or(std::min(usual, request.softest));
+  law.frequency = std::sqrt(law.stiffness * request.at_a_time / request.mass);
+  law.restitution = request.restitution;
+  law.damping = damping_for_restitution(request.restitution);
+  law.friction = request.friction;
+  law.grip = std::min(law.stiffness, kStiffestGrip * request.mass / (step * step) / request.at_a_time);
+  return law;
+}
+
+double mass_of_body(const Model& model, int node) {
+  if (node < 0) return std::numeric_limits<double>::infinity();
+  const double mass = model.inertias[node].total_mass;
+  return mass > 0 ? mass : mass_of(model);
+}
+
+double deepest_start(const Model& model, const ContactStations& side, const ContactSurface& surface) {
+  const auto pose_of = poses_in(model.nodes);
+  double deepest = -std::numeric_limits<double>::infinity();
+  for (const ContactStation& station : side.stations)
+    for (const ContactShape& shape : surface.shapes) {
+      const Vector3 middle = seen_from(surface, middle_of(side, station, pose_of), pose_of);
+      deepest = std::max(deepest, station.radius - shape.gap(middle));
+    }
+  return deepest;
+}
+
+}  // namespace flexarm

@@ -1,0 +1,33 @@
+#pragma once
+/// What all kinds of contact are built with: laws of their points, and where these start.
+
+#include <limits>
+#include <optional>
+
+#include "contact/contact_element.h"
+#include "model/model.h"
+
+namespace flexarm {
+
+/// Of the depth beyond which a contact gives way no further: a start inside is this part of it, or less.
+constexpr double kStartInside = 0.25;
+
+/// Of a contact of two bodies.
+struct LawRequest {
+  double mass;                           ///< that a hit moves, of both: 1 / m = 1 / m1 + 1 / m2 [kg]
+  double at_a_time;                      ///< points that touch at a time
+  std::optional<double> stiffness = {};  ///< of a point [N/m]; empty: a hit lasts kContactSteps steps
+  double softest = std::numeric_limits<double>::infinity();  ///< than which a stiffness that is not given is no higher
+  double restitution = 1, friction = 0;
+};
+/// Law of each point, without a depth. `step`: of the scene [s]. (docs/notes/contact.md 2, 3)
+ContactLaw law_of_points(const LawRequest& request, double step);
+
+/// Of a body without a mass of its own, which other bodies hold, that of all; of what is fixed in the world (-1) it is
+/// infinite [kg].
+double mass_of_body(const Model& model, int node);
+
+/// How deep the deepest of all stations starts inside of the shapes; < 0: how near to them the nearest one is [m].
+double deepest_start(const Model& model, const ContactStations& side, const ContactSurface& surface);
+
+}  // namespace flexarm
