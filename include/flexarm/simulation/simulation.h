@@ -194,7 +194,8 @@ class Simulation {
   /// What acts upon points of links from outside at time(): the scene's loads, lumped at nodes where they are
   /// distributed, then what is applied, pulls included. Replaces `wrenches`.
   void outside_wrenches(std::vector<ActingWrench>& wrenches) const;
-  /// Where links touch each other and grounds now, as a <contact> of the scene lets them. Replaces `contacts`.
+  /// Where links touch each other and grounds now, by a <contact> of the scene or within a joint with play. Replaces
+  /// `contacts`.
   void contacts(std::vector<ActingContact>& contacts) const;
   double mass() const;  ///< of all that moves [kg]
   /// What a sensor has measured last, in the order of scene().sensors.
