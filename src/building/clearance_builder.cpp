@@ -56,7 +56,7 @@ Fit fit_of(const scene::ClearanceDescription& clearance) {
   Fit fit;
   if (clearance.joint.kind == scene::JointKind::Spherical) {
     fit.points = {Vector3::Zero()};
-    fit.holes = {hole(Ball{reach})};
+    fit.holes.push_back(hole(Ball{reach}));
   } else if (clearance.joint.kind == scene::JointKind::Prismatic) {
     const double across = 0.5 * clearance.width.value_or(length);
     for (int k = 0; k < 8; ++k)

@@ -85,15 +85,18 @@ bool ContactElement::is_too_long(const ContactStation& station, const ContactSha
   PointMotion motion;
   motion.begin = from;
   motion.end = to;
+  motion.duration = std::abs(step.duration);
   motion.outwards = outwards(station, poses_in(step.begin));
   const FeltShape felt = felt_shape(shape, law_, station.radius, motion, memory);
   // Of a corner that no face has seen coming in.
   if (!felt.is_felt) return passes_through(shape, from, to, -kUnseen * law_.depth);
   const SignedDistance begin = felt.shape.distance(from), end = felt.shape.distance(to);
-  const double begin_rate = -begin.gradient.dot(velocity(station, poses_in(step.begin), step.velocities));
-  ContactChange change{felt.radius - begin.value, felt.radius - end.value, std::abs(step.duration)};
+  const double begin_rate =
+      let_out_rate(law_, felt.start) - begin.gradient.dot(velocity(station, poses_in(step.begin), step.velocities));
+  const double end_start = let_out(law_, felt.start, step.duration);
+  ContactChange change{felt.radius - felt.start - begin.value, felt.radius - end_start - end.value, motion.duration};
   change.speed = approach_speed(change.begin, begin_rate, memory.speed);
-  if (change.begin <= 0 && change.end <= 0) return passes_through(felt.shape, from, to, felt.radius);
+  if (change.begin <= 0 && change.end <= 0) return passes_through(felt.shape, from, to, felt.radius - felt.start);
   return !acts || begin.gradient.dot(end.gradient) < kOtherSide ||
          is_coarse_hit(law_, change, begin_rate, step.refinement);
 }

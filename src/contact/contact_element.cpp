@@ -65,6 +65,15 @@ ContactLaw ContactElement::law_of(const ContactStation& station) const {
   return law;
 }
 
+void ContactElement::start(const State& state, double* memory) const {
+  const auto pose_of = poses_in(state);
+  for_each_pair([&](const ContactStation& station, const ContactShape& shape) {
+    put(start_inside(shape, station.radius, place(station, pose_of), outwards(station, pose_of)), memory);
+    memory += PointMemory::kSize;
+    return true;
+  });
+}
+
 template <class Visit>
 void ContactElement::for_each_pair(const Visit& visit) const {
   for (const ContactStation& station : side_.stations)
@@ -152,10 +161,8 @@ void ContactElement::evaluate(const ForceStep& step, const int*, ForceAction& ac
     const PointAction local =
         point_action(shape, law_of(station), station.radius, motion, memory_at(memory), action.tangent.size() > 0);
     action.dissipated += local.dissipated;
-    new_memory[0] = local.memory.speed;
-    Eigen::Map<Vector3>(new_memory + 1) = local.memory.stretch;
-    new_memory[4] = local.memory.face;
-    new_memory[5] = local.memory.within;
+    action.work += local.work;
+    put(local.memory, new_memory);
     memory += PointMemory::kSize;
     new_memory += PointMemory::kSize;
     if (local.acts) add(station, frames, placed, local, action);

@@ -77,6 +77,7 @@ class ContactElement : public ForceElement {
   ForceMeasures measures(const State& state, const int* nodes) const override;
   DamperTensions dampers(const State& state, const Eigen::VectorXd& rates) const override;
   int memory_size() const override;
+  void start(const State& state, double* memory) const override;
   double touch(const ForceMotion& motion, const TouchingPointTaker& take) const override;
   TouchLaw touch_law() const override {
     return {side_.stations.size() * surface_.shapes.size(), law_.stiffness, law_.restitution, law_.friction};
@@ -90,7 +91,14 @@ class ContactElement : public ForceElement {
   int moving_nodes() const { return side_.nodes[0] < 0 ? 0 : static_cast<int>(side_.nodes.size()); }
   ContactLaw law_of(const ContactStation& station) const;
   static PointMemory memory_at(const double* numbers) {
-    return {numbers[0], Eigen::Map<const Vector3>(numbers + 1), static_cast<int>(numbers[4]), numbers[5]};
+    return {numbers[0], Eigen::Map<const Vector3>(numbers + 1), static_cast<int>(numbers[4]), numbers[5], numbers[6]};
+  }
+  static void put(const PointMemory& memory, double* numbers) {
+    numbers[0] = memory.speed;
+    Eigen::Map<Vector3>(numbers + 1) = memory.stretch;
+    numbers[4] = memory.face;
+    numbers[5] = memory.within;
+    numbers[6] = memory.start;
   }
   /// Of a station's middle in the frame of the shapes, at poses `pose_of(node)`.
   template <class PoseOf>

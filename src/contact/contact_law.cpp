@@ -12,6 +12,8 @@ namespace {
 
 /// Angle that a step may go through of the oscillator that a contact is, and the part of a hit that is worth it.
 constexpr double kLargestAngle = kPi / 9, kLargestPart = 0.25;
+/// A start inside falls to the e-th part in the time in which the contact's oscillator goes through this angle.
+constexpr double kLetOutAngle = 100;
 
 }  // namespace
 
@@ -80,6 +82,15 @@ double approach_speed(double penetration, double begin_rate, double remembered) 
 double remembered_speed(const ContactChange& change, double begin_rate) {
   if (change.end <= 0) return 0;
   return begin_rate < 0 ? -change.speed : change.speed;
+}
+
+double let_out(const ContactLaw& law, double start, double duration) {
+  const double left = start * std::exp(-law.frequency * std::abs(duration) / kLetOutAngle);
+  return left > kLeastStart ? left : 0.0;
+}
+
+double let_out_rate(const ContactLaw& law, double start) {
+  return start * law.frequency / kLetOutAngle;
 }
 
 ContactGrip contact_grip(const ContactLaw& law, const Vector3& stretch, const Vector3& slip, const Vector3& normal,

@@ -55,6 +55,14 @@ double remembered_speed(const ContactChange& change, double begin_rate);
 /// By which the hit is damped in the step. `remembered`: see remembered_speed(); `penetration`: both at the beginning.
 double approach_speed(double penetration, double begin_rate, double remembered);
 
+/// What is no deeper than this, by round-off, has not started inside [m].
+constexpr double kLeastStart = 1e-9;
+/// What has started inside is felt from there on alone, and is let out little by little: so deep it still is at the end
+/// of a step that begins at `start` [m]. (docs/notes/contact.md 2)
+double let_out(const ContactLaw& law, double start, double duration);
+/// How fast it is let out [m/s]: so much faster than the true penetration the felt one grows.
+double let_out_rate(const ContactLaw& law, double start);
+
 /// Stretch of what sticks, along the surface [m], at the end of the step, with its derivatives by the slip over the
 /// step, the unit normal and the push. It pulls back with `grip` times it, at most by Coulomb's force. What it does at
 /// the end stands for the step, so that sticking does not ring: it dissipates, and never the reverse.

@@ -16,7 +16,13 @@ namespace flexarm {
 namespace {
 
 LineMemory line_memory_at(const double* numbers) {
-  return {numbers[0], Eigen::Map<const Vector3>(numbers + 1), numbers[4]};
+  return {numbers[0], Eigen::Map<const Vector3>(numbers + 1), numbers[4], numbers[5]};
+}
+void put(const LineMemory& memory, double* numbers) {
+  numbers[0] = memory.speed;
+  Eigen::Map<Vector3>(numbers + 1) = memory.stretch;
+  numbers[4] = memory.stiffening;
+  numbers[5] = memory.start;
 }
 
 }  // namespace
@@ -62,7 +68,9 @@ bool LineContact::needs_halves(const ForceStep& step, const int* nodes, int coun
     const LinePair& pair = search_.pairs()[k];
     const double radius = search_.radius_of(pair);
     const Vector3 before = search_.offset(from[k], begin[k], first), behind = search_.offset(to[k], end[k], last);
-    ContactChange change{radius - before.norm(), radius - behind.norm(), std::abs(step.duration)};
+    const double start = line_memory_at(step.memory + LineMemory::kSize * k).start;
+    ContactChange change{radius - start - before.norm(), radius - let_out(law_, start, step.duration) - behind.norm(),
+                         std::abs(step.duration)};
     if (change.begin <= 0 && change.end <= 0) {
       if (search_.passes_through(k, begin[k], end[k], way, step)) return true;
       continue;
@@ -70,7 +78,7 @@ bool LineContact::needs_halves(const ForceStep& step, const int* nodes, int coun
     const bool is_seen = count > 0 && (change.begin <= 0 || search_.is_listed(begin[k].element, listed)) &&
                          (change.end <= 0 || search_.is_listed(end[k].element, listed));
     if (!is_seen || before.dot(behind) < kOtherSide * before.norm() * behind.norm()) return true;
-    const double rate = this->rate(pair, begin[k], first, step.velocities);
+    const double rate = this->rate(pair, begin[k], first, step.velocities) + let_out_rate(law_, start);
     change.speed = approach_speed(change.begin, rate, step.memory[LineMemory::kSize * k]);
     if (is_coarse_hit(law_, change, rate, step.refinement)) return true;
   }
@@ -217,10 +225,8 @@ void LineContact::evaluate(const ForceStep& step, const int* nodes, ForceAction&
     }
     const LineActing acting = this->acting(k, begin[k], end[k], step, listed, with_slope);
     action.dissipated += acting.local.dissipated;
-    double* memory = step.new_memory + LineMemory::kSize * k;
-    memory[0] = acting.local.memory.speed;
-    Eigen::Map<Vector3>(memory + 1) = acting.local.memory.stretch;
-    memory[4] = acting.local.memory.stiffening;
+    action.work += acting.local.work;
+    put(acting.local.memory, step.new_memory + LineMemory::kSize * k);
     if (!acting.local.acts) continue;
     acting.add_to(action);
     if (step.at_end) acting.add_push_to(action);
@@ -239,7 +245,8 @@ double LineContact::energy(const State& state, const double* memory) const {
     if (old.stiffening == 0 && places[k].element >= 0) old.stiffening = stiffening(pair, places[k], now);
     const ContactLaw law = law_of(pair, old.stiffening);
     energy += 0.5 * law.grip * old.stretch.squaredNorm();
-    if (places[k].element >= 0) energy += contact_energy(law, search_.radius_of(pair) - std::sqrt(places[k].square));
+    if (places[k].element >= 0)
+      energy += contact_energy(law, search_.radius_of(pair) - old.start - std::sqrt(places[k].square));
   }
   return energy;
 }
@@ -250,6 +257,16 @@ void LineContact::for_each_touching(const NodePlaces& now, const Visit& visit) c
   const LineSearch::Places places = search_.closest(middles, 0, now, {});
   for (std::size_t k = 0; k < search_.pairs().size(); ++k)
     if (places[k].element >= 0) visit(search_.pairs()[k], places[k], search_.offset(middles[k], places[k], now));
+}
+
+void LineContact::start(const State& state, double* memory) const {
+  const NodePlaces now(state);
+  const LineSearch::Places places = search_.closest(search_.middles(now), 0, now, {});
+  for (std::size_t k = 0; k < search_.pairs().size(); ++k, memory += LineMemory::kSize) {
+    if (places[k].element < 0) continue;
+    const double inside = search_.radius_of(search_.pairs()[k]) - std::sqrt(places[k].square);
+    if (inside > kLeastStart) put({0, Vector3::Zero(), 0, inside}, memory);
+  }
 }
 
 double LineContact::deepest(const std::vector<NodePose>& poses) const {
@@ -277,8 +294,9 @@ double LineContact::touch(const ForceMotion& motion, const TouchingPointTaker& t
     if (old.stiffening == 0) old.stiffening = stiffening(pair, places[k], now);
     const ContactLaw law = law_of(pair, old.stiffening);
     const Vector3 normal = search_.offset(middles[k], places[k], now) / distance;  // of the line
-    const double rate = this->rate(pair, places[k], now, motion.velocities);
-    const double push = push_at(law, -gap, rate, approach_speed(-gap, rate, old.speed));
+    const double rate = this->rate(pair, places[k], now, motion.velocities) + let_out_rate(law, old.start);
+    const double felt = std::max(0.0, -gap - old.start);
+    const double push = push_at(law, felt, rate, approach_speed(felt, rate, old.speed));
     TouchingPoint point;
     point.position = middles[k] - search_.station(pair).radius * normal;
     point.normal = sign * normal;

@@ -28,6 +28,7 @@ class LineContact : public ForceElement {
   ForceMeasures measures(const State& state, const int* nodes) const override;
   DamperTensions dampers(const State& state, const Eigen::VectorXd& rates) const override;
   int memory_size() const override { return LineMemory::kSize * static_cast<int>(search_.pairs().size()); }
+  void start(const State& state, double* memory) const override;
   double touch(const ForceMotion& motion, const TouchingPointTaker& take) const override;
   /// Alongside, not where lines cross.
   TouchLaw touch_law() const override {

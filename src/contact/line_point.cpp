@@ -115,8 +115,10 @@ LineAction line_action(const ContactLaw& law, const LineRadii& radii, const Line
                        const LineMemory& memory, bool with_slope) {
   LineAction out;
   out.dissipated = 0.5 * law.grip * memory.stretch.squaredNorm();  // of a contact that has let go
-  ContactChange change{radii.sum - motion.begin_distance, radii.sum - motion.end_distance,
+  const double start = motion.duration != 0 ? memory.start : 0.0, end_start = let_out(law, start, motion.duration);
+  ContactChange change{radii.sum - start - motion.begin_distance, radii.sum - end_start - motion.end_distance,
                        motion.at_end ? 0.0 : motion.duration};
+  out.memory.start = std::clamp(radii.sum - motion.end_distance, 0.0, end_start);
   if (change.begin <= 0 && change.end <= 0) return out;
   out.acts = true;
   if (motion.at_end && change.end >= kDeepestRest * law.depth) {
@@ -124,10 +126,12 @@ LineAction line_action(const ContactLaw& law, const LineRadii& radii, const Line
     return out;
   }
   out.memory.stiffening = change.end > 0 || law.friction > 0 ? memory.stiffening : 0;
-  change.speed = approach_speed(change.begin, motion.begin_rate, memory.speed);
+  const double begin_rate = motion.begin_rate + let_out_rate(law, start);
+  change.speed = approach_speed(change.begin, begin_rate, memory.speed);
   out.push = contact_push(law, change);
-  if (change.duration != 0) out.memory.speed = remembered_speed(change, motion.begin_rate);
+  if (change.duration != 0) out.memory.speed = remembered_speed(change, begin_rate);
   out.dissipated += out.push.dissipated;
+  out.work = out.push.value * (start - end_start);
   if (!motion.at_end) add_line_push(radii, motion, with_slope, out);
   if (law.friction > 0) add_line_grip(law, radii, motion, memory, with_slope, out);
   return out;

@@ -16,10 +16,11 @@ struct LineMotion {
 };
 /// Zero where they do not touch.
 struct LineMemory {
-  static constexpr int kSize = 5;
+  static constexpr int kSize = 6;
   double speed = 0;                   ///< see remembered_speed()
   Vector3 stretch = Vector3::Zero();  ///< of the grip, world axes; it turns with the line
   double stiffening = 0;              ///< of the law's stiffnesses, kept as long as it touches; 0: not yet known
+  double start = 0;                   ///< so far inside nothing is felt yet, see let_out() [m]
 };
 /// On the ball: a force through its middle and a couple; the reverse acts on the line, through the same middle. Of an
 /// instant it is the friction alone: the push goes along the normal, to where the line is nearest. Not finite at an
@@ -32,6 +33,7 @@ struct LineAction {
   ContactPush push;
   LineMemory memory;      ///< at the end of the step
   double dissipated = 0;  ///< [J]
+  double work = 0;        ///< that letting out has done [J]
   bool acts = false;
 };
 /// `radii`: of the ball, and of the ball and the tube together [m].

@@ -75,12 +75,13 @@ FeltShape felt_shape(const ContactShape& shape, const ContactLaw& law, double ra
                      const PointMemory& memory) {
   FeltShape out{shape};
   out.radius = radius;
+  out.start = motion.duration != 0 ? memory.start : 0;  // an equilibrium knows of no start
   if (radius > 0 || !has_faces(shape)) return out;
   const Vector3& from = motion.begin;
   out.face = memory.face;
   out.radius = -memory.within;
   if (out.face != 0 && !is_over_face(shape, out.face, from)) {
-    out.let_go = contact_energy(law, out.radius - beyond_face(shape, out.face).distance(from).value);
+    out.let_go = contact_energy(law, out.radius - out.start - beyond_face(shape, out.face).distance(from).value);
     out.face = 0;
   }
   if (out.face == 0) {
@@ -91,15 +92,33 @@ FeltShape felt_shape(const ContactShape& shape, const ContactLaw& law, double ra
   }
   out.is_felt = out.face != 0;
   if (out.is_felt) out.shape = beyond_face(shape, out.face);
+  if (memory.face != out.face) out.start = std::min(out.start, std::max(0.0, -out.shape.distance(from).value));
   // What it has left one face of a hull for the next one with is still there.
-  if (out.is_felt && out.let_go > 0) out.let_go -= contact_energy(law, out.radius - out.shape.distance(from).value);
+  if (out.is_felt && out.let_go > 0)
+    out.let_go -= contact_energy(law, out.radius - out.start - out.shape.distance(from).value);
   return out;
+}
+
+PointMemory start_inside(const ContactShape& shape, double radius, const Vector3& point, const Matrix3& outwards) {
+  PointMemory out;
+  const bool by_face = radius == 0 && has_faces(shape);
+  if (shape.distance(point).value - radius > kLeastStart) return out;
+  if (by_face) {
+    // Corners of equal boxes lie on edges, and are nearest to a side.
+    out.face = nearest_face(shape, point);
+    if (!can_lie_on(shape, out.face, outwards))
+      if (const int other = face_to_lie_on(shape, 0, point, outwards, std::numeric_limits<double>::infinity()))
+        out.face = other;
+  }
+  const ContactShape& felt = by_face ? beyond_face(shape, out.face) : shape;
+  out.start = radius - felt.distance(point).value;
+  return out.start > kLeastStart ? out : PointMemory();
 }
 
 double stored_energy(const ContactShape& shape, const ContactLaw& law, double radius, const Vector3& point,
                      const PointMemory& memory) {
   const ContactShape& felt = memory.face != 0 ? beyond_face(shape, memory.face) : shape;
-  return contact_energy(law, radius - memory.within - felt.distance(point).value) +
+  return contact_energy(law, radius - memory.within - memory.start - felt.distance(point).value) +
          0.5 * law.grip * memory.stretch.squaredNorm();
 }
 
@@ -111,10 +130,13 @@ PointAction point_action(const ContactShape& whole, const ContactLaw& law, doubl
   out.dissipated = felt.let_go + 0.5 * law.grip * memory.stretch.squaredNorm();  // of a contact that has let go
   if (!felt.is_felt) return out;
   const GapChange gap = gap_change(shape, motion.begin, motion.end, motion.at_end);
-  ContactChange change{felt.radius - gap.begin, felt.radius - gap.end, motion.at_end ? 0.0 : motion.duration};
+  const double end_start = let_out(law, felt.start, motion.duration);
+  ContactChange change{felt.radius - felt.start - gap.begin, felt.radius - end_start - gap.end,
+                       motion.at_end ? 0.0 : motion.duration};
   const double inside = felt.face != 0 ? -gap.end : 0;
-  out.memory.face = change.end > 0 || (felt.radius < 0 && inside > 0) ? felt.face : 0;
   // Where it comes out a little it is felt from there on when it goes in again.
+  out.memory.start = std::clamp(felt.radius - gap.end, 0.0, end_start);
+  out.memory.face = change.end > 0 || ((felt.radius < 0 || end_start > 0) && inside > 0) ? felt.face : 0;
   if (out.memory.face != 0 && felt.radius < 0) out.memory.within = std::min(-felt.radius, inside);
   if (change.begin <= 0 && change.end <= 0) return out;
   out.acts = true;
@@ -127,11 +149,13 @@ PointAction point_action(const ContactShape& whole, const ContactLaw& law, doubl
     out.dissipated = std::numeric_limits<double>::quiet_NaN();  // told where nothing is free, too
     return out;
   }
-  const double begin_rate = -shape.distance(motion.begin).gradient.dot(motion.begin_velocity);
+  const double begin_rate =
+      let_out_rate(law, felt.start) - shape.distance(motion.begin).gradient.dot(motion.begin_velocity);
   change.speed = approach_speed(change.begin, begin_rate, memory.speed);
   const ContactPush push = contact_push(law, change);
   if (change.duration != 0) out.memory.speed = remembered_speed(change, begin_rate);
   out.dissipated += push.dissipated;
+  out.work = push.value * (felt.start - end_start);
   if (with_slope)
     out.slope.topLeftCorner<3, 3>() = push.value * gap.slope - push.slope * gap.gradient * gap.end_gradient.transpose();
   out.wrench.head<3>() = push.value * gap.gradient;
@@ -145,9 +169,10 @@ PointTouch point_touch(const ContactShape& whole, const ContactLaw& law, double 
   const ContactShape& shape = memory.face != 0 ? beyond_face(whole, memory.face) : whole;
   const SignedDistance distance = shape.distance(point);
   PointTouch out{distance.value - radius + memory.within, distance.gradient};
-  if (out.gap >= 0) return out;
-  const double rate = -distance.gradient.dot(velocity);
-  out.push = push_at(law, -out.gap, rate, approach_speed(-out.gap, rate, memory.speed));
+  const double penetration = -out.gap - memory.start;
+  if (penetration <= 0) return out;
+  const double rate = let_out_rate(law, memory.start) - distance.gradient.dot(velocity);
+  out.push = push_at(law, penetration, rate, approach_speed(penetration, rate, memory.speed));
   // As a step would begin in which nothing moves.
   if (law.friction > 0)
     out.friction = -law.grip * contact_grip(law, memory.stretch, Vector3::Zero(), out.normal, out.push).stretch;

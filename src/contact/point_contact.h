@@ -28,11 +28,12 @@ struct PointMotion {
 };
 /// For each point and shape, zero where they do not touch.
 struct PointMemory {
-  static constexpr int kSize = 6;
+  static constexpr int kSize = 7;
   double speed = 0;  ///< see remembered_speed()
   Vector3 stretch = Vector3::Zero();
   int face = 0;       ///< by which a corner has come in
   double within = 0;  ///< so far inside of that face nothing is felt yet [m]
+  double start = 0;   ///< nor of what has started inside, see let_out() [m]
 };
 /// On the ball: a force through its middle and a couple, conjugate to the way and to the turn. Not finite at an instant
 /// at which it is too deep inside.
@@ -41,6 +42,7 @@ struct PointAction {
   Matrix6 slope = Matrix6::Zero();  ///< by {end, turn}
   PointMemory memory;               ///< at the end of the step
   double dissipated = 0;            ///< [J]
+  double work = 0;                  ///< that letting out has done [J]
   bool acts = false;
 };
 /// `radius`: of the ball [m].
@@ -63,11 +65,14 @@ struct FeltShape {
   ContactShape shape;
   int face = 0;
   double radius = 0;    ///< from which on it is felt: of a corner that came in beside its face < 0 [m]
+  double start = 0;     ///< less this, of what has started inside [m]
   bool is_felt = true;  ///< false: it cannot touch
   double let_go = 0;    ///< what was stored and is lost, since the point has come beside the face that it was in [J]
 };
 FeltShape felt_shape(const ContactShape& shape, const ContactLaw& law, double radius, const PointMotion& motion,
                      const PointMemory& memory);
+/// Of a point that has got inside without a motion.
+PointMemory start_inside(const ContactShape& shape, double radius, const Vector3& point, const Matrix3& outwards);
 /// What is stored [J].
 double stored_energy(const ContactShape& shape, const ContactLaw& law, double radius, const Vector3& point,
                      const PointMemory& memory);

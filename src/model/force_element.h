@@ -137,8 +137,10 @@ class ForceElement {
   virtual ForceMeasures measures(const State& state, const int* nodes) const = 0;
   /// Of rates of the measures, one for each.
   virtual DamperTensions dampers(const State& state, const Eigen::VectorXd& rates) const = 0;
-  /// Numbers of State::force_memory that it has for itself, zero at the start.
+  /// Numbers of State::force_memory that it has for itself.
   virtual int memory_size() const { return 0; }
+  /// Writes those that are not zero at a start to which no motion has led: that of a scene, or one that was set.
+  virtual void start(const State& state, double* memory) const { static_cast<void>(state), static_cast<void>(memory); }
   /// Whether any of these, at `memory`, is not zero.
   bool remembers(const double* memory) const {
     return std::any_of(memory, memory + memory_size(), [](double number) { return number != 0; });

@@ -74,6 +74,8 @@ struct Simulation::Implementation {
       start_in_equilibrium(scene, model, scheme, settings, state, start_warnings);
     else if (!found.converged)
       start_warnings.push_back(unknown_accelerations(scene, failure_text(model, settings, found)));
+    if (!scene.starts_in_equilibrium)
+      for (scene::Diagnostic& overlap : overlaps(scene, model, state)) start_warnings.push_back(std::move(overlap));
     published.velocities(view());  // their memory is there from the start
     take_samples(true);
     initial = std::make_shared<const State>(state);

@@ -229,6 +229,11 @@ State initial_state(const Model& model) {
   std::size_t memory = 0;
   for (const auto& element : model.force_elements) memory += element->memory_size();
   state.force_memory.assign(memory, 0.0);
+  double* own_memory = state.force_memory.data();
+  for (const auto& element : model.force_elements) {
+    element->start(state, own_memory);
+    own_memory += element->memory_size();
+  }
   state.rests.assign(model.coordinates.size(), 0.0);
   for (const Actuator& actuator : model.actuators) {
     const Coordinate& coordinate = model.coordinates[actuator.coordinate];

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "math/pi.h"
 #include "reference/contact_scenes.h"
 #include "support/source_path.h"
 
@@ -181,6 +182,41 @@ TEST(Contact, EqualBoxesThatStartALittleInsideRest) {
                     start("low", {0, 0, 0.05}, {0, 0, 0}) + start("high", {0, 0, 0.15 - 1e-6}, {0, 0, 0}), 1e-3);
   run(simulation, 3);
   EXPECT_NEAR(simulation.link_pose(2).position.z(), 0.15, 5e-3) << "what they give way at most";
+}
+
+// What starts inside follows p e^(-w t / 100), w = pi / 10 per step, is never faster than p w / 100 on its way, and
+// ends at rest. It hangs back by what a hit of that speed and its weight press in, 1 / 100 of p and g / w^2, times four
+// where some of the points that share the stiffness bear nothing.
+TEST(Contact, WhatStartsInsideIsLetOutLittleByLittle) {
+  const double h = 1e-3, frequency = kPi / (10 * h), inside = 0.05, sag = 4 * kG / (frequency * frequency);
+  const Vector3 size(0.1, 0.1, 0.1);
+  const std::string contact = "<contact first=\"*\" second=\"*\" friction=\"0.5\"/>";
+  const struct {
+    std::string parts, starts;
+    std::size_t link;
+    double rest;
+  } scenes[] = {
+      {box("cube", 1, size) + floating("cube"), start("cube", {0, 0, 0}, {0, 0, 0}), 1, 0.05},
+      {ball("ball", 1, 0.05) + floating("ball"), start("ball", {0, 0, 0}, {0, 0, 0}), 1, 0.05},
+      {box("low", 1e3, size) + box("high", 1, size) + floating("low") + floating("high"),
+       start("low", {0, 0, 0.05}, {0, 0, 0}) + start("high", {0, 0, 0.1}, {0, 0, 0}), 2, 0.15},
+  };
+  for (const auto& [parts, starts, link, rest] : scenes) {
+    Simulation simulation = simulation_of(kFloor + parts + contact, starts, h);
+    ASSERT_EQ(simulation.start_warnings().size(), 1u);
+    EXPECT_NE(simulation.start_warnings()[0].text().find("they start inside of each other"), std::string::npos);
+    const double total = account(simulation);
+    for (const double time : {0.1, 0.3, 1.0}) {
+      run(simulation, time);
+      const double left = inside * std::exp(-frequency * time / 100);
+      EXPECT_NEAR(simulation.link_pose(link).position.z(), rest - left, 0.01 * inside + 2 * sag) << link << " " << time;
+    }
+    run(simulation, 6);
+    EXPECT_NEAR(simulation.link_pose(link).position.z(), rest, 2 * sag);
+    EXPECT_LE(simulation.momentum().norm(), 1e-6);
+    EXPECT_NEAR(account(simulation), total, 1e-9) << "letting out is work from outside";
+    EXPECT_GT(simulation.energies().work, 0.9 * kG * inside) << "by which it is lifted";
+  }
 }
 
 // Forces at the ends of steps, and steps backwards, are not those of contact.

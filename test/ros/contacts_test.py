@@ -35,6 +35,8 @@ class Contacts(unittest.TestCase):
             wait_until(lambda: len(cls.contacts) >= RATE * done // 1000 and len(cls.scales) >= RATE * done // 1000,
                        "contacts and samples")
         wait_until(lambda: len(cls.markers) >= 20, "markers")
+        for subscriber in subscribers:
+            subscriber.unregister()  # other scenes that a test loads are no part of the run
 
     def test_they_come_at_the_rate_of_states(self):
         stamps = [message.header.stamp.to_nsec() for message in self.contacts]
