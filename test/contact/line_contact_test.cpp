@@ -32,7 +32,8 @@ struct Scene {
 class Random {
  public:
   explicit Random(unsigned seed) : engine_(seed) {}
-  Vector3 vector(double size) { return size * Vector3(number_(engine_), number_(engine_), number_(engine_)); }
+  /// In braces the numbers are drawn in their order, with every compiler.
+  Vector3 vector(double size) { return size * Vector3{number_(engine_), number_(engine_), number_(engine_)}; }
 
  private:
   std::mt19937 engine_;
@@ -210,7 +211,7 @@ TEST_P(LineContacts, AddToNoMomentum) {
         force += on_node.head<3>();
         moment += arm.cross(on_node.head<3>()) + on_node.tail<3>();
       }
-      EXPECT_GT(here.residual.norm(), 1) << name;
+      EXPECT_GT(here.residual.norm(), 0.1) << name << " is not touched";
       EXPECT_LE(force.norm(), 1e-14 * here.residual.norm()) << name;
       EXPECT_LE(moment.norm(), 1e-13 * here.residual.norm()) << name;
     }
