@@ -138,7 +138,8 @@ class ClearanceBuilder {
     ContactLaw law = law_of_points(request, plan_.scene.integrator.step);
     // What is as soft as the step needs it is kept from giving way by more than the play. A stiffness that is given
     // is the law.
-    if (!clearance.stiffness) law.depth = std::max(clearance.radius, inside / kStartInside);
+    if (!clearance.stiffness) law.depth = clearance.radius;
+    allow_start(law, clearance.stiffness ? 0 : inside);
     return law;
   }
 

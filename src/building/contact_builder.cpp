@@ -21,6 +21,8 @@ namespace {
 
 /// Of sizes: depth beyond which a contact gives way no further.
 constexpr double kContactDepth = 0.1;
+/// Radius of gyration of a ball, of its own.
+constexpr double kTurnedLever = 0.63;
 /// Most stations between both ends of an element.
 constexpr int kMostSpans = 8;
 
@@ -225,7 +227,11 @@ class ContactBuilder {
     request.restitution = contact.restitution;
     request.friction = contact.friction.value_or(hints.friction.value_or(0));
     ContactLaw law = law_of_points(request, scene_.integrator.step);
-    law.depth = kContactDepth * std::min(stations.size, shapes.size);
+    const double size = std::min(stations.size, shapes.size);
+    law.depth = kContactDepth * size;
+    law.spinning = contact.spinning;
+    law.rolling = contact.rolling;
+    law.turn_grip = law.grip * kTurnedLever * kTurnedLever * size * size;
     return law;
   }
 
@@ -272,6 +278,7 @@ class ContactBuilder {
   }
 
   void join_lines_of(const scene::ContactDescription& contact, const Side& first, const Side& second) {
+    require_no_turn_grip(contact);
     join_lines(model_, plan_, links_of(contact, first, second), law_of(contact, first, second, 1), placed_);
   }
 
@@ -290,6 +297,7 @@ class ContactBuilder {
     const BeamLink& beam = *model_.links[plan_.links[tube.name]].beam;
     const bool is_small_ball = is_ball(body) && touches_line(body.size, beam);
     if (!is_small_ball && (is_ball(body) || !has_room_for_corners(beam, kMostSpans))) return false;
+    require_no_turn_grip(contact);
     const double at_a_time = is_small_ball ? 1.0 : 2.0;  // an edge goes in and out
     join_with_line(model_, plan_, links_of(contact, body, tube), stations_of(body, tube.size),
                    law_of(contact, body, tube, at_a_time), placed_);
@@ -323,6 +331,14 @@ class ContactBuilder {
     return &first < &second && !(contact.first == second.name && contact.second == first.name);
   }
 
+  void require_no_turn_grip(const scene::ContactDescription& contact) const {
+    if ((contact.spinning > 0 || contact.rolling > 0) && contact.first != scene::kAllBodies &&
+        contact.second != scene::kAllBodies)
+      throw ModelError(at(contact.location, "<contact>") +
+                       "spinning and rolling are of bodies' shapes: expected none where beams are touched along their "
+                       "lines");
+  }
+
   void join_stations(const scene::ContactDescription& contact, const Side& first, const Side& second) {
     for (const ContactStations& stations : stations_of(first, second.size))
       for (const ContactSurface& surface : second.surfaces) {
@@ -332,7 +348,7 @@ class ContactBuilder {
         const bool is_whole = is_ball(first) || !first.tubes.empty();
         const double at_a_time = is_whole ? 1.0 : stations.at_a_time;
         ContactLaw law = law_of(contact, first, second, at_a_time);
-        law.depth = std::max(law.depth, deepest_start(model_, stations, surface) / kStartInside);
+        allow_start(law, deepest_start(model_, stations, surface));
         LinkPair links = links_of(contact, first, second);
         placed_.push_back(
             std::make_shared<ContactElement>(std::move(links.names), stations, surface, law, links.is_reversed));

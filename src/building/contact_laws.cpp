@@ -33,6 +33,11 @@ double mass_of_body(const Model& model, int node) {
   return mass > 0 ? mass : mass_of(model);
 }
 
+void allow_start(ContactLaw& law, double deepest) {
+  law.most_start = std::min(kStartInside * law.depth, kThrownOut / law.frequency);
+  law.depth = std::max(law.depth, deepest / kStartInside);
+}
+
 double deepest_start(const Model& model, const ContactStations& side, const ContactSurface& surface) {
   const auto pose_of = poses_in(model.nodes);
   double deepest = -std::numeric_limits<double>::infinity();

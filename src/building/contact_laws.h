@@ -11,6 +11,7 @@ namespace flexarm {
 
 /// Of the depth beyond which a contact gives way no further: a start inside is this part of it, or less.
 constexpr double kStartInside = 0.25;
+constexpr double kThrownOut = 0.1;  // m/s
 
 /// Of a contact of two bodies.
 struct LawRequest {
@@ -26,6 +27,10 @@ ContactLaw law_of_points(const LawRequest& request, double step);
 /// Of a body without a mass of its own, which other bodies hold, that of all; of what is fixed in the world (-1) it is
 /// infinite [kg].
 double mass_of_body(const Model& model, int node);
+
+/// Lets a contact start `deepest` inside [m]: its depth is such that this is kStartInside of it at most. What is deeper
+/// than that part of the depth that it has now, or would be thrown out with more than kThrownOut, is let out slowly.
+void allow_start(ContactLaw& law, double deepest);
 
 /// How deep the deepest of all stations starts inside of the shapes; < 0: how near to them the nearest one is [m].
 double deepest_start(const Model& model, const ContactStations& side, const ContactSurface& surface);

@@ -48,8 +48,7 @@ std::vector<LineRange> ranges_without(const ContactLine& line, int node) {
 void place(const LinkPair& links, const LineTouch& touch, ContactLaw law, double crossing, const Model& model,
            ForceElementList& placed) {
   if (touch.pairs.empty()) return;
-  const double deepest = LineContact(links.names, touch, law, crossing).deepest(model.nodes);
-  law.depth = std::max(law.depth, deepest / kStartInside);
+  allow_start(law, LineContact(links.names, touch, law, crossing).deepest(model.nodes));
   placed.push_back(std::make_shared<LineContact>(links.names, touch, law, crossing, links.is_reversed));
 }
 

@@ -19,7 +19,9 @@ using so3::hat;
 
 /// Freedoms of the most nodes that an element may have.
 constexpr int kMostColumns = 6 * (ContactStation::kMostNodes + 1);
-using Rows3 = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kMostColumns>;
+template <int kColumns>
+using Rows3 =
+    Eigen::Matrix<double, 3, kColumns, Eigen::ColMajor, 3, kColumns == Eigen::Dynamic ? kMostColumns : kColumns>;
 
 std::vector<int> reach_of(const ContactStations& side, const ContactSurface& surface) {
   std::vector<int> nodes;
@@ -62,13 +64,14 @@ ContactLaw ContactElement::law_of(const ContactStation& station) const {
   ContactLaw law = law_;
   law.stiffness *= station.share;
   law.grip *= station.share;
+  law.turn_grip *= station.share;
   return law;
 }
 
 void ContactElement::start(const State& state, double* memory) const {
   const auto pose_of = poses_in(state);
   for_each_pair([&](const ContactStation& station, const ContactShape& shape) {
-    put(start_inside(shape, station.radius, place(station, pose_of), outwards(station, pose_of)), memory);
+    put(start_inside(shape, law_, station.radius, place(station, pose_of), outwards(station, pose_of)), memory);
     memory += PointMemory::kSize;
     return true;
   });
@@ -166,7 +169,13 @@ void ContactElement::evaluate(const ForceStep& step, const int*, ForceAction& ac
     memory += PointMemory::kSize;
     new_memory += PointMemory::kSize;
     if (local.acts) add(station, frames, placed, local, action);
-    if (local.acts && action.tangent.size() > 0) add_tangent(station, frames, placed, local, action);
+    if (!local.acts || action.tangent.size() == 0) return true;
+    if (action.tangent.rows() == 12)
+      add_tangent<12>(station, frames, placed, local, action);
+    else if (action.tangent.rows() == 6)
+      add_tangent<6>(station, frames, placed, local, action);
+    else
+      add_tangent<Eigen::Dynamic>(station, frames, placed, local, action);
     return true;
   });
 }
@@ -177,7 +186,7 @@ double ContactElement::remembered_energy(const ForceStep& step) const {
   const double* memory = step.memory;
   for_each_pair([&](const ContactStation& station, const ContactShape& shape) {
     const PointMemory old = memory_at(memory);
-    if (old.face != 0 || old.stretch != Vector3::Zero())
+    if (old.face != 0 || old.stretch != Vector3::Zero() || old.turned != Vector3::Zero())
       energy += stored_energy(shape, law_of(station), station.radius, place(station, poses_in(step.begin)), old);
     memory += PointMemory::kSize;
     return true;
@@ -196,37 +205,39 @@ void ContactElement::add(const ContactStation& station, const Frames& frames, co
   if (surface_.node >= 0) action.residual.segment<6>(6 * count) += wrench;
 }
 
+template <int kColumns>
 void ContactElement::add_tangent(const ContactStation& station, const Frames& frames, const Placed& placed,
                                  const PointAction& local, ForceAction& action) const {
   const int count = moving_nodes(), base = 6 * count;
   const bool is_body = count == 1, has_base = surface_.node >= 0;
   const Matrix3& end_axes = frames.base_end.rotation;
   // Of the place at the end, of it in the shapes' frame, and of the turn there, by {displacement, spin} of all.
-  Rows3 way = Rows3::Zero(3, base + 6 * has_base), turn = way;
+  Rows3<kColumns> way = Rows3<kColumns>::Zero(3, base + 6 * has_base), turn = way;
   for (int i = 0; i < count; ++i) {
-    way.middleCols<3>(6 * i).diagonal().setConstant(station.weights[i]);
-    turn.middleCols<3>(6 * i + 3) = station.weights[i] * cayley::inverse_tangent(frames.turns[i]);
+    way.template middleCols<3>(6 * i).diagonal().setConstant(station.weights[i]);
+    turn.template middleCols<3>(6 * i + 3) = station.weights[i] * cayley::inverse_tangent(frames.turns[i]);
   }
-  if (is_body) way.middleCols<3>(3) = -hat(placed.end_arm);
+  if (is_body) way.template middleCols<3>(3) = -hat(placed.end_arm);
   if (has_base) {
-    way.middleCols<3>(base).diagonal().setConstant(-1);
-    turn.middleCols<3>(base + 3) = -cayley::inverse_tangent(frames.base_turn);
+    way.template middleCols<3>(base).diagonal().setConstant(-1);
+    turn.template middleCols<3>(base + 3) = -cayley::inverse_tangent(frames.base_turn);
   }
-  Rows3 seen = end_axes.transpose() * way, turned = frames.axes.transpose() * turn;
+  Rows3<kColumns> seen = end_axes.transpose() * way, turned = frames.axes.transpose() * turn;
   if (has_base) {
-    seen.middleCols<3>(base + 3) = end_axes.transpose() * hat(placed.end_base_arm);
-    turned.middleCols<3>(base + 3) += frames.weight * end_axes.transpose() * hat(placed.turn);
+    seen.template middleCols<3>(base + 3) = end_axes.transpose() * hat(placed.end_base_arm);
+    turned.template middleCols<3>(base + 3) += frames.weight * end_axes.transpose() * hat(placed.turn);
   }
   const Matrix6& slope = local.slope;
-  Rows3 force = frames.axes * (slope.topLeftCorner<3, 3>() * seen + slope.topRightCorner<3, 3>() * turned);
-  Rows3 couple = frames.axes * (slope.bottomLeftCorner<3, 3>() * seen + slope.bottomRightCorner<3, 3>() * turned);
+  Rows3<kColumns> force = frames.axes * (slope.topLeftCorner<3, 3>() * seen + slope.topRightCorner<3, 3>() * turned);
+  Rows3<kColumns> couple =
+      frames.axes * (slope.bottomLeftCorner<3, 3>() * seen + slope.bottomRightCorner<3, 3>() * turned);
   if (has_base) {
-    force.middleCols<3>(base + 3) -= frames.weight * hat(Vector3(end_axes * local.wrench.head<3>()));
-    couple.middleCols<3>(base + 3) -= frames.weight * hat(Vector3(end_axes * local.wrench.tail<3>()));
+    force.template middleCols<3>(base + 3) -= frames.weight * hat(Vector3(end_axes * local.wrench.head<3>()));
+    couple.template middleCols<3>(base + 3) -= frames.weight * hat(Vector3(end_axes * local.wrench.tail<3>()));
   }
   const Matrix3 pressed = frames.weight * hat(Vector3(frames.axes * local.wrench.head<3>()));
-  Rows3 moment = hat(placed.arm) * force + couple;
-  if (is_body) moment.middleCols<3>(3) += pressed * hat(placed.end_arm);
+  Rows3<kColumns> moment = hat(placed.arm) * force + couple;
+  if (is_body) moment.template middleCols<3>(3) += pressed * hat(placed.end_arm);
   for (int i = 0; i < count; ++i) {
     action.tangent.middleRows<3>(6 * i) -= station.weights[i] * force;
     action.tangent.middleRows<3>(6 * i + 3) -= station.weights[i] * moment;
@@ -273,6 +284,7 @@ double ContactElement::touch(const ForceMotion& motion, const TouchingPointTaker
     point.normal = sign * (body.rotation * local.normal);
     point.push = local.push * point.normal;
     point.friction = sign * (body.rotation * local.friction);
+    point.couple = sign * (body.rotation * local.couple);
     point.gap = local.gap;
     take(point);
     return true;
@@ -289,10 +301,13 @@ void ContactElement::for_each_touching(const State& state, const Visit& visit) c
   });
 }
 
+int ContactElement::measures_each() const {
+  return 1 + (law_.friction > 0 ? 2 : 0) + (law_.spinning > 0 ? 1 : 0) + (law_.rolling > 0 ? 2 : 0);
+}
+
 ForceMeasures ContactElement::measures(const State& state, const int*) const {
-  const int each = law_.friction > 0 ? 3 : 1;
   Eigen::Index count = 0;
-  for_each_touching(state, [&](const ContactStation&, const SignedDistance&) { count += each; });
+  for_each_touching(state, [&](const ContactStation&, const SignedDistance&) { count += measures_each(); });
   const Eigen::Index columns = 6 * static_cast<Eigen::Index>(reach().size());
   ForceMeasures out{Eigen::MatrixXd::Zero(count, columns), Eigen::MatrixXd::Zero(count, count)};
   const NodePose base = poses_in(state)(surface_.node);
@@ -301,28 +316,38 @@ ForceMeasures ContactElement::measures(const State& state, const int*) const {
     const ContactLaw law = law_of(station);
     const Vector3 normal = base.rotation * distance.gradient;
     const Vector3 place = base.rotation * this->place(station, poses_in(state));  // from the shapes' node
-    const Vector3 across = normal.unitOrthogonal();
-    const Vector3 axes[] = {normal, across, normal.cross(across)};
-    for (int k = 0; k < each; ++k) {
-      // Sticking holds the surfaces, a radius below the station's middle.
-      const Vector3 offset = k == 0 ? Vector3(Vector3::Zero()) : Vector3(-station.radius * normal);
+    const Vector3 across = normal.unitOrthogonal(), third = normal.cross(across);
+    // Of what is `offset` from the station's middle, along an axis.
+    const auto add = [&](const Vector3& axis, const Vector3& offset, double stiffness) {
       for (int i = 0; i < moving_nodes(); ++i) {
-        const Matrix3 axes_of_node = poses_in(state)(side_.nodes[i]).rotation;
-        const Vector3 arm = axes_of_node * station.arm + offset;
-        out.rows.block<1, 6>(row, 6 * i) << station.weights[i] * axes[k].transpose(),
-            station.weights[i] * arm.cross(axes[k]).transpose();
+        const Vector3 arm = poses_in(state)(side_.nodes[i]).rotation * station.arm + offset;
+        out.rows.block<1, 6>(row, 6 * i) << station.weights[i] * axis.transpose(),
+            station.weights[i] * arm.cross(axis).transpose();
       }
       if (surface_.node >= 0)
-        out.rows.block<1, 6>(row, columns - 6) << -axes[k].transpose(), -(place + offset).cross(axes[k]).transpose();
-      out.stiffness(row, row) = k == 0 ? contact_push(law, {0, station.radius - distance.value, 0}).slope : law.grip;
+        out.rows.block<1, 6>(row, columns - 6) << -axis.transpose(), -(place + offset).cross(axis).transpose();
+      out.stiffness(row, row) = stiffness;
       ++row;
-    }
+    };
+    const auto add_turn = [&](const Vector3& axis) {
+      for (int i = 0; i < moving_nodes(); ++i)
+        out.rows.block<1, 3>(row, 6 * i + 3) = station.weights[i] * axis.transpose();
+      if (surface_.node >= 0) out.rows.block<1, 3>(row, columns - 3) = -axis.transpose();
+      out.stiffness(row, row) = law.turn_grip;
+      ++row;
+    };
+    add(normal, Vector3::Zero(), contact_push(law, {0, station.radius - distance.value, 0}).slope);
+    // Sticking holds the surfaces, a radius below the station's middle.
+    const Vector3 below = -station.radius * normal;
+    if (law.friction > 0) add(across, below, law.grip), add(third, below, law.grip);
+    if (law.spinning > 0) add_turn(normal);
+    if (law.rolling > 0) add_turn(across), add_turn(third);
   });
   return out;
 }
 
 DamperTensions ContactElement::dampers(const State& state, const Eigen::VectorXd& rates) const {
-  const int each = law_.friction > 0 ? 3 : 1;
+  const int each = measures_each();
   Eigen::VectorXd slopes = Eigen::VectorXd::Zero(rates.size());
   Eigen::Index row = 0;
   for_each_touching(state, [&](const ContactStation& station, const SignedDistance& distance) {

@@ -37,16 +37,17 @@ struct ContactSurface {
   std::vector<ContactShape> shapes;
 };
 
+inline const NodePose kWorldPose;
 /// Of all nodes; the world is where it is.
 inline auto poses_in(const std::vector<NodePose>& nodes) {
-  return [&nodes](int node) { return node < 0 ? NodePose() : nodes[node]; };
+  return [&nodes](int node) -> const NodePose& { return node < 0 ? kWorldPose : nodes[node]; };
 }
 /// Middle of a station at poses `pose_of(node)`, world axes [m].
 template <class PoseOf>
 Vector3 middle_of(const ContactStations& side, const ContactStation& station, const PoseOf& pose_of) {
   Vector3 middle = Vector3::Zero();
   for (std::size_t i = 0; i < side.nodes.size(); ++i) {
-    const NodePose node = pose_of(side.nodes[i]);
+    const NodePose& node = pose_of(side.nodes[i]);
     middle += station.weights[i] * (node.position + node.rotation * station.arm);
   }
   return middle;
@@ -54,7 +55,7 @@ Vector3 middle_of(const ContactStations& side, const ContactStation& station, co
 /// Such a point in the frame of a surface [m].
 template <class PoseOf>
 Vector3 seen_from(const ContactSurface& surface, const Vector3& point, const PoseOf& pose_of) {
-  const NodePose body = pose_of(surface.node);
+  const NodePose& body = pose_of(surface.node);
   return body.rotation.transpose() * (point - body.position);
 }
 
@@ -80,7 +81,12 @@ class ContactElement : public ForceElement {
   void start(const State& state, double* memory) const override;
   double touch(const ForceMotion& motion, const TouchingPointTaker& take) const override;
   TouchLaw touch_law() const override {
-    return {side_.stations.size() * surface_.shapes.size(), law_.stiffness, law_.restitution, law_.friction};
+    return {side_.stations.size() * surface_.shapes.size(),
+            law_.stiffness,
+            law_.restitution,
+            law_.friction,
+            law_.spinning,
+            law_.rolling};
   }
   bool suits_all_schemes() const override { return false; }
 
@@ -90,8 +96,11 @@ class ContactElement : public ForceElement {
   /// Of the stations' nodes those that move.
   int moving_nodes() const { return side_.nodes[0] < 0 ? 0 : static_cast<int>(side_.nodes.size()); }
   ContactLaw law_of(const ContactStation& station) const;
+  /// Numbers of a point's measures: its gap, and what sticks.
+  int measures_each() const;
   static PointMemory memory_at(const double* numbers) {
-    return {numbers[0], Eigen::Map<const Vector3>(numbers + 1), static_cast<int>(numbers[4]), numbers[5], numbers[6]};
+    return {numbers[0], Eigen::Map<const Vector3>(numbers + 1), static_cast<int>(numbers[4]), numbers[5],
+            numbers[6], Eigen::Map<const Vector3>(numbers + 7)};
   }
   static void put(const PointMemory& memory, double* numbers) {
     numbers[0] = memory.speed;
@@ -99,6 +108,7 @@ class ContactElement : public ForceElement {
     numbers[4] = memory.face;
     numbers[5] = memory.within;
     numbers[6] = memory.start;
+    Eigen::Map<Vector3>(numbers + 7) = memory.turned;
   }
   /// Of a station's middle in the frame of the shapes, at poses `pose_of(node)`.
   template <class PoseOf>
@@ -121,6 +131,8 @@ class ContactElement : public ForceElement {
   Placed placed(const ContactStation& station, const Frames& frames, const ForceStep& step) const;
   void add(const ContactStation& station, const Frames& frames, const Placed& placed, const PointAction& local,
            ForceAction& action) const;
+  /// `kColumns`: six for each node that moves, or Eigen::Dynamic.
+  template <int kColumns>
   void add_tangent(const ContactStation& station, const Frames& frames, const Placed& placed, const PointAction& local,
                    ForceAction& action) const;
   /// A ball that holds all stations.
@@ -159,7 +171,7 @@ Vector3 ContactElement::velocity(const ContactStation& station, const PoseOf& po
     const Vector3 arm = pose_of(side_.nodes[i]).rotation * station.arm;
     velocity += station.weights[i] * (motion.head<3>() + motion.tail<3>().cross(arm));
   }
-  const NodePose base = pose_of(surface_.node);
+  const NodePose& base = pose_of(surface_.node);
   const Vector6 motion = motion_of(surface_.node);
   velocity -= motion.head<3>() + motion.tail<3>().cross(middle_of(side_, station, pose_of) - base.position);
   return base.rotation.transpose() * velocity;

@@ -93,18 +93,46 @@ double let_out_rate(const ContactLaw& law, double start) {
   return start * law.frequency / kLetOutAngle;
 }
 
-ContactGrip contact_grip(const ContactLaw& law, const Vector3& stretch, const Vector3& slip, const Vector3& normal,
-                         double push) {
-  assert(law.grip > 0);
-  const Vector3 whole = stretch + slip;
+namespace {
+
+/// Across the normal; at most `most`, which grows by `most_by_push`.
+ContactGrip held_across(const Vector3& whole, const Vector3& normal, double most, double most_by_push) {
   const Matrix3 tangential = Matrix3::Identity() - normal * normal.transpose();
   const Vector3 trial = tangential * whole;
   const Matrix3 by_normal = -(normal.dot(whole) * Matrix3::Identity() + normal * whole.transpose());
-  const double size = trial.norm(), most = law.friction * push / law.grip;
+  const double size = trial.norm();
   if (size <= most) return {trial, tangential, by_normal, Vector3::Zero()};
   const Vector3 along = trial / size;
   const Matrix3 turn = most / size * (Matrix3::Identity() - along * along.transpose());
-  return {most * along, turn * tangential, turn * by_normal, law.friction / law.grip * along};
+  return {most * along, turn * tangential, turn * by_normal, most_by_push * along};
+}
+
+/// Along the normal.
+ContactGrip held_along(const Vector3& whole, const Vector3& normal, double most, double most_by_push) {
+  const double size = normal.dot(whole);
+  if (std::abs(size) <= most)
+    return {size * normal, normal * normal.transpose(), size * Matrix3::Identity() + normal * whole.transpose(),
+            Vector3::Zero()};
+  const double sign = size < 0 ? -1 : 1;
+  return {sign * most * normal, Matrix3::Zero(), sign * most * Matrix3::Identity(), sign * most_by_push * normal};
+}
+
+}  // namespace
+
+ContactGrip contact_grip(const ContactLaw& law, const Vector3& stretch, const Vector3& slip, const Vector3& normal,
+                         double push) {
+  assert(law.grip > 0);
+  return held_across(stretch + slip, normal, law.friction * push / law.grip, law.friction / law.grip);
+}
+
+ContactGrip turn_grip(const ContactLaw& law, const Vector3& turned, const Vector3& turn, const Vector3& normal,
+                      double push) {
+  assert(law.turn_grip > 0);
+  const double spins = law.spinning / law.turn_grip, rolls = law.rolling / law.turn_grip;
+  const ContactGrip along = held_along(turned + turn, normal, spins * push, spins);
+  const ContactGrip across = held_across(turned + turn, normal, rolls * push, rolls);
+  return {along.stretch + across.stretch, along.by_slip + across.by_slip, along.by_normal + across.by_normal,
+          along.by_push + across.by_push};
 }
 
 }  // namespace flexarm

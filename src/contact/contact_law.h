@@ -14,8 +14,12 @@ struct ContactLaw {
   double restitution = 1;
   double damping = 0;  ///< by which a hit gives back what the restitution says, see damping_for_restitution()
   double depth = std::numeric_limits<double>::infinity();  ///< beyond which it gives way no further [m]
-  double friction = 0;                                     ///< coefficient
-  double grip = 0;                                         ///< stiffness along the surface where it sticks [N/m]
+  double most_start = 0;             ///< what starts no deeper inside is felt from its surface on [m]
+  double friction = 0;               ///< coefficient
+  double grip = 0;                   ///< stiffness along the surface where it sticks [N/m]
+  double spinning = 0, rolling = 0;  ///< most of the couples about the normal and across it, of the push [m]
+  double turn_grip = 0;              ///< stiffness of these where nothing turns [N m/rad]
+  bool resists_turns() const { return spinning > 0 || rolling > 0; }
 };
 
 /// Hunt and Crossley's damping d of a hit that gives back `restitution` of its speed, from 0.05 to 1, whatever mass,
@@ -55,10 +59,10 @@ double remembered_speed(const ContactChange& change, double begin_rate);
 /// By which the hit is damped in the step. `remembered`: see remembered_speed(); `penetration`: both at the beginning.
 double approach_speed(double penetration, double begin_rate, double remembered);
 
-/// What is no deeper than this, by round-off, has not started inside [m].
+/// What is left of a start inside below this is nothing [m].
 constexpr double kLeastStart = 1e-9;
-/// What has started inside is felt from there on alone, and is let out little by little: so deep it still is at the end
-/// of a step that begins at `start` [m]. (docs/notes/contact.md 2)
+/// What has started deep inside is felt from there on alone, and is let out little by little: so deep it still is at
+/// the end of a step that begins at `start` [m]. (docs/notes/contact.md 2)
 double let_out(const ContactLaw& law, double start, double duration);
 /// How fast it is let out [m/s]: so much faster than the true penetration the felt one grows.
 double let_out_rate(const ContactLaw& law, double start);
@@ -73,5 +77,8 @@ struct ContactGrip {
 };
 ContactGrip contact_grip(const ContactLaw& law, const Vector3& stretch, const Vector3& slip, const Vector3& normal,
                          double push);
+/// The same of what resists to spinning and rolling: `turned` and `turn` [rad], with `turn_grip`.
+ContactGrip turn_grip(const ContactLaw& law, const Vector3& turned, const Vector3& turn, const Vector3& normal,
+                      double push);
 
 }  // namespace flexarm

@@ -265,7 +265,7 @@ void LineContact::start(const State& state, double* memory) const {
   for (std::size_t k = 0; k < search_.pairs().size(); ++k, memory += LineMemory::kSize) {
     if (places[k].element < 0) continue;
     const double inside = search_.radius_of(search_.pairs()[k]) - std::sqrt(places[k].square);
-    if (inside > kLeastStart) put({0, Vector3::Zero(), 0, inside}, memory);
+    if (inside > std::max(law_.most_start, kLeastStart)) put({0, Vector3::Zero(), 0, inside}, memory);
   }
 }
 

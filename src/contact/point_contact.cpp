@@ -40,6 +40,29 @@ void add_grip(const ContactLaw& law, double radius, const PointMotion& motion, c
   action.slope.bottomLeftCorner<3, 3>() += radius * hat(drag) * by_end;
 }
 
+/// What resists to turning against the surface.
+void add_turn_grip(const ContactLaw& law, const PointMotion& motion, const GapChange& gap, const ContactPush& push,
+                   const Vector3& turned, bool with_slope, PointAction& action) {
+  const double length = gap.gradient.norm();
+  const Vector3 normal = gap.gradient / length;
+  const ContactGrip grip = turn_grip(law, turned, motion.turn, normal, push.value);
+  const Vector3 couple = -law.turn_grip * grip.stretch;
+  action.memory.turned = grip.stretch;
+  action.dissipated += -couple.dot(motion.turn) - 0.5 * law.turn_grip * grip.stretch.squaredNorm();
+  action.wrench.tail<3>() += couple;
+  if (!with_slope) return;
+  const Vector3 push_by_end = -push.slope * gap.end_gradient;
+  const Matrix3 by_end = (Matrix3::Identity() - normal * normal.transpose()) * gap.slope / length;  // of the normal
+  action.slope.bottomLeftCorner<3, 3>() -=
+      law.turn_grip * (grip.by_normal * by_end + grip.by_push * push_by_end.transpose());
+  action.slope.bottomRightCorner<3, 3>() -= law.turn_grip * grip.by_slip;
+}
+
+/// What sticking stores [J].
+double held_energy(const ContactLaw& law, const PointMemory& memory) {
+  return 0.5 * (law.grip * memory.stretch.squaredNorm() + law.turn_grip * memory.turned.squaredNorm());
+}
+
 /// The edge of a table comes into a block that slides off it by the block's front, but it is the block's bottom that
 /// lies on it, deeper by what both give way. A corner that slides from one table to the next one meets an edge that is
 /// as low. Where it comes in is where it begins to be felt, so that nothing is stored.
@@ -86,7 +109,7 @@ FeltShape felt_shape(const ContactShape& shape, const ContactLaw& law, double ra
   }
   if (out.face == 0) {
     out.radius = 0;
-    const bool is_inside = shape.distance(from).value < 0;
+    const bool is_inside = shape.gap(from) < 0;
     out.face = is_inside ? nearest_face(shape, from) : entered_face(shape, from, motion.end);
     if (!is_inside && out.face != 0) lay_on_another(shape, law, motion, out);
   }
@@ -99,7 +122,8 @@ FeltShape felt_shape(const ContactShape& shape, const ContactLaw& law, double ra
   return out;
 }
 
-PointMemory start_inside(const ContactShape& shape, double radius, const Vector3& point, const Matrix3& outwards) {
+PointMemory start_inside(const ContactShape& shape, const ContactLaw& law, double radius, const Vector3& point,
+                         const Matrix3& outwards) {
   PointMemory out;
   const bool by_face = radius == 0 && has_faces(shape);
   if (shape.distance(point).value - radius > kLeastStart) return out;
@@ -112,14 +136,14 @@ PointMemory start_inside(const ContactShape& shape, double radius, const Vector3
   }
   const ContactShape& felt = by_face ? beyond_face(shape, out.face) : shape;
   out.start = radius - felt.distance(point).value;
-  return out.start > kLeastStart ? out : PointMemory();
+  return out.start > std::max(law.most_start, kLeastStart) ? out : PointMemory();
 }
 
 double stored_energy(const ContactShape& shape, const ContactLaw& law, double radius, const Vector3& point,
                      const PointMemory& memory) {
   const ContactShape& felt = memory.face != 0 ? beyond_face(shape, memory.face) : shape;
   return contact_energy(law, radius - memory.within - memory.start - felt.distance(point).value) +
-         0.5 * law.grip * memory.stretch.squaredNorm();
+         held_energy(law, memory);
 }
 
 PointAction point_action(const ContactShape& whole, const ContactLaw& law, double radius, const PointMotion& motion,
@@ -127,7 +151,7 @@ PointAction point_action(const ContactShape& whole, const ContactLaw& law, doubl
   PointAction out;
   const FeltShape felt = felt_shape(whole, law, radius, motion, memory);
   const ContactShape& shape = felt.shape;
-  out.dissipated = felt.let_go + 0.5 * law.grip * memory.stretch.squaredNorm();  // of a contact that has let go
+  out.dissipated = felt.let_go + held_energy(law, memory);  // of a contact that has let go
   if (!felt.is_felt) return out;
   const GapChange gap = gap_change(shape, motion.begin, motion.end, motion.at_end);
   const double end_start = let_out(law, felt.start, motion.duration);
@@ -159,8 +183,9 @@ PointAction point_action(const ContactShape& whole, const ContactLaw& law, doubl
   if (with_slope)
     out.slope.topLeftCorner<3, 3>() = push.value * gap.slope - push.slope * gap.gradient * gap.end_gradient.transpose();
   out.wrench.head<3>() = push.value * gap.gradient;
-  if (law.friction > 0 && !gap.gradient.isZero(0))
-    add_grip(law, radius, motion, gap, push, memory.stretch, with_slope, out);
+  if (gap.gradient.isZero(0)) return out;
+  if (law.friction > 0) add_grip(law, radius, motion, gap, push, memory.stretch, with_slope, out);
+  if (law.resists_turns()) add_turn_grip(law, motion, gap, push, memory.turned, with_slope, out);
   return out;
 }
 
@@ -176,6 +201,8 @@ PointTouch point_touch(const ContactShape& whole, const ContactLaw& law, double 
   // As a step would begin in which nothing moves.
   if (law.friction > 0)
     out.friction = -law.grip * contact_grip(law, memory.stretch, Vector3::Zero(), out.normal, out.push).stretch;
+  if (law.resists_turns())
+    out.couple = -law.turn_grip * turn_grip(law, memory.turned, Vector3::Zero(), out.normal, out.push).stretch;
   return out;
 }
 

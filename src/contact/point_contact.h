@@ -28,12 +28,13 @@ struct PointMotion {
 };
 /// For each point and shape, zero where they do not touch.
 struct PointMemory {
-  static constexpr int kSize = 7;
+  static constexpr int kSize = 10;
   double speed = 0;  ///< see remembered_speed()
   Vector3 stretch = Vector3::Zero();
-  int face = 0;       ///< by which a corner has come in
-  double within = 0;  ///< so far inside of that face nothing is felt yet [m]
-  double start = 0;   ///< nor of what has started inside, see let_out() [m]
+  int face = 0;                      ///< by which a corner has come in
+  double within = 0;                 ///< so far inside of that face nothing is felt yet [m]
+  double start = 0;                  ///< nor of what has started inside, see let_out() [m]
+  Vector3 turned = Vector3::Zero();  ///< see turn_grip() [rad]
 };
 /// On the ball: a force through its middle and a couple, conjugate to the way and to the turn. Not finite at an instant
 /// at which it is too deep inside.
@@ -54,7 +55,7 @@ struct PointTouch {
   double gap = 0;   ///< < 0 inside [m]
   Vector3 normal;   ///< unit, outwards
   double push = 0;  ///< along it [N]
-  Vector3 friction = Vector3::Zero();
+  Vector3 friction = Vector3::Zero(), couple = Vector3::Zero();
 };
 /// `point`, `velocity`: of the ball's middle; `memory`: as the last step has left it.
 PointTouch point_touch(const ContactShape& whole, const ContactLaw& law, double radius, const Vector3& point,
@@ -72,7 +73,8 @@ struct FeltShape {
 FeltShape felt_shape(const ContactShape& shape, const ContactLaw& law, double radius, const PointMotion& motion,
                      const PointMemory& memory);
 /// Of a point that has got inside without a motion.
-PointMemory start_inside(const ContactShape& shape, double radius, const Vector3& point, const Matrix3& outwards);
+PointMemory start_inside(const ContactShape& shape, const ContactLaw& law, double radius, const Vector3& point,
+                         const Matrix3& outwards);
 /// What is stored [J].
 double stored_energy(const ContactShape& shape, const ContactLaw& law, double radius, const Vector3& point,
                      const PointMemory& memory);

@@ -69,9 +69,9 @@ struct ForceOutput {
 
 /// What a contact has to touch with: its points, and the law of each.
 struct TouchLaw {
-  std::size_t points = 0;  ///< 0: it is no contact
-  double stiffness = 0;    ///< of shallow penetrations [N/m]
-  double restitution = 1, friction = 0;
+  std::size_t points = 0;                                           ///< 0: it is no contact
+  double stiffness = 0;                                             ///< of shallow penetrations [N/m]
+  double restitution = 1, friction = 0, spinning = 0, rolling = 0;  ///< couples: of the push [m]
 };
 
 /// Poses and velocities of all nodes for output.
@@ -84,10 +84,11 @@ struct ForceMotion {
 /// A point at which an element's first link touches its second one, see ForceElement::links(), at an instant: as the
 /// law has it there, with the friction that the last step has left.
 struct TouchingPoint {
-  Vector3 position;        ///< on the surface of the first, from where those of nodes are, world axes [m]
-  Vector3 normal;          ///< unit, from the second to the first
-  Vector3 push, friction;  ///< on the first, along the normal and across it [N]
-  double gap = 0;          ///< < 0: so deep is one in the other [m]
+  Vector3 position;                  ///< on the surface of the first, from where those of nodes are, world axes [m]
+  Vector3 normal;                    ///< unit, from the second to the first
+  Vector3 push, friction;            ///< on the first, along the normal and across it [N]
+  Vector3 couple = Vector3::Zero();  ///< on the first, which resists to spinning and rolling [N m]
+  double gap = 0;                    ///< < 0: so deep is one in the other [m]
 };
 using TouchingPointTaker = std::function<void(const TouchingPoint&)>;
 

@@ -41,12 +41,14 @@ bool is_contact(const XmlElement& element) {
 }
 
 ContactDescription read_contact(const XmlElement& contact) {
-  contact.expect_only({"first", "second", "stiffness", "restitution", "friction"});
+  contact.expect_only({"first", "second", "stiffness", "restitution", "friction", "spinning", "rolling"});
   ContactDescription out;
   static_cast<ContactPair&>(out) = read_pair(contact);
   if (contact.has("stiffness")) out.stiffness = contact.number("stiffness", kPositive);
   if (contact.has("restitution")) out.restitution = contact.number("restitution", kRestitution).value_or(1);
   if (contact.has("friction")) out.friction = contact.number("friction", kNonNegative);
+  out.spinning = contact.number("spinning", kNonNegative, 0);
+  out.rolling = contact.number("rolling", kNonNegative, 0);
   return out;
 }
 

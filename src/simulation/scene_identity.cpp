@@ -166,7 +166,8 @@ class SceneFingerprint {
   void add(const scene::GroundDescription& ground) { all(ground.name, ground.normal, ground.offset); }
   void add(const scene::ContactPair& pair) { all(pair.first, pair.second); }
   void add(const scene::ContactDescription& contact) {
-    all(contact.first, contact.second, contact.stiffness, contact.restitution, contact.friction);
+    all(contact.first, contact.second, contact.stiffness, contact.restitution, contact.friction, contact.spinning,
+        contact.rolling);
   }
   void add(const scene::SurfaceHints& hints) { all(hints.friction, hints.stiffness); }
   void add(const scene::ClearanceDescription& clearance) {

@@ -72,7 +72,7 @@ Vector6 touching_wrench(const Sensor& sensor, const SensorPlace& place, const Mo
     touch(view.model.touching_pairs[pair], view, motion, [&](const TouchingPoint& point) {
       const Vector3 force = sign * (point.push + point.friction);
       sum.force += force;
-      sum.moment += (point.position - about).cross(force);
+      sum.moment += (point.position - about).cross(force) + sign * point.couple;
     });
   }
   const Quaternion axes = link.orientation.conjugate();

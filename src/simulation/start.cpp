@@ -85,15 +85,17 @@ scene::Diagnostics doubts_about_scheme(const scene::SceneDescription& scene, con
 }
 
 scene::Diagnostics overlaps(const scene::SceneDescription& scene, const Model& model, const State& state) {
-  constexpr double kLeast = 1e-6;  // m
   const std::vector<Vector6> still(state.nodes.size(), Vector6::Zero());
   scene::Diagnostics findings;
   for (const TouchingPair& pair : model.touching_pairs) {
     double gap = 0;
-    for (const auto& [index, memory] : pair.elements)
-      gap = std::min(gap, model.force_elements[index]->touch({state, still, state.force_memory.data() + memory},
-                                                             [](const TouchingPoint&) {}));
-    if (gap < -kLeast)
+    for (const auto& [index, begin] : pair.elements) {
+      const ForceElement& element = *model.force_elements[index];
+      const double* memory = state.force_memory.data() + begin;
+      if (element.remembers(memory))  // how deep it has started
+        gap = std::min(gap, element.touch({state, still, memory}, [](const TouchingPoint&) {}));
+    }
+    if (gap < 0)
       findings.push_back(warning({scene.file}, fmt::format("<contact> of '{}' and '{}'", pair.first, pair.second),
                                  "they start inside of each other, and are let out little by little",
                                  fmt::format("'{:.3g}' m", -gap)));

@@ -18,7 +18,7 @@ scene::Diagnostics held_joints(const scene::SceneDescription& scene, const Model
 /// A warning where the scheme does not damp what its accelerations do across joints. (docs/notes/joints.md 3.2)
 scene::Diagnostics doubts_about_scheme(const scene::SceneDescription& scene, const Model& model, const Scheme& scheme);
 
-/// A warning for each pair that starts more than a micrometre inside of each other.
+/// A warning for each pair that starts so deep inside of each other that it is let out slowly.
 scene::Diagnostics overlaps(const scene::SceneDescription& scene, const Model& model, const State& state);
 
 /// A warning that a motion begins with accelerations of zero, since its own cannot be found. `failure`: why, in words.

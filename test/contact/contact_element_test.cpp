@@ -23,7 +23,11 @@ NodePose turned_node(const Vector3& position, const Vector3& rotation) {
 }
 
 ContactLaw gripping_law(double friction, double restitution) {
-  return test::gripping_law(friction, restitution, 0.6);
+  ContactLaw law = test::gripping_law(friction, restitution, 0.6);
+  law.spinning = 0.1 * friction;
+  law.rolling = 0.04 * friction;
+  law.turn_grip = 30;
+  return law;
 }
 
 struct Scene {
@@ -79,6 +83,7 @@ class ContactElements : public ::testing::Test {
       memory[i] = 0.3;
       Eigen::Map<Vector3>(memory.data() + i + 1) = stretched;
       memory[i + 6] = inside;
+      if (!stretched.isZero(0)) Eigen::Map<Vector3>(memory.data() + i + 7) = turned;
     }
     Action out;
     out.memory.resize(memory.size());
@@ -96,6 +101,7 @@ class ContactElements : public ::testing::Test {
 
   const Vector3 stretch{0.004, -0.003, 0.002};  // of the grip at the beginning
   const double inside = 0.003;                  // of what has started so deep
+  const Vector3 turned{0.02, 0.01, -0.03};      // of what resists to turning, at the beginning
   const std::vector<Vector6> velocities = std::vector<Vector6>(4, Vector6::Constant(0.2));
   const Poses begin{turned_node({0.1, 0.05, 0.52}, {-0.1, 0.2, 0.2}), turned_node({0, 0, 0}, {0.2, 0.1, -0.3}),
                     turned_node({0.15, 0.1, 0.5}, {0, 0.1, 0}), turned_node({0.2, 0.3, 0.45}, {0.1, 0.1, 0})};
@@ -175,7 +181,8 @@ TEST_P(OverSteps, OfMeansDoExactWork) {
       };
       std::vector<double> old(here.memory.size(), 0.0);
       for (std::size_t i = 0; i < old.size(); i += PointMemory::kSize)
-        Eigen::Map<Vector3>(old.data() + i + 1) = stretch, old[i + 6] = inside;
+        Eigen::Map<Vector3>(old.data() + i + 1) = stretch, old[i + 6] = inside,
+                                             Eigen::Map<Vector3>(old.data() + i + 7) = turned;
       EXPECT_GT(here.dissipated, 0);
       EXPECT_GT(here.let_out, 0);
       const double stored = energy(end, here.memory) - energy(begin, old);
@@ -230,13 +237,13 @@ TEST_F(ContactElements, TellWhatTheyDoAndWhere) {
       const Vector6 expected = (is_reversed ? -1 : 1) * pressed(rest.residual, side.nodes, end);
       std::vector<double> memory(static_cast<std::size_t>(element.memory_size()), 0.0);
       for (std::size_t i = 0; i < memory.size(); i += PointMemory::kSize)
-        Eigen::Map<Vector3>(memory.data() + i + 1) = stretch;
+        Eigen::Map<Vector3>(memory.data() + i + 1) = stretch, Eigen::Map<Vector3>(memory.data() + i + 7) = turned;
       Vector6 sum = Vector6::Zero();
       double deepest = 0;
       const double gap = element.touch({state, still, memory.data()}, [&](const TouchingPoint& point) {
         const Vector3 force = point.push + point.friction;
         sum.head<3>() += force;
-        sum.tail<3>() += point.position.cross(force);
+        sum.tail<3>() += point.position.cross(force) + point.couple;
         deepest = std::min(deepest, point.gap);
         EXPECT_NEAR(point.normal.norm(), 1, 1e-14);
         EXPECT_GT(point.push.dot(point.normal), 0) << "it pushes the first away";
@@ -262,7 +269,7 @@ TEST_F(ContactElements, TellWhatTheyDoInMotion) {
     element.touch({state_at(end), velocities, step.memory.data()}, [&](const TouchingPoint& point) {
       const Vector3 force = point.push + point.friction;
       sum.head<3>() += force;
-      sum.tail<3>() += point.position.cross(force);
+      sum.tail<3>() += point.position.cross(force) + point.couple;
     });
     EXPECT_LE((sum - expected).norm(), 1e-4 * expected.norm()) << name << surface.node;
     const Action rest = action(end, element, end, stretch, true);
@@ -309,7 +316,7 @@ TEST_F(ContactElements, HaveTheStiffnessAndDampersOfTheirMeasures) {
         const ContactLaw law = gripping_law(0.5, 0.5);
         const ContactElement element({"", ""}, side, surface, law);
         const ForceMeasures measures = element.measures(state, element.reach().data());
-        ASSERT_EQ(measures.rows.rows(), 3) << name;
+        ASSERT_EQ(measures.rows.rows(), 6) << name;
         const double share = side.stations[0].share;
         if (penetration < 1e-6) {
           const Eigen::MatrixXd stiffness = measures.rows.transpose() * measures.stiffness * measures.rows;
@@ -320,7 +327,7 @@ TEST_F(ContactElements, HaveTheStiffnessAndDampersOfTheirMeasures) {
         const auto push = [&](double rate) {
           return contact_push(law, {penetration - 0.5 * h * rate, penetration + 0.5 * h * rate, h, 0}).value;
         };
-        const double slope = element.dampers(state, Eigen::VectorXd::Zero(3)).slope(0, 0);
+        const double slope = element.dampers(state, Eigen::VectorXd::Zero(6)).slope(0, 0);
         // At a light touch a step of that length goes out of it.
         if (penetration > 1e-6) {
           EXPECT_NEAR(slope, share * (push(v) - push(-v)) / (2 * v), 1e-4 * slope) << name;
@@ -364,15 +371,15 @@ TEST(ContactElement, FeelsWhatStartsInsideFromThereOn) {
   Matrix3 below;  // of a lower corner
   below << 1, 0, 0, 0, 1, 0, 0, 0, -1;
   const auto start_at = [&](double z, double radius, const Matrix3& outwards) {
-    return start_inside(box, radius, {0.5, 0.5, z}, outwards);
+    return start_inside(box, {}, radius, {0.5, 0.5, z}, outwards);
   };
   EXPECT_EQ(start_at(0.4, 0, below).face, 5);
   EXPECT_NEAR(start_at(0.4, 0, below).start, 0.1, 1e-15);
   EXPECT_EQ(start_at(0.5, 0, below).face, 0) << "it touches";
   EXPECT_EQ(start_at(0.5, 0, below).start, 0) << "it touches";
-  EXPECT_NEAR(start_inside(box, 0.2, {0, 0, 0.6}, Matrix3::Zero()).start, 0.1, 1e-15) << "a ball";
-  EXPECT_EQ(start_inside(box, 0.2, {0, 0, 0.7}, Matrix3::Zero()).start, 0) << "a ball that touches";
-  const PointMemory nearest = start_inside(box, 0, {0.4, 0, 0.1}, Matrix3::Zero());
+  EXPECT_NEAR(start_inside(box, {}, 0.2, {0, 0, 0.6}, Matrix3::Zero()).start, 0.1, 1e-15) << "a ball";
+  EXPECT_EQ(start_inside(box, {}, 0.2, {0, 0, 0.7}, Matrix3::Zero()).start, 0) << "a ball that touches";
+  const PointMemory nearest = start_inside(box, {}, 0, {0.4, 0, 0.1}, Matrix3::Zero());
   EXPECT_EQ(nearest.face, 1);
   EXPECT_NEAR(nearest.start, 0.1, 1e-15);
 }
@@ -380,7 +387,7 @@ TEST(ContactElement, FeelsWhatStartsInsideFromThereOn) {
 // Whatever a contact has stored when it is no more near is dissipated.
 TEST(ContactElement, AccountsForWhatIsRememberedFarAway) {
   const BallAndPlate scene(-0.2, -0.21);
-  std::vector<double> memory = {0.3, 0.001, 0.002, 0, 0, 0, 0}, left(memory.size(), 1.0);
+  std::vector<double> memory = {0.3, 0.001, 0.002, 0, 0, 0, 0, 0, 0, 0}, left(memory.size(), 1.0);
   ForceStep step = scene.step();
   step.memory = memory.data();
   step.new_memory = left.data();

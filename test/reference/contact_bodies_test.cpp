@@ -28,7 +28,7 @@ double push(double stiffness, double depth, double penetration) {
 /// Largest error of the angle of an arm whose ball swings on the floor that carries it, without leaving it: a hinge at
 /// a height, a ball at the end of a weightless rod, pressed by its weight.
 double error_of_pressed_arm(double step) {
-  constexpr double kMass = 1, kBall = 0.05, kArm = 0.5, kHeight = 0.06, kStiffness = 2e3, kInside = 2e-3, kUntil = 1;
+  constexpr double kMass = 1, kBall = 0.05, kArm = 0.5, kHeight = 0.06, kStiffness = 6e3, kInside = 1e-3, kUntil = 1;
   const double start = std::asin((kHeight - kBall + kInside) / kArm), inertia = 0.4 * kMass * kBall * kBall;
   Simulation simulation = simulation_of(
       fmt::format("<joint name=\"hinge\" type=\"continuous\"><parent link=\"world\"/><child link=\"arm\"/><origin "
@@ -40,7 +40,7 @@ double error_of_pressed_arm(double step) {
           kFloor +
           fmt::format("<contact first=\"arm\" second=\"floor\" restitution=\"1\" stiffness=\"{}\"/>", kStiffness),
       fmt::format("<initial joint=\"hinge\" position=\"{:.17g}\"/>", start), step);
-  const double depth = kInside / 0.25;  // what starts inside is a quarter of the depth
+  const double depth = 0.1 * kBall;  // it starts less than a quarter of that inside
   const OdeFunction swing = [&](double, const Eigen::VectorXd& y) {
     const double lever = kArm * std::cos(y[0]), inside = kBall - kHeight + kArm * std::sin(y[0]);
     return Eigen::Vector2d(y[1],

@@ -1,4 +1,6 @@
 // Bodies and beams that touch, against closed forms.
+#include <array>
+
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
@@ -134,6 +136,43 @@ TEST(Contact, BallRollsWithoutSlip) {
   const double begin = simulation.momentum().x();
   run(simulation, 1);
   EXPECT_NEAR((simulation.momentum().x() - begin) / 0.5, 5.0 / 7 * kG * std::sin(slope), 1e-9);
+}
+
+// By the couple s m g, until it stands. What is left of the first bounce is below 1e-6 of the weight by then.
+TEST(Contact, BallThatSpinsIsBrakedAndStands) {
+  constexpr double kRadius = 0.1, kSpinning = 2e-3, kRate = 4, kPolar = 0.4 * kRadius * kRadius;
+  Simulation simulation = simulation_of(
+      kFloor + ball("ball", 1, kRadius) + floating("ball") + "<contact first=\"*\" second=\"*\" spinning=\"2e-3\"/>",
+      start("ball", {0, 0, kRadius}, {0, 0, 0}, {0, 0, kRate}), 1e-3);
+  const auto rate = [&] { return simulation.angular_momentum().z() / kPolar; };
+  run(simulation, 0.4);
+  const double first = rate(), total = account(simulation);
+  run(simulation, 0.7);
+  EXPECT_NEAR((first - rate()) / 0.3, kSpinning * kG / kPolar, 1e-6 * kSpinning * kG / kPolar);
+  run(simulation, 2);
+  EXPECT_NEAR(rate(), 0, 1e-9);
+  EXPECT_NEAR(account(simulation), total, 1e-12);
+}
+
+// With a couple of r N against it: x'' = (g sin - r g cos / R) / 1.4 down a slope, nothing where that is below 0.
+TEST(Contact, RollingMayBeResistedTo) {
+  constexpr double kRadius = 0.1, kRolling = 5e-3;
+  const auto roll = [&](double slope) {
+    Simulation simulation = simulation_of(kFloor + ball("ball", 1, kRadius) + floating("ball") +
+                                              "<contact first=\"*\" second=\"*\" friction=\"0.5\" rolling=\"5e-3\"/>",
+                                          start("ball", {0, 0, kRadius}, {0, 0, 0}), 1e-3,
+                                          kG * Vector3(std::sin(slope), 0, -std::cos(slope)));
+    run(simulation, 1);
+    const double first = simulation.momentum().x();
+    run(simulation, 2);
+    const double gained = simulation.momentum().x() - first;
+    run(simulation, 4);
+    return std::array<double, 2>{gained, simulation.momentum().x()};
+  };
+  const double limit = std::atan(kRolling / kRadius);
+  EXPECT_NEAR(roll(0.99 * limit)[1], 0, 1e-9) << "after it has rung";
+  const double steep = 2 * limit, expected = kG * (std::sin(steep) - kRolling / kRadius * std::cos(steep)) / 1.4;
+  EXPECT_NEAR(roll(steep)[0], expected, 1e-6 * expected);
 }
 
 // ---------------------------------------------------------------- several contacts, beams

@@ -29,6 +29,8 @@ struct ContactDescription : ContactPair {
   std::optional<double> stiffness = {};  ///< of a contact point [N/m]; empty: by what it moves and the step
   double restitution = 0.3;              ///< from 0.05 to 1
   std::optional<double> friction = {};   ///< Coulomb's coefficient; empty: as the links' surfaces have it, else 0
+  /// Couples that resist to turning about the normal and across it, at most so many times the push of each point [m].
+  double spinning = 0, rolling = 0;
 };
 
 /// What a <gazebo> element says of the surface of a link.
