@@ -301,6 +301,7 @@ double LineContact::touch(const ForceMotion& motion, const TouchingPointTaker& t
     point.position = middles[k] - search_.station(pair).radius * normal;
     point.normal = sign * normal;
     point.push = push * point.normal;
+    point.friction.setZero();
     if (law.friction > 0)
       point.friction = -sign * law.grip * contact_grip(law, old.stretch, Vector3::Zero(), normal, push).stretch;
     point.gap = gap;

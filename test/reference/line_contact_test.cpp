@@ -318,6 +318,13 @@ TEST(LineContact, CrossedCantileversShareALoadInStatics) {
   EXPECT_NEAR(lower, push * by_push, 2e-3 * lower);
   EXPECT_GT(upper, lower - 1e-6);
   EXPECT_LT(upper - lower, 2e-4) << "of 0.35 N on 1e6 N/m, which is less where it is shallow";
+  Vector3 told = Vector3::Zero();
+  std::vector<ActingContact> contacts;
+  simulation.contacts(contacts);
+  for (const ActingContact& contact : contacts) told += contact.force;
+  EXPECT_NEAR(told.z(), push, 4e-3 * push);
+  // Across, no more than where places are off the crossing: by half of their distance, 1.3 mm, of that of both lines.
+  EXPECT_LT(told.head<2>().norm(), 0.14 * push) << "there is no friction";
 }
 
 // ---------------------------------------------------------------- a beam and itself

@@ -1,0 +1,106 @@
+"""Two equal strands wound round each other: the closed form of docs/notes/contact.md 6, and its checks.
+
+Uniform ply of Thompson, van der Heijden and Neukirch (2002), without friction: both centrelines are helices of radius
+r [m], opposite each other; b: angle of their tangents with the axis. For strands that stretch and shear, too, with a
+linear law: the section's angle then is beta, the line is `stretch` times as long, and `turn` is by how much the helix
+turns about the axis per length of the undeformed line [1/m]. Forces in N, moments in N m, of one strand.
+"""
+
+import numpy as np
+from scipy.linalg import expm
+
+from reference_beam import hat
+
+STIFF = 1e12  # of what neither stretches nor shears, against B / r^2
+
+
+def ply(r, b, twist, axial, bending, torsion, stretching=None, shearing=None):
+    """axial: force along the axis. twist: of the section, per length [1/m]. Returns a dict."""
+    stretching = stretching or STIFF * bending / r**2
+    shearing = shearing or STIFF * bending / r**2
+    stretch, beta = 1.0, b
+    for _ in range(100):
+        turn = stretch * np.sin(b) / r
+        bend = bending * turn * np.sin(beta)
+        around = torsion * twist * np.sin(beta) - bend * np.cos(beta)  # moment along the circle
+        across = np.tan(b) * (axial - around / r)  # force along the circle
+        tension = across * np.sin(beta) + axial * np.cos(beta)
+        shear = axial * np.sin(beta) - across * np.cos(beta)
+        beta = b + np.arctan2(shear / shearing, 1 + tension / stretching)
+        stretch = np.hypot(shear / shearing, 1 + tension / stretching)
+    return {
+        "contact": turn * across,  # per undeformed length
+        "bending": bend,
+        "tension": tension,
+        "shear": shear,
+        "moment": bend * np.sin(beta) + torsion * twist * np.cos(beta) + r * across,  # about the axis, with the arm r
+        "beta": beta,
+        "stretch": stretch,
+        "turn": turn,
+    }
+
+
+def check_virtual_work(random):
+    """Energy of a length of a ply by b and r: what does work on the turn is the moment, and on r the contact force."""
+    r, bending, torsion, axial = random.uniform(0.5, 2, 4)
+    b, more = random.uniform(0.1, 0.7), random.uniform(-0.3, 0.3)  # twist beside that of sections that follow the helix
+
+    def potential(r, b, moment):
+        curvature, twist = np.sin(b) ** 2 / r, np.sin(b) * np.cos(b) / r + more
+        work = axial * np.cos(b) + moment * np.sin(b) / r
+        return 0.5 * bending * curvature**2 + 0.5 * torsion * twist**2 - work
+
+    h = 1e-5
+    by_b = (potential(r, b + h, 0) - potential(r, b - h, 0)) / (2 * h)
+    moment = by_b * r / np.cos(b)  # no change with b
+    contact = (potential(r + h, b, moment) - potential(r - h, b, moment)) / (2 * h)
+    form = ply(r, b, np.sin(b) * np.cos(b) / r + more, axial, bending, torsion)
+    return max(abs(moment / form["moment"] - 1), abs(contact / form["contact"] - 1))
+
+
+def check_balance(random):
+    """Balances of a strand that is built step by step, with strains of it as it stands: largest residual."""
+    r, bending, torsion, axial = random.uniform(0.5, 2, 4)
+    stretching, shearing = random.uniform(10, 50, 2)
+    b, twist = random.uniform(0.1, 0.7), random.uniform(-0.3, 0.3)
+    form = ply(r, b, twist, axial, bending, torsion, stretching, shearing)
+    beta = form["beta"]
+    turn, pitch = form["turn"], form["stretch"] * np.cos(b)
+    more = twist - turn * np.cos(beta)  # by which sections turn against the helix
+
+    def pose(s):
+        radial, around, along = expm(hat([0, 0, turn * s])).T
+        section = np.cos(beta) * along + np.sin(beta) * around
+        frame = np.column_stack([radial, np.cross(section, radial), section])
+        return r * radial + [0, 0, pitch * s], frame @ expm(hat([0, 0, more * s]))
+
+    def derivative(function, s, h=2e-3):
+        return (8 * (function(s + h) - function(s - h)) - function(s + 2 * h) + function(s - 2 * h)) / (12 * h)
+
+    def force_and_moment(s):
+        frame = pose(s)[1]
+        gamma = frame.T @ derivative(lambda t: pose(t)[0], s) - [0, 0, 1]
+        turned = frame.T @ derivative(lambda t: pose(t)[1], s)
+        kappa = np.array([turned[2, 1], turned[0, 2], turned[1, 0]])
+        return np.r_[frame @ (np.array([shearing, shearing, stretching]) * gamma),
+                     frame @ (np.array([bending, bending, torsion]) * kappa)]
+
+    s = random.uniform(0, 3)
+    change, radial = derivative(force_and_moment, s), pose(s)[0] * [1, 1, 0] / r
+    force, moment = np.split(force_and_moment(s), 2)
+    residual = np.r_[change[:3] + form["contact"] * radial,
+                     change[3:] + np.cross(derivative(lambda t: pose(t)[0], s), force)]
+    arm = np.cross(pose(s)[0], force)[2]
+    return max(np.abs(residual).max(), abs(force[2] - axial), abs(moment[2] + arm - form["moment"]))
+
+
+def run():
+    random = np.random.default_rng(5)
+    work = max(check_virtual_work(random) for _ in range(20))
+    balance = max(check_balance(random) for _ in range(5))
+    print(f"ply: virtual work {work:.1e}, balances {balance:.1e}")
+    assert work < 1e-8 and balance < 1e-8
+
+
+if __name__ == "__main__":
+    run()
