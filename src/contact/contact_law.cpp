@@ -12,6 +12,9 @@ namespace {
 
 /// Angle that a step may go through of the oscillator that a contact is, and the part of a hit that is worth it.
 constexpr double kLargestAngle = kPi / 9, kLargestPart = 0.25;
+/// Of the speed with which the deepest start is thrown out: slower hits are none. What begins to touch at rest goes
+/// through all of its motion in every step, however short.
+constexpr double kSlow = 1e-3;
 /// A start inside falls to the e-th part in the time in which the contact's oscillator goes through this angle.
 constexpr double kLetOutAngle = 100;
 
@@ -71,7 +74,7 @@ bool is_coarse_hit(const ContactLaw& law, const ContactChange& change, double be
   if (angle * refinement <= kLargestAngle) return false;
   const double part = std::hypot(law.frequency * (x1 - x0), end_rate - begin_rate);
   const double whole = std::max(std::hypot(law.frequency * x0, begin_rate), std::hypot(law.frequency * x1, end_rate));
-  return part * refinement > kLargestPart * whole;
+  return whole > kSlow * law.frequency * law.most_start && part * refinement > kLargestPart * whole;
 }
 
 double approach_speed(double penetration, double begin_rate, double remembered) {
@@ -85,6 +88,7 @@ double remembered_speed(const ContactChange& change, double begin_rate) {
 }
 
 double let_out(const ContactLaw& law, double start, double duration) {
+  if (start == 0) return 0;
   const double left = start * std::exp(-law.frequency * std::abs(duration) / kLetOutAngle);
   return left > kLeastStart ? left : 0.0;
 }

@@ -259,13 +259,14 @@ bool LineSearch::passes_through(std::size_t index, const ClosestPoint& begin, co
   };
   if (offset(from, begin, first).dot(change(begin)) >= 0 || offset(to, end, last).dot(change(end)) <= 0) return false;
   constexpr double kLeast = 1.0 / 64;  // of the way, per look
+  constexpr double kGraze = 1e-6;      // tubes that lie alongside each other do, by round-off
   while (gone < way) {
     const double part = gone / way;
     Middles middles;
     std::fill_n(middles.begin(), pairs().size(), Vector3(from + part * (to - from)));
     const ClosestPoint place = closest(middles, way, NodePlaces(step.begin, step.end, part), {})[index];
     const double gap = place.element < 0 ? way : std::sqrt(place.square) - radius;
-    if (gap < 0) return true;
+    if (gap < -kGraze * radius) return true;
     gone += std::max(gap, kLeast * way);
   }
   return false;

@@ -216,9 +216,10 @@ bool passes_through(const ContactShape& shape, const Vector3& from, const Vector
   double gone = shape.distance(from).value - radius;
   if (gone + shape.distance(to).value - radius >= length) return false;
   constexpr double kLeast = 1e-4;  // of the way, per look
+  constexpr double kGraze = 1e-6;  // of a ball, by round-off
   while (gone < length) {
     const double gap = shape.distance(from + gone / length * way).value - radius;
-    if (gap < 0) return true;
+    if (gap < -kGraze * std::abs(radius)) return true;
     gone += std::max(gap, kLeast * length);
   }
   return false;

@@ -142,6 +142,11 @@ TEST(ContactPush, HitsAreCoarseInLongSteps) {
   EXPECT_FALSE(is_coarse_hit(law, {-0.2, -0.1, 2 * radian}, speed, 1)) << "it does not touch";
   EXPECT_FALSE(is_coarse_hit(elastic, {0, 0.1, 2 * radian}, speed, 1));
   EXPECT_TRUE(is_coarse_hit(law_with(1, 0.3), {0, 0.1, 2 * radian}, speed, 1)) << "an elastic one that hardens";
+  // What rests and is pressed in goes through all of its motion in any step: it is a hit if it is fast.
+  ContactLaw slow = law;
+  slow.most_start = 0.1;
+  EXPECT_FALSE(is_coarse_hit(slow, {0, 1e-5, 2 * radian}, 0, 1));
+  EXPECT_TRUE(is_coarse_hit(slow, {0, 1e-2, 2 * radian}, 0, 1));
 }
 
 TEST(ContactPush, HasTheDampingOfItsClosedForm) {

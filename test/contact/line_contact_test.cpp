@@ -392,6 +392,9 @@ TEST(LineContact, AsksForHalvesOfStepsThatItWouldNotSee) {
   EXPECT_FALSE(asks(0.0215, 0.0209, true)) << "a light touch";
   EXPECT_FALSE(asks(0.1, 0.03, false));
   EXPECT_FALSE(BallAndLine({0.55, 0.03, 0.1}, {0.55, 0.03, -0.1}).asks_for_halves(true)) << "beside it";
+  const auto grazes = [](double y, double z) { return BallAndLine({0.55, y, z}, {0.55, -y, z}).asks_for_halves(true); };
+  EXPECT_TRUE(grazes(1.1e-3, 0.02098)) << "by its way it goes in by a thousandth";
+  EXPECT_FALSE(grazes(1e-6, 0.021 - 1e-11)) << "round-off: what lies alongside would be halved for ever";
 }
 
 INSTANTIATE_TEST_SUITE_P(Contact, LineContacts, ::testing::Bool(),
