@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "math/shape_functions.h"
 
@@ -35,18 +37,41 @@ const ShapePowers& shape_powers(int order) {
   return all[order];
 }
 
-/// A place of a piece less a point, and its derivatives by xi.
-struct LineOffset {
-  Vector3 value, slope, curvature;
-};
-LineOffset offset_at(const LinePiece& piece, const Vector3& point, double xi) {
-  LineOffset out{piece.coefficients.col(piece.order), Vector3::Zero(), Vector3::Zero()};
-  for (int k = piece.order - 1; k >= 0; --k) {
-    out.curvature = xi * out.curvature + 2 * out.slope;
-    out.slope = xi * out.slope + out.value;
-    out.value = xi * out.value + piece.coefficients.col(k);
+/// Half the square of a distance, a polynomial of xi.
+class HalfSquare {
+ public:
+  HalfSquare(const LinePiece& piece, const Vector3& point) : degree_(2 * piece.order), powers_(piece.squares) {
+    const Vector3 middle = piece.middle() - point;
+    powers_[0] = middle.squaredNorm();
+    for (int k = 1; k <= piece.order; ++k) powers_[k] += 2 * middle.dot(piece.coefficients.col(k));
+    for (int k = 0; k <= degree_; ++k) powers_[k] *= 0.5;
   }
-  out.value -= point;
+
+  double value(double xi) const {
+    double out = powers_[degree_];
+    for (int k = degree_ - 1; k >= 0; --k) out = xi * out + powers_[k];
+    return out;
+  }
+  /// By xi.
+  std::pair<double, double> derivatives(double xi) const {
+    double value = powers_[degree_], slope = 0, half_curvature = 0;
+    for (int k = degree_ - 1; k >= 0; --k) {
+      half_curvature = xi * half_curvature + slope;
+      slope = xi * slope + value;
+      value = xi * value + powers_[k];
+    }
+    return {slope, 2 * half_curvature};
+  }
+
+ private:
+  int degree_;
+  std::array<double, 9> powers_;
+};
+
+/// A place of a piece.
+Vector3 place_at(const LinePiece& piece, double xi) {
+  Vector3 out = piece.coefficients.col(piece.order);
+  for (int k = piece.order - 1; k >= 0; --k) out = xi * out + piece.coefficients.col(k);
   return out;
 }
 
@@ -72,6 +97,8 @@ LinePiece line_piece(int order, const std::array<Vector3, 5>& nodes) {
   out.coefficients.setZero();
   for (int k = 0; k <= order; ++k)
     for (int i = 0; i <= order; ++i) out.coefficients.col(k) += powers(i, k) * nodes[i];
+  for (int i = 1; i <= order; ++i)
+    for (int k = 1; k <= order; ++k) out.squares[i + k] += out.coefficients.col(i).dot(out.coefficients.col(k));
   for (int k = 2; k <= order; ++k) out.bulge += out.coefficients.col(k).norm();
   out.reach = out.bulge + out.coefficients.col(1).norm();
   return out;
@@ -85,31 +112,32 @@ double LinePiece::least_distance(const Vector3& point) const {
 }
 
 ClosestPoint closest_point(const LinePiece& piece, const Vector3& point, double low, double high) {
-  // The squared distance has degree 2 order: between so many samples it has no more than one valley, but for lines that
-  // wind within an element.
+  const HalfSquare half_square(piece, point);
+  // Of degree 2 order: between so many samples it has no more than one valley, but for lines that wind within an
+  // element.
   const int spans = 2 * piece.order;
-  ClosestPoint out;
-  double begin = low, end = high;
+  double begin = low, end = high, xi = low, least = std::numeric_limits<double>::infinity();
   const auto sample = [&](int i) { return i == spans ? high : low + (high - low) * i / spans; };
   for (int i = 0; i <= spans; ++i) {
-    const double xi = sample(i), square = offset_at(piece, point, xi).value.squaredNorm();
-    if (square >= out.square) continue;
-    out.square = square;
-    out.xi = xi;
+    const double at = sample(i), value = half_square.value(at);
+    if (value >= least) continue;
+    least = value;
+    xi = at;
     begin = sample(std::max(i - 1, 0));
     end = sample(std::min(i + 1, spans));
   }
   constexpr int kMostLooks = 60;
-  constexpr double kTiny = 1e-15;
+  constexpr double kSmall = 1e-9;               // what Newton's step leaves then is its square
   bool knows_begin = false, knows_end = false;  // which side of the valley they are on
-  double xi = out.xi;
   for (int look = 0; look < kMostLooks; ++look) {
-    const LineOffset offset = offset_at(piece, point, xi);
-    const double slope = offset.value.dot(offset.slope);
+    const auto [slope, rise] = half_square.derivatives(xi);
     if (slope == 0 || (slope < 0 && xi == high) || (slope > 0 && xi == low)) break;
+    if (rise > 0 && std::abs(slope) <= kSmall * rise) {
+      xi = std::clamp(xi - slope / rise, low, high);
+      break;
+    }
     (slope < 0 ? begin : end) = xi;
     (slope < 0 ? knows_begin : knows_end) = true;
-    const double rise = offset.slope.squaredNorm() + offset.value.dot(offset.curvature);
     double next = xi - slope / rise;
     if (!(rise > 0) || next <= begin || next >= end) {
       if (slope < 0)
@@ -117,14 +145,13 @@ ClosestPoint closest_point(const LinePiece& piece, const Vector3& point, double 
       else
         next = knows_begin ? 0.5 * (begin + end) : begin;
     }
-    const bool is_there = std::abs(next - xi) <= kTiny;
+    if (next == xi) break;
     xi = next;
-    if (is_there) break;
   }
-  const LineOffset offset = offset_at(piece, point, xi);
-  out.square = offset.value.squaredNorm();
+  ClosestPoint out;
+  out.square = (place_at(piece, xi) - point).squaredNorm();
   out.xi = xi;
-  const double slope = offset.value.dot(offset.slope);
+  const double slope = half_square.derivatives(xi).first;
   out.is_clamped = (xi <= low && slope > 0) || (xi >= high && slope < 0);
   return out;
 }

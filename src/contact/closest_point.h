@@ -35,6 +35,7 @@ struct LineRange {
 struct LinePiece {
   int order = 1;
   Eigen::Matrix<double, 3, 5> coefficients;  ///< of powers [m]
+  std::array<double, 9> squares{};           ///< of its square where its middle is the origin, by powers [m^2]
   double reach = 0;                          ///< no point of it is farther from its middle [m]
   double bulge = 0;                          ///< nor from the straight line that its first two are [m]
 
