@@ -1,6 +1,7 @@
 // In which steps a contact acts, and which are too long for it. (docs/notes/contact.md 5)
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "contact/contact_element.h"
 
@@ -59,6 +60,16 @@ int ContactElement::find_nodes(const ForceStart& start, int* nodes) const {
     }
   }
   return 0;
+}
+
+ForceRoom ContactElement::room(const ForceStart& start) const {
+  const Bounds bounds = this->bounds(poses_in(start.poses));
+  double least = std::numeric_limits<double>::infinity();
+  for (const ContactShape& shape : surface_.shapes) least = std::min(least, shape.gap(bounds.middle));
+  const double size = least - bounds.radius - kNear * size_;
+  // Both sides go, and what several nodes are apart changes by both of their ways. The shapes turn about their node.
+  const double arm = surface_.node < 0 ? 0.0 : bounds.middle.norm() + std::max(size, 0.0);
+  return {size, 2 + 2 * spread_, spread_ * (middle_arm_.norm() + 2 * own_radius_ + bounds.radius + arm)};
 }
 
 bool ContactElement::needs_halves(const ForceStep& step, const int*, int count) const {

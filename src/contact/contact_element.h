@@ -70,6 +70,7 @@ class ContactElement : public ForceElement {
   const char* kind() const override { return "contact"; }
   std::vector<std::string> links() const override { return links_; }
   int find_nodes(const ForceStart& start, int* nodes) const override;
+  ForceRoom room(const ForceStart& start) const override;
   void evaluate(const ForceStep& step, const int* nodes, ForceAction& action) const override;
   bool needs_halves(const ForceStep& step, const int* nodes, int count) const override;
   bool hits() const override { return true; }

@@ -21,6 +21,7 @@ class LineContact : public ForceElement {
   int most_nodes() const override { return search_.most_nodes(); }
   /// Of the stations, and of those elements of the line that are near, nearest first where there are many.
   int find_nodes(const ForceStart& start, int* nodes) const override { return search_.find_nodes(start, nodes); }
+  ForceRoom room(const ForceStart& start) const override { return search_.room(start); }
   void evaluate(const ForceStep& step, const int* nodes, ForceAction& action) const override;
   bool needs_halves(const ForceStep& step, const int* nodes, int count) const override;
   bool hits() const override { return true; }

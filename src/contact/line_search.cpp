@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "model/state.h"
 
@@ -221,6 +222,18 @@ int LineSearch::find_nodes(const ForceStart& start, int* nodes) const {
   std::for_each_n(side().nodes.begin(), moving_nodes(), add);
   for (int i = 0; i < found; ++i) std::for_each_n(line().elements[near[i].second].begin(), line().order + 1, add);
   return count;
+}
+
+ForceRoom LineSearch::room(const ForceStart& start) const {
+  const NodePlaces places(start.poses);
+  const Cloud cloud = this->cloud(places);
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < line().elements.size(); ++k) {
+    const double distance = (places.position(line().elements[k][line().order / 2]) - cloud.middle).norm();
+    least = std::min(least, distance - kLonger * line().lengths[k]);
+  }
+  // The cloud and the line go, and what its nodes are apart changes by both of their ways.
+  return {least - cloud.reach - (1 + kNear) * largest_radius_, 2 + 2 * kLebesgue, 2 * largest_arm_};
 }
 
 double LineSearch::way(const ForceStep& step) const {

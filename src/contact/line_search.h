@@ -87,6 +87,8 @@ class LineSearch {
   /// See ForceElement::find_nodes(): the stations', and those of elements of the line that are near; of many the
   /// nearest.
   int find_nodes(const ForceStart& start, int* nodes) const;
+  /// See ForceElement::room().
+  ForceRoom room(const ForceStart& start) const;
   /// The largest relative way of what may have touched over a step [m]; < 0: nothing has.
   double way(const ForceStep& step) const;
   /// Between both ends of a step, of a pair that touches at neither.

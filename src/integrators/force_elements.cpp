@@ -14,7 +14,9 @@ void couple_force_elements(const Model& model, const State& state, TangentBacken
     tangent.couple(static_cast<int>(k), nodes[k].data(), static_cast<int>(nodes[k].size()));
 }
 
-ForceElements::ForceElements(const StepConfiguration& configuration) : configuration_(configuration) {
+ForceElements::ForceElements(const StepConfiguration& configuration)
+    : configuration_(configuration),
+      far_(configuration.model().force_elements.size(), configuration.model().nodes.size()) {
   const ForceElementList& elements = configuration.model().force_elements;
   if (elements.empty()) return;
   const Scheme& scheme = configuration.scheme();
@@ -33,6 +35,7 @@ ForceElements::ForceElements(const StepConfiguration& configuration) : configura
     nodes_.emplace_back().reserve(element->most_nodes());
     most = std::max(most, 6 * element->most_nodes());
     memory += element->memory_size();
+    may_be_far_ = may_be_far_ || element->hits();
   }
   residual_.resize(most);
   tangent_.resize(static_cast<std::size_t>(most) * most);
@@ -48,14 +51,23 @@ void ForceElements::begin(TangentBackend& tangent) {
   const ForceElementList& elements = configuration_.model().force_elements;
   const ForceStart start{configuration_.begin(), velocities_, configuration_.step()};
   may_hit_ = false;
-  std::fill(memory_.begin(), memory_.end(), 0.0);
+  if (may_be_far_) far_.begin(start);
   const double* memory = configuration_.state().force_memory.data();
+  double* new_memory = memory_.data();
   for (std::size_t k = 0; k < elements.size(); ++k) {
-    find_nodes(*elements[k], start, nodes_[k]);
+    const int size = elements[k]->memory_size();
+    nodes_[k].clear();
+    acts_[k] = false;
+    if (!far_.is_far(k)) {  // what is far remembers nothing
+      std::fill(new_memory, new_memory + size, 0.0);
+      find_nodes(*elements[k], start, nodes_[k]);
+      acts_[k] = !nodes_[k].empty() || elements[k]->remembers(memory);
+      far_.set_room(k, acts_[k] ? ForceRoom{} : elements[k]->room(start));
+    }
     tangent.couple(static_cast<int>(k), nodes_[k].data(), static_cast<int>(nodes_[k].size()));
     may_hit_ = may_hit_ || (start.duration != 0 && elements[k]->hits() && !nodes_[k].empty());
-    acts_[k] = !nodes_[k].empty() || elements[k]->remembers(memory);
-    memory += elements[k]->memory_size();
+    memory += size;
+    new_memory += size;
   }
 }
 
@@ -99,16 +111,24 @@ bool ForceElements::need_halves(double refinement) {
   if (nodes_.empty()) return false;
   ForceStep step = this->step();
   step.refinement = refinement;
+  if (may_be_far_) far_.end(step.begin, step.end);
   const ForceElementList& elements = configuration_.model().force_elements;
   for (std::size_t k = 0; k < elements.size(); ++k) {
-    if (elements[k]->needs_halves(step, nodes_[k].data(), static_cast<int>(nodes_[k].size()))) return true;
+    if (!far_.stays_far(k) && elements[k]->needs_halves(step, nodes_[k].data(), static_cast<int>(nodes_[k].size())))
+      return true;
     step.memory += elements[k]->memory_size();
   }
   return false;
 }
 
 void ForceElements::accept(State& state) const {
-  std::copy(memory_.begin(), memory_.end(), state.force_memory.begin());
+  const ForceElementList& elements = configuration_.model().force_elements;
+  std::size_t begin = 0;
+  for (std::size_t k = 0; k < elements.size(); ++k) {
+    const std::size_t size = elements[k]->memory_size();
+    if (acts_[k]) std::copy_n(memory_.begin() + begin, size, state.force_memory.begin() + begin);
+    begin += size;
+  }
 }
 
 }  // namespace flexarm

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "integrators/balance.h"
+#include "integrators/far_elements.h"
 #include "integrators/step_configuration.h"
 
 namespace flexarm {
@@ -33,12 +34,14 @@ class ForceElements {
   void evaluate(std::size_t k, const ForceStep& step, Balance& balance);
 
   const StepConfiguration& configuration_;
+  FarElements far_;
   std::vector<std::vector<int>> nodes_;  // per element
   std::vector<char> acts_;               // per element: on nodes, or it remembers something
   std::vector<Vector6> velocities_;      // per node {v, w} at the beginning
   std::vector<double> residual_, tangent_, memory_;
   double work_ = 0;
   bool may_hit_ = false;
+  bool may_be_far_ = false;  // some element is one that touches
 };
 
 }  // namespace flexarm

@@ -61,6 +61,13 @@ struct DamperTensions {
   Eigen::MatrixXd slope;  ///< by the measures' rates
 };
 
+/// How far something is from acting on anything: so long as nodes have gone and turned by less than takes it up.
+struct ForceRoom {
+  double size = 0;     ///< [m]; not above 0: it may act in the next step
+  double by_way = 0;   ///< what the longest way of a node takes of it, per m
+  double by_turn = 0;  ///< and the largest turn [m/rad]
+};
+
 /// A number that is put out: the last part of its column's name, and its unit.
 struct ForceOutput {
   const char* name;
@@ -121,6 +128,14 @@ class ForceElement {
     static_cast<void>(start);
     std::copy(reach_.begin(), reach_.end(), nodes);
     return static_cast<int>(reach_.size());
+  }
+
+  /// From poses at the beginning of a step on, whatever its velocities are. find_nodes() finds none, and needs_halves()
+  /// is false, where what nodes have gone and turned since then has not taken it up, with twice what they would go and
+  /// turn in the next step at the speeds of its beginning, or with what they have done in it.
+  virtual ForceRoom room(const ForceStart& start) const {
+    static_cast<void>(start);
+    return {};
   }
 
   // ---- what it does. `nodes`: as find_nodes() has written them. What acts on none and remembers nothing is not asked
