@@ -32,6 +32,7 @@ ForceElements::ForceElements(const StepConfiguration& configuration)
                     elements.front()->kind()));
   int most = 0, memory = 0;
   for (const auto& element : elements) {
+    memory_begins_.push_back(memory);
     nodes_.emplace_back().reserve(element->most_nodes());
     most = std::max(most, 6 * element->most_nodes());
     memory += element->memory_size();
@@ -52,34 +53,36 @@ void ForceElements::begin(TangentBackend& tangent) {
   const ForceStart start{configuration_.begin(), velocities_, configuration_.step()};
   may_hit_ = false;
   if (may_be_far_) far_.begin(start);
-  const double* memory = configuration_.state().force_memory.data();
-  double* new_memory = memory_.data();
-  for (std::size_t k = 0; k < elements.size(); ++k) {
-    const int size = elements[k]->memory_size();
-    nodes_[k].clear();
-    acts_[k] = false;
-    if (!far_.is_far(k)) {  // what is far remembers nothing
-      std::fill(new_memory, new_memory + size, 0.0);
-      find_nodes(*elements[k], start, nodes_[k]);
-      acts_[k] = !nodes_[k].empty() || elements[k]->remembers(memory);
-      far_.set_room(k, acts_[k] ? ForceRoom{} : elements[k]->room(start));
-    }
+  const bool is_told = told_ == &tangent;
+  told_ = &tangent;
+  const auto couple = [&](std::size_t k) {
     tangent.couple(static_cast<int>(k), nodes_[k].data(), static_cast<int>(nodes_[k].size()));
+  };
+  for (std::size_t k = 0; k < elements.size(); ++k) {
+    if (far_.is_far(k)) {  // it remembers nothing
+      acts_[k] = false;
+      if (is_told && nodes_[k].empty()) continue;
+      nodes_[k].clear();
+      couple(k);
+      continue;
+    }
+    const double* memory = configuration_.state().force_memory.data() + memory_begins_[k];
+    std::fill_n(memory_.begin() + memory_begins_[k], elements[k]->memory_size(), 0.0);
+    find_nodes(*elements[k], start, nodes_[k]);
+    couple(k);
+    acts_[k] = !nodes_[k].empty() || elements[k]->remembers(memory);
+    far_.set_room(k, acts_[k] ? ForceRoom{} : elements[k]->room(start));
     may_hit_ = may_hit_ || (start.duration != 0 && elements[k]->hits() && !nodes_[k].empty());
-    memory += size;
-    new_memory += size;
   }
 }
 
-/// With the memory of the first element.
+/// Without memory.
 ForceStep ForceElements::step() {
   const Scheme& scheme = configuration_.scheme();
   ForceStep step{configuration_.begin(), configuration_.end(), velocities_};
   step.duration = configuration_.step();
   step.at_end = !scheme.is_incremental();
   if (step.at_end) step.gamma = scheme.gamma;
-  step.memory = configuration_.state().force_memory.data();
-  step.new_memory = memory_.data();
   return step;
 }
 
@@ -87,11 +90,11 @@ void ForceElements::evaluate(Balance& balance) {
   if (nodes_.empty()) return;
   ForceStep step = this->step();
   work_ = 0;
-  const ForceElementList& elements = configuration_.model().force_elements;
-  for (std::size_t k = 0; k < elements.size(); ++k) {
-    if (acts_[k]) evaluate(k, step, balance);
-    step.memory += elements[k]->memory_size();
-    step.new_memory += elements[k]->memory_size();
+  for (std::size_t k = 0; k < nodes_.size(); ++k) {
+    if (!acts_[k]) continue;
+    step.memory = configuration_.state().force_memory.data() + memory_begins_[k];
+    step.new_memory = memory_.data() + memory_begins_[k];
+    evaluate(k, step, balance);
   }
 }
 
@@ -114,21 +117,19 @@ bool ForceElements::need_halves(double refinement) {
   if (may_be_far_) far_.end(step.begin, step.end);
   const ForceElementList& elements = configuration_.model().force_elements;
   for (std::size_t k = 0; k < elements.size(); ++k) {
-    if (!far_.stays_far(k) && elements[k]->needs_halves(step, nodes_[k].data(), static_cast<int>(nodes_[k].size())))
-      return true;
-    step.memory += elements[k]->memory_size();
+    if (far_.stays_far(k)) continue;
+    step.memory = configuration_.state().force_memory.data() + memory_begins_[k];
+    if (elements[k]->needs_halves(step, nodes_[k].data(), static_cast<int>(nodes_[k].size()))) return true;
   }
   return false;
 }
 
 void ForceElements::accept(State& state) const {
   const ForceElementList& elements = configuration_.model().force_elements;
-  std::size_t begin = 0;
-  for (std::size_t k = 0; k < elements.size(); ++k) {
-    const std::size_t size = elements[k]->memory_size();
-    if (acts_[k]) std::copy_n(memory_.begin() + begin, size, state.force_memory.begin() + begin);
-    begin += size;
-  }
+  for (std::size_t k = 0; k < elements.size(); ++k)
+    if (acts_[k])
+      std::copy_n(memory_.begin() + memory_begins_[k], elements[k]->memory_size(),
+                  state.force_memory.begin() + memory_begins_[k]);
 }
 
 }  // namespace flexarm

@@ -37,9 +37,11 @@ class ForceElements {
   FarElements far_;
   std::vector<std::vector<int>> nodes_;  // per element
   std::vector<char> acts_;               // per element: on nodes, or it remembers something
+  std::vector<int> memory_begins_;       // per element, in memory_ and State::force_memory
   std::vector<Vector6> velocities_;      // per node {v, w} at the beginning
   std::vector<double> residual_, tangent_, memory_;
   double work_ = 0;
+  const TangentBackend* told_ = nullptr;  // that knows what couples
   bool may_hit_ = false;
   bool may_be_far_ = false;  // some element is one that touches
 };
