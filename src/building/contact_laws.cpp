@@ -44,7 +44,10 @@ double deepest_start(const Model& model, const ContactStations& side, const Cont
   for (const ContactStation& station : side.stations)
     for (const ContactShape& shape : surface.shapes) {
       const Vector3 middle = seen_from(surface, middle_of(side, station, pose_of), pose_of);
-      deepest = std::max(deepest, station.radius - shape.gap(middle));
+      const Matrix3 outwards =
+          pose_of(surface.node).rotation.transpose() * pose_of(side.nodes[0]).rotation * station.outwards;
+      const double start = start_inside(shape, {}, station.radius, middle, outwards).start;
+      deepest = std::max(deepest, start > 0 ? start : station.radius - shape.gap(middle));
     }
   return deepest;
 }

@@ -63,6 +63,9 @@ double held_energy(const ContactLaw& law, const PointMemory& memory) {
   return 0.5 * (law.grip * memory.stretch.squaredNorm() + law.turn_grip * memory.turned.squaredNorm());
 }
 
+/// Of half the least width, and round-off: beyond that a point has not come in by that face.
+constexpr double kHalfWay = 1 + 1e-6;
+
 /// The edge of a table comes into a block that slides off it by the block's front, but it is the block's bottom that
 /// lies on it, deeper by what both give way. A corner that slides from one table to the next one meets an edge that is
 /// as low. Where it comes in is where it begins to be felt, so that nothing is stored.
@@ -131,8 +134,7 @@ PointMemory start_inside(const ContactShape& shape, const ContactLaw& law, doubl
     // Corners of equal boxes lie on edges, and are nearest to a side.
     out.face = nearest_face(shape, point);
     if (!can_lie_on(shape, out.face, outwards))
-      if (const int other = face_to_lie_on(shape, 0, point, outwards, std::numeric_limits<double>::infinity()))
-        out.face = other;
+      if (const int other = face_to_lie_on(shape, 0, point, outwards, kHalfWay * half_width(shape))) out.face = other;
   }
   const ContactShape& felt = by_face ? beyond_face(shape, out.face) : shape;
   out.start = radius - felt.distance(point).value;

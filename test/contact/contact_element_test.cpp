@@ -377,6 +377,7 @@ TEST(ContactElement, FeelsWhatStartsInsideFromThereOn) {
   EXPECT_NEAR(start_at(0.4, 0, below).start, 0.1, 1e-15);
   EXPECT_EQ(start_at(0.5, 0, below).face, 0) << "it touches";
   EXPECT_EQ(start_at(0.5, 0, below).start, 0) << "it touches";
+  EXPECT_EQ(start_at(-0.1, 0, below).face, 0) << "deeper than half the box: of boxes in one place none is above";
   EXPECT_NEAR(start_inside(box, {}, 0.2, {0, 0, 0.6}, Matrix3::Zero()).start, 0.1, 1e-15) << "a ball";
   EXPECT_EQ(start_inside(box, {}, 0.2, {0, 0, 0.7}, Matrix3::Zero()).start, 0) << "a ball that touches";
   const PointMemory nearest = start_inside(box, {}, 0, {0.4, 0, 0.1}, Matrix3::Zero());
