@@ -11,7 +11,7 @@ from headless_pyplot import pyplot, run
 
 # Cases side by side in so many columns of panels, to fill one page.
 COLUMNS = 3
-FAILED, WRONG, WARNED, DIAGNOSED = "#d62728", "#ff9f40", "#ffe08a", "#9ecae1"
+FAILED, WRONG, WARNED, DIAGNOSED, LEFT_OUT = "#d62728", "#ff9f40", "#ffe08a", "#9ecae1", "#e5e5e5"
 MOST_ITERATIONS = 50
 LONGEST_NAME = 50
 
@@ -33,7 +33,8 @@ def colour(verdict, iterations):
     if verdict == "right":
         share = math.log(max(iterations, 1)) / math.log(MOST_ITERATIONS)
         return pyplot.get_cmap("viridis")(0.8 - 0.55 * min(share, 1))
-    return {"wrong": WRONG, "warned": WARNED, "diagnosed": DIAGNOSED}.get(verdict, FAILED)
+    others = {"wrong": WRONG, "warned": WARNED, "diagnosed": DIAGNOSED, "left out": LEFT_OUT}
+    return others.get(verdict, FAILED)
 
 
 def lines(cases):
@@ -67,9 +68,9 @@ def draw(axes, part, schemes):
 def legend(figure):
     entries = [(f"right, {n} iterations a step", colour("right", n)) for n in (1, 3, 10, 50)]
     entries += [("wrong", WRONG), ("wrong, warned", WARNED), ("failed, or unsound and not diagnosed", FAILED),
-                ("unsound, diagnosed", DIAGNOSED)]
+                ("unsound, diagnosed", DIAGNOSED), ("the scheme has no contact", LEFT_OUT)]
     handles = [pyplot.Rectangle((0, 0), 1, 1, color=shade) for _, shade in entries]
-    figure.legend(handles, [text for text, _ in entries], loc="lower center", ncol=4, fontsize=6)
+    figure.legend(handles, [text for text, _ in entries], loc="lower center", ncol=5, fontsize=6)
 
 
 def main(data, picture):
