@@ -288,6 +288,19 @@ TEST(Contact, PairsThatCannotTouchAreRefused) {
                std::runtime_error);
 }
 
+// Nothing turns against the smooth line of a beam: what names it so is told, and of all others it is left out.
+TEST(Contact, LinesResistToNoTurns) {
+  std::string parts;
+  for (const std::string name : {"one", "two"})
+    parts += "<link name=\"" + name + "\"><beam elements=\"2\"><centerline><line to=\"1 0 0\"/></centerline>" +
+             "<circle radius=\"0.01\"/><material young=\"7e10\" poisson=\"0.3\" density=\"2700\"/></beam></link>" +
+             floating(name);
+  const std::string start = "<initial joint=\"of_two/z\" position=\"1\"/>";
+  EXPECT_THROW(simulation_of(parts + "<contact first=\"one\" second=\"two\" spinning=\"0.01\"/>", start, 1e-3),
+               std::runtime_error);
+  EXPECT_NO_THROW(simulation_of(parts + "<contact first=\"*\" second=\"*\" spinning=\"0.01\"/>", start, 1e-3));
+}
+
 // A cantilever that its weight presses on the floor: without it its tip would hang 0.117 m low.
 TEST(Contact, CantileverRestsOnTheFloorInStatics) {
   Simulation simulation = simulation_of(
