@@ -44,8 +44,7 @@ double deepest_start(const Model& model, const ContactStations& side, const Cont
   for (const ContactStation& station : side.stations)
     for (const ContactShape& shape : surface.shapes) {
       const Vector3 middle = seen_from(surface, middle_of(side, station, pose_of), pose_of);
-      const Matrix3 outwards =
-          pose_of(surface.node).rotation.transpose() * pose_of(side.nodes[0]).rotation * station.outwards;
+      const Matrix3 outwards = outwards_of(side, station, surface, pose_of);
       const double start = start_inside(shape, {}, station.radius, middle, outwards).start;
       deepest = std::max(deepest, start > 0 ? start : station.radius - shape.gap(middle));
     }

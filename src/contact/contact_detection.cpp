@@ -97,7 +97,7 @@ bool ContactElement::is_too_long(const ContactStation& station, const ContactSha
   motion.begin = from;
   motion.end = to;
   motion.duration = std::abs(step.duration);
-  motion.outwards = outwards(station, poses_in(step.begin));
+  motion.outwards = outwards_of(side_, station, surface_, poses_in(step.begin));
   const FeltShape felt = felt_shape(shape, law_, station.radius, motion, memory);
   // Of a corner that no face has seen coming in.
   if (!felt.is_felt) return passes_through(shape, from, to, -kUnseen * law_.depth);

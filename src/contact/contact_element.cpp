@@ -71,7 +71,9 @@ ContactLaw ContactElement::law_of(const ContactStation& station) const {
 void ContactElement::start(const State& state, double* memory) const {
   const auto pose_of = poses_in(state);
   for_each_pair([&](const ContactStation& station, const ContactShape& shape) {
-    put(start_inside(shape, law_, station.radius, place(station, pose_of), outwards(station, pose_of)), memory);
+    put(start_inside(shape, law_, station.radius, place(station, pose_of),
+                     outwards_of(side_, station, surface_, pose_of)),
+        memory);
     memory += PointMemory::kSize;
     return true;
   });
@@ -160,7 +162,7 @@ void ContactElement::evaluate(const ForceStep& step, const int*, ForceAction& ac
     if (step.duration != 0) motion.begin_velocity = velocity(station, poses_in(step.begin), step.velocities);
     motion.duration = step.duration;
     motion.at_end = step.at_end;
-    motion.outwards = outwards(station, poses_in(step.begin));
+    motion.outwards = outwards_of(side_, station, surface_, poses_in(step.begin));
     const PointAction local =
         point_action(shape, law_of(station), station.radius, motion, memory_at(memory), action.tangent.size() > 0);
     action.dissipated += local.dissipated;

@@ -37,7 +37,8 @@ struct ContactSurface {
   std::vector<ContactShape> shapes;
 };
 
-inline const NodePose kWorldPose;
+inline const NodePose kWorldPose;  ///< at the origin, not turned
+
 /// Of all nodes; the world is where it is.
 inline auto poses_in(const std::vector<NodePose>& nodes) {
   return [&nodes](int node) -> const NodePose& { return node < 0 ? kWorldPose : nodes[node]; };
@@ -57,6 +58,13 @@ template <class PoseOf>
 Vector3 seen_from(const ContactSurface& surface, const Vector3& point, const PoseOf& pose_of) {
   const NodePose& body = pose_of(surface.node);
   return body.rotation.transpose() * (point - body.position);
+}
+
+/// Normals of the faces that meet in a station, see ContactPoint, in the frame of a surface.
+template <class PoseOf>
+Matrix3 outwards_of(const ContactStations& side, const ContactStation& station, const ContactSurface& surface,
+                    const PoseOf& pose_of) {
+  return pose_of(surface.node).rotation.transpose() * pose_of(side.nodes[0]).rotation * station.outwards;
 }
 
 /// Each station of one side with each shape of the other one.
@@ -122,11 +130,6 @@ class ContactElement : public ForceElement {
   /// Whether a step is too long for one of them; `acts`: see needs_halves().
   bool is_too_long(const ContactStation& station, const ContactShape& shape, const PointMemory& memory,
                    const ForceStep& step, bool acts) const;
-  /// The same of the faces that meet in a corner, in the frame of the shapes.
-  template <class PoseOf>
-  Matrix3 outwards(const ContactStation& station, const PoseOf& pose_of) const {
-    return pose_of(surface_.node).rotation.transpose() * pose_of(side_.nodes[0]).rotation * station.outwards;
-  }
   Frames frames(const ForceStep& step) const;
   double remembered_energy(const ForceStep& step) const;
   Placed placed(const ContactStation& station, const Frames& frames, const ForceStep& step) const;

@@ -18,6 +18,28 @@ constexpr double kSlow = 1e-3;
 /// A start inside falls to the e-th part in the time in which the contact's oscillator goes through this angle.
 constexpr double kLetOutAngle = 100;
 
+/// Across the normal; at most `most`, which grows by `most_by_push`.
+ContactGrip held_across(const Vector3& whole, const Vector3& normal, double most, double most_by_push) {
+  const Matrix3 tangential = Matrix3::Identity() - normal * normal.transpose();
+  const Vector3 trial = tangential * whole;
+  const Matrix3 by_normal = -(normal.dot(whole) * Matrix3::Identity() + normal * whole.transpose());
+  const double size = trial.norm();
+  if (size <= most) return {trial, tangential, by_normal, Vector3::Zero()};
+  const Vector3 along = trial / size;
+  const Matrix3 turn = most / size * (Matrix3::Identity() - along * along.transpose());
+  return {most * along, turn * tangential, turn * by_normal, most_by_push * along};
+}
+
+/// Along the normal.
+ContactGrip held_along(const Vector3& whole, const Vector3& normal, double most, double most_by_push) {
+  const double size = normal.dot(whole);
+  if (std::abs(size) <= most)
+    return {size * normal, normal * normal.transpose(), size * Matrix3::Identity() + normal * whole.transpose(),
+            Vector3::Zero()};
+  const double sign = size < 0 ? -1 : 1;
+  return {sign * most * normal, Matrix3::Zero(), sign * most * Matrix3::Identity(), sign * most_by_push * normal};
+}
+
 }  // namespace
 
 double damping_for_restitution(double restitution) {
@@ -96,32 +118,6 @@ double let_out(const ContactLaw& law, double start, double duration) {
 double let_out_rate(const ContactLaw& law, double start) {
   return start * law.frequency / kLetOutAngle;
 }
-
-namespace {
-
-/// Across the normal; at most `most`, which grows by `most_by_push`.
-ContactGrip held_across(const Vector3& whole, const Vector3& normal, double most, double most_by_push) {
-  const Matrix3 tangential = Matrix3::Identity() - normal * normal.transpose();
-  const Vector3 trial = tangential * whole;
-  const Matrix3 by_normal = -(normal.dot(whole) * Matrix3::Identity() + normal * whole.transpose());
-  const double size = trial.norm();
-  if (size <= most) return {trial, tangential, by_normal, Vector3::Zero()};
-  const Vector3 along = trial / size;
-  const Matrix3 turn = most / size * (Matrix3::Identity() - along * along.transpose());
-  return {most * along, turn * tangential, turn * by_normal, most_by_push * along};
-}
-
-/// Along the normal.
-ContactGrip held_along(const Vector3& whole, const Vector3& normal, double most, double most_by_push) {
-  const double size = normal.dot(whole);
-  if (std::abs(size) <= most)
-    return {size * normal, normal * normal.transpose(), size * Matrix3::Identity() + normal * whole.transpose(),
-            Vector3::Zero()};
-  const double sign = size < 0 ? -1 : 1;
-  return {sign * most * normal, Matrix3::Zero(), sign * most * Matrix3::Identity(), sign * most_by_push * normal};
-}
-
-}  // namespace
 
 ContactGrip contact_grip(const ContactLaw& law, const Vector3& stretch, const Vector3& slip, const Vector3& normal,
                          double push) {

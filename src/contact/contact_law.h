@@ -59,10 +59,14 @@ double remembered_speed(const ContactChange& change, double begin_rate);
 /// By which the hit is damped in the step. `remembered`: see remembered_speed(); `penetration`: both at the beginning.
 double approach_speed(double penetration, double begin_rate, double remembered);
 
+/// What goes in by less than this part of its radius on its way does not go through: what lies alongside something does
+/// so by round-off.
+constexpr double kGraze = 1e-6;
+
 /// What is left of a start inside below this is nothing [m].
 constexpr double kLeastStart = 1e-9;
 /// What has started deep inside is felt from there on alone, and is let out little by little: so deep it still is at
-/// the end of a step that begins at `start` [m]. (docs/notes/contact.md 2)
+/// the end of a step that begins at `start` [m]. (docs/notes/contact.md 5)
 double let_out(const ContactLaw& law, double start, double duration);
 /// How fast it is let out [m/s]: so much faster than the true penetration the felt one grows.
 double let_out_rate(const ContactLaw& law, double start);

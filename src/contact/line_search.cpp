@@ -272,7 +272,6 @@ bool LineSearch::passes_through(std::size_t index, const ClosestPoint& begin, co
   };
   if (offset(from, begin, first).dot(change(begin)) >= 0 || offset(to, end, last).dot(change(end)) <= 0) return false;
   constexpr double kLeast = 1.0 / 64;  // of the way, per look
-  constexpr double kGraze = 1e-6;      // tubes that lie alongside each other do, by round-off
   while (gone < way) {
     const double part = gone / way;
     Middles middles;

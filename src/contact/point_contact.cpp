@@ -15,24 +15,36 @@ constexpr double kShort = 1e-6;
 /// Of the depth: so low an edge holds nothing back.
 constexpr double kLow = 0.2;
 
-/// Friction on the surface of the ball, a radius off its middle.
-void add_grip(const ContactLaw& law, double radius, const PointMotion& motion, const GapChange& gap,
-              const ContactPush& push, const Vector3& stretch, bool with_slope, PointAction& action) {
+/// Where it is pushed: what grips needs of that.
+struct Pushed {
+  double push;
+  Vector3 normal;       ///< unit
+  Matrix3 by_end;       ///< of the normal
+  Vector3 push_by_end;  ///< of the push
+};
+Pushed pushed(const GapChange& gap, const ContactPush& push) {
   const double length = gap.gradient.norm();
-  const Vector3 normal = gap.gradient / length, offset = -radius * normal;
+  const Vector3 normal = gap.gradient / length;
+  return {push.value, normal, (Matrix3::Identity() - normal * normal.transpose()) * gap.slope / length,
+          -push.slope * gap.end_gradient};
+}
+
+/// Friction on the surface of the ball, a radius off its middle.
+void add_grip(const ContactLaw& law, double radius, const PointMotion& motion, const Pushed& pushed,
+              const Vector3& stretch, bool with_slope, PointAction& action) {
+  const Vector3 offset = -radius * pushed.normal;
   const Vector3 slip = motion.end - motion.begin + motion.turn.cross(offset);
-  const ContactGrip grip = contact_grip(law, stretch, slip, normal, push.value);
+  const ContactGrip grip = contact_grip(law, stretch, slip, pushed.normal, pushed.push);
   const Vector3 drag = -law.grip * grip.stretch;
   action.memory.stretch = grip.stretch;
   action.dissipated += -drag.dot(slip) - 0.5 * law.grip * grip.stretch.squaredNorm();
   action.wrench.head<3>() += drag;
   action.wrench.tail<3>() = offset.cross(drag);
   if (!with_slope) return;
-  const Vector3 push_by_end = -push.slope * gap.end_gradient;
-  const Matrix3 by_end = (Matrix3::Identity() - normal * normal.transpose()) * gap.slope / length;  // of the normal
+  const Matrix3& by_end = pushed.by_end;
   const Matrix3 slip_by_end = Matrix3::Identity() - radius * hat(motion.turn) * by_end;
   Eigen::Matrix<double, 3, 6> drag_slope;
-  drag_slope << grip.by_slip * slip_by_end + grip.by_normal * by_end + grip.by_push * push_by_end.transpose(),
+  drag_slope << grip.by_slip * slip_by_end + grip.by_normal * by_end + grip.by_push * pushed.push_by_end.transpose(),
       -grip.by_slip * hat(offset);
   drag_slope *= -law.grip;
   action.slope.topRows<3>() += drag_slope;
@@ -41,20 +53,16 @@ void add_grip(const ContactLaw& law, double radius, const PointMotion& motion, c
 }
 
 /// What resists to turning against the surface.
-void add_turn_grip(const ContactLaw& law, const PointMotion& motion, const GapChange& gap, const ContactPush& push,
-                   const Vector3& turned, bool with_slope, PointAction& action) {
-  const double length = gap.gradient.norm();
-  const Vector3 normal = gap.gradient / length;
-  const ContactGrip grip = turn_grip(law, turned, motion.turn, normal, push.value);
+void add_turn_grip(const ContactLaw& law, const PointMotion& motion, const Pushed& pushed, const Vector3& turned,
+                   bool with_slope, PointAction& action) {
+  const ContactGrip grip = turn_grip(law, turned, motion.turn, pushed.normal, pushed.push);
   const Vector3 couple = -law.turn_grip * grip.stretch;
   action.memory.turned = grip.stretch;
   action.dissipated += -couple.dot(motion.turn) - 0.5 * law.turn_grip * grip.stretch.squaredNorm();
   action.wrench.tail<3>() += couple;
   if (!with_slope) return;
-  const Vector3 push_by_end = -push.slope * gap.end_gradient;
-  const Matrix3 by_end = (Matrix3::Identity() - normal * normal.transpose()) * gap.slope / length;  // of the normal
   action.slope.bottomLeftCorner<3, 3>() -=
-      law.turn_grip * (grip.by_normal * by_end + grip.by_push * push_by_end.transpose());
+      law.turn_grip * (grip.by_normal * pushed.by_end + grip.by_push * pushed.push_by_end.transpose());
   action.slope.bottomRightCorner<3, 3>() -= law.turn_grip * grip.by_slip;
 }
 
@@ -186,8 +194,9 @@ PointAction point_action(const ContactShape& whole, const ContactLaw& law, doubl
     out.slope.topLeftCorner<3, 3>() = push.value * gap.slope - push.slope * gap.gradient * gap.end_gradient.transpose();
   out.wrench.head<3>() = push.value * gap.gradient;
   if (gap.gradient.isZero(0)) return out;
-  if (law.friction > 0) add_grip(law, radius, motion, gap, push, memory.stretch, with_slope, out);
-  if (law.resists_turns()) add_turn_grip(law, motion, gap, push, memory.turned, with_slope, out);
+  const Pushed pushed = flexarm::pushed(gap, push);
+  if (law.friction > 0) add_grip(law, radius, motion, pushed, memory.stretch, with_slope, out);
+  if (law.resists_turns()) add_turn_grip(law, motion, pushed, memory.turned, with_slope, out);
   return out;
 }
 
@@ -218,7 +227,6 @@ bool passes_through(const ContactShape& shape, const Vector3& from, const Vector
   double gone = shape.distance(from).value - radius;
   if (gone + shape.distance(to).value - radius >= length) return false;
   constexpr double kLeast = 1e-4;  // of the way, per look
-  constexpr double kGraze = 1e-6;  // of a ball, by round-off
   while (gone < length) {
     const double gap = shape.distance(from + gone / length * way).value - radius;
     if (gap < -kGraze * std::abs(radius)) return true;

@@ -90,6 +90,13 @@ SignedDistance distance_of(const Hull& hull, const Vector3& y) {
   return out;
 }
 
+/// See corner().
+template <class Faces>
+double corner_gap(const Faces& faces) {
+  const double highest = faces.maxCoeff();
+  return highest <= 0 ? highest : faces.cwiseMax(0.0).norm();
+}
+
 // Signed distances alone; of a hull less than them outside, beside its faces.
 double gap_of(const HalfSpace&, const Vector3& y) {
   return y.z();
@@ -98,14 +105,10 @@ double gap_of(const Ball& ball, const Vector3& y) {
   return y.norm() - ball.radius;
 }
 double gap_of(const Box& box, const Vector3& y) {
-  const Vector3 faces = y.cwiseAbs() - box.half;
-  const double highest = faces.maxCoeff();
-  return highest <= 0 ? highest : faces.cwiseMax(0.0).norm();
+  return corner_gap(Vector3(y.cwiseAbs() - box.half));
 }
 double gap_of(const Cylinder& cylinder, const Vector3& y) {
-  const Eigen::Vector2d faces(y.head<2>().norm() - cylinder.radius, std::abs(y.z()) - cylinder.half_length);
-  const double highest = faces.maxCoeff();
-  return highest <= 0 ? highest : faces.cwiseMax(0.0).norm();
+  return corner_gap(Eigen::Vector2d(y.head<2>().norm() - cylinder.radius, std::abs(y.z()) - cylinder.half_length));
 }
 double gap_of(const Hull& hull, const Vector3& y) {
   return highest_face(hull, y).height;

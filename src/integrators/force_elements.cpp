@@ -53,26 +53,18 @@ void ForceElements::begin(TangentBackend& tangent) {
   const ForceStart start{configuration_.begin(), velocities_, configuration_.step()};
   may_hit_ = false;
   if (may_be_far_) far_.begin(start);
-  const bool is_told = told_ == &tangent;
-  told_ = &tangent;
-  const auto couple = [&](std::size_t k) {
-    tangent.couple(static_cast<int>(k), nodes_[k].data(), static_cast<int>(nodes_[k].size()));
-  };
   for (std::size_t k = 0; k < elements.size(); ++k) {
-    if (far_.is_far(k)) {  // it remembers nothing
-      acts_[k] = false;
-      if (is_told && nodes_[k].empty()) continue;
-      nodes_[k].clear();
-      couple(k);
-      continue;
+    nodes_[k].clear();
+    acts_[k] = false;
+    if (!far_.is_far(k)) {  // what is far remembers nothing
+      std::fill_n(memory_.begin() + memory_begins_[k], elements[k]->memory_size(), 0.0);
+      find_nodes(*elements[k], start, nodes_[k]);
+      const double* memory = configuration_.state().force_memory.data() + memory_begins_[k];
+      acts_[k] = !nodes_[k].empty() || elements[k]->remembers(memory);
+      far_.set_room(k, acts_[k] ? ForceRoom{} : elements[k]->room(start));
+      may_hit_ = may_hit_ || (start.duration != 0 && elements[k]->hits() && !nodes_[k].empty());
     }
-    const double* memory = configuration_.state().force_memory.data() + memory_begins_[k];
-    std::fill_n(memory_.begin() + memory_begins_[k], elements[k]->memory_size(), 0.0);
-    find_nodes(*elements[k], start, nodes_[k]);
-    couple(k);
-    acts_[k] = !nodes_[k].empty() || elements[k]->remembers(memory);
-    far_.set_room(k, acts_[k] ? ForceRoom{} : elements[k]->room(start));
-    may_hit_ = may_hit_ || (start.duration != 0 && elements[k]->hits() && !nodes_[k].empty());
+    tangent.couple(static_cast<int>(k), nodes_[k].data(), static_cast<int>(nodes_[k].size()));
   }
 }
 

@@ -41,7 +41,6 @@ class ForceElements {
   std::vector<Vector6> velocities_;      // per node {v, w} at the beginning
   std::vector<double> residual_, tangent_, memory_;
   double work_ = 0;
-  const TangentBackend* told_ = nullptr;  // that knows what couples
   bool may_hit_ = false;
   bool may_be_far_ = false;  // some element is one that touches
 };

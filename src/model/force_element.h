@@ -61,11 +61,12 @@ struct DamperTensions {
   Eigen::MatrixXd slope;  ///< by the measures' rates
 };
 
-/// How far something is from acting on anything: so long as nodes have gone and turned by less than takes it up.
+/// A distance within which nodes may move before an element can act. When the fastest node has gone a way and another
+/// one has turned by an angle, by_way * way + by_turn * angle of it are used up.
 struct ForceRoom {
-  double size = 0;     ///< [m]; not above 0: it may act in the next step
-  double by_way = 0;   ///< what the longest way of a node takes of it, per m
-  double by_turn = 0;  ///< and the largest turn [m/rad]
+  double size = 0;     ///< [m]; 0 or less: it may act in the next step
+  double by_way = 0;   ///< of any node, no unit
+  double by_turn = 0;  ///< of any node [m/rad]
 };
 
 /// A number that is put out: the last part of its column's name, and its unit.
@@ -130,9 +131,9 @@ class ForceElement {
     return static_cast<int>(reach_.size());
   }
 
-  /// From poses at the beginning of a step on, whatever its velocities are. find_nodes() finds none, and needs_halves()
-  /// is false, where what nodes have gone and turned since then has not taken it up, with twice what they would go and
-  /// turn in the next step at the speeds of its beginning, or with what they have done in it.
+  /// Room from the poses of `start` on. Until it is used up find_nodes() finds none, and needs_halves() is false. What
+  /// a step that begins adds to the motion is taken as twice its duration at the speeds of its beginning; what a step
+  /// that has been solved adds is its motion.
   virtual ForceRoom room(const ForceStart& start) const {
     static_cast<void>(start);
     return {};

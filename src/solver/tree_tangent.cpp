@@ -33,14 +33,12 @@ double TreeTangent::cost_of_factors() const {
 void TreeTangent::set_zero() {
   for (std::size_t v = 0; v < dof_.size.size(); ++v) std::fill_n(diagonal_blocks_[v], dof_.size[v] * dof_.size[v], 0.0);
   for (Eigen::MatrixXd& closure : blocks_.closures) closure.setZero();
-  for (int k = 0; k < static_cast<int>(blocks_.couplings.size()); ++k) set_coupling_zero(k);
+  // Most couple none of the nodes that they may.
+  for (std::size_t k = 0; k < blocks_.couplings.size(); ++k) {
+    const Eigen::Index size = 6 * static_cast<Eigen::Index>(order_.coupled_nodes(static_cast<int>(k)).size());
+    blocks_.couplings[k].topLeftCorner(size, size).setZero();
+  }
   blocks_.held.clear();
-}
-
-/// Of the nodes that it couples at present; most couple none of those that they may.
-void TreeTangent::set_coupling_zero(int index) {
-  const Eigen::Index size = 6 * static_cast<Eigen::Index>(order_.coupled_nodes(index).size());
-  blocks_.couplings[index].topLeftCorner(size, size).setZero();
 }
 
 void TreeTangent::add_closure(int closure, int index, double multiplier, const ClosureMaps& maps) {

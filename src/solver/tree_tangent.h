@@ -32,10 +32,7 @@ class TreeTangent : public TangentBackend {
   void condense_interiors() override { condensation_ = std::make_unique<InteriorCondensation>(model_, order_); }
   InteriorCondensation* condensation() override { return condensation_.get(); }
   void add_closure(int closure, int index, double multiplier, const ClosureMaps& maps) override;
-  void couple(int index, const int* nodes, int count) override {
-    order_.set_coupling(index, nodes, count);
-    set_coupling_zero(index);
-  }
+  void couple(int index, const int* nodes, int count) override { order_.set_coupling(index, nodes, count); }
   void add_coupling(int index, const Eigen::Ref<const Eigen::MatrixXd>& blocks) override;
   FoldMaps& fold_maps(int joint) override { return blocks_.maps[joint]; }
   SlideMaps& slide_maps(int joint) override { return blocks_.slide_maps[joint]; }
@@ -51,7 +48,6 @@ class TreeTangent : public TangentBackend {
   double cost_of_factors() const override;
 
  private:
-  void set_coupling_zero(int index);
   void hold_rows();
   void set_right_hand_side(const Eigen::VectorXd& b);
   bool eliminate(const Eigen::VectorXd* b);
