@@ -196,7 +196,8 @@ SpeedReport measure_speed(const std::string& folder, const std::vector<SpeedProb
 std::vector<PlanarComparison> compare_planar(const std::string& folder, const SpeedReport& report);
 std::string planar_table(const std::vector<PlanarComparison>& comparisons);
 
-/// A chain that falls, a stack and a grasp, of flexarm and, where it is built with it, MuJoCo with its defaults.
+/// A chain that falls, a stack and a grasp, of flexarm and, where it is built with it, MuJoCo with its defaults; and
+/// scenes of flexarm with contacts that are far, and without.
 std::vector<ContactRun> compare_contacts(bool quick);
 std::string contact_table(const std::vector<ContactRun>& runs);
 

@@ -1,7 +1,9 @@
-// Rigid bodies that touch, beside MuJoCo.
+// Rigid bodies that touch, beside MuJoCo; and what contacts cost that are far.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -22,11 +24,12 @@ constexpr double kSettled = 1;  // what creeps, does so from then on [s]
 
 /// The same bodies for both programs. What creeps is the last body.
 struct Touching {
-  const char* name;
+  std::string name;
   std::string urdf, mjcf;
   double until;                // [s]
   std::vector<double> pushes;  // on the first freedoms of MuJoCo's model, as the scene's efforts [N]
   bool is_driven;              // there is work from outside, which MuJoCo does not tell
+  bool is_far = false;         // nothing comes near anything
 };
 
 std::string inertial(double mass, const Vector3& inertia, const Vector3& middle = {0, 0, 0}) {
@@ -124,6 +127,52 @@ Touching grasp() {
           true};
 }
 
+/// What contact costs that does not come about: the same scene with it and without.
+Touching far_scene(const std::string& what, const std::string& parts, const std::string& loads,
+                   const std::string& contacts) {
+  const char* kind = contacts.empty() ? ", no contact" : ", far contacts";
+  return {what + kind, urdf_of(contacts + parts, loads), "", 3, {}, false, true};
+}
+
+/// A rigid arm of six links, and five boxes that its hand may touch.
+Touching far_boxes(bool with_contact) {
+  std::string arm, boxes, contacts, parent = "world";
+  const auto shape = [](const std::string& size) {
+    return "<collision><geometry><box size=\"" + size + "\"/></geometry></collision>";
+  };
+  for (int k = 0; k < 6; ++k) {
+    const std::string link = fmt::format("link{}", k);
+    arm += fmt::format(
+        "<link name=\"{0}\">{1}{2}</link><joint name=\"joint{3}\" type=\"continuous\"><parent link=\"{4}\"/>"
+        "<child link=\"{0}\"/><origin xyz=\"0.2 0 0\"/><axis xyz=\"{5}\"/></joint>",
+        link, inertial(1, Vector3::Constant(0.01), {0.1, 0, 0}), shape("0.2 0.05 0.05"), k, parent,
+        k % 2 == 0 ? "0 0 1" : "0 1 0");
+    parent = link;
+  }
+  for (int k = 0; k < 5; ++k) {
+    boxes += fmt::format(
+        "<link name=\"box{0}\">{1}</link><joint name=\"of_box{0}\" type=\"fixed\"><parent link=\"world\"/><child "
+        "link=\"box{0}\"/><origin xyz=\"{2} 5 5\"/></joint>",
+        k, shape("0.3 0.3 0.3"), 5 + k);
+    if (with_contact) contacts += fmt::format("<contact first=\"link5\" second=\"box{}\"/>", k);
+  }
+  return far_scene("six links, five boxes", boxes + arm, "", contacts);
+}
+
+/// Two cantilevers of 20 elements, one high over the other one, that bend in space.
+Touching far_beams(bool with_contact) {
+  std::string beams, loads;
+  for (const auto& [name, height] : {std::pair("low", 1), std::pair("high", 4)}) {
+    beams += fmt::format(
+        "<link name=\"{0}\"><beam elements=\"20\" order=\"2\"><centerline><line to=\"1 0 0\"/></centerline><circle "
+        "radius=\"0.01\"/><material young=\"7e10\" poisson=\"0.3\" density=\"2700\"/></beam></link><joint "
+        "name=\"of_{0}\" type=\"fixed\"><parent link=\"world\"/><child link=\"{0}\"/><origin xyz=\"0 0 {1}\"/></joint>",
+        name, height);
+    loads += fmt::format("<load link=\"{}\" at=\"1 0 0\" force=\"0 5 0\"/>", name);
+  }
+  return far_scene("two beams", beams, loads, with_contact ? "<contact first=\"low\" second=\"high\"/>" : "");
+}
+
 ContactRun run_flexarm(const Touching& problem, double until) {
   const scene::ReadResult result = scene::read_scene_text(problem.urdf, problem.name);
   if (!result.scene) throw std::logic_error(to_text(result.diagnostics));
@@ -139,6 +188,7 @@ ContactRun run_flexarm(const Touching& problem, double until) {
     out.seconds += processor_seconds() - clock;
     if (!out.completed) return out;
     ++out.steps;
+    if (problem.is_far) continue;  // what looks at all points takes the step's data out of the caches
     simulation.contacts(contacts);
     out.most_contacts = std::max(out.most_contacts, static_cast<int>(contacts.size()));
     for (const ActingContact& contact : contacts) out.deepest = std::max(out.deepest, contact.penetration);
@@ -187,11 +237,13 @@ ContactRun run_mujoco(const Touching& problem, double until) {
 
 std::vector<ContactRun> compare_contacts(bool quick) {
   std::vector<ContactRun> runs;
-  for (Touching& problem : std::vector<Touching>{chain(), stack(), grasp()}) {
+  for (const Touching& problem :
+       {chain(), stack(), grasp(), far_boxes(false), far_boxes(true), far_beams(false), far_beams(true)}) {
     const double until = quick ? 0.05 : problem.until;
     runs.push_back(run_flexarm(problem, until));
     runs.back().is_driven = problem.is_driven;
 #ifdef FLEXARM_HAS_MUJOCO
+    if (problem.is_far) continue;
     runs.push_back(run_mujoco(problem, until));
     runs.back().is_driven = problem.is_driven;
 #endif
