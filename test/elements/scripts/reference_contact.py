@@ -151,6 +151,19 @@ def friction_force(memory, slip, normal, force, limit, stiffness):
     return most * along, turn @ projector, turn @ by_normal, limit / stiffness * along
 
 
+def turn_grip(memory, turn, normal, force, spinning, rolling, stiffness):
+    """As friction_force, of what resists to spinning (along the normal) and rolling (across it). spinning, rolling: [m]."""
+    across = friction_force(memory, turn, normal, force, rolling, stiffness)
+    whole, most = memory + turn, spinning * force / stiffness
+    size = normal @ whole
+    if abs(size) <= most:
+        along = (size * normal, np.outer(normal, normal), size * I3 + np.outer(normal, whole), np.zeros(3))
+    else:
+        sign = np.sign(size)
+        along = (sign * most * normal, np.zeros((3, 3)), sign * most * I3, sign * spinning / stiffness * normal)
+    return tuple(a + b for a, b in zip(along, across))
+
+
 # ---------------------------------------------------------------- (a) a point of A against a function in B's frame
 
 

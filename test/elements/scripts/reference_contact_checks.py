@@ -306,8 +306,71 @@ def check_curves_friction():
     print(f"friction of curves: least loss {least:.1e}, moments {moments:.1e}")
 
 
+def check_turn_grip():
+    """Of spinning and rolling: derivatives, and that nothing is gained, whatever the memory is."""
+    rng, worst, least = np.random.default_rng(4), 0.0, np.inf
+    for case in range(2000):
+        memory, turn, normal = rng.normal(size=(3, 3))
+        normal, force = normal / np.linalg.norm(normal), rng.uniform(0.1, 2)
+        law = rng.uniform(0.1, 2, size=2) * 10.0 ** rng.integers(-2, 2), 3.0
+        after, *slopes = contact.turn_grip(memory, turn, normal, force, *law[0], law[1])
+        least = min(least, law[1] * (after @ turn - 0.5 * (after @ after - memory @ memory)))
+        if case > 200:
+            continue
+        h, columns = 1e-6, []
+        for k in range(7):  # of turn, normal, force
+            d = h * np.eye(7)[k]
+            columns.append(sum(sign * contact.turn_grip(memory, turn + sign * d[:3], normal + sign * d[3:6],
+                                                        force + sign * d[6], *law[0], law[1])[0] for sign in (1, -1)))
+        error = np.column_stack(columns) / (2 * h) - np.column_stack([*slopes[:2], slopes[2]])
+        worst = max(worst, abs(error).max())
+    print(f"spinning and rolling: derivatives {worst:.1e}, least loss {least:.1e}")
+
+
+def let_out(restitution_damping, gravity, h=1e-3, inside=0.05):
+    """A mass that starts inside of a floor: most of its speed over inside omega / 100, most that it hangs back from
+    inside e^(-omega t / 100) after a tenth of a second, and the error of its account."""
+    omega = np.pi / (10 * h)
+    stiffness, start, memory = omega**2, inside, 0.0
+    z, v, account, fastest, behind = -inside, 0.0, 0.0, 0.0, 0.0
+
+    def stored(z, start):
+        return 0.5 * stiffness * max(-z - start, 0) ** 2
+
+    begin = gravity * z
+    for k in range(5000):
+        left, rate = start * np.exp(-omega * h / 100), start * omega / 100 - v
+        speed = max(memory, rate) if -z - start > 0 else max(rate, 0)
+        z1 = z + h * v
+        for _ in range(50):
+            force, slope = contact.normal_force(-z - start, -z1 - left, h, stiffness, omega, restitution_damping, speed)
+            change = -(2 * (z1 - z - h * v) / h**2 + gravity - force) / (2 / h**2 + slope)
+            z1 += change
+            if abs(change) < 1e-17:
+                break
+        account -= force * (start - left)  # work from outside
+        account += force * (z + start - z1 - left) - stored(z1, left) + stored(z, start)  # what the damper takes
+        v = 2 * (z1 - z) / h - v
+        z, start, memory = z1, left, speed if -z1 - left > 0 else 0.0
+        fastest = max(fastest, v)
+        if k * h > 0.1:
+            behind = max(behind, abs(-z - start))
+    error = 0.5 * v * v + gravity * z + stored(z, start) + account - begin
+    return fastest / (inside * omega / 100), behind, error
+
+
+def check_letting_out():
+    for name, damping in (("e 1", 0.0), ("e 0.5", 1.4328), ("e 0.3", 3.0871)):
+        for gravity in (0.0, 9.81):
+            fastest, behind, error = let_out(damping, gravity)
+            print(f"let out, {name}, g {gravity}: speed {fastest:.3f} of p omega / 100, account {error:.1e}, off the "
+                  f"law's decay by {behind:.2e} m (g / omega^2 {gravity / (100 * np.pi) ** 2:.2e})")
+
+
 def run():
     check_maps()
+    check_turn_grip()
+    check_letting_out()
     check_shapes()
     check_curves()
     check_curves_friction()
