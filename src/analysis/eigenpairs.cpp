@@ -37,7 +37,7 @@ class UndampedOperation : public LinearOperation {
  public:
   UndampedOperation(const LinearisedMotion& motion, double shift) : motion_(motion), solver_(motion, 0, shift) {}
   Eigen::Index rows() const override { return motion_.unknowns(); }
-  void perform_op(const double* x, double* y) const override {
+  void apply(const double* x, double* y) const override {
     Eigen::VectorXd::Map(y, rows()) = solver_.solve(motion_.mass() * Eigen::VectorXd::Map(x, rows()));
   }
 
@@ -53,7 +53,7 @@ class DampedOperation : public LinearOperation {
   DampedOperation(const LinearisedMotion& motion, double shift)
       : motion_(motion), shift_(shift), solver_(motion, shift, shift * shift) {}
   Eigen::Index rows() const override { return 2 * motion_.unknowns(); }
-  void perform_op(const double* in, double* out) const override {
+  void apply(const double* in, double* out) const override {
     const Eigen::Index n = motion_.unknowns();
     const auto x = Eigen::VectorXd::Map(in, n), z = Eigen::VectorXd::Map(in + n, n);
     auto p = Eigen::VectorXd::Map(out, n), q = Eigen::VectorXd::Map(out + n, n);

@@ -5,9 +5,9 @@
 #include <numeric>
 #include <stdexcept>
 
-#include <Spectra/GenEigsSolver.h>
 #include <fmt/format.h>
 
+#include "analysis/krylov_space.h"
 #include "math/dense_eigenpairs.h"
 
 namespace flexarm {
@@ -15,26 +15,63 @@ namespace {
 
 /// Dense matrices of more rows would take minutes.
 constexpr Eigen::Index kMostRows = 1000;
+/// Of a pair: its residual over its value.
+constexpr double kAccuracy = 1e-13;
 
 Eigenpairs all_pairs(const LinearOperation& operation) {
   const Eigen::Index n = operation.rows();
   Eigen::MatrixXd dense(n, n);
   for (Eigen::Index j = 0; j < n; ++j) {
     const Eigen::VectorXd unit = Eigen::VectorXd::Unit(n, j);
-    operation.perform_op(unit.data(), dense.col(j).data());
+    operation.apply(unit.data(), dense.col(j).data());
   }
   return dense_eigenpairs(dense);
 }
 
+/// The first `count` pairs of `pairs`, largest first.
+Eigenpairs largest(const Eigenpairs& pairs, int count) {
+  std::vector<Eigen::Index> order(pairs.values.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&pairs](Eigen::Index a, Eigen::Index b) {
+    return std::abs(pairs.values[a]) > std::abs(pairs.values[b]);
+  });
+  order.resize(std::min<std::size_t>(order.size(), count));
+  Eigenpairs out{Eigen::VectorXcd(order.size()), Eigen::MatrixXcd(pairs.vectors.rows(), order.size())};
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    out.values[k] = pairs.values[order[k]];
+    out.vectors.col(k) = pairs.vectors.col(order[k]);
+  }
+  return out;
+}
+
+/// Of the operation in the space, `count` at most, those that are the operation's own to round-off.
+Eigenpairs converged_pairs(const KrylovSpace& space, int count) {
+  const Eigen::Index size = space.size();
+  const Eigenpairs ritz = largest(dense_eigenpairs(space.coefficients().topRows(size)), count);
+  Eigenpairs out{Eigen::VectorXcd(ritz.values.size()), Eigen::MatrixXcd(space.basis().rows(), ritz.values.size())};
+  Eigen::Index found = 0;
+  for (Eigen::Index k = 0; k < ritz.values.size(); ++k) {
+    // What leads out of the space is the residual.
+    const Eigen::VectorXcd rest = space.coefficients().bottomRows(KrylovSpace::kBlock) * ritz.vectors.col(k);
+    if (!(rest.norm() <= kAccuracy * std::abs(ritz.values[k]))) continue;
+    out.values[found] = ritz.values[k];
+    out.vectors.col(found++) = space.basis() * ritz.vectors.col(k);
+  }
+  return {out.values.head(found), out.vectors.leftCols(found)};
+}
+
+/// By Arnoldi's iteration without restarts: what is asked for lies apart from the rest, and few steps find it.
 Eigenpairs arnoldi_pairs(const LinearOperation& operation, int count, Crowded crowded) {
-  Spectra::GenEigsSolver<const LinearOperation> solver(
-      operation, count, std::min<Eigen::Index>(operation.rows(), std::max(2 * count + 20, 40)));
-  solver.init();
-  solver.compute(Spectra::SortRule::LargestMagn, crowded == Crowded::Fail ? 2000 : 200, 1e-13);
-  const Eigen::VectorXcd values = solver.eigenvalues();  // that have converged
-  if (values.size() == 0 || (values.size() < count && crowded == Crowded::Fail))
+  const Eigen::Index most = std::min<Eigen::Index>(operation.rows() - KrylovSpace::kBlock, 10 * count + 400);
+  KrylovSpace space(operation, most);
+  for (Eigen::Index size = std::min<Eigen::Index>(2 * count + 20, most);; size = std::min(size + size / 2, most)) {
+    space.grow(size);
+    Eigenpairs pairs = converged_pairs(space, count);
+    if (pairs.values.size() == count) return pairs;
+    if (size < most) continue;
+    if (pairs.values.size() > 0 && crowded == Crowded::LeaveOut) return pairs;
     throw std::runtime_error("the eigenvalue iteration did not converge");
-  return {values, solver.eigenvectors()};
+  }
 }
 
 /// Where the iteration breaks down, all of them, if that takes seconds.
@@ -42,7 +79,7 @@ Eigenpairs iterated_pairs(const LinearOperation& operation, int count, Crowded c
   try {
     return arnoldi_pairs(operation, count, crowded);
   } catch (const std::runtime_error&) {
-    if (operation.rows() <= kMostRows) return all_pairs(operation);
+    if (operation.rows() <= kMostRows) return largest(all_pairs(operation), count);
     throw std::runtime_error(
         fmt::format("the {} softest of {} eigenvalues are not found: Arnoldi's iteration does not converge", count,
                     operation.rows()));
@@ -53,16 +90,12 @@ Eigenpairs iterated_pairs(const LinearOperation& operation, int count, Crowded c
 
 std::vector<Eigenpair> largest_eigenpairs(const LinearOperation& operation, int count, bool is_small, Crowded crowded) {
   assert(count >= 1);
+  const bool takes_all = is_small || 2 * count + KrylovSpace::kBlock >= operation.rows();
   const auto [values, vectors] =
-      is_small || 2 * count + 2 >= operation.rows() ? all_pairs(operation) : iterated_pairs(operation, count, crowded);
-  std::vector<int> order(values.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(),
-            [&values = values](int a, int b) { return std::abs(values[a]) > std::abs(values[b]); });
-  order.resize(std::min<std::size_t>(order.size(), count));
+      takes_all ? largest(all_pairs(operation), count) : iterated_pairs(operation, count, crowded);
   std::vector<Eigenpair> pairs;
-  pairs.reserve(order.size());
-  for (const int k : order) pairs.push_back({values[k], vectors.col(k)});
+  pairs.reserve(values.size());
+  for (Eigen::Index k = 0; k < values.size(); ++k) pairs.push_back({values[k], vectors.col(k)});
   return pairs;
 }
 

@@ -14,15 +14,13 @@ struct Eigenpair {
   Eigen::VectorXcd vector;
 };
 
-/// A real square matrix, of which only products with vectors are known. The names are those that Spectra asks for.
+/// A real square matrix, of which only products with vectors are known.
 class LinearOperation {
  public:
-  using Scalar = double;
   virtual ~LinearOperation() = default;
   virtual Eigen::Index rows() const = 0;
-  Eigen::Index cols() const { return rows(); }
   /// Both have rows() numbers.
-  virtual void perform_op(const double* in, double* out) const = 0;
+  virtual void apply(const double* in, double* out) const = 0;
 };
 
 /// What the iteration does where eigenvalues crowd so that it cannot tell them apart.

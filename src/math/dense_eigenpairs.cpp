@@ -3,8 +3,8 @@
 #include <cassert>
 #include <stdexcept>
 
-#include <Spectra/LinAlg/UpperHessenbergEigen.h>
 #include <fmt/format.h>
+#include <Eigen/Eigenvalues>
 
 #include "math/hessenberg.h"
 
@@ -13,13 +13,9 @@ namespace {
 
 /// By the real QR iteration. False if it does not converge.
 bool find_pairs(const Eigen::MatrixXd& matrix, Eigenpairs& pairs) {
-  const Hessenberg hessenberg = flexarm::hessenberg(matrix);
-  try {
-    Spectra::UpperHessenbergEigen<double> solver(hessenberg.reduced);
-    pairs = {solver.eigenvalues(), hessenberg.basis * solver.eigenvectors()};
-  } catch (const std::runtime_error&) {
-    return false;
-  }
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(matrix);
+  if (solver.info() != Eigen::Success) return false;
+  pairs = {solver.eigenvalues(), solver.eigenvectors()};
   return pairs.values.allFinite() && pairs.vectors.allFinite();
 }
 

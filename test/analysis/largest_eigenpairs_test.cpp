@@ -1,0 +1,129 @@
+/// Eigenvalues of large operations whose eigenvalues are known.
+#include "analysis/largest_eigenpairs.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+#include "analysis/krylov_space.h"
+
+namespace flexarm {
+namespace {
+
+constexpr int kRows = 600;
+
+/// y = Q D Q x: a diagonal matrix, or one of blocks of two, seen in other coordinates: Q is the reflection at a plane.
+class Reflected : public LinearOperation {
+ public:
+  explicit Reflected(Eigen::MatrixXd middle) : middle_(std::move(middle)), normal_(middle_.rows()) {
+    for (Eigen::Index i = 0; i < normal_.size(); ++i) normal_[i] = std::sin(1.0 + i * i);
+    normal_.normalize();
+  }
+  Eigen::Index rows() const override { return middle_.rows(); }
+  void apply(const double* in, double* out) const override {
+    Eigen::VectorXd::Map(out, rows()) = reflected(middle_ * reflected(Eigen::VectorXd::Map(in, rows())));
+  }
+
+ private:
+  Eigen::VectorXd reflected(const Eigen::VectorXd& x) const { return x - 2 * normal_.dot(x) * normal_; }
+
+  Eigen::MatrixXd middle_;
+  Eigen::VectorXd normal_;
+};
+
+double residual(const LinearOperation& operation, const Eigenpair& pair) {
+  const Eigen::VectorXd real = pair.vector.real(), imaginary = pair.vector.imag();
+  Eigen::VectorXd real_image(real.size()), imaginary_image(real.size());
+  operation.apply(real.data(), real_image.data());
+  operation.apply(imaginary.data(), imaginary_image.data());
+  Eigen::VectorXcd image(real.size());
+  image.real() = real_image;
+  image.imag() = imaginary_image;
+  return (image - pair.value * pair.vector).norm() / pair.vector.norm();
+}
+
+// As of beams with round sections, two alike: 1 / k^4, four times each.
+TEST(LargestEigenpairs, FindsEqualOnesAsOftenAsTheyCome) {
+  Eigen::MatrixXd middle = Eigen::MatrixXd::Zero(kRows, kRows);
+  for (int i = 0; i < kRows; ++i) middle(i, i) = std::pow(1 + i / 4, -4.0);
+  const Reflected operation(middle);
+  const std::vector<Eigenpair> pairs = largest_eigenpairs(operation, 18, false, Crowded::Fail);
+  ASSERT_EQ(pairs.size(), 18u);
+  for (int k = 0; k < 18; ++k) {
+    EXPECT_NEAR(pairs[k].value.real(), std::pow(1 + k / 4, -4.0), 1e-14) << k;
+    EXPECT_NEAR(pairs[k].value.imag(), 0, 1e-14) << k;
+    EXPECT_LE(residual(operation, pairs[k]), 1e-14 * 100) << k;
+  }
+}
+
+TEST(LargestEigenpairs, FindsComplexOnes) {
+  Eigen::MatrixXd middle = Eigen::MatrixXd::Zero(kRows, kRows);
+  for (int i = 0; i < kRows; i += 2) {
+    const double size = std::pow(1 + i / 2, -2.0);
+    middle.block<2, 2>(i, i) << size, 0.1 * size, -0.1 * size, size;
+  }
+  const Reflected operation(middle);
+  const std::vector<Eigenpair> pairs = largest_eigenpairs(operation, 10, false, Crowded::Fail);
+  for (int k = 0; k < 10; ++k) {
+    const double size = std::pow(1 + k / 2, -2.0);
+    EXPECT_NEAR(pairs[k].value.real(), size, 1e-13) << k;
+    EXPECT_NEAR(std::abs(pairs[k].value.imag()), 0.1 * size, 1e-13) << k;
+    EXPECT_LE(residual(operation, pairs[k]), 1e-12) << k;
+  }
+}
+
+// An operation of rank 6: the space has all that it does after a few vectors, and goes on with others.
+TEST(LargestEigenpairs, GoesOnWhereTheSpaceIsInvariant) {
+  Eigen::MatrixXd middle = Eigen::MatrixXd::Zero(kRows, kRows);
+  for (int i = 0; i < 6; ++i) middle(i, i) = 6 - i;
+  const Reflected operation(middle);
+  const std::vector<Eigenpair> pairs = largest_eigenpairs(operation, 6, false, Crowded::Fail);
+  for (int k = 0; k < 6; ++k) EXPECT_NEAR(pairs[k].value.real(), 6 - k, 1e-13);
+}
+
+// As of overdamped modes: three lie apart, the others crowd at 1, as near to each other as round-off sees.
+TEST(LargestEigenpairs, OfACrowdThoseThatLieApartAreFound) {
+  const int rows = 1200;
+  Eigen::MatrixXd middle = Eigen::MatrixXd::Zero(rows, rows);
+  for (int i = 0; i < rows; ++i) middle(i, i) = i < 3 ? 5 - i : 1 - 1e-4 * i / rows;
+  const Reflected operation(middle);
+  const std::vector<Eigenpair> pairs = largest_eigenpairs(operation, 20, false, Crowded::LeaveOut);
+  ASSERT_GE(pairs.size(), 3u);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(pairs[k].value.real(), 5 - k, 1e-13);
+}
+
+// A shift by one place: its eigenvalues lie on a circle, and none is found before the space is the whole one.
+TEST(LargestEigenpairs, SaysWhenItFindsNone) {
+  const int rows = 1200;
+  Eigen::MatrixXd middle = Eigen::MatrixXd::Zero(rows, rows);
+  for (int i = 0; i < rows; ++i) middle(i, (i + 1) % rows) = 1;
+  try {
+    largest_eigenpairs(Reflected(middle), 4, false, Crowded::Fail);
+    ADD_FAILURE();
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(),
+                 "the 4 softest of 1200 eigenvalues are not found: Arnoldi's iteration does not converge");
+  }
+}
+
+TEST(KrylovSpace, IsOrthonormalAndKnowsWhatTheOperationDoes) {
+  Eigen::MatrixXd middle(kRows, kRows);
+  for (int j = 0; j < kRows; ++j)
+    for (int i = 0; i < kRows; ++i) middle(i, j) = std::sin(i + 3.0 * j * j) / (1 + i + j);
+  const Reflected operation(middle);
+  KrylovSpace space(operation, 50 + KrylovSpace::kBlock);
+  space.grow(20);
+  space.grow(50);
+  const Eigen::MatrixXd basis = space.basis(), coefficients = space.coefficients();
+  EXPECT_LE((basis.transpose() * basis - Eigen::MatrixXd::Identity(50, 50)).norm(), 50 * 2.3e-16);
+  space.grow(50 + KrylovSpace::kBlock);  // which shows the vectors that the first 50 lead to
+  for (int k = 0; k < 50; ++k) {
+    Eigen::VectorXd image(kRows);
+    operation.apply(basis.col(k).eval().data(), image.data());
+    EXPECT_LE((image - space.basis() * coefficients.col(k)).norm(), 1e-15 * (1 + middle.norm())) << k;
+  }
+}
+
+}  // namespace
+}  // namespace flexarm
