@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "cli/commands.h"
-#include "math/parse_number.h"
+#include "math/number_text.h"
 
 namespace flexarm::cli {
 
@@ -160,7 +160,7 @@ void print_derivatives(const RunDerivatives& run, const LinearModel& model, int 
   fmt::print("\n");
   const auto print = [](const std::string& name, const Eigen::RowVectorXd& row) {
     fmt::print("{:<32}", name);
-    for (const double number : row) fmt::print(" {:>14.7g}", number);
+    for (Eigen::Index i = 0; i < row.size(); ++i) fmt::print(" {:>14.7g}", row[i]);
     fmt::print("\n");
   };
   for (std::size_t i = 0; i < model.outputs.size(); ++i)

@@ -4,7 +4,7 @@
 
 #include "cli/commands.h"
 #include "flexarm/scene/scene_description.h"
-#include "math/parse_number.h"
+#include "math/number_text.h"
 #include "simulation/inside.h"
 
 namespace flexarm::cli {

@@ -15,7 +15,7 @@
 #include "math/adaptive_mean.h"
 #include "math/cubic_spline.h"
 #include "math/expression.h"
-#include "math/parse_number.h"
+#include "math/number_text.h"
 #include "math/traced_expression.h"
 
 namespace flexarm {
@@ -193,9 +193,9 @@ struct TimeFunction::Implementation {
 TimeFunction::TimeFunction() : TimeFunction(1.0) {}
 
 TimeFunction::TimeFunction(double constant) {
-  char text[32];
-  const std::to_chars_result result = std::to_chars(text, text + sizeof text, constant);
-  implementation_ = std::make_shared<const Implementation>(std::string(text, result.ptr), constant);
+  char text[kLongestNumber];
+  const char* end = write_number(text, constant, NumberFormat::Shortest);
+  implementation_ = std::make_shared<const Implementation>(std::string(text, end - text), constant);
 }
 
 TimeFunction::TimeFunction(std::shared_ptr<const Implementation> implementation)

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "math/parse_number.h"
+#include "math/number_text.h"
 #include "scene/limits.h"
 #include "scene/readers.h"
 #include "scene/resource_path.h"

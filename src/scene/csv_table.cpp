@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "math/parse_number.h"
+#include "math/number_text.h"
 #include "scene/limits.h"
 
 namespace flexarm::scene {

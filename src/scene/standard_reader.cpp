@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <urdf_model/model.h>
 
-#include "math/parse_number.h"
+#include "math/number_text.h"
 #include "scene/readers.h"
 #include "scene/urdfdom.h"
 

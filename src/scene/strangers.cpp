@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "math/parse_number.h"
+#include "math/number_text.h"
 #include "scene/limits.h"
 #include "scene/readers.h"
 

@@ -1,11 +1,12 @@
 #include "scene/xml_element.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <map>
 #include <stdexcept>
 
-#include "math/parse_number.h"
+#include "math/number_text.h"
 #include "scene/csv_table.h"
 #include "scene/limits.h"
 

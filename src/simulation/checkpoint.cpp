@@ -1,7 +1,6 @@
 #include "flexarm/simulation/checkpoint.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -11,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "math/number_text.h"
 #include "model/state_numbers.h"
 #include "simulation/fingerprint.h"
 #include "simulation/inside.h"
@@ -47,12 +47,10 @@ void resize_nodes(State& state, std::size_t count) {
   state.nodes.resize(count);
 }
 
-/// std::to_chars in hexadecimal has no "0x", as std::from_chars expects.
 std::string hexadecimal(double value) {
   if (std::isnan(value)) return "nan";
-  char buffer[64];
-  const auto result = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::hex);
-  return {buffer, result.ptr};
+  char text[kLongestNumber];
+  return std::string(text, write_number(text, value, NumberFormat::Hexadecimal) - text);
 }
 
 [[noreturn]] void fail_reading(const std::string& name, const std::string& what) {
@@ -94,13 +92,9 @@ class Reader {
   double number(const char* what) {
     const std::string token = next();
     if (what == kCommand && token == "nan") return std::nan("");
-    const bool negative = !token.empty() && token[0] == '-';
-    const char *begin = token.data() + (negative ? 1 : 0), *end = token.data() + token.size();
-    double value = 0;
-    const auto result = std::from_chars(begin, end, value, std::chars_format::hex);
-    if (result.ec != std::errc() || result.ptr != end || !std::isfinite(value))
-      fail_line(token, std::string(what) + " as a finite hexadecimal number");
-    return negative ? -value : value;
+    const std::optional<double> value = parse_hexadecimal(token);
+    if (!value) fail_line(token, std::string(what) + " as a finite hexadecimal number");
+    return *value;
   }
 
  private:

@@ -1,9 +1,9 @@
 #pragma once
 /// Fields of a line of comma-separated values.
 
-#include <array>
-#include <charconv>
 #include <string>
+
+#include "math/number_text.h"
 
 namespace flexarm::csv {
 
@@ -22,10 +22,8 @@ inline void append(std::string& line, const std::string& name) {
 /// With 17 significant digits, so that it is read back bit for bit, whatever the locale.
 inline void append(std::string& line, double value) {
   if (!line.empty()) line += ',';
-  std::array<char, 32> digits;  // a sign, 17 digits, a point, an exponent of five: 24
-  const std::to_chars_result written =
-      std::to_chars(digits.begin(), digits.end(), value, std::chars_format::general, 17);
-  line.append(digits.begin(), written.ptr);
+  char digits[kLongestNumber];
+  line.append(digits, write_number(digits, value, NumberFormat::AllDigits) - digits);
 }
 
 }  // namespace flexarm::csv

@@ -20,7 +20,7 @@
 #include <unistd.h>
 
 #include "fuzz/try_scene.h"
-#include "math/parse_number.h"
+#include "math/number_text.h"
 
 namespace flexarm::fuzz {
 namespace {

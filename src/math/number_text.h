@@ -1,8 +1,7 @@
 #pragma once
-/// Numbers from text, independent of the locale.
+/// Numbers to and from text, whatever the locale.
 
-#include <charconv>
-#include <cmath>
+#include <cstddef>
 #include <optional>
 #include <string_view>
 
@@ -10,14 +9,19 @@ namespace flexarm {
 
 /// The finite number that makes up the whole of `text`, as "1.5", "+2" or "1e-3"; nothing for "1.5abc", "nan" or
 /// "1e999".
-inline std::optional<double> parse_number(std::string_view text) {
-  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);  // which from_chars does not know
-  double value = 0;
-  const char* end = text.data() + text.size();
-  const std::from_chars_result result = std::from_chars(text.data(), end, value);
-  if (result.ec != std::errc() || result.ptr != end || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
+std::optional<double> parse_number(std::string_view text);
+/// The same of hexadecimal digits without "0x", as "-1.8p+3".
+std::optional<double> parse_hexadecimal(std::string_view text);
+
+/// How a number is written. Each is read back bit for bit.
+enum class NumberFormat {
+  Shortest,     ///< as 0.1 or 1e+300
+  AllDigits,    ///< 17 of them, as 0.10000000000000001
+  Hexadecimal,  ///< without "0x"
+};
+constexpr std::size_t kLongestNumber = 32;
+/// Writes at `begin`, where kLongestNumber characters have room; returns the end of what is written.
+char* write_number(char* begin, double value, NumberFormat format);
 
 /// Takes the next word, separated by white space, off the front of `text`; empty at the end.
 inline std::string_view next_word(std::string_view& text) {
