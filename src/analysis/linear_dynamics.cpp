@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "math/least_squares.h"
+#include "math/picked.h"
 #include "math/so3.h"
 
 namespace flexarm {
@@ -90,7 +91,7 @@ LinearDynamics::LinearDynamics(const Model& model, const State& state, const Sch
   choose_independent();
   const Eigen::Index count = static_cast<Eigen::Index>(independent_.size());
   Eigen::VectorXd rates = Eigen::VectorXd::Zero(count), accelerations = rates;
-  if (reference == Reference::Instant) rates = coordinates_of(known)(independent_);
+  if (reference == Reference::Instant) rates = picked_rows(coordinates_of(known), independent_);
   for (std::size_t c = 0; c < model.coordinates.size() && reference != Reference::Rest; ++c) {
     const auto place = std::find(scalars_.begin(), scalars_.end(), dof_.scalar_of(model.coordinates[c]));
     if (place == scalars_.end() || !is_driven_[c]) continue;
@@ -201,7 +202,8 @@ void LinearDynamics::put_dampers_stress(const std::vector<Stretch>& stretches, c
   for_each_element(model_.beams, [&](auto& element) {
     if (element.stiffness_damping == 0) return;
     for (auto& point : element.stiffness_points) {
-      const Vector6 stress = (stretch->damping / point.weight) * (stretch->rows * speeds(stretch->scalars));
+      const Vector6 stress =
+          (stretch->damping / point.weight) * (stretch->rows * picked_rows(speeds, stretch->scalars));
       point.reference_strain -= point.stiffness.ldlt().solve(stress);
       ++stretch;
     }
@@ -242,7 +244,7 @@ void LinearDynamics::balance(const Eigen::VectorXd& efforts) {
   const Eigen::VectorXd lacking = unknowns_.transpose() * system_.residual().head(count) +
                                   row_maps_.bottomRows(efforts.size()).transpose() * efforts;
   Eigen::VectorXd update = Eigen::VectorXd::Zero(dof_.unknowns);
-  update.tail(forces.cols()) = -least_squares(forces(rows, Eigen::all), lacking(rows));
+  update.tail(forces.cols()) = -least_squares(picked_rows(forces, rows), picked_rows(lacking, rows));
   system_.update(update);
   evaluate();
 }
@@ -294,7 +296,8 @@ void LinearDynamics::move(const Eigen::VectorXd& increment) {
   Eigen::VectorXd columns = allowed_.value * increment;
   if (constraints > 0) {
     const Eigen::MatrixXd rows = tangent_.bottomLeftCorner(constraints, count) * unknowns_;
-    columns(dependent_) -= square_solution(rows(Eigen::all, dependent_), system_.residual().tail(constraints));
+    add_to_rows(columns, dependent_,
+                -square_solution(picked_columns(rows, dependent_), system_.residual().tail(constraints)));
   }
   update.head(count) = unknowns_ * columns;
   system_.update(update);
@@ -314,7 +317,8 @@ void LinearDynamics::move_to_steady(const Eigen::VectorXd& rates) {
     set_motion(rates, Eigen::VectorXd::Zero(rates.size()));
     assemble();
     Eigen::VectorXd increment = Eigen::VectorXd::Zero(rates.size());
-    increment(places) = -square_solution(stiffness_(places, places), residual_(places));
+    add_to_rows(increment, places,
+                -square_solution(picked(stiffness_, places, places), picked_rows(residual_, places)));
     if (!increment.allFinite()) break;
     move(increment);
     const double way = increment.size() > 0 ? increment.cwiseAbs().maxCoeff() : 0;

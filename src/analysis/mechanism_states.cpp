@@ -6,6 +6,7 @@
 
 #include "joints/joint_map.h"
 #include "math/least_squares.h"
+#include "math/picked.h"
 #include "math/so3.h"
 
 namespace flexarm {
@@ -112,7 +113,7 @@ Eigen::VectorXd MechanismStates::deviation(const MechanismMotion& motion) const 
     spins[r] = motion.rates.rotors[rotor] - reference_.rates.rotors[rotor];
   }
   Eigen::VectorXd out(size());
-  out << way(columns_), turns, rate(columns_), spins;
+  out << picked_rows(way, columns_), turns, picked_rows(rate, columns_), spins;
   return out;
 }
 
@@ -132,7 +133,8 @@ MechanismMotion MechanismStates::moved(int state, double way) const {
   Eigen::VectorXd rate = rates_ - turning(turned);
   if (is_rate && !is_rotor) rate[column] += way;
   const Eigen::MatrixXd own = maps_.at(out.pose);
-  const Eigen::VectorXd columns = maps_.allowed(out.pose, own, independent_) * rate(independent_), rows = own * columns;
+  const Eigen::VectorXd columns = maps_.allowed(out.pose, own, independent_) * picked_rows(rate, independent_),
+                        rows = own * columns;
   for (int i = 0; i < dof_.node_count; ++i) {
     Vector6 velocity = rows.segment<6>(dof_.first[i]);
     velocity.tail<3>() = (out.pose.nodes[i].rotation * velocity.tail<3>()).eval();

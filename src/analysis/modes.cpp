@@ -38,8 +38,8 @@ struct Motion {
   Motion(const LinearisedMotion& system, double shift, Eigen::VectorXcd vector) : mode(system.expand(vector)) {
     Complex largest = 0;
     for (const ComplexVector6& motion : mode.node_motion)
-      for (const Complex& component : motion)
-        if (std::abs(component) > std::abs(largest)) largest = component;
+      for (Eigen::Index i = 0; i < motion.size(); ++i)
+        if (std::abs(motion[i]) > std::abs(largest)) largest = motion[i];
     if (largest == 0.0) largest = 1;  // all nodes are held by prescribed coordinates
     for (ComplexVector6& motion : mode.node_motion) motion /= largest;
     for (Complex& motion : mode.coordinate_motion) motion /= largest;

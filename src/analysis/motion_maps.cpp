@@ -8,6 +8,7 @@
 #include "joints/closure_maps.h"
 #include "joints/joint_kinematics.h"
 #include "math/least_squares.h"
+#include "math/picked.h"
 #include "math/so3.h"
 
 namespace flexarm {
@@ -155,7 +156,7 @@ MotionMaps::Split MotionMaps::split(const MechanismPose& pose, const std::vector
   for (int column = 0; column < columns_; ++column)
     if (!is_driven[column]) candidates.push_back(column);
   if (rows.rows() > 0)
-    for (const Eigen::Index i : independent_rows(rows(Eigen::all, candidates).transpose(), kIndependent))
+    for (const Eigen::Index i : independent_rows(picked_columns(rows, candidates).transpose(), kIndependent))
       out.dependent.push_back(candidates[i]);
   if (static_cast<Eigen::Index>(out.dependent.size()) != rows.rows())
     throw std::runtime_error("at a dead point, a loop cannot be linearised");
@@ -175,7 +176,7 @@ Eigen::MatrixXd MotionMaps::allowed(const MechanismPose& pose, const Eigen::Matr
   for (int column = 0; column < columns_; ++column)
     if (!std::binary_search(independent.begin(), independent.end(), column)) dependent.push_back(column);
   const Eigen::MatrixXd rows = constraints(pose, maps);
-  allowed(dependent, Eigen::all) = -square_solution(rows(Eigen::all, dependent), rows(Eigen::all, independent));
+  add_to_rows(allowed, dependent, -square_solution(picked_columns(rows, dependent), picked_columns(rows, independent)));
   if (!allowed.allFinite()) throw std::runtime_error("loops leave undecided how their joints move");
   return allowed;
 }

@@ -3,6 +3,7 @@
 #include "analysis/element_matrices.h"
 #include "analysis/rotor_motion.h"
 #include "joints/joint_stop.h"
+#include "math/picked.h"
 #include "math/so3.h"
 
 namespace flexarm {
@@ -145,8 +146,8 @@ StretchDamping stretch_damping(const Model& model, const DegreesOfFreedom& dof, 
   for (const Stretch& part : stretches) {
     Eigen::MatrixXd slope = part.damping;
     if (part.element) {
-      const DamperTensions dampers = part.element->dampers(state, part.rows * speeds(part.scalars));
-      out.of_elements(part.scalars) += part.rows.transpose() * dampers.tension;
+      const DamperTensions dampers = part.element->dampers(state, part.rows * picked_rows(speeds, part.scalars));
+      add_to_rows(out.of_elements, part.scalars, part.rows.transpose() * dampers.tension);
       slope = dampers.slope;
     }
     const Eigen::MatrixXd forces = part.rows.transpose() * slope;

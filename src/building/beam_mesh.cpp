@@ -77,8 +77,8 @@ std::vector<int> distribute(int count, const std::vector<double>& demand) {
 /// Numbers of input that are good each by itself may make a section too stiff, too weak or too heavy to compute with.
 void require_measurable(const SectionProperties& section, double length) {
   const auto is_measurable = [](double value) { return value > 0 && std::isfinite(value); };
-  const auto diagonal = section.stiffness.diagonal();
-  if (!std::all_of(diagonal.begin(), diagonal.end(), is_measurable) || !section.stiffness.allFinite() ||
+  const Vector6 diagonal = section.stiffness.diagonal();
+  if (!std::all_of(diagonal.data(), diagonal.data() + 6, is_measurable) || !section.stiffness.allFinite() ||
       !section.inertia.allFinite() || !is_measurable(section.mass) || !is_measurable(section.mass * length))
     throw std::invalid_argument(fmt::format(
         "its section's stiffness and mass must be positive finite numbers (EA = {}, GA = {} and {}, GJ = {}, EI = {} "

@@ -58,8 +58,8 @@ void append_csv_names(std::string& line, const std::string& prefix, const std::v
 
 void append_csv_values(std::string& line, const std::vector<NamedMotion>& motions) {
   for (const NamedMotion& named : motions) {
-    for (const std::complex<double>& component : named.motion) csv::append(line, component.real());
-    for (const std::complex<double>& component : named.motion) csv::append(line, component.imag());
+    for (int i = 0; i < 6; ++i) csv::append(line, named.motion[i].real());
+    for (int i = 0; i < 6; ++i) csv::append(line, named.motion[i].imag());
   }
 }
 

@@ -97,8 +97,12 @@ double UnknownScales::norm(const Eigen::VectorXd& increment, double step) const 
 
 double UnknownScales::largest_moment(const Eigen::VectorXd& residual) const {
   assert(residual.size() == scales_.size());
-  if (residual.size() == 0) return 0;
-  return (scales_ > 0).select(residual.array().abs() / scales_, 0.0).maxCoeff<Eigen::PropagateNaN>();
+  double largest = 0;
+  for (Eigen::Index i = 0; i < residual.size(); ++i) {
+    const double size = scales_[i] > 0 ? std::abs(residual[i]) / scales_[i] : 0;
+    if (size > largest || std::isnan(size)) largest = size;  // which no number is larger than
+  }
+  return largest;
 }
 
 double UnknownScales::largest_rotation(const Eigen::VectorXd& increment) const {

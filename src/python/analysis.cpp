@@ -15,7 +15,7 @@ using Complex = std::complex<double>;
 py::object value_of(const Mode& mode) {
   py::array_t<Complex> nodes({mode.node_motion.size(), std::size_t{6}});
   Complex* place = nodes.mutable_data();
-  for (const ComplexVector6& motion : mode.node_motion) place = std::copy(motion.begin(), motion.end(), place);
+  for (const ComplexVector6& motion : mode.node_motion) place = std::copy_n(motion.data(), motion.size(), place);
   py::array_t<Complex> joints(static_cast<py::ssize_t>(mode.coordinate_motion.size()));
   std::copy(mode.coordinate_motion.begin(), mode.coordinate_motion.end(), joints.mutable_data());
   return make("flexarm.values", "Mode", mode.frequency, mode.rate, mode.damping_ratio(), nodes, joints);

@@ -17,11 +17,10 @@ using Array = pybind11::array_t<double, pybind11::array::c_style | pybind11::arr
 constexpr std::size_t kPose = 7;  ///< numbers of one: x y z, qx qy qz qw
 
 inline double* put(const Vector3& vector, double* place) {
-  return std::copy(vector.begin(), vector.end(), place);
+  return std::copy_n(vector.data(), 3, place);
 }
 inline double* put(const Pose& pose, double* place) {
-  const auto& coefficients = pose.orientation.coeffs();
-  return std::copy(coefficients.begin(), coefficients.end(), put(pose.position, place));
+  return std::copy_n(pose.orientation.coeffs().data(), 4, put(pose.position, place));
 }
 inline double* put(const Wrench& wrench, double* place) {
   return put(wrench.moment, put(wrench.force, place));

@@ -19,8 +19,8 @@ BeamRow row_of(const BeamPoint& point) {
   BeamRow row;
   row.arc_length = point.arc_length;
   put(point.pose, row.pose);
-  std::copy(point.strain.begin(), point.strain.end(), row.strain);
-  std::copy(point.resultant.begin(), point.resultant.end(), row.resultant);
+  std::copy_n(point.strain.data(), point.strain.size(), row.strain);
+  std::copy_n(point.resultant.data(), point.resultant.size(), row.resultant);
   return row;
 }
 

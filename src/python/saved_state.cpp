@@ -3,10 +3,10 @@
 #include <stdexcept>
 
 #include <pybind11/stl.h>
-#include <pybind11/stl/filesystem.h>
 
 #include "flexarm/simulation/checkpoint.h"
 #include "python/bindings.h"
+#include "python/path_argument.h"
 
 namespace py = pybind11;
 
@@ -85,11 +85,11 @@ Joints and links stand and move as they did. Raises ValueError if it is not the 
           py::arg("other"))
       .def(
           "write_checkpoint",
-          [](GuardedSimulation& s, const std::filesystem::path& path) { write_checkpoint(s.use(), path.string()); },
+          [](GuardedSimulation& s, const PathArgument& path) { write_checkpoint(s.use(), path.text); },
           "Writes its state to a file; RuntimeError if it cannot be written.", py::arg("path"))
       .def(
           "read_checkpoint",
-          [](GuardedSimulation& s, const std::filesystem::path& path) { read_checkpoint(s.use(), path.string()); },
+          [](GuardedSimulation& s, const PathArgument& path) { read_checkpoint(s.use(), path.text); },
           R"(Takes the state that write_checkpoint() or `flexarm simulate --checkpoint` has written.
 
 Raises RuntimeError naming the file and what is wrong with it; nothing has changed then.)",

@@ -1,5 +1,6 @@
+#include <filesystem>
+
 #include <pybind11/stl.h>
-#include <pybind11/stl/filesystem.h>
 
 #include <fmt/format.h>
 
@@ -7,6 +8,7 @@
 #include "python/bindings.h"
 #include "python/errors.h"
 #include "python/names.h"
+#include "python/path_argument.h"
 #include "python/read_scene.h"
 #include "simulation/scene_identity.h"
 
@@ -51,10 +53,10 @@ ScenePointer scene_of(const scene::ReadOptions& options,
   raise_scene_error(findings);
 }
 
-ScenePointer read_scene(const std::filesystem::path& path, const ParameterValues& parameters, bool clamp_start,
+ScenePointer read_scene(const PathArgument& path, const ParameterValues& parameters, bool clamp_start,
                         bool equilibrium_start, bool lock_massless) {
   return scene_of({clamp_start, lock_massless, equilibrium_start, parameters},
-                  [path = std::filesystem::absolute(path).string()](const scene::ReadOptions& options) {
+                  [path = std::filesystem::absolute(path.text).string()](const scene::ReadOptions& options) {
                     return scene::read_scene_file(path, options);
                   });
 }

@@ -45,9 +45,9 @@ Variable numbers(const char* name, const std::vector<double>& column) {
 Variable gains(const std::vector<Eigen::MatrixXcd>& matrices) {
   std::vector<double> real, imaginary;
   for (const Eigen::MatrixXcd& matrix : matrices)
-    for (const std::complex<double>& gain : matrix.reshaped()) {
-      real.push_back(gain.real());
-      imaginary.push_back(gain.imag());
+    for (Eigen::Index k = 0; k < matrix.size(); ++k) {
+      real.push_back(matrix.data()[k].real());
+      imaginary.push_back(matrix.data()[k].imag());
     }
   std::array<size_t, 3> size = {static_cast<size_t>(matrices.front().rows()),
                                 static_cast<size_t>(matrices.front().cols()), matrices.size()};
@@ -61,7 +61,7 @@ Variable step_outputs(const std::vector<Eigen::MatrixXd>& matrices) {
                                 static_cast<size_t>(matrices.front().cols())};
   std::vector<double> values;
   for (Eigen::Index k = 0; k < matrices.front().size(); ++k)
-    for (const Eigen::MatrixXd& matrix : matrices) values.push_back(matrix.reshaped()[k]);
+    for (const Eigen::MatrixXd& matrix : matrices) values.push_back(matrix.data()[k]);
   return {Mat_VarCreate("step_response", MAT_C_DOUBLE, MAT_T_DOUBLE, 3, size.data(), values.data(), 0), &Mat_VarFree};
 }
 

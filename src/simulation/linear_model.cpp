@@ -11,6 +11,7 @@
 #include "math/dense_eigenpairs.h"
 #include "math/least_squares.h"
 #include "math/pi.h"
+#include "math/picked.h"
 #include "simulation/freed_joints.h"
 #include "simulation/inside.h"
 #include "simulation/linear_names.h"
@@ -115,9 +116,9 @@ class StateSpace {
     for (std::size_t i = 0; i < inputs.size(); ++i)
       if (inputs[i].kind == Kind::Motion) by_motion(next++, static_cast<Eigen::Index>(i)) = 1;
     MatrixXd right(free, 2 * count + by_motion.cols());
-    right << -model_.stiffness(parts_.free, states), -model_.damping(parts_.free, states),
-        forces(parts_.free, Eigen::all) - model_.mass(parts_.free, parts_.moved) * by_motion;
-    const MatrixXd solved = square_solution(model_.mass(parts_.free, parts_.free), right);
+    right << -picked(model_.stiffness, parts_.free, states), -picked(model_.damping, parts_.free, states),
+        picked_rows(forces, parts_.free) - picked(model_.mass, parts_.free, parts_.moved) * by_motion;
+    const MatrixXd solved = square_solution(picked(model_.mass, parts_.free, parts_.free), right);
     if (!solved.allFinite()) throw std::runtime_error("some coordinate moves nothing that has mass");
     Accelerations out{MatrixXd::Zero(count, 2 * count), MatrixXd::Zero(count, by_motion.cols())};
     out.by_state.topRows(free) = solved.leftCols(2 * count);
@@ -196,7 +197,7 @@ void set_states(const std::vector<int>& places, const LinearDynamics& dynamics, 
   out.b = MatrixXd::Zero(2 * count, accelerations.by_input.cols());
   out.b.bottomRows(count) = accelerations.by_input;
   out.drift.resize(2 * count);
-  out.drift << dynamics.rates()(places), dynamics.accelerations()(places);
+  out.drift << picked_rows(dynamics.rates(), places), picked_rows(dynamics.accelerations(), places);
 }
 
 /// The parts of two sets of eigenpairs whose values are at least, and below, a size; empty if they do not add up.
@@ -211,9 +212,9 @@ std::optional<Eigenpairs> joined(const Eigenpairs& fast, const Eigenpairs& slow,
   if (first.size() + last.size() != static_cast<std::size_t>(fast.values.size())) return std::nullopt;
   Eigenpairs out;
   out.values.resize(fast.values.size());
-  out.values << slow.values(first), fast.values(last);
+  out.values << picked_rows(slow.values, first), picked_rows(fast.values, last);
   out.vectors.resize(fast.vectors.rows(), fast.vectors.cols());
-  out.vectors << slow.vectors(Eigen::all, first), fast.vectors(Eigen::all, last);
+  out.vectors << picked_columns(slow.vectors, first), picked_columns(fast.vectors, last);
   return out;
 }
 
@@ -224,8 +225,8 @@ Eigenpairs eigenpairs_of_all_sizes(const MatrixXd& a) {
   const VectorXd sizes = fast.values.cwiseAbs();
   const double largest = sizes.maxCoeff(), least_known = kLeastKnown * largest;
   double shift = largest;
-  for (const double size : sizes)
-    if (size > least_known) shift = std::min(shift, size);
+  for (Eigen::Index i = 0; i < sizes.size(); ++i)
+    if (sizes[i] > least_known) shift = std::min(shift, sizes[i]);
   if (!(shift < kAlike * largest)) return fast;
   const MatrixXd identity = MatrixXd::Identity(a.rows(), a.cols());
   const MatrixXd inverse = square_solution(a - shift * identity, identity);
@@ -263,8 +264,8 @@ LinearModel linearise(const Simulation& simulation, const LinearRequest& request
     const LinearPort& port = outputs[static_cast<std::size_t>(i)];
     const int driven = port.kind == Kind::Effort ? place_of(port.coordinate, model, dynamics) : -1;
     const OutputRows rows = output_rows(port, motion, i, out, driven);
-    const Eigen::RowVectorXd acceleration = rows.acceleration(places);
-    out.c.row(i) << rows.place(places), rows.rate(places);
+    const Eigen::RowVectorXd acceleration = picked_columns(rows.acceleration, places);
+    out.c.row(i) << picked_columns(rows.place, places), picked_columns(rows.rate, places);
     out.c.row(i) += acceleration * accelerations.by_state;
     out.d.row(i) = acceleration * accelerations.by_input;
     if (driven >= 0) out.d.row(i) -= forces.row(driven);

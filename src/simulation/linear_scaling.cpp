@@ -13,6 +13,7 @@
 #include "math/dense_eigenpairs.h"
 #include "math/hessenberg.h"
 #include "math/least_squares.h"
+#include "math/picked.h"
 
 namespace flexarm {
 namespace {
@@ -61,10 +62,10 @@ std::optional<Shapes> modes_of(const MatrixXd& mass, const MatrixXd& stiffness) 
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(),
             [&](Index a, Index b) { return std::abs(modal(a, a)) > std::abs(modal(b, b)); });
-  shapes = MatrixXd(shapes(Eigen::all, order));
-  const MatrixXd projection = shapes.transpose() * m;
-  return Shapes{scales.asDiagonal() * shapes,
-                square_solution(projection * shapes, projection) * scales.cwiseInverse().asDiagonal()};
+  const MatrixXd sorted = picked_columns(shapes, order);
+  const MatrixXd projection = sorted.transpose() * m;
+  return Shapes{scales.asDiagonal() * sorted,
+                square_solution(projection * sorted, projection) * scales.cwiseInverse().asDiagonal()};
 }
 
 /// x = {y, y'}, as inputs change y'' alone.
@@ -83,7 +84,8 @@ std::optional<Shapes> shapes_of(const LinearModel& model) {
   for (Index i = 0; i < count; ++i) (model.a.row(count + i).isZero(0) ? driven : own).push_back(i);
   const std::vector<Index> places = places_of(model, own);
   if (places.empty()) return std::nullopt;
-  const std::optional<Shapes> modes = modes_of(model.mass(places, places), model.stiffness(places, places));
+  const std::optional<Shapes> modes =
+      modes_of(picked(model.mass, places, places), picked(model.stiffness, places, places));
   if (!modes) return std::nullopt;
   Shapes out{MatrixXd::Zero(count, count), MatrixXd::Zero(count, count)};
   for (std::size_t i = 0; i < own.size(); ++i) {

@@ -16,7 +16,7 @@ namespace {
 using Row = std::vector<double>;
 
 void append(Row& row, const Vector3& vector) {
-  row.insert(row.end(), vector.begin(), vector.end());
+  row.insert(row.end(), vector.data(), vector.data() + vector.size());
 }
 
 void append(Row& row, const Pose& pose) {

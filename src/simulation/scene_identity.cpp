@@ -40,7 +40,8 @@ class SceneFingerprint {
   }
   template <class Derived>
   void add(const Eigen::MatrixBase<Derived>& matrix) {
-    for (const double number : matrix.reshaped()) add(number);
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j)
+      for (Eigen::Index i = 0; i < matrix.rows(); ++i) add(matrix(i, j));
   }
   template <class Value>
   void add(const std::optional<Value>& value) {

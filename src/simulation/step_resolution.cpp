@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "math/picked.h"
+
 namespace flexarm {
 namespace {
 
@@ -18,12 +20,12 @@ constexpr int kSteps = 2;
 
 /// Of the states that are positions.
 Eigen::MatrixXd mass_of_states(const LinearModel& model) {
-  std::vector<int> places;
+  std::vector<Eigen::Index> places;
   for (int i = 0; i < model.positions; ++i) {
     const auto name = std::find(model.coordinates.begin(), model.coordinates.end(), model.states[i]);
-    places.push_back(static_cast<int>(name - model.coordinates.begin()));
+    places.push_back(name - model.coordinates.begin());
   }
-  return model.mass(places, places);
+  return picked(model.mass, places, places);
 }
 
 /// About `model` of `simulation`, by the step from there to `next` and the model `after` it.

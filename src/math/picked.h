@@ -1,0 +1,39 @@
+#pragma once
+/// Rows, columns and parts of matrices by lists of places, as Eigen has them itself from version 3.4 on.
+
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace flexarm {
+
+/// out.row(k) = matrix.row(rows[k]). Of a vector: entries.
+template <class Matrix, class Place>
+auto picked_rows(const Eigen::MatrixBase<Matrix>& matrix, const std::vector<Place>& rows) {
+  Eigen::Matrix<typename Matrix::Scalar, Eigen::Dynamic, Matrix::ColsAtCompileTime> out(rows.size(), matrix.cols());
+  for (std::size_t k = 0; k < rows.size(); ++k) out.row(k) = matrix.row(rows[k]);
+  return out;
+}
+
+/// out.col(k) = matrix.col(columns[k]). Of a row vector: entries.
+template <class Matrix, class Place>
+auto picked_columns(const Eigen::MatrixBase<Matrix>& matrix, const std::vector<Place>& columns) {
+  Eigen::Matrix<typename Matrix::Scalar, Matrix::RowsAtCompileTime, Eigen::Dynamic> out(matrix.rows(), columns.size());
+  for (std::size_t k = 0; k < columns.size(); ++k) out.col(k) = matrix.col(columns[k]);
+  return out;
+}
+
+/// out(i, k) = matrix(rows[i], columns[k]).
+template <class Matrix, class Place>
+auto picked(const Eigen::MatrixBase<Matrix>& matrix, const std::vector<Place>& rows,
+            const std::vector<Place>& columns) {
+  return picked_columns(picked_rows(matrix, rows), columns);
+}
+
+/// to.row(rows[k]) += what.row(k).
+template <class To, class What, class Place>
+void add_to_rows(Eigen::MatrixBase<To>& to, const std::vector<Place>& rows, const Eigen::MatrixBase<What>& what) {
+  for (std::size_t k = 0; k < rows.size(); ++k) to.row(rows[k]) += what.row(k);
+}
+
+}  // namespace flexarm
