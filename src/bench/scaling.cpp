@@ -30,8 +30,14 @@ const Vector3 kDown(0, 0, -9.81);
 
 /// Bytes that malloc has given out.
 double allocated_bytes() {
+#if __GLIBC_PREREQ(2, 33)
   const struct mallinfo2 info = mallinfo2();
   return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
+#else  // counts up to 4 GB
+  const struct mallinfo info = mallinfo();
+  return static_cast<double>(static_cast<unsigned>(info.uordblks)) +
+         static_cast<double>(static_cast<unsigned>(info.hblkhd));
+#endif
 }
 
 /// How long it takes to make something.
