@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Adds up the results of all test runners: `count_tests.py CTEST-REPORT DIRECTORY`.
 
-ctest knows every program that ran; a gtest, rostest or pytest left its single tests in DIRECTORY as JUnit XML (the
+CTEST-REPORT is the Test.xml of `ctest -T Test --no-compress-output`, which every release of CMake writes. ctest knows every program that ran; a gtest, rostest or pytest left its single tests in DIRECTORY as JUnit XML (the
 test-name of test/ros/NAME.test is NAME, so that its file can be found). A program without such a file, or that failed
 although each of its tests passed, counts as one test. Skipped are the tests that say so themselves, and disabled ones;
 a program that could not be started has failed. What a program that failed printed last stands below its name. The last
@@ -29,14 +29,12 @@ def single_tests(path):
         yield "%s.%s" % (case.get("classname"), case.get("name")), outcome
 
 
-def outcome_of_program(case):
+def outcome_of_program(test):
     """What ctest says of a program."""
-    skipped = case.find("skipped")
-    if case.get("status") == "disabled" or (
-        skipped is not None and skipped.get("message", "").startswith("SKIP_")
-    ):
+    completion = test.findtext("Results/NamedMeasurement[@name='Completion Status']/Value") or ""
+    if completion == "Disabled" or completion.startswith("SKIP_"):
         return SKIPPED
-    return PASSED if case.get("status") == "run" else FAILED
+    return PASSED if test.get("Status") == "passed" else FAILED
 
 
 def result_file(directory, program):
@@ -69,15 +67,15 @@ def results_of(program, outcome, directory):
 def main():
     report, directory = sys.argv[1:]
     counts = {PASSED: 0, FAILED: 0, SKIPPED: 0}
-    programs = xml.etree.ElementTree.parse(report).getroot().iter("testcase") if os.path.exists(report) else []
-    for case in programs:
-        results = results_of(case.get("name"), outcome_of_program(case), directory)
+    programs = xml.etree.ElementTree.parse(report).getroot().iterfind(".//Test[@Status]") if os.path.exists(report) else []
+    for test in programs:
+        results = results_of(test.findtext("Name"), outcome_of_program(test), directory)
         for name, outcome in results:
             counts[outcome] += 1
             if outcome != PASSED:
                 print("%s: %s" % (outcome, name))
         if any(outcome == FAILED for _, outcome in results):
-            for line in (case.findtext("system-out") or "").splitlines()[-LAST_LINES:]:
+            for line in (test.findtext("Results/Measurement/Value") or "").splitlines()[-LAST_LINES:]:
                 print("    " + line)
     print(", ".join("%d %s" % (count, outcome) for outcome, count in counts.items()))
     return 1 if counts[FAILED] or not counts[PASSED] else 0

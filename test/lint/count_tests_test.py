@@ -10,8 +10,13 @@ import unittest
 PROGRAM = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "scripts", "count_tests.py")
 
 
-def program(name, status, inner=""):
-    return '<testcase name="%s" status="%s">%s</testcase>' % (name, status, inner)
+def program(name, status, completion="Completed", said=""):
+    """An element of ctest's Test.xml, less what is not read of it."""
+    return (
+        '<Test Status="%s"><Name>%s</Name><Results><NamedMeasurement name="Execution Time"><Value>1</Value>'
+        '</NamedMeasurement><NamedMeasurement name="Completion Status"><Value>%s</Value></NamedMeasurement>'
+        "<Measurement><Value>%s</Value></Measurement></Results></Test>" % (status, name, completion, said)
+    )
 
 
 def single(name, inner="", status="run"):
@@ -28,7 +33,8 @@ class CountTests(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             report = os.path.join(folder, "ctest.xml")
             with open(report, "w", encoding="utf-8") as file:
-                file.write("<testsuite>%s</testsuite>" % "".join(programs))
+                names = "<TestList><Test>./good</Test></TestList>"
+                file.write("<Site><Testing>%s%s</Testing></Site>" % (names, "".join(programs)))
             if results is not None:
                 with open(os.path.join(folder, file_name), "w", encoding="utf-8") as file:
                     file.write(results)
@@ -36,17 +42,17 @@ class CountTests(unittest.TestCase):
             return run.returncode, run.stdout.decode().splitlines()
 
     def test_programs(self):
-        skipped, missing = '<skipped message="SKIP_RETURN_CODE=77"/>', '<skipped message="Unable to find executable"/>'
-        programs = [program("good", "run"), program("skips", "notrun", skipped), program("off", "disabled")]
+        programs = [program("good", "passed"), program("skips", "notrun", "SKIP_RETURN_CODE=77")]
+        programs += [program("off", "notrun", "Disabled")]
         self.assertEqual(self.count(programs), (0, "1 passed, 0 failed, 2 skipped"))
-        programs += [program("bad", "fail", "<failure/>"), program("absent", "notrun", missing)]
+        programs += [program("bad", "failed"), program("absent", "notrun", "Unable to find executable")]
         self.assertEqual(self.count(programs), (1, "1 passed, 2 failed, 2 skipped"))
 
     def test_single_tests(self):
         tests = [single("good"), single("skips", "<skipped/>"), single("off", status="notrun")]
         gtest = "<testsuites><testsuite>%s</testsuite></testsuites>"
         name = "_ctest_flexarm_gtest_math"
-        ran, broke = program(name, "run"), program(name, "fail")
+        ran, broke = program(name, "passed"), program(name, "failed")
         self.assertEqual(self.count([ran], gtest % "".join(tests)), (0, "1 passed, 0 failed, 2 skipped"))
         # A program that crashed behind its last test has failed, too, and one whose report cannot be read.
         self.assertEqual(self.count([broke], gtest % "".join(tests)), (1, "1 passed, 1 failed, 2 skipped"))
@@ -59,12 +65,12 @@ class CountTests(unittest.TestCase):
         for name, file_name in (("_ctest_flexarm_gtest_math", "gtest-math.xml"),
                                 ("_ctest_flexarm_rostest_test_ros_bags.test", "rosunit-bags.xml"),
                                 ("pytest_python", "pytest-python.xml")):
-            counted = self.count([program(name, "run")], results, file_name)
+            counted = self.count([program(name, "passed")], results, file_name)
             self.assertEqual(counted, (0, "2 passed, 0 failed, 0 skipped"))
 
     def test_last_lines_of_what_failed(self):
-        said = "<system-out>%s</system-out>" % "\n".join("line %d &lt;" % n for n in range(100))
-        status, lines = self.lines([program("good", "run", said), program("bad", "fail", "<failure/>" + said)])
+        said = "\n".join("line %d &lt;" % n for n in range(100))
+        status, lines = self.lines([program("good", "passed", said=said), program("bad", "failed", said=said)])
         self.assertEqual(status, 1)
         self.assertEqual(lines[0], "failed: bad")
         self.assertEqual(lines[-2], "    line 99 <")
@@ -72,7 +78,7 @@ class CountTests(unittest.TestCase):
 
     def test_nothing_passed(self):
         self.assertEqual(self.count([]), (1, "0 passed, 0 failed, 0 skipped"))
-        self.assertEqual(self.count([program("off", "disabled")]), (1, "0 passed, 0 failed, 1 skipped"))
+        self.assertEqual(self.count([program("off", "notrun", "Disabled")]), (1, "0 passed, 0 failed, 1 skipped"))
 
 
 if __name__ == "__main__":
