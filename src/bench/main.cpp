@@ -16,6 +16,7 @@
 #include "cli/command_line.h"
 #include "cli/files.h"
 #include "cli/installation.h"
+#include "cli/interruptions.h"
 #include "cli/progress_bar.h"
 #include "flexarm/schemes/integrator_description.h"
 
@@ -259,80 +260,84 @@ std::vector<std::string> scheme_choice() {
   return {scheme_names().begin(), scheme_names().end()};
 }
 
-using Arguments = std::shared_ptr<BenchArguments>;
+// ---------------------------------------------------------------- commands
 
-void add_output(CLI::App& command, const Arguments& arguments) {
-  command.add_option("--output", arguments->output, "folder for the report")->capture_default_str();
+void add_output(cli::Command& command, BenchArguments& arguments) {
+  command.option("--output", arguments.output, "folder for the report").shown_as("FOLDER").shows_default();
 }
 
-void add_properties(CLI::App& app, const Arguments& arguments, int& status) {
-  CLI::App* command = app.add_subcommand("properties", "Properties of all time integration schemes, as a report");
-  add_output(*command, arguments);
-  command->add_flag("--quick", arguments->quick, "short runs, to see that all of it works");
-  command->callback([arguments, &status] { status = report_properties(*arguments); });
+void add_scenes(cli::Command& command, BenchArguments& arguments, const std::string& own) {
+  command.option("--scenes", arguments.scenes, "folder of the scenes (default: " + own + ")").shown_as("FOLDER");
 }
 
-void add_thesis(CLI::App& app, const Arguments& arguments, int& status) {
-  CLI::App* command = app.add_subcommand("thesis", "The five examples of Muñoz 2004, chapter 12, as a report");
-  add_output(*command, arguments);
-  command->add_option("--scenes", arguments->scenes, "folder of the scenes (default: those that come with flexarm)");
-  command->add_flag("--quick", arguments->quick, "short runs, to see that all of it works");
-  command->callback([arguments, &status] { status = report_thesis(*arguments); });
+void add_properties(cli::CommandLine& line, BenchArguments& arguments) {
+  cli::Command& command = line.command("properties", "Properties of all time integration schemes, as a report");
+  add_output(command, arguments);
+  command.flag("--quick", arguments.quick, "short runs, to see that all of it works");
+  command.runs([&arguments] { return report_properties(arguments); });
 }
 
-void add_speed(CLI::App& app, const Arguments& arguments, int& status) {
-  CLI::App* command = app.add_subcommand("speed", "Speed against error of known problems, as a report");
-  command->add_option("--problem", arguments->problems, "only this one; may be given more than once (default: all)")
-      ->check(CLI::IsMember(problem_names()));
-  add_output(*command, arguments);
-  command->add_option("--scenes", arguments->scenes,
-                      "folder of the scenes (default: config, which comes with flexarm)");
-  command->add_flag("--quick", arguments->quick, "short runs, few of them, to see that all of it works");
-  command->callback([arguments, &status] { status = report_speed(*arguments); });
+void add_thesis(cli::CommandLine& line, BenchArguments& arguments) {
+  cli::Command& command = line.command("thesis", "The five examples of Muñoz 2004, chapter 12, as a report");
+  add_output(command, arguments);
+  add_scenes(command, arguments, "those that come with flexarm");
+  command.flag("--quick", arguments.quick, "short runs, to see that all of it works");
+  command.runs([&arguments] { return report_thesis(arguments); });
 }
 
-void add_accuracy(CLI::App& app, const Arguments& arguments, int& status) {
-  CLI::App* command = app.add_subcommand("accuracy", "True errors over those asked for, and costs, as a report");
-  add_output(*command, arguments);
-  command->add_option("--scenes", arguments->scenes,
-                      "folder of the scenes (default: config, which comes with flexarm)");
-  command->add_option("--only", arguments->only, "only scenes with this in \"GROUP: NAME\"");
-  command->add_option("--references", arguments->references,
-                      "folder that scripts/outside_references has written (default: one is made, used and removed)");
+void add_speed(cli::CommandLine& line, BenchArguments& arguments) {
+  cli::Command& command = line.command("speed", "Speed against error of known problems, as a report");
+  command.option("--problem", arguments.problems, "only this one; may be given more than once (default: all)")
+      .choices(problem_names());
+  add_output(command, arguments);
+  add_scenes(command, arguments, "config, which comes with flexarm");
+  command.flag("--quick", arguments.quick, "short runs, few of them, to see that all of it works");
+  command.runs([&arguments] { return report_speed(arguments); });
+}
+
+void add_accuracy(cli::CommandLine& line, BenchArguments& arguments) {
+  cli::Command& command = line.command("accuracy", "True errors over those asked for, and costs, as a report");
+  add_output(command, arguments);
+  add_scenes(command, arguments, "config, which comes with flexarm");
+  command.option("--only", arguments.only, "only scenes with this in \"GROUP: NAME\"");
   command
-      ->add_option("--random-arms", arguments->random_arms,
-                   "only these: number of the first one, and how many (the report has 0 to 19)")
-      ->expected(2)
-      ->type_name("FIRST COUNT")
-      ->check(CLI::Range(0, 1000000));
-  command->add_flag("--quick", arguments->quick, "three short scenes, to see that all of it works");
-  command->callback([arguments, &status] { status = report_accuracy(*arguments); });
-}
-
-void add_hard(CLI::App& app, const Arguments& arguments, int& status) {
-  CLI::App* command = app.add_subcommand("hard", "Scenes at which a simulator may break, as a report");
-  command->add_option("--case", arguments->cases, "only those with this in their names; may be given more than once");
-  command->add_option("--group", arguments->groups, "only this one; may be given more than once (default: all)")
-      ->check(CLI::IsMember(group_names()));
+      .option("--references", arguments.references,
+              "folder that scripts/outside_references has written (default: one is made, used and removed)")
+      .shown_as("FOLDER");
   command
-      ->add_option("--scheme", arguments->hard.schemes,
-                   "may be given more than once; the first is what others are compared with")
-      ->capture_default_str()
-      ->check(CLI::IsMember(scheme_choice()));
-  command->add_option("--seconds", arguments->hard.limits.seconds, "of the processor, for each run")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
-  add_output(*command, arguments);
-  command->add_flag("--print", arguments->print_only, "print the scenes, run nothing");
-  command->add_flag("--quick", arguments->quick, "five steps of each, to see that all of it works");
-  command->callback([arguments, &status] { status = report_hard(*arguments); });
+      .option("--random-arms", arguments.random_arms,
+              "only these: number of the first one, and how many (the report has 0 to 19)")
+      .takes(2)
+      .shown_as("FIRST COUNT")
+      .check(cli::whole_number_between(0, 1000000));
+  command.flag("--quick", arguments.quick, "three short scenes, to see that all of it works");
+  command.runs([&arguments] { return report_accuracy(arguments); });
 }
 
-void add_scaling(CLI::App& app, const Arguments& arguments, int& status) {
-  CLI::App* command = app.add_subcommand("scaling", "Time and memory over the size of a mechanism, as a report");
-  add_output(*command, arguments);
-  command->add_flag("--quick", arguments->quick, "small mechanisms, to see that all of it works");
-  command->callback([arguments, &status] { status = report_scaling(*arguments); });
+void add_hard(cli::CommandLine& line, BenchArguments& arguments) {
+  cli::Command& command = line.command("hard", "Scenes at which a simulator may break, as a report");
+  command.option("--case", arguments.cases, "only those with this in their names; may be given more than once");
+  command.option("--group", arguments.groups, "only this one; may be given more than once (default: all)")
+      .choices(group_names());
+  command
+      .option("--scheme", arguments.hard.schemes,
+              "may be given more than once; the first is what others are compared with")
+      .shows_default()
+      .choices(scheme_choice());
+  command.option("--seconds", arguments.hard.limits.seconds, "of the processor, for each run")
+      .shows_default()
+      .check(cli::check_positive);
+  add_output(command, arguments);
+  command.flag("--print", arguments.print_only, "print the scenes, run nothing");
+  command.flag("--quick", arguments.quick, "five steps of each, to see that all of it works");
+  command.runs([&arguments] { return report_hard(arguments); });
+}
+
+void add_scaling(cli::CommandLine& line, BenchArguments& arguments) {
+  cli::Command& command = line.command("scaling", "Time and memory over the size of a mechanism, as a report");
+  add_output(command, arguments);
+  command.flag("--quick", arguments.quick, "small mechanisms, to see that all of it works");
+  command.runs([&arguments] { return report_scaling(arguments); });
 }
 
 }  // namespace
@@ -341,15 +346,13 @@ void add_scaling(CLI::App& app, const Arguments& arguments, int& status) {
 /// What `flexarm bench` becomes, with the same arguments; its name in messages and help is that of the command.
 int main(int argc, char** argv) {
   using namespace flexarm::bench;
-  CLI::App app("Measures the simulator itself", "flexarm bench");
-  app.require_subcommand(1);
-  int status = flexarm::cli::kDone;
-  const auto arguments = std::make_shared<BenchArguments>();
-  add_properties(app, arguments, status);
-  add_thesis(app, arguments, status);
-  add_speed(app, arguments, status);
-  add_accuracy(app, arguments, status);
-  add_hard(app, arguments, status);
-  add_scaling(app, arguments, status);
-  return flexarm::cli::run_command_line(app, status, argc, argv);
+  flexarm::cli::CommandLine line("flexarm bench", "Measures the simulator itself");
+  BenchArguments arguments;
+  add_properties(line, arguments);
+  add_thesis(line, arguments);
+  add_speed(line, arguments);
+  add_accuracy(line, arguments);
+  add_hard(line, arguments);
+  add_scaling(line, arguments);
+  return line.run(argc, argv);
 }

@@ -10,6 +10,7 @@
 #include "accuracy/automatic_meshes.h"
 #include "cli/commands.h"
 #include "cli/files.h"
+#include "cli/interruptions.h"
 #include "cli/progress_bar.h"
 #include "flexarm/accuracy/accurate_run.h"
 #include "flexarm/scene/scene_description.h"

@@ -272,11 +272,11 @@ void print_frequencies(Simulation& simulation) {
 
 }  // namespace
 
-void add_check(CLI::App& app, int& status) {
+void add_check(CommandLine& line) {
   const auto scene = std::make_shared<SceneInput>();
-  CLI::App* command = app.add_subcommand("check", "Reads a scene, builds its model and describes it");
-  add_scene(*command, *scene);
-  command->callback([scene, &status] {
+  Command& command = line.command("check", "Reads a scene, builds its model and describes it");
+  add_scene(command, *scene);
+  command.runs([scene] {
     Simulation simulation = load_simulation(*scene);
     print_size(simulation);
     print_plane(simulation);
@@ -294,7 +294,7 @@ void add_check(CLI::App& app, int& status) {
     } catch (const std::runtime_error& error) {
       fmt::print("\nfirst natural frequencies [Hz]: none ({})\n", error.what());
     }
-    status = kDone;
+    return kDone;
   });
 }
 

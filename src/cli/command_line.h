@@ -1,40 +1,55 @@
 #pragma once
-/// How the programs of the command line begin and end: `flexarm`, and `flexarm_benchmarks` behind `flexarm bench`.
+/// The commands of a program, and how it begins and ends: `flexarm`, and `flexarm_benchmarks` behind `flexarm bench`.
 
-#include <stdexcept>
+#include <deque>
+#include <functional>
+#include <string>
+#include <vector>
 
-#include <CLI/CLI.hpp>
+#include "cli/command.h"
+#include "cli/exit_status.h"
 
 namespace flexarm::cli {
 
-/// A command that a signal has ended has the status that a shell gives to a program killed by it.
-enum ExitStatus { kDone = 0, kFailed = 1, kBadInput = 2, kInterrupted = 128 /* + the signal's number */ };
-
-/// What the user gave cannot be used; what() is printed and the exit status is kBadInput.
-class InputError : public std::runtime_error {
+class CommandLine {
  public:
-  using std::runtime_error::runtime_error;
+  /// `name` as it is typed: "flexarm".
+  CommandLine(std::string name, std::string description);
+
+  /// Valid as long as this.
+  Command& command(const std::string& name, const std::string& description);
+  /// A command whose words, --help included, are another program's, which run() becomes; one like this is asked what
+  /// may be typed next.
+  enum class Kind { LikeThis, Other };
+  void program(const std::string& name, const std::string& description, Kind kind,
+               std::function<int(const Words& words)> run);
+
+  /// Runs the command that was typed, and prints what it throws. To be returned by main().
+  int run(int argc, char** argv) const;
+
+ private:
+  struct Program {
+    std::string name, description;
+    Kind kind;
+    std::function<int(const Words& words)> run;
+  };
+  struct Named {
+    std::string name;
+    Command command;
+  };
+
+  int dispatch(const Words& words) const;
+  int complete(const Words& words) const;
+  void print_help() const;
+  /// Names with their descriptions, in the order in which they were declared.
+  std::vector<Completion> all() const;
+
+  std::string name_, description_;
+  std::deque<Named> commands_;
+  std::vector<Program> programs_;
 };
 
-/// A signal wants the program to end: what() says how far it came, the exit status is kInterrupted and its number.
-class Interrupted : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// Runs the commands of `app`, which leave their exit status in `status`, and prints what they throw. To be returned by
-/// main().
-int run_command_line(CLI::App& app, const int& status, int argc, char** argv);
-
-// ---------------------------------------------------------------- signals that end a program, for loops to ask about
-
-/// From now on SIGINT, SIGTERM and SIGHUP are only noted; a second one of the same kind ends the program as usual.
-/// What is ignored already, as nohup has it and shells for what runs in the background, stays so.
-void catch_interruptions();
-/// The number of the first signal that has come; 0: none.
-int interruption();
-
-/// What cannot be written is an error of the function that writes, not a signal that ends the program.
-void ignore_signals_of_output();
+/// The words by which a shell asks a program what may be typed next: this one, and behind it those so far.
+constexpr const char* kComplete = "--complete";
 
 }  // namespace flexarm::cli

@@ -1,25 +1,25 @@
 #pragma once
 /// The subcommands of `flexarm`, one file each, but for those that are programs of their own.
 
-#include <CLI/CLI.hpp>
-
 #include "cli/command_line.h"
 
 namespace flexarm::cli {
 
-/// Each adds its subcommand to `app`; when that is run, it leaves its exit status in `status`.
-void add_check(CLI::App& app, int& status);
-void add_simulate(CLI::App& app, int& status);
-void add_expand(CLI::App& app, int& status);
-void add_static(CLI::App& app, int& status);
-void add_modes(CLI::App& app, int& status);
-void add_linearise(CLI::App& app, int& status);
-void add_replay(CLI::App& app, int& status);
-void add_tune(CLI::App& app, int& status);
+void add_check(CommandLine& line);
+void add_simulate(CommandLine& line);
+void add_expand(CommandLine& line);
+void add_static(CommandLine& line);
+void add_modes(CommandLine& line);
+void add_linearise(CommandLine& line);
+void add_replay(CommandLine& line);
+void add_tune(CommandLine& line);
 
 /// Subcommands that are programs beside this one, which take the place of this process (other_programs.cpp).
-void add_sweep(CLI::App& app);
-void add_identify(CLI::App& app);
-void add_bench(CLI::App& app);
+void add_sweep(CommandLine& line);
+void add_identify(CommandLine& line);
+void add_bench(CommandLine& line);
+
+/// How shells learn the commands (completion.cpp).
+void add_completion(CommandLine& line);
 
 }  // namespace flexarm::cli

@@ -27,13 +27,13 @@ int expand(const ExpandArguments& arguments) {
 
 }  // namespace
 
-void add_expand(CLI::App& app, int& status) {
+void add_expand(CommandLine& line) {
   const auto arguments = std::make_shared<ExpandArguments>();
-  CLI::App* command = app.add_subcommand(
+  Command& command = line.command(
       "expand", "Writes a scene with numbers in the place of its expressions, for programs that know none");
-  add_scene(*command, arguments->scene);
-  command->add_option("--output", arguments->output, "file for it; -: standard output")->capture_default_str();
-  command->callback([arguments, &status] { status = expand(*arguments); });
+  add_scene(command, arguments->scene);
+  command.option("--output", arguments->output, "file for it; -: standard output").shown_as("FILE").shows_default();
+  command.runs([arguments] { return expand(*arguments); });
 }
 
 }  // namespace flexarm::cli

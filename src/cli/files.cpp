@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "cli/command_line.h"
+#include "cli/exit_status.h"
 #include "simulation/unfinished_file.h"
 
 namespace flexarm::cli {

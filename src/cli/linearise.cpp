@@ -169,45 +169,45 @@ std::string check_file(const std::string& path) {
 
 }  // namespace
 
-void add_linearise(CLI::App& app, int& status) {
+void add_linearise(CommandLine& line) {
   const auto arguments = std::make_shared<LineariseArguments>();
-  CLI::App* command =
-      app.add_subcommand("linearise", "Linear model (A, B, C, D) about the equilibrium, with its poles");
-  add_scene(*command, arguments->scene);
-  add_equilibrium(*command, arguments->wanted);
-  CLI::Option* time = command->add_option_function<double>(
-      "--time", [arguments](double time) { arguments->time = time; },
-      "about the motion at this time of a simulation, in place of the equilibrium [s]");
-  time->check(check_non_negative);
-  command->add_flag("--steady", arguments->is_steady, "about a steady motion, with <motion>s as fast as at t = 0")
-      ->excludes(time);
+  Command& command = line.command("linearise", "Linear model (A, B, C, D) about the equilibrium, with its poles");
+  add_scene(command, arguments->scene);
+  command.heading("About what");
+  add_equilibrium(command, arguments->wanted);
   command
-      ->add_option("--inputs", arguments->request.inputs,
-                   "effort:JOINT, motion:JOINT (acceleration), wrench:POINT:fx; all efforts by default")
-      ->delimiter(',');
+      .option("--time", arguments->time,
+              "about the motion at this time of a simulation, in place of the equilibrium [s]")
+      .check(check_non_negative);
+  command.flag("--steady", arguments->is_steady, "about a steady motion, with <motion>s as fast as at t = 0")
+      .excludes("--time");
+  command.heading("The model");
   command
-      ->add_option("--outputs", arguments->request.outputs,
-                   "position:, velocity: or acceleration: with JOINT, POINT or POINT:x; effort:JOINT of a <motion>; "
-                   "strain:SENSOR, section_force:SENSOR; positions of all joints and probes by default")
-      ->delimiter(',');
-  command->add_option("--count", arguments->count, "number of poles to print")
-      ->capture_default_str()
-      ->check(CLI::Range(0, 100000));
-  command->add_flag("--shapes", arguments->prints_shapes, "prints what moves in each pole's mode");
-  add_derivatives(*command, arguments->derivatives, time);
+      .option("--inputs", arguments->request.inputs,
+              "effort:JOINT, motion:JOINT (acceleration), wrench:POINT:fx; all efforts by default")
+      .with_commas();
   command
-      ->add_option_function<int>(
-          "--reduce", [arguments](int order) { arguments->order = order; },
-          "a model of so many states: balanced truncation of what decays")
-      ->check(CLI::Range(0, 100000))
-      ->excludes("--sensitivities")
-      ->excludes("--transition");
-  add_responses(*command, arguments->responses);
+      .option("--outputs", arguments->request.outputs,
+              "position:, velocity: or acceleration: with JOINT, POINT or POINT:x; effort:JOINT of a <motion>; "
+              "strain:SENSOR, section_force:SENSOR; positions of all joints and probes by default")
+      .with_commas();
+  command.option("--reduce", arguments->order, "a model of so many states: balanced truncation of what decays")
+      .check(whole_number_between(0, 100000))
+      .excludes("--sensitivities")
+      .excludes("--transition");
+  add_derivatives(command, arguments->derivatives, "--time");
+  command.heading("Output");
+  command.option("--count", arguments->count, "number of poles to print")
+      .shows_default()
+      .check(whole_number_between(0, 100000));
+  command.flag("--shapes", arguments->prints_shapes, "prints what moves in each pole's mode");
   command
-      ->add_option("-o,--output", arguments->output,
-                   "file: .mat (MATLAB), .json or .csv (the matrices, or a response); -: JSON to standard output")
-      ->check(check_file);
-  command->callback([arguments, &status] { status = linearise_scene(*arguments); });
+      .option("-o,--output", arguments->output,
+              "file: .mat (MATLAB), .json or .csv (the matrices, or a response); -: JSON to standard output")
+      .shown_as("FILE")
+      .check(check_file);
+  add_responses(command, arguments->responses);
+  command.runs([arguments] { return linearise_scene(*arguments); });
 }
 
 }  // namespace flexarm::cli

@@ -20,55 +20,52 @@ namespace {
 constexpr int kIntervals = 1000;
 constexpr double kMostFrequencies = 1e6;
 
-CLI::ValidationError wrong(const std::string& got) {
-  return CLI::ValidationError(
-      "--frequencies", "expected numbers > 0, or FROM:TO:COUNT with 0 < FROM < TO and COUNT >= 2, got '" + got + "'");
+std::string wrong(const std::string& got) {
+  return "expected numbers > 0, or FROM:TO:COUNT with 0 < FROM < TO and COUNT >= 2, got '" + got + "'";
 }
 
-/// "FROM:TO:COUNT"
-std::vector<double> range(const std::string& text) {
+/// Of "FROM:TO:COUNT"; returns what is wrong with it.
+std::string read_range(const std::string& text, std::vector<double>& frequencies) {
   const std::string_view view = text;
   const std::size_t first = view.find(':'), second = view.find(':', first + 1);
-  if (second == std::string_view::npos) throw wrong(text);
+  if (second == std::string_view::npos) return wrong(text);
   const auto from = parse_number(view.substr(0, first)), count = parse_number(view.substr(second + 1)),
              to = parse_number(view.substr(first + 1, second - first - 1));
   if (!from || !to || !count || !(0 < *from && *from < *to) || *count < 2 || *count > kMostFrequencies ||
       *count != std::floor(*count))
-    throw wrong(text);
-  std::vector<double> frequencies;
+    return wrong(text);
   const double intervals = *count - 1;
   for (int i = 0; i <= intervals; ++i) frequencies.push_back(*from * std::pow(*to / *from, i / intervals));
-  return frequencies;
+  return "";
 }
 
-std::vector<double> read_frequencies(const std::vector<std::string>& words) {
-  if (words.size() == 1 && words[0].find(':') != std::string::npos) return range(words[0]);
-  std::vector<double> frequencies;
+std::string read_frequencies(const Words& words, std::vector<double>& frequencies) {
+  if (words.size() == 1 && words[0].find(':') != std::string::npos) return read_range(words[0], frequencies);
   for (const std::string& word : words) {
     const std::optional<double> frequency = parse_number(word);
-    if (!frequency || *frequency <= 0) throw wrong(word);
+    if (!frequency || *frequency <= 0) return wrong(word);
     frequencies.push_back(*frequency);
   }
-  return frequencies;
+  return "";
 }
 
 }  // namespace
 
-void add_responses(CLI::App& command, ResponseOptions& options) {
-  CLI::Option* frequencies =
-      command
-          .add_option_function<std::vector<std::string>>(
-              "--frequencies",
-              [&options](const std::vector<std::string>& words) { options.frequencies = read_frequencies(words); },
-              "of a frequency response: FROM:TO:COUNT (logarithmic), or a list [Hz]")
-          ->delimiter(',');
+void add_responses(Command& command, ResponseOptions& options) {
+  command.heading("Responses");
   command
-      .add_option_function<double>(
-          "--step-response", [&options](double until) { options.step_until = until; },
-          "until this time after an input went from 0 to 1, each by itself [s]")
-      ->check(check_positive);
-  command.add_option("--plot", options.picture, "file for a Bode picture (.png); its data go beside it (.json)")
-      ->needs(frequencies);
+      .option_of_words(
+          "--frequencies", [&options](const Words& words) { return read_frequencies(words, options.frequencies); },
+          "of a frequency response: FROM:TO:COUNT (logarithmic), or a list [Hz]")
+      .shown_as("NUMBER")
+      .with_commas();
+  command
+      .option("--step-response", options.step_until,
+              "until this time after an input went from 0 to 1, each by itself [s]")
+      .check(check_positive);
+  command.option("--plot", options.picture, "file for a Bode picture (.png); its data go beside it (.json)")
+      .shown_as("FILE")
+      .needs("--frequencies");
 }
 
 LinearResponses responses_of(const LinearModel& model, const ResponseOptions& options) {
@@ -91,16 +88,16 @@ constexpr int kMostWarnings = 10;
 
 }  // namespace
 
-void add_derivatives(CLI::App& command, DerivativeOptions& options, CLI::Option* time) {
+void add_derivatives(Command& command, DerivativeOptions& options, const std::string& time) {
   command
-      .add_option("--sensitivities", options.parameters,
-                  "derivatives of the states and outputs at --time with respect to these parameters of the scene")
-      ->delimiter(',')
-      ->needs(time);
+      .option("--sensitivities", options.parameters,
+              "derivatives of the states and outputs at --time with respect to these parameters of the scene")
+      .with_commas()
+      .needs(time);
   command
-      .add_flag("--transition", options.by_initial_state,
-                "derivatives of the states at --time with respect to those of the start")
-      ->needs(time);
+      .flag("--transition", options.by_initial_state,
+            "derivatives of the states at --time with respect to those of the start")
+      .needs(time);
 }
 
 std::unique_ptr<Sensitivities> sensitivities_of(Simulation& simulation, const SceneInput& input,

@@ -6,8 +6,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "cli/scene_input.h"
 #include "flexarm/simulation/linear_response.h"
 #include "flexarm/simulation/sensitivities.h"
@@ -23,7 +21,7 @@ struct ResponseOptions {
 };
 
 /// `options` must outlive the command.
-void add_responses(CLI::App& command, ResponseOptions& options);
+void add_responses(Command& command, ResponseOptions& options);
 
 /// @throws std::runtime_error where there is no such response.
 LinearResponses responses_of(const LinearModel& model, const ResponseOptions& options);
@@ -40,7 +38,7 @@ struct DerivativeOptions {
 };
 
 /// `time`: an option without which there are none; `options` must outlive the command.
-void add_derivatives(CLI::App& command, DerivativeOptions& options, CLI::Option* time);
+void add_derivatives(Command& command, DerivativeOptions& options, const std::string& time);
 
 /// Of a simulation of that input, at its start.
 /// @throws InputError naming what cannot be differentiated.

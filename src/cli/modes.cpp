@@ -68,17 +68,15 @@ int solve(const ModesArguments& arguments) {
 
 }  // namespace
 
-void add_modes(CLI::App& app, int& status) {
+void add_modes(CommandLine& line) {
   const auto arguments = std::make_shared<ModesArguments>();
-  CLI::App* command = app.add_subcommand("modes", "Frequencies, growth or decay, and shapes about the equilibrium");
-  add_scene(*command, arguments->scene);
-  add_equilibrium(*command, arguments->wanted);
-  command->add_option("--count", arguments->count, "number of modes")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 10000));
-  CLI::Option* json = command->add_flag("--json", arguments->json, "prints JSON with all digits");
-  command->add_flag("--csv", arguments->csv, "prints comma-separated values with all digits")->excludes(json);
-  command->callback([arguments, &status] { status = solve(*arguments); });
+  Command& command = line.command("modes", "Frequencies, growth or decay, and shapes about the equilibrium");
+  add_scene(command, arguments->scene);
+  add_equilibrium(command, arguments->wanted);
+  command.option("--count", arguments->count, "number of modes").shows_default().check(whole_number_between(1, 10000));
+  command.flag("--json", arguments->json, "prints JSON with all digits");
+  command.flag("--csv", arguments->csv, "prints comma-separated values with all digits").excludes("--json");
+  command.runs([arguments] { return solve(*arguments); });
 }
 
 }  // namespace flexarm::cli

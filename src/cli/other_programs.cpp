@@ -54,29 +54,23 @@ namespace {
   become("bench", words);
 }
 
-/// Adds a command that run(arguments) carries out, which has all of them, options and --help included.
-template <class Run>
-void add_program(CLI::App& app, const std::string& name, const std::string& description, const Run& run) {
-  CLI::App* command = app.add_subcommand(name, description);
-  command->prefix_command()->set_help_flag();
-  command->callback([command, run] { run(command->remaining()); });
-}
-
 }  // namespace
 
-void add_sweep(CLI::App& app) {
-  add_program(app, "sweep", "Runs a scene many times, with the parameters of a plan", [](const auto& arguments) {
-    become_python("sweep", {"-m", "flexarm.sweep"}, arguments);
-  });
+void add_sweep(CommandLine& line) {
+  line.program("sweep", "Runs a scene many times, with the parameters of a plan", CommandLine::Kind::Other,
+               [](const Words& words) -> int {
+                 become_python("sweep", {"-m", "flexarm.sweep"}, words);
+               });
 }
 
-void add_identify(CLI::App& app) {
-  add_program(app, "identify", "Finds values of a scene's parameters with which it moves as was measured",
-              become_identification);
+void add_identify(CommandLine& line) {
+  line.program("identify", "Finds values of a scene's parameters with which it moves as was measured",
+               CommandLine::Kind::Other, [](const Words& words) -> int { become_identification(words); });
 }
 
-void add_bench(CLI::App& app) {
-  add_program(app, "bench", "Measures the simulator itself", become_benchmarks);
+void add_bench(CommandLine& line) {
+  line.program("bench", "Measures the simulator itself", CommandLine::Kind::LikeThis,
+               [](const Words& words) -> int { become_benchmarks(words); });
 }
 
 }  // namespace flexarm::cli

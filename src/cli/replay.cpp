@@ -54,35 +54,37 @@ int replay(const ReplayArguments& arguments) {
 
 }  // namespace
 
-void add_replay(CLI::App& app, int& status) {
+void add_replay(CommandLine& line) {
   const auto arguments = std::make_shared<ReplayArguments>();
-  CLI::App* command = app.add_subcommand(
+  Command& command = line.command(
       "replay", "Gives the commands of a recorded run to the scene again, and compares the joints' motion");
-  command->add_option("bag", arguments->replay.bag, "recorded by rosbag")->required()->check(CLI::ExistingFile);
-  add_scene(*command, arguments->scene);
-  command->add_option("--namespace", arguments->replay.ns, "of the arm's topics, /left say");
-  command->add_flag("--lock-step", arguments->replay.lock_step, "each command has made one step (~lock_step)");
+  command.argument("bag", arguments->replay.bag, "recorded by rosbag").check(check_existing_file);
+  add_scene(command, arguments->scene);
+  command.heading("The run");
+  command.option("--namespace", arguments->replay.ns, "of the arm's topics, /left say");
+  command.flag("--lock-step", arguments->replay.lock_step, "each command has made one step (~lock_step)");
   command
-      ->add_option("--real-time-factor", arguments->replay.real_time_factor,
-                   "of the run; where it was the clock itself (/clock is in the bag) it does not matter")
-      ->capture_default_str()
-      ->check(check_positive);
-  command->add_option("--command-timeout", arguments->replay.command_timeout, "of the run [s]; 0: none")
-      ->capture_default_str()
-      ->check(check_non_negative);
+      .option("--real-time-factor", arguments->replay.real_time_factor,
+              "of the run; where it was the clock itself (/clock is in the bag) it does not matter")
+      .shows_default()
+      .check(check_positive);
+  command.option("--command-timeout", arguments->replay.command_timeout, "of the run [s]; 0: none")
+      .shows_default()
+      .check(check_non_negative);
   command
-      ->add_option("--stop-duration", arguments->replay.stop_duration,
-                   "of the run: in which joints decelerate that an empty trajectory stops [s]; 0: at once")
-      ->capture_default_str()
-      ->check(check_non_negative);
-  command->add_option("--step", arguments->simulation.step, "of the run, if it was not the scene's [s]")
-      ->check(check_positive);
-  command->add_option("--scheme", arguments->simulation.scheme, "the same");
-  command->add_option("--resume", arguments->resume, "state file of the beginning; else it is the scene's");
-  command->add_option("--largest", arguments->largest, "difference of positions up to which the runs agree [rad, m]")
-      ->capture_default_str()
-      ->check(check_non_negative);
-  command->callback([arguments, &status] { status = replay(*arguments); });
+      .option("--stop-duration", arguments->replay.stop_duration,
+              "of the run: in which joints decelerate that an empty trajectory stops [s]; 0: at once")
+      .shows_default()
+      .check(check_non_negative);
+  command.option("--step", arguments->simulation.step, "of the run, if it was not the scene's [s]")
+      .check(check_positive);
+  command.option("--scheme", arguments->simulation.scheme, "the same").choices(scheme_choices());
+  command.option("--resume", arguments->resume, "state file of the beginning; else it is the scene's").shown_as("FILE");
+  command.heading("Comparison");
+  command.option("--largest", arguments->largest, "difference of positions up to which the runs agree [rad, m]")
+      .shows_default()
+      .check(check_non_negative);
+  command.runs([arguments] { return replay(*arguments); });
 }
 
 }  // namespace flexarm::cli

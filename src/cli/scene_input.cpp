@@ -19,48 +19,54 @@ std::string check_setting(const std::string& text) {
   return "the value of a parameter must be a finite number, got '" + text + "'";
 }
 
-void add_parameters(CLI::App& command, scene::ParameterValues& values) {
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--set",
-          [&values](const std::vector<std::string>& settings) {
-            for (const std::string& setting : settings) {
-              const std::string name = setting.substr(0, setting.find('='));
-              if (!values.emplace(name, *parse_number(std::string_view(setting).substr(name.size() + 1))).second)
-                throw CLI::ValidationError("--set", "'" + name + "' must be set once");
-            }
-          },
-          "values for the scene's parameters in the place of the file's")
-      ->type_name("NAME=VALUE ...")
-      ->check(check_setting);
+std::string read_settings(const Words& settings, scene::ParameterValues& values) {
+  for (const std::string& setting : settings) {
+    const std::string name = setting.substr(0, setting.find('='));
+    if (!values.emplace(name, *parse_number(std::string_view(setting).substr(name.size() + 1))).second)
+      return "'" + name + "' must be set once";
+  }
+  return "";
 }
 
 }  // namespace
 
-void add_scene(CLI::App& command, SceneInput& input) {
-  command.add_option("scene", input.path, "scene file")->required();
-  add_parameters(command, input.options.parameters);
+void add_scene(Command& command, SceneInput& input) {
+  command.argument("scene", input.path, "scene file");
+  command.heading("The scene");
   command
-      .add_option_function<std::vector<std::string>>(
+      .option_of_words(
+          "--set", [&input](const Words& settings) { return read_settings(settings, input.options.parameters); },
+          "values for the scene's parameters in the place of the file's")
+      .shown_as("NAME=VALUE")
+      .check(check_setting);
+  command
+      .option_of_words(
           "--start",
-          [&input](const std::vector<std::string>& choices) {
+          [&input](const Words& choices) {
             for (const std::string& choice : choices)
               (choice == "clamp" ? input.options.clamp_start : input.options.equilibrium_start) = true;
+            return "";
           },
           "clamp: joints that would start outside their limits start at the nearest one; equilibrium: everything "
           "starts at rest where loads, gravity and servos hold it; or both, with a comma between them")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->check(CLI::IsMember({"clamp", "equilibrium"}));
+      .takes(1)
+      .with_commas()
+      .choices({"clamp", "equilibrium"});
   command
-      .add_option_function<std::string>(
-          "--massless", [&input](const std::string&) { input.options.lock_massless = true; },
+      .option_of_words(
+          "--massless",
+          [&input](const Words&) {
+            input.options.lock_massless = true;
+            return "";
+          },
           "lock: joints that move nothing with inertia are held")
-      ->check(CLI::IsMember({"lock"}));
+      .takes(1)
+      .choices({"lock"});
+  command.heading("Options");
 }
 
-void add_equilibrium(CLI::App& command, Equilibrium& wanted) {
-  command.add_flag_callback(
+void add_equilibrium(Command& command, Equilibrium& wanted) {
+  command.flag(
       "--unstable", [&wanted] { wanted = Equilibrium::UnderTheLoads; },
       "takes the equilibrium that the loads lead to, stable or not");
 }
@@ -80,16 +86,6 @@ Simulation load_simulation(const SceneInput& input, const SimulationOptions& opt
   return simulation;
 }
 
-std::string check_positive(const std::string& text) {
-  const std::optional<double> number = parse_number(text);
-  return number && *number > 0 ? "" : "must be a number > 0, got '" + text + "'";
-}
-
-std::string check_non_negative(const std::string& text) {
-  const std::optional<double> number = parse_number(text);
-  return number && *number >= 0 ? "" : "must be a number >= 0, got '" + text + "'";
-}
-
 std::string check_part(const std::string& text) {
   const std::optional<double> number = parse_number(text);
   return number && *number > 0 && *number < 1 ? "" : "must be a number between 0 and 1, got '" + text + "'";
@@ -99,6 +95,10 @@ std::string check_tolerance(const std::string& text) {
   const std::optional<double> number = parse_number(text);
   const bool is_good = number && *number > 0 && *number <= kLargestTolerance;
   return is_good ? "" : fmt::format("must be a number > 0 and at most {}, got '{}'", kLargestTolerance, text);
+}
+
+Words scheme_choices() {
+  return {scheme_names().begin(), scheme_names().end()};
 }
 
 std::vector<Mode> modes_about_equilibrium(Simulation& simulation, int count, Equilibrium wanted) {

@@ -4,8 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
+#include "cli/command.h"
 #include "flexarm/scene/urdf_reader.h"
 #include "flexarm/simulation/simulation.h"
 #include "simulation/equilibrium_text.h"
@@ -19,7 +18,7 @@ struct SceneInput {
 };
 
 /// The argument `scene` and its options; `input` must outlive the command.
-void add_scene(CLI::App& command, SceneInput& input);
+void add_scene(Command& command, SceneInput& input);
 
 /// Reads a scene; findings go to the standard error output.
 /// @returns with a scene
@@ -30,17 +29,16 @@ scene::ReadResult read_scene(const SceneInput& input);
 /// @throws InputError if the scene has errors, ModelError if it cannot be built.
 Simulation load_simulation(const SceneInput& input, const SimulationOptions& options = {});
 
-/// For options: a finite number > 0, or >= 0.
-std::string check_positive(const std::string& text);
-std::string check_non_negative(const std::string& text);
-/// Between 0 and 1, both excluded.
+/// For options: between 0 and 1, both excluded.
 std::string check_part(const std::string& text);
 /// The same for a tolerance of Newton's method.
 std::string check_tolerance(const std::string& text);
+/// Names of time integration schemes.
+Words scheme_choices();
 
 /// An option by which the equilibrium that the loads lead to is taken, stable or not; `wanted` must outlive the
 /// command.
-void add_equilibrium(CLI::App& command, Equilibrium& wanted);
+void add_equilibrium(Command& command, Equilibrium& wanted);
 /// On the standard error output: that the loads lead to an unstable equilibrium, and which one was taken.
 void warn_of_instability(const Simulation& simulation, const StaticResult& result, Equilibrium wanted);
 

@@ -10,6 +10,7 @@
 #include "cli/accurate_simulation.h"
 #include "cli/commands.h"
 #include "cli/files.h"
+#include "cli/interruptions.h"
 #include "cli/progress_bar.h"
 #include "cli/scene_input.h"
 #include "cli/simulation_output.h"
@@ -180,49 +181,68 @@ int simulate(const SimulateArguments& arguments) {
   return kInterrupted + interruption();
 }
 
+// ---------------------------------------------------------------- options
+
+void add_time_and_accuracy(Command& command, SimulateArguments& arguments) {
+  command.heading("Time and accuracy");
+  command.option("--until", arguments.until, "end time [s]").shows_default().check(check_non_negative);
+  command.option("--step", arguments.options.step, "time step [s]").check(check_positive);
+  command
+      .option("--accuracy", arguments.accuracy,
+              "error of probes, of the way that they move, or a millionth of the mechanism's size if that is more: "
+              "steps are chosen for it (the scene's)")
+      .check(check_part);
+  command.option("--scheme", arguments.options.scheme, "integration scheme").choices(scheme_choices());
+  command.option("--tolerance", arguments.options.tolerance, "of Newton's method").check(check_tolerance);
+  command
+      .option_of_words(
+          "--on-failure",
+          [&arguments](const Words& words) {
+            arguments.options.on_failure = on_failure_called(words.back());
+            return "";
+          },
+          "what becomes of a step that the scheme cannot do (the scene's)")
+      .takes(1)
+      .choices({"stop", "dissipate"});
+  command.flag("--error-estimate", arguments.estimates_error,
+               "estimates the error in time by steps of twice the length, for half as much time again");
+}
+
+void add_output(Command& command, SimulateArguments& arguments) {
+  command.heading("Output");
+  command
+      .option("--output", arguments.output,
+              "file for the results: .h5: HDF5, .bag: ROS bag, else CSV; -: standard output")
+      .shown_as("FILE");
+  command
+      .option("--columns", arguments.columns,
+              "of the output, in this order: patterns of names, with commas between them (\"joint/*,sensor/*/f?\")")
+      .shown_as("PATTERN")
+      .with_commas()
+      .needs("--output");
+  command.option("--every", arguments.every, "steps between rows of the output")
+      .shows_default()
+      .check(whole_number_between(1, 1000000000));
+  command.option("--interval", arguments.interval, "time between rows of the output with an accuracy [s]")
+      .check(check_positive);
+  command.flag("--quiet", arguments.quiet, "no progress bar and no summary");
+  command.heading("States");
+  command.option("--resume", arguments.resume, "state file to start from").shown_as("FILE");
+  command.option("--checkpoint", arguments.checkpoint, "state file to write at the end").shown_as("FILE");
+  command.option("--checkpoint-every", arguments.checkpoint_every, "simulated time between writings of it [s]")
+      .check(check_positive)
+      .needs("--checkpoint");
+}
+
 }  // namespace
 
-void add_simulate(CLI::App& app, int& status) {
+void add_simulate(CommandLine& line) {
   const auto arguments = std::make_shared<SimulateArguments>();
-  CLI::App* command = app.add_subcommand("simulate", "Simulates a scene in time");
-  add_scene(*command, arguments->scene);
-  command->add_option("--until", arguments->until, "end time [s]")->capture_default_str()->check(check_non_negative);
-  command->add_option("--step", arguments->options.step, "time step [s]")->check(check_positive);
-  command
-      ->add_option("--accuracy", arguments->accuracy,
-                   "error of probes, of the way that they move, or a millionth of the mechanism's size if that is "
-                   "more: steps are chosen for it (the scene's)")
-      ->check(check_part);
-  command->add_option("--interval", arguments->interval, "time between rows of the output with an accuracy [s]")
-      ->check(check_positive);
-  command->add_option("--scheme", arguments->options.scheme, "integration scheme");
-  command->add_option("--tolerance", arguments->options.tolerance, "of Newton's method")->check(check_tolerance);
-  command
-      ->add_option_function<std::string>(
-          "--on-failure",
-          [arguments](const std::string& choice) { arguments->options.on_failure = on_failure_called(choice); },
-          "what becomes of a step that the scheme cannot do (the scene's)")
-      ->check(CLI::IsMember({"stop", "dissipate"}));
-  CLI::Option* output = command->add_option(
-      "--output", arguments->output, "file for the results: .h5: HDF5, .bag: ROS bag, else CSV; -: standard output");
-  command
-      ->add_option("--columns", arguments->columns,
-                   "of the output: patterns of names, with commas between them (\"joint/*,sensor/*/f?\")")
-      ->delimiter(',')
-      ->needs(output);
-  command->add_option("--every", arguments->every, "steps between rows of the output")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1000000000));
-  command->add_option("--resume", arguments->resume, "state file to start from");
-  CLI::Option* checkpoint =
-      command->add_option("--checkpoint", arguments->checkpoint, "state file to write at the end");
-  command->add_option("--checkpoint-every", arguments->checkpoint_every, "simulated time between writings of it [s]")
-      ->check(check_positive)
-      ->needs(checkpoint);
-  command->add_flag("--error-estimate", arguments->estimates_error,
-                    "estimates the error in time by steps of twice the length, for half as much time again");
-  command->add_flag("--quiet", arguments->quiet, "no progress bar and no summary");
-  command->callback([arguments, &status] { status = simulate(*arguments); });
+  Command& command = line.command("simulate", "Simulates a scene in time");
+  add_scene(command, arguments->scene);
+  add_time_and_accuracy(command, *arguments);
+  add_output(command, *arguments);
+  command.runs([arguments] { return simulate(*arguments); });
 }
 
 }  // namespace flexarm::cli

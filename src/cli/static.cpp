@@ -55,16 +55,16 @@ int solve(const StaticArguments& arguments) {
 
 }  // namespace
 
-void add_static(CLI::App& app, int& status) {
+void add_static(CommandLine& line) {
   const auto arguments = std::make_shared<StaticArguments>();
-  CLI::App* command = app.add_subcommand("static", "Finds the equilibrium under gravity and the loads at t = 0");
-  add_scene(*command, arguments->scene);
-  command->add_option("--load-steps", arguments->load_steps, "steps in which gravity and loads grow")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1000000));
-  add_equilibrium(*command, arguments->wanted);
-  command->add_option("--output", arguments->output, "CSV file for the equilibrium; -: standard output");
-  command->callback([arguments, &status] { status = solve(*arguments); });
+  Command& command = line.command("static", "Finds the equilibrium under gravity and the loads at t = 0");
+  add_scene(command, arguments->scene);
+  command.option("--load-steps", arguments->load_steps, "steps in which gravity and loads grow")
+      .shows_default()
+      .check(whole_number_between(1, 1000000));
+  add_equilibrium(command, arguments->wanted);
+  command.option("--output", arguments->output, "CSV file for the equilibrium; -: standard output").shown_as("FILE");
+  command.runs([arguments] { return solve(*arguments); });
 }
 
 }  // namespace flexarm::cli

@@ -11,6 +11,7 @@
 #include "cli/effort_schedule.h"
 #include "cli/files.h"
 #include "cli/installation.h"
+#include "cli/interruptions.h"
 #include "cli/progress_bar.h"
 #include "cli/scene_input.h"
 #include "cli/tuned_scene.h"
@@ -40,7 +41,7 @@ std::string output_of(const TuneArguments& arguments) {
   return !arguments.output.empty() ? arguments.output : scene.stem().string() + "_tuned" + scene.extension().string();
 }
 
-std::string text_of(const std::string& path) {
+std::string content_of(const std::string& path) {
   std::stringstream text;
   text << std::ifstream(path, std::ios::binary).rdbuf();
   return text.str();
@@ -101,7 +102,8 @@ int tune_scene(const TuneArguments& arguments) {
                     picture = fs::path(output).replace_extension(".png").string();
   write_file(data, tuning_csv(result, times));
   if (result.is_met) {
-    write_file(output.string(), tuned_text(text_of(arguments.scene.path), scene, result.runs[*result.best].settings));
+    write_file(output.string(),
+               tuned_text(content_of(arguments.scene.path), scene, result.runs[*result.best].settings));
     fmt::print("{}\n", output.string());
   }
   fmt::print("{}\n", data);
@@ -116,32 +118,38 @@ int tune_scene(const TuneArguments& arguments) {
 
 }  // namespace
 
-void add_tune(CLI::App& app, int& status) {
+void add_tune(CommandLine& line) {
   const auto arguments = std::make_shared<TuneArguments>();
-  CLI::App* command = app.add_subcommand(
+  Command& command = line.command(
       "tune",
       "Finds the cheapest meshes, scheme, step and tolerance for an accuracy, or the most accurate for a speed");
-  add_scene(*command, arguments->scene);
-  command->add_option("--accuracy", arguments->accuracy, "error of the probes, relative to their largest displacement")
-      ->check(check_positive);
-  command->add_option("--real-time", arguments->real_time, "as accurate as this many times real time leave room for")
-      ->check(check_positive);
-  command->add_option("--margin", arguments->margin, "of --real-time: how many times faster it shall be")
-      ->capture_default_str()
-      ->check(check_positive);
-  command->add_option("--until", arguments->until, "end of the motion that is looked at [s]")
-      ->capture_default_str()
-      ->check(check_positive);
-  command->add_option("--commands", arguments->commands, "file of efforts, as config/demo_commands.yaml is one")
-      ->check(CLI::ExistingFile);
-  command->add_flag("--any-scheme", arguments->freedom.any_scheme,
-                    "also such that do not conserve what the scene's scheme does");
-  command->add_option("--budget", arguments->limits.seconds, "time of the processor that the search may take [s]")
-      ->capture_default_str()
-      ->check(check_positive);
-  command->add_option("--output", arguments->output,
-                      "file for the tuned scene (SCENE_tuned.urdf); a table and a picture go beside it");
-  command->callback([arguments, &status] { status = tune_scene(*arguments); });
+  add_scene(command, arguments->scene);
+  command.heading("Goal: one of the first two");
+  command.option("--accuracy", arguments->accuracy, "error of the probes, relative to their largest displacement")
+      .check(check_positive);
+  command.option("--real-time", arguments->real_time, "as accurate as this many times real time leave room for")
+      .check(check_positive);
+  command.option("--margin", arguments->margin, "of --real-time: how many times faster it shall be")
+      .shows_default()
+      .check(check_positive);
+  command.heading("Search");
+  command.option("--until", arguments->until, "end of the motion that is looked at [s]")
+      .shows_default()
+      .check(check_positive);
+  command.option("--commands", arguments->commands, "file of efforts, as config/demo_commands.yaml is one")
+      .shown_as("FILE")
+      .check(check_existing_file);
+  command.flag("--any-scheme", arguments->freedom.any_scheme,
+               "also such that do not conserve what the scene's scheme does");
+  command.option("--budget", arguments->limits.seconds, "time of the processor that the search may take [s]")
+      .shows_default()
+      .check(check_positive);
+  command.heading("Output");
+  command
+      .option("--output", arguments->output,
+              "file for the tuned scene (SCENE_tuned.urdf); a table and a picture go beside it")
+      .shown_as("FILE");
+  command.runs([arguments] { return tune_scene(*arguments); });
 }
 
 }  // namespace flexarm::cli

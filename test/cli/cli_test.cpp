@@ -30,6 +30,42 @@ TEST(CommandLine, Help) {
     expect_contains(outcome.output, word);
 }
 
+TEST(CommandLine, MistypedCommandsAndOptionsAreGuessed) {
+  const Outcome command = shell("flexarm simulat " + example("cantilever"));
+  EXPECT_EQ(command.status, 2);
+  EXPECT_EQ(command.output, "");
+  expect_contains(command.errors, "flexarm: there is no subcommand 'simulat'; did you mean 'simulate'?");
+  const Outcome option = shell("flexarm simulate --unitl 1 " + example("cantilever"));
+  EXPECT_EQ(option.status, 2);
+  expect_contains(option.errors, "flexarm simulate: there is no option '--unitl'; did you mean '--until'?");
+  expect_contains(shell("flexarm bench haard").errors,
+                  "flexarm bench: there is no subcommand 'haard'; did you mean 'hard'?");
+  expect_contains(shell("flexarm").errors, "expected one of check, simulate,");
+}
+
+TEST(CommandLine, Version) {
+  const Outcome outcome = shell("flexarm --version");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_TRUE(std::regex_match(outcome.output, std::regex("flexarm [0-9]+\\.[0-9]+\\.[0-9]+\n"))) << outcome.output;
+}
+
+// As a shell does it when the tabulator is pressed.
+TEST(CommandLine, BashCompletes) {
+  const auto completed = [](const std::string& words, int last) {
+    const Outcome outcome =
+        shell("bash -c 'eval \"$(\"" + program() + "\" completion bash)\"; COMP_WORDS=(\"" + program() + "\" " + words +
+              "); COMP_CWORD=" + std::to_string(last) + "; _flexarm \"" + program() + "\"; echo \"${COMPREPLY[@]}\"'");
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_EQ(outcome.errors, "");
+    return outcome.output;
+  };
+  EXPECT_EQ(completed("si", 1), "simulate\n");
+  EXPECT_EQ(completed("simulate --st", 2), "--start --step\n");
+  EXPECT_EQ(completed("simulate scene.urdf --start \"\"", 4), "clamp equilibrium\n");
+  EXPECT_EQ(completed("bench hard --gr", 3), "--group\n");
+  EXPECT_EQ(completed("simulate sc", 2), "\n") << "files, which bash finds itself";
+}
+
 TEST(CommandLine, SceneErrorsGoToTheErrorOutput) {
   const std::string path = scene_file("<robot name=\"r\">\n<link name=\"a\"/>\n<link name=\"b\"/></robot>");
   for (const char* command : {"check", "simulate", "static", "modes"}) {
