@@ -162,6 +162,8 @@ void settle_gears(const std::vector<Transmission>& transmissions, std::vector<Dr
                   Findings& findings) {
   std::map<std::string, const Transmission*> of_joint;
   for (const Transmission& transmission : transmissions) of_joint.emplace(transmission.joint, &transmission);
+  std::vector<std::string> odd;  // "'elbow' (100, line 7 has 1)"
+  int line = 0;
   for (DriveDescription& drive : drives) {
     const auto found = of_joint.find(drive.coordinate);
     if (found == of_joint.end()) continue;
@@ -176,12 +178,16 @@ void settle_gears(const std::vector<Transmission>& transmissions, std::vector<Dr
     }
     const double ratio = std::abs(*reduction);  // its sign says which way the motor turns
     if (!drive.gear) drive.gear = ratio;
-    if (std::abs(*drive.gear - ratio) > kSameRatio * ratio)
-      findings.error(
-          drive.location.line, "<drive> of robot",
-          fmt::format("gear must be that of the joint's <transmission>, {} (line {})", ratio, transmission.line),
-          quoted(fmt::format("{}", *drive.gear)));
+    if (std::abs(*drive.gear - ratio) <= kSameRatio * ratio) continue;
+    if (odd.empty()) line = drive.location.line;
+    odd.push_back(
+        fmt::format("{} ({}, line {} has {})", quoted(drive.coordinate), *drive.gear, transmission.line, ratio));
   }
+  // One for all of them: most exporters write a reduction of 1 for every joint.
+  if (!odd.empty())
+    findings.warning(line, "<drive> of robot",
+                     fmt::format("gear counts, not the <mechanicalReduction> of the joint's <transmission>: {}",
+                                 fmt::join(odd, ", ")));
 }
 
 }  // namespace flexarm::scene

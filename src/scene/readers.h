@@ -46,7 +46,7 @@ struct Transmission {
 /// Nothing where it has no <mechanicalReduction>, or couples several joints or motors.
 std::optional<Transmission> read_transmission(const XmlElement& transmission);
 
-/// Drives without a gear take that of their joint's transmission; records contradictions.
+/// Drives without a gear take that of their joint's transmission; one warning names those with another one.
 void settle_gears(const std::vector<Transmission>& transmissions, std::vector<DriveDescription>& drives,
                   Findings& findings);
 

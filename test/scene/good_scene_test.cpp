@@ -373,6 +373,37 @@ TEST(GoodScene, GearOfATransmission) {
   EXPECT_EQ(result.scene->drives[0].gear, 50);
 }
 
+// Exporters write a reduction of 1 for every joint, whatever its gear is.
+TEST(GoodScene, AnExplicitGearGoesBeforeThatOfATransmission) {
+  const ReadResult result = read(good_scene_with("gear=\"50\" ", "gear=\"60\" "));
+  ASSERT_TRUE(result.scene) << to_text(result.diagnostics);
+  EXPECT_EQ(result.scene->drives[0].gear, 60);
+  EXPECT_EQ(to_text(result.diagnostics),
+            "scene.urdf:71: warning: <drive> of robot: gear counts, not the <mechanicalReduction> of the joint's "
+            "<transmission>: 'elbow' (60, line 73 has 50)\n");
+}
+
+TEST(GoodScene, OneWarningNamesAllGearsThatAreNotThoseOfTransmissions) {
+  std::string text = "<robot name=\"r\"> <link name=\"l0\"/>";
+  for (int i = 1; i < 4; ++i) {
+    const std::string n = std::to_string(i), before = std::to_string(i - 1);
+    text += "\n<link name=\"l" + n +
+            "\"> <inertial> <mass value=\"1\"/> <inertia ixx=\"1\" iyy=\"1\" izz=\"1\" ixy=\"0\" "
+            "ixz=\"0\" iyz=\"0\"/> </inertial> </link> <joint name=\"j" +
+            n + "\" type=\"continuous\"> <parent link=\"l" + before + "\"/> <child link=\"l" + n +
+            "\"/> <axis xyz=\"0 1 0\"/> </joint> <transmission name=\"t" + n + "\"> <joint name=\"j" + n +
+            "\"/> <actuator name=\"m\"> <mechanicalReduction>1</mechanicalReduction> "
+            "</actuator> </transmission> <drive joint=\"j" +
+            n + "\" gear=\"" + (i == 2 ? "1" : "100") + "\"/>";
+  }
+  const ReadResult result = read(text + "</robot>");
+  ASSERT_TRUE(result.scene) << to_text(result.diagnostics);
+  EXPECT_EQ(result.scene->drives[0].gear, 100);
+  EXPECT_EQ(to_text(result.diagnostics),
+            "scene.urdf:2: warning: <drive> of robot: gear counts, not the <mechanicalReduction> of the joint's "
+            "<transmission>: 'j1' (100, line 2 has 1), 'j3' (100, line 4 has 1)\n");
+}
+
 TEST(GoodScene, Servo) {
   const SceneDescription scene = good_scene();
   ASSERT_EQ(scene.servos.size(), 1u);
