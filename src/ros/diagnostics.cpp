@@ -1,28 +1,34 @@
 #include "diagnostics.h"
 
-#include <diagnostic_updater/diagnostic_updater.h>
+#include <diagnostic_msgs/DiagnosticArray.h>
+#include <ros/this_node.h>
 
-#include <utility>
+#include "parameters.h"
 
 namespace flexarm::node {
 
-Diagnostics::Diagnostics(const ros::NodeHandle& node, const ros::NodeHandle& private_node, const Simulation& simulation,
+Diagnostics::Diagnostics(ros::NodeHandle node, const ros::NodeHandle& private_node, const Simulation& simulation,
                          const RunState& run)
-    : report_(simulation, run), updater_(std::make_unique<diagnostic_updater::Updater>(node, private_node)) {
-  updater_->setHardwareID("none");
-  updater_->add("simulation", [this](diagnostic_updater::DiagnosticStatusWrapper& status) { report_.write(status); });
+    : report_(simulation, run),
+      publisher_(node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1)),
+      last_time_(ros::Time::now()) {
+  const double period = private_node.param("diagnostic_period", 1.0);
+  if (!(period > 0)) throw ParameterError("~diagnostic_period must be above 0 s");
+  period_.fromSec(period);
 }
-
-Diagnostics::~Diagnostics() = default;
 
 void Diagnostics::publish(bool force) {
   const ros::Time now = ros::Time::now();
-  const bool is_set_back = now < std::exchange(last_time_, now);  // the updater would wait until it is that late again
-  if (force || is_set_back) {
-    updater_->force_update();
-  } else {
-    updater_->update();
-  }
+  const bool is_set_back = now < last_time_;  // else nothing would be sent until it is that late again
+  if (!force && !is_set_back && now < last_time_ + period_) return;
+  last_time_ = now;
+  diagnostic_msgs::DiagnosticArray message;
+  message.header.stamp = now;
+  message.status.resize(1);
+  message.status[0].name = ros::this_node::getName().substr(1) + ": simulation";
+  message.status[0].hardware_id = "none";
+  report_.write(message.status[0]);
+  publisher_.publish(message);
 }
 
 }  // namespace flexarm::node
