@@ -42,10 +42,9 @@ MATHJAX_PARTS = ["MathJax.js", "config/TeX-AMS_CHTML.js", "extensions", "jax/ele
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"
 
-DOXYGEN_XML = os.path.join(ROOT, "build", "docs", "doxygen", "xml")
+DOXYGEN_XML = os.path.join(os.environ["FLEXARM_DOCS"], "doxygen", "xml")
 breathe_projects = {"flexarm": DOXYGEN_XML}
 breathe_default_project = "flexarm"
-cpp_id_attributes = []
 
 # The order of reading: each page has a next one. A caption of README.md or a page, then what is below it.
 CONTENTS = {
@@ -98,8 +97,8 @@ def write_xml(app):
     os.makedirs(os.path.dirname(DOXYGEN_XML), exist_ok=True)
     with open(os.path.join(ROOT, "docs", "Doxyfile"), encoding="utf-8") as file:
         settings = file.read()
-    settings += "INPUT = include\nSTRIP_FROM_PATH = include\nGENERATE_HTML = NO\nGENERATE_XML = YES\nOUTPUT_DIRECTORY = %s\n" % (
-        os.path.dirname(DOXYGEN_XML))
+    settings += "INPUT = include\nSTRIP_FROM_PATH = include\nGENERATE_HTML = NO\nGENERATE_XML = YES\n"
+    settings += "OUTPUT_DIRECTORY = %s\n" % os.path.dirname(DOXYGEN_XML)
     subprocess.run(["doxygen", "-"], input=settings, text=True, cwd=ROOT, check=True)
 
 
@@ -110,8 +109,35 @@ def show_headers(text):
     if missing := headers.files() - set(names):
         raise LookupError("docs/cpp_api.rst does not name %s" % ", ".join(sorted(missing)))
     for name in names:
-        text = text.replace("%s\n%s\n" % (name, "~" * len(name)), "%s\n%s\n\n%s" % (name, "~" * len(name), headers.directives(name)))
+        title = "%s\n%s\n" % (name, "~" * len(name))
+        text = text.replace(title, title + "\n" + headers.directives(name))
     return text
+
+
+def mark_up(app, kind, name, thing, options, lines):
+    """The module's docstrings are plain text: paragraphs, arguments as "name: ...", and code that is indented."""
+    text = []
+    in_code = False
+    for line in lines:
+        argument = re.match(r"\s*([a-z_]+(?:, [a-z_]+)*): (.*)", line)
+        starts = not text or not text[-1].strip()
+        in_code = in_code and (line.startswith("    ") or not line.strip())
+        if starts and line.startswith("    ") and not argument and not in_code:
+            in_code = True
+            text += ["::", ""]
+        if in_code:
+            text.append(line)
+        elif argument:
+            text += ["", "- **%s**: %s" % (argument[1], escaped(argument[2])), ""]
+        elif line.startswith("  ") and len(text) > 1 and text[-2].startswith("- **"):
+            text[-2] += " " + escaped(line.strip())
+        else:
+            text.append(escaped(line.strip()))
+    lines[:] = text
+
+
+def escaped(text):
+    return re.sub(r"([\\*|`_])", r"\\\1", text)
 
 
 def copy_mathjax(app, exception):
@@ -128,3 +154,4 @@ def setup(app):
     app.connect("build-finished", copy_mathjax)
     app.connect("builder-inited", write_xml)
     app.connect("source-read", prepare_page)
+    app.connect("autodoc-process-docstring", mark_up)

@@ -3,7 +3,7 @@
 import os
 import xml.etree.ElementTree
 
-DIRECTIVES = {"enum": "doxygenenum", "typedef": "doxygentypedef", "variable": "doxygenvariable"}
+DIRECTIVES = {kind: "doxygen" + kind for kind in ("function", "enum", "typedef", "variable")}
 
 
 class PublicHeaders:
@@ -39,9 +39,8 @@ class PublicHeaders:
         for member in self._members.get(header, []):
             name = member.findtext("qualifiedname")
             if member.get("kind") == "function":
-                entries.append((member.find("location"), ".. doxygenfunction:: %s%s\n" % (name, self._arguments(member))))
-            else:
-                entries.append((member.find("location"), ".. %s:: %s\n" % (DIRECTIVES[member.get("kind")], name)))
+                name += self._arguments(member)
+            entries.append((member.find("location"), ".. %s:: %s\n" % (DIRECTIVES[member.get("kind")], name)))
         if not entries:
             raise LookupError("nothing documented in the public header '%s'" % header)
         entries.sort(key=lambda entry: int(entry[0].get("line")))
