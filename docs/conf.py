@@ -25,8 +25,8 @@ extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "breath
 
 html_theme = "furo"
 html_title = "flexarm"
-html_static_path = ["site.css"]
-html_css_files = ["site.css"]
+html_static_path = ["site.css", "site.js"]
+html_css_files, html_js_files = ["site.css"], ["site.js"]
 html_show_copyright = html_copy_source = False
 pygments_style = "friendly"
 
@@ -35,6 +35,8 @@ myst_heading_anchors = 4
 myst_dmath_double_inline = True
 suppress_warnings = ["myst.header"]  # pages that begin with a heading of the second level
 mathjax_path = "mathjax/MathJax.js?config=TeX-AMS_CHTML"
+mathjax2_config = {"tex2jax": {"processClass": "math", "ignoreClass": "tex2jax_ignore"}}
+myst_update_mathjax = False  # for the third version, which Debian does not have
 
 MATHJAX_PARTS = ["MathJax.js", "config/TeX-AMS_CHTML.js", "extensions", "jax/element", "jax/input/TeX",
                  "jax/output/CommonHTML", "fonts/HTML-CSS/TeX/woff"]
@@ -137,7 +139,12 @@ def mark_up(app, kind, name, thing, options, lines):
 
 
 def escaped(text):
-    return re.sub(r"([\\*|`_])", r"\\\1", text)
+    """For reStructuredText, which knows `names` by two backticks."""
+    parts = text.split("`")
+    if len(parts) % 2 == 0:
+        parts = ["`".join(parts)]
+    parts[::2] = [re.sub(r"([\\*|`_])", r"\\\1", part) for part in parts[::2]]
+    return "``".join(parts)
 
 
 def copy_mathjax(app, exception):

@@ -35,7 +35,7 @@ class PublicHeaders:
             name = definition.findtext("compoundname")
             if not self._is_inner(name) and "<" not in name:
                 kind = "doxygen" + definition.get("kind")
-                entries.append((definition.find("location"), ".. %s:: %s\n   :members:\n" % (kind, name)))
+                entries.append((definition.find("location"), ".. %s:: %s\n   :members:\n   :undoc-members:\n" % (kind, name)))
         for member in self._members.get(header, []):
             name = member.findtext("qualifiedname")
             if member.get("kind") == "function":
