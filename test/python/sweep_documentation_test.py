@@ -42,5 +42,5 @@ def test_the_plan_is_the_one_of_the_file():
 def test_all_kinds_and_functions_are_listed():
     for word in ("grid", "rows", *SAMPLES, *KINDS):
         assert "`%s`" % word in TEXT, word
-    listed = re.search(r"`(abs .*?)`", TEXT, re.DOTALL).group(1).split()
+    listed = re.search(r"`(abs\s.*?)`", TEXT, re.DOTALL).group(1).split()
     assert sorted(listed + ["min", "max"]) == sorted(FUNCTIONS)
