@@ -14,7 +14,7 @@
 
 #include "cli/exit_status.h"
 #include "math/near_names.h"
-#include "math/parse_number.h"
+#include "math/number_text.h"
 
 namespace flexarm::cli {
 
