@@ -331,7 +331,7 @@ void LinearDynamics::move_to_steady(const Eigen::VectorXd& rates) {
 Eigen::VectorXd LinearDynamics::free_accelerations() const {
   const std::vector<int> places = free_places();
   Eigen::VectorXd accelerations = Eigen::VectorXd::Zero(residual_.size());
-  accelerations(places) = -square_solution(mass_(places, places), residual_(places));
+  add_to_rows(accelerations, places, -square_solution(picked(mass_, places, places), picked_rows(residual_, places)));
   if (!accelerations.allFinite()) throw std::runtime_error("some coordinate moves nothing that has mass");
   return accelerations;
 }
