@@ -35,7 +35,8 @@ class PublicHeaders:
             name = definition.findtext("compoundname")
             if not self._is_inner(name) and "<" not in name:
                 kind = "doxygen" + definition.get("kind")
-                entries.append((definition.find("location"), ".. %s:: %s\n   :members:\n   :undoc-members:\n" % (kind, name)))
+                directive = ".. %s:: %s\n   :members:\n   :undoc-members:\n" % (kind, name)
+                entries.append((definition.find("location"), directive))
         for member in self._members.get(header, []):
             name = member.findtext("qualifiedname")
             if member.get("kind") == "function":

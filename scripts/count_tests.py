@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 """Adds up the results of all test runners: `count_tests.py CTEST-REPORT DIRECTORY`.
 
-CTEST-REPORT is the Test.xml of `ctest -T Test --no-compress-output`, which every release of CMake writes. ctest knows every program that ran; a gtest, rostest or pytest left its single tests in DIRECTORY as JUnit XML (the
-test-name of test/ros/NAME.test is NAME, so that its file can be found). A program without such a file, or that failed
-although each of its tests passed, counts as one test. Skipped are the tests that say so themselves, and disabled ones;
-a program that could not be started has failed. What a program that failed printed last stands below its name. The last
+CTEST-REPORT is the Test.xml of `ctest -T Test --no-compress-output`, which every release of CMake writes. ctest knows
+every program that ran; a gtest, rostest or pytest left its single tests in DIRECTORY as JUnit XML (the test-name of
+test/ros/NAME.test is NAME, so that its file can be found). A program without such a file, or that failed although
+each of its tests passed, counts as one test. Skipped are the tests that say so themselves, and disabled ones; a
+program that could not be started has failed. What a program that failed printed last stands below its name. The last
 line is `N passed, N failed, N skipped`; the exit status is 1 if a test failed, or if none passed.
 """
 
@@ -67,7 +68,8 @@ def results_of(program, outcome, directory):
 def main():
     report, directory = sys.argv[1:]
     counts = {PASSED: 0, FAILED: 0, SKIPPED: 0}
-    programs = xml.etree.ElementTree.parse(report).getroot().iterfind(".//Test[@Status]") if os.path.exists(report) else []
+    has_report = os.path.exists(report)
+    programs = xml.etree.ElementTree.parse(report).getroot().iterfind(".//Test[@Status]") if has_report else []
     for test in programs:
         results = results_of(test.findtext("Name"), outcome_of_program(test), directory)
         for name, outcome in results:

@@ -152,7 +152,9 @@ def friction_force(memory, slip, normal, force, limit, stiffness):
 
 
 def turn_grip(memory, turn, normal, force, spinning, rolling, stiffness):
-    """As friction_force, of what resists to spinning (along the normal) and rolling (across it). spinning, rolling: [m]."""
+    """As friction_force, of what resists to spinning (along the normal) and rolling (across it).
+
+    spinning, rolling: [m]."""
     across = friction_force(memory, turn, normal, force, rolling, stiffness)
     whole, most = memory + turn, spinning * force / stiffness
     size = normal @ whole
