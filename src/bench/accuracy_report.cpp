@@ -16,7 +16,7 @@ namespace {
 constexpr double kShareAbove = 0.05, kLargestRatio = 3, kLargestCost = 1.5;
 
 std::string number(double value, const char* format) {
-  return std::isfinite(value) ? fmt::vformat(format, fmt::make_format_args(value)) : "–";
+  return std::isfinite(value) ? fmt::vformat(format, fmt::format_args(fmt::make_format_args(value))) : "–";
 }
 
 /// Counts of outcomes.

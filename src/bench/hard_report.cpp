@@ -68,7 +68,7 @@ long count_rows(const HardReport& report, const Predicate& predicate) {
 
 /// A number, a dash where there is none.
 std::string number(const char* format, double value) {
-  return std::isnan(value) ? "–" : fmt::vformat(format, fmt::make_format_args(value));
+  return std::isnan(value) ? "–" : fmt::vformat(format, fmt::format_args(fmt::make_format_args(value)));
 }
 
 /// One scheme against all cases, and against the first scheme.
