@@ -21,10 +21,9 @@ CommandInterface::CommandInterface(ros::NodeHandle& node, ros::NodeHandle& priva
       shown_(shown),
       stepping_(stepping),
       reader_(shown, times.timeout),
-      trajectories_(node, shown, stepping,
-                    {times.time_of, [this] { return refusal(); },
-                     [this](const std::string& fault) { warn("joint_trajectory", fault); }},
-                    times.stop_duration),
+      controllers_(node, private_node, shown, stepping,
+                   {times.time_of, [this] { return refusal(); }, times.stop_duration},
+                   [this](const std::string& fault) { warn("joint_trajectory", fault); }),
       last_warning_(std::chrono::steady_clock::now() - kWarningPeriod) {
   const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
   subscribers_.push_back(
@@ -39,7 +38,7 @@ CommandInterface::CommandInterface(ros::NodeHandle& node, ros::NodeHandle& priva
 }
 
 void CommandInterface::adopt_scene() {
-  trajectories_.adopt_scene();
+  controllers_.adopt_scene();
   const std::map<std::string, ros::Subscriber> before = std::exchange(joint_subscribers_, {});
   const auto subscribe = [&](const std::string& name, const std::string& suffix, Commanded quantity) {
     const auto same = before.find(name + "/" + suffix);
@@ -70,7 +69,7 @@ ros::Subscriber CommandInterface::subscribe_to(const std::string& name, const st
 
 void CommandInterface::forget_commands() {
   stepping_.forget_commands();
-  trajectories_.release_all(stopped_ ? refusal() : "the simulation was put into another state");
+  controllers_.release_all(stopped_ ? refusal() : "the simulation was put into another state");
   if (stopped_)
     stop(stepping_.simulation());
   else
@@ -114,7 +113,7 @@ std::string CommandInterface::switch_mode(Simulation& simulation, const std::vec
     const std::size_t coordinate = *simulation.find_coordinate(name);
     stepping_.forget_set_point(coordinate);
     if (simulation.servo_mode(coordinate) != ServoMode::Position)
-      trajectories_.release(coordinate, "the servo of '" + name + "' was switched to another mode");
+      controllers_.release(coordinate, "the servo of '" + name + "' was switched to another mode");
   }
   return {};
 }
@@ -141,7 +140,7 @@ void CommandInterface::command(const std::string& topic, const Read& read) {
   if (fault.empty()) fault = read();
   if (fault.empty())
     for (const Command& one : message_)
-      if (one.quantity == Commanded::SetPoint) trajectories_.release(one.coordinate, "another set point was commanded");
+      if (one.quantity == Commanded::SetPoint) controllers_.release(one.coordinate, "another set point was commanded");
   if (fault.empty() && !stepping_.command(message_)) fault = "more wait already than steps can take";
   if (!fault.empty()) warn(topic, fault);
 }

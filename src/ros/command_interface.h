@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
+#include "controllers.h"
 #include "flexarm/simulation/simulation.h"
 #include "stepping/command_reader.h"
 #include "stepping/stepping_thread.h"
-#include "trajectories.h"
 
 namespace flexarm::node {
 
@@ -29,7 +29,8 @@ struct CommandTimes {
 };
 
 /// Hands commands to the thread that steps: efforts of joint_force_command, joint_command and COORDINATE/command, set
-/// points of joint_set_points, joint_command and COORDINATE/set_point; trajectories; and ~emergency_stop.
+/// points of joint_set_points, joint_command and COORDINATE/set_point; trajectories and goals of controllers; and
+/// ~emergency_stop.
 class CommandInterface {
  public:
   /// @param shown  what is stepped, as reports have it
@@ -48,7 +49,7 @@ class CommandInterface {
   std::string switch_mode(Simulation& simulation, const std::vector<std::string>& names,
                           const std::vector<std::string>& modes);
   /// After a report, of the time `now`: simulated, not set back [s].
-  void judge_trajectories(double now) { trajectories_.judge(now); }
+  void judge_goals(double now) { controllers_.judge(now); }
 
  private:
   void receive_force_command(const JointForceCommand& message);
@@ -73,7 +74,7 @@ class CommandInterface {
   const Simulation& shown_;
   SteppingThread& stepping_;
   CommandReader reader_;
-  Trajectories trajectories_;
+  Controllers controllers_;
   std::vector<Command> message_;  ///< the one at hand
   bool stopped_ = false;          ///< by ~emergency_stop
   std::chrono::steady_clock::time_point last_warning_;

@@ -150,7 +150,7 @@ void Node::take(const StepReport& report) {
   const std::uint64_t made = report.steps - run_.steps;
   run_.steps = report.steps;
   run_.simulated_time = report.time;
-  command_interface_.judge_trajectories(run_.simulated_time);
+  command_interface_.judge_goals(run_.simulated_time);
   advance_clock(made, report.overruns, report.due);
   publish(false);
 }

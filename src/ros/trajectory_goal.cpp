@@ -27,9 +27,9 @@ Judgement compared(const std::vector<JointTolerance>& tolerances, const std::vec
 
 }  // namespace
 
-std::string fault_of_tolerances(const std::vector<flexarm::JointTolerance>& given,
+std::string fault_of_tolerances(const std::vector<control::JointTolerance>& given,
                                 const std::vector<std::string>& names) {
-  for (const flexarm::JointTolerance& tolerance : given) {
+  for (const control::JointTolerance& tolerance : given) {
     if (std::find(names.begin(), names.end(), tolerance.name) == names.end())
       return "a tolerance is of '" + tolerance.name + "', which the trajectory does not name";
     if (!std::isfinite(tolerance.position) || !std::isfinite(tolerance.velocity))
@@ -38,10 +38,10 @@ std::string fault_of_tolerances(const std::vector<flexarm::JointTolerance>& give
   return {};
 }
 
-std::vector<JointTolerance> tolerances_of(const std::vector<flexarm::JointTolerance>& given,
+std::vector<JointTolerance> tolerances_of(const std::vector<control::JointTolerance>& given,
                                           const std::vector<std::string>& joints) {
   std::vector<JointTolerance> tolerances(joints.size());
-  for (const flexarm::JointTolerance& tolerance : given)
+  for (const control::JointTolerance& tolerance : given)
     for (std::size_t k = 0; k < joints.size(); ++k)
       if (joints[k] == tolerance.name) tolerances[k] = {tolerance.position, tolerance.velocity};
   return tolerances;

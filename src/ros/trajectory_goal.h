@@ -1,12 +1,11 @@
 #pragma once
 /// Whether joints do what a trajectory asks of them.
 
-#include <flexarm/JointTolerance.h>
-
 #include <cstddef>
 #include <string>
 #include <vector>
 
+#include "control_types.h"
 #include "stepping/trajectory_follower.h"
 
 namespace flexarm::node {
@@ -17,11 +16,11 @@ struct JointTolerance {
 };
 
 /// Why tolerances cannot be those of a trajectory of joints with these names, or nothing.
-std::string fault_of_tolerances(const std::vector<flexarm::JointTolerance>& given,
+std::string fault_of_tolerances(const std::vector<control::JointTolerance>& given,
                                 const std::vector<std::string>& names);
 /// One for each of the `joints`, which may be others than the trajectory names: one without points stops those that
 /// move. Of who does not move none is kept.
-std::vector<JointTolerance> tolerances_of(const std::vector<flexarm::JointTolerance>& given,
+std::vector<JointTolerance> tolerances_of(const std::vector<control::JointTolerance>& given,
                                           const std::vector<std::string>& joints);
 
 /// What somebody wants to be told about.

@@ -136,6 +136,7 @@ void SteppingThread::begin_with(Simulation simulation) {
   forget_commands();
   wrenches_.clear();
   trajectories_ = TrajectoryFollower(simulation_.coordinate_names().size());
+  grips_.release_all();
 }
 
 void SteppingThread::set_pace(const Pace& pace) {
@@ -198,7 +199,10 @@ void SteppingThread::take_commands() {
 void SteppingThread::take_message() {
   for (bool is_at_end = false; !is_at_end; commands_.pop()) {
     const Command& command = commands_.front();
-    if (command.quantity == Commanded::SetPoint) trajectories_.release(command.coordinate);
+    if (command.quantity == Commanded::SetPoint) {
+      trajectories_.release(command.coordinate);
+      grips_.release(command.coordinate);
+    }
     timed_commands_.apply(command);
     is_at_end = commands_.front().ends_message;
   }
@@ -211,6 +215,7 @@ void SteppingThread::follow_trajectories() {
     simulation_.command_set_point(joint, point.position, point.velocity, point.acceleration);
   }
   trajectories_.release_arrived(time());
+  grips_.command(simulation_);
 }
 
 void SteppingThread::forget_commands() {

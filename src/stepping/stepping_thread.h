@@ -13,6 +13,7 @@
 #include "flexarm/accuracy/companion.h"
 #include "flexarm/simulation/simulation.h"
 #include "flexarm/simulation/spsc_ring.h"
+#include "grips.h"
 #include "pacer.h"
 #include "semaphore.h"
 #include "stepped_time.h"
@@ -91,6 +92,8 @@ class SteppingThread {
   WrenchSchedule& wrenches() { return wrenches_; }
   /// Its times are those of time(). Joints whose set points are commanded leave it.
   TrajectoryFollower& trajectories() { return trajectories_; }
+  /// So do joints that grip.
+  Grips& grips() { return grips_; }
   /// Whether a Companion does: it cannot where servos are sampled in every step, or in an odd number of them.
   bool estimates_errors() const { return companion_.has_value(); }
   /// Simulated, since the beginning; a reset does not set it back [s].
@@ -122,6 +125,7 @@ class SteppingThread {
   TimedCommands timed_commands_;
   WrenchSchedule wrenches_;
   TrajectoryFollower trajectories_;
+  Grips grips_;
   Pace pace_;
   Pacer pacer_;
   std::chrono::steady_clock::time_point last_look_;  ///< at the clock

@@ -82,6 +82,46 @@ class BadScenes(unittest.TestCase):
         self.setUp()
         self.assert_refused(["_scene:=" + GOOD_SCENE, "_parameters:=5"], "must be a dictionary of numbers")
 
+    def refuse_controllers(self, controllers, *words):
+        self.setUp()
+        rospy.set_param("/flexarm/controllers", controllers)
+        scene = os.path.join(HERE, "controllers_bench.urdf")
+        self.assert_refused(["_scene:=" + scene], "controllers that cannot be used", *words)
+
+    def test_controllers(self):
+        good = {"name": "arm", "action_ns": "follow", "type": "FollowJointTrajectory", "joints": ["lift"]}
+        gripper = {"name": "hand", "action_ns": "", "type": "GripperCommand", "joints": ["left", "right"]}
+        self.refuse_controllers(5, "/flexarm/controllers: must be a list of controllers")
+        self.refuse_controllers({"controller_list": {}}, "/flexarm/controllers/controller_list: must be a list")
+        self.refuse_controllers([good, 7], "/flexarm/controllers, entry 2: must be a dictionary with name")
+        for field in ("name", "action_ns", "type", "joints"):
+            self.refuse_controllers([{key: good[key] for key in good if key != field}], "it has no '%s'" % field)
+        for change, told in (({"joints": ["nose"]}, "entry 1 ('arm'): there is no joint coordinate 'nose'"),
+                             ({"joints": ["lift", "lift"]}, "joint 'lift' is named twice"),
+                             ({"joints": []}, "with one at least"),
+                             ({"joints": ["lift", 5]}, "must be a list of names"),
+                             ({"joints": ["loose"]}, "'loose' has no servo"),
+                             ({"joints": ["right"]}, "right"),
+                             ({"type": "Follow"}, "or 'GripperCommand', got 'Follow'"),
+                             ({"name": 5}, "its 'name' must be text"),
+                             ({"name": "a b"}, "'a b/follow' is no name of an action")):
+            self.refuse_controllers([dict(good, **change)], told)
+        self.refuse_controllers([good, dict(good, name="other")],
+                                "entry 2 ('other'): joint 'lift' is named twice, in 'arm' as well")
+        self.refuse_controllers([good, dict(good, joints=["turn"])], "another one with the action 'arm/follow'")
+        for change, told in (({"joints": ["left", "lift", "turn"]}, "one joint or two, got 3"),
+                             ({"joints": ["left"], "parallel": True}, "'parallel' is for two joints"),
+                             ({"parallel": "yes"}, "its 'parallel' must be true or false"),
+                             ({"max_effort": -1.0}, "its 'max_effort' must be a number >= 0"),
+                             ({"stall_timeout": "long"}, "its 'stall_timeout' must be a number >= 0"),
+                             ({"command_joint": "lift"}, "'command_joint' is none of its joints, got 'lift'")):
+            self.refuse_controllers([dict(gripper, **change)], "entry 1 ('hand')", told)
+
+    def test_every_error_of_controllers_is_reported(self):
+        self.refuse_controllers([{"name": "arm", "type": "FollowJointTrajectory"},
+                                 {"name": "hand", "action_ns": "grip", "type": "GripperCommand", "joints": ["thumb"]}],
+                                "entry 1 ('arm'): it has no 'joints'", "it has no 'action_ns'", "'thumb'")
+
     def test_a_frame_prefix_with_a_leading_slash(self):
         self.assert_refused(["_scene:=" + GOOD_SCENE, "_frame_prefix:=/left"], "frame_prefix", "/left")
 

@@ -46,8 +46,8 @@ TEST(TrajectoryGoal, IsReachedWithinItsTolerancesInTime) {
   EXPECT_EQ(judge(kEnd + kPatience, 0, 0).verdict, Verdict::Reached);
 }
 
-flexarm::JointTolerance tolerance(const std::string& joint, double position, double velocity) {
-  flexarm::JointTolerance out;
+control::JointTolerance tolerance(const std::string& joint, double position, double velocity) {
+  control::JointTolerance out;
   out.name = joint;
   out.position = position;
   out.velocity = velocity;
@@ -55,7 +55,7 @@ flexarm::JointTolerance tolerance(const std::string& joint, double position, dou
 }
 
 TEST(TrajectoryGoal, ToleranceIsOfTheJointThatItNames) {
-  const std::vector<flexarm::JointTolerance> given = {tolerance("elbow", 0.1, 0.2), tolerance("wrist", 0.3, 0.4)};
+  const std::vector<control::JointTolerance> given = {tolerance("elbow", 0.1, 0.2), tolerance("wrist", 0.3, 0.4)};
   EXPECT_EQ(fault_of_tolerances(given, {"shoulder", "wrist", "elbow"}), "");
   // Without points all joints stop that move, whatever joints are named.
   const std::vector<JointTolerance> of_moving = tolerances_of(given, {"wrist", "shoulder"});
