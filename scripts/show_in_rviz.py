@@ -94,4 +94,9 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except KeyboardInterrupt:
+        sys.exit(1)  # the simulator has ended, and roslaunch all with it: it has said why
+    except (OSError, rospy.ROSException) as error:
+        sys.exit("show_in_rviz.py: %s" % error)  # the master is gone, or there is no rviz

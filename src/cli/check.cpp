@@ -7,12 +7,12 @@
 #include "analysis/flexible_dead_point.h"
 #include "building/section.h"
 #include "cli/commands.h"
-#include "cli/driven_ends.h"
 #include "cli/mode_table.h"
 #include "cli/scene_input.h"
 #include "integrators/step_plane.h"
 #include "scene/flexible_link.h"
 #include "schemes/scheme.h"
+#include "simulation/driven_ends.h"
 #include "simulation/inside.h"
 
 namespace flexarm::cli {

@@ -40,6 +40,10 @@ void add_scene(Command& command, SceneInput& input) {
       .shown_as("NAME=VALUE")
       .check(check_setting);
   command
+      .option("--xacro-args", input.options.xacro_arguments,
+              "arguments for xacro, by which a scene *.xacro is expanded where it is installed")
+      .shown_as("\"NAME=VALUE ...\"");
+  command
       .option_of_words(
           "--start",
           [&input](const Words& choices) {

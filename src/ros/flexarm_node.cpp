@@ -4,11 +4,13 @@
 #include <ros/init.h>
 
 #include <csignal>
+#include <cstdio>
 #include <exception>
 
 #include "node.h"
 
 int main(int argc, char** argv) {
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // who reads a pipe is told at once, too
   ros::init(argc, argv, "flexarm");
   // As ROS does with SIGINT: otherwise the node would stay registered with the master for ever.
   std::signal(SIGTERM, [](int) { ros::requestShutdown(); });

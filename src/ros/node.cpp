@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "announcement.h"
 #include "flexarm/simulation/checkpoint.h"
 #include "messages/scene_extent.h"
 
@@ -77,11 +78,7 @@ Node::Node()
 }
 
 void Node::announce() const {
-  for (const scene::Diagnostic& warning : shown_.start_warnings()) ROS_WARN_STREAM(warning.text());
-  ROS_INFO("scene '%s': %zu links, %zu joint coordinates, %zu degrees of freedom; scheme %s, step %g s%s%s",
-           shown_.scene().name.c_str(), shown_.link_names().size(), shown_.coordinate_names().size(),
-           shown_.degrees_of_freedom(), shown_.scheme().c_str(), shown_.step_size(),
-           run_.lock_step ? "; each step waits for its command" : "", run_.paused ? "; paused" : "");
+  say_what_is_simulated(shown_, run_, node_.getNamespace(), private_node_.getNamespace());
 }
 
 void Node::be_real_time() {

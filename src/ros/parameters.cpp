@@ -3,6 +3,7 @@
 #include <ros/console.h>
 
 #include <cmath>
+#include <filesystem>
 #include <sstream>
 #include <string>
 
@@ -173,8 +174,10 @@ scene::ReadResult read_file_or_text(const ros::NodeHandle& node, const ros::Node
   read_start(reader, options);
   options.lock_massless = read_choice(reader, "massless", "lock");
   reader.read("parameters", options.parameters);
+  reader.read("xacro_args", options.xacro_arguments);
   reader.throw_if_any();
-  if (!path.empty()) return scene::read_scene_file(path, options);
+  // Nodes run in folders that nobody thinks of: messages are to say which file it is.
+  if (!path.empty()) return scene::read_scene_file(std::filesystem::absolute(path), options);
 
   std::string key, text;
   if (!node.searchParam("robot_description", key) || !node.getParam(key, text)) {

@@ -46,8 +46,9 @@ struct Parameters {
 Parameters read_parameters(const ros::NodeHandle& private_node);
 
 /// Reads the scene from the file `~scene`, or else from the text in `robot_description` (searched upwards from `node`),
-/// with the values of its parameters that the dictionary `~parameters` has, logs its warnings, and lets the private
-/// parameters scheme, step, tolerance, max_iterations, max_halvings and rho_infinity override its <integrator>.
+/// with the values of its parameters that the dictionary `~parameters` has, and `~xacro_args`, logs its warnings, and
+/// lets the private parameters scheme, step, tolerance, max_iterations, max_halvings and rho_infinity override its
+/// <integrator>.
 /// @throws ParameterError with every error of the scene or of the parameters.
 scene::SceneDescription read_scene(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
 

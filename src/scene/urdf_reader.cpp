@@ -1,6 +1,8 @@
 #include "flexarm/scene/urdf_reader.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 
 #include <fmt/format.h>
@@ -14,6 +16,7 @@
 #include "scene/strangers.h"
 #include "scene/urdfdom.h"
 #include "scene/xacro.h"
+#include "scene/xacro_program.h"
 #include "scene/xml_document.h"
 
 namespace flexarm::scene {
@@ -228,16 +231,16 @@ std::optional<SceneDescription> read_scene(const std::string& text, const ReadOp
   return scene;
 }
 
-/// The file's bytes, but not many more than a scene may have; nothing if it cannot be read.
-std::optional<std::string> read_bytes(const std::string& path) {
+/// The file's bytes, but not many more than a scene may have. @returns nothing, which is recorded, if it cannot be read
+std::optional<std::string> read_bytes(const std::string& path, Findings& findings) {
   std::ifstream file(path, std::ios::binary);
-  if (!file) return std::nullopt;
   std::string text;
   char part[1 << 14];
-  while (text.size() <= kLargestFile && file.read(part, sizeof part).gcount() > 0)
+  while (file && text.size() <= kLargestFile && file.read(part, sizeof part).gcount() > 0)
     text.append(part, static_cast<std::size_t>(file.gcount()));
-  if (!file && !file.eof()) return std::nullopt;
-  return text;
+  if (file || file.eof()) return text;
+  findings.error(0, "file", fmt::format("cannot be read: {}", std::strerror(errno)));
+  return std::nullopt;
 }
 
 }  // namespace
@@ -251,11 +254,15 @@ ReadResult read_scene_text(const std::string& text, const std::string& name, con
 }
 
 ReadResult read_scene_file(const std::string& path, const ReadOptions& options) {
-  const std::optional<std::string> text = read_bytes(path);
-  if (text) return read_scene_text(*text, path, options);
   Findings findings(path);
-  findings.error(0, "file", "cannot be read");
-  return {std::nullopt, findings.take()};
+  ReadResult result;
+  std::optional<std::string> text = read_bytes(path, findings);
+  const bool is_expanded = text && expand_by_xacro(path, options.xacro_arguments, *text, findings);
+  if (text && findings.error_count() == 0) result.scene = read_scene(*text, options, findings, result.urdf);
+  if (is_expanded && !result.scene)
+    findings.warning(0, "file", "lines of errors are those of what xacro makes of it: xacro FILE.xacro");
+  result.diagnostics = findings.take();
+  return result;
 }
 
 }  // namespace flexarm::scene

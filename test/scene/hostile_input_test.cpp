@@ -101,7 +101,8 @@ TEST(HostileInput, LongValuesAreShortened) {
 }
 
 TEST(HostileInput, FilesThatCannotBeRead) {
-  EXPECT_EQ(read_scene_file("/no/such/file.urdf").diagnostics.at(0).text(), "/no/such/file.urdf: file: cannot be read");
+  EXPECT_EQ(read_scene_file("/no/such/file.urdf").diagnostics.at(0).text(),
+            "/no/such/file.urdf: file: cannot be read: No such file or directory");
   EXPECT_FALSE(read_scene_file(testing::TempDir()).scene);
   EXPECT_FALSE(read_scene_file("/dev/null").scene);
   EXPECT_FALSE(read_scene_file("/dev/zero").scene);

@@ -32,12 +32,15 @@ struct ReadOptions {
   bool equilibrium_start = false;  ///< <initial equilibrium="true"/>: see SceneDescription::starts_in_equilibrium
   /// A name that the scene has no <parameter> for, and a value outside its limits, are errors of the scene.
   ParameterValues parameters = {};
+  /// For xacro, which read_scene_file() runs for files *.xacro, as "NAME=VALUE NAME=VALUE".
+  std::string xacro_arguments = {};
   /// Kinds of elements between points of links that a scene may have besides those of the format; null: none. For who
   /// builds in the library's sources, where kinds are declared (scene/force_element_kinds.h).
   const std::vector<ForceElementKind>* more_force_elements = nullptr;
 };
 
-/// Reads a file. Never throws for bad input: every error of the file is in the diagnostics.
+/// Reads a file, *.xacro by the program xacro where there is one. Never throws for bad input: every error of the file
+/// is in the diagnostics.
 ReadResult read_scene_file(const std::string& path, const ReadOptions& options = {});
 /// Reads text (the parameter `robot_description`); `name` stands for the file in diagnostics.
 ReadResult read_scene_text(const std::string& text, const std::string& name, const ReadOptions& options = {});

@@ -1,4 +1,4 @@
-#include "cli/driven_ends.h"
+#include "simulation/driven_ends.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "building/section.h"
 #include "simulation/inside.h"
 
-namespace flexarm::cli {
+namespace flexarm {
 namespace {
 
 /// An end has no inertia to speak of below this part of what the joint moves, if it is also too fast for the step
@@ -124,4 +124,4 @@ std::vector<std::string> warnings_of_driven_ends(const Simulation& simulation) {
   return warnings;
 }
 
-}  // namespace flexarm::cli
+}  // namespace flexarm

@@ -1,0 +1,40 @@
+#include "announcement.h"
+
+#include <ros/console.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "flexarm/scene/scene_description.h"
+#include "simulation/driven_ends.h"
+
+namespace flexarm::node {
+namespace {
+
+constexpr std::size_t kMostNames = 12;  ///< of joints
+
+/// With commas between them; of many names the first ones.
+std::string list_of(const std::vector<std::string>& names) {
+  if (names.empty()) return "none";
+  std::string list;
+  for (std::size_t i = 0; i < std::min(names.size(), kMostNames); ++i) list += (i > 0 ? ", " : "") + names[i];
+  return list + (names.size() > kMostNames ? " and " + std::to_string(names.size() - kMostNames) + " more" : "");
+}
+
+}  // namespace
+
+void say_what_is_simulated(const Simulation& simulation, const RunState& run, const std::string& topics,
+                           const std::string& services) {
+  for (const scene::Diagnostic& warning : simulation.start_warnings()) ROS_WARN_STREAM(warning.text());
+  for (const std::string& warning : warnings_of_driven_ends(simulation)) ROS_WARN_STREAM(warning);
+  const scene::SceneDescription& scene = simulation.scene();
+  ROS_INFO_STREAM("scene '" << scene.name << "' of " << scene.file << ": joints "
+                            << list_of(simulation.coordinate_names()) << "; " << simulation.degrees_of_freedom()
+                            << " unknowns");
+  ROS_INFO_STREAM("scheme " << simulation.scheme() << ", step " << simulation.step_size() << " s; topics in " << topics
+                            << ", services in " << services
+                            << (run.lock_step ? "; each step waits for its command" : "")
+                            << (run.paused ? "; paused" : ""));
+}
+
+}  // namespace flexarm::node
