@@ -13,8 +13,8 @@ namespace flexarm::messages {
 namespace {
 
 // Lengths as parts of the scene's radius.
-constexpr double kDistance = 1.25;  ///< from the scene's centre
-constexpr double kHalfHeight = 0.4;
+constexpr double kDistance = 1.42;  ///< from the scene's centre
+constexpr double kBarCentre = 0.72, kHalfHeight = 0.33;
 constexpr double kBarRadius = 0.025;
 constexpr double kLegendTextHeight = 0.08;
 constexpr double kTextDistance = 0.2;  ///< from the bar
@@ -28,19 +28,19 @@ class Legend {
       : header_(header), extent_(extent), message_(message) {}
 
   void add_bar(double largest) {
-    const auto height = [](double part) { return (2 * part - 1) * kHalfHeight; };
-    const Quaternion upright(Eigen::AngleAxisd(-M_PI / 2, Vector3::UnitY()));
+    const auto height = [](double part) { return kBarCentre + (2 * part - 1) * kHalfHeight; };
+    const Quaternion upright = Quaternion::FromTwoVectors(Vector3::UnitX(), axes_.up);
     constexpr int kParts = 4;
     std::vector<Pose> sections;
     for (int k = 0; k <= kParts; ++k) sections.push_back({place(0, height(k / double(kParts))), upright});
     const TriangleMesh mesh = tube_mesh(sections, std::vector<double>(sections.size(), kBarRadius * extent_.radius));
     visualization_msgs::Marker bar = next(visualization_msgs::Marker::TRIANGLE_LIST);
     draw(mesh, bar);
-    const double foot = place(0, height(0)).z(), whole = place(0, height(1)).z() - foot;
+    const double foot = place(0, height(0)).dot(axes_.up), whole = place(0, height(1)).dot(axes_.up) - foot;
     for (const TriangleMesh::Triangle& triangle : mesh.triangles)
       for (const int corner : triangle) {
         const auto& [position, normal] = mesh.vertices[corner];
-        bar.colors.push_back(lit(strain_color((position.z() - foot) / whole), normal));
+        bar.colors.push_back(lit(strain_color((position.dot(axes_.up) - foot) / whole), normal));
       }
     message_.markers.push_back(bar);
     for (const double part : {0.0, 0.5, 1.0})
@@ -50,16 +50,15 @@ class Legend {
 
   /// Below the bar.
   void add_arrows(const ArrowScale& scale, const std::vector<ArrowKind>& kinds) {
-    double height = -kHalfHeight - kLine;
+    double height = kBarCentre - kHalfHeight - kLine;
     if (scale.force > 0) {
-      // Seen from the -y side, where the camera stands, it points to the right.
-      add_sample({place(-0.5 * kLongestArrow, height), {Vector3(scale.force, 0, 0), Vector3::Zero()}}, scale);
+      add_sample({place(-0.5 * kLongestArrow, height), {scale.force * axes_.right, Vector3::Zero()}}, scale);
       height -= kLine;
       add_text(0, height, fmt::format("{:.2g} N", scale.force));
     }
     if (scale.moment > 0) {
       height -= kLargestCircle + 0.5 * kLine;
-      add_sample({place(0, height), {Vector3::Zero(), Vector3(0, -scale.moment, 0)}}, scale);
+      add_sample({place(0, height), {Vector3::Zero(), scale.moment * axes_.to_camera}}, scale);
       height -= kLargestCircle + 0.5 * kLine;
       add_text(0, height, fmt::format("{:.2g} N m", scale.moment));
     }
@@ -69,9 +68,9 @@ class Legend {
 
  private:
   visualization_msgs::Marker next(int type) { return make_marker(header_, kName, type, ++last_id_); }
-  /// In the legend's plane, as parts of the scene's radius.
+  /// In the picture, as parts of the scene's radius.
   Vector3 place(double right, double up) const {
-    return extent_.center + extent_.radius * Vector3(right - kDistance, 0, up);
+    return extent_.center + extent_.radius * ((right - kDistance) * axes_.right + up * axes_.up);
   }
   void add_text(double right, double up, const std::string& text,
                 const std_msgs::ColorRGBA& color = make_color(1, 1, 1)) {
@@ -90,6 +89,7 @@ class Legend {
 
   const std_msgs::Header& header_;
   const SceneExtent& extent_;
+  const PictureAxes axes_ = picture_axes();
   visualization_msgs::MarkerArray& message_;
   int last_id_ = 0;
 };

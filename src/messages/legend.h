@@ -25,9 +25,9 @@ struct LegendContent {
   std::vector<ArrowKind> kinds;  ///< that the scene may have
 };
 
-/// Adds the legend, on the -x side of the scene: an upright bar of the colours with the strains that they stand for,
-/// below it the longest arrow and the largest circle with the force and the moment that they stand for, once there
-/// are some, and the colours of the kinds of arrows.
+/// Adds the legend, at the left of the picture, beside all that the scene reaches: an upright bar of the colours with
+/// the strains that they stand for, below it the longest arrow and the largest circle with the force and the moment
+/// that they stand for, once there are some, and the colours of the kinds of arrows.
 void add_legend(const std_msgs::Header& header, const SceneExtent& extent, const LegendContent& content,
                 visualization_msgs::MarkerArray& message);
 

@@ -1,6 +1,7 @@
 #include "messages/marker_messages.h"
 
 #include <algorithm>
+#include <sstream>
 #include <stdexcept>
 #include <type_traits>
 #include <variant>
@@ -20,9 +21,12 @@ namespace {
 constexpr int kPointsBetweenNodes = 3;  ///< so that bending looks smooth
 // As parts of the scene's radius:
 constexpr double kSmallestRadius = 0.008;  ///< of a tube: a rod of 3 mm by 2 m would be hard to see
-constexpr double kTrailWidth = 0.004, kTextHeight = 0.07, kTextPlace = -1.15;
+constexpr double kTrailWidth = 0.004, kTextHeight = 0.07, kGapOfText = 0.02;
 /// What is below is the round-off of a beam without load.
 constexpr double kSmallestStrain = 1e-9;
+
+constexpr std::size_t kTextLines = 3, kMostLines = 5, kLongestLine = 64;
+const std_msgs::ColorRGBA kStateColor = make_color(1, 0.8, 0.2);
 
 const ArrowKind kEfforts{"joint efforts", make_color(1, 0.65, 0.1)};
 const ArrowKind kWrenches{"applied wrenches", make_color(1, 0.35, 0.8)};
@@ -60,6 +64,31 @@ std::vector<Skin> skins_of(const scene::LinkDescription& link, const std::vector
     }
   if (skins.empty()) skins.push_back(Skin::tube(sections, radius));
   return skins;
+}
+
+/// Below (side -1) or above (1) all that the scene reaches in the picture.
+void place_text(std::size_t lines, int side, const SceneExtent& extent, visualization_msgs::Marker& text) {
+  const double away = kOutline + kGapOfText + 0.5 * kTextHeight * static_cast<double>(lines);
+  text.pose.position = to_point(extent.center + side * away * extent.radius * picture_axes().up);
+  text.scale.z = kTextHeight * extent.radius;
+}
+
+/// In lines as long as the picture is wide; what is beyond the last one is left out.
+std::vector<std::string> wrapped(const std::string& text) {
+  std::istringstream words(text);
+  std::vector<std::string> lines(1);
+  for (std::string word; words >> word;) {
+    std::string& line = lines.back();
+    if (line.size() + 1 + word.size() <= kLongestLine || line.empty()) {
+      line += (line.empty() ? "" : " ") + word;
+    } else if (lines.size() == kMostLines) {
+      line += " ...";
+      break;
+    } else {
+      lines.push_back(word);
+    }
+  }
+  return lines;
 }
 
 /// Free of what the motion exchanges: only errors of the steps change it [J].
@@ -103,7 +132,8 @@ void MarkerMessages::begin_anew() {
   trails_.forget();
 }
 
-visualization_msgs::MarkerArray MarkerMessages::make(const ros::Time& stamp, std::optional<double> real_time_factor) {
+visualization_msgs::MarkerArray MarkerMessages::make(const ros::Time& stamp, std::optional<double> real_time_factor,
+                                                     const std::string& state) {
   std_msgs::Header header;
   header.stamp = stamp;
   header.frame_id = root_frame_;
@@ -115,6 +145,7 @@ visualization_msgs::MarkerArray MarkerMessages::make(const ros::Time& stamp, std
     trails_.add_to(header, kTrailWidth * extent_.radius, message);
   }
   if (choice_.text) add_text(header, real_time_factor, message);
+  if (choice_.text && !state.empty()) add_state(header, state, message);
   if (choice_.legend) {
     LegendContent content{std::nullopt, arrow_scale_, {}};
     if (choice_.beams && !beams_.empty()) content.largest_strain = largest_strain_;
@@ -174,14 +205,23 @@ void MarkerMessages::add_text(const std_msgs::Header& header, std::optional<doub
                               visualization_msgs::MarkerArray& message) const {
   const Energies energies = simulation_.energies();
   visualization_msgs::Marker text = make_marker(header, "text", visualization_msgs::Marker::TEXT_VIEW_FACING, 1);
-  text.pose.position = to_point(extent_.center + kTextPlace * extent_.radius * Vector3::UnitZ());
-  text.scale.z = kTextHeight * extent_.radius;
+  place_text(kTextLines, -1, extent_, text);
   text.text = fmt::format("t = {:.2f} s", simulation_.time());
   if (real_time_factor) text.text += fmt::format(", {:.2f} x real time", *real_time_factor);
   text.text += fmt::format("\nkinetic {:.3g} J, strain {:.3g} J, potential {:.3g} J", energies.kinetic, energies.strain,
                            energies.potential);
   text.text += fmt::format("\nwork {:.3g} J, dissipated {:.3g} J, error of the steps {:.1g} J", energies.work,
                            energies.dissipated, balance(energies) - energy_);
+  message.markers.push_back(text);
+}
+
+void MarkerMessages::add_state(const std_msgs::Header& header, const std::string& state,
+                               visualization_msgs::MarkerArray& message) const {
+  visualization_msgs::Marker text = make_marker(header, "text", visualization_msgs::Marker::TEXT_VIEW_FACING, 2);
+  const std::vector<std::string> lines = wrapped(state);
+  place_text(lines.size(), 1, extent_, text);
+  text.color = kStateColor;
+  text.text = fmt::format("{}", fmt::join(lines, "\n"));
   message.markers.push_back(text);
 }
 

@@ -28,7 +28,7 @@ struct MarkerChoice {
   bool wrenches = true;        ///< loads of the scene, and what is applied from outside
   bool reactions = true;       ///< of joints, where a sensor of kind wrench or reaction asks for them
   bool contacts = true;        ///< forces of what is touched, on the first of each pair
-  bool text = true;            ///< time, real-time factor, energies
+  bool text = true;            ///< time, real-time factor, energies, and why nothing moves
   bool legend = true;          ///< of colours and arrows
   double trail_duration = 10;  ///< simulated [s]
 
@@ -48,7 +48,9 @@ class MarkerMessages {
                  const Warn& warn);
 
   /// @param real_time_factor  for the text, where it is known
-  visualization_msgs::MarkerArray make(const ros::Time& stamp, std::optional<double> real_time_factor);
+  /// @param state             why nothing moves ("PAUSED", "FAILED: ..."), above the scene; empty: it runs
+  visualization_msgs::MarkerArray make(const ros::Time& stamp, std::optional<double> real_time_factor,
+                                       const std::string& state = {});
   /// After a reset: scales and trails begin anew.
   void begin_anew();
   /// Nobody looks: trails begin anew when somebody does.
@@ -66,6 +68,8 @@ class MarkerMessages {
   void add_all_arrows(const std_msgs::Header& header, visualization_msgs::MarkerArray& message);
   void add_text(const std_msgs::Header& header, std::optional<double> real_time_factor,
                 visualization_msgs::MarkerArray& message) const;
+  void add_state(const std_msgs::Header& header, const std::string& state,
+                 visualization_msgs::MarkerArray& message) const;
   /// What was shown once and is not any more has to go.
   void delete_others(const std_msgs::Header& header, visualization_msgs::MarkerArray& message);
 

@@ -1,27 +1,143 @@
 #include "messages/scene_extent.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "flexarm/scene/scene_description.h"
 
 namespace flexarm::messages {
+namespace {
+
+// Of config/flexarm.rviz.
+constexpr double kCameraYaw = 4.5, kCameraPitch = 0.5;
+
+struct Sphere {
+  Vector3 center;
+  double radius;
+};
+
+/// Goes along the chains of joints from the root on.
+class ReachFinder {
+ public:
+  explicit ReachFinder(const Simulation& simulation) : simulation_(simulation) {
+    const scene::SceneDescription& scene = simulation.scene();
+    for (std::size_t link = 0; link < scene.links.size(); ++link) links_[scene.links[link].name] = link;
+    for (const scene::JointDescription& joint : scene.joints) carriers_[links_.at(joint.child)] = &joint;
+    for (std::size_t link = 0; link < scene.links.size(); ++link) add_link(link);
+  }
+
+  const std::vector<Sphere>& spheres() const { return spheres_; }
+
+ private:
+  /// Where a link's frame may be: within the radius of the first joint that moves it, or where it stands.
+  struct Reach {
+    bool moves;
+    Sphere frame;
+  };
+
+  Vector3 place(std::size_t link) const { return simulation_.link_pose(link).position; }
+
+  std::vector<Vector3> points(std::size_t link) const {
+    const scene::LinkDescription& description = simulation_.scene().links[link];
+    std::vector<Vector3> out;
+    std::vector<BeamPoint> beam;
+    if (description.beam) simulation_.beam_points(link, 0, beam);
+    for (const BeamPoint& point : beam) out.push_back(point.pose.position);
+    if (!description.beam && description.inertial)
+      out.push_back(simulation_.link_pose(link) * description.inertial->center_of_mass);
+    return out;
+  }
+
+  double farthest_point(std::size_t link, const Vector3& from) const {
+    double distance = 0;
+    for (const Vector3& point : points(link)) distance = std::max(distance, (point - from).norm());
+    return distance;
+  }
+
+  void add_link(std::size_t link) {
+    const Reach reach = reach_of(link);
+    if (reach.moves) {
+      spheres_.push_back({reach.frame.center, reach.frame.radius + farthest_point(link, place(link))});
+      return;
+    }
+    spheres_.push_back(reach.frame);
+    for (const Vector3& point : points(link)) spheres_.push_back({point, 0});
+  }
+
+  const Reach& reach_of(std::size_t link) {
+    const auto known = reaches_.find(link);
+    return known != reaches_.end() ? known->second : reaches_.emplace(link, found_reach(link)).first->second;
+  }
+
+  Reach found_reach(std::size_t link) {
+    using scene::JointKind;
+    const Reach stands{false, {place(link), 0}};
+    const auto carrier = carriers_.find(link);
+    if (carrier == carriers_.end()) return stands;
+    const scene::JointDescription& joint = *carrier->second;
+    if (joint.kind == JointKind::Floating || joint.kind == JointKind::Planar) return stands;
+    const std::size_t parent = links_.at(joint.parent);
+    const Reach before = reach_of(parent);
+    if (joint.kind == JointKind::Fixed && !before.moves) return stands;
+    Reach out{true, {place(link), 0}};
+    if (turns_in_place(parent)) {
+      const Vector3 axis = simulation_.link_pose(parent).orientation * carriers_.at(parent)->axis;
+      out.frame.center = place(parent) + axis.dot(place(link) - place(parent)) * axis;
+      out.frame.radius = (place(link) - out.frame.center).norm();
+    } else if (before.moves) {
+      out.frame = {before.frame.center, before.frame.radius + (place(link) - place(parent)).norm()};
+    }
+    out.frame.radius += travel(joint, link, parent);
+    return out;
+  }
+
+  /// About an axis that stands: what it carries goes round in a circle.
+  bool turns_in_place(std::size_t link) {
+    const auto carrier = carriers_.find(link);
+    if (carrier == carriers_.end() || reach_of(links_.at(carrier->second->parent)).moves) return false;
+    return carrier->second->kind == scene::JointKind::Revolute || carrier->second->kind == scene::JointKind::Continuous;
+  }
+
+  /// How far a joint can shift its link from where it is.
+  double travel(const scene::JointDescription& joint, std::size_t link, std::size_t parent) const {
+    if (joint.kind == scene::JointKind::Slide) return farthest_point(parent, place(link));
+    if (joint.kind != scene::JointKind::Prismatic || !joint.limits) return 0;
+    const auto coordinate = simulation_.find_coordinate(joint.name);
+    const double position = coordinate ? simulation_.position(*coordinate) : 0;
+    return std::max({joint.limits->upper - position, position - joint.limits->lower, 0.0});
+  }
+
+  const Simulation& simulation_;
+  std::map<std::string, std::size_t> links_;
+  std::map<std::size_t, const scene::JointDescription*> carriers_;
+  std::map<std::size_t, Reach> reaches_;
+  std::vector<Sphere> spheres_;
+};
+
+}  // namespace
 
 SceneExtent scene_extent(const Simulation& simulation) {
+  const ReachFinder finder(simulation);
   Eigen::AlignedBox3d box;
-  std::vector<BeamPoint> points;
-  for (std::size_t link = 0; link < simulation.link_names().size(); ++link) {
-    const Pose frame = simulation.link_pose(link);
-    box.extend(frame.position);
-    const scene::LinkDescription& description = simulation.scene().links[link];
-    if (description.beam)
-      simulation.beam_points(link, 0, points);
-    else if (description.inertial)
-      box.extend(frame * description.inertial->center_of_mass);
+  for (const Sphere& sphere : finder.spheres()) {
+    const Vector3 half = Vector3::Constant(sphere.radius);
+    box.extend(Eigen::AlignedBox3d(sphere.center - half, sphere.center + half));
   }
-  for (const BeamPoint& point : points) box.extend(point.pose.position);
-  const double radius = 0.5 * box.diagonal().norm();
+  double radius = 0;
+  for (const Sphere& sphere : finder.spheres())
+    radius = std::max(radius, (sphere.center - box.center()).norm() + sphere.radius);
   return {box.center(), radius > 0 ? radius : 1};
+}
+
+PictureAxes picture_axes() {
+  const double cp = std::cos(kCameraPitch), sp = std::sin(kCameraPitch);
+  const Vector3 to_camera(std::cos(kCameraYaw) * cp, std::sin(kCameraYaw) * cp, sp);
+  const Vector3 right(-std::sin(kCameraYaw), std::cos(kCameraYaw), 0);
+  return {right, to_camera.cross(right), to_camera};
 }
 
 }  // namespace flexarm::messages

@@ -33,8 +33,9 @@ void MarkerPublisher::publish(const ros::Time& stamp, bool force) {
 }
 
 visualization_msgs::MarkerArray MarkerPublisher::make_message() {
-  return messages_->make(stamp_,
-                         real_time_factor_.measure(run_.simulated_time, RealTimeFactor::Clock::now(), run_.paused));
+  const auto factor = real_time_factor_.measure(run_.simulated_time, RealTimeFactor::Clock::now(), run_.paused);
+  const std::string state = run_.failed() ? "FAILED: " + run_.failure : run_.paused ? "PAUSED" : "";
+  return messages_->make(stamp_, factor, state);
 }
 
 }  // namespace flexarm::node

@@ -225,6 +225,50 @@ TEST_F(Markers, TextHasTimeFactorAndEnergies) {
   EXPECT_EQ(find(messages.make(ros::Time(1), std::nullopt), "text")->text.find("real time"), std::string::npos);
 }
 
+/// How far a marker's middle is from the scene's in the picture, to the right and up, in radii.
+std::pair<double, double> place_in_picture(const Marker& marker, const SceneExtent& extent) {
+  const Vector3 from_center = (to_vector(marker.pose.position) - extent.center) / extent.radius;
+  const PictureAxes axes = picture_axes();
+  EXPECT_NEAR(from_center.dot(axes.to_camera), 0, 1e-12);
+  return {from_center.dot(axes.right), from_center.dot(axes.up)};
+}
+
+TEST_F(Markers, SayWhyNothingMovesAboveTheScene) {
+  MarkerMessages messages = this->messages();
+  const auto state_of = [](const MarkerArray& message) {
+    const auto found = std::find_if(message.markers.begin(), message.markers.end(),
+                                    [](const Marker& marker) { return marker.ns == "text" && marker.id == 2; });
+    return found == message.markers.end() ? Marker() : *found;
+  };
+  EXPECT_EQ(state_of(messages.make(ros::Time(1), 1.0)).text, "");
+  EXPECT_EQ(state_of(messages.make(ros::Time(1), 1.0, "PAUSED")).text, "PAUSED");
+  EXPECT_EQ(state_of(messages.make(ros::Time(1), 1.0)).action, Marker::DELETE);
+  std::string reason = "FAILED:";
+  for (int n = 0; n < 100; ++n) reason += " because of this";
+  const Marker state = state_of(messages.make(ros::Time(1), 1.0, reason));
+  EXPECT_EQ(std::count(state.text.begin(), state.text.end(), '\n'), 4);
+  EXPECT_EQ(state.text.substr(state.text.size() - 3), "...");
+  // Its lower edge, and the upper one of the text below, are beyond all that the arm reaches.
+  const SceneExtent extent = scene_extent(simulation_);
+  const double line = state.scale.z / extent.radius;
+  EXPECT_GT(place_in_picture(state, extent).second - 2.5 * line, kOutline);
+  EXPECT_LT(place_in_picture(*find(shown(messages), "text"), extent).second + 1.5 * line, -kOutline);
+}
+
+TEST_F(Markers, LegendIsBesideAllThatTheArmReaches) {
+  MarkerMessages messages = this->messages();
+  simulation_.command_effort(0, 5);
+  simulation_.apply_wrenches({{2, {2, 0, 0}, {{0, 0, 3}, Vector3::Zero()}, false, {}}});
+  step(1);
+  const SceneExtent extent = scene_extent(simulation_);
+  for (const Marker& marker : shown(messages).markers) {
+    if (marker.ns != "legend" || marker.type != Marker::TEXT_VIEW_FACING) continue;
+    constexpr double kLetter = 0.5;  // of its height, wide
+    const double half = 0.5 * kLetter * marker.scale.z * static_cast<double>(marker.text.size()) / extent.radius;
+    EXPECT_LT(place_in_picture(marker, extent).first + half, -kOutline) << marker.text;
+  }
+}
+
 TEST_F(Markers, ShapesThatCannotBeReadAreToldOfOnceAndTheTubeStays) {
   scene::SceneBuilder b = arm();
   scene::LinkDescription& boom = b.scene.links.back();

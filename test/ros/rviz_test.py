@@ -3,6 +3,7 @@
 
 import math
 import os
+import re
 import sys
 import unittest
 import xml.etree.ElementTree
@@ -12,7 +13,8 @@ import rospy
 import rostest
 import yaml
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../scripts"))
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../..")
+sys.path.insert(0, os.path.join(ROOT, "scripts"))
 import show_in_rviz  # noqa: E402
 
 ROUND_OFF = 1e-12
@@ -32,14 +34,26 @@ class Rviz(unittest.TestCase):
         self.assertEqual(self.arguments[:2] + self.arguments[3:], ["rviz", "-d", "__name:=rviz"])
 
     def test_view_fits_the_scene(self):
-        """Two links of 1 m in the plane, with an angle of 0.5 between them."""
-        x, y = 1 + math.cos(0.5), math.sin(0.5)  # of the arm's end
-        radius = 0.5 * math.hypot(x, y)
+        """Two links of 1 m that turn about the origin reach 2 m."""
+        radius = 2.0
         self.assertEqual(self.manager["Global Options"]["Fixed Frame"], "left/world")
         camera = self.manager["Views"]["Current"]
         self.assertAlmostEqual(camera["Distance"], show_in_rviz.DISTANCE * radius, delta=ROUND_OFF)
-        self.assertAlmostEqual(camera["Focal Point"]["X"], 0.5 * x - show_in_rviz.LEGEND * radius, delta=ROUND_OFF)
-        self.assertAlmostEqual(camera["Focal Point"]["Y"], 0.5 * y, delta=ROUND_OFF)
+        self.assertAlmostEqual(camera["Focal Point"]["X"], -show_in_rviz.LEGEND * radius, delta=ROUND_OFF)
+        self.assertAlmostEqual(camera["Focal Point"]["Y"], 0, delta=ROUND_OFF)
+
+    def test_the_picture_is_the_one_that_markers_are_placed_in(self):
+        """src/messages/scene_extent knows where the camera stands, and how large what is reached looks from there."""
+        camera = self.manager["Views"]["Current"]
+        with open(os.path.join(ROOT, "src/messages/scene_extent.cpp"), encoding="utf-8") as file:
+            yaw, pitch = re.search(r"kCameraYaw = ([\d.]+), kCameraPitch = ([\d.]+);", file.read()).groups()
+        self.assertEqual((camera["Yaw"], camera["Pitch"]), (float(yaw), float(pitch)))
+        with open(os.path.join(ROOT, "src/messages/scene_extent.h"), encoding="utf-8") as file:
+            outline = float(re.search(r"kOutline = ([\d.]+);", file.read()).group(1))
+        distance = show_in_rviz.DISTANCE
+        self.assertLess(abs(outline - distance / math.sqrt(distance**2 - 1)), 2e-3)
+        # Above and below there is room for five lines of text, 7 % of the radius each.
+        self.assertGreater(distance * math.tan(0.5 * camera["Field of View"]), outline + 5 * 0.07 + 0.02)
 
     def test_draws_rigid_links_and_beams(self):
         displays = {display["Class"]: display for display in self.manager["Displays"]}
