@@ -23,7 +23,7 @@ import yaml
 TEMPLATE = "config/flexarm.rviz"
 PATIENCE = 30.0  # s, wall time
 # In radii of the scene:
-DISTANCE = 3.5  # of the camera, which sees 45 degrees
+DISTANCE = 3.6  # of the camera, which sees 45 degrees
 LEGEND = 0.25  # by which the camera looks past the centre, towards the legend
 
 

@@ -21,7 +21,8 @@ namespace {
 constexpr int kPointsBetweenNodes = 3;  ///< so that bending looks smooth
 // As parts of the scene's radius:
 constexpr double kSmallestRadius = 0.008;  ///< of a tube: a rod of 3 mm by 2 m would be hard to see
-constexpr double kTrailWidth = 0.004, kTextHeight = 0.07, kGapOfText = 0.02;
+constexpr double kTrailWidth = 0.004, kTextHeight = 0.06, kGapOfText = 0.02;
+constexpr double kLineSpacing = 1.3;  ///< of rviz, in heights of the text
 /// What is below is the round-off of a beam without load.
 constexpr double kSmallestStrain = 1e-9;
 
@@ -68,7 +69,7 @@ std::vector<Skin> skins_of(const scene::LinkDescription& link, const std::vector
 
 /// Below (side -1) or above (1) all that the scene reaches in the picture.
 void place_text(std::size_t lines, int side, const SceneExtent& extent, visualization_msgs::Marker& text) {
-  const double away = kOutline + kGapOfText + 0.5 * kTextHeight * static_cast<double>(lines);
+  const double away = kOutline + kGapOfText + 0.5 * kLineSpacing * kTextHeight * static_cast<double>(lines);
   text.pose.position = to_point(extent.center + side * away * extent.radius * picture_axes().up);
   text.scale.z = kTextHeight * extent.radius;
 }

@@ -23,6 +23,6 @@ PictureAxes picture_axes();
 /// By which the sphere's outline is larger than its radius, where the camera is as far away as scripts/show_in_rviz.py
 /// puts it: what is drawn beyond, in the plane of the sphere's centre across the camera's view, neither covers the arm
 /// nor is covered.
-constexpr double kOutline = 1.045;
+constexpr double kOutline = 1.042;
 
 }  // namespace flexarm::messages

@@ -52,8 +52,8 @@ class Rviz(unittest.TestCase):
             outline = float(re.search(r"kOutline = ([\d.]+);", file.read()).group(1))
         distance = show_in_rviz.DISTANCE
         self.assertLess(abs(outline - distance / math.sqrt(distance**2 - 1)), 2e-3)
-        # Above and below there is room for five lines of text, 7 % of the radius each.
-        self.assertGreater(distance * math.tan(0.5 * camera["Field of View"]), outline + 5 * 0.07 + 0.02)
+        # Above and below there is room for five lines of text, 1.3 times 6 % of the radius each.
+        self.assertGreater(distance * math.tan(0.5 * camera["Field of View"]), outline + 5 * 1.3 * 0.06 + 0.02)
 
     def test_draws_rigid_links_and_beams(self):
         displays = {display["Class"]: display for display in self.manager["Displays"]}
