@@ -1,7 +1,5 @@
 # shellcheck shell=bash
-# After `source setup.bash`, `flexarm` is the program of this workspace, and its commands and options are completed.
+# After `source setup.bash`, the Tab key completes commands and options of `flexarm`.
 if [ -x "$CATKIN_ENV_HOOK_WORKSPACE/lib/flexarm/flexarm" ]; then
-  # Not `flexarm() {`: an alias of that name would stand in the way.
-  eval "function flexarm { '$CATKIN_ENV_HOOK_WORKSPACE/lib/flexarm/flexarm' \"\$@\"; }"
-  eval "$(flexarm completion bash 2>/dev/null)"
+  eval "$("$CATKIN_ENV_HOOK_WORKSPACE/lib/flexarm/flexarm" completion bash 2>/dev/null)"
 fi

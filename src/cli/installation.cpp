@@ -14,6 +14,11 @@ fs::path program_folder() {
   return fs::read_symlink("/proc/self/exe", error).parent_path();
 }
 
+/// Of an installation: the program is in <prefix>/lib/flexarm.
+fs::path share() {
+  return program_folder().parent_path().parent_path() / "share/flexarm";
+}
+
 /// The first of these that is there.
 std::optional<std::string> first_of(const std::vector<fs::path>& places) {
   std::error_code error;
@@ -31,9 +36,7 @@ std::string quoted(const std::string& path) {
 }  // namespace
 
 std::optional<std::string> own_scenes(const std::string& folder) {
-  // The program is in <prefix>/lib/flexarm.
-  const fs::path prefix = program_folder().parent_path().parent_path();
-  return first_of({prefix / "share/flexarm/config" / folder, fs::path(FLEXARM_SOURCE_DIR) / "config" / folder});
+  return first_of({share() / "config" / folder, fs::path(FLEXARM_SOURCE_DIR) / "config" / folder});
 }
 
 std::optional<std::string> python_folder() {
@@ -46,7 +49,7 @@ std::optional<std::string> own_program(const std::string& name) {
 }
 
 std::optional<std::string> own_script(const std::string& name) {
-  return first_of({program_folder() / name, fs::path(FLEXARM_SOURCE_DIR) / "scripts" / name});
+  return first_of({share() / "scripts" / name, fs::path(FLEXARM_SOURCE_DIR) / "scripts" / name});
 }
 
 bool run_script(const std::string& script, const std::vector<std::string>& arguments) {

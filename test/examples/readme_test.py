@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The scene of README.md, and what is typed there with it: `readme_test.py PROGRAM`."""
+"""The scene of README.md, and what is typed there with it: `readme_test.py SETUP`."""
 
 import csv
 import os
@@ -20,7 +20,7 @@ class Readme(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             with open(os.path.join(folder, "arm.urdf"), "w", encoding="utf-8") as file:
                 file.write(scene)
-            status, printed = type_commands(commands, PROGRAM, folder)
+            status, printed = type_commands(commands, SETUP, folder)
             self.assertEqual(status, 0)
             self.assertIn("mode 4", printed)
             with open(os.path.join(folder, "arm.csv"), encoding="utf-8") as file:
@@ -31,5 +31,5 @@ class Readme(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    PROGRAM = os.path.abspath(sys.argv[1])
+    SETUP = os.path.abspath(sys.argv[1])
     unittest.main(argv=sys.argv[:1])

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The commands of docs/results.md, typed as they stand: `results_test.py PROGRAM`."""
+"""The commands of docs/results.md, typed as they stand: `results_test.py SETUP`."""
 
 import os
 import re
@@ -18,7 +18,7 @@ class Results(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             with open(os.path.join(folder, "arm.urdf"), "w", encoding="utf-8") as file:
                 file.write(arm)
-            status, printed = type_commands(commands, PROGRAM, folder)
+            status, printed = type_commands(commands, SETUP, folder)
         self.assertEqual(status, 0)
         for expected in ("arm em 0.001 s", "sensor/gauge/strain [1] 4001", "/sensors/cell geometry_msgs/WrenchStamped",
                          "/tf tf2_msgs/TFMessage 401", "largest pull"):
@@ -26,5 +26,5 @@ class Results(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    PROGRAM = os.path.abspath(sys.argv[1])
+    SETUP = os.path.abspath(sys.argv[1])
     unittest.main(argv=sys.argv[:1])

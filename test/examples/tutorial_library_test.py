@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The commands of the tutorial about the library, typed: `tutorial_library_test.py PROGRAM SETUP BUILD`."""
+"""The commands of the tutorial about the library, typed: `tutorial_library_test.py SETUP BUILD`."""
 
 import os
 import re
@@ -16,7 +16,7 @@ class TutorialLibrary(unittest.TestCase):
         self.assertEqual(len(commands), 3)
         with tempfile.TemporaryDirectory() as folder:
             os.environ.update(ROS_HOSTNAME="localhost", ROS_HOME=os.path.join(folder, "ros"), FLEXARM_BUILD=BUILD)
-            status, printed = type_commands(commands, PROGRAM, folder, SETUP)
+            status, printed = type_commands(commands, SETUP, folder)
         self.assertEqual(status, 0)
         swings = re.findall(r"^(\S+ kg: swings by \S+ mm)$", printed, re.MULTILINE)
         self.assertEqual(len(swings), 9)
@@ -24,5 +24,5 @@ class TutorialLibrary(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    PROGRAM, SETUP, BUILD = map(os.path.abspath, sys.argv[1:])
+    SETUP, BUILD = map(os.path.abspath, sys.argv[1:])
     unittest.main(argv=sys.argv[:1])

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The commands of the tutorial about bags and modes, typed as they stand: `tutorial_modes_test.py PROGRAM SETUP`."""
+"""The commands of the tutorial about bags and modes, typed as they stand: `tutorial_modes_test.py SETUP`."""
 
 import math
 import os
@@ -25,7 +25,7 @@ class TutorialModes(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             os.environ.update(ROS_HOSTNAME="localhost", ROS_HOME=os.path.join(folder, "ros"),
                               ROS_MASTER_URI="http://localhost:%d" % free_port())
-            status, printed = type_commands(commands, PROGRAM, folder, SETUP)
+            status, printed = type_commands(commands, SETUP, folder)
             self.assertEqual(status, 0)
             self.assertGreater(os.path.getsize(os.path.join(folder, "modes.png")), 0)
         self.assertIn("missing: 0", printed)
@@ -39,5 +39,5 @@ class TutorialModes(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    PROGRAM, SETUP = map(os.path.abspath, sys.argv[1:])
+    SETUP = os.path.abspath(sys.argv[1])
     unittest.main(argv=sys.argv[:1])

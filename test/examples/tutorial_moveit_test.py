@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The commands of the tutorial about MoveIt, typed as they stand: `tutorial_moveit_test.py PROGRAM SETUP`."""
+"""The commands of the tutorial about MoveIt, typed as they stand: `tutorial_moveit_test.py SETUP`."""
 
 import os
 import re
@@ -24,7 +24,7 @@ class TutorialMoveit(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             os.environ.update(ROS_HOSTNAME="localhost", ROS_HOME=os.path.join(folder, "ros"),
                               ROS_MASTER_URI="http://localhost:%d" % free_port())
-            status, printed = type_commands(commands, PROGRAM, folder, SETUP)
+            status, printed = type_commands(commands, SETUP, folder)
             self.assertEqual(status, 0)
         for action in ("/arm_controller/follow_joint_trajectory/goal", "/gripper_controller/gripper_cmd/goal",
                        "/follow_joint_trajectory/goal", "arm: there"):
@@ -38,5 +38,5 @@ class TutorialMoveit(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    PROGRAM, SETUP = map(os.path.abspath, sys.argv[1:])
+    SETUP = os.path.abspath(sys.argv[1])
     unittest.main(argv=sys.argv[:1])

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The commands of the tutorial about ROS, typed as they stand: `tutorial_ros_test.py PROGRAM SETUP`."""
+"""The commands of the tutorial about ROS, typed as they stand: `tutorial_ros_test.py SETUP`."""
 
 import os
 import sys
@@ -15,11 +15,11 @@ class TutorialRos(unittest.TestCase):
         self.assertEqual(len(commands), 4)
         with tempfile.TemporaryDirectory() as folder:
             os.environ.update(ROS_HOSTNAME="localhost", ROS_HOME=os.path.join(folder, "ros"))
-            status, printed = type_commands(commands, PROGRAM, folder, SETUP)
+            status, printed = type_commands(commands, SETUP, folder)
         self.assertEqual(status, 0)
         self.assertEqual(printed.count("RESULT: SUCCESS"), 2)  # held by C++, and by Python
 
 
 if __name__ == "__main__":
-    PROGRAM, SETUP = map(os.path.abspath, sys.argv[1:])
+    SETUP = os.path.abspath(sys.argv[1])
     unittest.main(argv=sys.argv[:1])

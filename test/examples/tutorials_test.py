@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The commands of the tutorials, typed as they stand, in one folder: `tutorials_test.py PROGRAM`."""
+"""The commands of the tutorials, typed as they stand, in one folder: `tutorials_test.py SETUP`."""
 
 import os
 import sys
@@ -16,7 +16,7 @@ class Tutorials(unittest.TestCase):
         commands = [command for name in TUTORIALS for command in commands_of(name)]
         self.assertEqual(len(commands), 8)
         with tempfile.TemporaryDirectory() as folder:
-            status, printed = type_commands(commands, PROGRAM, folder)
+            status, printed = type_commands(commands, SETUP, folder)
             self.assertEqual(status, 0)
             self.assertGreater(os.path.getsize(os.path.join(folder, "shaped_slew.png")), 0)
         # What the text says that comes out.
@@ -26,5 +26,5 @@ class Tutorials(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    PROGRAM = os.path.abspath(sys.argv[1])
+    SETUP = os.path.abspath(sys.argv[1])
     unittest.main(argv=sys.argv[:1])

@@ -18,14 +18,18 @@ def commands_of(name):
     return re.findall(r"^```sh\n(.*?)^```", text_of(name), re.DOTALL | re.MULTILINE)
 
 
-def type_commands(commands, program, folder, setup=None):
-    """Runs them in a folder, `flexarm` being the program, python the test's own; status, and what is printed. `setup`:
-    a script that is sourced first."""
-    path = [os.path.dirname(program), os.path.dirname(sys.executable), os.environ["PATH"]]
+# What `source setup.bash` sets, and a workspace around the tests has set already.
+OF_WORKSPACES = "CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH", "PKG_CONFIG_PATH", "PYTHONPATH", "ROS_PACKAGE_PATH"
+
+
+def type_commands(commands, setup, folder):
+    """Runs them in a folder, in a shell that has sourced `setup` and nothing else; status, and what is printed."""
+    environment = {name: value for name, value in os.environ.items() if name not in OF_WORKSPACES}
+    environment["PATH"] = os.path.dirname(sys.executable) + ":/usr/bin:/bin:/usr/sbin:/sbin"
     result = subprocess.run(
-        ["bash", "-c", "\n".join([f"source {setup}" if setup else "", "set -e", *commands])],
+        ["bash", "-c", "\n".join([f"source '{setup}'", "set -e", *commands])],
         cwd=folder,
-        env=dict(os.environ, PATH=os.pathsep.join(path)),
+        env=environment,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         universal_newlines=True,

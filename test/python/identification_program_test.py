@@ -47,7 +47,7 @@ def test_the_example_of_the_documentation(tmp_path):
         shutil.copy(os.path.join(folder, name), tmp_path)
     with open(os.path.join(folder, "plan.yaml"), encoding="utf-8") as file:
         assert "```yaml\n" + file.read() + "```" in text_of("identify.md")
-    status, printed = type_commands(commands_of("identify.md"), os.environ["FLEXARM_PROGRAM"], str(tmp_path))
+    status, printed = type_commands(commands_of("identify.md"), os.environ["FLEXARM_SETUP"], str(tmp_path))
     assert status == 0 and "warning" not in printed
     with open(tmp_path / "measured_arm_fitted.json", encoding="utf-8") as file:
         found = json.load(file)
