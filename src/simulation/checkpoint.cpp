@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <sstream>
 #include <stdexcept>
 
@@ -20,8 +21,9 @@
 namespace flexarm {
 namespace {
 
-constexpr const char* kHeader = "flexarm-checkpoint 13";
-constexpr std::size_t kShown = 120;  // characters of a line in messages
+constexpr const char* kHeader = "flexarm-checkpoint 14";
+constexpr const char* kHeaderWithoutValues = "flexarm-checkpoint 13";  // of files that only lack the scene's values
+constexpr std::size_t kShown = 120;                                    // characters of a line in messages
 
 /// The last line of a file whose other lines are `text`.
 std::string checksum_line(const std::string& text) {
@@ -30,12 +32,66 @@ std::string checksum_line(const std::string& text) {
   return "checksum " + fingerprint.text() + "\n";
 }
 
-/// What must agree for a state to fit a simulation, one thing per line.
-std::string identity(const Simulation& simulation) {
+/// What must agree for a state to fit a simulation, one thing per line; and by which values.
+SceneIdentity identity(const Simulation& simulation) {
   const State& state = state_of(simulation);
-  return scene_identity(simulation.scene(), scheme_of(simulation)) +
-         fmt::format("nodes {} joints {} mass_points {} coordinates {}\n", state.nodes.size() - state.left_lines.size(),
-                     state.released.size(), state.mass_points.size(), state.commands.size());
+  SceneIdentity out = identity_of(simulation.scene(), scheme_of(simulation));
+  const std::pair<const char*, std::size_t> counts[] = {{"nodes", state.nodes.size() - state.left_lines.size()},
+                                                        {"joints", state.released.size()},
+                                                        {"mass_points", state.mass_points.size()},
+                                                        {"coordinates", state.commands.size()}};
+  for (const auto& [name, count] : counts) {
+    out.text += fmt::format("{}{} {}", out.text.back() == '\n' ? "" : " ", name, count);
+    out.values.push_back({std::string("number of ") + name, std::to_string(count)});
+  }
+  out.text += "\n";
+  return out;
+}
+
+// ---------------------------------------------------------------- the scene's values, to tell what differs
+
+constexpr const char* kValues = "values ";
+
+std::string values_text(const std::vector<SceneValue>& values) {
+  std::string text = kValues + std::to_string(values.size()) + "\n";
+  for (const SceneValue& one : values) text += one.name + "\t" + one.value + "\n";
+  return text;
+}
+
+/// Of a checkpoint; none if it does not have them.
+std::multimap<std::string, std::string> read_values(const std::string& text) {
+  std::multimap<std::string, std::string> values;
+  std::istringstream lines(text.substr(std::min(text.size(), text.rfind(std::string("\n") + kValues))));
+  for (std::string line; std::getline(lines, line);)
+    if (const std::size_t tab = line.find('\t'); tab != std::string::npos)
+      values.emplace(line.substr(0, tab), line.substr(tab + 1));
+  return values;
+}
+
+std::string shortened(const std::string& text) {
+  constexpr std::size_t kMost = 60;
+  return text.size() <= kMost ? text : text.substr(0, kMost) + "...";
+}
+
+/// "parameter 'mass': expected 4, found 5; link 'bob' ..."; empty if none differs.
+std::string differences(const std::vector<SceneValue>& expected, std::multimap<std::string, std::string> found) {
+  constexpr std::size_t kMostShown = 3;
+  std::vector<std::string> told;
+  for (const SceneValue& one : expected) {
+    auto there = found.lower_bound(one.name);  // the first of that name
+    if (there != found.end() && there->first != one.name) there = found.end();
+    const std::string got = there == found.end() ? "none" : "'" + shortened(there->second) + "'";
+    if (there == found.end() || there->second != one.value)
+      told.push_back(fmt::format("{}: expected '{}', found {}", one.name, shortened(one.value), got));
+    if (there != found.end()) found.erase(there);
+  }
+  for (const auto& [name, value] : found)
+    told.push_back(fmt::format("{}: expected none, found '{}'", name, shortened(value)));
+  const std::size_t shown = std::min(told.size(), kMostShown);
+  std::string text =
+      fmt::format("{}", fmt::join(told.begin(), told.begin() + static_cast<std::ptrdiff_t>(shown), "; "));
+  if (told.size() > shown) text += fmt::format("; and {} others", told.size() - shown);
+  return text;
 }
 
 /// What is kept per node, for another number of nodes.
@@ -61,8 +117,10 @@ std::string hexadecimal(double value) {
 class Reader {
  public:
   Reader(const std::string& text, const std::string& name) : name_(name), lines_(text) {
-    if (const std::string header = next(); header != kHeader)
+    const std::string header = next();
+    if (header != kHeader && header != kHeaderWithoutValues)
       fail_line(header, "'" + std::string(kHeader) + "': another format, or no checkpoint");
+    has_values_ = header == kHeader;
     // An unfinished or damaged file would give a wrong state, or one that is another scene's.
     const std::size_t end = text.rfind("checksum ");
     if (end == std::string::npos) fail("is damaged: it does not end with its checksum");
@@ -83,11 +141,29 @@ class Reader {
   }
 
   /// Takes the lines of `expected`.
-  void require_identity(const std::string& expected) {
-    std::istringstream wanted(expected);
-    for (std::string line; std::getline(wanted, line);)
-      if (const std::string got = next(); got != line)
-        fail_line(got, "'" + shown(line) + "': it belongs to another scene, scheme or step");
+  void require_identity(const SceneIdentity& expected) {
+    std::istringstream wanted(expected.text);
+    for (std::string line; std::getline(wanted, line);) {
+      const std::string got = next();
+      if (got == line) continue;
+      if (const std::string differ = has_values_ ? differences(expected.values, read_values(lines_.str())) : "";
+          !differ.empty())
+        fail("it belongs to another scene, scheme or step: " + differ);
+      fail_line(got, "'" + shown(line) + "': it belongs to another scene, scheme or step");
+    }
+  }
+  /// Takes the scene's values, if it has them, and the checksum.
+  void take_end() {
+    std::string line = next();
+    if (has_values_) {
+      std::istringstream in(line);
+      std::string word;
+      std::size_t count = 0;
+      if (!(in >> word >> count) || word + " " != kValues) fail_line(line, "the number of the scene's values");
+      for (std::size_t i = 0; i < count && lines_; ++i) next();
+      line = next();
+    }
+    if (line.rfind("checksum ", 0) != 0) fail_line(line, "the checksum");
   }
   double number(const char* what) {
     const std::string token = next();
@@ -102,6 +178,7 @@ class Reader {
   static std::string shown(const std::string& line) { return line.substr(0, std::min(line.find('\n'), kShown)); }
 
   std::string name_;
+  bool has_values_ = false;
   std::istringstream lines_;
   int number_ = 0;
 };
@@ -171,8 +248,10 @@ void naming(const std::string& path, const Write& write) {
 }  // namespace
 
 std::string checkpoint_text(const Simulation& simulation) {
-  std::string text = fmt::format("{}\n{}{}", kHeader, identity(simulation), counts_line(state_of(simulation)));
+  const SceneIdentity scene = identity(simulation);
+  std::string text = fmt::format("{}\n{}{}", kHeader, scene.text, counts_line(state_of(simulation)));
   for_each_number(state_of(simulation), [&](const char*, double value) { text += hexadecimal(value) + "\n"; });
+  text += values_text(scene.values);
   return text + checksum_line(text);
 }
 
@@ -196,7 +275,7 @@ void read_checkpoint_text(Simulation& simulation, const std::string& text, const
   State state = state_of(simulation);
   read_counts(reader, state);
   for_each_number(state, [&](const char* what, double& value) { value = reader.number(what); });
-  if (const std::string line = reader.next(); line.rfind("checksum ", 0) != 0) reader.fail_line(line, "the checksum");
+  reader.take_end();
   const Snapshot before = simulation.snapshot();
   try {
     restore(simulation, state);

@@ -7,7 +7,10 @@
 
 #include <fnmatch.h>
 
+#include <fmt/format.h>
+
 #include "flexarm/scene/scene_description.h"
+#include "math/near_names.h"
 #include "simulation/inside.h"
 
 namespace flexarm {
@@ -98,6 +101,7 @@ class ResultColumns::Selection {
     Group group{values, index, {}};
     for (std::size_t k = 0; k < names.size(); ++k) {
       const std::string name = prefix + names[k].name;
+      names_.push_back(name);
       const int rank = rank_of(name, by_request);
       if (rank == kUnwanted) continue;
       group.taken.push_back({k, found_.size()});
@@ -108,9 +112,14 @@ class ResultColumns::Selection {
 
   void require_all_fitted() const {
     const auto odd = std::find(is_fitted_.begin(), is_fitted_.end(), false);
-    if (odd != is_fitted_.end())
-      throw std::invalid_argument("no column is like '" +
-                                  patterns_[static_cast<std::size_t>(odd - is_fitted_.begin())] + "'");
+    if (odd == is_fitted_.end()) return;
+    const std::string& pattern = patterns_[static_cast<std::size_t>(odd - is_fitted_.begin())];
+    constexpr std::size_t kMostNames = 12;
+    std::vector<std::string> names = nearest_first(pattern, names_);
+    const std::size_t left = names.size() - std::min(names.size(), kMostNames);
+    names.resize(names.size() - left);
+    throw std::invalid_argument(fmt::format("no column is like '{}'; there are {}{}", pattern, fmt::join(names, ", "),
+                                            left > 0 ? fmt::format(" and {} others", left) : ""));
   }
 
   /// Puts columns in the order in which they were asked for.
@@ -148,6 +157,7 @@ class ResultColumns::Selection {
 
   ResultColumns& result_;
   const std::vector<std::string>& patterns_;
+  std::vector<std::string> names_;  // of all columns there are
   std::vector<bool> is_fitted_;
   std::vector<Found> found_;
 };

@@ -1,5 +1,6 @@
 #include "simulation/scene_identity.h"
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <type_traits>
@@ -12,240 +13,351 @@
 namespace flexarm {
 namespace {
 
-/// Fingerprint of the parts of a scene. Structures are taken apart by name, so that a new member does not compile here
-/// before somebody has decided whether it counts.
-class SceneFingerprint {
+/// Looks at parts of a scene: their fingerprint, and their values by name. Structures are taken apart by name, so that
+/// a new member does not compile here before somebody has decided whether it counts.
+class SceneParts {
  public:
-  template <class... Parts>
-  static std::string of(const Parts&... parts) {
-    SceneFingerprint fingerprint;
-    fingerprint.all(parts...);
-    return fingerprint.bytes_.text();
+  /// `path`: of what follows, "link 'arm'".
+  SceneParts(std::string path, std::vector<SceneValue>& values) : path_(std::move(path)), values_(values) {}
+
+  /// Names and parts by turns.
+  template <class Part, class... Others>
+  void all(const char* name, const Part& part, const Others&... others) {
+    const std::size_t length = path_.size();
+    path_ += std::string(" ") + name;
+    add(part);
+    path_.resize(length);
+    if constexpr (sizeof...(others) > 0) all(others...);
   }
+  template <class Part>
+  void add_part(const Part& part) {
+    add(part);
+  }
+  std::string fingerprint() const { return bytes_.text(); }
 
  private:
-  template <class... Parts>
-  void all(const Parts&... parts) {
-    (add(parts), ...);
+  // ---- what counts, and what is told
+  void count(double value) {
+    value += 0.0;  // -0 and 0 are the same
+    bytes_.add({reinterpret_cast<const char*>(&value), sizeof value});
+  }
+  /// In one line, whatever the file has.
+  void tell(std::string value) {
+    std::string name = path_;
+    for (std::string* text : {&name, &value})
+      std::replace_if(
+          text->begin(), text->end(), [](unsigned char c) { return c < 0x20; }, ' ');
+    values_.push_back({std::move(name), std::move(value)});
+  }
+  /// What tells a member of a list from others.
+  template <class Value>
+  static auto label(const Value& value, std::size_t, int) -> decltype(value.coordinate, std::string()) {
+    return "'" + value.coordinate + "'";
+  }
+  template <class Value>
+  static auto label(const Value& value, std::size_t, int) -> decltype(value.name, std::string()) {
+    return "'" + value.name + "'";
+  }
+  template <class Value>
+  static std::string label(const Value&, std::size_t index, long) {
+    return std::to_string(index + 1);
   }
 
   template <class Number, std::enable_if_t<std::is_arithmetic_v<Number> || std::is_enum_v<Number>, int> = 0>
   void add(Number number) {
-    const double value = static_cast<double>(number) + 0.0;  // -0 and 0 are the same
-    bytes_.add({reinterpret_cast<const char*>(&value), sizeof value});
+    count(static_cast<double>(number));
+    tell(fmt::format("{}", static_cast<double>(number) + 0.0));
   }
   void add(const std::string& text) {
-    add(text.size());
+    count(static_cast<double>(text.size()));
     bytes_.add(text);
+    tell(text);
   }
   template <class Derived>
   void add(const Eigen::MatrixBase<Derived>& matrix) {
+    std::string told;
     for (Eigen::Index j = 0; j < matrix.cols(); ++j)
-      for (Eigen::Index i = 0; i < matrix.rows(); ++i) add(matrix(i, j));
+      for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+        count(matrix(i, j));
+        told += (told.empty() ? "" : " ") + fmt::format("{}", matrix(i, j) + 0.0);
+      }
+    tell(told);
+  }
+  void add(const std::vector<double>& numbers) {
+    count(static_cast<double>(numbers.size()));
+    for (const double number : numbers) count(number);
+    tell(fmt::format("{}", fmt::join(numbers, " ")));
   }
   template <class Value>
   void add(const std::optional<Value>& value) {
-    add(value.has_value());
+    count(value.has_value());
     if (value) add(*value);
   }
   template <class Value>
   void add(const std::vector<Value>& values) {
-    add(values.size());
-    for (const Value& value : values) add(value);
+    count(static_cast<double>(values.size()));
+    for (std::size_t i = 0; i < values.size(); ++i) all(label(values[i], i, 0).c_str(), values[i]);
   }
   template <class... Values>
   void add(const std::variant<Values...>& value) {
-    add(value.index());
+    count(static_cast<double>(value.index()));
     std::visit([&](const auto& held) { add(held); }, value);
   }
   void add(const TimeFunction& function) { add(function.text()); }
-  void add(const Pose& pose) { all(pose.position, pose.orientation.coeffs()); }
+  void add(const Pose& pose) { all("position", pose.position, "quaternion", pose.orientation.coeffs()); }
 
   // ---- beams
-  void add(const scene::Circle& circle) { add(circle.radius); }
-  void add(const scene::Tube& tube) { all(tube.outer_radius, tube.inner_radius); }
-  void add(const scene::Rectangle& rectangle) { all(rectangle.width, rectangle.height); }
-  void add(const scene::BoxTube& box) { all(box.width, box.height, box.thickness); }
+  void add(const scene::Circle& circle) { all("radius", circle.radius); }
+  void add(const scene::Tube& tube) { all("outer_radius", tube.outer_radius, "inner_radius", tube.inner_radius); }
+  void add(const scene::Rectangle& rectangle) { all("width", rectangle.width, "height", rectangle.height); }
+  void add(const scene::BoxTube& box) { all("width", box.width, "height", box.height, "thickness", box.thickness); }
   void add(const scene::GeometricSection& section) {
     const auto& [young, poisson, density] = section.material;
-    all(section.shape, young, poisson, density);
+    all("shape", section.shape, "young", young, "poisson", poisson, "density", density);
   }
   void add(const scene::DirectSection& section) {
     const auto& [ea, ga2, ga3, gj, ei2, ei3, mass, j1, j2, j3] = section;
-    all(ea, ga2, ga3, gj, ei2, ei3, mass, j1, j2, j3);
+    all("ea", ea, "ga2", ga2, "ga3", ga3, "gj", gj, "ei2", ei2, "ei3", ei3, "mass", mass, "j1", j1, "j2", j2, "j3", j3);
   }
-  void add(const scene::MatrixSection& section) { all(section.stiffness, section.inertia); }
-  void add(const scene::SectionStations& stations) { all(stations.arc_lengths, stations.sections); }
+  void add(const scene::MatrixSection& section) { all("stiffness", section.stiffness, "inertia", section.inertia); }
+  void add(const scene::SectionStations& stations) {
+    all("arc_lengths", stations.arc_lengths, "sections", stations.sections);
+  }
   void add(const scene::CentrelinePiece& piece) {
     const auto& [kind, to, center, twist, location] = piece;
-    all(kind, to, center, twist);
+    all("kind", kind, "to", to, "center", center, "twist", twist);
   }
-  void add(const scene::HubDescription& hub) { all(hub.end, hub.mass, hub.inertia); }
+  void add(const scene::HubDescription& hub) { all("end", hub.end, "mass", hub.mass, "inertia", hub.inertia); }
   void add(const scene::BeamDescription& beam) {
     const auto& [elements, order, centreline, section_y, section, stiffness_damping, damping_shares, mass_damping,
                  prestrain, hubs, location] = beam;
-    all(elements, order, centreline, section_y, section, stiffness_damping, mass_damping, hubs);
-    if (damping_shares != Vector6::Ones()) add(damping_shares);
+    all("elements", elements, "order", order, "centreline", centreline, "section_y", section_y, "section", section,
+        "stiffness_damping", stiffness_damping, "mass_damping", mass_damping, "hubs", hubs);
+    if (damping_shares != Vector6::Ones()) all("damping_shares", damping_shares);
     for (std::size_t i = 0; i < prestrain.size(); ++i)
-      if (prestrain[i]) all(i, *prestrain[i]);
+      if (prestrain[i]) all("prestrain number", i, "prestrain", *prestrain[i]);
   }
 
   // ---- links and joints
-  void add(const scene::RigidInertia& inertia) { all(inertia.mass, inertia.center_of_mass, inertia.inertia); }
+  void add(const scene::RigidInertia& inertia) {
+    all("mass", inertia.mass, "center_of_mass", inertia.center_of_mass, "inertia", inertia.inertia);
+  }
   void add(const scene::LinkDescription& link) {
     const auto& [name, inertial, beam, visuals, collisions, location] = link;
-    all(name, inertial, beam);
+    all("name", name, "inertial", inertial, "beam", beam);
   }
   /// What was not there before counts where it is given: other scenes keep their fingerprints.
-  void add_given(const std::optional<double>& value) {
-    if (value) add(*value);
+  void add_given(const char* name, const std::optional<double>& value) {
+    if (value) all(name, *value);
   }
   void add(const scene::JointLimits& limits) {
-    all(limits.lower, limits.upper);
-    add_given(limits.restitution);
+    all("lower", limits.lower, "upper", limits.upper);
+    add_given("restitution", limits.restitution);
   }
-  void add(const scene::Mimic& mimic) { all(mimic.joint, mimic.multiplier, mimic.offset); }
+  void add(const scene::Mimic& mimic) {
+    all("joint", mimic.joint, "multiplier", mimic.multiplier, "offset", mimic.offset);
+  }
   void add(const scene::SlideDescription& slide) {
     const auto& [start, rotation, on_end, scheme, smooth, offset, restitution, location] = slide;
-    all(start, rotation, on_end, scheme, smooth, offset);
-    add_given(restitution);
+    all("start", start, "rotation", rotation, "on_end", on_end, "scheme", scheme, "smooth", smooth, "offset", offset);
+    add_given("restitution", restitution);
   }
-  void add(const scene::FrictionDescription& friction) { all(friction.law, friction.coefficient, friction.radius); }
+  void add(const scene::FrictionDescription& friction) {
+    all("law", friction.law, "coefficient", friction.coefficient, "radius", friction.radius);
+  }
   void add(const scene::JointDescription& joint) {
     const auto& [name, kind, parent, child, origin, axis, axis2, ratio, offset, direction, profile, slide, limits,
                  effort_limit, damping, friction, friction_law, mimic, child_origin, location] = joint;
-    all(name, kind, parent, child, origin, axis, axis2, ratio, offset, direction, slide, limits, effort_limit, damping,
-        friction, friction_law, mimic, child_origin);
-    if (profile) add(profile->numbers());
+    all("name", name, "kind", kind, "parent", parent, "child", child, "origin", origin, "axis", axis, "axis2", axis2,
+        "ratio", ratio, "offset", offset, "direction", direction, "slide", slide, "limits", limits, "effort_limit",
+        effort_limit, "damping", damping, "friction", friction, "friction_law", friction_law, "mimic", mimic,
+        "child_origin", child_origin);
+    if (profile) all("profile", profile->numbers());
   }
 
   void add(const scene::SpringDescription& spring) {
-    all(spring.coordinate, spring.stiffness, spring.rest);
-    if (spring.damping_ratio > 0) add(spring.damping_ratio);
+    all("coordinate", spring.coordinate, "stiffness", spring.stiffness, "rest", spring.rest);
+    if (spring.damping_ratio > 0) all("damping_ratio", spring.damping_ratio);
   }
   void add(const scene::DriveDescription& drive) {
     const auto& [coordinate, gear, rotor_inertia, stiffness, damping, damping_ratio, backlash, friction, efficiency,
                  effort_limit, velocity_limit, axis, location] = drive;
-    all(coordinate, gear, rotor_inertia, stiffness, damping, backlash, friction, efficiency, effort_limit,
-        velocity_limit, axis);
-    if (damping_ratio > 0) add(damping_ratio);
+    all("coordinate", coordinate, "gear", gear, "rotor_inertia", rotor_inertia, "stiffness", stiffness, "damping",
+        damping, "backlash", backlash, "friction", friction, "efficiency", efficiency, "effort_limit", effort_limit,
+        "velocity_limit", velocity_limit, "axis", axis);
+    if (damping_ratio > 0) all("damping_ratio", damping_ratio);
   }
   void add(const scene::ServoDescription& servo) {
     const auto& [coordinate, mode, kp, kd, ki, set_point, feedforward, effort_limit, anti_windup, side, sample_time,
                  delay, other_modes, location] = servo;
-    all(coordinate, mode, kp, kd, ki, set_point, feedforward, effort_limit, anti_windup, side, sample_time, delay);
-    for (const auto& [mode, kp, kd, ki, anti_windup] : servo.other_modes) all(mode, kp, kd, ki, anti_windup);
+    all("coordinate", coordinate, "mode", mode, "kp", kp, "kd", kd, "ki", ki, "set_point", set_point, "feedforward",
+        feedforward, "effort_limit", effort_limit, "anti_windup", anti_windup, "side", side, "sample_time", sample_time,
+        "delay", delay);
+    for (const auto& [mode, kp, kd, ki, anti_windup] : servo.other_modes)
+      all("mode", mode, "kp", kp, "kd", kd, "ki", ki, "anti_windup", anti_windup);
   }
 
   // ---- simulation
   void add(const scene::InitialJoint& initial) {
     const auto& [coordinate, position, velocity, location, gives_velocity] = initial;
-    all(coordinate, position, velocity, gives_velocity);
+    all("coordinate", coordinate, "position", position, "velocity", velocity, "gives_velocity", gives_velocity);
   }
-  void add(const scene::InitialLink& initial) { all(initial.link, initial.linear, initial.angular); }
+  void add(const scene::InitialLink& initial) {
+    all("link", initial.link, "linear", initial.linear, "angular", initial.angular);
+  }
   void add(const scene::PointLoad& load) {
     const auto& [link, at, force, moment, frame, history, location] = load;
-    all(link, at, force, moment, frame, history);
+    all("link", link, "at", at, "force", force, "moment", moment, "frame", frame, "history", history);
   }
   void add(const scene::DistributedLoad& load) {
-    all(load.link, load.force, load.frame, load.history);
-    if (load.from || load.to) all(load.from, load.to);
+    all("link", load.link, "force", load.force, "frame", load.frame, "history", load.history);
+    if (load.from || load.to) all("from", load.from, "to", load.to);
   }
-  void add(const scene::PrescribedMotion& motion) { all(motion.coordinate, motion.position); }
+  void add(const scene::PrescribedMotion& motion) { all("coordinate", motion.coordinate, "position", motion.position); }
   void add(const scene::Sensor& sensor) {
     const auto& [name, kind, link, joint, group, at, rate, noise, bias, seed, location] = sensor;
-    all(name, kind, link, at, rate, noise, bias, seed);
-    if (!joint.empty()) all(joint);
-    if (!group.empty()) all(group);
+    all("name", name, "kind", kind, "link", link, "at", at, "rate", rate, "noise", noise, "bias", bias, "seed", seed);
+    if (!joint.empty()) all("joint", joint);
+    if (!group.empty()) all("group", group);
   }
   void add(const std::shared_ptr<const scene::ForceElementDescription>& element) {
     const std::vector<scene::LinkPoint> points = element->points();
-    for (const scene::LinkPoint& point : points) add(point.link);
-    for (const scene::LinkPoint& point : points) add(point.at);
-    for (const double number : element->numbers()) add(number);
+    for (const scene::LinkPoint& point : points) all("link", point.link);
+    for (const scene::LinkPoint& point : points) all("at", point.at);
+    for (const double number : element->numbers()) all("number", number);
   }
-  void add(const scene::GroundDescription& ground) { all(ground.name, ground.normal, ground.offset); }
-  void add(const scene::ContactPair& pair) { all(pair.first, pair.second); }
+  void add(const scene::GroundDescription& ground) {
+    all("name", ground.name, "normal", ground.normal, "offset", ground.offset);
+  }
+  void add(const scene::ContactPair& pair) { all("first", pair.first, "second", pair.second); }
   void add(const scene::ContactDescription& contact) {
-    all(contact.first, contact.second, contact.stiffness, contact.restitution, contact.friction, contact.spinning,
-        contact.rolling);
+    all("first", contact.first, "second", contact.second, "stiffness", contact.stiffness, "restitution",
+        contact.restitution, "friction", contact.friction, "spinning", contact.spinning, "rolling", contact.rolling);
   }
-  void add(const scene::SurfaceHints& hints) { all(hints.friction, hints.stiffness); }
+  void add(const scene::SurfaceHints& hints) { all("friction", hints.friction, "stiffness", hints.stiffness); }
   void add(const scene::ClearanceDescription& clearance) {
     const auto& [joint, closes_loop, radius, length, width, journal, stiffness, restitution, friction, location] =
         clearance;
-    all(joint, closes_loop, radius, length, width, journal, stiffness, restitution, friction);
+    all("joint", joint, "closes_loop", closes_loop, "radius", radius, "length", length, "width", width, "journal",
+        journal, "stiffness", stiffness, "restitution", restitution, "friction", friction);
   }
-  void add(const scene::BoxShape& box) { add(box.size); }
-  void add(const scene::CylinderShape& cylinder) { all(cylinder.radius, cylinder.length); }
-  void add(const scene::SphereShape& sphere) { add(sphere.radius); }
-  void add(const scene::MeshShape& mesh) { all(mesh.url, mesh.scale); }
-  void add(const scene::VisualDescription& shape) { all(shape.origin, shape.shape); }
-  void add(const scene::JointEffort& effort) { all(effort.coordinate, effort.history); }
+  void add(const scene::BoxShape& box) { all("size", box.size); }
+  void add(const scene::CylinderShape& cylinder) { all("radius", cylinder.radius, "length", cylinder.length); }
+  void add(const scene::SphereShape& sphere) { all("radius", sphere.radius); }
+  void add(const scene::MeshShape& mesh) { all("url", mesh.url, "scale", mesh.scale); }
+  void add(const scene::VisualDescription& shape) { all("origin", shape.origin, "shape", shape.shape); }
+  void add(const scene::JointEffort& effort) { all("coordinate", effort.coordinate, "history", effort.history); }
 
+  std::string path_;
+  std::vector<SceneValue>& values_;
   Fingerprint bytes_;
 };
 
-std::string integrator_line(double step, const Scheme& scheme) {
-  const NumericalDissipation& d = scheme.dissipation;
-  return fmt::format(
-      "scheme {}, step {} s, beta {}, gamma {}, alpha {}, dissipation {} {} {}, interpolation {}, weak form {}",
-      scheme.name, step, scheme.beta, scheme.gamma, scheme.alpha, d.stiffness, d.forgetting, d.inertance,
-      static_cast<int>(scheme.interpolation), static_cast<int>(scheme.weak_form));
-}
+/// Lines for what must agree, and beside them the values that they stand for.
+class Identity {
+ public:
+  template <class... NamesAndParts>
+  void line(const std::string& kind, const NamesAndParts&... parts) {
+    SceneParts seen(kind, out_.values);
+    seen.all(parts...);
+    out_.text += kind + " " + seen.fingerprint() + "\n";
+  }
+  /// Of one part, whose own names are enough.
+  template <class Part>
+  void part(const std::string& kind, const Part& part) {
+    SceneParts seen(kind, out_.values);
+    seen.add_part(part);
+    out_.text += kind + " " + seen.fingerprint() + "\n";
+  }
+  template <class Parts>
+  void each(const char* kind, const Parts& parts) {
+    for (const auto& one : parts) part(fmt::format("{} '{}'", kind, one.name), one);
+  }
 
-template <class Parts>
-std::string named_lines(const char* kind, const Parts& parts) {
-  std::string text;
-  for (const auto& part : parts) text += fmt::format("{} '{}' {}\n", kind, part.name, SceneFingerprint::of(part));
-  return text;
-}
+  void integrator(double step, const Scheme& scheme) {
+    const NumericalDissipation& d = scheme.dissipation;
+    out_.text += fmt::format(
+        "scheme {}, step {} s, beta {}, gamma {}, alpha {}, dissipation {} {} {}, interpolation {}, weak form {}\n",
+        scheme.name, step, scheme.beta, scheme.gamma, scheme.alpha, d.stiffness, d.forgetting, d.inertance,
+        static_cast<int>(scheme.interpolation), static_cast<int>(scheme.weak_form));
+    const auto tell = [&](const char* name, const auto& value) {
+      out_.values.push_back({name, fmt::format("{}", value)});
+    };
+    tell("scheme", scheme.name);
+    tell("step", step);
+    tell("beta", scheme.beta);
+    tell("gamma", scheme.gamma);
+    tell("alpha", scheme.alpha);
+    tell("dissipation", fmt::format("{} {} {}", d.stiffness, d.forgetting, d.inertance));
+    tell("interpolation", static_cast<int>(scheme.interpolation));
+    tell("weak_form", static_cast<int>(scheme.weak_form));
+  }
 
-/// One for each kind that there is.
-std::string force_element_lines(const scene::ForceElementDescriptions& elements) {
-  std::map<std::string, scene::ForceElementDescriptions> kinds;
-  for (const auto& element : elements) kinds[element->kind()].push_back(element);
-  std::string text;
-  for (const auto& [kind, list] : kinds) text += fmt::format("{}s {}\n", kind, SceneFingerprint::of(list));
-  return text;
-}
+  /// One for each kind that there is.
+  void force_elements(const scene::ForceElementDescriptions& elements) {
+    std::map<std::string, scene::ForceElementDescriptions> kinds;
+    for (const auto& element : elements) kinds[element->kind()].push_back(element);
+    for (const auto& [kind, list] : kinds) part(kind + "s", list);
+  }
 
-/// One where something may touch.
-std::string contact_lines(const scene::SceneDescription& scene) {
-  if (scene.contacts.empty()) return "";
-  std::vector<std::vector<scene::VisualDescription>> shapes;
-  for (const scene::LinkDescription& link : scene.links) shapes.push_back(link.collisions);
-  std::vector<std::string> names;
-  std::vector<scene::SurfaceHints> surfaces;
-  for (const auto& [link, hints] : scene.surfaces) names.push_back(link), surfaces.push_back(hints);
-  return fmt::format("contact {}\n",
-                     SceneFingerprint::of(scene.grounds, scene.contacts, scene.no_contacts, shapes, names, surfaces));
-}
+  /// One where something may touch.
+  void contacts(const scene::SceneDescription& scene) {
+    if (scene.contacts.empty()) return;
+    std::vector<std::vector<scene::VisualDescription>> shapes;
+    for (const scene::LinkDescription& link : scene.links) shapes.push_back(link.collisions);
+    std::vector<std::string> names;
+    std::vector<scene::SurfaceHints> surfaces;
+    for (const auto& [link, hints] : scene.surfaces) names.push_back(link), surfaces.push_back(hints);
+    line("contact", "grounds", scene.grounds, "pairs", scene.contacts, "no_contact", scene.no_contacts, "shapes",
+         shapes, "surfaces of", names, "surfaces", surfaces);
+  }
+
+  /// They count by the numbers that are made of them, and tell best why these differ.
+  void parameters(const std::vector<scene::ParameterDescription>& parameters) {
+    for (const scene::ParameterDescription& parameter : parameters)
+      out_.values.push_back({"parameter '" + parameter.name + "'", fmt::format("{}", parameter.value)});
+  }
+
+  void text(const char* line) { out_.text += line; }
+  SceneIdentity take() { return std::move(out_); }
+
+ private:
+  SceneIdentity out_;
+};
 
 }  // namespace
 
-std::string scene_identity(const scene::SceneDescription& scene, const Scheme& scheme) {
+SceneIdentity identity_of(const scene::SceneDescription& scene, const Scheme& scheme) {
   const auto& [name, file, root, links, joints, loop_joints, springs, drives, servos, gravity, integrator,
                integrator_location, initial_joints, initial_links, loads, distributed_loads, motions, efforts, probes,
                sensors, force_elements, grounds, contacts, no_contacts, surfaces, clearances, lock_massless,
-               starts_in_equilibrium, equilibrium_location,
-               parameters] = scene;  // which count by the numbers that are made of them
-  return integrator_line(integrator.step, scheme) + "\n" + named_lines("link", links) + named_lines("joint", joints) +
-         named_lines("loop_joint", loop_joints) +
-         fmt::format("spring {}\ndrive {}\nservo {}\n", SceneFingerprint::of(springs), SceneFingerprint::of(drives),
-                     SceneFingerprint::of(servos)) +
-         fmt::format("gravity {}\ninitial {}\nload {}\ndistributed_load {}\nmotion {}\neffort {}\n",
-                     SceneFingerprint::of(gravity),
-                     SceneFingerprint::of(root, initial_joints, initial_links, lock_massless),
-                     SceneFingerprint::of(loads), SceneFingerprint::of(distributed_loads),
-                     SceneFingerprint::of(motions), SceneFingerprint::of(efforts)) +
-         (starts_in_equilibrium ? "initial equilibrium\n" : "") + named_lines("sensor", sensors) +
-         force_element_lines(force_elements) + contact_lines(scene) +
-         (clearances.empty() ? "" : fmt::format("clearance {}\n", SceneFingerprint::of(clearances)));
+               starts_in_equilibrium, equilibrium_location, parameters] = scene;
+  Identity identity;
+  identity.parameters(parameters);
+  identity.integrator(integrator.step, scheme);
+  identity.each("link", links);
+  identity.each("joint", joints);
+  identity.each("loop_joint", loop_joints);
+  identity.part("spring", springs);
+  identity.part("drive", drives);
+  identity.part("servo", servos);
+  identity.part("gravity", gravity);
+  identity.line("initial", "root", root, "joint", initial_joints, "link", initial_links, "lock_massless",
+                lock_massless);
+  identity.part("load", loads);
+  identity.part("distributed_load", distributed_loads);
+  identity.part("motion", motions);
+  identity.part("effort", efforts);
+  if (starts_in_equilibrium) identity.text("initial equilibrium\n");
+  identity.each("sensor", sensors);
+  identity.force_elements(force_elements);
+  identity.contacts(scene);
+  if (!clearances.empty()) identity.part("clearance", clearances);
+  return identity.take();
 }
 
 std::string scene_identity(const scene::SceneDescription& scene) {
-  return scene_identity(scene, make_scheme(scene.integrator));
+  return identity_of(scene, make_scheme(scene.integrator)).text;
 }
 
 }  // namespace flexarm

@@ -95,6 +95,8 @@ TEST(Parameters, MakeOtherScenesOfWhichStatesAreRefused) {
   const std::string resume = "flexarm simulate " + scene + " --until 0.2 --quiet --resume " + state;
   const Outcome other = shell(resume);
   EXPECT_EQ(other.status, 2);
+  expect_contains(other.errors,
+                  "it belongs to another scene, scheme or step: parameter 'mass': expected '3', found '5'; ");
   expect_contains(other.errors, "link 'bob'");
   const Outcome same = shell(resume + " --set mass=5");
   EXPECT_EQ(same.status, 0) << same.errors;

@@ -121,6 +121,13 @@ TEST(ResultColumns, HaveUnits) {
 TEST(ResultColumns, NobodyIsLikeAreRefused) {
   const Simulation simulation = everything();
   EXPECT_THROW(names(simulation, {"joint/*", "joints/*"}), std::invalid_argument);
+  try {
+    names(simulation, {"energy/totl"});
+    ADD_FAILURE();
+  } catch (const std::invalid_argument& error) {
+    expect_contains(error.what(), "no column is like 'energy/totl'; there are energy/total, ");
+    expect_contains(error.what(), " others");
+  }
 }
 
 TEST(Columns, AreChosenOnTheCommandLine) {
@@ -131,7 +138,7 @@ TEST(Columns, AreChosenOnTheCommandLine) {
   EXPECT_EQ(read_csv(out).size(), 8u);
   const Outcome refused = shell(run + " --columns 'speed/*'");
   EXPECT_EQ(refused.status, 2);
-  expect_contains(refused.errors, "flexarm: --columns: no column is like 'speed/*'");
+  expect_contains(refused.errors, "flexarm: --columns: no column is like 'speed/*'; there are ");
   const Outcome bag = shell("flexarm simulate --until 0.01 " + example("flexible_two_link_arm") + " --output " +
                             temporary("out.bag") + " --columns time");
   EXPECT_EQ(bag.status, 2);

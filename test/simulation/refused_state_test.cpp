@@ -61,15 +61,20 @@ void change_cam(scene::SceneDescription& scene) {
 INSTANTIATE_TEST_SUITE_P(
     Changes, CheckpointOfAChangedScene,
     ::testing::Values(
-        Change{"stiffness", "link 'beam1'", [](auto& scene) { section_of(scene).ei3 *= kAUnit; }},
-        Change{"density", "link 'beam1'", [](auto& scene) { section_of(scene).mass *= kAUnit; }},
+        Change{"elements", "link 'beam1' beam elements: expected '5', found ",
+               [](auto& scene) { scene.links[1].beam->elements = 5; }},
+        Change{"stiffness", "link 'beam1' beam section ei3: expected ",
+               [](auto& scene) { section_of(scene).ei3 *= kAUnit; }},
+        Change{"density", "link 'beam1' beam section mass: expected ",
+               [](auto& scene) { section_of(scene).mass *= kAUnit; }},
         Change{"geometry", "link 'beam2'", [](auto& scene) { scene.links[2].beam->centreline[1].to.x() *= kAUnit; }},
         Change{"material_damping", "link 'beam3'",
                [](auto& scene) { scene.links[3].beam->mass_proportional_damping *= kAUnit; }},
         Change{"inertia", "link 'continuous_body'",
                [](auto& scene) { scene.links[5].inertial->inertia(1, 1) *= kAUnit; }},
         Change{"axis", "joint 'elbow'", [](auto& scene) { scene.joints[3].axis = Vector3(0, 0.6, 0.8); }},
-        Change{"limit", "joint 'hinge'", [](auto& scene) { scene.joints[1].limits->upper *= kAUnit; }},
+        Change{"limit", "joint 'hinge' limits upper: expected ",
+               [](auto& scene) { scene.joints[1].limits->upper *= kAUnit; }},
         Change{"friction_law", "joint 'elbow'", [](auto& scene) { scene.joints[3].friction_law.coefficient = 0.1; }},
         Change{"cam", "joint 'cam'", change_cam},
         Change{"loop", "loop_joint 'loop'", [](auto& scene) { scene.loop_joints[0].damping *= kAUnit; }},
@@ -82,9 +87,10 @@ INSTANTIATE_TEST_SUITE_P(
         Change{"motion", "motion",
                [](auto& scene) { scene.motions[0].position = TimeFunction::parse("0.05*sin(6*t)"); }},
         Change{"effort", "effort", [](auto& scene) { scene.efforts[0].history = TimeFunction::parse("0.5"); }},
-        Change{"scheme", "scheme hht2", [](auto& scene) { scene.integrator.scheme = "hht1"; }},
-        Change{"step", "step 0.004 s", [](auto& scene) { scene.integrator.step *= 2; }},
-        Change{"alpha", "alpha -0.1", [](auto& scene) { scene.integrator.alpha = -0.1; }}),
+        Change{"scheme", "scheme: expected 'hht1', found 'hht2'",
+               [](auto& scene) { scene.integrator.scheme = "hht1"; }},
+        Change{"step", "step: expected '0.004', found '0.002'", [](auto& scene) { scene.integrator.step *= 2; }},
+        Change{"alpha", "alpha: expected '-0.1', found '-0.05'", [](auto& scene) { scene.integrator.alpha = -0.1; }}),
     [](const auto& info) { return info.param.name; });
 
 // What changes no motion, and what only limits Newton's method, may differ.
@@ -238,9 +244,23 @@ TEST_F(DamagedCheckpoint, WrongContentIsRefused) {
                    line_of(numbers) + time + "', expected the time as a finite hexadecimal number");
   expect_refused(sealed(head + line + others), "a number is missing", "expected ");
   expect_refused(sealed(head + line + rest + "0p+0\n"), "a number too many", "expected the checksum");
+  const std::size_t values = rest.find("values ");
+  expect_refused(sealed(head + line + rest.substr(0, values) + "0p+0\n" + rest.substr(values)), "a number too many",
+                 "expected the number of the scene's values");
   const std::size_t first_line = text_.find('\n');
   expect_refused(sealed("flexarm-checkpoint 8" + text_.substr(first_line, end - first_line)), "format",
                  "expected '" + text_.substr(0, first_line) + "'");
+}
+
+// What was kept before has no values of its scene.
+TEST_F(DamagedCheckpoint, StatesWithoutValuesAreRead) {
+  const std::size_t first_line = text_.find('\n'), values = text_.find("\nvalues ") + 1;
+  const std::string old = "flexarm-checkpoint 13" + text_.substr(first_line, values - first_line);
+  read_checkpoint_text(*simulation_, sealed(old), "text");
+  const std::size_t arm = old.find("link 'arm' ");
+  std::string other = old;
+  other[arm + 12] ^= 1;
+  expect_refused(sealed(other), "another scene", "': it belongs to another scene, scheme or step");
 }
 
 // What was kept before does not say on which links wrenches act.
