@@ -1,5 +1,5 @@
 #pragma once
-/// A run whose error in time is as small as is asked for. (docs/notes/accuracy.md)
+/// A run that keeps a given error in time. (docs/notes/accuracy.md)
 
 #include <limits>
 #include <optional>
@@ -21,17 +21,17 @@ struct AccuracyRequest {
   double most_steps = 1e8;  ///< of all tries
 };
 
-/// Looks at the tries of a run, each of which begins at the same state.
+/// Observes the tries of a run; each try begins at the same state.
 class RunWatcher {
  public:
   virtual ~RunWatcher() = default;
-  /// A try of so many steps begins; `estimate`: what its error is expected to be, NaN: unknown.
+  /// A try of that many steps begins. `estimate`: its expected error, NaN if unknown.
   virtual void begin(const Simulation&, long /*steps*/, double /*estimate*/) {}
-  /// Before each step: the place to command efforts.
+  /// Called before each step; command efforts here.
   virtual void before_step(Simulation&) {}
-  /// After each step. False: the run is to end.
+  /// Called after each step. Return false to end the run.
   virtual bool after_step(const Simulation&, const StepResult&) { return true; }
-  /// An interval has ended. `estimate`: of the error now [m], NaN in the first try.
+  /// An interval has ended. `estimate`: of the present error [m], NaN in the first try.
   virtual void after_interval(const Simulation&, double /*estimate*/) {}
 };
 
@@ -59,23 +59,23 @@ struct AccurateRun {
   StepResult last;  ///< of the last step
   JudgedMotion motion;
 
-  /// Of the last try; empty: there was none.
+  /// Scheme of the last try; empty if there was none.
   std::string scheme() const { return tries.empty() ? "" : tries.back().scheme; }
   /// The estimate of the last try.
   double estimate() const { return tries.empty() ? std::numeric_limits<double>::quiet_NaN() : tries.back().estimate; }
 };
 
-/// Runs a simulation from where it is, again and again from there with more steps, until the estimate of the error is
-/// at most what is asked for; then the simulation is at the end of that run. All steps are equal, but around events
-/// (Simulation::set_step_size). Where the scene leaves the scheme to flexarm ("auto"), tries may be made with another
-/// one of higher order, if that promises less work; the simulation itself keeps its own. What a watcher is shown is the
-/// one that runs.
+/// Runs a simulation from its present state, again and again with more steps, until the estimated error is at most the
+/// requested one. Then the simulation is at the end of that run. All steps are equal, except around events
+/// (Simulation::set_step_size). If the scene leaves the scheme to flexarm ("auto"), a try may use another scheme of
+/// higher order if that promises less work; the simulation itself keeps its scheme. A watcher sees the simulation that
+/// runs.
 /// @throws std::invalid_argument if the request is out of range, a frame is unknown, or the intervals cannot be divided
-/// so that servos are sampled at ends of steps.
+/// such that servos are sampled at ends of steps.
 AccurateRun run_to_accuracy(Simulation& simulation, const AccuracyRequest& request, RunWatcher& watcher);
 
 const char* to_string(AccurateRun::End end);
-/// What is to be said of a run that was asked for `accuracy` and has not met it. `more`: what else errs, relative.
+/// A message about a run that did not keep the requested `accuracy`. `more`: other errors, relative.
 std::string shortcoming(const AccurateRun& run, double accuracy, double more = 0);
 
 }  // namespace flexarm

@@ -1,5 +1,5 @@
 #pragma once
-/// The error of a simulation that runs in steps of its own choice, while it runs. (docs/notes/accuracy.md 6)
+/// Estimates the error of a simulation while it runs. (docs/notes/accuracy.md 6)
 
 #include <limits>
 #include <memory>
@@ -8,13 +8,13 @@
 
 namespace flexarm {
 
-/// Runs beside a simulation with steps of twice the length, under the same commands. How far the judged points are from
-/// those of the simulation says how large its error is; that costs half as much again. Allocates nothing after its
-/// construction, but where the simulation does.
+/// Runs beside a simulation with steps of twice the length, under the same commands. The distance between the judged
+/// points of both tells the error. This costs half as much time again. After its construction it allocates memory only
+/// when the simulation does.
 class Companion {
  public:
-  /// `window`: after that long it starts again from where the simulation is, so that errors of long ago do not count;
-  /// infinite: it never does [s].
+  /// `window`: after that time it starts again from the state of the simulation, so that old errors do not count [s];
+  /// infinite: never.
   /// @throws std::invalid_argument if the window is not > 0, or steps of twice the length do not divide the sample time
   /// of a servo.
   explicit Companion(const Simulation& simulation, double window = std::numeric_limits<double>::infinity());
@@ -23,12 +23,13 @@ class Companion {
   Companion(Companion&&) noexcept;
   Companion& operator=(Companion&&) noexcept;
 
-  /// After each step of the simulation, before it is commanded anew. Returns the largest estimate of the error of a
-  /// position since the window began, or in the one before if that is larger [m]; NaN before the second step. Where
-  /// forces jump within steps (stops, dry friction, play, limits, functions of time) both simulations may err alike:
-  /// what that may come to is in it, two steps later; NaN where it is not known, as it was within the first three.
+  /// Call it after each step of the simulation, before the next commands. Returns the largest estimated error of a
+  /// position since the window began, or in the window before if that is larger [m]; NaN before the second step. If
+  /// forces jump within steps (stops, dry friction, play, limits, functions of time) both simulations may have the same
+  /// error: two steps later the estimate includes a bound of it; it is NaN if the bound is not known, as in the first
+  /// three steps.
   double follow(const Simulation& simulation);
-  /// The simulation has been put elsewhere: starts again from there.
+  /// Starts again from the simulation's state. Call it after that was changed.
   void begin(const Simulation& simulation);
 
  private:

@@ -1,6 +1,5 @@
 #pragma once
-/// How far is one motion of a scene from another one? The measure of error of everything in this room and of
-/// benchmarks.
+/// How far one motion of a scene is from another one: the measure of error of this folder and of the benchmarks.
 
 #include <cstddef>
 #include <optional>
@@ -25,8 +24,7 @@ double trajectory_distance(const Trajectory& trajectory, const Trajectory& refer
 /// @throws std::invalid_argument if that is zero, too.
 double trajectory_error(const Trajectory& trajectory, const Trajectory& reference);
 
-/// The points of a scene by whose motion a run is judged: its probes; the tips of all links that move where it has
-/// none.
+/// The points by whose motion a run is judged: the scene's probes, or the tips of all moving links if it has none.
 class JudgedPoints {
  public:
   /// `frame`: the link in whose frame the points are judged; empty: the world.
@@ -34,7 +32,7 @@ class JudgedPoints {
   explicit JudgedPoints(const Simulation& simulation, const std::string& frame = {});
 
   std::size_t size() const { return has_probes_ ? count_ : links_.size(); }
-  /// Where they are now [m]. The second one replaces `positions`.
+  /// Their present positions [m]. The second function replaces `positions`.
   std::vector<Vector3> positions(const Simulation& simulation) const;
   void positions(const Simulation& simulation, std::vector<Vector3>& positions) const;
 
@@ -52,7 +50,7 @@ struct JudgedMotion {
   explicit JudgedMotion(std::size_t count = 0) : points(count) {}
   /// @throws std::invalid_argument unless there is one for each point.
   void add(const std::vector<Vector3>& positions);
-  /// Of the points, how far the one that comes farthest does so from its start [m].
+  /// The largest distance of any point from its start [m].
   double largest_displacement() const;
 };
 

@@ -23,8 +23,8 @@ class CamProfile {
   double secant(double from, double to) const;
   /// Its derivative with respect to `to` [m/rad^2].
   double secant_derivative(double from, double to) const;
-  /// All that defines it, to tell two profiles apart: radius and offset [m], then of each piece of the spline where it
-  /// begins [rad] and its coefficients.
+  /// Numbers that define the profile, to tell two profiles apart: radius and offset [m], then for each piece of the
+  /// spline its beginning [rad] and its coefficients.
   std::vector<double> numbers() const;
 
  private:

@@ -33,27 +33,27 @@ class TimeFunction {
 
   /// Value at time t; may be non-finite where the expression is (the caller checks).
   double operator()(double t) const;
-  /// Exact of a spline; else a central difference with a step of cbrt(machine epsilon) * max(1, |t|), one-sided
+  /// Exact for a spline; otherwise a central difference with a step of cbrt(machine epsilon) * max(1, |t|), one-sided
   /// (forward) at t = 0.
   double derivative(double t) const;
-  /// Mean value over [begin, end], in either order; of one instant the value. Exact of constants, tables and splines;
-  /// of expressions to about 1e-13 of the largest value, kinks included and jumps by more than 3e-10 of it, with at
-  /// most five values where it is smooth over the interval and some 4,000 else. May be non-finite where a value is.
-  /// Does not allocate.
+  /// Mean value over [begin, end], in either order; if both are equal, the value. Exact for constants, tables and
+  /// splines. For expressions the error is about 1e-13 of the largest value, also with kinks, and with jumps of more
+  /// than 3e-10 of it; this takes at most five evaluations if the function is smooth over the interval, and otherwise
+  /// some 4,000. May be non-finite if a value is. Does not allocate.
   /// @throws std::invalid_argument if a time is not finite, and the function no constant.
   double mean(double begin, double end) const;
-  /// The same of what is left of the function between -limit and limit at each instant.
+  /// The same for the function cut at -limit and limit at each instant.
   /// @throws std::invalid_argument as mean(), and if the limit is not > 0.
   double mean_within(double limit, double begin, double end) const;
   /// Increasing times within (begin, end), at most 10,000, at which the function or its derivative jumps, to round-off.
-  /// Of an expression those that its abs, sign, rint, min, max and comparisons have, and others that are apart by more
-  /// than a ten thousandth of the interval. For use before a run: it evaluates an expression some 10,000 to a million
+  /// For an expression these are the jumps of its abs, sign, rint, min, max and comparisons, and others that are more
+  /// than a ten thousandth of the interval apart. Use it before a run: it evaluates an expression 10,000 to a million
   /// times.
   /// @throws std::invalid_argument if a time is not finite.
   std::vector<double> corners(double begin, double end) const;
-  /// The value of a function in which there is no t; none of another one, which may have the same value all the time.
+  /// The value of a function without t. Empty for any other function, even if its value never changes.
   std::optional<double> constant() const;
-  /// Text from which the function was made, or could have been.
+  /// Text of which the function was made, or could have been made.
   const std::string& text() const;
 
  private:

@@ -1,11 +1,11 @@
 #pragma once
-/// What is wrong with a scene that is well-formed as a file.
+/// Errors of a scene whose file has none.
 
 #include <stdexcept>
 
 namespace flexarm {
 
-/// A scene that is impossible as a mechanism, or with its scheme; what() names file, line and element where there are.
+/// The scene is impossible as a mechanism, or with its scheme. what() names file, line and element if they are known.
 class ModelError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -1,5 +1,5 @@
 #pragma once
-/// Events that a run comes over.
+/// Events of a run.
 
 #include <string>
 

@@ -20,7 +20,7 @@ struct GroundDescription {
 /// Stands for all links and grounds that are not neighbours.
 constexpr const char* kAllBodies = "*";
 
-/// Two sides that touch: a link, a ground, or all. Of several that name a pair the one counts that names most of it.
+/// Two sides that touch: a link, a ground, or all. If several name a pair, the one that names more of it counts.
 struct ContactPair {
   std::string first, second;
   SourceLocation location = {};
@@ -29,7 +29,8 @@ struct ContactDescription : ContactPair {
   std::optional<double> stiffness = {};  ///< of a contact point [N/m]; empty: by what it moves and the step
   double restitution = 0.3;              ///< from 0.05 to 1
   std::optional<double> friction = {};   ///< Coulomb's coefficient; empty: as the links' surfaces have it, else 0
-  /// Couples that resist to turning about the normal and across it, at most so many times the push of each point [m].
+  /// Moments that resist turning about the normal and across it: at most this length times the normal force of each
+  /// point [m].
   double spinning = 0, rolling = 0;
 };
 

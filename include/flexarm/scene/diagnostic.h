@@ -1,12 +1,12 @@
 #pragma once
-/// What is wrong with an input, as data; printed elsewhere.
+/// Errors and warnings about an input, as data.
 
 #include <string>
 #include <vector>
 
 namespace flexarm::scene {
 
-/// One finding about an input file.
+/// An error or a warning about an input file.
 struct Diagnostic {
   enum class Severity { Warning, Error };
   Severity severity = Severity::Error;
@@ -22,9 +22,9 @@ struct Diagnostic {
 
 using Diagnostics = std::vector<Diagnostic>;
 
-/// True if any finding is an error.
+/// Whether any of them is an error.
 bool has_errors(const Diagnostics& diagnostics);
-/// One finding per line.
+/// One per line.
 std::string to_text(const Diagnostics& diagnostics);
 
 }  // namespace flexarm::scene

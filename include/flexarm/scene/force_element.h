@@ -1,5 +1,5 @@
 #pragma once
-/// What a scene says of what acts between points of links; base of all kinds.
+/// Elements of a scene that act between points of links: the base of all kinds.
 
 #include <memory>
 #include <string>
@@ -27,12 +27,13 @@ class ForceElementDescription {
  public:
   virtual ~ForceElementDescription() = default;
 
-  /// As its element is called: "spring".
+  /// The name of its element: "spring".
   virtual const char* kind() const = 0;
   virtual std::vector<LinkPoint> points() const = 0;
-  /// All numbers that it has besides those of its points: two that have the same ones do the same.
+  /// All its numbers except those of its points: two elements with the same numbers do the same.
   virtual std::vector<double> numbers() const = 0;
-  /// What acts in the mechanism. `places`: of its points, `positions`: where these are at the start in the world [m].
+  /// Makes the element of the mechanism. `places`: of its points; `positions`: of its points at the start, in the world
+  /// [m].
   virtual std::shared_ptr<const ForceElement> place(const std::vector<NodePoint>& places,
                                                     const std::vector<Vector3>& positions) const = 0;
 

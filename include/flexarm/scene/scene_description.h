@@ -1,5 +1,5 @@
 #pragma once
-/// What a scene file says: names and SI numbers, immutable, no numerics.
+/// The contents of a scene file: names and numbers in SI units.
 
 #include <array>
 #include <map>
@@ -212,8 +212,8 @@ struct JointDescription {
   SourceLocation location;
 };
 
-/// Play of a joint: what it would hold is held by contact at the end of the play. In the tree the joint itself is a
-/// floating one then; one that would close a loop is nothing else.
+/// Play of a joint: contact at the end of the play holds what the joint would hold. A joint of the tree is then a
+/// floating one; a loop joint is nothing but these contacts.
 struct ClearanceDescription {
   JointDescription joint;  ///< without play: revolute, continuous, prismatic or spherical
   bool closes_loop = false;
@@ -237,8 +237,8 @@ struct SpringDescription {
   double damping_ratio = 0;  ///< of what the coordinate moves at the start, joints outboard of it free [-]
 };
 
-/// Motor and gear of a joint's coordinate. All but the rotor's inertia is as seen at the joint: angles of the rotor
-/// over the gear's ratio, efforts times it.
+/// Motor and gear of a joint's coordinate. All numbers except the rotor's inertia are those at the joint: angles of the
+/// rotor divided by the gear ratio, efforts multiplied by it.
 struct DriveDescription {
   std::string coordinate;
   std::optional<double> gear;       ///< rotor's angle per position of the coordinate [-, or rad/m]; empty: 1
@@ -259,7 +259,7 @@ struct DriveDescription {
 struct ServoDescription {
   using Mode = ServoMode;
   enum class Side { Motor, Link };
-  /// Of another mode, to which programs may switch.
+  /// Gains of another mode, to which programs may switch.
   struct Gains {
     Mode mode = Mode::Velocity;
     double kp = 0, kd = 0, ki = 0, anti_windup = 0;  ///< as below
@@ -355,11 +355,11 @@ struct SensorChannel {
 };
 /// What a sensor of that kind measures, in this order.
 const std::vector<SensorChannel>& sensor_channels(SensorKind kind);
-/// Number of a sensor's errors: one for each channel, but six of a pose (three of the place [m], three of the rotation
+/// Number of a sensor's errors: one for each channel, but six for a pose (three of the place [m], three of the rotation
 /// vector [rad], in the sensor's axes).
 std::size_t sensor_error_count(SensorKind kind);
 
-/// Measures at a point of a link, in its own time.
+/// Measures at a point of a link, at its own rate.
 struct Sensor {
   std::string name;
   SensorKind kind = SensorKind::Pose;
@@ -373,7 +373,7 @@ struct Sensor {
   SourceLocation location = {};
 };
 
-/// A number that the scene's expressions name; all that is described here has been made with it.
+/// A number that expressions of the scene use; everything else in the description was made with its value.
 struct ParameterDescription {
   std::string name;
   double value = 0;

@@ -1,11 +1,11 @@
 #pragma once
-/// Under which topic a sensor publishes.
+/// The topics of sensors.
 
 #include <string>
 
 namespace flexarm::scene {
 
-/// The topic of a sensor of that name, "sensors/NAME"; other characters than letters, digits and _ become _.
+/// The topic of the sensor with that name, "sensors/NAME". Characters other than letters, digits and _ become _.
 std::string sensor_topic(std::string name);
 
 }  // namespace flexarm::scene

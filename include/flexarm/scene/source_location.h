@@ -1,11 +1,11 @@
 #pragma once
-/// Where something stands in a file.
+/// A place in a file.
 
 #include <string>
 
 namespace flexarm::scene {
 
-/// Kept for errors that only the model builder can find.
+/// Kept for errors that are found only when the model is built.
 struct SourceLocation {
   std::string file;
   int line = 0;

@@ -1,5 +1,5 @@
 #pragma once
-/// Reads a URDF file with flexarm's extension elements. The only door to urdfdom and tinyxml2.
+/// Reads a URDF file with flexarm's elements. The only part that uses urdfdom and tinyxml2.
 
 #include <map>
 #include <optional>
@@ -10,12 +10,12 @@
 
 namespace flexarm::scene {
 
-/// The scene, if the input has no error; all findings in any case.
+/// The scene, if the input has no errors; and all errors and warnings.
 struct ReadResult {
   std::optional<SceneDescription> scene;
   Diagnostics diagnostics;
-  /// Of a scene: the file, or where it has expressions, the same with numbers in their place and without its
-  /// parameters, which programs can read that know none.
+  /// The text of the scene's file. Expressions are replaced by numbers and parameters are left out, so that programs
+  /// that know neither can read it.
   std::string urdf = {};
 };
 
@@ -24,18 +24,17 @@ using ParameterValues = std::map<std::string, double>;
 
 struct ForceElementKind;
 
-/// What <simulation> can say as well, where either place is enough; and values for parameters in the place of the
-/// file's.
+/// Options that <simulation> has, too (either place is enough), and values of parameters instead of those in the file.
 struct ReadOptions {
   bool clamp_start = false;    ///< start="clamp": joints that would start outside their limits start at the nearest one
   bool lock_massless = false;  ///< massless="lock": see SceneDescription::lock_massless
   bool equilibrium_start = false;  ///< <initial equilibrium="true"/>: see SceneDescription::starts_in_equilibrium
-  /// A name that the scene has no <parameter> for, and a value outside its limits, are errors of the scene.
+  /// It is an error if the scene has no <parameter> of a name, or if a value is outside its limits.
   ParameterValues parameters = {};
   /// For xacro, which read_scene_file() runs for files *.xacro, as "NAME=VALUE NAME=VALUE".
   std::string xacro_arguments = {};
-  /// Kinds of elements between points of links that a scene may have besides those of the format; null: none. For who
-  /// builds in the library's sources, where kinds are declared (scene/force_element_kinds.h).
+  /// More kinds of elements between points of links than those of the format; null: none. For code within the library's
+  /// sources, where kinds are declared (scene/force_element_kinds.h).
   const std::vector<ForceElementKind>* more_force_elements = nullptr;
 };
 

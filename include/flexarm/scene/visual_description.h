@@ -8,7 +8,7 @@
 
 namespace flexarm::scene {
 
-/// A shape for displays, or that touches others. Cylinders stand along z; all have their middle at the origin.
+/// Shapes for displays and for contact. Cylinders are along z; the middle of each shape is at the origin.
 struct BoxShape {
   Vector3 size = Vector3::Zero();  ///< [m]
 };

@@ -1,5 +1,5 @@
 #pragma once
-/// Which time integration scheme a scene asks for, with which options and settings of Newton's method.
+/// The time integration scheme of a scene, its options, and the settings of Newton's method.
 
 #include <optional>
 #include <string>
@@ -16,28 +16,28 @@ enum class Interpolation {
   Iterative     ///< from the last Newton iterate
 };
 
-/// To which virtual rotations the moment rows are conjugate.
+/// The virtual rotations to which the rows of moments are conjugate.
 enum class WeakForm {
   Spin,     ///< spatial spins
   Additive  ///< total rotation vectors: the static tangent is symmetric
 };
 
-/// What becomes of a step that the scheme cannot do, however often it is halved.
+/// What to do with a step that the scheme cannot do, however often it is halved.
 enum class OnFailure {
   Stop,      ///< the step fails
   Dissipate  ///< it is done from its beginning by edmc2, with its own numerical dissipation
 };
 
-/// "stop" or "dissipate"; empty: there is none of that name.
+/// By its name, "stop" or "dissipate"; empty if there is none of that name.
 std::optional<OnFailure> on_failure_called(std::string_view name);
 
-/// Of Newton's method; with more there would be nothing left of it.
+/// Largest tolerance of Newton's method; a larger one would accept any guess.
 constexpr double kLargestTolerance = 1;
-/// Beyond it, servos' integrals are no numbers any more [s].
+/// Longest step; beyond it the integrals of servos would overflow [s].
 constexpr double kLongestStep = 1e9;
 
-/// <integrator>. Options that are empty have the scheme's own values, in parentheses; docs/schemes.md says which scheme
-/// takes which.
+///  <integrator>. An empty option stands for the scheme's own value, in parentheses. docs/schemes.md says which scheme
+/// takes which option.
 struct IntegratorDescription {
   std::string scheme = "auto";                 ///< one of scheme_names()
   std::optional<Interpolation> interpolation;  ///< (local)
@@ -51,8 +51,8 @@ struct IntegratorDescription {
   int max_halvings = 14;
   std::optional<double> rho_infinity;  ///< of numerical dissipation: spectral radius at infinite frequency (0.8)
   OnFailure on_failure = OnFailure::Stop;
-  /// Of runs in which steps are chosen for it (accuracy/accurate_run.h): the error of points, in (0, 1), relative to
-  /// how far they move. Steps of a simulation by itself are not.
+  /// For runs that choose their steps (accuracy/accurate_run.h): the error of points, in (0, 1), relative to how far
+  /// they move. A simulation by itself does not use it.
   std::optional<double> accuracy;
   bool may_be_planar = true;  ///< where all moves in a plane, steps are taken there; else they are three-dimensional
 };
@@ -60,14 +60,14 @@ struct IntegratorDescription {
 /// Names of the schemes that a scene may ask for, "auto" first.
 const std::vector<std::string_view>& scheme_names();
 
-/// An option that the scheme does not have, or with a value that it does not take.
+/// An option that the scheme does not have, or whose value it does not take.
 struct OptionConflict {
   std::string attribute, message;
 };
 /// Empty if all options that are set suit the scheme.
 std::vector<OptionConflict> option_conflicts(const IntegratorDescription& integrator);
 
-/// The same description with another scheme; options that this one does not take are forgotten.
+/// The same description with another scheme, without the options that this scheme does not take.
 IntegratorDescription with_scheme(IntegratorDescription integrator, const std::string& scheme);
 
 }  // namespace flexarm

@@ -8,11 +8,11 @@
 
 namespace flexarm {
 
-/// One sentence without its end: that it mimics a joint, follows another coordinate, or that its motion is prescribed.
-/// Empty: it takes efforts.
+/// A sentence without its end: it mimics a joint, follows another coordinate, or has a prescribed motion. Empty if it
+/// takes efforts.
 std::string refusal_of_commands(const Simulation& simulation, std::size_t coordinate);
 
-/// The same of set points: empty where it has a servo.
+/// The same for set points. Empty if it has a servo.
 std::string refusal_of_set_points(const Simulation& simulation, std::size_t coordinate);
 
 }  // namespace flexarm

@@ -9,17 +9,17 @@
 
 namespace flexarm {
 
-/// One file: a header line with the columns' names, then a row per call. Numbers have 17 significant digits, so that
-/// they are read back bit for bit, whatever the locale.
+/// A file with a line of the columns' names, then a row for each call. Numbers have 17 significant digits, so that they
+/// are read back bit for bit, in any locale.
 class CsvWriter : public ResultWriter {
  public:
   /// Creates the file and writes the header. The path "-" means the standard output.
-  /// @throws std::runtime_error naming the file and the reason if that fails; so do the other functions. Rows that were
+  /// @throws std::runtime_error naming the file and the reason if that fails, as the other functions do. The rows
   ///   written before are then whole.
   CsvWriter(const std::string& path, ResultColumns columns);
 
   void write_row(const Simulation& simulation) override;
-  /// A remote file system may notice only then that it has no room.
+  /// A remote file system may notice only here that it is full.
   void close() override;
 
  private:

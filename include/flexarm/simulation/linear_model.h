@@ -1,5 +1,5 @@
 #pragma once
-/// A mechanism's equations of motion, linearised: for the design of controllers. (docs/notes/linearisation.md)
+/// Linear models of a mechanism, for the design of controllers. (docs/notes/linearisation.md)
 
 #include <complex>
 #include <string>
@@ -11,15 +11,15 @@
 
 namespace flexarm {
 
-/// About what a simulation is linearised.
+/// The reference motion about which a simulation is linearised.
 enum class LinearisedAbout {
   Rest,    ///< the configuration as it is, without velocities, under the loads at time 0: after solve_static()
-  Steady,  ///< a steady motion: driven joints go as fast as at time 0, all else stands still as seen from them
-  Instant  ///< the motion as it is
+  Steady,  ///< a steady motion: driven joints move as fast as at time 0, everything else is at rest relative to them
+  Instant  ///< the present motion
 };
 
-/// What goes into a linear model, and what comes out. Points are links ("elbow": the link's origin), ends of beams
-/// ("upper_arm/tip") and probes.
+/// Inputs and outputs of a linear model. Points are links ("elbow": the link's origin), ends of beams ("upper_arm/tip")
+/// and probes.
 ///
 /// | input               | is                                                                                       |
 /// |---------------------|------------------------------------------------------------------------------------------|
@@ -35,18 +35,18 @@ enum class LinearisedAbout {
 /// | `strain:SENSOR`     | what a strain gauge of the scene measures, without its errors [-]                         |
 /// | `section_force:SENSOR:fx` | of a sensor of elastic forces: (fx fy fz) [N] and moments (mx my mz) [N m]          |
 ///
-/// Without a component a point, or a section, means all six; points have `velocity:` and `acceleration:`, too.
+/// A point or a section without a component stands for all six; points have `velocity:` and `acceleration:`, too.
 struct LinearRequest {
   LinearisedAbout about = LinearisedAbout::Rest;
-  std::vector<std::string> inputs;   ///< none: the efforts on all coordinates that may be commanded
-  std::vector<std::string> outputs;  ///< none: the positions of these and of all probes
+  std::vector<std::string> inputs;   ///< empty: the efforts on all coordinates that take commands
+  std::vector<std::string> outputs;  ///< empty: the positions of all coordinates that take commands, and of all probes
 };
 
 /// Small deviations from a reference motion: with the coordinates y, states x = {y, y'}, inputs u and outputs v
 ///   mass y'' + damping y' + stiffness y = forces,   x' = a x + b u,   v = c x + d u.
-/// y are what loops leave free of: joint coordinates, displacements [m] and rotations [rad] of beams' nodes as seen
-/// from the node at which their link is held, along its axes, and rotors' angles behind elastic gears. Driven
-/// coordinates without an input are held, and no states.
+/// y consists of joint coordinates, of displacements [m] and rotations [rad] of beams' nodes, relative to the node at
+/// which their link is held and along its axes, and of rotors' angles behind elastic gears; closed loops leave a part
+/// of these. Driven coordinates without an input are held, and are no states.
 struct LinearModel {
   std::vector<std::string> coordinates;      ///< of y, driven ones included
   Eigen::MatrixXd mass, damping, stiffness;  ///< by y; damping: with gyroscopic, stiffness: with centrifugal terms
@@ -58,11 +58,11 @@ struct LinearModel {
   std::vector<std::string> left_out;  ///< effects of the scene that a linear model does not have, in words
 };
 
-/// @throws std::invalid_argument naming what there is, if an input or output does not exist; std::runtime_error if the
-/// reference is not found, or masses leave an acceleration undecided.
+/// @throws std::invalid_argument if an input or output does not exist, naming those that do; std::runtime_error if the
+/// reference is not found, or the masses do not determine an acceleration.
 LinearModel linearise(const Simulation& simulation, const LinearRequest& request = {});
 
-/// An eigenvalue of `a`, of a conjugate pair the one whose imaginary part is >= 0.
+/// An eigenvalue of `a`; of a conjugate pair the one with an imaginary part >= 0.
 struct Pole {
   std::complex<double> value;    ///< [1/s]
   int state = 0;                 ///< that moves most in its mode, of displacements and rotations

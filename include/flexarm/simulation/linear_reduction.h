@@ -1,5 +1,5 @@
 #pragma once
-/// Smaller linear models that answer nearly alike.
+/// Smaller linear models with nearly the same response.
 
 #include <Eigen/Core>
 
@@ -13,13 +13,13 @@ struct ReducedModel {
   int kept = 0;                            ///< states of poles that do not decay, all of which stay
 };
 
-/// Balanced truncation (Moore 1981; by square roots: Tombs and Postlethwaite 1987) of what decays; poles that do not,
-/// as those of motions that nothing holds, stay as they are. No gain from inputs to outputs is off by more than twice
-/// the sum of the Hankel singular values that are left out, at any frequency. These depend on the units of inputs and
-/// outputs. The model has less than `order` states where the others would be such as inputs do not reach, or outputs do
-/// not see.
-/// @throws std::invalid_argument if `order` is larger than the number of states, or smaller than that of poles which do
-/// not decay; or if the matrices of the model are not of one size.
+/// Balanced truncation (Moore 1981; by square roots: Tombs and Postlethwaite 1987) of the part that decays. Poles that
+/// do not decay, as those of motions that nothing resists, stay as they are. At any frequency no gain from inputs to
+/// outputs changes by more than twice the sum of the Hankel singular values that are left out, which depend on the
+/// units of inputs and outputs. The model has less than `order` states if the others cannot be reached from the inputs,
+/// or not be seen in the outputs.
+/// @throws std::invalid_argument if `order` is larger than the number of states, or smaller than the number of poles
+/// that do not decay, or if the sizes of the model's matrices do not fit.
 ReducedModel reduced(const LinearModel& model, int order);
 
 }  // namespace flexarm

@@ -1,5 +1,5 @@
 #pragma once
-/// What a row of results is made of.
+/// The columns of results.
 
 #include <cstddef>
 #include <string>
@@ -14,8 +14,8 @@ struct ResultColumn {
   std::string name, unit;
 };
 
-/// Which results of a simulation are put out. SI units, world axes, quaternions x y z w; where nothing is asked for, in
-/// this order:
+/// Selects which results of a simulation are put out, in SI units and world axes, quaternions as x y z w. By default
+/// all of them, in this order:
 ///   time
 ///   joint/NAME/position|velocity|effort      for every released coordinate
 ///   frame/LINK/x|y|z|qx|qy|qz|qw             for every link
@@ -35,14 +35,14 @@ class ResultColumns {
  public:
   enum class Solver { Without, With, WithEstimate };
 
-  /// The time, and behind it those whose names fit one of the `patterns`, as a shell's wildcards do ("joint/*",
-  /// "*/f[xyz]"); all where there are none. They are in the order of the patterns, each once, with the first one that
-  /// it fits; those of one pattern are as above. What no column needs is not computed.
-  /// @throws std::invalid_argument naming a pattern that no column fits.
+  /// The time, then the columns whose names match one of the `patterns`, which are wildcards as in a shell ("joint/*",
+  /// "*/f[xyz]"); all columns if there are no patterns. They are in the order of the patterns, each once, at the first
+  /// pattern that it matches; those of one pattern are in the order above. Only what a column needs is computed.
+  /// @throws std::invalid_argument naming a pattern that no column matches.
   ResultColumns(const Simulation& simulation, Solver solver, const std::vector<std::string>& patterns = {});
 
   const std::vector<ResultColumn>& columns() const { return columns_; }
-  /// Their values now; `counts`: since the row before. Valid until the next call.
+  /// Their present values, valid until the next call. `counts`: since the last row.
   const std::vector<double>& row(const Simulation& simulation, const StepCounts& counts);
 
  private:

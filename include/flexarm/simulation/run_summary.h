@@ -1,5 +1,5 @@
 #pragma once
-/// How a run went, and what makes its results doubtful.
+/// A summary of a run, with what makes its results doubtful.
 
 #include <string>
 #include <vector>
@@ -8,21 +8,22 @@
 
 namespace flexarm {
 
-/// Counts what steps came to, and keeps the largest rotation of a node in a step, the largest strain, and the largest
-/// defect of the energy account, with where and when they were. One thread may count() while another one does look().
+/// Counts steps and what they needed. Keeps the largest rotation of a node in a step, the largest strain and the
+/// largest defect of the energy account, with place and time. One thread may count() while another one calls look().
 class RunSummary {
  public:
   /// At the beginning of the run.
   explicit RunSummary(const Simulation& simulation);
 
-  /// After each step; takes no time worth mentioning.
+  /// Call it after each step; it takes hardly any time.
   void count(const Simulation& simulation, const StepResult& result);
-  /// Looks at strains and energies, which takes as long as to put them out: do it where you do that, and at the end.
+  /// Evaluates strains and energies, which takes as long as writing them. Call it when you write results, and at the
+  /// end.
   void look(const Simulation& simulation);
 
   const StepCounts& counts() const { return counts_; }
-  /// What was out of bounds: how much, where and when, what it means and what to do; a line each. Empty if all was
-  /// well.
+  /// Warnings: what was out of bounds by how much, where and when, what that means and what to do; a line for each.
+  /// Empty if all was well.
   std::vector<std::string> warnings(const Simulation& simulation) const;
 
  private:

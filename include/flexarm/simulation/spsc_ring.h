@@ -1,5 +1,5 @@
 #pragma once
-/// From one thread to another: states of a simulation, commands to it.
+/// A queue between two threads, for states of a simulation and commands to it.
 
 #include <atomic>
 #include <cassert>
@@ -9,9 +9,9 @@
 
 namespace flexarm {
 
-/// A queue of a fixed number of entries, which one thread fills and one other empties: in order, without locks, waiting
-/// or allocations. Entries live as long as the ring does, and keep their memory from one use to the next. A thread
-/// reads the other's count only where it has to, for each time costs both a way between their processors.
+/// A queue with a fixed number of entries, which one thread fills and one other thread empties: in order, without
+/// locks, waiting or allocations. Entries live as long as the ring, and keep their memory from one use to the next. A
+/// thread reads the other's count only if it must, since each time the memory has to move between their processors.
 template <class Entry>
 class SpscRing {
  public:
@@ -22,13 +22,13 @@ class SpscRing {
   }
 
   // ---- for the thread that fills it
-  /// Whether so many entries are free.
+  /// Whether that many entries are free.
   bool has_room(std::size_t count = 1) {
     const std::size_t pushed = pushed_.load(kOwn);
     if (entries_.size() - (pushed - seen_popped_) < count) seen_popped_ = popped_.load(kOther);
     return entries_.size() - (pushed - seen_popped_) >= count;
   }
-  /// The `index`-th entry after those that were pushed, to be filled; where there is room for it.
+  /// The `index`-th entry after those that were pushed, to be filled. There must be room for it.
   Entry& free_entry(std::size_t index = 0) {
     assert(has_room(index + 1));
     return at(pushed_.load(kOwn) + index);
@@ -49,7 +49,7 @@ class SpscRing {
     if (seen_pushed_ == popped) seen_pushed_ = pushed_.load(kOther);
     return seen_pushed_ == popped;
   }
-  /// The oldest entry; not of an empty ring.
+  /// The oldest entry. The ring must not be empty.
   Entry& front() {
     assert(!empty());
     return at(popped_.load(kOwn));
