@@ -1,5 +1,5 @@
 #pragma once
-/// Arms of which nobody has chosen anything.
+/// Arms with random dimensions, joints and loads.
 
 #include <string>
 

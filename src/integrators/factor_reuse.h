@@ -1,11 +1,11 @@
 #pragma once
-/// When Newton's method makes new factors of its tangent, and when it keeps those that it has.
+/// Decides when Newton's method factorises its tangent anew, and when it keeps the factors.
 
 #include <array>
 
 namespace flexarm {
 
-/// An update of a solve, and what is to come.
+/// An update of a solve, and what is expected of the next ones.
 struct UpdateOutlook {
   double norm = 0;         ///< scaled
   double contraction = 0;  ///< by which kept factors go on; 0: unknown
@@ -13,9 +13,9 @@ struct UpdateOutlook {
   double target = 0;       ///< for the norm of what is left
 };
 
-/// New factors are made in the first iterations of a solve, or in all: in how many is its plan. The plan is learned
-/// from what solves have cost: the cheapest one is taken, and now and then its neighbours are tried. Behind the first
-/// ones new factors are made where kept ones would take longer for the digits that are missing.
+/// A solve makes new factors in its first iterations, or in all: their number is its plan. The plan is learned from the
+/// cost of earlier solves: the cheapest one is used, and now and then its neighbours are tried. After the first
+/// iterations new factors are made if kept ones would take longer for the missing digits.
 class FactorReuse {
  public:
   /// `cost`: of an iteration with new factors over that of one with kept ones, see TangentBackend.
@@ -24,11 +24,12 @@ class FactorReuse {
   /// Forgets all that was learned.
   void reset() { *this = FactorReuse(cost_of_factors_); }
 
-  /// Starts a solve by a plan; whether its first iteration makes new factors. `hold`: there are some of such a system.
+  /// Starts a solve by a plan. Returns whether its first iteration makes new factors. `hold`: there are factors of such
+  /// a system.
   bool begin(bool hold);
   /// Whether iteration `next` (the first is 0) makes new factors, after `update`.
   bool renew(int next, const UpdateOutlook& update) const;
-  /// Ends a solve. One that failed costs those that are made in its place, too, by whatever plan or without.
+  /// Ends a solve. The cost of a failed solve includes those that are made instead of it, with any plan or none.
   void end(int iterations, int factorisations, bool converged);
 
  private:

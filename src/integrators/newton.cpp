@@ -7,37 +7,39 @@
 namespace flexarm {
 namespace {
 
-/// Larger updates of a rotation are scaled down where limits are asked for [rad]: the residual's directions have turned
-/// by as much, and the linear model says nothing any more.
+/// If limits are requested, larger updates of a rotation are scaled down to this [rad]: beyond it the directions of the
+/// residual have turned so far that the linear model is useless.
 constexpr double kLargestRotationUpdate = 1.0;
-/// The iteration is given up when an update is this much larger than the first one, ...
+/// The iteration is given up when an update is larger than the first one by this factor, ...
 constexpr double kDivergence = 1e4;
-/// ... or than so much, since a good guess makes the first one tiny [- or rad].
+/// ... which counts as at least this, since a good guess makes it tiny [- or rad].
 constexpr double kSmallestFirstUpdate = 1e-3;
-/// From so many iterations on an update is damped by half as much again as the last one, down to the strongest damping,
-/// where this one had left more than this share of its own: full updates jump to and fro between two sides of a steep
-/// law, parts of them fall between. Damping is taken back step by step when it has done well so often in a row.
-/// Measured: docs/notes/newton.md 6.
+/// Full updates jump to and fro between two sides of a steep law; smaller ones land between. So from this iteration on,
+/// if an update left more than this share of itself, the next one is damped by half as much again, down to the
+/// strongest damping. After this many good updates in a row the damping is reduced. Measured: docs/notes/newton.md 6.
 constexpr int kPatience = 5;
 constexpr double kStalled = 0.5;
 constexpr double kStrongestDamping = 0.125;
 constexpr int kDoneWell = 2;
-/// Growth of updates by kept factors with which a solve begins anew: it happens where these are of another branch.
+/// If updates by kept factors grow by this factor, the solve starts anew with new factors: the kept ones belong to
+/// another branch.
 constexpr double kAstray = 10;
-/// An update by kept factors is useless where it is more than this of the one before. Behind one by new factors it is
-/// left out; behind another one with which the solve began it begins anew: hardly anything is lost, and what bad
-/// updates have strained in a stiff system would take more iterations.
+/// An update by kept factors is useless if it is larger than this share of the update before. If the update before was
+/// by new factors, the useless one is not applied. If the solve began with kept factors it starts anew: little is lost,
+/// and in a stiff system the strains of bad updates would take more iterations to remove.
 constexpr double kUseless = 0.5;
-/// Updates that no longer shrink below this are the round-off of a stiff system: its condition, up to 1e4 in the test
-/// scenes of stiff bodies, times that of a double.
+/// Updates below this that no longer shrink are round-off of a stiff system: its condition number, up to 1e4 in the
+/// test scenes of stiff bodies, times the round-off of a double.
 constexpr double kStagnation = 1e-12;
-/// Solves that may end after one update, because an earlier one has shown what it leaves, until one more shows it anew.
+/// After an earlier solve has shown how much its first update leaves, this many solves may end after one update; then
+/// one makes a second update and shows it anew.
 constexpr int kTrust = 8;
-/// By how much the next solve may do worse than the one that was watched.
+/// The next solve may be worse than the observed one by this factor.
 constexpr double kCaution = 3;
-/// Solves that trust in what an earlier one has shown of kept factors.
+/// This many solves rely on the contraction by kept factors that an earlier solve has shown.
 constexpr int kTrustInContraction = 32;
-/// Of what kept factors left in an earlier solve so much is expected: it had less than that where it came to round-off.
+/// The expected contraction by kept factors is at least this, since an earlier solve that reached round-off shows too
+/// little.
 constexpr double kExpectedShare = 0.1;
 /// Scaled updates cannot be expected to become smaller than this.
 constexpr double kRoundOff = 1e-15;
@@ -105,7 +107,7 @@ bool NewtonIteration::diverges(const Progress& progress) const {
   return progress.norm > kDivergence * std::max(norms_.front(), kSmallestFirstUpdate);
 }
 
-/// Kept factors that make updates grow so lead astray; the solve begins anew. Round-off may grow as it likes.
+/// Kept factors lead astray if updates grow this much; then the solve starts anew. Round-off may grow.
 bool NewtonIteration::is_led_astray(const Progress& progress) const {
   return progress.kept_before && kept_leave_more_than(progress.iteration == 1 ? kUseless : kAstray, progress);
 }
@@ -154,8 +156,8 @@ void NewtonIteration::learn(Progress& progress) {
   }
 }
 
-/// By how much kept factors contract shows in the ratio of updates. Not in that of the first one they make behind new
-/// ones, which is what these have left, nor in round-off.
+/// The ratio of two updates shows how much kept factors contract, except for their first update after new factors,
+/// which is what those left, and except for round-off.
 bool NewtonIteration::renews_factors(const Progress& progress) const {
   UpdateOutlook update;
   update.norm = progress.norm;
@@ -166,8 +168,8 @@ bool NewtonIteration::renews_factors(const Progress& progress) const {
   return factor_reuse_.renew(progress.iteration + 1, update);
 }
 
-/// After an evaluation at what an update has led to. The residual tells what no earlier solve could know: that a stop
-/// is touched, say; and what no updates could: that a point has come into contact by the last one.
+/// Called after the evaluation that follows an update. The residual shows what an earlier solve could not know, such as
+/// a stop that is touched, and what updates do not show: that the last one brought a point into contact.
 bool NewtonIteration::is_as_expected(const Progress& progress) const {
   if (progress.iteration > 0)
     return progress.residual == 0 || progress.norm <= kStagnation ||
@@ -178,12 +180,12 @@ bool NewtonIteration::is_as_expected(const Progress& progress) const {
   return system_.residual().norm() <= expected;
 }
 
-/// Norm of what an update leaves: what it left out, at least.
+/// Norm of the error that an update leaves, at least the part of the update that was not applied.
 double NewtonIteration::remainder_after(const Progress& progress) const {
   return progress.norm * std::max(contraction_after(progress), 1 - progress.fraction);
 }
 
-/// Of a whole update, by the last two or by what an earlier solve has shown.
+/// Contraction of a whole update, from the last two updates or from an earlier solve.
 double NewtonIteration::contraction_after(const Progress& progress) const {
   if (progress.iteration == 0) {
     const FirstUpdate& start = starts_[progress.with_kept];
@@ -205,7 +207,8 @@ double NewtonIteration::contraction_after(const Progress& progress) const {
   return squares ? shown * shown : shown;
 }
 
-/// What a solve leaves is an error of the velocity, over the length of the step: sub-steps leave as much less.
+/// The remaining error of a solve, divided by the step, is an error of the velocity. So sub-steps must leave less, in
+/// proportion.
 double NewtonIteration::target() const {
   const double step = std::abs(system_.configuration().step());
   const double part = step > 0 ? std::min(step / settings_.step, 1.0) : 1.0;

@@ -25,12 +25,12 @@ class NewtonIteration {
   /// Both must outlive the iteration.
   NewtonIteration(StepSystem& system, const StepSettings& settings);
 
-  /// Leaves the system evaluated at the solution. Counts iterations and factorisations in `result`, and says there why
-  /// it failed.
+  /// Leaves the system evaluated at the solution. Counts iterations and factorisations in `result`, and puts the reason
+  /// there if it fails.
   bool solve(Updates updates, Factors factors, StepResult& result);
   /// In the last solve: an update by kept factors.
   bool made_kept_updates() const { return made_kept_updates_; }
-  /// Factors of another step are worth nothing any more.
+  /// Discards the factors of earlier steps.
   void forget_factors();
   /// Update norms of the last solve.
   const std::vector<double>& update_norms() const { return norms_; }
@@ -55,14 +55,14 @@ class NewtonIteration {
     double residual = 0;             // norm before the update; where something may be hit
   };
 
-  /// How a solve went on after its first update: what is to be expected of the next one that starts alike.
+  /// How a solve went on after its first update: the expectation for the next solve with the same kind of start.
   struct FirstUpdate {
     double norm = 0, contraction = 1;
     double residual_ratio = 1;  // of the residual after it to that before
     int age = 0;                // solves since, that did without a second update
     bool is_known = false;
   };
-  /// By what kept factors contracted the third update of a solve, which is what the second one left.
+  /// The contraction by kept factors in the third update of a solve, which is what the second one left.
   struct KeptContraction {
     double contraction = 1;
     int age = 0;  // solves since that started alike

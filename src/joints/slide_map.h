@@ -36,7 +36,7 @@ struct SlideTravel {
   SlideAlgorithm algorithm = {};
   /// Of the end of the step in the moment arms by which angular momentum is measured: 1/2, or 0 for M2.
   double arm_weight = 0.5;
-  /// slide_place() of both ends of the step, for who has them at hand; null: they are found.
+  /// slide_place() of both ends of the step, if the caller has them; null: they are computed.
   const slide::Place *begin_place = nullptr, *end_place = nullptr;
 
   SlideStep step() const { return line.piece_at(from) == line.piece_at(to) ? algorithm.within : algorithm.across; }

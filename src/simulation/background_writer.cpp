@@ -11,10 +11,10 @@
 namespace flexarm {
 namespace {
 
-/// Who finds nothing to do looks again after this time: to be woken for every row would cost the other thread more
-/// than to hand it over.
+/// A thread with nothing to do checks again after this time: waking it for every row would cost the other thread more
+/// than handing over the row.
 constexpr std::chrono::microseconds kPause{200};
-/// Of states on their way.
+/// Number of states on their way to the writer.
 constexpr std::size_t kMostBytes = 1 << 22;
 constexpr std::size_t kFewest = 16, kMost = 1024;
 
@@ -24,7 +24,7 @@ std::size_t entries_for(const State& state) {
   return std::clamp(kMostBytes / (numbers * sizeof(double)), kFewest, kMost);
 }
 
-/// While it lives, no signal is delivered to this thread and to those that it starts: those are the main thread's.
+/// While it exists, this thread and threads that it starts get no signals, which are for the main thread.
 class SignalsBlocked {
  public:
   SignalsBlocked() {
@@ -97,8 +97,8 @@ BackgroundWriter::Entry& BackgroundWriter::next_entry() {
   return entry;
 }
 
-/// In the memory that came back last, which is still in the processor's cache: to go round all of the ring's would take
-/// three times as long.
+/// Uses the memory that came back last, which is still in the processor's cache: going round all entries of the ring
+/// would take three times as long.
 Snapshot BackgroundWriter::snapshot_of(const Simulation& simulation) {
   for (; !returned_.empty(); returned_.pop()) free_.push_back(std::move(returned_.front()));
   Snapshot snapshot;

@@ -1,5 +1,5 @@
 #pragma once
-/// Results that a thread of its own writes while the simulation goes on.
+/// Writes results in a separate thread while the simulation goes on.
 
 #include <atomic>
 #include <exception>
@@ -13,15 +13,15 @@
 
 namespace flexarm {
 
-/// Hands another writer the same rows, all of them and in the same order, from copies of the states. Who is ahead of
-/// the writer by more than some rows waits for it. Where it fails, its error comes out of the next call.
+/// Hands all rows to another writer, in the same order, from copies of the states. A simulation that is ahead of the
+/// writer by more than some rows waits for it. If the writer fails, the next call throws its error.
 class BackgroundWriter : public ResultWriter {
  public:
-  /// Makes the writer of the simulation that it will look at, which never steps.
+  /// Makes the writer, for the mirror that it will read, a simulation that never steps.
   using MakeWriter = std::function<std::unique_ptr<ResultWriter>(const Simulation& shown)>;
 
   BackgroundWriter(const Simulation& simulation, const MakeWriter& make_writer);
-  /// All rows that were handed over are written.
+  /// Returns when all rows that were handed over are written.
   ~BackgroundWriter() override;
 
   void write_row(const Simulation& simulation) override;

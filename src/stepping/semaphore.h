@@ -1,5 +1,5 @@
 #pragma once
-/// What one thread waits for and another gives.
+/// A semaphore between two threads.
 
 #include <semaphore.h>
 
@@ -9,7 +9,7 @@
 
 namespace flexarm::node {
 
-/// Who gives never waits.
+/// The giving thread never waits.
 class Semaphore {
  public:
   Semaphore() { sem_init(&semaphore_, 0, 0); }

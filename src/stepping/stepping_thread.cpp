@@ -16,12 +16,12 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-/// What has to wait asks again after this time; whom it waits for wakes it sooner, where that one may.
+/// A thread that waits checks again after this time; the thread that it waits for may wake it sooner.
 constexpr std::chrono::milliseconds kLongestWait{100};
 constexpr std::chrono::microseconds kWaitForRoom{100};
 constexpr std::size_t kCommands = 4096;
-/// Reports that wait for who publishes them: so many steps may pass while he is busy. A state has some 17 numbers for
-/// each unknown.
+/// Reports that may wait to be published: this many steps may pass while the publishers are busy. A state has some 17
+/// numbers for each unknown.
 constexpr std::size_t kFewestReports = 64, kMostReports = 1024, kBytesOfReports = 32 << 20, kBytesPerUnknown = 136;
 /// Above ordinary real-time programs' default, below the kernel's own threads.
 constexpr int kPriority = 40;
@@ -173,7 +173,7 @@ bool SteppingThread::make_step(std::optional<double> lateness) {
     time_.advance();
   }
   has_failed_ = !result.converged && !(pace_.cuts_late_steps && result.reason == StepResult::Reason::OutOfTime);
-  // The last place is kept for a failure, of which nobody must miss to hear.
+  // The last place is kept for the report of a failure, which must not be lost.
   if (!reports_.has_room(has_failed_ ? 1 : 2)) return !has_failed_;
   StepReport& report = reports_.free_entry();
   simulation_.snapshot(report.state);

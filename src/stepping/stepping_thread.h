@@ -37,7 +37,7 @@ struct Pace {
   }
 };
 
-/// What a step came to.
+/// The outcome of a step.
 struct StepReport {
   Snapshot state;  ///< after it, or after the last good sub-step
   StepResult result;
@@ -50,8 +50,8 @@ struct StepReport {
   double duration = 0;                                       ///< by the wall clock [s]
 };
 
-/// Steps and reports while it runs; while it is halted the simulation belongs to the thread that halted it, the one
-/// that spins. Neither waits for the other meanwhile: commands go one way through a ring, reports the other way.
+/// While it runs, it steps and reports. While it is halted, the simulation belongs to the thread that halted it, the
+/// one that spins. Neither waits for the other: commands go one way through a ring, reports the other way.
 class SteppingThread {
  public:
   /// Halted. @param notify  is called by this thread after each report
@@ -74,20 +74,20 @@ class SteppingThread {
   bool command(const std::vector<Command>& message);
   /// In lock step, makes one step in which nothing new is commanded. @returns false as command()
   bool command_step();
-  /// What steps came to, in order. Where the caller does not keep up and the clock does not wait, it misses some.
+  /// The outcomes of steps, in order. If the caller is too slow and the clock does not wait, some are lost.
   SpscRing<StepReport>& reports() { return reports_; }
-  /// The thread has the processor before all that is not real-time, too, and its memory stays there.
+  /// Gives the thread real-time priority, and locks the memory of the process.
   /// @returns what the system refuses; empty: nothing
   std::string make_real_time();
 
-  // ---- for who has halted it, and has taken all reports
-  /// Goes on with another simulation of the same mechanism; what was commanded holds.
+  // ---- for a caller that has halted it and has taken all reports
+  /// Goes on with another simulation of the same mechanism; commands stay in force.
   void go_on_with(Simulation simulation);
-  /// Begins with the simulation of another scene: of what was commanded nothing holds.
+  /// Begins with the simulation of another scene; all commands are forgotten.
   void begin_with(Simulation simulation);
   void set_pace(const Pace& pace);
 
-  // ---- for who has halted it
+  // ---- for a caller that has halted it
   Simulation& simulation() { return simulation_; }
   WrenchSchedule& wrenches() { return wrenches_; }
   /// Its times are those of time(). Joints whose set points are commanded leave it.

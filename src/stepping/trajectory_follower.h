@@ -1,5 +1,5 @@
 #pragma once
-/// What joints that follow trajectories are to do at a time. Knows neither ROS nor the simulation.
+/// Set points of joints that follow trajectories. Knows neither ROS nor the simulation.
 
 #include <array>
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace flexarm::node {
 
-/// By which times that are sums may miss each other [s].
+/// Times that are sums are equal if they differ by less than this [s].
 constexpr double kTimeRoundOff = 1e-9;
 
 /// Of a joint at an instant [rad or m; over s; over s^2].
@@ -55,7 +55,7 @@ class JointSpline {
   double rest_;  // position before the first piece
 };
 
-/// The ways of all joints. A joint that follows none is left to whoever commands it.
+/// The ways of all joints. A joint without a way takes other commands.
 class TrajectoryFollower {
  public:
   explicit TrajectoryFollower(std::size_t joints) : joints_(joints) {}
@@ -64,16 +64,16 @@ class TrajectoryFollower {
   std::string find_fault(const JointTrajectory& trajectory) const;
   /// Whether one that has no fault has a point later than `now` [s].
   static bool is_over(const JointTrajectory& trajectory, double now);
-  /// Follows a trajectory that has no fault and is not over, from its start, or from `now` on if that is past: from
-  /// where its joints are to be then to its first point after that, without a jump. Until its start they go on as they
-  /// were, other joints do so in any case. `set_points`: where joints rest that follow nothing, one for each of the
-  /// trajectory's.
+  /// Follows a trajectory that has no fault and is not over. It begins at its start, or `now` if that is past: its
+  /// joints move from where they should be then to the first point after that, without a jump. Until then they go on as
+  /// before; other joints always do. `set_points`: where joints rest that follow nothing, one for each joint of the
+  /// trajectory.
   void follow(const JointTrajectory& trajectory, double now, const std::vector<double>& set_points);
-  /// Lets a joint that follows a trajectory decelerate for so long [s] and stand.
+  /// Lets a joint that follows a trajectory decelerate for that time [s] and stop.
   void stop(std::size_t joint, double now, double duration);
-  /// Leaves a joint to others at once.
+  /// Stops following for a joint at once.
   void release(std::size_t joint) { joints_[joint].follows = false; }
-  /// Leaves those that have arrived.
+  /// Stops following for joints that have arrived.
   void release_arrived(double time);
 
   bool follows(std::size_t joint) const { return joints_[joint].follows; }
