@@ -1,5 +1,5 @@
 #pragma once
-/// elements="auto" where an accuracy is asked for: as few elements as keep it, beam by beam.
+/// Meshes for elements="auto" and a requested accuracy: as few elements as keep it, beam by beam.
 
 #include <functional>
 #include <string>

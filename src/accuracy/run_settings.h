@@ -1,5 +1,5 @@
 #pragma once
-/// What of a scene is chosen for an accuracy: the meshes of its beams, the scheme, its step, Newton's tolerance.
+/// The settings of a scene that are chosen for an accuracy: meshes of beams, scheme, step, Newton's tolerance.
 
 #include <optional>
 #include <string>

@@ -1,5 +1,5 @@
 #pragma once
-/// The eigenvalues of small motions that lie next to zero.
+/// The eigenvalues of small motions closest to zero.
 
 #include "analysis/largest_eigenpairs.h"
 #include "analysis/linearised_motion.h"

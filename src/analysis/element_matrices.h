@@ -1,6 +1,6 @@
 #pragma once
 /// Matrices of small motions of a beam's element about a configuration at rest, by {displacement, spin} of its nodes.
-/// Of sizes that are not known when they are compiled: who uses them is compiled once for all orders.
+/// Their sizes are known at run time only, so that code that uses them is compiled once for all orders.
 
 #include <vector>
 

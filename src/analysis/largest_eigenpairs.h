@@ -1,6 +1,5 @@
 #pragma once
-/// The largest eigenvalues of a linear operation. Apart from what makes the operations: the solvers take long to
-/// compile.
+/// The largest eigenvalues of a linear operation, in a file of their own because the solvers take long to compile.
 
 #include <complex>
 #include <vector>

@@ -1,5 +1,5 @@
 #pragma once
-/// Stability of mechanisms whose tangent would be too large as a matrix.
+/// Stability of mechanisms whose tangent matrix would be too large.
 
 #include "analysis/stability.h"
 

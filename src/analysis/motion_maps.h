@@ -1,5 +1,5 @@
 #pragma once
-/// How everything moves with the coordinates of a mechanism, and how that changes along a motion.
+/// Maps from the coordinates of a mechanism to the motion of all its parts, and their change along a motion.
 /// (docs/notes/linearisation.md 1)
 
 #include <functional>
@@ -19,7 +19,7 @@ struct MechanismPose {
   std::vector<Released> released;  ///< per joint
 };
 MechanismPose pose_of(const State& state);
-/// At rest there, for who looks at poses alone.
+/// At rest, if only poses matter.
 State state_at(const MechanismPose& pose);
 
 /// First and second derivatives of the coordinates along a motion, one entry per column of MotionMaps.

@@ -1,5 +1,5 @@
 #pragma once
-/// How far the nodes of a mechanism go in a small motion.
+/// Distances that the nodes of a mechanism move in a small motion.
 
 #include <algorithm>
 #include <numeric>

@@ -1,5 +1,5 @@
 #pragma once
-/// The way down to an equilibrium.
+/// Lets a mechanism settle in an equilibrium.
 
 #include "integrators/newton.h"
 

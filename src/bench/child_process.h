@@ -1,5 +1,5 @@
 #pragma once
-/// Work in a process of its own: whatever becomes of it, the caller goes on.
+/// Work in a separate process: if it crashes, the caller goes on.
 
 #include <sys/mman.h>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// How the lists of hard cases are written down: group by group, each case with what a right run comes to.
+/// How the lists of hard cases are written: group by group, each case with the result of a right run.
 
 #include <optional>
 #include <string>

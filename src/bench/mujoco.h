@@ -1,5 +1,5 @@
 #pragma once
-/// Runs of MuJoCo: of rigid mechanisms, and of flexible beams as roboticists substitute them, chains of rigid segments
+/// Runs of MuJoCo: rigid mechanisms, and beams as they are usually replaced in robotics, by chains of rigid segments
 /// with springs in their joints.
 
 #include <functional>

@@ -1,5 +1,5 @@
 #pragma once
-/// How schemes take hard scenes.
+/// How schemes cope with hard scenes.
 
 #include <string>
 #include <vector>

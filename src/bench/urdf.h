@@ -1,5 +1,5 @@
 #pragma once
-/// Pieces of scenes as text: what a user would write, and can be given to read.
+/// Pieces of scenes as URDF text.
 
 #include <string>
 
@@ -10,10 +10,10 @@ namespace flexarm::bench::urdf {
 /// "1 0 0.5".
 std::string triple(const Vector3& v);
 
-/// <section> of a homogeneous circular rod: all from its stiffnesses [N, N m^2] and mass [kg/m]; Poisson's ratio 0.25,
+///  <section> of a homogeneous circular rod: all from its stiffnesses [N, N m^2] and mass [kg/m]; Poisson's ratio 0.25,
 /// shear areas as the section's. Its radius of gyration is sqrt(EI/EA).
 std::string rod(double ea, double ei, double mass);
-/// <circle> of a metal [m, Pa, kg/m^3].
+///  <circle> of a metal [m, Pa, kg/m^3].
 std::string circle(double radius, double young = 2e11, double density = 7800);
 
 /// A flexible link along a straight line; `more`: other elements of <beam>.

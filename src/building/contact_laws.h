@@ -1,5 +1,5 @@
 #pragma once
-/// What all kinds of contact are built with: laws of their points, and where these start.
+/// Shared by the builders of all kinds of contact: laws of their points, and the state at the start.
 
 #include <limits>
 #include <optional>

@@ -1,5 +1,5 @@
 #pragma once
-/// What joints of the scene are made of (internal to building/).
+/// The elementary joints of which joints of the scene consist (internal to building/).
 
 #include <string>
 #include <vector>

@@ -1,5 +1,5 @@
 #pragma once
-/// Libraries of the program's own that are loaded when they are asked for: what they need takes long to load.
+/// Libraries of flexarm that are loaded only when needed, since their dependencies take long to load.
 
 #include <stdexcept>
 #include <string>

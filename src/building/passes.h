@@ -1,6 +1,6 @@
 #pragma once
-/// The passes by which build_model() makes a model of a scene, in the order in which they happen, and what they ask
-/// each other (internal to building/). Headings name the file.
+/// The passes by which build_model() makes a model of a scene, in their order, and functions that they share (internal
+/// to building/). Headings name the file.
 
 #include <string>
 #include <unordered_map>

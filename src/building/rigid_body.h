@@ -1,5 +1,5 @@
 #pragma once
-/// Bodies that are put together (internal to building/).
+/// Combines rigid bodies (internal to building/).
 
 #include "flexarm/scene/scene_description.h"
 #include "math/so3.h"

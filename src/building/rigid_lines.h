@@ -1,5 +1,5 @@
 #pragma once
-/// Beams without elements as rigid bodies, before anything has a place (internal to building/).
+/// Makes rigid bodies of beams without elements, before positions are known (internal to building/).
 
 #include <optional>
 #include <vector>

@@ -1,6 +1,5 @@
 #pragma once
-/// What is known of a scene before anything of it has a place, the meshes of single links included (internal to
-/// building/).
+/// Everything about a scene that does not depend on positions, meshes of single links included (internal to building/).
 
 #include <optional>
 #include <string>

@@ -1,5 +1,5 @@
 #pragma once
-/// Cross-section stiffness and inertia from what a scene says.
+/// Stiffness and inertia of cross-sections, from the scene.
 
 #include <optional>
 #include <vector>

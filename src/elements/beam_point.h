@@ -1,6 +1,6 @@
 #pragma once
-/// What all beam kernels share: the nodes of an element over a step, strains at a point, and the scatter of a point's
-/// linearised stress resultants into the element's residual and tangent.
+/// Shared by all beam kernels: the nodes of an element over a step, strains at a point, and how the linearised internal
+/// forces of a point are added to the element's residual and tangent.
 
 #include <array>
 #include <optional>

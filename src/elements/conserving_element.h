@@ -1,5 +1,5 @@
 #pragma once
-/// What the kernel of the energy-momentum family reads and writes, for one element (S = double) or a pack of them.
+/// Input and output of the kernel of the energy-momentum family, for one element (S = double) or a pack of them.
 
 #include <array>
 

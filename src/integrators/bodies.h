@@ -1,5 +1,5 @@
 #pragma once
-/// Inertia of rigid bodies, and what beams lump at nodes, over a step.
+/// Inertia of rigid bodies, and inertia of beams that is lumped at nodes, over a step.
 
 #include <vector>
 

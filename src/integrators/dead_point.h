@@ -1,5 +1,5 @@
 #pragma once
-/// Loops whose constraints hinder each other.
+/// Dead points: loops whose constraints block each other.
 
 #include "model/degrees_of_freedom.h"
 #include "model/model.h"

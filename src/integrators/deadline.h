@@ -1,5 +1,5 @@
 #pragma once
-/// Until when a step has time.
+/// The wall time at which a step must end.
 
 #include <cassert>
 #include <chrono>

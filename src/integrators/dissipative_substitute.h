@@ -1,5 +1,5 @@
 #pragma once
-/// Does by edmc2 the steps that another scheme cannot do.
+/// Uses edmc2 for the steps that another scheme cannot do.
 
 #include "integrators/stepper.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Which branches of laws with corners hold over a step.
+/// The branches of laws with corners that hold over a step.
 
 #include <array>
 #include <vector>

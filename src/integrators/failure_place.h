@@ -1,5 +1,5 @@
 #pragma once
-/// Where in the mechanism a step has failed.
+/// Finds the place in the mechanism where a step failed.
 
 #include "flexarm/model/results.h"
 #include "integrators/step_system.h"

@@ -1,5 +1,5 @@
 #pragma once
-/// Force elements that are too far from acting to be asked in every step.
+/// Force elements that are too far from acting to be evaluated in every step.
 
 #include <vector>
 

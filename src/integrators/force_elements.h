@@ -1,5 +1,5 @@
 #pragma once
-/// What acts between points, over a step or in an equilibrium.
+/// Elements that act between points, over a step or in an equilibrium.
 
 #include <vector>
 

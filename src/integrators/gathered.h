@@ -1,5 +1,5 @@
 #pragma once
-/// From nodes and elements that lie one behind the other to packs.
+/// Gathers values of consecutive nodes and elements into packs.
 
 #include "math/pack.h"
 #include "math/so3.h"

@@ -1,5 +1,5 @@
 #pragma once
-/// What drives joints that are held.
+/// The efforts that hold held joints.
 
 #include "integrators/joint_reactions.h"
 #include "integrators/nodal_forces.h"

@@ -1,11 +1,11 @@
 #pragma once
-/// What the Hilber-Hughes-Taylor family adds to Newmark's rule: forces at t_{n+1+alpha} (Muñoz 2004, sec. 4.2).
+/// The Hilber-Hughes-Taylor family: forces at t_{n+1+alpha}, in addition to Newmark's rule (Muñoz 2004, sec. 4.2).
 ///
-/// All else in the balance has to belong to that instant, too, or the family is first order:
-/// - Momentum rates in all three forms as the thesis has them for HHT3 only (4.13). With (4.14) the gyroscopic terms
-///   would be those of t_{n+1}.
-/// - HHT1 interpolates moments conjugate to rotation vectors and turns them back at the rotation of t_{n+1+alpha}.
-/// - Forces that joints transmit are those of t_{n+1+alpha}, but slaves are folded by the maps of t_{n+1}. To fold what
+/// Everything else in the balance must belong to that instant, too, or the family is first order: - Momentum rates in
+/// all three forms as the thesis has them for HHT3 only (4.13). With (4.14) the gyroscopic terms
+///   would be those of t_{n+1}. - HHT1 interpolates moments conjugate to rotation vectors and turns them back at the
+/// rotation of t_{n+1+alpha}. - Forces that joints transmit are those of t_{n+1+alpha}, but slaves are folded by the
+/// maps of t_{n+1}. To fold what
 ///   belongs there, reactions are extrapolated from two steps, (1 - alpha) R_{n+1} + alpha R_n; without joints they
 ///   vanish.
 

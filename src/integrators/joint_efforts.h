@@ -1,5 +1,5 @@
 #pragma once
-/// The efforts along coordinates over a step, but passive ones.
+/// All efforts along coordinates over a step except passive ones.
 
 #include <vector>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// All joints of a model over a step: slaves are folded into their masters, efforts act on what is released.
+/// All joints of a model over a step: slaves are folded into their masters, and efforts act on released coordinates.
 
 #include <vector>
 

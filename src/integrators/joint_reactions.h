@@ -1,5 +1,5 @@
 #pragma once
-/// What joints transmit over a step, for output: of those that the model names.
+/// Forces in joints over a step, for output, of those joints that the model names.
 
 #include "integrators/loop_multipliers.h"
 #include "integrators/step_configuration.h"

@@ -1,5 +1,5 @@
 #pragma once
-/// Loops that multipliers close: their forces, and the multipliers' way through a step.
+/// Loops that multipliers close: their forces, and the multipliers during a step.
 
 #include <vector>
 

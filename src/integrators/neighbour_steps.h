@@ -1,6 +1,6 @@
 #pragma once
-/// Neighbours of a run: their steps are solved with factors of the run's own tangent, and tell how the run changes with
-/// its parameters and with its start. (docs/notes/sensitivities.md)
+/// Neighbours of a run. Their steps are solved with the factors of the run's own tangent; the differences are
+/// derivatives with respect to parameters and start. (docs/notes/sensitivities.md)
 
 #include <array>
 #include <memory>

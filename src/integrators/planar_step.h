@@ -1,5 +1,5 @@
 #pragma once
-/// What takes the places of beams, bodies and the tangent's backend in steps that are taken in a plane.
+/// Replaces beams, bodies and the tangent's backend in steps in a plane.
 
 #include <memory>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// From what the global interpolations measure rotations: nodal rotations and point rotations of one configuration.
+/// The references of the global interpolations: rotations of nodes and points of one configuration.
 
 #include <vector>
 

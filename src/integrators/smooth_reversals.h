@@ -1,5 +1,5 @@
 #pragma once
-/// Smooth friction between Newton's iterations.
+/// Reversals of smooth friction, between Newton's iterations.
 
 #include <vector>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// When in a step the equations change. (docs/notes/accuracy.md 4)
+/// Finds the times within a step at which the equations change. (docs/notes/accuracy.md 4)
 
 #include <algorithm>
 #include <cmath>

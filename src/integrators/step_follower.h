@@ -1,5 +1,5 @@
 #pragma once
-/// Somebody who goes along with a run, from one solved sub-step to the next.
+/// An interface for what follows a run from one solved sub-step to the next.
 
 namespace flexarm {
 

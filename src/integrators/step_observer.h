@@ -1,5 +1,5 @@
 #pragma once
-/// Somebody who watches what a step spends its time on.
+/// An interface for observers of the phases of a step.
 
 namespace flexarm {
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What is asked of a step.
+/// The settings of a step.
 
 #include <cstdint>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// How large increments of the unknowns are.
+/// Scales of the increments of the unknowns.
 
 #include <vector>
 

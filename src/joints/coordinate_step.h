@@ -1,5 +1,5 @@
 #pragma once
-/// What an effort on a released coordinate feels of a step, and what it does there.
+/// The motion of a released coordinate over a step, as an effort on it sees it, and what the effort does.
 
 #include <cassert>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// How what is penetrated hardens. (docs/notes/stops.md 2)
+/// The hardening of a stop or contact with its penetration. (docs/notes/stops.md 2)
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
-/// How the rotation of a section that slides along a line splits into what the line's motion makes of it and what the
-/// travel does. (joints.md 4.4)
+/// Splits the rotation of a section that slides along a line into the part of the line's motion and that of the travel.
+/// (joints.md 4.4)
 
 #include "flexarm/math/pose.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What both forms of a slider's maps are made of.
+/// Quantities that both forms of a slider's maps share.
 
 #include <cassert>
 #include <optional>

@@ -1,5 +1,5 @@
 #pragma once
-/// By how much a stop must be damped to give back a part of the speed with which it is hit (docs/notes/stops.md).
+/// The damping with which a stop returns a given part of the speed of a hit. (docs/notes/stops.md)
 
 #include "math/pi.h"
 #include "model/model.h"

@@ -1,6 +1,6 @@
 #pragma once
-/// Meshes that touch, as convex bodies. What reads them is a library that is loaded when the first one is asked for:
-/// Assimp takes longer to load than many a simulation takes.
+/// Meshes that touch, as convex bodies. The library that reads them is loaded when it is needed first, since loading
+/// Assimp takes longer than many simulations.
 
 #include <string>
 #include <vector>

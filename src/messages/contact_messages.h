@@ -1,5 +1,5 @@
 #pragma once
-/// What touches what, as messages.
+/// Contacts as messages.
 
 #include <flexarm/ContactArray.h>
 #include <ros/time.h>

@@ -1,5 +1,5 @@
 #pragma once
-/// What sensors measure, as messages of the usual types.
+/// Samples of sensors as messages of the usual types.
 
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/WrenchStamped.h>

@@ -1,5 +1,5 @@
 #pragma once
-/// Surfaces that go with a bending beam.
+/// Surfaces that bend with a beam.
 
 #include <visualization_msgs/Marker.h>
 

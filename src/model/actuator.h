@@ -1,6 +1,7 @@
 #pragma once
-/// What drives or holds a scalar coordinate besides plain efforts: a spring, a motor with its gear, a controller.
-/// Efforts, angles and speeds of a motor are those seen at the joint: angles over the gear's ratio, efforts times it.
+/// What acts on a scalar coordinate besides plain efforts: a spring, a motor with its gear, a controller. Efforts,
+/// angles and speeds of a motor are those at the joint: its angles divided by the gear ratio, its efforts multiplied by
+/// it.
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 #pragma once
-/// The origin of positions, which goes with a mechanism that hangs on nothing.
+/// The origin of positions, which moves along with a mechanism that hangs on nothing.
 
 #include "model/model.h"
 #include "model/state.h"

@@ -1,5 +1,5 @@
 #pragma once
-/// What acts between points of the mechanism: one class for each kind.
+/// Elements that act between points of the mechanism: one class for each kind.
 
 #include <algorithm>
 #include <functional>

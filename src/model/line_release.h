@@ -1,5 +1,5 @@
 #pragma once
-/// What slides may leave its line: from then on it flies by itself.
+/// A slider that leaves its line and then flies freely.
 
 #include "model/model.h"
 #include "model/state.h"

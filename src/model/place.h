@@ -1,5 +1,5 @@
 #pragma once
-/// From the parts of a model to what a user knows them by. Searches; for what is seldom asked.
+/// The names by which a user knows parts of a model. These functions search, so use them rarely.
 
 #include "flexarm/model/results.h"
 #include "model/model.h"

@@ -1,5 +1,5 @@
 #pragma once
-/// In which plane does a mechanism move? (docs/notes/planar.md)
+/// Finds the plane in which a mechanism moves. (docs/notes/planar.md)
 
 #include <optional>
 #include <string>

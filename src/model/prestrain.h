@@ -1,5 +1,5 @@
 #pragma once
-/// Strains at which a beam is free of stress, as heat, tendons or shape memory make them.
+/// Strains at which a beam is free of stress, caused by heat, tendons or shape memory.
 
 #include <array>
 

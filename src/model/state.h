@@ -1,5 +1,5 @@
 #pragma once
-/// All that time changes. A value: a copy is a checkpoint.
+/// Everything that changes with time. A value: a copy is a checkpoint.
 
 #include <vector>
 

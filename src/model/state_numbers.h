@@ -1,5 +1,5 @@
 #pragma once
-/// The layout of a state: the one place that knows all its numbers.
+/// The layout of a state: only this file knows all its numbers.
 
 #include "model/state.h"
 

@@ -1,6 +1,6 @@
 #pragma once
-/// Files of other programs. What writes and reads them is a library that is loaded when the first such file is asked
-/// for: HDF5 and rosbag take longer to load than many a simulation takes.
+/// Files of other programs. The library that reads and writes them is loaded when it is needed first, since loading
+/// HDF5 and rosbag takes longer than many simulations.
 
 #include <memory>
 #include <string>

@@ -1,5 +1,5 @@
 #pragma once
-/// Files of libraries that write by themselves: beside their place until they are whole.
+/// Files that other libraries write: under another name until they are complete.
 
 #include <optional>
 #include <string>

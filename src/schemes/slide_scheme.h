@@ -1,5 +1,5 @@
 #pragma once
-/// How contacts of sliders are carried over a step, as data.
+/// The ways to carry the contact of a slider over a step, as data.
 
 #include <array>
 #include <string>

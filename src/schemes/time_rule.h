@@ -1,5 +1,5 @@
 #pragma once
-/// What the elements need to know of a time integration scheme.
+/// The parts of a time integration scheme that elements need.
 
 #include "flexarm/schemes/integrator_description.h"
 

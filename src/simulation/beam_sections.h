@@ -1,5 +1,5 @@
 #pragma once
-/// How values at points of a beam follow from its elements.
+/// Values at points of a beam, from its elements.
 
 #include <array>
 

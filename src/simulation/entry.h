@@ -1,5 +1,5 @@
 #pragma once
-/// Entries of lists by the indices that users of the library give.
+/// Checked access to lists by indices that users of the library give.
 
 #include <cstddef>
 #include <stdexcept>

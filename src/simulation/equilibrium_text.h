@@ -1,5 +1,5 @@
 #pragma once
-/// What is to be said about an equilibrium, or its lack.
+/// Messages about an equilibrium, or about why there is none.
 
 #include <string>
 #include <vector>

@@ -1,5 +1,5 @@
 #pragma once
-/// A failed step in words.
+/// Puts a failed step into words.
 
 #include <string>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Held joints for those who ask what would be if they moved.
+/// Frees held joints for analyses that need their motion.
 
 #include "flexarm/simulation/simulation.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What a simulation keeps.
+/// The data of a simulation.
 
 #include <map>
 #include <memory>

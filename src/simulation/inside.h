@@ -1,5 +1,5 @@
 #pragma once
-/// The inside of a simulation, for the core's own rooms, tests and benchmarks; users of the library see nothing of it.
+/// Access to the inside of a simulation for the core's own rooms, tests and benchmarks, not for users of the library.
 
 #include <optional>
 #include <vector>

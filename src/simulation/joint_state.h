@@ -1,5 +1,5 @@
 #pragma once
-/// Joint coordinates that somebody puts elsewhere.
+/// Sets positions and velocities of joint coordinates.
 
 #include <vector>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Linear models in states of which stiff and soft motions are told apart. (docs/notes/linearisation.md)
+/// Scales the states of linear models such that stiff and soft motions separate. (docs/notes/linearisation.md)
 
 #include "flexarm/simulation/linear_model.h"
 

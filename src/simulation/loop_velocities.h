@@ -1,5 +1,5 @@
 #pragma once
-/// Velocities with which loops of rigid links stay closed.
+/// Finds velocities with which loops of rigid links stay closed.
 
 #include "joints/joint_map.h"
 #include "model/degrees_of_freedom.h"

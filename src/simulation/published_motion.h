@@ -1,6 +1,6 @@
 #pragma once
-/// Velocities and accelerations for output, made where somebody asks for them: derivatives of the motion, free of what
-/// rings in the scheme's own ones (theory.md, "Published velocities and efforts").
+/// Velocities and accelerations for output, computed on request: derivatives of the motion, without the oscillations of
+/// the scheme's own velocities (docs/theory/time_integration.md, "Published velocities and efforts").
 
 #include <array>
 #include <vector>

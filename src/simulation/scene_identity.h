@@ -1,5 +1,5 @@
 #pragma once
-/// What two scenes must have in common for a state of one to be a state of the other.
+/// What two scenes must have in common so that a state of one is a state of the other.
 
 #include <string>
 #include <vector>

@@ -1,5 +1,5 @@
 #pragma once
-/// What programs tell servos.
+/// Commands to servos.
 
 #include <cstddef>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What <integrator> and the options of a simulation come to.
+/// The settings that follow from <integrator> and the options of a simulation.
 
 #include <string>
 

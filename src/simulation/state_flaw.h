@@ -1,5 +1,5 @@
 #pragma once
-/// Is a state one that the simulator could have come to?
+/// Checks whether a state is one that the simulator could have reached.
 
 #include <string>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What touches what at an instant, for output.
+/// Contacts at an instant, for output.
 
 #include <algorithm>
 #include <functional>

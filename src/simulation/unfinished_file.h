@@ -1,5 +1,5 @@
 #pragma once
-/// Files that are there as a whole, or are what they were before.
+/// Writes files as a whole: on failure the file of before stays.
 
 #include <string>
 #include <string_view>

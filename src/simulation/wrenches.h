@@ -1,5 +1,5 @@
 #pragma once
-/// Wrenches that somebody applies to links, and forces and moments as displays show them: with their places.
+/// Wrenches that are applied to links, and forces and moments with their places, for displays.
 
 #include <vector>
 

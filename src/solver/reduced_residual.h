@@ -1,5 +1,5 @@
 #pragma once
-/// From the residuals of nodes, coordinates and closures to that of the unknowns.
+/// Reduces the residuals of nodes, coordinates and closures to that of the unknowns.
 
 #include <vector>
 

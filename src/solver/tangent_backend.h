@@ -1,6 +1,6 @@
 #pragma once
-/// What becomes of the tangent of a step: a sparse matrix, or fronts along the tree. Nothing else knows which one runs;
-/// who needs the matrix itself asks for it (BackendChoice::Matrix, TangentBackend::matrix()).
+/// The solver for the tangent of a step: a sparse matrix, or fronts along the tree. Nothing else knows which of both is
+/// used. Code that needs the matrix itself requests it (BackendChoice::Matrix, TangentBackend::matrix()).
 
 #include <memory>
 #include <vector>

@@ -1,5 +1,5 @@
 #pragma once
-/// What a step writes of its tangent, as the elimination along the tree takes it.
+/// The tangent of a step, in the form that the elimination along the tree reads.
 
 #include <vector>
 
