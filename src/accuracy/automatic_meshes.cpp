@@ -12,7 +12,7 @@ namespace {
 constexpr double kPilotError = 0.02;
 /// Of the accuracy, what is not looked at any more.
 constexpr double kRest = 0.1;
-/// As fine as the worst beam needs to be for its motion to be right in the main.
+/// Elements of the pilot run: enough for the motion of the worst beam to be roughly right.
 constexpr int kPilotElements = 3;
 
 void choose(TrialRuns& trials, double accuracy, const MeshFreedom& freedom, AutomaticMeshes& out) {

@@ -8,7 +8,8 @@
 
 namespace flexarm {
 
-/// Of an accuracy, what meshes may be off where some are chosen for it; the rest is that of the steps.
+/// The part of an accuracy that is for the error of meshes, if meshes are chosen for it; the rest is for that of the
+/// steps.
 constexpr double kMeshShare = 0.5;
 
 struct AutomaticMeshes {

@@ -24,7 +24,7 @@ struct MeshErrors {
   std::vector<std::vector<MeshError>> beams;  ///< of each beam, all meshes that were measured, cheapest first
   std::string shortcoming;                    ///< why the rich mesh is not rich enough
 
-  /// Of meshes of all beams together [m]; empty: one of them was not measured.
+  /// Error of the meshes of all beams together [m]. Empty if one of them was not measured.
   std::optional<MotionDifference> of(const std::vector<BeamResolution>& meshes) const;
 };
 
@@ -35,7 +35,7 @@ struct MeshChoice {
   double cost = 0;
 };
 
-/// Of a beam's iteration, in elements of order 1 (docs/reports/speed.md, "Cost of an iteration").
+/// Cost of a beam's iteration, in elements of order 1 (docs/reports/speed.md, "Cost of an iteration").
 double mesh_cost(const BeamResolution& mesh);
 double mesh_cost(const std::vector<BeamResolution>& beams);
 
@@ -52,7 +52,7 @@ struct MeshFreedom {
 /// @throws SearchEnded
 MeshErrors measure_meshes(TrialRuns& trials, const RunSettings& settings, const MeshFreedom& freedom, double wanted);
 
-/// From the cheapest meshes to the best, refining each time the beam that gains most for its cost. Meshes that are no
+/// Meshes from the cheapest to the best: each time the beam is refined that gains most for its cost. Meshes that are no
 /// better than a cheaper one are left out.
 std::vector<MeshChoice> mesh_choices(const MeshErrors& errors);
 

@@ -10,9 +10,9 @@
 namespace flexarm {
 namespace {
 
-/// Of what is asked for: the largest estimate that is good enough, for true errors were up to 1.35 times their
-/// estimates, the inverse of this; and at what the next try aims, so that an error a little larger than foreseen is
-/// small enough, too.
+/// Shares of the requested accuracy. An estimate up to the first one is good enough, since true errors were up to 1.35
+/// times their estimates, its inverse. The next try aims at the second one, so that an error a little larger than
+/// expected is still small enough.
 constexpr double kEnough = 0.74, kAim = 0.6;
 /// The least by which steps are multiplied between tries: below it, a difference of runs says little.
 constexpr double kLeastGrowth = 1.2;
@@ -121,8 +121,8 @@ bool SchemeTries::attempt(AccurateRun& run) {
   return true;
 }
 
-/// By the differences to the last two tries, of which the larger estimate counts: that tries agree by luck with one
-/// that has other steps is rare, and with both more so.
+/// Estimates the error by the differences to the last two tries; the larger estimate counts. It is rare that a try
+/// agrees by chance with one that has other steps, and rarer with two.
 double SchemeTries::estimate_of(const JudgedMotion& motion, double scale) {
   const double difference = motion_error(motion, before_, scale);
   const double order = supposed_order(difference);

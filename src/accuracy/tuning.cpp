@@ -240,7 +240,7 @@ void Search::try_finalists(double accuracy) {
   }
 }
 
-// As long as that makes the best run better. In the time that it saves there is room for smaller steps.
+// Goes on as long as the best run gets better. The time that is saved allows smaller steps.
 void Search::loosen_tolerance() {
   for (const double tolerance : kTolerances) {
     const TrialRun* before = best();

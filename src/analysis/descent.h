@@ -19,7 +19,7 @@ struct JointHold {
   bool is_firm() const;
 };
 
-/// Of an equilibrium; empty where loads have no potential. `contact_time`: of stops [s].
+/// How joints are held in an equilibrium. Empty if loads have no potential. `contact_time`: of stops [s].
 JointHold joint_hold(const Model& model, double contact_time, const State& equilibrium);
 
 /// Goes down the potential in the joint coordinates, by steps within a trust region in the motions that diagonalise
@@ -31,8 +31,8 @@ class Descent {
   /// See JointPotentials; exist() must be true.
   Descent(const Model& model, const Scheme& scheme, const StepSettings& settings);
 
-  /// To a minimum, from `state`; beams first come to rest while loads grow in `load_steps` steps. False if there is
-  /// none on the way down; `result` says why, and `state` is where it was given up.
+  /// Descends from `state` to a minimum; beams first come to rest while loads grow in `load_steps` steps. Returns false
+  /// if there is no minimum on the way down; then `result` says why, and `state` is where it was given up.
   bool find(State& state, int load_steps, StepResult& result);
   /// Beams come to rest about joints that stay where they are, under all loads.
   bool rest(State& state, StepResult& result);

@@ -32,7 +32,7 @@ struct JointPotential {
 /// Hessian of the constrained potential.
 class JointPotentials {
  public:
-  /// Of a potential: no load circulates, and there are a few hundred coordinates at most that nothing prescribes.
+  /// Whether there is a potential: no load circulates, and at most a few hundred coordinates are not prescribed.
   static bool exist(const Model& model, const State& state);
 
   /// `scheme`: made by statics_of(), with interpolation that knows no past. Both references must outlive this.

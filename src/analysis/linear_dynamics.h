@@ -34,7 +34,7 @@ class LinearDynamics {
                  const KnownRates& rates);
 
   const DegreesOfFreedom& degrees_of_freedom() const { return dof_; }
-  /// Of which y are: in steady motion another one than that of the state given.
+  /// The state to which y refers: in steady motion it differs from the given state.
   const State& state() const { return state_; }
   int size() const { return static_cast<int>(independent_.size() + rotors_.size()); }
   /// Scalars of DegreesOfFreedom that the first of y are, and actuators whose rotors the others are.

@@ -16,8 +16,9 @@ class Settling {
   Settling(StepSystem& system, NewtonIteration& newton, double neutral, double tolerance)
       : system_(system), newton_(newton), neutral_(neutral), tolerance_(tolerance) {}
 
-  /// From `state`, under loads times `load_factor`, with steps that forces decide. False if it does not come to rest,
-  /// or nothing moves it that its stiffness could balance; `result` says why, and `state` is where it was given up.
+  /// Settles from `state`, under loads times `load_factor`; forces decide the steps. Returns false if it does not come
+  /// to rest, or if stiffness cannot balance what moves it; then `result` says why, and `state` is where it was given
+  /// up.
   bool settle(State& state, double load_factor, StepResult& result);
   /// The same with the first step's Drag::strength.
   bool settle(State& state, double load_factor, double drag, StepResult& result);

@@ -28,10 +28,10 @@ struct Stability {
 /// loads do over the length scale, since equilibria are found up to a tolerance [J].
 double neutral_curvature(const Model& model, const State& equilibrium);
 
-/// By the signs of the pivots of the tangent's symmetric part, in motions that loops allow (Sylvester's law of
-/// inertia); of chains of more than a thousand joints by falling_motion(). The potential is that of local interpolation
-/// in the same configuration, whatever the scheme's: those whose strains depend on the past have none of their own, and
-/// differ by the elements' error. Not judged, and taken as stable: loads without a potential, for which there is
+/// Decides by the signs of the pivots of the tangent's symmetric part, in motions that loops allow (Sylvester's law of
+/// inertia); for chains of more than a thousand joints by falling_motion(). The potential is always that of local
+/// interpolation in the same configuration: interpolations whose strains depend on the past have no potential, and
+/// differ by the elements' error. Not judged, and taken as stable, are loads without a potential, for which there is
 /// natural_modes(), and such long chains in loops that multipliers close.
 /// @throws std::runtime_error if the stiffness is not finite.
 Stability judge_stability(const Model& model, const Scheme& scheme, const State& equilibrium);

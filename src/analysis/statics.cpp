@@ -144,8 +144,8 @@ class EquilibriumSearch {
     return let_servos_integrate();
   }
 
-  /// Where strains depend on the way, a mechanism may go round and round, and what it falls to is no matter of the way:
-  /// it falls with local interpolation, and its strains begin anew there.
+  /// If strains depend on the path, a mechanism may go round and round for ever. The equilibrium to which it falls does
+  /// not depend on the path; so it falls with local interpolation, and its strains start anew there.
   bool settle_without_path(Equilibrium wanted) {
     const Scheme local = with_local_strains(scheme_);
     EquilibriumSearch search(model_, local, settings_, state_);

@@ -18,9 +18,10 @@ namespace flexarm {
 StaticResult solve_static(const Model& model, const Scheme& scheme, const StepSettings& settings, int load_steps,
                           Equilibrium wanted, State& state, std::vector<double>* update_norms = nullptr);
 
-/// From an equilibrium of solve_static() to one that steps of the scheme leave at rest, up to round-off: Newton's
-/// tolerance is far above that, and the EM family's steps test moments by other functions, which makes a difference of
-/// the elements' own error. False, and `state` is untouched, if there is none.
+/// Refines an equilibrium of solve_static() to one that steps of the scheme leave at rest, up to round-off. This is
+/// needed because Newton's tolerance is far above round-off, and because the steps of the EM family test moments by
+/// other functions, which makes a difference of the size of the elements' error. Returns false, and leaves `state`
+/// untouched, if there is none.
 bool sharpen_equilibrium(const Model& model, const Scheme& scheme, const StepSettings& settings, State& state);
 
 }  // namespace flexarm

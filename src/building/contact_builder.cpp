@@ -235,7 +235,7 @@ class ContactBuilder {
     return law;
   }
 
-  /// Of both surfaces, as Gazebo takes them: the smaller friction, and stiffnesses in series.
+  /// Combines both surfaces as Gazebo does: the smaller friction, and stiffnesses in series.
   scene::SurfaceHints hints_of(const Side& one, const Side& other) const {
     scene::SurfaceHints out;
     for (const Side* side : {&one, &other}) {

@@ -9,7 +9,7 @@
 
 namespace flexarm {
 
-/// Of the depth beyond which a contact gives way no further: a start inside is this part of it, or less.
+/// A start inside is at most this part of the depth beyond which a contact gives way no further.
 constexpr double kStartInside = 0.25;
 constexpr double kThrownOut = 0.1;  // m/s
 
@@ -24,8 +24,8 @@ struct LawRequest {
 /// Law of each point, without a depth. `step`: of the scene [s]. (docs/notes/contact.md 2, 3)
 ContactLaw law_of_points(const LawRequest& request, double step);
 
-/// Of a body without a mass of its own, which other bodies hold, that of all; of what is fixed in the world (-1) it is
-/// infinite [kg].
+/// Mass of a body [kg]. For a body without a mass of its own, which other bodies hold, the mass of all; infinite for
+/// the world (-1).
 double mass_of_body(const Model& model, int node);
 
 /// Lets a contact start `deepest` inside [m]: its depth is such that this is kStartInside of it at most. What is deeper

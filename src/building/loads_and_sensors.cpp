@@ -118,7 +118,7 @@ bool measures_section(SensorKind kind) {
   return kind == SensorKind::SectionForce || kind == SensorKind::Strain;
 }
 
-/// Of the joint that carries a link, or of the loop joint that the sensor names.
+/// The joint that carries a link, or the loop joint that the sensor names.
 ReactionPlace reaction_place(const scene::SceneDescription& scene, const scene::Sensor& sensor, const LinkFrame& link,
                              const Mechanism& mechanism, const Model& model) {
   ReactionPlace place;

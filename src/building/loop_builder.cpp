@@ -49,8 +49,8 @@ class LoopBuilder {
   Attachment carrier(Attachment frame) const;
   /// The node is free, and `master` does not follow from it.
   bool can_become_slave(int node, int master) const;
-  /// Where the child is held. Where a flexible link is joined to itself at the beginning of a closed line, that is its
-  /// end.
+  /// The node at which the child is held. If a flexible link is joined to itself at the beginning of a closed line, it
+  /// is its end.
   Attachment child_place(const scene::JointDescription& joint) const;
   /// From `master` through `maps`, the first at `frame` (world), to the existing node `slave`.
   void add_chain(const scene::JointDescription& joint, const std::vector<JointMap>& maps,

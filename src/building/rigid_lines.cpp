@@ -92,7 +92,7 @@ class LineSums {
     });
   }
 
-  /// By the element's mass matrix, so that nothing is integrated in another way than it is in motion.
+  /// Uses the element's mass matrix, so that the integration is the same as in motion.
   template <int Nodes, class Poses>
   static void add(const BeamElement<Nodes>& element, const Poses& nodes, MassSum& sum) {
     Eigen::Matrix<double, 3, Nodes> places;

@@ -85,8 +85,8 @@ struct ScenePlan {
   InitialPositions initial_positions;
   /// Positions of the joints that are held, by name (see joints_to_hold()).
   std::unordered_map<std::string, double> held;
-  /// Of the model, in the world [m]: the world's own, or the place of the first joint on the root link where that is
-  /// far away beside the mechanism's size, so that positions have as many digits as at the world's origin.
+  /// Origin of the model in the world [m]: the world's own, or the first joint on the root link if that is far away
+  /// compared with the mechanism's size, so that positions have as many digits as at the world's origin.
   Vector3 origin = Vector3::Zero();
   /// See Model::floats and Model::initial_origin.
   bool floats;

@@ -133,7 +133,7 @@ class TreeBuilder {
     return node;
   }
 
-  /// Of a joint's last node: the first one of a beam, else the frame of a rigid link.
+  /// The last node of a joint: the first node of a beam, or the frame of a rigid link.
   void place_child(int link, int node) {
     if (plan_.meshes[link])
       place_beam(link, node);

@@ -21,7 +21,7 @@ class Actuators {
   /// against friction that sticks or samples.
   Actuators(StepConfiguration& configuration, const StepHistories& histories, JointEfforts& efforts);
 
-  /// Of an equilibrium: from now on rotors behind elastic gears stay where the state has them.
+  /// For an equilibrium: from now on rotors behind elastic gears stay where the state has them.
   void hold_rotors() { holds_rotors_ = true; }
   void begin();
   /// Before joints fold their slaves.
@@ -38,7 +38,7 @@ class Actuators {
   /// In an equilibrium: lets integrals of servos take over what their errors ask for. The largest of those errors
   /// [rad or m].
   double hand_to_integrals(State& state) const;
-  /// Of an actuator's motor on its coordinate, at the last evaluation [N m/rad or N/m].
+  /// Stiffness of an actuator's motor on its coordinate, at the last evaluation [N m/rad or N/m].
   double stiffness(std::size_t actuator) const { return -parts_[actuator].action.slope; }
   /// The sum of what gear and motor do to its rotor, at the last evaluation [N m or N].
   double effort_on_rotor(std::size_t actuator) const {

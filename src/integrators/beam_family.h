@@ -29,7 +29,7 @@ class BeamFamily {
   virtual void carry_strains(const double*) {}
   /// Whether the geometric part of the next tangent sees other stresses than the residual.
   virtual bool carries_strains() const { return false; }
-  /// Of the trial configuration, evaluated last: what prestrains do while they change over the step [J].
+  /// Work of prestrains that change over the step, in the trial configuration that was evaluated last [J].
   virtual double work_of_prestrains() const = 0;
   /// Writes what the family keeps of the trial configuration, evaluated last, into the state.
   virtual void accept(State& state) = 0;

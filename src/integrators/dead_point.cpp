@@ -8,7 +8,8 @@
 namespace flexarm {
 namespace {
 
-/// Of what is left of a constraint when the others hold, beside the largest one.
+/// A constraint depends on the others if less than this part of it is left while they hold, relative to the largest
+/// constraint.
 constexpr double kDependent = 0.01;
 
 std::vector<int> closure_of_rows(const Model& model) {

@@ -6,8 +6,7 @@
 
 namespace flexarm {
 
-/// Of the time by the clock on the wall that a step may take, by whatever schemes it is tried: it begins when this is
-/// made.
+/// The wall time that a step may take, for all schemes that try it. It starts when this object is made.
 class Deadline {
  public:
   /// @param seconds  after which it has passed [s]; 0: it never does

@@ -7,7 +7,7 @@
 
 namespace flexarm {
 
-/// By their room when they were asked last, and what nodes have moved since then.
+/// Elements are far by their distance when they were evaluated last, less how far nodes have moved since then.
 class FarElements {
  public:
   FarElements(std::size_t elements, std::size_t nodes) : rooms_(elements) { last_.reserve(nodes); }

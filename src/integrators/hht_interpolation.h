@@ -25,7 +25,7 @@ class HhtInterpolation {
 
   /// The trial configuration has changed.
   void begin_evaluation();
-  /// With which the forces are to be evaluated: at t_{n+1+alpha} in HHT3, else the end of the step.
+  /// The configuration in which forces are evaluated: that at t_{n+1+alpha} in HHT3, otherwise the end of the step.
   const std::vector<NodePose>& configuration() const { return interpolated_; }
 
   /// Takes an element's forces over, and turns its tangent into that of the interpolated ones.

@@ -18,7 +18,7 @@ class IntegrationPoints {
   /// Points of the configuration at the beginning, unless those of the last step's end still hold. `carries`: strains
   /// are carried along for the tangents of the step.
   void begin(bool carries);
-  /// The state was changed by somebody else.
+  /// The state was changed from outside.
   void invalidate() { hold_ = false; }
   /// The strains that the geometric part of the next tangent sees become those of an update of the nodes from the poses
   /// `end`, 6 numbers each.

@@ -31,8 +31,8 @@ class LoopMultipliers {
   /// Largest violation of what the closures of loops imply: not zero where a loop was singular at the start.
   Opening largest_opening() const;
 
-  /// Of the end of the step in the vectors along which they act. Multipliers are forces of the whole step: no scheme
-  /// weights them.
+  /// Share of the end of the step in the vectors along which multipliers act. Multipliers are forces of the whole step:
+  /// no scheme weights them.
   double end_weight() const;
 
  private:

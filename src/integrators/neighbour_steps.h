@@ -50,7 +50,7 @@ class NeighbourSteps : public StepFollower, private MarchFollower {
   }
   /// In the order in which they came.
   const std::vector<RunEvent>& events() const { return events_; }
-  /// To be called before neighbours are looked at: the run has come to `state`.
+  /// Call it before you use the neighbours: the run has come to `state`.
   void settle(const State& state);
   /// True in a hit, which has a course of its own: models of neighbours must stay.
   bool is_in_hit() const { return is_in_hit_; }

@@ -215,7 +215,7 @@ double NewtonIteration::target() const {
   return std::max(part * settings_.tolerance * settings_.tolerance, kRoundOff);
 }
 
-/// Where factors may be kept, convergence is to round-off, also when a solve has begun anew without them.
+/// If factors may be kept, convergence is to round-off, also after a solve has started anew without them.
 bool NewtonIteration::has_converged(const Progress& progress, Factors factors) const {
   const bool may_have_begun_anew = settings_.reuse_factorisation && system_.configuration().step() != 0 &&
                                    progress.iteration + 1 < settings_.max_iterations;

@@ -13,8 +13,8 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 /// And at which a coordinate is stopped of which nothing but that is known.
 constexpr double kUnknownStop = 0.5;
 
-/// Where on the way from `begin` to `end` `border` is crossed first; kNever if both are on one side of it. On the way
-/// the rate changes evenly; `start` is the way that it would be at the rate of the beginning.
+/// The first place on the way from `begin` to `end` at which `border` is crossed; kNever if both are on one side of it.
+/// The rate changes linearly; `start` is the way that would be made at the initial rate.
 inline double crossing(double begin, double end, double border, double start) {
   if ((begin < border) == (end < border)) return kNever;
   const double bend = end - begin - start, missing = begin - border;  // bend s^2 + start s + missing = 0

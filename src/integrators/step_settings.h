@@ -14,9 +14,10 @@ struct EventSearch {
   /// A step within which an event happens farther than this from both of its ends is not done: it ends as
   /// StepResult::Reason::EventWithin, and Stepper::event() says when [s]. 0: steps go over events.
   double tolerance = 0;
-  /// Friction may stop what slides within this time from the beginning of a step [s].
+  /// Friction may stop sliding within this time from the beginning of a step [s].
   double slide = 0;
-  /// By how much finer than usual hits on stops are resolved, and reversals of smooth friction at all; >= 1.
+  /// Factor >= 1 by which hits on stops are resolved finer than usual. If it is above 1, reversals of smooth friction
+  /// are resolved, too.
   double refinement = 1;
 
   bool is_on() const { return tolerance > 0; }
@@ -36,9 +37,9 @@ struct StepSettings {
   /// of full Newton to far below the tolerance; off: quadratic convergence, and a restored state continues bit for bit.
   bool reuse_factorisation = true;
   OnFailure on_failure = OnFailure::Stop;
-  /// By the clock on the wall [s], after which a step that has been halved is given up, however far it has come; 0:
-  /// never. What one Newton iteration takes comes on top. A step that another scheme does again (OnFailure::Dissipate)
-  /// has what is left of it.
+  /// Wall time after which a step that had to be halved is given up, however far it has come [s]; 0: never. The last
+  /// Newton iteration may take longer. A step that another scheme repeats (OnFailure::Dissipate) has the time that is
+  /// left.
   double recovery_wall_time = 0;
 };
 

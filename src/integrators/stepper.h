@@ -26,12 +26,12 @@ class Stepper {
   StepResult advance(State& state);
   /// The same as a part of something whose time runs already.
   StepResult advance(State& state, const Deadline& deadline);
-  /// Of a step that ended as Reason::EventWithin: when the event happens, from its beginning [s].
+  /// For a step that ended as Reason::EventWithin: time of the event from the beginning of the step [s].
   double event() const { return event_; }
   /// Adds to an initial state what the scheme keeps there; accelerations (Newmark family) come from a short
   /// momentum-conserving step. @returns what that step came to; where it has failed, accelerations are zero
   StepResult initialise(State& state);
-  /// The length of whole steps from now on [s]; what the scheme was made with for another one stays.
+  /// Sets the length of whole steps from now on [s]. Constants that the scheme took from the first length stay.
   void set_step(double step, const EventSearch& events = {});
   /// Of Newton's method, see StepSettings.
   void set_tolerance(double tolerance);

@@ -17,7 +17,7 @@ void visit_element(const Model& model, const BeamLink& beam, int index, const Vi
   });
 }
 
-/// Of the polynomial through the values at the stiffness points, where stress is most accurate, at xi.
+/// Value at xi of the polynomial through the values at the stiffness points, where stress is most accurate.
 template <int Nodes>
 std::array<double, Nodes - 1> extension_weights(double xi) {
   const auto& abscissa = GaussLegendre<Nodes - 1>::points;

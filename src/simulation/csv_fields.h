@@ -19,7 +19,7 @@ inline void append(std::string& line, const std::string& name) {
   line += '"';
 }
 
-/// With 17 significant digits, so that it is read back bit for bit, whatever the locale.
+/// A number with 17 significant digits, so that it is read back bit for bit, in any locale.
 inline void append(std::string& line, double value) {
   if (!line.empty()) line += ',';
   char digits[kLongestNumber];

@@ -9,7 +9,7 @@
 namespace flexarm {
 namespace {
 
-/// With functions of time in the place of numbers, as motions of what is held.
+/// A simulation in which held joints are nodes of their own: motions with functions of time instead of numbers.
 Simulation built_free(const Simulation& held) {
   scene::SceneDescription scene = held.scene();
   for (scene::PrescribedMotion& motion : scene.motions)

@@ -171,7 +171,7 @@ struct Simulation::Implementation {
     stepper->invalidate();
   }
 
-  /// As a state of this simulation, the one in which another one of the same mechanism is.
+  /// The state of another simulation of the same mechanism, as a state of this one.
   State state_of_other(const Implementation& from) {
     fit_to_state(from.state);
     const bool is_same = from.scheme.name == scheme.name;

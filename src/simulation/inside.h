@@ -39,8 +39,8 @@ const std::vector<double>& update_norms_of(const Simulation& simulation);
 /// Appends what a force element of the model puts out of the present state.
 void put_out_force(const Simulation& simulation, std::size_t element, std::vector<double>& values);
 
-/// Of Model::touching_pairs: appends the force on the first body, world axes [N], how many points touch, and the
-/// smallest gap [m].
+/// For each of Model::touching_pairs appends the force on the first body in world axes [N], the number of points that
+/// touch, and the smallest gap [m].
 void put_out_touch(const Simulation& simulation, std::size_t pair, std::vector<double>& values);
 
 /// Where a simulation starts, with what the scheme keeps there.
@@ -60,7 +60,7 @@ void restore(Simulation& simulation, const State& state);
 
 /// The length of the next steps [s], whatever servos sample, and how they look for events.
 void set_step(Simulation& simulation, double step, const EventSearch& events);
-/// Of a step that ended as StepResult::Reason::EventWithin: when the event happens, from its beginning [s].
+/// For a step that ended as StepResult::Reason::EventWithin: time of the event from the beginning of the step [s].
 double event_of(const Simulation& simulation);
 
 /// What a simulation is told from outside; to servos by actuators.

@@ -13,8 +13,8 @@ struct ScaledStates {
   /// Poles that are smaller are 0 but for round-off [1/s]; 0: there are none, infinite: nothing is known of that.
   double zero = 0;
 };
-/// By the modes of mass and stiffness, which need not be those of the model itself: whatever they are, it is the same
-/// model. One that has no such matrices for its states, as a smaller one, is balanced alone.
+/// Scales by the modes of mass and stiffness. They need not be those of the model itself, since any scaling gives the
+/// same model. A model without such matrices for its states, such as a reduced one, is only balanced.
 /// @throws std::invalid_argument if a, b, c, d and positions are not of one size.
 ScaledStates scaled_states(const LinearModel& model);
 

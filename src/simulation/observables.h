@@ -30,8 +30,8 @@ EdgeStrain largest_edge_strain(const Model& model, const State& state, const Bea
 /// The section of a beam at the shape parameter `xi` of one of its elements.
 BeamPoint section_point(const Model& model, const State& state, const BeamLink& beam, int element, double xi);
 
-/// Of the fibre through a point of a beam's section, along the line, per length of the undeformed reference line; the
-/// point lies inside an element [-].
+/// Strain of the fibre through a point of a beam's section, along the line, per length of the undeformed reference line
+/// [-]. The point is inside an element.
 double fibre_strain(const Model& model, const State& state, const ProbePoint& point);
 
 /// About the origin of the state; of a point on the world, about that of the model.

@@ -23,7 +23,7 @@ bool belong_to_smooth_motion(const Change& last, const Change& before) {
   return (last - before).norm() <= 1.0 / 3 * (last + before).norm();
 }
 
-/// Of the last change, as far as the one before has it, too; zero if they oppose each other.
+/// The part of the last change that the change before has, too; zero if they have opposite signs.
 template <class Change>
 Change agreed_part(const Change& last, const Change& before) {
   const double agreement = last.dot(before);

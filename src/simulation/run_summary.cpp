@@ -20,8 +20,8 @@ namespace {
 constexpr double kLargestRotation = 0.5;
 /// What materials of arms bear, and where a linear law of theirs holds, ends long before that.
 constexpr double kLargestStrain = 0.1;
-/// Of the energy account of a scheme that conserves energy, beside the largest energy: far above what the tolerance of
-/// Newton's method leaves.
+/// Largest defect of the energy account of a conserving scheme, relative to the largest energy. It is far above the
+/// error that the tolerance of Newton's method leaves.
 constexpr double kLargestEnergyDefect = 1e-3;
 /// Displacements in a step, beside the mechanism's length, that are as good as rest.
 constexpr double kRest = 1e-8;

@@ -41,7 +41,7 @@ class ParameterDirection {
   std::vector<Simulation> looks_;
 };
 
-/// Of the state of the simulation's start: neighbours that start off by one state of linear models each.
+/// For the state at the start of the simulation: neighbours whose start differs by one state of linear models each.
 std::vector<Direction> initial_state_directions(const Simulation& simulation, NeighbourSteps& steps,
                                                 std::vector<std::string>& names);
 

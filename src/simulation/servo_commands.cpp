@@ -15,7 +15,7 @@
 namespace flexarm {
 namespace {
 
-/// Of a motor, what neither the servo's error nor its integral asks for [N m or N].
+/// The part of a motor's effort that comes neither from the servo's error nor from its integral [N m or N].
 double other_efforts(const Model& model, const Servo& servo, const Coordinate& coordinate, double command,
                      double time) {
   const auto value = [&](int history) { return history >= 0 ? model.histories[history](time) : 0.0; };
