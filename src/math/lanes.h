@@ -37,21 +37,23 @@ auto get_lane(const Eigen::MatrixBase<From>& from, int lane) {
 
 /// The four lanes that are named, of the eight of `a` and `b`.
 template <int i, int j, int k, int l>
-[[gnu::always_inline]] inline Pack::Vector shuffled(const Pack::Vector& a, const Pack::Vector& b) {
+[[gnu::always_inline]] inline Pack shuffled(const Pack::Vector& a, const Pack::Vector& b) {
 #if defined(__clang__) || __GNUC__ >= 12
-  return __builtin_shufflevector(a, b, i, j, k, l);
+  return Pack(__builtin_shufflevector(a, b, i, j, k, l));
 #else
-  return __builtin_shuffle(a, b, Pack::Mask{i, j, k, l});
+  return Pack(__builtin_shuffle(a, b, Pack::Mask{i, j, k, l}));
 #endif
 }
 
 /// {v[0][k], v[1][k], v[2][k], v[3][k]} for k = 0 ... 3: a transposition.
 [[gnu::always_inline]] inline std::array<Pack::Vector, 4> transposed(const Pack::Vector& a, const Pack::Vector& b,
                                                                      const Pack::Vector& c, const Pack::Vector& d) {
-  const Pack::Vector ab_even = shuffled<0, 4, 2, 6>(a, b), ab_odd = shuffled<1, 5, 3, 7>(a, b),
-                     cd_even = shuffled<0, 4, 2, 6>(c, d), cd_odd = shuffled<1, 5, 3, 7>(c, d);
-  return {shuffled<0, 1, 4, 5>(ab_even, cd_even), shuffled<0, 1, 4, 5>(ab_odd, cd_odd),
-          shuffled<2, 3, 6, 7>(ab_even, cd_even), shuffled<2, 3, 6, 7>(ab_odd, cd_odd)};
+  const Pack ab_even = shuffled<0, 4, 2, 6>(a, b), ab_odd = shuffled<1, 5, 3, 7>(a, b),
+             cd_even = shuffled<0, 4, 2, 6>(c, d), cd_odd = shuffled<1, 5, 3, 7>(c, d);
+  return {shuffled<0, 1, 4, 5>(ab_even.values(), cd_even.values()).values(),
+          shuffled<0, 1, 4, 5>(ab_odd.values(), cd_odd.values()).values(),
+          shuffled<2, 3, 6, 7>(ab_even.values(), cd_even.values()).values(),
+          shuffled<2, 3, 6, 7>(ab_odd.values(), cd_odd.values()).values()};
 }
 
 // A typedef: clang does not heed the alignment of an alias by `using`.
