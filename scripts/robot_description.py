@@ -3,8 +3,8 @@
 
 robot_description.py FILE [NAME=VALUE...]
 
-A file *.xacro is expanded by xacro with these arguments where that is installed; where it is not, the simulator says what
-to do. Other words are passed over. What cannot be read is named by its whole path, with the reason.
+A file *.xacro is expanded by xacro with these arguments where that is installed; where it is not, the simulator says
+what to do. Other words are passed over. What cannot be read is named by its whole path, with the reason.
 """
 
 import os

@@ -9,10 +9,10 @@
 #include "cli/commands.h"
 #include "cli/mode_table.h"
 #include "cli/scene_input.h"
+#include "flexarm/simulation/driven_ends.h"
 #include "integrators/step_plane.h"
 #include "scene/flexible_link.h"
 #include "schemes/scheme.h"
-#include "simulation/driven_ends.h"
 #include "simulation/inside.h"
 
 namespace flexarm::cli {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "flexarm/scene/scene_description.h"
-#include "simulation/driven_ends.h"
+#include "flexarm/simulation/driven_ends.h"
 
 namespace flexarm::node {
 namespace {

@@ -1,4 +1,4 @@
-#include "simulation/driven_ends.h"
+#include "flexarm/simulation/driven_ends.h"
 
 #include <algorithm>
 #include <cmath>

@@ -197,7 +197,9 @@ class Controllers(unittest.TestCase):
         result = self.assert_ends(self.gripper, GoalStatus.SUCCEEDED, reached_goal=True, stalled=False)
         self.assertAlmostEqual(result.position, 0.02, delta=TOLERANCE)
         wait_until(lambda: abs(self.position("right") - 0.02) < 1e-6, "the end of the way")
-        self.assertTrue(all(not feedback.stalled and feedback.effort < 5.0 + 1e-9 for feedback in self.gripper.feedback))
+        for feedback in self.gripper.feedback:
+            self.assertFalse(feedback.stalled)
+            self.assertLess(feedback.effort, 5.0 + 1e-9)
         self.gripper.send(grip(0.0))
         self.assert_ends(self.gripper, GoalStatus.SUCCEEDED, reached_goal=True)
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""simulate.launch from a user's folder: relative paths, a file of parameters, what is said at the start and of errors."""
+"""simulate.launch from a user's folder: relative paths, a file of parameters, what is said at the start."""
 
 import os
 import signal
@@ -18,7 +18,8 @@ SCENE = """<robot name="arm"> <link name="world"/>
   <limit lower="-2" upper="2" effort="10" velocity="1"/> </joint>
 <link name="boom"> <inertial> <mass value="${mass}"/>
   <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/> </inertial> </link>
-<joint name="elbow" type="continuous"> <parent link="boom"/> <child link="rod"/> <origin xyz="1 0 0"/> <axis xyz="0 1 0"/> </joint>
+<joint name="elbow" type="continuous"> <parent link="boom"/> <child link="rod"/> <origin xyz="1 0 0"/>
+  <axis xyz="0 1 0"/> </joint>
 <link name="rod"> <beam> <centerline> <line to="1 0 0"/> </centerline> <circle radius="0.01"/>
   <material young="70e9" poisson="0.3" density="2700"/> </beam> </link>
 <servo joint="shoulder" mode="position" kp="100" kd="10"/> <servo joint="elbow" mode="position" kp="100" kd="10"/>
@@ -141,7 +142,7 @@ class Launching(unittest.TestCase):
             file.write(SCENE.replace('young="70e9"', 'young="stiff"'))
         with self.launch("scene:=arm.urdf", "rviz:=true") as launched:
             said = launched.output_at_end()
-            self.assertIn(self.folder.name + "/arm.urdf:9: <material> of beam 'rod'", said)
+            self.assertIn(self.folder.name + "/arm.urdf:10: <material> of beam 'rod'", said)
             self.assertIn("got 'stiff'", said)
             self.assertNotIn("Traceback", said)
 
@@ -152,7 +153,8 @@ class Launching(unittest.TestCase):
             self.assertIn('<robot name="left_arm">', rospy.get_param("/robot_description"))
             wait_until(lambda: "scene 'left_arm'" in launched.output(), "the announcement")
             # The stand-in tells its arguments.
-            self.assertIn("xacro says: %s/arm.urdf.xacro side:=left mirrored:=true" % self.folder.name, launched.output())
+            told = "xacro says: %s/arm.urdf.xacro side:=left mirrored:=true" % self.folder.name
+            self.assertIn(told, launched.output())
 
     def test_xacro_that_fails(self):
         with self.launch("scene:=arm.urdf.xacro", "xacro_args:=broken=true", "headless:=true",
