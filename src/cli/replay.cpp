@@ -18,23 +18,52 @@ struct ReplayArguments {
   SimulationOptions simulation;
   recording::ReplayOptions replay;
   std::string resume;
-  double largest = 1e-6;
 };
 
-/// @returns whether all positions agree.
-bool print_report(const recording::ReplayReport& report, double largest) {
+/// "up to 1 step earlier or later"
+std::string shifts_text(const recording::OtherTimes& times) {
+  const auto steps = [](int count) { return fmt::format("{} step{}", count, count == 1 ? "" : "s"); };
+  return times.earlier == times.later
+             ? fmt::format("up to {} earlier or later", steps(times.later))
+             : fmt::format("up to {} earlier or {} later", steps(times.earlier), steps(times.later));
+}
+
+void print_verdict(const recording::ReplayReport& report, double largest) {
+  const auto farthest = [&](double recording::JointDeviation::*how) {
+    return *std::max_element(report.joints.begin(), report.joints.end(),
+                             [&](const auto& a, const auto& b) { return a.*how < b.*how; });
+  };
+  const bool agrees = report.agrees(largest);
+  if (report.other_times.replays == 0) {
+    fmt::print("{}: positions differ by {} {:g}\n", agrees ? "agrees" : "DIFFERS", agrees ? "at most" : "more than",
+               largest);
+    return;
+  }
+  fmt::print("The bag does not tell in which step a command acted: {} replays in which each acts {} than by its time\n",
+             report.other_times.replays, shifts_text(report.other_times));
+  fmt::print("differ from this one by \"explained by times\".\n");
+  if (agrees) {
+    fmt::print("agrees within what the times of commands explain\n");
+    return;
+  }
+  const recording::JointDeviation worst = farthest(&recording::JointDeviation::unexplained);
+  fmt::print("DIFFERS: at t = {:.4g} s joint '{}' is off by {:.3g} more than the times of commands explain\n",
+             worst.unexplained_time, worst.joint, worst.unexplained);
+}
+
+void print_report(const recording::ReplayReport& report, double largest) {
   fmt::print("{} commands given, {} states compared, {} steps\n", report.commands, report.states, report.steps);
   if (report.refused > 0) fmt::print("{} commands refused; the first: {}\n", report.refused, report.first_refusal);
-  fmt::print("{:<24} {:>28} {:>28}\n", "largest difference", "position [rad, m] at [s]", "velocity [/s] at [s]");
-  bool agrees = true;
+  const bool has_times = report.other_times.replays > 0;
+  fmt::print("{:<24} {:>28} {:>28}{}\n", "largest difference", "position [rad, m] at [s]", "velocity [/s] at [s]",
+             has_times ? " explained by times" : "");
   for (const recording::JointDeviation& joint : report.joints) {
-    fmt::print("{:<24} {:>18.3g} {:>9.4g} {:>18.3g} {:>9.4g}\n", joint.joint, joint.position, joint.position_time,
+    fmt::print("{:<24} {:>18.3g} {:>9.4g} {:>18.3g} {:>9.4g}", joint.joint, joint.position, joint.position_time,
                joint.velocity, joint.velocity_time);
-    agrees = agrees && joint.position <= largest;
+    if (has_times) fmt::print(" {:>18.3g}", joint.by_times);
+    fmt::print("\n");
   }
-  fmt::print("{}: positions differ by {} {:g}\n", agrees ? "agrees" : "DIFFERS", agrees ? "at most" : "more than",
-             largest);
-  return agrees;
+  print_verdict(report, largest);
 }
 
 int replay(const ReplayArguments& arguments) {
@@ -46,7 +75,8 @@ int replay(const ReplayArguments& arguments) {
   }
   try {
     const recording::ReplayReport report = recording_library().replay(std::move(simulation), arguments.replay);
-    return print_report(report, arguments.largest) ? kDone : kFailed;
+    print_report(report, arguments.replay.largest);
+    return report.agrees(arguments.replay.largest) ? kDone : kFailed;
   } catch (const std::invalid_argument& error) {
     throw InputError(std::string("flexarm: ") + error.what());
   }
@@ -81,9 +111,14 @@ void add_replay(CommandLine& line) {
   command.option("--scheme", arguments->simulation.scheme, "the same").choices(scheme_choices());
   command.option("--resume", arguments->resume, "state file of the beginning; else it is the scene's").shown_as("FILE");
   command.heading("Comparison");
-  command.option("--largest", arguments->largest, "difference of positions up to which the runs agree [rad, m]")
+  command.option("--largest", arguments->replay.largest, "difference of positions up to which the runs agree [rad, m]")
       .shows_default()
       .check(check_non_negative);
+  command
+      .option("--timing", arguments->replay.timing,
+              "steps by which a command may have acted earlier or later than the bag's times say")
+      .shows_default()
+      .check(whole_number_between(0, 1000));
   command.runs([arguments] { return replay(*arguments); });
 }
 

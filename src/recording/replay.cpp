@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
+#include <random>
 #include <stdexcept>
 
 #include <flexarm/JointForceCommand.h>
@@ -33,11 +35,15 @@ node::Pace pace_of(const ReplayOptions& options) {
   return pace;
 }
 
+/// By how many steps each command of a bag acts later than its time says; empty: none does.
+using Shifts = std::vector<int>;
+
 /// The node's own way from messages to steps, but for the clock: each step is made where the bag has its state.
 class Replay {
  public:
-  Replay(Simulation simulation, const ReplayOptions& options)
+  Replay(Simulation simulation, const ReplayOptions& options, Shifts shifts = {})
       : options_(options),
+        shifts_(std::move(shifts)),
         thread_(std::move(simulation), pace_of(options), [] {}),
         reader_(thread_.simulation(), options.command_timeout) {
     for (const std::string& name : thread_.simulation().coordinate_names()) {
@@ -46,19 +52,21 @@ class Replay {
     }
   }
 
-  ReplayReport run(rosbag::Bag& bag) {
+  ReplayReport run(const rosbag::Bag& bag) {
     std::vector<MessageInstance> commands;
     rosbag::View view(bag);
     for (const MessageInstance& message : view) {
       const std::string topic = own(message.getTopic());
       if (message.getTopic() == "/clock") has_clock_ = true;
-      if (topic == "/joint_states")
+      if (topic == "/joint_states") {
         states_.push_back(read<sensor_msgs::JointState>(message));
-      else if (is_command(topic))
+        arrivals_.push_back(message.getTime());
+      } else if (is_command(topic))
         commands.push_back(message);
     }
+    for (const MessageInstance& command : commands) command_times_.push_back(command.getTime());
     if (states_.empty()) fail("has no message on '" + options_.ns + "/joint_states'");
-    begin_ = states_.front()->header.stamp;
+    find_begin();
     if (options_.lock_step)
       step_by(commands);
     else
@@ -67,7 +75,32 @@ class Replay {
     return report_;
   }
 
+  /// After run(): of all coordinates, at one state after the other.
+  const std::vector<double>& positions() const { return positions_; }
+  /// The same as the bag has them; nan where it has none.
+  const std::vector<double>& recorded() const { return recorded_; }
+  const std::vector<double>& times() const { return times_; }
+  /// After run(): by how many steps each command may have acted earlier because the steps were late then: what their
+  /// states took to come, beyond the least that one took.
+  std::vector<int> lateness() const {
+    std::vector<double> delays;
+    for (std::size_t i = 0; i < states_.size(); ++i)
+      delays.push_back((arrivals_[i] - states_[i]->header.stamp).toSec());
+    const double least = *std::min_element(delays.begin(), delays.end());
+    if (was_paused_) delays.front() = least;
+    std::vector<int> out;
+    for (const ros::Time& time : command_times_) {
+      const auto next = std::lower_bound(arrivals_.begin(), arrivals_.end(), time) - arrivals_.begin();
+      double late = 0;
+      for (auto i = std::max<std::ptrdiff_t>(next - 2, 0); i < next + 2 && i < std::ptrdiff_t(delays.size()); ++i)
+        late = std::max(late, delays[static_cast<std::size_t>(i)] - least);
+      out.push_back(static_cast<int>(std::ceil(std::min(late / period_, kMostLate))));
+    }
+    return out;
+  }
+
  private:
+  static constexpr double kMostLate = 1e6;  // steps
   [[noreturn]] void fail(const std::string& what) const {
     throw std::invalid_argument("bag '" + options_.bag + "': " + what);
   }
@@ -89,6 +122,17 @@ class Replay {
   }
 
   // ---- when
+  /// A run that was paused at its start has its first state with an older stamp; the next one is due at once when it
+  /// goes on, and is that after one step.
+  void find_begin() {
+    period_ = thread_.simulation().step_size() / pace_of(options_).per_stamp(has_clock_);
+    begin_ = states_.front()->header.stamp;
+    if (options_.lock_step || has_clock_ || states_.size() < 3) return;
+    const ros::Time second = states_[1]->header.stamp;
+    was_paused_ = (second - begin_).toSec() > 2.5 * (states_[2]->header.stamp - second).toSec();
+    if (was_paused_) begin_ = second - ros::Duration(period_);
+  }
+
   /// Each command makes a step, and each step has its state.
   void step_by(const std::vector<MessageInstance>& commands) {
     compare(*states_.front());
@@ -107,19 +151,30 @@ class Replay {
   /// States say by their stamps after how many steps they are. A command acts in the steps that begin later: a step of
   /// the wall clock's pace begins when its state is due, one that is the clock when the clock shows the state before.
   void step_until(const std::vector<MessageInstance>& commands) {
-    const double step_size = thread_.simulation().step_size();
-    period_ = step_size / pace_of(options_).per_stamp(has_clock_);
-    auto next = commands.begin();
-    for (const auto& state : states_) {
+    const std::vector<double> due = due_times();
+    std::size_t next = 0;
+    if (was_paused_) compare(*states_.front());
+    for (auto i = static_cast<std::size_t>(was_paused_); i < states_.size(); ++i) {
+      const auto& state = states_[i];
       const double count = (state->header.stamp - begin_).toSec() / period_;
       if (count < -0.5) fail("its states go back in time: such a run cannot be replayed");
       while (static_cast<double>(steps_) < std::round(count)) {
         const double begins = static_cast<double>(has_clock_ ? steps_ : steps_ + 1) * period_;
-        for (; next != commands.end() && (next->getTime() - begin_).toSec() <= begins + 1e-9; ++next) give(*next);
+        for (; next < commands.size() && due[next] <= begins + 1e-9; ++next) give(commands[next]);
         step();
       }
       compare(*state);
     }
+  }
+
+  /// When commands act, after the first state [s]; none overtakes another.
+  std::vector<double> due_times() const {
+    std::vector<double> due;
+    for (std::size_t i = 0; i < command_times_.size(); ++i) {
+      const double own = (command_times_[i] - begin_).toSec() + (shifts_.empty() ? 0 : shifts_[i] * period_);
+      due.push_back(i > 0 ? std::max(own, due.back()) : own);
+    }
+    return due;
   }
 
   // ---- what
@@ -192,10 +247,16 @@ class Replay {
     const Simulation& simulation = thread_.simulation();
     if (state.position.size() != state.name.size() || state.velocity.size() != state.name.size())
       fail("a message of joint_states has not as many positions and velocities as names");
+    const std::size_t row = recorded_.size();
+    recorded_.resize(row + report_.joints.size(), std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t joint = 0; joint < report_.joints.size(); ++joint)
+      positions_.push_back(simulation.position(joint));
+    times_.push_back(simulation.time());
     for (std::size_t i = 0; i < state.name.size(); ++i) {
       const std::optional<std::size_t> joint = simulation.find_coordinate(state.name[i]);
       if (!joint) fail("its joint_states have '" + state.name[i] + "', which the scene does not");
       JointDeviation& deviation = report_.joints[*joint];
+      recorded_[row + *joint] = state.position[i];
       const auto note = [&](double difference, double& largest, double& time) {
         if (!(std::abs(difference) > largest)) return;
         largest = std::abs(difference);
@@ -208,23 +269,77 @@ class Replay {
   }
 
   ReplayOptions options_;
+  Shifts shifts_;
   node::SteppingThread thread_;
   node::CommandReader reader_;
   std::map<std::string, std::string> topics_;  // of single joints, and which it is
   std::vector<boost::shared_ptr<sensor_msgs::JointState>> states_;
-  bool has_clock_ = false;
+  std::vector<ros::Time> arrivals_, command_times_;  // as the recorder got them
+  std::vector<double> positions_, recorded_, times_;
+  bool has_clock_ = false, was_paused_ = false;
   ros::Time begin_;
   double period_ = 0;  // of steps, in the time of the stamps [s]
   std::size_t steps_ = 0;
   ReplayReport report_;
 };
 
+// ---------------------------------------------------------------- other times of commands
+
+/// All early, all late, by turns, at random.
+std::vector<Shifts> other_shifts(const std::vector<int>& lateness, int timing) {
+  constexpr unsigned kRandom = 4;
+  std::vector<Shifts> all(4 + kRandom);
+  for (std::size_t i = 0; i < lateness.size(); ++i) {
+    const int early = -timing - lateness[i], late = timing;
+    all[0].push_back(early);
+    all[1].push_back(late);
+    all[2].push_back(i % 2 == 0 ? early : late);
+    all[3].push_back(i % 2 == 0 ? late : early);
+  }
+  for (unsigned k = 0; k < kRandom; ++k) {
+    std::mt19937 random(k);
+    for (const int late : lateness)
+      all[4 + k].push_back(static_cast<int>(random() % static_cast<unsigned>(2 * timing + late + 1)) - timing - late);
+  }
+  return all;
+}
+
+/// How far other replays are from the first, and how much farther the bag is.
+void explain(const Replay& first, const std::vector<std::vector<double>>& others, ReplayReport& report) {
+  const std::size_t count = report.joints.size();
+  for (std::size_t i = 0; i < first.positions().size(); ++i) {
+    JointDeviation& joint = report.joints[i % count];
+    for (const std::vector<double>& positions : others)
+      joint.by_times = std::max(joint.by_times, std::abs(positions[i] - first.positions()[i]));
+    const double beyond = std::abs(first.recorded()[i] - first.positions()[i]) - joint.by_times;
+    if (!(beyond > joint.unexplained)) continue;
+    joint.unexplained = beyond;
+    joint.unexplained_time = first.times()[i / count];
+  }
+}
+
 }  // namespace
 
 ReplayReport replay(Simulation simulation, const ReplayOptions& options) {
   try {
-    rosbag::Bag bag(options.bag, rosbag::bagmode::Read);
-    return Replay(std::move(simulation), options).run(bag);
+    const rosbag::Bag bag(options.bag, rosbag::bagmode::Read);
+    Replay first(simulation.copy(), options);
+    ReplayReport report = first.run(bag);
+    std::vector<std::vector<double>> others;
+    explain(first, others, report);
+    if (report.agrees(options.largest) || options.lock_step || options.timing == 0 || report.commands == 0)
+      return report;
+    const std::vector<int> lateness = first.lateness();
+    report.other_times = {0, options.timing + *std::max_element(lateness.begin(), lateness.end()), options.timing};
+    for (Shifts& shifts : other_shifts(lateness, options.timing)) {
+      Replay other(simulation.copy(), options, std::move(shifts));
+      other.run(bag);
+      others.push_back(other.positions());
+      ++report.other_times.replays;
+    }
+    for (JointDeviation& joint : report.joints) joint.unexplained = 0;
+    explain(first, others, report);
+    return report;
   } catch (const rosbag::BagException& error) {
     throw std::invalid_argument("bag '" + options.bag + "': " + error.what());
   }

@@ -10,6 +10,7 @@ import unittest
 
 import genpy
 import rosbag
+from flexarm.msg import JointForceCommand
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
@@ -35,6 +36,10 @@ def way(start, seconds, position):
     message.header.stamp = genpy.Time.from_sec(start)
     message.points = [JointTrajectoryPoint(positions=[position], time_from_start=genpy.Duration.from_sec(seconds))]
     return message
+
+
+# The same without its servo: it goes where it is pushed.
+FREE = re.sub("<servo.*/>", "", SCENE)
 
 
 class Replay(unittest.TestCase):
@@ -99,6 +104,68 @@ class Replay(unittest.TestCase):
         at_once, slowly = self.largest(), self.largest("--stop-duration", 0.2)
         self.assertAlmostEqual(at_once, 0.1, delta=OVERSHOOT)
         self.assertAlmostEqual(slowly, 0.2, delta=OVERSHOOT)
+
+    # ---- when commands act
+
+    def write_push(self, late=0, delay=0.0, scene=FREE):
+        """A run in real time of the cart without servo, which 2 N push from step 100 on. The bag has the command so many
+        steps late, and states near it with a delay [s]."""
+        with open(self.scene, "w", encoding="utf-8") as file:
+            file.write(scene)
+        with rosbag.Bag(self.bag, "w") as bag:
+            for n in range(0, 401, 10):
+                if n == 110:  # before this state, between those of two steps
+                    command = JointForceCommand(names=["rail"], efforts=[2.0])
+                    bag.write("/joint_force_command", command, genpy.Time.from_sec(BEGIN + (100.5 + late) * STEP))
+                pushed = max(n - 100, 0) * STEP
+                state = JointState(name=["rail"], position=[pushed**2], velocity=[2 * pushed])
+                state.header.stamp = genpy.Time.from_sec(BEGIN + n * STEP)
+                arrival = BEGIN + n * STEP + (delay if 90 <= n <= 110 else 0)
+                bag.write("/joint_states", state, genpy.Time.from_sec(arrival))
+
+    def replayed(self, *options):
+        done = subprocess.run([PROGRAM, "replay", self.bag, self.scene] + list(options), stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, universal_newlines=True, check=False)
+        return done.returncode, done.stdout
+
+    def test_times_that_are_right_need_no_explanation(self):
+        self.write_push()
+        status, output = self.replayed()
+        self.assertEqual(status, 0, output)
+        self.assertIn("agrees: positions differ by at most 1e-06", output)
+        self.assertNotIn("explained", output)
+
+    def test_a_step_more_or_less_is_explained_by_times(self):
+        for late in (-1, 1):
+            self.write_push(late)
+            status, output = self.replayed()
+            self.assertEqual(status, 0, output)
+            self.assertIn("acts up to 1 step earlier or later than by its time", output)
+            self.assertIn("agrees within what the times of commands explain", output)
+            # Pushed for one of 300 steps more or less: 2 N over 1 kg, for 1 ms, 0.3 s ago.
+            rail = re.search(r"^rail +([^ ]+) .* ([^ ]+)$", output, re.MULTILINE)
+            for number in rail.groups():
+                self.assertAlmostEqual(float(number), 2 * 0.001 * 0.3, delta=1e-5)
+
+    def test_more_than_that_is_not(self):
+        self.write_push(3)
+        status, output = self.replayed()
+        self.assertEqual(status, 1, output)
+        self.assertRegex(output, r"DIFFERS: at t = 0.4 s joint 'rail' is off by 0\.0012 more than the times")
+        self.assertEqual(self.replayed("--timing", "3")[0], 0)
+        self.assertIn("DIFFERS: positions differ by more than", self.replayed("--timing", "0")[1])
+
+    def test_steps_that_were_late_explain_more(self):
+        self.write_push(3, delay=0.0021)
+        status, output = self.replayed()
+        self.assertEqual(status, 0, output)
+        self.assertIn("acts up to 4 steps earlier or 1 step later than by its time", output)
+
+    def test_another_scene_is_not_explained(self):
+        self.write_push(scene=FREE.replace('mass value="1"', 'mass value="1.05"'))
+        status, output = self.replayed()
+        self.assertEqual(status, 1, output)
+        self.assertIn("DIFFERS: at t = 0.4 s joint 'rail' is off by", output)
 
 
 if __name__ == "__main__":

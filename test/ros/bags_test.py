@@ -50,10 +50,10 @@ class Bags(unittest.TestCase):
     def simulated_time(self, on):
         rospy.set_param("/use_sim_time", on)
 
-    def other_scene(self):
+    def other_scene(self, density="2701"):
         path = os.path.join(self.folder.name, "other.urdf")
         with open(SCENE, encoding="utf-8") as scene, open(path, "w", encoding="utf-8") as other:
-            other.write(scene.read().replace('density="2700"', 'density="2701"'))
+            other.write(scene.read().replace('density="2700"', 'density="%s"' % density))
         return path
 
     def record_in_lock_step(self):
@@ -128,6 +128,32 @@ class Bags(unittest.TestCase):
         self.assertIn("3 commands given", output)
         compared = int(re.search(r"(\d+) states compared", output).group(1))
         self.assertGreater(compared, 100)
+
+    def record_live(self):
+        """Commands come at any time, to a node that goes at the clock's pace."""
+        with RunningNode("_paused:=true", "_publish_rate:=200"):
+            arm = SimulatedArm()
+            recorder = Recorder(self.bag, *TOPICS)
+            force = CommandTopic("/joint_force_command", JointForceCommand)
+            wait_until(lambda: force.publisher.get_num_connections() > 1, "the recorder")
+            time.sleep(0.5)
+            arm.resume()
+            for effort in (2.0, -1.0, 0.5):
+                force.send(force_command(["left_shoulder", "right_shoulder"], [effort, -0.2], 0.05))
+                time.sleep(0.2117)
+            recorder.end()
+
+    def test_times_of_commands_explain_a_live_run(self):
+        self.record_live()
+        status, output = replay(self.bag)
+        self.assertEqual(status, 0, output)
+        self.assertIn("3 commands given", output)
+        # What no command moves is where it was, so that steps are counted well.
+        shuttle = re.search(r"^shuttle +([^ ]+)", output, re.MULTILINE)
+        self.assertLess(float(shuttle.group(1)), 1e-9, output)
+        status, output = replay(self.bag, scene=self.other_scene("3500"))
+        self.assertEqual(status, 1, output)
+        self.assertRegex(output, "DIFFERS: .* 'left_shoulder' is off by .* more than the times of commands explain")
 
     def test_commands_are_played_without_the_clock(self):
         self.record_in_lock_step()
