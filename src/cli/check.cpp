@@ -241,6 +241,21 @@ void print_growth(const std::vector<Mode>& modes) {
       fmt::print("not stable: {} at {:.6g} Hz, grows by {:.6g} 1/s\n", kind_of(mode), mode.frequency, mode.rate);
 }
 
+void print_driven_ends(const Simulation& simulation) {
+  const std::vector<DrivenEnd> ends = driven_ends(simulation);
+  if (ends.empty()) return;
+  fmt::print("\n{:<24} {:>14} {:>14} {:>14}\n", "driven at a beam's end", "within a step", "in all", "shakes beyond");
+  for (const DrivenEnd& end : ends)
+    fmt::print("{:<24} {:>14.3g} {:>14.3g} {:>14.3g}\n", end.coordinate, end.within_step, end.whole,
+               2 * end.within_step / simulation.step_size());
+  fmt::print(
+      "(kg m^2 that resist the drive: within a step, in which the beam gives way, and in all. A controller outside "
+      "that\n"
+      " acts once a step shakes the joint where it damps by more than the last column says [N m s/rad], and by less "
+      "where\n"
+      " the beam has little <damping>; a <hub> of the beam, or rotor_inertia of a <drive>, allows more)\n");
+}
+
 void print_frequencies(Simulation& simulation) {
   if (simulation.degrees_of_freedom() == 0) return;
   if (!are_modes_quick(simulation)) {
@@ -248,8 +263,10 @@ void print_frequencies(Simulation& simulation) {
     return;
   }
   // Free motions say nothing about the beams.
-  const std::vector<Mode> modes =
+  const auto [modes, is_equilibrium] =
       modes_about_equilibrium(simulation, kModes + static_cast<int>(simulation.coordinate_names().size()));
+  fmt::print("\n");
+  print_where(simulation, is_equilibrium);
   std::vector<Mode> oscillating;
   std::copy_if(modes.begin(), modes.end(), std::back_inserter(oscillating),
                [](const Mode& m) { return m.frequency > 0 && m.rate <= 0; });
@@ -257,7 +274,7 @@ void print_frequencies(Simulation& simulation) {
             [](const Mode& a, const Mode& b) { return a.frequency < b.frequency; });
   oscillating.resize(std::min<std::size_t>(oscillating.size(), kModes));
   const auto free = std::count_if(modes.begin(), modes.end(), [](const Mode& mode) { return mode.is_free(); });
-  fmt::print("\nfirst natural frequencies [Hz]:");
+  fmt::print("first natural frequencies there [Hz]:");
   for (const Mode& mode : oscillating) fmt::print(" {:.6g}", mode.frequency);
   if (oscillating.empty()) fmt::print(" none");
   if (free > 0) fmt::print(" (and {} that nothing holds)", free == 1 ? "1 motion" : fmt::format("{} motions", free));
@@ -286,7 +303,8 @@ void add_check(CommandLine& line) {
     print_beams(simulation);
     print_force_elements(simulation);
     print_contacts(simulation);
-    for (const std::string& warning : warnings_of_driven_ends(simulation))
+    print_driven_ends(simulation);
+    if (const std::string warning = warning_of_shaking_servos(simulation); !warning.empty())
       fmt::print(stderr, "flexarm: warning: {}\n", warning);
     print_dead_point(simulation);
     try {

@@ -24,13 +24,15 @@ void print_motion(const std::string& name, const Vector6& motion) {
 }
 
 void print_shape(const Simulation& simulation, const Mode& mode) {
-  std::vector<NamedMotion> motions = frame_motions(simulation, mode);
-  for (const NamedMotion& probe : probe_motions(simulation, mode)) motions.push_back(probe);
-  for (const auto& [name, motion] : motions) {
-    print_motion(name, motion.real());
-    if (motion.imag().cwiseAbs().maxCoeff() > kVisibleImaginary)
-      print_motion("  a quarter period later", -motion.imag());
-  }
+  const auto print = [](const char* kind, const std::vector<NamedMotion>& motions) {
+    for (const auto& [name, motion] : motions) {
+      print_motion(kind + name, motion.real());
+      if (motion.imag().cwiseAbs().maxCoeff() > kVisibleImaginary)
+        print_motion("  a quarter period later", -motion.imag());
+    }
+  };
+  print("link ", frame_motions(simulation, mode));
+  print("probe ", probe_motions(simulation, mode));
 }
 
 void print_eigenvalue(const Mode& mode) {
@@ -42,12 +44,13 @@ void print_eigenvalue(const Mode& mode) {
   fmt::print("\n");
 }
 
-void print_text(const Simulation& simulation, const std::vector<Mode>& modes) {
+void print_text(const Simulation& simulation, const std::vector<Mode>& modes, bool is_equilibrium) {
+  print_where(simulation, is_equilibrium);
   for (std::size_t i = 0; i < modes.size(); ++i) {
     fmt::print("mode {}: ", i + 1);
     print_eigenvalue(modes[i]);
     if (i == 0)
-      fmt::print("  {:<24} {:>11} {:>11} {:>11} {:>11} {:>11} {:>11}\n", "frame", "x", "y", "z", "about x", "about y",
+      fmt::print("  {:<24} {:>11} {:>11} {:>11} {:>11} {:>11} {:>11}\n", "place", "x", "y", "z", "about x", "about y",
                  "about z");
     print_shape(simulation, modes[i]);
   }
@@ -55,14 +58,14 @@ void print_text(const Simulation& simulation, const std::vector<Mode>& modes) {
 
 int solve(const ModesArguments& arguments) {
   Simulation simulation = load_simulation(arguments.scene);
-  std::vector<Mode> modes = modes_about_equilibrium(simulation, arguments.count, arguments.wanted);
+  auto [modes, is_equilibrium] = modes_about_equilibrium(simulation, arguments.count, arguments.wanted);
   modes.resize(std::min<std::size_t>(modes.size(), arguments.count));
   if (arguments.json)
     fmt::print("{}", modes_as_json(simulation, modes));
   else if (arguments.csv)
     fmt::print("{}", modes_as_csv(simulation, modes));
   else
-    print_text(simulation, modes);
+    print_text(simulation, modes, is_equilibrium);
   return kDone;
 }
 

@@ -105,17 +105,48 @@ Words scheme_choices() {
   return {scheme_names().begin(), scheme_names().end()};
 }
 
-std::vector<Mode> modes_about_equilibrium(Simulation& simulation, int count, Equilibrium wanted) {
+ModesAbout modes_about_equilibrium(Simulation& simulation, int count, Equilibrium wanted) {
   const StaticResult result = simulation.solve_static(kLoadSteps, wanted);
   if (result.converged) {
     warn_of_instability(simulation, result, wanted);
-    return simulation.natural_modes(count);
+    return {simulation.natural_modes(count), true};
   }
-  const std::vector<Mode> modes =
-      simulation.natural_modes(count + static_cast<int>(simulation.coordinate_names().size()));
+  std::vector<Mode> modes = simulation.natural_modes(count + static_cast<int>(simulation.coordinate_names().size()));
   fmt::print(stderr, "flexarm: {}; the modes are those of the initial configuration\n",
              lack_of_equilibrium(simulation.scene(), model_of(simulation), result, modes));
-  return modes;
+  return {std::move(modes), false};
+}
+
+namespace {
+
+/// "pressed on its upper limit, 3"; empty if a coordinate is between its limits, or has none.
+std::string limit_text(const scene::SceneDescription& scene, const std::string& coordinate, double position) {
+  for (const auto* joints : {&scene.joints, &scene.loop_joints})
+    for (const scene::JointDescription& joint : *joints) {
+      if (joint.name != coordinate || !joint.limits) continue;
+      if (position >= joint.limits->upper) return fmt::format("pressed on its upper limit, {:g}", joint.limits->upper);
+      if (position <= joint.limits->lower) return fmt::format("pressed on its lower limit, {:g}", joint.limits->lower);
+    }
+  return "";
+}
+
+}  // namespace
+
+void print_where(const Simulation& simulation, bool is_equilibrium) {
+  constexpr std::size_t kMostShown = 12;
+  const std::vector<std::string>& names = simulation.coordinate_names();
+  fmt::print("{}{}\n",
+             is_equilibrium ? "the equilibrium under gravity and the loads at t = 0" : "the initial configuration",
+             names.empty() ? "" : ": joints at [m, rad]");
+  std::size_t shown = 0;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const double position = simulation.position(i);
+    const std::string limit = limit_text(simulation.scene(), names[i], position);
+    if (++shown > kMostShown && limit.empty()) continue;
+    fmt::print("  {:<24} {:>14.7g}{}{}\n", names[i], position, limit.empty() ? "" : "  ", limit);
+  }
+  if (names.size() > kMostShown)
+    fmt::print("  (the first {} of {}, and what is on its limit)\n", kMostShown, names.size());
 }
 
 void warn_of_instability(const Simulation& simulation, const StaticResult& result, Equilibrium wanted) {

@@ -46,7 +46,13 @@ void warn_of_instability(const Simulation& simulation, const StaticResult& resul
 /// move freely has none, which is said on the standard error output; then those about the initial configuration, as
 /// many more as there may be free motions.
 /// @throws std::runtime_error if the eigenvalue problem cannot be solved.
-std::vector<Mode> modes_about_equilibrium(Simulation& simulation, int count, Equilibrium wanted = Equilibrium::Stable);
+struct ModesAbout {
+  std::vector<Mode> modes;
+  bool is_equilibrium;  ///< else about the initial configuration
+};
+ModesAbout modes_about_equilibrium(Simulation& simulation, int count, Equilibrium wanted = Equilibrium::Stable);
+/// Where the joints are then, and which of them are pressed on their limits.
+void print_where(const Simulation& simulation, bool is_equilibrium);
 
 /// Whether a few modes take seconds and no more: without springs, there is a free one for every joint coordinate.
 bool are_modes_quick(const Simulation& simulation);

@@ -27,11 +27,13 @@ void print_equilibrium(const Simulation& simulation) {
   for (std::size_t i = 0; i < names.size(); ++i) fmt::print("  {:<24} {:>14.7g}\n", names[i], simulation.position(i));
   fmt::print("positions [m]\n");
   for (std::size_t i = 0; i < simulation.link_names().size(); ++i) {
-    print_point(simulation.link_names()[i], simulation.link_pose(i).position);
-    if (simulation.is_flexible(i)) print_point(simulation.link_names()[i] + "/tip", simulation.tip_pose(i).position);
+    print_point("link " + simulation.link_names()[i], simulation.link_pose(i).position);
+    if (simulation.is_flexible(i))
+      print_point("link " + simulation.link_names()[i] + "/tip", simulation.tip_pose(i).position);
   }
   const std::vector<scene::Probe>& probes = simulation.scene().probes;
-  for (std::size_t i = 0; i < probes.size(); ++i) print_point(probes[i].name, simulation.probe_pose(i).position);
+  for (std::size_t i = 0; i < probes.size(); ++i)
+    print_point("probe " + probes[i].name, simulation.probe_pose(i).position);
   fmt::print("strain energy {:.7g} J\n", simulation.energies().strain);
 }
 

@@ -2,51 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <map>
 
 #include <fmt/format.h>
+#include <Eigen/LU>
 
-#include "building/section.h"
+#include "flexarm/scene/scene_description.h"
+#include "flexarm/simulation/linear_model.h"
 #include "simulation/inside.h"
 
 namespace flexarm {
 namespace {
 
-/// An end has no inertia to speak of below this part of what the joint moves, if it is also too fast for the step
-/// [rad].
-constexpr double kSmallPart = 1e-2, kFast = 1;
-
-/// An end of a beam.
-struct BeamEnd {
-  std::size_t link;
-  double arc_length, element_length;  // of the last element there [m]
-};
-
-std::optional<BeamEnd> beam_end(const Model& model, int node) {
-  for (std::size_t i = 0; i < model.links.size(); ++i) {
-    const LinkFrame& link = model.links[i];
-    if (!link.beam || node < 0 || (link.frame.node != node && link.beam->tip.node != node)) continue;
-    const std::vector<double>& ends = link.beam->element_ends;
-    const bool is_start = link.frame.node == node;
-    const double before = ends.size() > 1 ? ends[ends.size() - 2] : 0;
-    return is_start ? BeamEnd{i, 0, ends.front()} : BeamEnd{i, ends.back(), ends.back() - before};
-  }
-  return std::nullopt;
-}
-
-/// About an axis through a node, in world axes, of what is lumped at the node or rigidly fixed to it [kg m^2].
-double own_inertia(const Model& model, int node, const Vector3& axis) {
-  const auto about = [&](int at) {
-    const NodalInertia& inertia = model.inertias[at];
-    const Vector3 own = model.nodes[at].rotation.transpose() * axis;
-    const Vector3 arm = axis.cross(model.nodes[at].position - model.nodes[node].position);
-    return own.dot((inertia.rotary + inertia.beam_rotary) * own) + inertia.mass * arm.squaredNorm();
-  };
-  double sum = about(node);
-  for (const JointMap& joint : model.joints)
-    if (joint.kind == JointMapKind::Rigid && joint.master == node) sum += about(joint.slave);
-  return sum;
-}
+/// Of what a joint moves.
+constexpr double kSmallPart = 1e-2;
+/// Matrices of their size are factorised at once.
+constexpr std::size_t kMostUnknowns = 500;
 
 /// Nodes that a joint moves: its slave and what is joined to that by elements and further joints.
 std::vector<bool> moved_nodes(const Model& model, const JointMap& joint) {
@@ -83,6 +54,10 @@ double moved_inertia(const Model& model, const JointMap& joint, const Vector3& a
   return sum;
 }
 
+bool turns(const JointMap& joint) {
+  return joint.kind == JointMapKind::Scalar && !joint.rotation.isZero(0);
+}
+
 bool is_driven(const Model& model, const Coordinate& coordinate) {
   if (coordinate.motion >= 0 || coordinate.mimicked >= 0) return false;
   if (coordinate.effort >= 0) return true;
@@ -91,37 +66,91 @@ bool is_driven(const Model& model, const Coordinate& coordinate) {
   return actuator.servo || actuator.drive.inertia > 0 || actuator.drive.gear;
 }
 
+/// Of each driven joint that turns, the inertia that resists a drive for `time`: by a step of that length of the
+/// midpoint rule, from the mechanism as it starts, without what its servos add.
+std::map<std::string, double> resistances(const Simulation& simulation, double time) {
+  std::map<std::string, double> out;
+  if (simulation.degrees_of_freedom() > kMostUnknowns) return out;
+  LinearRequest request;
+  request.about = LinearisedAbout::Instant;
+  const Model& model = model_of(simulation);
+  for (const Coordinate& coordinate : model.coordinates)
+    if (is_driven(model, coordinate) && turns(model.joints[coordinate.joint])) {
+      request.inputs.push_back("effort:" + coordinate.name);
+      request.outputs.push_back("velocity:" + coordinate.name);
+    }
+  if (request.inputs.empty()) return out;
+  scene::SceneDescription scene = simulation.scene();
+  scene.servos.clear();
+  scene.starts_in_equilibrium = false;
+  // At rest: what a load accelerates at the start bends the bare end of a beam, and seems to soften it.
+  scene.gravity.setZero();
+  scene.efforts.clear();
+  scene.loads.clear();
+  scene.distributed_loads.clear();
+  for (scene::InitialJoint& joint : scene.initial_joints) joint.velocity = 0;
+  try {
+    const LinearModel linear = linearise(Simulation(scene), request);
+    const Eigen::MatrixXd left = Eigen::MatrixXd::Identity(linear.a.rows(), linear.a.cols()) - 0.5 * time * linear.a;
+    const Eigen::MatrixXd velocities = linear.c * left.partialPivLu().solve(time * linear.b);
+    for (std::size_t i = 0; i < request.inputs.size(); ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      out[request.inputs[i].substr(request.inputs[i].find(':') + 1)] = time / velocities(k, k);
+    }
+  } catch (const std::exception&) {  // a mechanism that has no linear model
+  }
+  return out;
+}
+
 }  // namespace
 
-std::vector<std::string> warnings_of_driven_ends(const Simulation& simulation) {
+std::vector<DrivenEnd> driven_ends(const Simulation& simulation) {
   const Model& model = model_of(simulation);
-  std::vector<std::string> warnings;
+  const std::map<std::string, double> within_step = resistances(simulation, simulation.step_size());
+  std::vector<DrivenEnd> ends;
   for (const Coordinate& coordinate : model.coordinates) {
+    const auto found = within_step.find(coordinate.name);
+    if (found == within_step.end()) continue;
     const JointMap& joint = model.joints[coordinate.joint];
-    if (!is_driven(model, coordinate) || joint.kind != JointMapKind::Scalar || joint.rotation.isZero(0)) continue;
     Vector3 axis = joint.rotation.normalized();
     if (joint.master >= 0) axis = model.nodes[joint.master].rotation * axis;
-    for (const int node : {joint.slave, joint.master}) {
-      const std::optional<BeamEnd> end = beam_end(model, node);
-      if (!end) continue;
-      const Vector3 own = model.nodes[node].rotation.transpose() * axis;
-      const SectionLine section(simulation.scene().links[end->link].beam->section);
-      const Matrix6 stiffness = section.at(end->arc_length).stiffness;
-      const double bending = 4 / end->element_length * own.dot(stiffness.bottomRightCorner<3, 3>() * own);
-      const double inertia = own_inertia(model, node, axis) + (node == joint.slave ? armature(model, coordinate) : 0.0);
-      const double turn = std::sqrt(bending / inertia) * simulation.step_size();
-      if (!(turn > kFast)) continue;
-      const double moved = moved_inertia(model, joint, axis) + armature(model, coordinate);
-      if (inertia > kSmallPart * moved) continue;
-      warnings.push_back(
-          fmt::format("joint '{}' is driven where beam '{}' ends with {:.2g} kg m^2 of its own, beside {:.2g} kg m^2 "
-                      "that the joint moves: its fastest motion turns by {:.2g} rad in a step of {} s (1 is well "
-                      "resolved); <hub> puts the inertia of the drive's housing or flange there, <drive "
-                      "rotor_inertia> that of the motor",
-                      coordinate.name, model.links[end->link].name, inertia, moved, turn, simulation.step_size()));
-    }
+    const double whole = moved_inertia(model, joint, axis) + armature(model, coordinate);
+    if (found->second < kSmallPart * whole) ends.push_back({coordinate.name, found->second, whole});
   }
-  return warnings;
+  return ends;
+}
+
+std::string warning_of_shaking_servos(const Simulation& simulation) {
+  std::string told;
+  for (const scene::ServoDescription& servo : simulation.scene().servos) {
+    const double damping = servo.mode == ServoMode::Position   ? servo.kd
+                           : servo.mode == ServoMode::Velocity ? servo.kp
+                                                               : 0;  // N m s/rad
+    if (damping == 0 || (servo.sample_time == 0 && servo.delay == 0)) continue;
+    const auto& drives = simulation.scene().drives;
+    const auto drive =
+        std::find_if(drives.begin(), drives.end(), [&](const auto& one) { return one.coordinate == servo.coordinate; });
+    if (drive != drives.end() && drive->stiffness) continue;  // its rotor is what the servo moves
+    const double held = std::max(servo.sample_time, simulation.step_size());
+    const std::map<std::string, double> resists = resistances(simulation, held);
+    const auto found = resists.find(servo.coordinate);
+    // An inertia J alone shakes where damping * held > 2 J. The end of a beam without damping, whose own motion the
+    // samples miss, may do so with more inertia; a rotor of three times the product calmed all that were tried.
+    const double needed = damping * (held + 2 * servo.delay);
+    if (found == resists.end() || found->second > needed) continue;
+    const double gear = drive != drives.end() ? drive->gear.value_or(1) : 1,
+                 rotor = (drive != drives.end() ? drive->rotor_inertia : 0) + 3 * needed / (gear * gear);
+    told += fmt::format(
+        "{} '{}' damps by {:.3g} N m s/rad, and acts for {:.3g} s on {:.2g} kg m^2 only: "
+        "<drive joint=\"{}\" rotor_inertia=\"{:.2g}\"{}/>",
+        told.empty() ? "" : ";", servo.coordinate, damping, held + servo.delay, found->second, servo.coordinate, rotor,
+        drive != drives.end() ? " ..." : "");
+  }
+  return told.empty()
+             ? ""
+             : "sampled servos may shake the ends of beams that they act on, for want of inertia there; what would "
+               "be enough:" +
+                   told;
 }
 
 }  // namespace flexarm

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include "cli/program.h"
+#include "flexarm/scene/urdf_reader.h"
+#include "flexarm/simulation/simulation.h"
 #include "math/pi.h"
 
 namespace flexarm::cli {
@@ -82,7 +84,7 @@ TEST(Check, DescribesTheModel) {
   EXPECT_EQ(outcome.status, 0) << outcome.errors;
   expect_contains(outcome.output, "scene 'cantilever': 2 links, 1 joints");
   for (const char* word : {"nodes", "degrees of freedom", "EA", "GJ", "EI y", "2.1991e+07", "549.78", "flexible",
-                           "fixed", "first natural frequencies [Hz]: 14.2"})
+                           "fixed", "first natural frequencies there [Hz]: 14.2"})
     expect_contains(outcome.output, word);
 }
 
@@ -138,25 +140,108 @@ TEST(Check, HasALineForEachJointWithPlay) {
       << outcome.output;
 }
 
-// A flexible link in place of a rigid one has no inertia where the drive acts; a hub or a rotor gives it one.
-TEST(Check, WarnsOfDrivenEndsWithoutInertia) {
-  const auto check = [](const std::string& hub, const std::string& drive) {
-    return shell("flexarm check " + scene_file(R"(<robot name="r"> <link name="world"/>
+namespace {
+
+/// A flexible arm in a plane, with what drives its elbow.
+std::string driven_arm(const std::string& drive, const std::string& of_beam = "") {
+  return scene_file(
+      R"(<robot name="r"> <link name="world"/>
       <joint name="elbow" type="continuous"> <parent link="world"/> <child link="arm"/> <axis xyz="0 1 0"/> </joint>
       <link name="arm"> <beam> <centerline> <line to="1 0 0"/> </centerline> )" +
-                                               hub + R"(
+      of_beam + R"(
         <circle radius="0.01"/> <material young="70e9" poisson="0.33" density="2700"/> </beam> </link> )" +
-                                               drive +
-                                               R"( <simulation> <gravity xyz="0 0 0"/>
-      <effort joint="elbow" history="1"/> </simulation> </robot>)"));
+      drive + R"( <simulation> <gravity xyz="0 0 0"/> <effort joint="elbow" history="0"/> </simulation> </robot>)");
+}
+
+/// Largest speed of the elbow in the last tenth of a run, that may end early.
+double last_speed(const std::string& scene) {
+  const std::string csv = temporary("servo.csv");
+  shell("cd '" + testing::TempDir() + "' && flexarm simulate " + scene + " --until 1 --quiet --output " + csv);
+  const std::vector<double> speeds = read_csv(csv)["joint/elbow/velocity"];
+  double largest = 0;
+  for (std::size_t i = speeds.size() * 9 / 10; i < speeds.size(); ++i) largest = std::max(largest, std::abs(speeds[i]));
+  return largest;
+}
+
+}  // namespace
+
+// A flexible link in place of a rigid one has no inertia where the drive acts: who damps it once a step from outside
+// has to know by how much he may. A hub or a rotor give it one.
+TEST(Check, SaysWhatResistsADriveWithinAStep) {
+  const auto found = [](const std::string& scene) {
+    const Outcome outcome = shell("flexarm check " + scene);
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    EXPECT_EQ(outcome.errors.find("shake"), std::string::npos) << "nothing in the scene suffers";
+    std::smatch row;
+    const std::regex line("\nelbow +([0-9.e-]+) +([0-9.e-]+) +([0-9.e-]+)\n");
+    return std::regex_search(outcome.output, row, line) ? std::vector<double>{std::stod(row[1]), std::stod(row[3])}
+                                                        : std::vector<double>();
   };
-  const Outcome bare = check("", "");
-  EXPECT_EQ(bare.status, 0) << bare.errors;
-  expect_contains(bare.errors, "warning: joint 'elbow' is driven where beam 'arm' ends with ");
-  for (const Outcome& good : {check(R"(<hub at="start" mass="0.5" inertia="2e-3 4e-3 2e-3"/>)", ""),
-                              check("", R"(<drive joint="elbow" gear="100" rotor_inertia="3e-5"/>)")}) {
-    EXPECT_EQ(good.status, 0) << good.errors;
-    EXPECT_EQ(good.errors.find("is driven where"), std::string::npos) << good.errors;
+  const std::vector<double> bare = found(driven_arm("")),
+                            rotor = found(driven_arm(R"(<drive joint="elbow" rotor_inertia="1e-3"/>)"));
+  ASSERT_EQ(bare.size(), 2u);
+  ASSERT_EQ(rotor.size(), 2u);
+  EXPECT_NEAR(rotor[0] - bare[0], 1e-3, 0.01 * rotor[0]) << "three digits";
+  EXPECT_TRUE(found(driven_arm("", R"(<hub at="start" mass="0.5" inertia="2e-2 4e-2 2e-2"/>)")).empty());
+
+  // A controller outside that damps by 0.3 of what is told calms a beam that has damping, by 1.1 of it shakes it.
+  const std::string damped = driven_arm("", R"(<damping stiffness_proportional="0.0001"/>)");
+  const double limit = found(damped).at(1);
+  for (const double part : {0.3, 1.1}) {
+    Simulation simulation(*scene::read_scene_file(damped).scene);
+    simulation.command_effort(0, 1);
+    double last = 0;
+    for (int n = 0; n < 400 && simulation.step().converged; ++n) {
+      last = simulation.velocity(0);
+      simulation.command_effort(0, -part * limit * last);
+    }
+    EXPECT_EQ(std::abs(last) < 0.01, part < 1) << part << ": " << last;
+  }
+}
+
+// One warning, where the servo of the scene itself is affected, with a number that is enough.
+TEST(Check, WarnsOfSampledServosThatShakeABeam) {
+  const auto servo = [](const std::string& drive) {
+    return driven_arm(drive + R"(<servo joint="elbow" mode="velocity" kp="20" set_point="0.2" sample_time="0.004"/>)");
+  };
+  const std::string bare = servo("");  // one file, which the next scene replaces
+  const Outcome shaken = shell("flexarm check " + bare);
+  EXPECT_EQ(shaken.status, 0);
+  std::smatch told;
+  ASSERT_TRUE(std::regex_search(
+      shaken.errors, told,
+      std::regex(
+          "flexarm: warning: sampled servos may shake .*: (<drive joint=\"elbow\" rotor_inertia=\"[0-9.]+\"/>)\n")))
+      << shaken.errors;
+  EXPECT_GT(last_speed(bare), 10) << "instead of 0.2 rad/s";
+  const std::string calm = servo(told[1]);
+  EXPECT_EQ(shell("flexarm check " + calm).errors.find("shake"), std::string::npos);
+  EXPECT_NEAR(last_speed(calm), 0.2, 0.02);
+  EXPECT_EQ(
+      shell("flexarm check " + driven_arm(R"(<servo joint="elbow" mode="velocity" kp="20"/>)")).errors.find("shake"),
+      std::string::npos)
+      << "it is not sampled";
+}
+
+// An effort that pushes the arm on its stop: the modes are those there.
+TEST(Check, SaysWhereTheArmIs) {
+  const std::string scene = scene_file(R"(<robot name="r"> <link name="world"/>
+      <joint name="elbow" type="revolute"> <parent link="world"/> <child link="arm"/> <axis xyz="0 1 0"/>
+        <limit lower="-1" upper="0.5" effort="9" velocity="9"/> </joint>
+      <link name="arm"> <inertial> <mass value="1"/> <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
+      <simulation> <gravity xyz="0 0 0"/> <effort joint="elbow" history="4"/> <probe name="arm" link="arm"/> </simulation> </robot>)");
+  const std::regex where(
+      "equilibrium under gravity and the loads at t = 0: joints at \\[m, rad\\]\n  elbow +0.5[0-9]*  pressed on its "
+      "upper limit, 0.5\n");
+  for (const char* command : {"check", "modes"}) {
+    const Outcome outcome = shell("flexarm " + std::string(command) + " " + scene);
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_TRUE(std::regex_search(outcome.output, where)) << outcome.output;
+  }
+  for (const char* command : {"static", "modes"}) {
+    const std::string output = shell("flexarm " + std::string(command) + " " + scene).output;
+    expect_contains(output, "  link arm ");
+    expect_contains(output, "  probe arm ");
   }
 }
 
