@@ -10,7 +10,6 @@ import unittest
 
 import genpy
 import rosbag
-from flexarm.msg import JointForceCommand
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
@@ -115,8 +114,8 @@ class Replay(unittest.TestCase):
         with rosbag.Bag(self.bag, "w") as bag:
             for n in range(0, 401, 10):
                 if n == 110:  # before this state, between those of two steps
-                    command = JointForceCommand(names=["rail"], efforts=[2.0])
-                    bag.write("/joint_force_command", command, genpy.Time.from_sec(BEGIN + (100.5 + late) * STEP))
+                    command = JointState(name=["rail"], effort=[2.0])
+                    bag.write("/joint_command", command, genpy.Time.from_sec(BEGIN + (100.5 + late) * STEP))
                 pushed = max(n - 100, 0) * STEP
                 state = JointState(name=["rail"], position=[pushed**2], velocity=[2 * pushed])
                 state.header.stamp = genpy.Time.from_sec(BEGIN + n * STEP)
