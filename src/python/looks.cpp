@@ -1,3 +1,4 @@
+#include <limits>
 #include <stdexcept>
 
 #include <pybind11/stl.h>
@@ -8,6 +9,7 @@
 #include "python/bindings.h"
 #include "python/errors.h"
 #include "python/names.h"
+#include "simulation/inside.h"
 
 namespace py = pybind11;
 
@@ -20,13 +22,22 @@ OnFailure on_failure_of(const std::string& name) {
   throw std::invalid_argument("on_failure: expected 'stop' or 'dissipate', got '" + name + "'");
 }
 
-std::shared_ptr<GuardedSimulation> simulation_of(const std::shared_ptr<ReadScene>& scene,
-                                                 const std::optional<std::string>& scheme, std::optional<double> step,
-                                                 std::optional<double> tolerance, bool reuse_factorisation,
-                                                 const std::optional<std::string>& on_failure,
+/// A Scene, or that of a path.
+std::shared_ptr<ReadScene> scene_of(const py::object& given) {
+  if (py::isinstance<ReadScene>(given)) return given.cast<std::shared_ptr<ReadScene>>();
+  if (!py::isinstance<py::str>(given) && !py::hasattr(given, "__fspath__"))
+    throw py::type_error("scene: expected a Scene, or the path of a scene's file, got " +
+                         std::string(py::str(given.get_type().attr("__name__"))));
+  return py::module_::import("flexarm._flexarm").attr("read_scene")(given).cast<std::shared_ptr<ReadScene>>();
+}
+
+std::shared_ptr<GuardedSimulation> simulation_of(const py::object& given, const std::optional<std::string>& scheme,
+                                                 std::optional<double> step, std::optional<double> tolerance,
+                                                 bool reuse_factorisation, const std::optional<std::string>& on_failure,
                                                  double recovery_wall_time) {
   SimulationOptions options{scheme, step, tolerance, reuse_factorisation, std::nullopt, recovery_wall_time};
   if (on_failure) options.on_failure = on_failure_of(*on_failure);
+  const std::shared_ptr<ReadScene> scene = scene_of(given);
   try {
     const auto made = [&] {
       const py::gil_scoped_release unlocked;
@@ -51,6 +62,15 @@ void bind_names(SimulationClass& type) {
       type, "joint_names", [](const Simulation& s) { return s.coordinate_names(); },
       "of released coordinates, in the order of all arrays of joints");
   look(type, "effort_joints", &effort_joints, "names of those that take commands of efforts");
+  look(
+      type, "effort_limits",
+      [](const Simulation& s) {
+        return numbers(s.coordinate_names().size(), [&](std::size_t i) {
+          const double limit = model_of(s).coordinates[i].effort_limit;
+          return limit > 0 ? limit : std::numeric_limits<double>::infinity();
+        });
+      },
+      "of joints, at which commanded efforts saturate, shape (joints,); infinite where there is none [N m or N]");
   look(type, "servo_joints", &servo_joints, "names of those with servos");
   look(
       type, "link_names", [](const Simulation& s) { return s.link_names(); }, "in the order of all arrays of links");
@@ -151,13 +171,14 @@ void bind_settings(SimulationClass& type) {
 void bind_looks(SimulationClass& type) {
   type.def(py::init(&simulation_of), R"(Builds a simulation of a scene.
 
+scene: a Scene, or the path of its file, which is read as read_scene(path) does.
 scheme, step [s], tolerance: in place of the scene's.
 reuse_factorisation: keeps factors of the tangent while Newton's method contracts well; False: a restored state goes on
   bit for bit.
 on_failure: 'stop' or 'dissipate' (steps that fail are done by edmc2), in place of the scene's.
 recovery_wall_time: ends a step that has been halved after so long by the clock on the wall; 0: never [s].
 
-Raises SceneError if the scene is impossible as a mechanism; what is doubtful about its start is a SceneWarning.)",
+Raises SceneError if the file has errors or the scene is impossible as a mechanism; what is doubtful about its start is a SceneWarning.)",
            py::arg("scene"), py::arg("scheme") = py::none(), py::arg("step") = py::none(),
            py::arg("tolerance") = py::none(), py::arg("reuse_factorisation") = true, py::arg("on_failure") = py::none(),
            py::arg("recovery_wall_time") = 0.0);

@@ -22,6 +22,7 @@ One thread at a time may use a simulation; while it steps, others run, with simu
 PYBIND11_MODULE(_flexarm, module) {
   using namespace flexarm::python;
   module.doc() = "Simulations of flexible manipulators, compiled; used by the package flexarm.";
+  module.attr("__version__") = FLEXARM_VERSION;
   bind_scene(module);
   bind_step_result(module);
   SimulationClass simulation(module, "Simulation", kSimulationText);

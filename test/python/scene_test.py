@@ -28,6 +28,15 @@ def test_text_is_as_good_as_a_file():
     assert flexarm.Simulation(scene).joint_names == ["shoulder", "elbow"]
 
 
+def test_a_simulation_reads_the_file_of_its_scene(failing_scene, tmp_path):
+    assert flexarm.Simulation(example("rigid_double_pendulum")).joint_names == ["shoulder", "elbow"]
+    assert flexarm.Simulation(failing_scene, step=1e-2).step_size == 1e-2
+    with pytest.raises(flexarm.SceneError, match="nowhere.urdf"):
+        flexarm.Simulation(tmp_path / "nowhere.urdf")
+    with pytest.raises(TypeError, match="scene: expected a Scene, or the path of a scene's file, got int"):
+        flexarm.Simulation(3)
+
+
 def broken(tmp_path, old, new):
     with open(example("flexible_two_link_arm"), encoding="utf-8") as file:
         text = file.read()

@@ -2,8 +2,7 @@
 
     import flexarm
 
-    scene = flexarm.read_scene("arm.urdf")
-    simulation = flexarm.Simulation(scene)
+    simulation = flexarm.Simulation("arm.urdf")
     rows = simulation.run(1000, record=["joint/*/position"])
 
 docs/python.md has an example for each job; help(flexarm.Simulation) says units and shapes of everything. flexarm.msg
@@ -14,6 +13,7 @@ import importlib
 
 # Where each name is. They are fetched when somebody asks for them: who imports messages alone needs no simulator.
 _HOMES = {
+    "__version__": "_flexarm",
     "read_scene": "_flexarm",
     "read_scene_text": "_flexarm",
     "tune": "_flexarm",
@@ -36,9 +36,10 @@ _HOMES = {
     "Tuning": "values",
     "Wrench": "values",
     "Environment": "environment",
+    "VectorEnvironment": "environment",
 }
 
-__all__ = list(_HOMES)
+__all__ = [name for name in _HOMES if name != "__version__"]
 
 
 def __getattr__(name):

@@ -1,80 +1,231 @@
-"""A simulation as an environment of reinforcement learning."""
+"""Simulations as environments of reinforcement learning: one, and several that step in threads."""
 
+import concurrent.futures
 import copy
+import os
+import typing
 
 import numpy
 
-from ._flexarm import Simulation
+from ._flexarm import Scene, Simulation
 from .errors import StepError
+from .spaces import AUTORESET, Box, Env, VectorEnv, batch_space, register
+
+Reward = typing.Callable[[numpy.ndarray, numpy.ndarray, Simulation], float]
+Terminated = typing.Callable[[numpy.ndarray, Simulation], bool]
+Start = typing.Callable[[Simulation, numpy.random.Generator], None]
+Info = typing.Dict[str, typing.Any]
+Outcomes = typing.Tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray, numpy.ndarray, Info]
+Outcome = typing.Tuple[numpy.ndarray, float, bool, bool, Info]
+SimulationOrScene = typing.Union[Simulation, Scene, str, "os.PathLike[str]"]
 
 
-class Environment:
-    """A simulation with the reset() and step() that reinforcement learning expects (gymnasium's, which is not needed).
+class Environment(Env):
+    """A simulation with the reset() and step() that reinforcement learning expects: those of gymnasium.
 
-    simulation: a Simulation, which is copied, or the Scene of one. reset() goes back to the state that it has now.
+    It is a gymnasium.Env where gymnasium is installed, and does without it.
+
+    simulation: a Simulation, which is copied, or the Scene of one, or the path of its file. reset() goes back to the
+      state that it has now.
     reward: `reward(observation, action, simulation)`, called after each step; a number.
     observation: patterns of columns, as in Simulation.run(); the time is left out where no pattern asks for it.
-    joints: whose efforts are an action, in this order; None: all of effort_joints.
+    joints: whose efforts are an action, in this order, by names or indices; None: all of effort_joints.
     steps: of the simulation for each action, which is held over them.
     duration: of an episode [s]; None: it has no end.
     terminated: `terminated(observation, simulation)`, asked after each step; None: never.
     start: `start(simulation, random)`, called by reset() with a numpy.random.Generator; None: nothing is changed.
     failure_reward: in place of `reward` where a step of the simulation fails, which ends the episode.
 
+    observation_space: all numbers, shape (columns,). action_space: efforts within effort_limits, shape (joints,).
     observation_names, observation_units: of the numbers of an observation, shape (columns,).
     action_joints: names of the joints of an action, shape (joints,) [N m or N].
     simulation: the one that steps, to look at.
     """
 
-    def __init__(self, simulation, reward, observation=("joint/*/position", "joint/*/velocity"), *, joints=None,
-                 steps=1, duration=None, terminated=None, start=None, failure_reward=0.0):
+    metadata: typing.Dict[str, typing.Any] = {"render_modes": []}
+
+    def __init__(self, simulation: SimulationOrScene, reward: Reward,
+                 observation: typing.Sequence[str] = ("joint/*/position", "joint/*/velocity"), *,
+                 joints: typing.Optional[typing.Sequence[typing.Union[int, str]]] = None, steps: int = 1,
+                 duration: typing.Optional[float] = None, terminated: typing.Optional[Terminated] = None,
+                 start: typing.Optional[Start] = None, failure_reward: float = 0.0) -> None:
         if steps < 1:
             raise ValueError("steps: expected a number >= 1, got %s" % steps)
         self.simulation = copy.copy(simulation) if isinstance(simulation, Simulation) else Simulation(simulation)
         self._reward, self._terminated, self._start = reward, terminated, start
         self._steps, self._duration, self._failure_reward = steps, duration, failure_reward
-        self.action_joints = list(self.simulation.effort_joints if joints is None else joints)
+        self.action_joints = self._names_of(joints)
+        limits = dict(zip(self.simulation.joint_names, self.simulation.effort_limits))
+        bound = numpy.array([limits[name] for name in self.action_joints])
+        self.action_space = Box(-bound, bound, bound.shape, numpy.float64)
         self._record = list(observation)
         columns = self.simulation.columns(self._record)
         self._first = 0 if "time" in self._record else 1
         self.observation_names = [name for name, _ in columns[self._first:]]
         self.observation_units = [unit for _, unit in columns[self._first:]]
+        self.observation_space = Box(-numpy.inf, numpy.inf, (len(self.observation_names),), numpy.float64)
         self._initial = self.simulation.snapshot()
         self._begin = self.simulation.time
-        self._random = numpy.random.default_rng()
 
-    def _observe(self):
+    def _names_of(self, joints: typing.Optional[typing.Sequence[typing.Union[int, str]]]) -> typing.List[str]:
+        known = self.simulation.effort_joints
+        if joints is None:
+            return known
+        names = [joint if isinstance(joint, str) else self.simulation.joint_names[joint] for joint in joints]
+        for name in names:
+            if name not in known:
+                raise ValueError("joints: expected some that take efforts, of [%s], got '%s'"
+                                 % (", ".join(known), name))
+        return names
+
+    def _observe(self) -> numpy.ndarray:
         return self.simulation.row(self._record)[self._first:]
 
-    def reset(self, *, seed=None, options=None):
+    def reset(self, *, seed: typing.Optional[int] = None,
+              options: typing.Optional[Info] = None) -> typing.Tuple[numpy.ndarray, Info]:
         """Begins an episode; `seed`: of the generator that `start` is given, None: it goes on. Options mean nothing.
 
         Returns the observation and an empty dictionary.
         """
-        if seed is not None:
-            self._random = numpy.random.default_rng(seed)
+        super().reset(seed=seed)
         self.simulation.restore(self._initial)
         if self._start is not None:
-            self._start(self.simulation, self._random)
+            self._start(self.simulation, self.np_random)
         return self._observe(), {}
 
-    def step(self, action):
+    def step(self, action: typing.Any) -> Outcome:
         """Holds efforts, shape (joints,) [N m or N], over the steps of an action.
 
         Returns observation, reward, terminated, truncated (the duration is over), and a dictionary: after a failed step
         of the simulation, in which the episode ends, "failure" says what it was.
         """
         action = numpy.ascontiguousarray(action, dtype=float)
+        return self._judge(action, self._advance(action))
+
+    def _advance(self, action: numpy.ndarray) -> typing.Optional[str]:
+        """What has failed; other threads run meanwhile."""
         try:
             self.simulation.run(self._steps, action, self.action_joints)
         except StepError as failure:
-            return self._observe(), self._failure_reward, True, False, {"failure": str(failure)}
+            return str(failure)
+        return None
+
+    def _judge(self, action: numpy.ndarray, failure: typing.Optional[str]) -> Outcome:
         observation = self._observe()
+        if failure is not None:
+            return observation, float(self._failure_reward), True, False, {"failure": failure}
         reward = float(self._reward(observation, action, self.simulation))
         terminated = self._terminated is not None and bool(self._terminated(observation, self.simulation))
         return observation, reward, terminated, self._is_over(), {}
 
-    def _is_over(self):
+    def _is_over(self) -> bool:
         if self._duration is None:
             return False
         return self.simulation.time - self._begin > self._duration - 0.5 * self.simulation.step_size
+
+
+class VectorEnvironment(VectorEnv):
+    """Several environments as one, with the reset() and step() of gymnasium's vector environments.
+
+    num_envs: how many. threads: that step them, None: one for each processor. What is left are the arguments of
+    Environment, which have the same meaning for each; `reward`, `terminated` and `start` are called in the calling
+    thread, one environment after the other. Results have the bits of environments that are stepped one by one.
+
+    An environment that has ended begins anew by the next step: its action counts for nothing, its reward is 0.
+
+    environments: each by itself, to look at.
+    single_observation_space, single_action_space: theirs; observation_space and action_space have a row for each.
+    """
+
+    metadata: typing.Dict[str, typing.Any] = {"render_modes": [], **AUTORESET}
+
+    def __init__(self, simulation: SimulationOrScene, reward: Reward, *arguments: typing.Any, num_envs: int,
+                 threads: typing.Optional[int] = None, **options: typing.Any) -> None:
+        if num_envs < 1:
+            raise ValueError("num_envs: expected a number >= 1, got %s" % num_envs)
+        if threads is not None and threads < 1:
+            raise ValueError("threads: expected a number >= 1, got %s" % threads)
+        if not isinstance(simulation, Simulation):
+            simulation = Simulation(simulation)
+        self.environments = [Environment(simulation, reward, *arguments, **options) for _ in range(num_envs)]
+        self.num_envs = num_envs
+        self.single_observation_space = self.environments[0].observation_space
+        self.single_action_space = self.environments[0].action_space
+        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        self.action_space = batch_space(self.single_action_space, num_envs)
+        self._ended = [False] * num_envs
+        self._threads = min(threads or len(os.sched_getaffinity(0)), num_envs)
+        # The calling thread is one of them.
+        self._pool = concurrent.futures.ThreadPoolExecutor(self._threads - 1) if self._threads > 1 else None
+
+    def reset(self, *, seed: typing.Union[None, int, typing.Sequence[typing.Optional[int]]] = None,
+              options: typing.Optional[Info] = None) -> typing.Tuple[numpy.ndarray, Info]:
+        """Begins an episode in each; `seed`: that of the first one, which the others count on from, or one for each.
+
+        Returns the observations, shape (num_envs, columns), and an empty dictionary.
+        """
+        if seed is None:
+            seeds: typing.List[typing.Optional[int]] = [None] * self.num_envs
+        elif isinstance(seed, (int, numpy.integer)):
+            seeds = [int(seed) + i for i in range(self.num_envs)]
+        else:
+            seeds = list(seed)
+        if len(seeds) != self.num_envs:
+            raise ValueError("seed: expected a number or %s of them, got %s" % (self.num_envs, len(seeds)))
+        self._ended = [False] * self.num_envs
+        return numpy.array([each.reset(seed=own)[0] for each, own in zip(self.environments, seeds)]), {}
+
+    def step(self, actions: typing.Any) -> Outcomes:
+        """Environment.step() of each, with its row of efforts, shape (num_envs, joints) [N m or N].
+
+        Returns arrays of observations, shape (num_envs, columns), rewards, terminated and truncated, shape (num_envs,),
+        and a dictionary: where a step of a simulation has failed "failure" has the texts, and "_failure" says whose.
+        Raises ValueError, before anything has moved, if an effort is not finite or the shape wrong.
+        """
+        actions = numpy.ascontiguousarray(actions, dtype=float)
+        if actions.shape != self.action_space.shape:
+            raise ValueError("actions: expected the shape %s, got %s" % (self.action_space.shape, actions.shape))
+        if not numpy.isfinite(actions).all():
+            raise ValueError("actions: expected finite numbers, got %s" % actions[~numpy.isfinite(actions)][0])
+        failures = self._advance(actions)
+        outcomes: typing.List[Outcome] = []
+        for each, action, failure, ended in zip(self.environments, actions, failures, self._ended):
+            outcomes.append((each.reset()[0], 0.0, False, False, {}) if ended else each._judge(action, failure))
+        observations, rewards, terminated, truncated, infos = zip(*outcomes)
+        self._ended = [a or b for a, b in zip(terminated, truncated)]
+        return (numpy.array(observations), numpy.array(rewards), numpy.array(terminated), numpy.array(truncated),
+                _joined(infos))
+
+    def _advance(self, actions: numpy.ndarray) -> typing.List[typing.Optional[str]]:
+        failures: typing.List[typing.Optional[str]] = [None] * self.num_envs
+        moving = [i for i, ended in enumerate(self._ended) if not ended]
+
+        def advance(some: typing.Sequence[int]) -> None:
+            for i in some:
+                failures[i] = self.environments[i]._advance(actions[i])
+
+        shares = [moving[k::self._threads] for k in range(self._threads)]
+        others = [self._pool.submit(advance, share) for share in shares[1:]] if self._pool else []
+        try:
+            advance(shares[0])
+        finally:
+            concurrent.futures.wait(others)
+        for other in others:
+            other.result()
+        return failures
+
+    def close_extras(self, **options: typing.Any) -> None:
+        """Ends the threads."""
+        if self._pool is not None:
+            self._pool.shutdown()
+
+
+def _joined(infos: typing.Sequence[Info]) -> Info:
+    """As gymnasium's vector environments have them: an array of each value, and which ones there are."""
+    there = numpy.array(["failure" in info for info in infos])
+    if not there.any():
+        return {}
+    return {"failure": numpy.array([info.get("failure") for info in infos], dtype=object), "_failure": there}
+
+
+register("flexarm/Environment-v0", "flexarm.environment:Environment", "flexarm.environment:VectorEnvironment")

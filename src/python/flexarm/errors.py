@@ -1,5 +1,9 @@
 """What can go wrong: exceptions and warnings."""
 
+import typing
+
+import numpy
+
 
 class SceneWarning(UserWarning):
     """Something about a scene, its start or its equilibrium is doubtful."""
@@ -18,12 +22,12 @@ class StepError(RuntimeError):
     rows: what run() had recorded until then, shape (rows, columns); None if it records nothing.
     """
 
-    def __init__(self, text, time, reason, rows=None):
+    def __init__(self, text: str, time: float, reason: str, rows: typing.Optional[numpy.ndarray] = None) -> None:
         super().__init__(text, time, reason, rows)
         self.time, self.reason, self.rows = time, reason, rows
 
-    def __str__(self):
-        return self.args[0]
+    def __str__(self) -> str:
+        return str(self.args[0])
 
 
 class AccuracyError(RuntimeError):
@@ -33,9 +37,9 @@ class AccuracyError(RuntimeError):
     rows: that run_to_accuracy() has recorded, shape (intervals + 1, columns); None if it records nothing.
     """
 
-    def __init__(self, text, estimate, rows=None):
+    def __init__(self, text: str, estimate: float, rows: typing.Optional[numpy.ndarray] = None) -> None:
         super().__init__(text, estimate, rows)
         self.estimate, self.rows = estimate, rows
 
-    def __str__(self):
-        return self.args[0]
+    def __str__(self) -> str:
+        return str(self.args[0])

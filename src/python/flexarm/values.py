@@ -5,6 +5,9 @@ import typing
 
 import numpy
 
+if typing.TYPE_CHECKING:
+    from ._flexarm import Scene
+
 
 class Energies(typing.NamedTuple):
     """Of a state [J]; the potential one is that of gravity, total the sum of the first three."""
@@ -63,7 +66,7 @@ class AccurateRun(typing.NamedTuple):
 class Tuning(typing.NamedTuple):
     """What tune() has found."""
 
-    scene: typing.Any  # a Scene with these settings
+    scene: "Scene"  # with these settings
     mesh: str  # of its beams, in the scene's order: elements x order
     scheme: str
     step: float  # [s]
