@@ -1,12 +1,15 @@
 """The package, beside the messages that share its name."""
 
+import os
 import pydoc
 import subprocess
 import sys
+import xml.etree.ElementTree
 
 import pytest
 
 import flexarm
+from conftest import ROOT
 
 
 def test_messages_are_in_the_same_package():
@@ -29,6 +32,11 @@ def test_all_names_are_there():
         assert name in dir(flexarm)
     with pytest.raises(AttributeError, match="module 'flexarm' has no attribute 'simulation'"):
         flexarm.simulation
+
+
+def test_the_version_is_that_of_the_package():
+    package = xml.etree.ElementTree.parse(os.path.join(ROOT, "package.xml"))
+    assert flexarm.__version__ == package.findtext("version")
 
 
 def test_everything_is_explained():
