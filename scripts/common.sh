@@ -45,7 +45,7 @@ candidates() {
   local key
   if [[ -n ${ROS_DISTRO:-} ]]; then
     for key in "${@:2}"; do
-      printf '%s\n' "ros-$ROS_DISTRO-${key//_/-}"
+      [[ $key == - ]] || printf '%s\n' "ros-$ROS_DISTRO-${key//_/-}"
     done
   fi
   printf '%s\n' "${1//|/$'\n'}"
@@ -53,7 +53,9 @@ candidates() {
 
 # is_installed NAME...: whether one of these packages is.
 is_installed() {
-  dpkg-query --show --showformat='${db:Status-Status}\n' "$@" 2>/dev/null | grep -qx installed
+  local states # it fails if it does not know one of them
+  states=$(dpkg-query --show --showformat='${db:Status-Status}\n' "$@" 2>/dev/null) || true
+  grep -qx installed <<<"$states"
 }
 
 # first_known NAME...: the first one that the package lists have; nothing if it may be missing, and is.

@@ -1,0 +1,59 @@
+#!/usr/bin/python3
+"""What the shell functions of scripts/common.sh do with a ROS below /opt/ros, and with lines of dependencies.txt."""
+
+import os
+import subprocess
+import tempfile
+import unittest
+
+COMMON = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "scripts", "common.sh")
+
+
+def run(commands, **environment):
+    """What is printed by `commands` after common.sh, in an environment of these variables and PATH alone."""
+    result = subprocess.run(
+        ["bash", "-c", "set -euo pipefail; source '%s'\n%s" % (COMMON, commands)],
+        env={"PATH": "/usr/bin:/bin", **environment},
+        stdout=subprocess.PIPE,
+        check=True,
+    )
+    return result.stdout.decode().splitlines()
+
+
+class Common(unittest.TestCase):
+    def test_a_ros_of_its_own_folder_is_kept_and_workspaces_above_it_are_not(self):
+        with tempfile.TemporaryDirectory() as folder:
+            os.mkdir(os.path.join(folder, "noetic"))
+            with open(os.path.join(folder, "noetic", "setup.sh"), "w", encoding="utf-8") as file:
+                file.write("export ROS_DISTRO=noetic CMAKE_PREFIX_PATH=%s/noetic; false; : $NOT_SET\n" % folder)
+            commands = """
+                ros_prefix=%s build=%s/build
+                clean_environment
+                echo "${ROS_DISTRO:-none} ${CMAKE_PREFIX_PATH:-none}" """ % (folder, folder)
+            path = "/home/me/devel:%s/noetic" % folder
+            self.assertEqual(run(commands, ROS_DISTRO="noetic", CMAKE_PREFIX_PATH=path), ["noetic %s/noetic" % folder])
+            for distribution in "debian", "":  # Debian's own, which lies in /usr, and none
+                self.assertEqual(run(commands, ROS_DISTRO=distribution, CMAKE_PREFIX_PATH=path), ["none none"])
+
+    def test_packages_that_do_for_a_line(self):
+        self.assertEqual(run("candidates 'libroscpp-dev' roscpp"), ["libroscpp-dev"])
+        self.assertEqual(run("candidates 'one|other|-' -"), ["one", "other", "-"])
+        self.assertEqual(
+            run("candidates 'libtf2-ros-dev' tf2_ros", ROS_DISTRO="noetic"), ["ros-noetic-tf2-ros", "libtf2-ros-dev"]
+        )
+        self.assertEqual(run("candidates 'one|-' -", ROS_DISTRO="noetic"), ["one", "-"])
+
+    def test_the_first_package_that_is_known_is_taken(self):
+        known = "apt-cache() { [[ $2 == known || $2 == later ]]; }\n"
+        self.assertEqual(run(known + "first_known other known later -"), ["known"])
+        self.assertEqual(run(known + "first_known other -"), [])
+        self.assertEqual(run(known + "(first_known other another 2>&1) || echo failed"),
+                         ["bash: the package archive has none of: other another", "failed"])
+
+    def test_one_installed_package_is_enough(self):
+        self.assertEqual(run("is_installed no-such-package bash && echo yes"), ["yes"])
+        self.assertEqual(run("is_installed no-such-package - || echo no"), ["no"])
+
+
+if __name__ == "__main__":
+    unittest.main()
