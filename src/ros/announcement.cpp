@@ -26,7 +26,7 @@ std::string list_of(const std::vector<std::string>& names) {
 void say_what_is_simulated(const Simulation& simulation, const RunState& run, const std::string& topics,
                            const std::string& services) {
   for (const scene::Diagnostic& warning : simulation.start_warnings()) ROS_WARN_STREAM(warning.text());
-  for (const std::string& warning : warnings_of_driven_ends(simulation)) ROS_WARN_STREAM(warning);
+  if (const std::string warning = warning_of_shaking_servos(simulation); !warning.empty()) ROS_WARN_STREAM(warning);
   const scene::SceneDescription& scene = simulation.scene();
   ROS_INFO_STREAM("scene '" << scene.name << "' of " << scene.file << ": joints "
                             << list_of(simulation.coordinate_names()) << "; " << simulation.degrees_of_freedom()
