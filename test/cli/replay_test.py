@@ -107,7 +107,7 @@ class Replay(unittest.TestCase):
     # ---- when commands act
 
     def write_push(self, late=0, delay=0.0, scene=FREE):
-        """A run in real time of the cart without servo, which 2 N push from step 100 on. The bag has the command so many
+        """A run of the cart without servo, pushed by 2 N from step 100 on. The bag has the command so many
         steps late, and states near it with a delay [s]."""
         with open(self.scene, "w", encoding="utf-8") as file:
             file.write(scene)
