@@ -6,6 +6,7 @@
 #include <pybind11/pybind11.h>
 
 #include "python/guarded_simulation.h"
+#include "python/older_pybind11.h"
 
 namespace flexarm::python {
 

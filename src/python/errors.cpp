@@ -10,7 +10,7 @@ constexpr const char* kErrors = "flexarm.errors";
 }  // namespace
 
 void raise(const py::object& error) {
-  PyErr_SetObject(py::type::of(error).ptr(), error.ptr());
+  PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(error.ptr())), error.ptr());
   throw py::error_already_set();
 }
 

@@ -6,6 +6,7 @@
 #include <pybind11/pybind11.h>
 
 #include "flexarm/simulation/simulation.h"
+#include "python/older_pybind11.h"
 
 namespace flexarm::python {
 

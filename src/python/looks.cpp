@@ -26,8 +26,8 @@ OnFailure on_failure_of(const std::string& name) {
 std::shared_ptr<ReadScene> scene_of(const py::object& given) {
   if (py::isinstance<ReadScene>(given)) return given.cast<std::shared_ptr<ReadScene>>();
   if (!py::isinstance<py::str>(given) && !py::hasattr(given, "__fspath__"))
-    throw py::type_error("scene: expected a Scene, or the path of a scene's file, got " +
-                         std::string(py::str(given.get_type().attr("__name__"))));
+    throw py::type_error(std::string("scene: expected a Scene, or the path of a scene's file, got ") +
+                         Py_TYPE(given.ptr())->tp_name);
   return py::module_::import("flexarm._flexarm").attr("read_scene")(given).cast<std::shared_ptr<ReadScene>>();
 }
 

@@ -117,7 +117,7 @@ read_scene() and read_scene_text() make it.)");
           "text that two scenes have in common where a state of one is a state of the other (checkpoints are asked for "
           "it)")
       .def_property_readonly(
-          "gravity", [](const ReadScene& s) { return std::vector<double>(s.gravity.begin(), s.gravity.end()); },
+          "gravity", [](const ReadScene& s) { return std::vector<double>(s.gravity.data(), s.gravity.data() + 3); },
           "x y z [m/s^2]")
       .def_property_readonly(
           "scheme", [](const ReadScene& s) { return s.integrator.scheme; }, "of time integration, as it says")
