@@ -1,0 +1,20 @@
+#pragma once
+/// Stand-in for the header of ros_control of that name.
+
+#include <set>
+#include <string>
+#include <vector>
+
+namespace hardware_interface {
+
+struct InterfaceResources {
+  std::string hardware_interface;
+  std::set<std::string> resources;
+};
+
+struct ControllerInfo {
+  std::string name, type;
+  std::vector<InterfaceResources> claimed_resources;
+};
+
+}  // namespace hardware_interface
