@@ -58,8 +58,8 @@ void RosControlNode::advertise_services() {
   ros::NodeHandle node("~");
   node.setCallbackQueue(&own_queue_);
   const auto advertise = [&](const char* name, const std::function<void()>& act) {
-    services_.push_back(node.advertiseService<Empty::Request, Empty::Response>(
-        name, [act](Empty::Request&, Empty::Response&) {
+    services_.push_back(
+        node.advertiseService<Empty::Request, Empty::Response>(name, [act](Empty::Request&, Empty::Response&) {
           act();
           return true;
         }));
@@ -109,8 +109,7 @@ void RosControlNode::cycle() {
 
 void RosControlNode::fail(const StepResult& result) {
   run_.paused = true;
-  run_.failure =
-      "step from t = " + std::to_string(simulation_.time()) + " s failed: " + simulation_.explain(result);
+  run_.failure = "step from t = " + std::to_string(simulation_.time()) + " s failed: " + simulation_.explain(result);
   ROS_ERROR_STREAM(run_.failure << "; paused at the last good state: " << private_node_.resolveName("resume")
                                 << " goes on from it, " << private_node_.resolveName("reset") << " starts again");
   clock_.publish_now();

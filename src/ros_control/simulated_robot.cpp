@@ -136,8 +136,8 @@ std::string SimulatedRobot::find_faults(const hardware_interface::ControllerInfo
   for_claims({controller}, [&](std::size_t coordinate, std::size_t interface) {
     const std::string& fault = joints_[coordinate].faults[interface];
     if (fault.empty()) return;
-    faults += (faults.empty() ? "" : "\n") + ("controller '" + controller.name + "' claims " +
-                                              kCommandInterfaces[interface].name + ", but " + fault);
+    faults += (faults.empty() ? "" : "\n") +
+              ("controller '" + controller.name + "' claims " + kCommandInterfaces[interface].name + ", but " + fault);
   });
   return faults;
 }

@@ -26,8 +26,8 @@
 namespace flexarm::ros_control {
 
 /// A robot whose joints are the coordinates of a simulation, under their names, and whose sensors are those of the
-/// scene. Positions and velocities are set points of the joint's servo; efforts go to the joint, through its servo where
-/// it has one. All but the constructor, prepareSwitch() and checkForConflict() belongs to the thread that steps.
+/// scene. Positions and velocities are set points of the joint's servo; efforts go to the joint, through its servo
+/// where it has one. All but the constructor, prepareSwitch() and checkForConflict() belongs to the thread that steps.
 class SimulatedRobot : public hardware_interface::RobotHW {
  public:
   /// @param simulation  outlives the robot, and is stepped by step() alone
@@ -38,8 +38,8 @@ class SimulatedRobot : public hardware_interface::RobotHW {
   /// Refuses controllers that claim what the scene cannot serve, and says why.
   bool prepareSwitch(const std::list<hardware_interface::ControllerInfo>& started,
                      const std::list<hardware_interface::ControllerInfo>& stopped) override;
-  /// Switches servos to the modes that are claimed, without a bump. A joint that is let go of stands: its position stays
-  /// commanded as it was, its velocity or effort becomes zero.
+  /// Switches servos to the modes that are claimed, without a bump. A joint that is let go of stands: its position
+  /// stays commanded as it was, its velocity or effort becomes zero.
   void doSwitch(const std::list<hardware_interface::ControllerInfo>& started,
                 const std::list<hardware_interface::ControllerInfo>& stopped) override;
   void read(const ros::Time& time, const ros::Duration& period) override;
@@ -61,8 +61,8 @@ class SimulatedRobot : public hardware_interface::RobotHW {
   };
   struct Joint {
     double position = 0, velocity = 0, effort = 0;
-    std::array<Command, kInterfaces> commands;   ///< what controllers write, for each interface
-    std::optional<std::size_t> interface;        ///< that is claimed
+    std::array<Command, kInterfaces> commands;    ///< what controllers write, for each interface
+    std::optional<std::size_t> interface;         ///< that is claimed
     std::array<std::string, kInterfaces> faults;  ///< why an interface cannot be claimed; empty: it can
   };
   struct Sensor {

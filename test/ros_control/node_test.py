@@ -63,7 +63,9 @@ class Node(unittest.TestCase):
             self.refusal(scene, "_steps_per_cycle:=0"),
         )
         rospy.delete_param("/refused")
-        self.assertIn("/refused/real_time_factor: must be finite and >= 0", self.refusal(scene, "_real_time_factor:=-1"))
+        self.assertIn(
+            "/refused/real_time_factor: must be finite and >= 0", self.refusal(scene, "_real_time_factor:=-1")
+        )
         rospy.delete_param("/refused")
         self.assertIn("/nowhere.urdf", self.refusal("_scene:=/nowhere.urdf"))
 

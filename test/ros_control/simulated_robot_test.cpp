@@ -240,9 +240,10 @@ TEST(SimulatedRobot, RefusesWhatTheSceneCannotServe) {
     EXPECT_EQ(is_possible, text.empty());
     return text;
   };
-  EXPECT_EQ(fault(kPosition, "free"),
-            "controller 'test' claims hardware_interface::PositionJointInterface, but 'free' has no servo: write <servo "
-            "joint=\"free\" mode=\"position\" kp=\"...\" .../> into the scene");
+  EXPECT_EQ(
+      fault(kPosition, "free"),
+      "controller 'test' claims hardware_interface::PositionJointInterface, but 'free' has no servo: write <servo "
+      "joint=\"free\" mode=\"position\" kp=\"...\" .../> into the scene");
   EXPECT_EQ(fault(kVelocity, "held"),
             "controller 'test' claims hardware_interface::VelocityJointInterface, but the servo of 'held' has no gains "
             "of mode 'velocity': write <gains mode=\"velocity\" kp=\"...\" .../> into its <servo>");
