@@ -50,6 +50,10 @@ class TreeBuilder {
     Attachment frame = attachment(plan_, model_, joint.parent, joint.origin.position);
     frame.offset = frame.offset * joint.origin;
     if (joint.kind == scene::JointKind::Fixed) {
+      // Of links that were attached beside the line of a beam.
+      const Pose& on_child = joint.child_origin;
+      if (!on_child.position.isZero(0) || !on_child.orientation.vec().isZero(0))
+        frame.offset = frame.offset * on_child.inverse();
       // What is asked for its reaction needs a node of its own.
       if (!plan_.meshes[child] && measures_reaction(plan_.scene, joint.child))
         frame = {tree_.add_rigid(frame.node, frame.offset), Pose()};

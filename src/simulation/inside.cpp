@@ -2,13 +2,31 @@
 
 #include "analysis/mechanism_states.h"
 #include "simulation/implementation.h"
+#include "simulation/rebuilt.h"
 #include "simulation/touching.h"
 
 namespace flexarm {
 
 struct Inside {
   static Simulation::Implementation& of(const Simulation& simulation) { return *simulation.implementation_; }
+  static Simulation with_settings_of(const Simulation& like, scene::SceneDescription scene) {
+    const auto& from = of(like);
+    scene.integrator = from.first_integrator;
+    scene.starts_in_equilibrium = false;
+    auto made = std::make_unique<Simulation::Implementation>(std::move(scene), SimulationOptions());
+    made->scene.integrator = from.scene.integrator;
+    made->settings = from.settings;
+    made->stepper = std::make_unique<Stepper>(made->model, made->scheme, made->settings);
+    return Simulation(std::move(made));
+  }
 };
+
+Simulation with_settings_of(const Simulation& like, scene::SceneDescription scene) {
+  return Inside::with_settings_of(like, std::move(scene));
+}
+void begin(Simulation& simulation, State& state) {
+  Inside::of(simulation).begin(state);
+}
 
 const Model& model_of(const Simulation& simulation) {
   return Inside::of(simulation).model;

@@ -1,0 +1,446 @@
+#include "simulation/carried_state.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include <Eigen/LU>
+
+#include "joints/joint_kinematics.h"
+#include "model/carried_origin.h"
+#include "simulation/observables.h"
+
+namespace flexarm {
+namespace {
+
+/// Offsets in a body that differ by less are the same, over the model's length scale and in rad.
+constexpr double kSamePlace = 1e-14;
+
+bool is_same_place(const Pose& a, const Pose& b, double length) {
+  return (a.position - b.position).norm() <= kSamePlace * length &&
+         a.orientation.angularDistance(b.orientation) <= 1e-7 &&
+         (a.orientation.coeffs() - b.orientation.coeffs()).norm() <= kSamePlace;
+}
+
+/// Per thing of the one list the index of that with the same name in the other one, or -1.
+template <class Things>
+std::vector<int> same_names(const Things& before, const Things& after) {
+  std::map<std::string, int> indices;
+  for (std::size_t i = 0; i < before.size(); ++i) indices.emplace(before[i].name, static_cast<int>(i));
+  std::vector<int> out;
+  for (const auto& thing : after) {
+    const auto found = indices.find(thing.name);
+    out.push_back(found == indices.end() ? -1 : found->second);
+  }
+  return out;
+}
+
+template <class Value>
+void take(const std::vector<Value>& from, int old, std::vector<Value>& to, std::size_t own) {
+  if (old >= 0 && static_cast<std::size_t>(old) < from.size() && own < to.size()) to[own] = from[old];
+}
+
+/// `width` numbers for each thing.
+void take_means(const StepMeans& from, const std::vector<int>& old_of, std::size_t width, StepMeans& to) {
+  to.count = from.count;
+  to.durations = from.durations;
+  for (std::size_t i = 0; i < old_of.size(); ++i)
+    for (std::size_t k = 0; k < width && old_of[i] >= 0; ++k) {
+      to.impulse[width * i + k] = from.impulse[width * old_of[i] + k];
+      for (std::size_t m = 0; m < to.means.size(); ++m)
+        to.means[m][width * i + k] = from.means[m][width * old_of[i] + k];
+    }
+}
+
+class Carrier {
+ public:
+  Carrier(const ModelOfScene& before, const State& state, const ModelOfScene& after,
+          const std::set<std::string>& touched)
+      : old_(before.model),
+        state_(state),
+        new_(after.model),
+        links_(same_names(old_.links, new_.links)),
+        coordinates_(same_names(old_.coordinates, new_.coordinates)),
+        sensors_(same_names(before.scene.sensors, after.scene.sensors)),
+        nodes_(new_.nodes.size(), -1),
+        stiffness_points_(new_.stiffness_point_count, -1),
+        mass_points_(new_.mass_point_count, -1) {
+    origin_ = new_.floats ? Vector3(world_origin(old_, state_) - new_.origin) : new_.initial_origin;
+    find_nodes();
+    find_points();
+    find_touched(touched);
+  }
+
+  State carry(const std::function<void(State&)>& begin) {
+    Model placed = new_;
+    place(placed);
+    State out = initial_state(placed);
+    overlay(out);
+    begin(out);
+    overlay(out);
+    return out;
+  }
+
+ private:
+  // ---------------------------------------------------------------- what is the same
+
+  void find_nodes() {
+    std::vector<bool> is_body(new_.nodes.size(), false);  // decided by a rigid link
+    for (std::size_t i = 0; i < links_.size(); ++i) {
+      const LinkFrame& now = new_.links[i];
+      if (!now.beam && now.frame.node >= 0) is_body[now.frame.node] = true;
+      if (links_[i] < 0 || now.frame.node < 0) continue;
+      const LinkFrame& then = old_.links[links_[i]];
+      if (now.beam)
+        for (int k = 0; now.frame.node + k <= now.beam->tip.node; ++k) nodes_[now.frame.node + k] = then.frame.node + k;
+      else if (then.frame.node >= 0 && nodes_[now.frame.node] < 0 &&
+               is_same_place(now.frame.offset, then.frame.offset, new_.length_scale))
+        nodes_[now.frame.node] = then.frame.node;
+    }
+    for (std::size_t c = 0; c < coordinates_.size(); ++c) {
+      const int joint = new_.coordinates[c].joint;
+      if (coordinates_[c] < 0 || new_.joints.is_held(joint)) continue;
+      const int then = old_.coordinates[coordinates_[c]].joint, slave = new_.joints[joint].slave;
+      if (!old_.joints.is_held(then) && nodes_[slave] < 0 && !is_body[slave]) nodes_[slave] = old_.joints[then].slave;
+    }
+    for (const JointMap& joint : new_.joints) {
+      if (joint.kind != JointMapKind::Rigid || nodes_[joint.slave] >= 0 || is_body[joint.slave]) continue;
+      const int master = joint.master < 0 ? -1 : nodes_[joint.master];
+      if (joint.master >= 0 && master < 0) continue;
+      for (const JointMap& then : old_.joints)
+        if (then.kind == JointMapKind::Rigid && then.master == master &&
+            is_same_place({joint.origin.position, joint.slave_orientation},
+                          {then.origin.position, then.slave_orientation}, new_.length_scale))
+          nodes_[joint.slave] = then.slave;
+    }
+  }
+
+  void find_points() {
+    for (std::size_t i = 0; i < links_.size(); ++i) {
+      if (links_[i] < 0 || !new_.links[i].beam) continue;
+      const BeamLink &now = *new_.links[i].beam, &then = *old_.links[links_[i]].beam;
+      for_each_group(new_.beams, [&](const auto& group) {
+        using Group = std::decay_t<decltype(group)>;
+        if (Group::kNodes != now.order + 1) return;
+        const auto& elements = std::get<Group>(old_.beams).elements;
+        for (std::size_t k = 0; k < now.elements.size(); ++k) {
+          const auto &own = group.elements[now.elements[k]], &other = elements[then.elements[k]];
+          for (int p = 0; p < own.kStiffnessPoints; ++p)
+            stiffness_points_[own.first_stiffness_point + p] = other.first_stiffness_point + p;
+          for (int p = 0; p < own.kMassPoints; ++p) mass_points_[own.first_mass_point + p] = other.first_mass_point + p;
+        }
+      });
+    }
+  }
+
+  int top_of(int node) const {
+    while (node >= 0 && new_.node_parents[node] >= 0) node = new_.node_parents[node];
+    return node;
+  }
+
+  void find_touched(const std::set<std::string>& touched) {
+    std::set<int> tops;
+    for (const LinkFrame& link : new_.links)
+      if (touched.count(link.name) > 0 && link.frame.node >= 0) tops.insert(top_of(link.frame.node));
+    for (std::size_t i = 0; i < nodes_.size(); ++i) is_touched_.push_back(tops.count(top_of(static_cast<int>(i))) > 0);
+    for_each_element(new_.beams, [&](const auto& element) {
+      for (int p = 0; p < element.kMassPoints; ++p)
+        if (is_touched_[element.nodes[0]]) touched_points_.insert(element.first_mass_point + p);
+    });
+  }
+
+  // ---------------------------------------------------------------- where it is
+
+  /// By which positions of nodes are others.
+  Vector3 shift() const { return world_origin(old_, state_) - (new_.origin + origin_); }
+
+  void place(Model& placed) const {
+    placed.initial_origin = origin_;
+    const Vector3 of_new = new_.initial_origin - origin_, of_old = shift();
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      placed.nodes[i].position += of_new;
+      if (nodes_[i] < 0) continue;
+      placed.nodes[i] = node_pose(state_.nodes[nodes_[i]]);
+      placed.nodes[i].position += of_old;
+      placed.initial_velocity[i] = spatial_velocity(state_.nodes[nodes_[i]]);
+    }
+    for (std::size_t i = 0; i < links_.size(); ++i) place_body(i, placed);
+    for (int j = 0; j < static_cast<int>(new_.joints.size()); ++j) {
+      const JointMap& joint = new_.joints[j];
+      if (joint.kind != JointMapKind::Rigid || nodes_[joint.slave] >= 0) continue;
+      placed.nodes[joint.slave] = slave_pose(placed, j, placed.nodes, placed.initial_released[j]);
+      placed.initial_velocity[joint.slave] =
+          slave_velocity(placed, j, placed.nodes, placed.initial_released[j], placed.initial_velocity)
+              .with(ReleasedVector(0));
+    }
+    move_bodies(placed);
+    release(placed);
+  }
+
+  /// The node that has the mass of a rigid link, one beside it where that is a beam's; -1: the world.
+  static int body_node(const Model& model, const LinkFrame& link) {
+    for (const JointMap& joint : model.joints)
+      if (joint.kind == JointMapKind::Rigid && link.frame.node >= 0 && joint.master == link.frame.node &&
+          model.inertias[joint.slave].mass > 0)
+        return joint.slave;
+    return link.frame.node;
+  }
+
+  /// Schemes may let centres of mass move a little beside the joints that hold them: momenta are theirs.
+  void move_bodies(Model& placed) const {
+    std::map<int, std::set<int>> parts;  // old nodes, by the new one
+    for (std::size_t i = 0; i < links_.size(); ++i) {
+      if (links_[i] < 0 || new_.links[i].beam) continue;
+      const int now = body_node(new_, new_.links[i]), then = body_node(old_, old_.links[links_[i]]);
+      if (now >= 0 && then >= 0 && nodes_[now] < 0 && new_.inertias[now].mass > 0 && old_.inertias[then].mass > 0)
+        parts[now].insert(then);
+    }
+    for (const auto& [node, bodies] : parts) {
+      const Vector3 place = placed.nodes[node].position - shift();
+      double mass = 0;
+      Vector3 momentum = Vector3::Zero(), spin = Vector3::Zero();
+      Matrix3 inertia = Matrix3::Zero();
+      for (const int body : bodies) {
+        const NodeState& own = state_.nodes[body];
+        const NodalInertia& part = old_.inertias[body];
+        const Matrix3 turn = own.orientation.toRotationMatrix(), rotary = turn * part.rotary * turn.transpose();
+        const Vector3 arm = own.position - place, turning = own.orientation * own.angular_velocity;
+        // Of a part of a body the velocity is that of its place; of several bodies their momenta count.
+        const Vector3 velocity = bodies.size() > 1 ? own.velocity : Vector3(own.velocity - turning.cross(arm));
+        mass += part.mass;
+        momentum += part.mass * velocity;
+        spin += rotary * turning;
+        inertia += rotary;
+        if (bodies.size() == 1) continue;
+        spin += part.mass * arm.cross(velocity);
+        inertia += part.mass * (arm.squaredNorm() * Matrix3::Identity() - arm * arm.transpose());
+      }
+      Vector6& velocity = placed.initial_velocity[node];
+      velocity.head<3>() = momentum / mass;
+      const Eigen::FullPivLU<Matrix3> solver(inertia);
+      if (bodies.size() == 1)
+        velocity.tail<3>() = spatial_velocity(state_.nodes[*bodies.begin()]).tail<3>();
+      else if (solver.isInvertible())
+        velocity.tail<3>() = solver.solve(spin);
+    }
+  }
+
+  /// The node of a rigid link that is elsewhere in its body now.
+  void place_body(std::size_t link, Model& placed) const {
+    const Attachment& now = new_.links[link].frame;
+    if (links_[link] < 0 || now.node < 0 || nodes_[now.node] >= 0 || new_.links[link].beam) return;
+    const Attachment& then = old_.links[links_[link]].frame;
+    Pose frame = attached_pose(state_, then);
+    frame.position += then.node < 0 ? Vector3(old_.origin - (new_.origin + origin_)) : shift();
+    const Pose pose = frame * now.offset.inverse();
+    NodePose& node = placed.nodes[now.node];
+    node = {pose.position, pose.orientation, pose.orientation.toRotationMatrix()};
+    Vector6& velocity = placed.initial_velocity[now.node];
+    velocity.setZero();
+    if (then.node < 0) return;
+    velocity = spatial_velocity(state_.nodes[then.node]);
+    const Vector3 arm = node.position - shift() - state_.nodes[then.node].position;
+    velocity.head<3>() += Vector3(velocity.tail<3>()).cross(arm);
+  }
+
+  void release(Model& placed) const {
+    std::vector<bool> is_known(new_.joints.size_with_held(), false);
+    for (std::size_t c = 0; c < coordinates_.size(); ++c) {
+      if (coordinates_[c] < 0) continue;
+      const int joint = new_.coordinates[c].joint, then = old_.coordinates[coordinates_[c]].joint;
+      if (is_known[joint]) continue;
+      is_known[joint] = true;
+      const JointMap &map = new_.joints[joint], &other = old_.joints[then];
+      Released& released = placed.initial_released[joint];
+      released = state_.released[then];
+      if (map.kind != JointMapKind::Free || map.master >= 0) continue;
+      const Vector3 way =
+          old_.origin + state_.origin + other.origin.position - (new_.origin + origin_ + map.origin.position);
+      released.displacement += map.origin.orientation.conjugate() * way;
+    }
+    for (std::size_t j = 0; j < new_.joints.size(); ++j) {
+      const JointMap& joint = new_.joints[j];
+      if (is_known[j] || joint.kind != JointMapKind::Free || joint.master >= 0) continue;
+      const NodePose& slave = placed.nodes[joint.slave];
+      const Quaternion back = joint.origin.orientation.conjugate();
+      placed.initial_released[j].displacement = back * (moved_origin(joint, slave) - joint.origin.position);
+      placed.initial_released[j].rotation =
+          (back * slave.orientation * joint.slave_orientation.conjugate()).normalized();
+    }
+  }
+
+  // ---------------------------------------------------------------- what it remembers
+
+  void overlay(State& out) const {
+    out.time = state_.time;
+    out.steps = state_.steps;
+    out.work = state_.work;
+    out.dissipated = state_.dissipated;
+    out.halving_level = state_.halving_level;
+    out.good_steps = state_.good_steps;
+    overlay_nodes(out);
+    overlay_points(out);
+    overlay_coordinates(out);
+    overlay_sensors(out);
+    overlay_force_memory(out);
+    out.wrenches.clear();
+    for (const NodalLoad& wrench : state_.wrenches) add_wrench(wrench, out);
+  }
+
+  void overlay_nodes(State& out) const {
+    const std::size_t points = new_.mass_point_count, old_points = old_.mass_point_count;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      const int old = nodes_[i];
+      if (old < 0) continue;
+      const NodeState found = out.nodes[i];
+      out.nodes[i] = state_.nodes[old];
+      out.nodes[i].position += shift();
+      take(state_.total_rotations, old, out.total_rotations, i);
+      take(state_.reactions, old, out.reactions, i);
+      if (is_touched_[i]) {
+        out.nodes[i].mean_spin = found.mean_spin;
+        out.nodes[i].acceleration = found.acceleration;
+        out.nodes[i].angular_acceleration = found.angular_acceleration;
+      } else {
+        take(state_.forces, old, out.forces, i);
+        if (!out.momentum_rates.empty() && !state_.momentum_rates.empty())
+          out.momentum_rates[points + i] = state_.momentum_rates[old_points + old];
+      }
+    }
+  }
+
+  void overlay_points(State& out) const {
+    for (std::size_t i = 0; i < stiffness_points_.size(); ++i) {
+      take(state_.strain_rates, stiffness_points_[i], out.strain_rates, i);
+      take(state_.strain_memory, stiffness_points_[i], out.strain_memory, i);
+      take(state_.stiffness_rotations, stiffness_points_[i], out.stiffness_rotations, i);
+    }
+    for (std::size_t i = 0; i < mass_points_.size(); ++i) {
+      if (mass_points_[i] < 0) continue;
+      const Vector3 found = out.mass_points[i].angular_acceleration;
+      out.mass_points[i] = state_.mass_points[mass_points_[i]];
+      take(state_.mass_rotations, mass_points_[i], out.mass_rotations, i);
+      if (touched_points_.count(static_cast<int>(i)) > 0)
+        out.mass_points[i].angular_acceleration = found;
+      else if (!out.momentum_rates.empty() && !state_.momentum_rates.empty())
+        out.momentum_rates[i] = state_.momentum_rates[mass_points_[i]];
+    }
+  }
+
+  void overlay_coordinates(State& out) const {
+    for (std::size_t c = 0; c < coordinates_.size(); ++c) {
+      take(state_.commands, coordinates_[c], out.commands, c);
+      take(state_.efforts, coordinates_[c], out.efforts, c);
+      take(state_.rests, coordinates_[c], out.rests, c);
+    }
+    take_means(state_.drives, coordinates_, 1, out.drives);
+    for (std::size_t i = 0; i < new_.actuators.size(); ++i) {
+      const int coordinate = coordinates_[new_.actuators[i].coordinate];
+      const int old = coordinate < 0 ? -1 : old_.coordinates[coordinate].actuator;
+      if (old < 0 || state_.actuators[old].servo.outputs.size() != out.actuators[i].servo.outputs.size()) continue;
+      out.actuators[i] = state_.actuators[old];
+    }
+  }
+
+  void overlay_sensors(State& out) const {
+    std::vector<int> reactions(new_.reactions.size(), -1);
+    for (std::size_t i = 0; i < sensors_.size(); ++i) {
+      if (sensors_[i] < 0) continue;
+      take(state_.samples, sensors_[i], out.samples, i);
+      const int own = new_.sensors[i].reaction, old = old_.sensors[sensors_[i]].reaction;
+      if (own >= 0 && old >= 0) reactions[own] = old;
+    }
+    take_means(state_.transmitted, reactions, 6, out.transmitted);
+    for (std::size_t i = 0; i < reactions.size(); ++i)
+      for (int k = 0; k < 6 && reactions[i] >= 0; ++k)
+        out.last_transmitted[6 * i + k] = state_.last_transmitted[6 * reactions[i] + k];
+  }
+
+  /// Kind, name and links of a force element, and how many such there were before.
+  using ElementKey = std::tuple<std::string, std::string, std::vector<std::string>, int>;
+  template <class Visitor>
+  static void for_each_memory(const Model& model, const Visitor& visit) {
+    std::map<ElementKey, int> counts;
+    std::size_t memory = 0;
+    for (const auto& element : model.force_elements) {
+      ElementKey key{element->kind(), element->name(), element->links(), 0};
+      std::get<3>(key) = counts[key]++;
+      visit(key, *element, memory);
+      memory += element->memory_size();
+    }
+  }
+
+  void overlay_force_memory(State& out) const {
+    std::map<ElementKey, std::pair<const ForceElement*, std::size_t>> old;
+    for_each_memory(old_, [&](const ElementKey& key, const ForceElement& element, std::size_t memory) {
+      old.emplace(key, std::pair(&element, memory));
+    });
+    for_each_memory(new_, [&](const ElementKey& key, const ForceElement& element, std::size_t memory) {
+      const auto found = old.find(key);
+      if (found == old.end() || found->second.first->memory_size() != element.memory_size()) return;
+      // It speaks of places in frames of nodes.
+      const std::vector<int>&own = element.reach(), &other = found->second.first->reach();
+      const bool is_same =
+          std::equal(own.begin(), own.end(), other.begin(), other.end(), [&](int a, int b) { return nodes_[a] == b; });
+      if (!is_same) return;
+      const auto begin = state_.force_memory.begin() + static_cast<std::ptrdiff_t>(found->second.second);
+      std::copy(begin, begin + element.memory_size(), out.force_memory.begin() + static_cast<std::ptrdiff_t>(memory));
+    });
+  }
+
+  void add_wrench(NodalLoad wrench, State& out) const {
+    const auto link = std::find(links_.begin(), links_.end(), wrench.link);
+    if (wrench.link < 0 || link == links_.end()) return;
+    const LinkFrame &now = new_.links[link - links_.begin()], &then = old_.links[wrench.link];
+    if (now.frame.node < 0) return;  // on what is fixed to the world now
+    wrench.link = static_cast<int>(link - links_.begin());
+    if (now.beam) {
+      wrench.node += now.frame.node - then.frame.node;
+    } else {
+      const Pose change = now.frame.offset * then.frame.offset.inverse();
+      wrench.node = now.frame.node;
+      wrench.arm = change * wrench.arm;
+      if (wrench.follows) {
+        wrench.force = change.orientation * wrench.force;
+        wrench.moment = change.orientation * wrench.moment;
+      }
+    }
+    out.wrenches.push_back(wrench);
+  }
+
+  const Model& old_;
+  const State& state_;
+  const Model& new_;
+  // Per link, coordinate, sensor, node and point of the new model that of the old one, or -1. Of nodes those whose
+  // frames are the same in their bodies.
+  std::vector<int> links_, coordinates_, sensors_, nodes_, stiffness_points_, mass_points_;
+  std::vector<bool> is_touched_;  // per node
+  std::set<int> touched_points_;  // with mass
+  Vector3 origin_;                // State::origin
+};
+
+}  // namespace
+
+std::optional<std::string> link_with_other_mesh(const Model& before, const Model& after) {
+  const std::vector<int> links = same_names(before.links, after.links);
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    if (links[i] < 0) continue;
+    const std::optional<BeamLink>&then = before.links[links[i]].beam, &now = after.links[i].beam;
+    if (!then && !now) continue;
+    const bool is_same =
+        then && now && then->order == now->order &&
+        std::equal(then->element_ends.begin(), then->element_ends.end(), now->element_ends.begin(),
+                   now->element_ends.end(), [&](double a, double b) { return std::abs(a - b) <= 1e-9 * now->length; });
+    if (!is_same) return after.links[i].name;
+  }
+  return std::nullopt;
+}
+
+State carried_state(const ModelOfScene& before, const State& state, const ModelOfScene& after,
+                    const std::set<std::string>& touched, const std::function<void(State&)>& begin) {
+  return Carrier(before, state, after, touched).carry(begin);
+}
+
+}  // namespace flexarm
