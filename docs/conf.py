@@ -52,8 +52,8 @@ breathe_default_project = "flexarm"
 CONTENTS = {
     "README": [
         ("Use", """docs/install docs/guide docs/tutorial_flexible_link docs/tutorial_servo docs/tutorial_ros
-            docs/tutorial_moveit docs/ros_control docs/tutorial_modes docs/tutorial_library docs/tune docs/sweep docs/payloads docs/identify
-            docs/linearise docs/results docs/portability"""),
+            docs/tutorial_moveit docs/ros_control docs/tutorial_modes docs/tutorial_library docs/tune docs/sweep
+            docs/payloads docs/identify docs/linearise docs/results docs/portability"""),
         ("Reference", """docs/scene_format docs/ros docs/rviz docs/command_line docs/python docs/python_api docs/cpp_api
             docs/schemes"""),
         ("Theory", "docs/theory docs/notes/README docs/architecture CONTRIBUTING"),
