@@ -20,7 +20,7 @@ namespace {
 
 using scene::JointKind;
 
-void run(Simulation& simulation, int steps) {
+void advance(Simulation& simulation, int steps) {
   for (int n = 0; n < steps; ++n) ASSERT_TRUE(simulation.step().converged) << "step " << n;
 }
 
@@ -72,7 +72,7 @@ TEST(Attach, TwoBodiesInFlightGoOnAsOne) {
     SceneBuilder b = two_bodies();
     b.scene.integrator = with_scheme(b.scene.integrator, scheme);
     Simulation s(b.scene);
-    run(s, 40);
+    advance(s, 40);
     const Vector3 momentum = s.momentum(), spin = s.angular_momentum();
     const double account = account_of(s), kinetic = s.energies().kinetic;
     const Pose box = s.link_pose(link_of(s, "box"));
@@ -110,7 +110,7 @@ TEST(Attach, TwoBodiesInFlightGoOnAsOne) {
     EXPECT_EQ(s.coordinate_names().size(), 6u);
 
     const Pose relative = s.link_pose(1).inverse() * s.link_pose(2);
-    run(s, 100);
+    advance(s, 100);
     expect_near((s.link_pose(1).inverse() * s.link_pose(2)).position, relative.position, 1e-12);
     const Vector3 later = s.momentum(), later_spin = s.angular_momentum();
     const double energy = s.energies().kinetic;
@@ -119,9 +119,9 @@ TEST(Attach, TwoBodiesInFlightGoOnAsOne) {
     expect_near(s.angular_momentum(), later_spin, 1e-10 * spin.norm());
     EXPECT_NEAR(s.energies().kinetic, energy, 1e-10 * kinetic);
     EXPECT_EQ(s.coordinate_names().size(), 12u);
-    run(s, 100);
+    advance(s, 100);
     s.reset();
-    run(s, 10);
+    advance(s, 10);
   }
 }
 
@@ -131,7 +131,7 @@ TEST(Attach, AFlexibleArmTakesABoxAndLetsItGo) {
     SceneBuilder b = arm_and_box();
     b.scene.integrator = with_scheme(b.scene.integrator, scheme);
     Simulation s(b.scene);
-    run(s, 20);
+    advance(s, 20);
     const Vector3 momentum = s.momentum(), spin = s.angular_momentum();
     const double account = account_of(s), energy = s.energies().total(), dissipated = s.energies().dissipated;
     std::vector<BeamPoint> before, after;
@@ -147,14 +147,14 @@ TEST(Attach, AFlexibleArmTakesABoxAndLetsItGo) {
     ASSERT_EQ(before.size(), after.size());
     for (std::size_t i = 0; i < before.size(); ++i) expect_near(after[i].pose.position, before[i].pose.position, 1e-13);
 
-    run(s, 100);
+    advance(s, 100);
     const Vector3 late = s.momentum(), late_spin = s.angular_momentum();
     const double late_account = account_of(s);
     detach(s, "box");
     expect_near(s.momentum(), late, 1e-10 * momentum.norm());
     expect_near(s.angular_momentum(), late_spin, 1e-10 * spin.norm());
     EXPECT_NEAR(account_of(s), late_account, 1e-10 * energy);
-    run(s, 50);
+    advance(s, 50);
     if (b.scene.integrator.scheme != "em") continue;
     EXPECT_NEAR(account_of(s), account, 1e-6 * energy);
     expect_near(s.momentum(), momentum, 1e-8 * momentum.norm());
@@ -204,7 +204,7 @@ TEST(Attach, AFlexiblePayloadIsTakenByARigidLink) {
   b.scene.initial_joints.push_back({"mast_free/x", 2, 0, {}});
   b.scene.initial_links.push_back({"mast", {0.1, 0.2, 0.3}, {0.5, 0.4, -0.3}, {}});
   Simulation s(b.scene);
-  run(s, 10);
+  advance(s, 10);
   const Vector3 momentum = s.momentum(), spin = s.angular_momentum();
   const double account = account_of(s);
   attach(s, "mast", "box");
@@ -212,9 +212,9 @@ TEST(Attach, AFlexiblePayloadIsTakenByARigidLink) {
   expect_near(s.momentum(), momentum, 1e-10 * momentum.norm());
   expect_near(s.angular_momentum(), spin, 1e-10 * spin.norm());
   EXPECT_NEAR(account_of(s), account, 1e-9);
-  run(s, 20);
+  advance(s, 20);
   detach(s, "mast");
-  run(s, 20);
+  advance(s, 20);
 }
 
 void expect_error(const std::string& part, const std::function<void()>& change) {
@@ -240,7 +240,7 @@ TEST(Attach, SaysWhatIsWrong) {
   expect_error("'box' is attached already", [&] { attach(s, "box", "base"); });
   expect_error("there is no link 'nobody'", [&] { remove(s, "nobody"); });
   expect_error("is the world", [&] { remove(s, "world"); });
-  run(s, 5);
+  advance(s, 5);
 }
 
 TEST(Detach, FreesALinkOfTheScene) {
@@ -248,16 +248,16 @@ TEST(Detach, FreesALinkOfTheScene) {
   b.body("tool", 0.5, {0, 0.05, 0}, 0.01 * Matrix3::Identity());
   b.joint("weld", JointKind::Fixed, "boom", "tool", {0.37, 0, 0});  // makes a border of its own
   Simulation s(b.scene);
-  run(s, 30);
+  advance(s, 30);
   const Vector3 momentum = s.momentum(), spin = s.angular_momentum();
   const double account = account_of(s);
   detach(s, "tool");
   expect_near(s.momentum(), momentum, 1e-10 * momentum.norm());
   expect_near(s.angular_momentum(), spin, 1e-10 * spin.norm());
   EXPECT_NEAR(account_of(s), account, 1e-9);
-  run(s, 30);
+  advance(s, 30);
   attach(s, "tool", "boom");
-  run(s, 30);
+  advance(s, 30);
 }
 
 scene::SceneDescription ball(double radius) {
@@ -279,7 +279,7 @@ TEST(Spawn, WhatMovesGoesOnAndTheNewBodyFlies) {
     scene::SceneDescription scene = driven_scene().scene;
     scene.integrator = with_scheme(scene.integrator, scheme);
     Simulation s(scene), alone(scene);
-    run(s, 40), run(alone, 40);
+    advance(s, 40), advance(alone, 40);
     const double account = account_of(s);
     Spawn where{{{3, 4, 5}, Quaternion(Eigen::AngleAxisd(0.4, Vector3::UnitY()))}, {0.1, 0.2, 0.3}, {1, 2, 3}, "new_"};
     spawn(s, ball(0.1), where);
@@ -289,7 +289,7 @@ TEST(Spawn, WhatMovesGoesOnAndTheNewBodyFlies) {
     ASSERT_LT(link, s.link_names().size());
     expect_near(s.link_pose(link).position, where.pose.position, 1e-14);
     const double start = s.time();
-    run(s, 40), run(alone, 40);
+    advance(s, 40), advance(alone, 40);
     for (std::size_t i = 0; i < alone.coordinate_names().size(); ++i)
       EXPECT_NEAR(s.position(*s.find_coordinate(alone.coordinate_names()[i])), alone.position(i), tolerance)
           << alone.coordinate_names()[i];
@@ -298,7 +298,7 @@ TEST(Spawn, WhatMovesGoesOnAndTheNewBodyFlies) {
     expect_near(s.link_pose(link).position, expected, 1e-9);
     remove(s, "new_ball");
     EXPECT_EQ(s.link_names(), alone.link_names());
-    run(s, 40), run(alone, 40);
+    advance(s, 40), advance(alone, 40);
     for (std::size_t i = 0; i < alone.coordinate_names().size(); ++i)
       EXPECT_NEAR(s.position(i), alone.position(i), tolerance) << alone.coordinate_names()[i];
   }
@@ -318,17 +318,17 @@ TEST(Spawn, ANewBallFallsOnTheGroundAndIsTaken) {
   all.restitution = 0.05;
   b.scene.contacts.push_back(all);
   Simulation s(b.scene);
-  run(s, 5);
+  advance(s, 5);
   spawn(s, ball(0.1), {{{3, 0, 0.2}, Quaternion::Identity()}, Vector3::Zero(), Vector3::Zero(), ""});
   spawn(s, ball(0.1), {{{3, 0.05, 0.42}, Quaternion::Identity()}, Vector3::Zero(), Vector3::Zero(), "upper_"});
-  run(s, 500);
+  advance(s, 500);
   EXPECT_NEAR(s.link_pose(link_of(s, "ball")).position.z(), 0.1, 2e-3);
   EXPECT_NEAR(s.link_pose(link_of(s, "upper_ball")).position.z(), 0.1, 2e-3);
   attach(s, "upper_ball", "ball");
-  run(s, 50);
+  advance(s, 50);
   remove(s, "ball");
   EXPECT_EQ(link_of(s, "upper_ball"), s.link_names().size()) << "what it carried went with it";
-  run(s, 20);
+  advance(s, 20);
 }
 
 TEST(Spawn, AMechanismHangsOnTheWorldAtItsPose) {
@@ -338,25 +338,25 @@ TEST(Spawn, AMechanismHangsOnTheWorldAtItsPose) {
   pendulum.scene.initial_joints.push_back({"pivot", 0.3, 0, {}});
   pendulum.servo("pivot", 5, 1);
   Simulation s(two_bodies().scene);
-  run(s, 5);
+  advance(s, 5);
   spawn(s, pendulum.scene, {{{2, 0, 0}, Quaternion::Identity()}, Vector3::Zero(), Vector3::Zero(), "left/"});
   spawn(s, pendulum.scene, {{{-2, 0, 0}, Quaternion::Identity()}, Vector3::Zero(), Vector3::Zero(), "right/"});
   expect_near(s.link_pose(link_of(s, "right/rod")).position, {-2, 0, 1}, 1e-14);
   const std::size_t pivot = *s.find_coordinate("left/pivot");
   EXPECT_TRUE(s.has_servo(pivot));
   EXPECT_NEAR(s.position(pivot), 0.3, 1e-14);
-  run(s, 20);
+  advance(s, 20);
   s.command_set_point(pivot, 0.7);
   attach(s, "box", "right/rod");
   EXPECT_NEAR(s.set_point(*s.find_coordinate("left/pivot")), 0.7, 0);
-  run(s, 20);
+  advance(s, 20);
   remove(s, "left/rod");
   EXPECT_FALSE(s.find_coordinate("left/pivot").has_value());
-  run(s, 20);
+  advance(s, 20);
   const Spawn again{{}, Vector3::Zero(), Vector3::Zero(), "right/"}, moving{{}, {1, 0, 0}, Vector3::Zero(), "more/"};
   expect_error("there is a link 'right/rod' already", [&] { spawn(s, pendulum.scene, again); });
   expect_error("root link floats", [&] { spawn(s, pendulum.scene, moving); });
-  run(s, 5);
+  advance(s, 5);
 }
 
 }  // namespace
