@@ -1,0 +1,237 @@
+#include <cmath>
+#include <filesystem>
+#include <regex>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "cli/program.h"
+#include "flexarm/scene/urdf_reader.h"
+#include "flexarm/simulation/simulation.h"
+
+namespace flexarm::cli {
+
+TEST(Check, DescribesTheModel) {
+  const Outcome outcome = shell("flexarm check " + example("cantilever"));
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  expect_contains(outcome.output, "scene 'cantilever': 2 links, 1 joints");
+  for (const char* word : {"nodes", "degrees of freedom", "EA", "GJ", "EI y", "2.1991e+07", "549.78", "flexible",
+                           "fixed", "first natural frequencies there [Hz]: 14.2"})
+    expect_contains(outcome.output, word);
+}
+
+TEST(Check, SaysWhichBeamsAreRigid) {
+  const Outcome outcome = shell("flexarm check " + scene_file(R"(<robot name="r"> <link name="world"/>
+      <joint name="hinge" type="continuous"> <parent link="world"/> <child link="arm"/> <axis xyz="0 1 0"/> </joint>
+      <link name="arm"> <beam elements="0"> <centerline> <line to="1 0 0"/> </centerline>
+        <circle radius="0.01"/> <material young="70e9" poisson="0.33" density="2700"/> </beam> </link> </robot>)"));
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  expect_contains(outcome.output, "1 nodes, 1 degrees of freedom");
+  EXPECT_TRUE(std::regex_search(outcome.output, std::regex("arm +rigid +0.84823\n"))) << outcome.output;
+  EXPECT_TRUE(std::regex_search(outcome.output, std::regex("arm .* 0.84823 +rigid\n"))) << outcome.output;
+}
+
+// A line for each pair, whatever elements it has: boxes have points both ways, beams those of each of their elements.
+TEST(Check, HasALineForEachPairThatMayTouch) {
+  const auto body = [](const std::string& name, const std::string& start) {
+    return fmt::format(R"(<joint name="of_{0}" type="floating"> <parent link="world"/> <child link="{0}"/> {1} </joint>
+      <link name="{0}"> <inertial> <mass value="1"/> <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/> </inertial>
+        <collision> <geometry> <box size="0.1 0.1 0.1"/> </geometry> </collision> </link>)",
+                       name, "<origin xyz=\"" + start + "\"/>");
+  };
+  const Outcome outcome =
+      shell("flexarm check " + scene_file(R"(<robot name="r"> <link name="world"/> <ground name="floor"/>)" +
+                                          body("low", "0 0 0.049") + body("high", "0 0 0.149") +
+                                          R"(<joint name="clamp" type="fixed"> <parent link="world"/>
+      <child link="arm"/> <origin xyz="0 0 0.5"/> </joint>
+      <link name="arm"> <beam elements="4"> <centerline> <line to="1 0 0"/> </centerline>
+        <circle radius="0.01"/> <material young="70e9" poisson="0.33" density="2700"/> </beam> </link>
+      <contact first="floor" second="low" restitution="0.5" friction="0.25" stiffness="3e4"/>
+      <contact first="high" second="*"/> </robot>)"));
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  const std::regex line("\ncontact +([a-z]+, [a-z]+) +(.*?)  +([0-9]+ points, .*)");
+  std::map<std::string, std::pair<std::string, std::string>> found;
+  for (std::sregex_iterator i(outcome.output.begin(), outcome.output.end(), line), end; i != end; ++i)
+    EXPECT_TRUE(found.emplace((*i)[1], std::pair((*i)[2], (*i)[3])).second) << "two lines of " << (*i)[1];
+  ASSERT_EQ(found.size(), 4u) << outcome.output;
+  EXPECT_TRUE(std::regex_match(found["floor, low"].first, std::regex("[0-9]+ points inside, 0.001 m deep")))
+      << outcome.output;
+  EXPECT_TRUE(std::regex_match(found["floor, low"].second,
+                               std::regex("[0-9]+ points, 3e\\+04 N/m each, restitution 0.5, friction 0.25")))
+      << outcome.output;
+  EXPECT_EQ(found["low, high"].first, "touches");
+  EXPECT_EQ(found["high, floor"].first, "0.099 m apart");
+  EXPECT_EQ(found["high, arm"].first, "0.291 m apart") << "a radius less than their lines";
+}
+
+TEST(Check, HasALineForEachJointWithPlay) {
+  const Outcome outcome = shell("flexarm check " + test::source_path("config/examples/loose_crank.urdf"));
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_TRUE(std::regex_search(outcome.output,
+                                std::regex("\nclearance .* points, 1.5e\\+08 N/m each, restitution 0.9, friction 0\n")))
+      << outcome.output;
+}
+
+namespace {
+
+/// A flexible arm in a plane, with what drives its elbow.
+std::string driven_arm(const std::string& drive, const std::string& of_beam = "") {
+  return scene_file(
+      R"(<robot name="r"> <link name="world"/>
+      <joint name="elbow" type="continuous"> <parent link="world"/> <child link="arm"/> <axis xyz="0 1 0"/> </joint>
+      <link name="arm"> <beam> <centerline> <line to="1 0 0"/> </centerline> )" +
+      of_beam + R"(
+        <circle radius="0.01"/> <material young="70e9" poisson="0.33" density="2700"/> </beam> </link> )" +
+      drive + R"( <simulation> <gravity xyz="0 0 0"/> <effort joint="elbow" history="0"/> </simulation> </robot>)");
+}
+
+/// Largest speed of the elbow in the last tenth of a run, that may end early.
+double last_speed(const std::string& scene) {
+  const std::string csv = temporary("servo.csv");
+  shell("cd '" + testing::TempDir() + "' && flexarm simulate " + scene + " --until 1 --quiet --output " + csv);
+  const std::vector<double> speeds = read_csv(csv)["joint/elbow/velocity"];
+  double largest = 0;
+  for (std::size_t i = speeds.size() * 9 / 10; i < speeds.size(); ++i) largest = std::max(largest, std::abs(speeds[i]));
+  return largest;
+}
+
+}  // namespace
+
+// A flexible link in place of a rigid one has no inertia where the drive acts: who damps it once a step from outside
+// has to know by how much he may. A hub or a rotor give it one.
+TEST(Check, SaysWhatResistsADriveWithinAStep) {
+  const auto found = [](const std::string& scene) {
+    const Outcome outcome = shell("flexarm check " + scene);
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    EXPECT_EQ(outcome.errors.find("shake"), std::string::npos) << "nothing in the scene suffers";
+    std::smatch row;
+    const std::regex line("\nelbow +([0-9.e-]+) +([0-9.e-]+) +([0-9.e-]+)\n");
+    return std::regex_search(outcome.output, row, line) ? std::vector<double>{std::stod(row[1]), std::stod(row[3])}
+                                                        : std::vector<double>();
+  };
+  const std::vector<double> bare = found(driven_arm("")),
+                            rotor = found(driven_arm(R"(<drive joint="elbow" rotor_inertia="1e-3"/>)"));
+  ASSERT_EQ(bare.size(), 2u);
+  ASSERT_EQ(rotor.size(), 2u);
+  EXPECT_NEAR(rotor[0] - bare[0], 1e-3, 0.01 * rotor[0]) << "three digits";
+  EXPECT_TRUE(found(driven_arm("", R"(<hub at="start" mass="0.5" inertia="2e-2 4e-2 2e-2"/>)")).empty());
+
+  // A controller outside that damps by 0.3 of what is told calms a beam that has damping, by 1.1 of it shakes it.
+  const std::string damped = driven_arm("", R"(<damping stiffness_proportional="0.0001"/>)");
+  const double limit = found(damped).at(1);
+  for (const double part : {0.3, 1.1}) {
+    Simulation simulation(*scene::read_scene_file(damped).scene);
+    simulation.command_effort(0, 1);
+    double last = 0;
+    for (int n = 0; n < 400 && simulation.step().converged; ++n) {
+      last = simulation.velocity(0);
+      simulation.command_effort(0, -part * limit * last);
+    }
+    EXPECT_EQ(std::abs(last) < 0.01, part < 1) << part << ": " << last;
+  }
+}
+
+// One warning, where the servo of the scene itself is affected, with a number that is enough.
+TEST(Check, WarnsOfSampledServosThatShakeABeam) {
+  const auto servo = [](const std::string& drive) {
+    return driven_arm(drive + R"(<servo joint="elbow" mode="velocity" kp="20" set_point="0.2" sample_time="0.004"/>)");
+  };
+  const std::string bare = servo("");  // one file, which the next scene replaces
+  const Outcome shaken = shell("flexarm check " + bare);
+  EXPECT_EQ(shaken.status, 0);
+  std::smatch told;
+  ASSERT_TRUE(std::regex_search(
+      shaken.errors, told,
+      std::regex(
+          "flexarm: warning: sampled servos may shake .*: (<drive joint=\"elbow\" rotor_inertia=\"[0-9.]+\"/>)\n")))
+      << shaken.errors;
+  EXPECT_GT(last_speed(bare), 10) << "instead of 0.2 rad/s";
+  const std::string calm = servo(told[1]);
+  EXPECT_EQ(shell("flexarm check " + calm).errors.find("shake"), std::string::npos);
+  EXPECT_NEAR(last_speed(calm), 0.2, 0.02);
+  EXPECT_EQ(
+      shell("flexarm check " + driven_arm(R"(<servo joint="elbow" mode="velocity" kp="20"/>)")).errors.find("shake"),
+      std::string::npos)
+      << "it is not sampled";
+}
+
+// An effort that pushes the arm on its stop: the modes are those there.
+TEST(Check, SaysWhereTheArmIs) {
+  const std::string scene = scene_file(R"(<robot name="r"> <link name="world"/>
+      <joint name="elbow" type="revolute"> <parent link="world"/> <child link="arm"/> <axis xyz="0 1 0"/>
+        <limit lower="-1" upper="0.5" effort="9" velocity="9"/> </joint>
+      <link name="arm"> <inertial> <mass value="1"/> <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/> </inertial> </link>
+      <simulation> <gravity xyz="0 0 0"/> <effort joint="elbow" history="4"/> <probe name="arm" link="arm"/> </simulation> </robot>)");
+  const std::regex where(
+      "equilibrium under gravity and the loads at t = 0: joints at \\[m, rad\\]\n  elbow +0.5[0-9]*  pressed on its "
+      "upper limit, 0.5\n");
+  for (const char* command : {"check", "modes"}) {
+    const Outcome outcome = shell("flexarm " + std::string(command) + " " + scene);
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_TRUE(std::regex_search(outcome.output, where)) << outcome.output;
+  }
+  for (const char* command : {"static", "modes"}) {
+    const std::string output = shell("flexarm " + std::string(command) + " " + scene).output;
+    expect_contains(output, "  link arm ");
+    expect_contains(output, "  probe arm ");
+  }
+}
+
+TEST(Check, NamesLoopsOfBeamsAtDeadPoints) {
+  const auto beam = [](const std::string& link, double length) {
+    return "<link name=\"" + link + "\"><beam elements=\"2\"><centerline><line to=\"" + std::to_string(length) +
+           " 0 0\"/></centerline><circle radius=\"0.01\"/><material young=\"70e9\" poisson=\"0.33\" "
+           "density=\"2700\"/></beam></link>\n";
+  };
+  const auto joint = [](const std::string& tag, const std::string& links, const std::string& name, double place) {
+    return "<" + tag + " name=\"" + name + "\" type=\"continuous\">" + links + "<axis xyz=\"0 1 0\"/><origin xyz=\"" +
+           std::to_string(place) + " 0 0\"/>";
+  };
+  const auto links = [](const std::string& parent, const std::string& child) {
+    return "<parent link=\"" + parent + "\"/><child link=\"" + child + "\"/>";
+  };
+  const auto parallelogram = [&](const std::string& initial) {
+    return scene_file("<robot name=\"flat\">\n<link name=\"world\"/>\n" + beam("left", 1) + beam("coupler", 2) +
+                      beam("right", 1) + joint("joint", links("world", "left"), "left_foot", 0) + "</joint>\n" +
+                      joint("joint", links("left", "coupler"), "left_head", 1) + "</joint>\n" +
+                      joint("joint", links("world", "right"), "right_foot", 2) + "</joint>\n" +
+                      joint("loop_joint", links("coupler", "right"), "right_head", 2) +
+                      "<child_origin xyz=\"1 0 0\"/></loop_joint>\n<simulation>" + initial + "</simulation></robot>\n");
+  };
+  const Outcome flat = shell("flexarm check " + parallelogram(""));
+  EXPECT_EQ(flat.status, 0);
+  expect_contains(flat.output, "at a dead point: the loop that joint 'right_head' closes");
+  const Outcome open = shell("flexarm check " + parallelogram("<initial joint=\"left_foot\" position=\"-0.5\"/>"
+                                                              "<initial joint=\"left_head\" position=\"0.5\"/>"
+                                                              "<initial joint=\"right_foot\" position=\"-0.5\"/>"));
+  EXPECT_EQ(open.status, 0);
+  EXPECT_EQ(open.output.find("dead point"), std::string::npos);
+}
+
+TEST(Check, TakesEveryExample) {
+  for (const auto& entry : std::filesystem::directory_iterator(test::source_path("config/examples")))
+    EXPECT_EQ(shell("flexarm check " + entry.path().string()).status, 0) << entry.path();
+}
+
+// Cubic algorithms would take hours, quadratic ones minutes.
+TEST(Check, LargeScenesTakeSeconds) {
+  std::string chain = R"(<robot name="r"> <link name="l0"/>)";
+  for (int i = 1; i < 10000; ++i)
+    chain += fmt::format(R"(<joint name="j{0}" type="continuous"> <parent link="l{1}"/> <child link="l{0}"/>
+      <origin xyz="1 0 0"/> <axis xyz="0 1 0"/> </joint> <link name="l{0}"> <inertial> <mass value="1"/>
+      <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/> </inertial> </link>)",
+                         i, i - 1);
+  const std::string rod = R"(<robot name="r"> <link name="world"/> <link name="rod"> <beam elements="100000" order="1">
+    <centerline> <line to="2 0 0"/> </centerline> <circle radius="0.003"/>
+    <material young="70e9" poisson="0.33" density="2700"/> </beam> </link>
+    <joint name="clamp" type="fixed"> <parent link="world"/> <child link="rod"/> </joint> </robot>)";
+  for (const std::string& scene : {chain + "</robot>", rod}) {
+    const Outcome outcome = shell("ulimit -v 2000000; timeout 30 '" + program() + "' check " + scene_file(scene));
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    expect_contains(outcome.output, "natural frequencies are left out");
+  }
+  expect_contains(shell("timeout 30 '" + program() + "' static " + scene_file(chain + "</robot>")).errors,
+                  "no equilibrium found");
+}
+
+}  // namespace flexarm::cli
