@@ -20,7 +20,7 @@ namespace {
 
 constexpr int kPointsBetweenNodes = 3;  ///< so that bending looks smooth
 // As parts of the scene's radius:
-constexpr double kSmallestRadius = 0.008;  ///< of a tube: a rod of 3 mm by 2 m would be hard to see
+constexpr double kSmallestRadius = 0.004;  ///< of a tube: a rod of 3 mm by 2 m would be hard to see
 constexpr double kTrailWidth = 0.004, kTextHeight = 0.06, kGapOfText = 0.02;
 constexpr double kLineSpacing = 1.3;  ///< of rviz, in heights of the text
 /// What is below is the round-off of a beam without load.
