@@ -9,6 +9,12 @@ straight beside the bent beam. Their description is the parameter rigid_links_de
 the frames are shown.
 """
 
+import signal
+
+# roslaunch ends it by this signal if the simulator dies at its start, which has said why. That may be while modules are
+# imported below.
+signal.signal(signal.SIGINT, signal.SIG_DFL)
+
 import math
 import os
 import sys
@@ -96,7 +102,5 @@ def main():
 if __name__ == "__main__":
     try:
         main()
-    except KeyboardInterrupt:
-        sys.exit(1)  # the simulator has ended, and roslaunch all with it: it has said why
     except (OSError, rospy.ROSException) as error:
         sys.exit("show_in_rviz.py: %s" % error)  # the master is gone, or there is no rviz

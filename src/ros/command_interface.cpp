@@ -52,6 +52,11 @@ void CommandInterface::adopt_scene() {
   }
 }
 
+void CommandInterface::let_go_from(std::size_t coordinate) {
+  for (std::size_t i = coordinate; i < shown_.coordinate_names().size(); ++i)
+    controllers_.release(i, "joint '" + shown_.coordinate_names()[i] + "' is gone");
+}
+
 ros::Subscriber CommandInterface::subscribe_to(const std::string& name, const std::string& suffix, Commanded quantity) {
   const std::string topic = name + "/" + suffix;
   std::string fault;

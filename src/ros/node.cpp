@@ -33,6 +33,18 @@ Pace pace(const Parameters& parameters) {
           parameters.error_window};
 }
 
+bool begins_with(const std::vector<std::string>& names, const std::vector<std::string>& first) {
+  return names.size() >= first.size() && std::equal(first.begin(), first.end(), names.begin());
+}
+
+/// Whether the one's coordinates and links are the first of the other's.
+bool keeps_places(const Simulation& before, const Simulation& after) {
+  const auto keeps = [](const std::vector<std::string>& old, const std::vector<std::string>& now) {
+    return begins_with(now, old) || begins_with(old, now);
+  };
+  return keeps(before.coordinate_names(), after.coordinate_names()) && keeps(before.link_names(), after.link_names());
+}
+
 /// Of steps by the wall clock [s]; 0: there is none.
 double period(double step, const Parameters& parameters) {
   return parameters.real_time_factor > 0 ? step / parameters.real_time_factor : 0;
@@ -306,6 +318,26 @@ void Node::reload() {
     announce();
     begin_anew();
   });
+  reconfiguration_.describe();
+}
+
+void Node::edit(const std::function<void(Simulation&)>& edit) {
+  stepping_.between_steps([&](Simulation& running) {
+    take_reports();
+    Simulation edited = running.copy();
+    edit(edited);
+    if (keeps_places(running, edited)) {
+      command_interface_.let_go_from(edited.coordinate_names().size());
+      stepping_.go_on_with_more_or_less(std::move(edited));
+      adopt_scene();
+      show_new_state();
+    } else {
+      stepping_.begin_with(std::move(edited));
+      adopt_scene();
+      begin_anew();
+    }
+  });
+  announce();
   reconfiguration_.describe();
 }
 

@@ -18,6 +18,7 @@
 #include "flexarm/simulation/checkpoint.h"
 #include "messages/conversions.h"
 #include "node.h"
+#include "payload_services.h"
 
 namespace flexarm::node {
 namespace {
@@ -167,6 +168,7 @@ Services::Services(ros::NodeHandle& private_node, Node& simulator) {
   add("switch_mode", switch_mode);
   add("apply_wrench", apply_wrench);
   add("clear_wrenches", clear_wrenches);
+  for (ros::ServiceServer& server : serve_payloads(private_node, simulator)) servers_.push_back(server);
   step_service_.emplace(private_node, simulator);  // the last: who waits for it finds the others
 }
 

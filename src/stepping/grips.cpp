@@ -45,6 +45,11 @@ void Grips::close(std::size_t joint, double position, double max_effort) {
   grips_.push_back({joint, position, max_effort});
 }
 
+void Grips::release_from(std::size_t joint) {
+  const auto went = [joint](const Grip& grip) { return grip.joint >= joint; };
+  grips_.erase(std::remove_if(grips_.begin(), grips_.end(), went), grips_.end());
+}
+
 void Grips::release(std::size_t joint) {
   grips_.erase(std::remove_if(grips_.begin(), grips_.end(), [joint](const Grip& grip) { return grip.joint == joint; }),
                grips_.end());

@@ -18,6 +18,8 @@ class Grips {
   /// Leaves a joint to others.
   void release(std::size_t joint);
   void release_all() { grips_.clear(); }
+  /// Leaves joints from this one on.
+  void release_from(std::size_t joint);
   bool holds(std::size_t joint) const;
   /// The set points of the next step.
   void command(Simulation& simulation);

@@ -131,6 +131,15 @@ void SteppingThread::go_on_with(Simulation simulation) {
   make_room();
 }
 
+void SteppingThread::go_on_with_more_or_less(Simulation simulation) {
+  const std::size_t coordinates = simulation.coordinate_names().size();
+  trajectories_.resize(coordinates);
+  grips_.release_from(coordinates);
+  go_on_with(std::move(simulation));
+  timed_commands_.resize(coordinates);
+  wrenches_.clear_from(simulation_.link_names().size());
+}
+
 void SteppingThread::begin_with(Simulation simulation) {
   go_on_with(std::move(simulation));
   forget_commands();

@@ -44,6 +44,10 @@ void TimedCommands::forget() {
   next_expiry_ = Command::kForEver;
 }
 
+void TimedCommands::resize(std::size_t coordinates) {
+  for (std::vector<double>& expiry : expiry_) expiry.resize(coordinates, Command::kForEver);
+}
+
 void TimedCommands::forget_set_point(std::size_t coordinate) {
   expiry_[static_cast<std::size_t>(Commanded::SetPoint)][coordinate] = Command::kForEver;
 }

@@ -32,6 +32,8 @@ class TimedCommands {
   void expire(double time);
   /// Nothing expires any more; of another scene, too, that the simulation may be of by now.
   void forget();
+  /// The simulation has so many coordinates now: others came behind them, or the last went.
+  void resize(std::size_t coordinates);
   /// The set point of a coordinate does not.
   void forget_set_point(std::size_t coordinate);
 

@@ -82,6 +82,8 @@ class TrajectoryFollower {
   /// When it has arrived [s].
   double end(std::size_t joint) const { return joints_[joint].way.end(); }
   std::size_t joint_count() const { return joints_.size(); }
+  /// Others came behind them, or the last went.
+  void resize(std::size_t joints) { joints_.resize(joints); }
 
  private:
   struct Joint {

@@ -33,6 +33,13 @@ void WrenchSchedule::update(double time) {
   if (changed) apply();
 }
 
+void WrenchSchedule::clear_from(std::size_t link) {
+  const auto went = [link](const Entry& entry) { return entry.wrench.link >= link; };
+  entries_.erase(std::remove_if(entries_.begin(), entries_.end(), went), entries_.end());
+  pulls_.clear();
+  apply();
+}
+
 void WrenchSchedule::clear() {
   entries_.clear();
   pulls_.clear();

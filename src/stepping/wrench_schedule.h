@@ -20,6 +20,8 @@ class WrenchSchedule {
   void set_pulls(const std::vector<AppliedWrench>& pulls);
   /// Before each step, from `time` on.
   void update(double time);
+  /// Takes those away that act on links from this one on, and pulls.
+  void clear_from(std::size_t link);
   /// Takes all away, those that are yet to come, too.
   void clear();
 

@@ -1,0 +1,80 @@
+#include "payload_services.h"
+
+#include <flexarm/AttachLink.h>
+#include <flexarm/DeleteLink.h>
+#include <flexarm/DetachLink.h>
+#include <flexarm/SpawnModel.h>
+#include <ros/console.h>
+
+#include <stdexcept>
+#include <string>
+
+#include "flexarm/scene/urdf_reader.h"
+#include "flexarm/simulation/payloads.h"
+#include "messages/conversions.h"
+#include "node.h"
+
+namespace flexarm::node {
+namespace {
+
+Spawn place_of(const SpawnModel::Request& request) {
+  const geometry_msgs::Quaternion& q = request.pose.orientation;
+  Spawn out;
+  out.pose.position = messages::to_vector(request.pose.position);
+  // All zeros is what a message has that says nothing of it.
+  if (q.w != 0 || q.x != 0 || q.y != 0 || q.z != 0) out.pose.orientation = Quaternion(q.w, q.x, q.y, q.z);
+  out.linear = messages::to_vector(request.twist.linear);
+  out.angular = messages::to_vector(request.twist.angular);
+  out.prefix = request.prefix;
+  return out;
+}
+
+/// @throws std::invalid_argument with all that is wrong with it.
+scene::SceneDescription model_of(const SpawnModel::Request& request) {
+  if (request.model_xml.empty() == request.file.empty())
+    throw std::invalid_argument("a model is given by model_xml or by file, not by both or none");
+  scene::ReadResult read = request.file.empty() ? scene::read_scene_text(request.model_xml, "model_xml")
+                                                : scene::read_scene_file(request.file);
+  if (!read.scene) throw std::invalid_argument("the model cannot be used:\n" + scene::to_text(read.diagnostics));
+  for (const scene::Diagnostic& warning : read.diagnostics) ROS_WARN_STREAM(warning.text());
+  return *std::move(read.scene);
+}
+
+/// `act(simulation, request)` as the answer of a service.
+template <class Service, class Act>
+ros::ServiceServer serve(ros::NodeHandle& private_node, const std::string& name, Node& simulator, const Act& act) {
+  const boost::function<bool(typename Service::Request&, typename Service::Response&)> callback =
+      [&simulator, act](typename Service::Request& request, typename Service::Response& response) {
+        try {
+          simulator.edit([&](Simulation& simulation) { act(simulation, request); });
+          response.success = true;
+        } catch (const std::exception& error) {
+          response.message = error.what();
+        }
+        return true;
+      };
+  return private_node.advertiseService(name, callback);
+}
+
+}  // namespace
+
+std::vector<ros::ServiceServer> serve_payloads(ros::NodeHandle& private_node, Node& simulator) {
+  return {
+      serve<AttachLink>(private_node, "attach", simulator,
+                        [](Simulation& simulation, const AttachLink::Request& request) {
+                          attach(simulation, request.link, request.to);
+                        }),
+      serve<DetachLink>(
+          private_node, "detach", simulator,
+          [](Simulation& simulation, const DetachLink::Request& request) { detach(simulation, request.link); }),
+      serve<SpawnModel>(private_node, "spawn", simulator,
+                        [](Simulation& simulation, const SpawnModel::Request& request) {
+                          spawn(simulation, model_of(request), place_of(request));
+                        }),
+      serve<DeleteLink>(
+          private_node, "delete", simulator,
+          [](Simulation& simulation, const DeleteLink::Request& request) { remove(simulation, request.link); }),
+  };
+}
+
+}  // namespace flexarm::node

@@ -1,0 +1,122 @@
+#!/usr/bin/python3
+"""Links are attached and detached, models come and go, while the node runs."""
+
+import math
+import tempfile
+import unittest
+
+import rospy
+import rostest
+from flexarm.srv import AttachLink, DeleteLink, DetachLink, SpawnModel
+from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
+from running_node import RunningNode
+from simulated_arm import CommandTopic, SimulatedArm, wait_until
+from std_msgs.msg import Float64
+from tf2_msgs.msg import TFMessage
+
+INERTIAL = """<inertial> <mass value="{0}"/> <inertia ixx="{1}" ixy="0" ixz="0" iyy="{1}" iyz="0" izz="{1}"/>
+</inertial>"""
+DISC = """<link name="disc">""" + INERTIAL.format(1, 0.1) + """</link>
+<joint name="turn" type="continuous"> <parent link="base"/> <child link="disc"/> <axis xyz="0 0 1"/> </joint>"""
+BOX = """<link name="box">""" + INERTIAL.format(0.5, 0.01) + """</link>
+<joint name="of_box" type="floating"> <parent link="base"/> <child link="box"/> <origin xyz="1 0 0"/> </joint>"""
+BALL = """<robot name="ball"> <link name="ball">""" + INERTIAL.format(2, 0.02) + """</link> </robot>"""
+
+ALONE, TOGETHER = 0.1, 0.1 + 0.01 + 0.5  # about the axis [kg m^2]
+SPEED = 2.0  # of the disc alone [rad/s]
+ROUND_OFF = 1e-10
+
+
+def scene(*parts):
+    return ("<robot name='payloads'> <link name='base'/>" + "".join(parts) +
+            "<simulation> <gravity xyz='0 0 0'/> <initial joint='turn' velocity='%g'/> </simulation> </robot>" % SPEED)
+
+
+class Payloads(unittest.TestCase):
+    def start(self, text, *arguments):
+        self.scene = tempfile.NamedTemporaryFile("w", suffix=".urdf")
+        self.scene.write(text)
+        self.scene.flush()
+        node = RunningNode("_scene:=" + self.scene.name, *arguments)
+        node.__enter__()
+        self.addCleanup(node.__exit__)
+        self.arm = SimulatedArm()
+        self.attach = rospy.ServiceProxy("/flexarm/attach", AttachLink)
+        self.detach = rospy.ServiceProxy("/flexarm/detach", DetachLink)
+        self.spawn = rospy.ServiceProxy("/flexarm/spawn", SpawnModel)
+        self.delete = rospy.ServiceProxy("/flexarm/delete", DeleteLink)
+
+    def expect(self, answer):
+        self.assertTrue(answer.success, answer.message)
+
+    def refusal(self, answer):
+        self.assertFalse(answer.success)
+        return answer.message
+
+    def test_a_box_is_taken_and_flies_on(self):
+        self.start(scene(DISC, BOX), "_paused:=true")
+        self.expect(self.attach("box", "disc"))
+        self.assertEqual(self.arm.joint_states().name, ["turn"])
+        speed = SPEED * ALONE / TOGETHER
+        self.assertAlmostEqual(self.arm.joint("turn").velocity, speed, delta=ROUND_OFF)  # its momentum is the same
+        self.assertIn("is attached already", self.refusal(self.attach("box", "disc")))
+        self.assertTrue(self.arm.step(500).success)
+        angle = speed * 0.5
+        self.assertAlmostEqual(self.arm.joint("turn").position, angle, delta=1e-6)
+        self.expect(self.detach("box"))
+        self.assertAlmostEqual(self.arm.joint("turn").velocity, speed, delta=1e-9)
+        self.assertTrue(self.arm.step(1000).success)
+        for axis, place in (("x", math.cos(angle) - speed * math.sin(angle)),
+                            ("y", math.sin(angle) + speed * math.cos(angle))):
+            self.assertAlmostEqual(self.arm.joint("of_box/" + axis).position, place, delta=1e-6)
+
+    def test_what_is_commanded_goes_on_where_joints_keep_their_places(self):
+        for parts, gained in (((DISC, BOX), 1.0), ((BOX, DISC), 0.0)):
+            with self.subTest(gained=gained):
+                self.start(scene(*parts), "_paused:=true")
+                CommandTopic("/turn/command", Float64).send(TOGETHER)  # 1 rad/s^2 for both
+                wait_until(lambda: self.arm.step(1).success and self.arm.joint("turn").effort == TOGETHER, "the command")
+                before = self.arm.joint("turn").velocity
+                self.expect(self.attach("box", "disc"))
+                self.assertTrue(self.arm.step(1000).success)
+                speed = before * ALONE / TOGETHER + gained
+                self.assertAlmostEqual(self.arm.joint("turn").velocity, speed, delta=1e-6)
+                self.doCleanups()
+
+    def test_models_come_and_go(self):
+        self.start(scene(DISC), "_paused:=true")
+        pose, twist = Pose(Point(0, 0, 5), Quaternion()), Twist(Vector3(0, 0, 1), Vector3())
+        self.expect(self.spawn(model_xml=BALL, prefix="my_", pose=pose, twist=twist))
+        self.assertTrue(self.arm.step(100).success)
+        self.assertAlmostEqual(self.arm.joint("my_ball/z").position, 5.1, delta=1e-9)
+        self.assertAlmostEqual(self.arm.joint("turn").velocity, SPEED, delta=1e-9)
+        self.expect(self.attach("my_ball", "disc"))
+        self.expect(self.delete("my_ball"))
+        self.assertEqual(self.arm.joint_states().name, ["turn"])
+        self.assertIn("there is no link 'my_ball'", self.refusal(self.delete("my_ball")))
+        self.assertIn("young", self.refusal(self.spawn(model_xml=BALL.replace("<inertial>", "<beam young='x'/>"))))
+        self.assertIn("not by both or none", self.refusal(self.spawn(pose=pose)))
+        self.assertTrue(self.arm.step(100).success)
+
+    def test_frames_follow_while_it_runs(self):
+        self.start(scene(DISC, BOX))
+        self.expect(self.spawn(model_xml=BALL, pose=Pose(Point(0, 0, 5), Quaternion())))
+        frames = {}
+
+        def receive(message):
+            for transform in message.transforms:
+                frames[transform.child_frame_id] = transform.header.frame_id
+
+        subscriber = rospy.Subscriber("/tf", TFMessage, receive)
+        self.addCleanup(subscriber.unregister)
+        wait_until(lambda: {"disc", "box", "ball"} <= set(frames), "all frames")
+        self.expect(self.delete("ball"))
+        self.expect(self.attach("box", "disc"))
+        frames.clear()
+        wait_until(lambda: "disc" in frames, "frames of now")
+        self.assertNotIn("ball", frames)
+
+
+if __name__ == "__main__":
+    rospy.init_node("payloads_test")
+    rostest.rosrun("flexarm", "payloads", Payloads)
