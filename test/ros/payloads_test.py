@@ -75,7 +75,8 @@ class Payloads(unittest.TestCase):
             with self.subTest(gained=gained):
                 self.start(scene(*parts), "_paused:=true")
                 CommandTopic("/turn/command", Float64).send(TOGETHER)  # 1 rad/s^2 for both
-                wait_until(lambda: self.arm.step(1).success and self.arm.joint("turn").effort == TOGETHER, "the command")
+                wait_until(lambda: self.arm.step(1).success and self.arm.joint("turn").effort == TOGETHER,
+                           "the command")
                 before = self.arm.joint("turn").velocity
                 self.expect(self.attach("box", "disc"))
                 self.assertTrue(self.arm.step(1000).success)
