@@ -18,6 +18,7 @@ void bind_state(pybind11::module_& module, SimulationClass& simulation);
 void bind_looks(SimulationClass& simulation);
 void bind_frames(pybind11::module_& module, SimulationClass& simulation);
 void bind_commands(SimulationClass& simulation);
+void bind_payloads(SimulationClass& simulation);
 void bind_runs(SimulationClass& simulation);
 void bind_analysis(SimulationClass& simulation);
 void bind_linear_models(pybind11::module_& module, SimulationClass& simulation);

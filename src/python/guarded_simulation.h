@@ -23,7 +23,10 @@ class GuardedSimulation {
   GuardedSimulation(std::shared_ptr<const ReadScene> scene, Simulation simulation)
       : scene_(std::move(scene)), simulation_(std::move(simulation)) {}
   GuardedSimulation(const GuardedSimulation& other, Simulation simulation)
-      : scene_(other.scene_), family_(other.family_), simulation_(std::move(simulation)) {}
+      : scene_(other.scene_),
+        family_(other.family_),
+        simulation_(std::move(simulation)),
+        is_edited_(other.is_edited_) {}
 
   /// @throws std::runtime_error if another thread works on it.
   Simulation& use() {
@@ -53,9 +56,20 @@ class GuardedSimulation {
     return columns_.emplace(patterns, ResultColumns(use(), ResultColumns::Solver::With, patterns)).first->second;
   }
 
+  /// `edit(simulation)` makes its scene another one; if it throws, nothing has changed.
+  template <class Edit>
+  void edit(const Edit& edit) {
+    edit(use());
+    family_ = std::make_shared<const char>();
+    columns_.clear();
+    is_edited_ = true;
+  }
+
+  /// Of which it was made.
   const std::shared_ptr<const ReadScene>& scene() const { return scene_; }
+  bool is_edited() const { return is_edited_; }
   /// The same for all that are copies of each other: their snapshots fit.
-  const void* family() const { return family_.get(); }
+  const std::shared_ptr<const char>& family() const { return family_; }
 
  private:
   /// For as long as it lives.
@@ -74,7 +88,7 @@ class GuardedSimulation {
   std::shared_ptr<const char> family_ = std::make_shared<const char>();
   Simulation simulation_;
   std::map<std::vector<std::string>, ResultColumns> columns_;
-  bool is_in_work_ = false;
+  bool is_in_work_ = false, is_edited_ = false;
 };
 
 }  // namespace flexarm::python

@@ -31,6 +31,7 @@ PYBIND11_MODULE(_flexarm, module) {
   bind_looks(simulation);
   bind_frames(module, simulation);
   bind_commands(simulation);
+  bind_payloads(simulation);
   bind_runs(simulation);
   bind_analysis(simulation);
   bind_linear_models(module, simulation);

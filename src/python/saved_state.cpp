@@ -14,6 +14,8 @@ namespace flexarm::python {
 
 std::string SavedState::text() const {
   if (!origin_) return text_;
+  if (family_ != origin_->family())
+    throw std::runtime_error("links have come or gone since this state was: it can be restored no more");
   Simulation copy = origin_->use().copy();
   copy.restore(snapshot_);
   return checkpoint_text(copy);
@@ -21,13 +23,12 @@ std::string SavedState::text() const {
 
 void SavedState::give_to(GuardedSimulation& simulation) const {
   // Simulations made of the same Scene twice share no snapshots, but their checkpoints fit.
-  if (origin_ && origin_->family() == simulation.family()) {
+  if (origin_ && family_ == simulation.family()) {
     simulation.use().restore(snapshot_);
     return;
   }
-  const std::string text = this->text();
   try {
-    read_checkpoint_text(simulation.use(), text, "state");
+    read_checkpoint_text(simulation.use(), text(), "state");
   } catch (const std::runtime_error& error) {
     throw std::invalid_argument(error.what());
   }

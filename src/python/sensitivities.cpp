@@ -44,6 +44,8 @@ class GuardedSensitivities {
 
 std::unique_ptr<GuardedSensitivities> sensitivities_of(const std::shared_ptr<GuardedSimulation>& simulation,
                                                        const std::vector<std::string>& parameters, bool initial_state) {
+  if (simulation->is_edited())
+    throw std::invalid_argument("sensitivities are of a scene as it was read, and links have come or gone since");
   try {
     return std::make_unique<GuardedSensitivities>(
         simulation, SensitivityRequest{parameters, simulation->scene()->read, initial_state});

@@ -82,6 +82,13 @@ class BadScenes(unittest.TestCase):
         self.setUp()
         self.assert_refused(["_scene:=" + GOOD_SCENE, "_parameters:=5"], "must be a dictionary of numbers")
 
+    def refuse_changes(self, entry, changes):
+        """All in one list, as each error is reported: an entry for each pair of a change and what is told of it."""
+        entries = [dict(entry, name="%s%d" % (entry["name"], i)) for i in range(1, len(changes) + 1)]
+        told = ["entry %d ('%s'): " % (i, one["name"]) for i, one in enumerate(entries, 1)]
+        self.refuse_controllers([dict(one, **change) for one, (change, _) in zip(entries, changes)],
+                                *told, *(text for _, text in changes))
+
     def refuse_controllers(self, controllers, *words):
         self.setUp()
         rospy.set_param("/flexarm/controllers", controllers)
@@ -94,28 +101,27 @@ class BadScenes(unittest.TestCase):
         self.refuse_controllers(5, "/flexarm/controllers: must be a list of controllers")
         self.refuse_controllers({"controller_list": {}}, "/flexarm/controllers/controller_list: must be a list")
         self.refuse_controllers([good, 7], "/flexarm/controllers, entry 2: must be a dictionary with name")
-        for field in ("name", "action_ns", "type", "joints"):
-            self.refuse_controllers([{key: good[key] for key in good if key != field}], "it has no '%s'" % field)
-        for change, told in (({"joints": ["nose"]}, "entry 1 ('arm'): there is no joint coordinate 'nose'"),
-                             ({"joints": ["lift", "lift"]}, "joint 'lift' is named twice"),
-                             ({"joints": []}, "with one at least"),
-                             ({"joints": ["lift", 5]}, "must be a list of names"),
-                             ({"joints": ["loose"]}, "'loose' has no servo"),
-                             ({"joints": ["right"]}, "right"),
-                             ({"type": "Follow"}, "or 'GripperCommand', got 'Follow'"),
-                             ({"name": 5}, "its 'name' must be text"),
-                             ({"name": "a b"}, "'a b/follow' is no name of an action")):
-            self.refuse_controllers([dict(good, **change)], told)
+        fields = "name", "action_ns", "type", "joints"
+        self.refuse_controllers([{key: good[key] for key in good if key != field} for field in fields],
+                                *("it has no '%s'" % field for field in fields))
+        self.refuse_changes(good, (({"joints": ["nose"]}, "there is no joint coordinate 'nose'"),
+                                   ({"joints": ["turn", "turn"]}, "joint 'turn' is named twice"),
+                                   ({"joints": []}, "with one at least"),
+                                   ({"joints": ["lift", 5]}, "must be a list of names"),
+                                   ({"joints": ["loose"]}, "'loose' has no servo"),
+                                   ({"joints": ["right"]}, "right"),
+                                   ({"type": "Follow"}, "or 'GripperCommand', got 'Follow'")))
+        self.refuse_controllers([dict(good, name=5), dict(good, name="a b")], "its 'name' must be text",
+                                "'a b/follow' is no name of an action")
         self.refuse_controllers([good, dict(good, name="other")],
                                 "entry 2 ('other'): joint 'lift' is named twice, in 'arm' as well")
         self.refuse_controllers([good, dict(good, joints=["turn"])], "another one with the action 'arm/follow'")
-        for change, told in (({"joints": ["left", "lift", "turn"]}, "one joint or two, got 3"),
-                             ({"joints": ["left"], "parallel": True}, "'parallel' is for two joints"),
-                             ({"parallel": "yes"}, "its 'parallel' must be true or false"),
-                             ({"max_effort": -1.0}, "its 'max_effort' must be a number >= 0"),
-                             ({"stall_timeout": "long"}, "its 'stall_timeout' must be a number >= 0"),
-                             ({"command_joint": "lift"}, "'command_joint' is none of its joints, got 'lift'")):
-            self.refuse_controllers([dict(gripper, **change)], "entry 1 ('hand')", told)
+        self.refuse_changes(gripper, (({"joints": ["left", "lift", "turn"]}, "one joint or two, got 3"),
+                                      ({"joints": ["left"], "parallel": True}, "'parallel' is for two joints"),
+                                      ({"parallel": "yes"}, "its 'parallel' must be true or false"),
+                                      ({"max_effort": -1.0}, "its 'max_effort' must be a number >= 0"),
+                                      ({"stall_timeout": "long"}, "its 'stall_timeout' must be a number >= 0"),
+                                      ({"command_joint": "lift"}, "'command_joint' is none of its joints, got 'lift'")))
 
     def test_every_error_of_controllers_is_reported(self):
         self.refuse_controllers([{"name": "arm", "type": "FollowJointTrajectory"},
