@@ -38,14 +38,14 @@ def test_a_ball_is_taken_and_flies_on(rod):
     lost = 0.5 * INERTIA * SPEED**2 - 0.5 * TOGETHER * speed**2
     assert rod.energies.dissipated == pytest.approx(lost, abs=1e-10)
     rod.detach("ball")
-    rod.run(1.0)
+    rod.run(1000)
     place = pose_of(rod, "ball")[:3]
     assert place == pytest.approx([1, speed, 0], abs=1e-9)
 
 
 def test_models_come_at_a_pose_with_a_velocity_and_a_name(rod):
     spawn_ball(rod, position=(0, 0, 5), orientation=(0, 0, 1, 0), linear=(0, 0, 1), prefix="my_")
-    rod.run(0.5)
+    rod.run(500)
     assert pose_of(rod, "my_ball")[:3] == pytest.approx([0, 0, 5.5], abs=1e-12)
     assert numpy.abs(pose_of(rod, "my_ball")[3:]) == pytest.approx([0, 0, 1, 0], abs=1e-12)
     rod.remove("my_ball")
@@ -58,7 +58,7 @@ def test_states_of_before_are_refused(rod):
     with pytest.raises(ValueError, match="links have come or gone"):
         rod.restore(before)
     after = rod.snapshot()
-    rod.run(0.1)
+    rod.run(100)
     rod.restore(after)
     with pytest.raises(ValueError):
         other.restore(after)
