@@ -138,7 +138,7 @@ TEST(LoopBuilder, VelocitiesOfTheStartAgreeWithTheLoop) {
                          joint.master < 0 ? Vector6(Vector6::Zero()) : model.initial_velocity[joint.master],
                          model.initial_velocity[joint.slave], &remainder);
       EXPECT_LT(remainder.norm(), 1e-14);
-      for (const double r : rate) rates.push_back(r);
+      rates.insert(rates.end(), rate.data(), rate.data() + rate.size());
     }
     const auto rate = [&](const char* name) { return rates[coordinate(model, name).joint]; };
     EXPECT_NEAR(rates[0], 2, 1e-14);

@@ -38,7 +38,7 @@ class FreeNodesOf : public ::testing::Test {
   /// Turns of up to pi, which leave the range of the series that packs sum.
   Eigen::VectorXd increment() {
     Eigen::VectorXd out(dof_.unknowns);
-    for (double& entry : out) entry = 1.8 * random_.number();
+    for (Eigen::Index i = 0; i < out.size(); ++i) out[i] = 1.8 * random_.number();
     return out;
   }
   template <class Turn>

@@ -69,14 +69,15 @@ struct Oscillator {
       companion(i, n - 1) = -c[i] / c[n];
       if (i > 0) companion(i, i - 1) = 1;
     }
-    Eigen::VectorXcd values = dense_eigenpairs(companion).values;
+    const Eigen::VectorXcd found = dense_eigenpairs(companion).values;
+    std::vector<Complex> values(found.data(), found.data() + n);
     for (Complex& p : values)
       for (int iteration = 0; iteration < 3; ++iteration) {  // polished by Newton's method
         Complex f = c[n], slope = 0;
         for (int i = n - 1; i >= 0; --i) slope = slope * p + f, f = f * p + c[i];
         if (std::abs(slope) > 0) p -= f / slope;
       }
-    return {values.data(), values.data() + n};
+    return values;
   }
 };
 

@@ -93,7 +93,7 @@ TEST(Prestrain, HeldRodIsPressed) {
 TEST(Prestrain, IsOfTheReferenceLine) {
   SceneBuilder b = cantilever(16, 4);
   scene::MatrixSection section;
-  section.stiffness = Vector6(4e3, 1e3, 1e3, 6, 8, 12).asDiagonal();
+  section.stiffness = (Vector6() << 4e3, 1e3, 1e3, 6, 8, 12).finished().asDiagonal();
   const Matrix3 offset = so3::hat(Vector3(0, 0.05, -0.08));
   section.inertia << Matrix3::Identity(), -offset, offset, 0.1 * Matrix3::Identity() - offset * offset;
   arm(b).section = section;

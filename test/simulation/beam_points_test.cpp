@@ -18,7 +18,7 @@ scene::MatrixSection offset_section() {
   const Vector3 centre(0, 0.05, -0.03);
   const Matrix3 d = so3::hat(centre);
   scene::MatrixSection section;
-  section.stiffness = Vector6(2e4, 1e4, 1.5e4, 40, 50, 60).asDiagonal();
+  section.stiffness = (Vector6() << 2e4, 1e4, 1.5e4, 40, 50, 60).finished().asDiagonal();
   section.stiffness(0, 4) = section.stiffness(4, 0) = 200;
   section.stiffness(1, 3) = section.stiffness(3, 1) = -150;
   section.inertia << 2 * Matrix3::Identity(), -2 * d, 2 * d, 0.02 * Matrix3::Identity() - 2 * d * d;

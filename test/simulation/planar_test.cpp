@@ -196,9 +196,9 @@ TEST(Planar, IsNotFoundWhereSectionsCoupleOutOfIt) {
   const auto search = [](int row, int column) {
     SceneBuilder b;
     scene::MatrixSection section;
-    section.stiffness = Vector6(2e4, 1e4, 1e4, 20, 25, 25).asDiagonal();
+    section.stiffness = (Vector6() << 2e4, 1e4, 1e4, 20, 25, 25).finished().asDiagonal();
     section.stiffness(row, column) = section.stiffness(column, row) = 1e-6;
-    section.inertia = Vector6(0.5, 0.5, 0.5, 2e-3, 1e-3, 1e-3).asDiagonal();
+    section.inertia = (Vector6() << 0.5, 0.5, 0.5, 2e-3, 1e-3, 1e-3).finished().asDiagonal();
     b.beam("arm", {{1, 0, 0}}, section, 2, 2);
     b.joint("hinge", JointKind::Continuous, "world", "arm", Vector3::Zero(), Vector3::UnitZ());
     b.scene.gravity = {0, -9.81, 0};

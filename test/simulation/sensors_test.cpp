@@ -50,8 +50,8 @@ TEST(Sensors, MeasureAtTheirPlaceBesideTheMassCentroid) {
   SceneBuilder b;
   scene::MatrixSection matrices;
   const double ea = 1e4, m = 0.5, c = 0.05;
-  matrices.stiffness = Vector6(ea, 5e3, 5e3, 200, kStiffness, kStiffness).asDiagonal();
-  matrices.inertia = Vector6(m, m, m, 0.02, 0.01, 0.01).asDiagonal();
+  matrices.stiffness = (Vector6() << ea, 5e3, 5e3, 200, kStiffness, kStiffness).finished().asDiagonal();
+  matrices.inertia = (Vector6() << m, m, m, 0.02, 0.01, 0.01).finished().asDiagonal();
   const Matrix3 d = (Matrix3() << 0, 0, c, 0, 0, 0, -c, 0, 0).finished();
   matrices.inertia.topRightCorner<3, 3>() = -m * d;
   matrices.inertia.bottomLeftCorner<3, 3>() = m * d;
