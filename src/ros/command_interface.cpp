@@ -54,7 +54,7 @@ void CommandInterface::adopt_scene() {
 
 void CommandInterface::let_go_from(std::size_t coordinate) {
   for (std::size_t i = coordinate; i < shown_.coordinate_names().size(); ++i)
-    controllers_.release(i, "joint '" + shown_.coordinate_names()[i] + "' is gone");
+    controllers_.release(i, "joint '" + shown_.coordinate_names()[i] + "' is gone, or has another place in the scene");
 }
 
 ros::Subscriber CommandInterface::subscribe_to(const std::string& name, const std::string& suffix, Commanded quantity) {

@@ -42,7 +42,7 @@ class CommandInterface {
   /// Between two steps: the simulation is of another scene now, which may have other joints. Topics that both have
   /// stay.
   void adopt_scene();
-  /// Coordinates from this one on go with the next scene: what they follow is over.
+  /// Coordinates from this one on go with the next scene, or get other places: what they follow is over.
   void let_go_from(std::size_t coordinate);
   /// Between two steps, after a reset, or where another state was loaded: no command expires; an emergency stop, or
   /// none, still is in force.

@@ -326,16 +326,11 @@ void Node::edit(const std::function<void(Simulation&)>& edit) {
     take_reports();
     Simulation edited = running.copy();
     edit(edited);
-    if (keeps_places(running, edited)) {
-      command_interface_.let_go_from(edited.coordinate_names().size());
-      stepping_.go_on_with_more_or_less(std::move(edited));
-      adopt_scene();
-      show_new_state();
-    } else {
-      stepping_.begin_with(std::move(edited));
-      adopt_scene();
-      begin_anew();
-    }
+    const bool keeps = keeps_places(running, edited);
+    command_interface_.let_go_from(keeps ? edited.coordinate_names().size() : 0);
+    stepping_.go_on_with_scene(std::move(edited), keeps);
+    adopt_scene();
+    show_new_state();
   });
   announce();
   reconfiguration_.describe();

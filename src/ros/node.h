@@ -59,9 +59,9 @@ class Node {
   /// others. Time of the stamps goes on, and paused stays paused; commands, wrenches and trajectories are over.
   /// @throws ParameterError, ModelError, and others if it cannot be used; all is as before then.
   void reload();
-  /// Goes on with the scene that `edit` makes of this one (payloads.h), from the state of now. What was commanded goes
-  /// on where joints and links keep their places: what comes is behind the others, what goes was the last. Else it is
-  /// over.
+  /// Goes on with the scene that `edit` makes of this one (payloads.h), from the state of now. Commands go on. So do
+  /// trajectories, grips and wrenches if joints and links keep their places: what comes is behind the others, what goes
+  /// was the last; else they are over.
   /// @throws what `edit` throws; all is as before then.
   void edit(const std::function<void(Simulation&)>& edit);
   /// Goes on, from the state of now, by other parameters, and by another scene if there is one, which must be the same

@@ -131,13 +131,17 @@ void SteppingThread::go_on_with(Simulation simulation) {
   make_room();
 }
 
-void SteppingThread::go_on_with_more_or_less(Simulation simulation) {
+void SteppingThread::go_on_with_scene(Simulation simulation, bool keeps_places) {
+  const std::vector<std::string> names_before = simulation_.coordinate_names();
   const std::size_t coordinates = simulation.coordinate_names().size();
-  trajectories_.resize(coordinates);
-  grips_.release_from(coordinates);
+  if (!keeps_places)
+    while (!commands_.empty()) commands_.pop();  // of steps to come, in lock step
   go_on_with(std::move(simulation));
-  timed_commands_.resize(coordinates);
-  wrenches_.clear_from(simulation_.link_names().size());
+  timed_commands_.renumber(names_before);
+  trajectories_.resize(keeps_places ? coordinates : 0);
+  trajectories_.resize(coordinates);
+  grips_.release_from(keeps_places ? coordinates : 0);
+  wrenches_.clear_from(keeps_places ? simulation_.link_names().size() : 0);
 }
 
 void SteppingThread::begin_with(Simulation simulation) {

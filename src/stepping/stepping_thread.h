@@ -83,9 +83,9 @@ class SteppingThread {
   // ---- for a caller that has halted it and has taken all reports
   /// Goes on with another simulation of the same mechanism; commands stay in force.
   void go_on_with(Simulation simulation);
-  /// Goes on with that of a scene in which coordinates and links came behind the others, or the last went. Commands
-  /// stay in force, but for those of what went, and pulls.
-  void go_on_with_more_or_less(Simulation simulation);
+  /// Goes on with that of a scene in which links came or went. Commands stay in force, but for those of what went, and
+  /// pulls; if coordinates and links do not keep their places, trajectories, grips and wrenches are over, too.
+  void go_on_with_scene(Simulation simulation, bool keeps_places);
   /// Begins with the simulation of another scene; all commands are forgotten.
   void begin_with(Simulation simulation);
   void set_pace(const Pace& pace);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "flexarm/simulation/simulation.h"
@@ -32,8 +33,8 @@ class TimedCommands {
   void expire(double time);
   /// Nothing expires any more; of another scene, too, that the simulation may be of by now.
   void forget();
-  /// The simulation has so many coordinates now: others came behind them, or the last went.
-  void resize(std::size_t coordinates);
+  /// The simulation is of another scene now: of coordinates of the same name commands go on.
+  void renumber(const std::vector<std::string>& names_before);
   /// The set point of a coordinate does not.
   void forget_set_point(std::size_t coordinate);
 
