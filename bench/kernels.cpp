@@ -254,3 +254,5 @@ const bool registered = [] {
 
 }  // namespace
 }  // namespace flexarm
+
+BENCHMARK_MAIN();

@@ -37,7 +37,13 @@ std::string json_event(const RunEvent& event) {
 /// A matrix for each frequency.
 std::string json_gains(const std::vector<Eigen::MatrixXcd>& gains) {
   return json_list(gains, ",\n  ", [](const Eigen::MatrixXcd& matrix) {
-    return json_list(matrix.rowwise(), ", ", [](const auto& row) { return json_list(row, ", ", json_complex); });
+    std::vector<std::string> rows;
+    for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+      const Eigen::VectorXcd row = matrix.row(i);
+      rows.push_back(
+          json_list(std::vector<std::complex<double>>(row.data(), row.data() + row.size()), ", ", json_complex));
+    }
+    return json_list(rows, ", ", [](const std::string& row) { return row; });
   });
 }
 
@@ -126,10 +132,11 @@ std::string frequency_response_as_csv(const LinearModel& model, const FrequencyR
   for (std::size_t n = 0; n < response.frequencies.size(); ++n) {
     std::string line;
     csv::append(line, response.frequencies[n]);
-    for (const auto& row : response.gains[n].rowwise())
-      for (const std::complex<double>& gain : row) {
-        csv::append(line, std::abs(gain));
-        csv::append(line, std::arg(gain) * 180 / kPi);
+    const Eigen::MatrixXcd& gains = response.gains[n];
+    for (Eigen::Index i = 0; i < gains.rows(); ++i)
+      for (Eigen::Index j = 0; j < gains.cols(); ++j) {
+        csv::append(line, std::abs(gains(i, j)));
+        csv::append(line, std::arg(gains(i, j)) * 180 / kPi);
       }
     table += line + "\n";
   }
@@ -143,8 +150,9 @@ std::string step_response_as_csv(const LinearModel& model, const StepResponse& r
   for (std::size_t n = 0; n < response.times.size(); ++n) {
     std::string line;
     csv::append(line, response.times[n]);
-    for (const auto& row : response.outputs[n].rowwise())
-      for (const double value : row) csv::append(line, value);
+    const Eigen::MatrixXd& outputs = response.outputs[n];
+    for (Eigen::Index i = 0; i < outputs.rows(); ++i)
+      for (Eigen::Index j = 0; j < outputs.cols(); ++j) csv::append(line, outputs(i, j));
     table += line + "\n";
   }
   return table;

@@ -7,7 +7,7 @@
 
 namespace flexarm::node {
 
-Diagnostics::Diagnostics(ros::NodeHandle node, const ros::NodeHandle& private_node, const Simulation& simulation,
+Diagnostics::Diagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const Simulation& simulation,
                          const RunState& run)
     : report_(simulation, run),
       publisher_(node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1)),

@@ -11,8 +11,7 @@ namespace flexarm::node {
 class Diagnostics {
  public:
   /// @throws ParameterError if ~diagnostic_period [s] (1) is not above 0.
-  Diagnostics(ros::NodeHandle node, const ros::NodeHandle& private_node, const Simulation& simulation,
-              const RunState& run);
+  Diagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const Simulation& simulation, const RunState& run);
 
   /// Sends the diagnostics if the period is over; `force`: in any case.
   void publish(bool force);

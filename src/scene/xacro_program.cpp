@@ -53,6 +53,7 @@ struct Run {
 
 Run run_xacro(std::vector<std::string> words) {
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   const Output output, complaints;
