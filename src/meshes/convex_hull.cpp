@@ -7,7 +7,9 @@
 
 #include <fmt/format.h>
 
+extern "C" {  // which the header says itself from Qhull 2020 on
 #include <libqhull_r/qhull_ra.h>
+}
 
 namespace flexarm::meshes {
 namespace {
