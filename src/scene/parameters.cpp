@@ -17,6 +17,13 @@
 namespace flexarm::scene {
 namespace {
 
+/// That has the same bits. fmt 6 writes 2 as "2.0", which is no whole number for who reads it.
+std::string shortest_number(double value) {
+  const std::string text = fmt::format("{}", value);
+  const bool is_whole = text.size() > 2 && text.compare(text.size() - 2, 2, ".0") == 0;
+  return is_whole ? text.substr(0, text.size() - 2) : text;
+}
+
 constexpr std::string_view kOpen = "${";
 constexpr const char* kForeign[] = {"gazebo", "transmission"};  // of other programs, with expressions of their own
 
@@ -123,7 +130,7 @@ std::optional<std::string> Expansion::replaced(const XmlElement& element, int li
     const std::optional<double> value = evaluate(element, line, expression);
     if (!value) return std::nullopt;
     out += text.substr(0, open);
-    out += fmt::format("{}", *value);  // the shortest number that has the same bits
+    out += shortest_number(*value);
     expressions += expression + ' ';
     text.remove_prefix(end + 1);
   }
